@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// The offline compiler as a library: mesh file -> polygon soup -> validated mesh -> FDCG bytes.
+//
+//   auto soup = fdcg::bake::import_mesh("bunny.ply");
+//   auto compiled = fdcg::bake::compile(*soup, {});
+//   if (compiled && compiled->report.passes()) write(compiled->bytes);
+//
+// Bad meshes are values: a Failure where there is nothing to work on, a Report where there is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace fdcg::bake {
+
+// ---- results -------------------------------------------------------------------------------------------------------------
+
+// Why there is no value. `exit_code` is the promise of the command line: 2 wrong usage, 3 unreadable input or unwritable
+// output, 4 our own fault.
+struct Failure {
+  int exit_code = 4;
+  std::string message;  // one line: file, element, value, limit, remedy
+};
+
+// A value or a Failure; named like std::expected, which C++20 does not have.
+template <class T>
+class Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
+  Result(Failure failure) : state_(std::move(failure)) {}  // NOLINT(google-explicit-constructor)
+  [[nodiscard]] bool has_value() const { return std::holds_alternative<T>(state_); }
+  explicit operator bool() const { return has_value(); }
+  T& operator*() { return std::get<T>(state_); }
+  const T& operator*() const { return std::get<T>(state_); }
+  T* operator->() { return &std::get<T>(state_); }
+  const T* operator->() const { return &std::get<T>(state_); }
+  [[nodiscard]] const Failure& error() const { return std::get<Failure>(state_); }
+
+ private:
+  std::variant<T, Failure> state_;
+};
+
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+// Called now and then with the stage's name and how far it has come (0..1). May be empty.
+using Progress = std::function<void(std::string_view stage, double fraction)>;
+
+// ---- import --------------------------------------------------------------------------------------------------------------
+
+enum class Format { off, obj, ply, stl };
+
+// The faces of a mesh file as the file has them: nothing merged, moved, rounded or dropped.
+struct PolygonSoup {
+  static constexpr std::uint32_t kInvalidVertex = 0xFFFFFFFFu;  // an index that the file has no vertex for
+
+  std::string name;  // the path as the user gave it, for messages
+  Format format = Format::off;
+  bool is_text = false;
+  std::vector<Vec3> points;               // source units, source numbering; may hold NaN and infinities
+  std::vector<std::uint32_t> face_first;  // face f has the corners face_first[f] .. face_first[f + 1] - 1
+  std::vector<std::uint32_t> corners;     // indices into points, or kInvalidVertex
+  std::vector<std::uint32_t> point_line;  // text formats: the line (1-based) of each point; else empty
+  std::vector<std::uint32_t> face_line;   // text formats: the line of each face; else empty
+  // Half the spacing of the numbers in the file, as a bound on what rounding did to them: a coordinate c was known to within
+  // max(relative_quantum * |c|, absolute_quantum).
+  double relative_quantum = 0;  // 2^-24 where every coordinate is a float, 2^-53 else
+  double absolute_quantum = 0;  // decimal text: half a unit of the last digit printed; else 0
+  std::string sha256;           // of the file's bytes, 64 lower-case hex digits
+
+  [[nodiscard]] std::size_t face_count() const { return face_first.empty() ? 0 : face_first.size() - 1; }
+};
+
+struct ImportOptions {
+  std::optional<Format> format;  // default: by content, then by the file name's ending
+  Progress progress;
+};
+
+// Reads OFF (also COFF, NOFF, comments), OBJ, PLY (ascii, both binaries) and STL (ascii, binary). Never allocates more than a
+// small multiple of the file's size. Fails with exit code 3 on what cannot be read or holds no face.
+Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// The same from memory; `name` is for messages.
+Result<PolygonSoup> import_memory(std::string_view bytes, std::string name, const ImportOptions& options = {});
+
+// ---- report --------------------------------------------------------------------------------------------------------------
+
+enum class Severity { note, warning, error };
+
+// One located finding. Indices in the source file's own numbering (0-based as they stand in the soup).
+struct Element {
+  std::vector<std::uint32_t> faces;
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  std::vector<std::uint32_t> vertices;
+  std::optional<Vec3> point;          // source units
+  std::optional<std::uint32_t> line;  // text formats
+};
+
+// Everything found under one rule.
+struct Issue {
+  std::string rule;
+  Severity severity = Severity::error;
+  std::uint64_t total = 0;        // exact, however few elements are listed
+  std::string message;            // what, how many, and the remedy
+  std::vector<Element> elements;  // the first max_elements of them, in source order
+};
+
+struct Report {
+  std::string file;
+  std::uint64_t vertices = 0, faces = 0, components = 0;
+  std::vector<Issue> issues;        // errors first, then warnings, then notes; in the catalogue's order within
+  std::vector<std::string> checks;  // the rules that were run
+  std::set<std::string> allowed;    // rules whose errors do not fail the verdict
+
+  [[nodiscard]] bool passes(Severity fail_on = Severity::error) const;
+};
+
+// One row of the catalogue of rules.
+struct Rule {
+  std::string_view name;
+  Severity severity;
+  std::string_view meaning;  // what it counts
+  std::string_view why;      // what goes wrong at contact
+  std::string_view remedy;
+  bool can_be_allowed;  // by compile --allow
+};
+const std::vector<Rule>& rules();
+const Rule* find_rule(std::string_view name);
+
+std::string report_text(const Report& report, bool colour);
+std::string report_json(const std::vector<Report>& reports);
+
+// ---- validate and compile --------------------------------------------------------------------------------------------------
+
+// Vertices at equal coordinates are one (exact; -0 = 0), each is its own (none), or those within a distance are joined.
+struct Weld {
+  enum class Kind { exact, none, distance } kind = Kind::exact;
+  double distance = 0;  // source units
+};
+
+// Which edges count as flat, beyond those that are so exactly (contact-model section 2, anchors: three tiers).
+struct Coplanar {
+  enum class Kind { exact, quantum, angle } kind = Kind::quantum;
+  double angle_rad = 0;
+};
+
+enum class Precision { f64, f32 };
+
+struct ValidateOptions {
+  Weld weld;
+  std::set<std::string> allow;
+  std::size_t max_elements = 100;
+  Progress progress;
+};
+
+Report validate(const PolygonSoup& soup, const ValidateOptions& options = {});
+
+struct CompileOptions {
+  double metres_per_unit = 1;
+  Precision precision = Precision::f64;
+  Coplanar coplanar;
+  bool merge = true;
+  Weld weld;
+  bool orient = false;
+  bool store_voronoi_planes = true;
+  std::set<std::string> without;  // optional sections left out: hierarchy, source-map, info
+  std::set<std::string> allow;
+  std::size_t max_elements = 100;
+  unsigned jobs = 0;  // threads; 0: as many as there are cores. The bytes do not depend on it
+  Progress progress;
+};
+
+struct Compiled {
+  Report report;
+  std::uint64_t flipped_faces = 0;     // by orient
+  std::uint64_t split_faces = 0;       // not convex or not planar: cut into several nodes
+  std::uint64_t merged_faces = 0;      // source faces that share their node with others
+  std::vector<std::byte> bytes;        // the file; empty if the report does not pass
+};
+
+// Fails only where the options contradict one another (2), the mesh outgrows the format (3), or by our own fault (4).
+Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options);
+
+}  // namespace fdcg::bake

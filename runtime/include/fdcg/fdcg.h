@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * fdcg: feel a 3D model through a force-feedback device. The whole runtime on one screen:
+ *
+ *   fdcg_graph graph;                                          a view, in your memory, of a file in yours or mapped
+ *   fdcg_open_file("bunny.fdcg", FDCG_VERIFY_FULL, &graph, &error);
+ *   fdcg_params params = fdcg_default_params();                friction, stiffness, damping
+ *   fdcg_contact contact = {0};                                one contact point; zero is its start
+ *   each tick:  fdcg_step(&graph, &params, &contact, hip_object_m, &result);   ->  result.force_n
+ *   fdcg_close(&graph);
+ *
+ * fdcg_step is the friction-cone god-object algorithm of Melder and Harwin (2004) with its gaps closed. It never allocates,
+ * locks, logs, throws, recurses or reads a clock, and every loop in it is bounded. Several contacts may step on one graph at
+ * once: the graph is only read.
+ *
+ * Frames and units: positions in metres in the object's frame, which is the mesh file's own coordinates times the unit scale.
+ * Forces in newtons, same frame.
+ */
+#ifndef FDCG_FDCG_H
+#define FDCG_FDCG_H
+
+#include "fdcg/format.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define FDCG_VERSION_MAJOR 0
+#define FDCG_VERSION_MINOR 1
+#define FDCG_VERSION_PATCH 0
+#define FDCG_VERSION_STRING "0.1.0"
+
+/* ---- errors ------------------------------------------------------------------------------------------------------------ */
+
+typedef enum fdcg_status {
+  FDCG_OK = 0,
+  FDCG_E_ARGUMENT,  /* a null pointer, a number outside its range */
+  FDCG_E_IO,        /* the file cannot be opened, read or mapped */
+  FDCG_E_ALIGNMENT, /* the memory does not start at a multiple of 8 */
+  FDCG_E_TRUNCATED, /* fewer bytes than the header promises, or more */
+  FDCG_E_MAGIC,     /* not an FDCG file */
+  FDCG_E_VERSION,   /* a format version that this library does not know */
+  FDCG_E_LAYOUT,    /* header or section table contradict themselves */
+  FDCG_E_CHECKSUM,  /* bytes have changed since the file was written */
+  FDCG_E_GRAPH      /* an index or a number inside a section is out of range */
+} fdcg_status;
+
+/* Filled in by every function that returns an fdcg_status other than FDCG_OK. */
+typedef struct fdcg_error {
+  fdcg_status status;
+  uint64_t offset;   /* byte in the file that the message speaks of; 0 where there is none */
+  char message[240]; /* one line, ends in '\0' */
+} fdcg_error;
+
+/* ---- graph ------------------------------------------------------------------------------------------------------------- */
+
+typedef enum fdcg_verify {
+  FDCG_VERIFY_FULL = 0,   /* checksums, every index, offset and number: after it no file leads to undefined behaviour */
+  FDCG_VERIFY_TRUSTED = 1 /* header and section bounds only: for files that your own build wrote */
+} fdcg_verify;
+
+/* A read-only view; the bytes that it points into must outlive it. Read its fields, do not write them. */
+typedef struct fdcg_graph {
+  const fdcg_header* header;
+  const void* nodes;              /* fdcg_node_f64 or _f32, by header->real_bytes */
+  const uint32_t* sides;
+  const void* voronoi_planes;     /* NULL: derived in the step */
+  const void* connections;
+  const void* corners;
+  const uint32_t* fans;
+  const fdcg_box* hierarchy;      /* NULL: the free-space sweep looks at every node */
+  const uint32_t* source_map;     /* NULL: not in the file; else header->source_face_count entries */
+  const char* info;               /* JSON, not zero-terminated; NULL: not in the file */
+  uint64_t info_bytes;
+  void* mapping;                  /* what fdcg_close unmaps; NULL for fdcg_open_memory */
+  uint64_t mapping_bytes;
+} fdcg_graph;
+
+/* Views `bytes` bytes at `data` (a multiple of 8) as a graph. Nothing is copied. On failure *graph is zeroed.
+ * Cost: FULL reads every byte once or twice; TRUSTED touches the header and the section table only. `error` may be NULL. */
+fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
+
+/* The same for a file, mapped read-only. Undo with fdcg_close. */
+fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
+
+/* Unmaps what fdcg_open_file mapped and zeroes the view. Harmless on a zeroed or memory graph. */
+void fdcg_close(fdcg_graph* graph);
+
+/* The checksum of the format: `bytes` bytes at `data`. Any change of one byte changes it (schemas/fdcg-v1.md). */
+uint64_t fdcg_checksum(const void* data, uint64_t bytes);
+
+/* ---- step -------------------------------------------------------------------------------------------------------------- */
+
+typedef enum fdcg_state { FDCG_FREE = 0, FDCG_FACE = 1, FDCG_EDGE = 2, FDCG_VERTEX = 3 } fdcg_state;
+
+/* How much friction a concave edge gives (contact-model section 6): the sum of the two normal loads of the groove (at most
+ * 1,024 times the paper's), or the distance from the edge as the paper has it. */
+typedef enum fdcg_edge_friction { FDCG_EDGE_WEDGE = 0, FDCG_EDGE_PAPER = 1 } fdcg_edge_friction;
+
+typedef struct fdcg_params {
+  uint32_t struct_bytes;         /* sizeof(fdcg_params); fdcg_default_params sets it */
+  uint32_t edge_friction;        /* fdcg_edge_friction */
+  double mu_static;              /* >= mu_dynamic */
+  double mu_dynamic;             /* >= 0 */
+  double stiffness_n_per_m;      /* >= 0 */
+  double damping_n_s_per_m;      /* >= 0; acts along the spring's direction and never pulls. 0: off */
+  double tick_s;                 /* time between ticks; read only where damping is on */
+} fdcg_params;
+
+/* mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge. */
+fdcg_params fdcg_default_params(void);
+
+/* FDCG_E_ARGUMENT, with the field, its value and its limit in the message, unless every field is in range. The step does not
+ * check: call this whenever the parameters change. */
+fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
+
+/* One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Positions are local to
+ * the graph (see format.h), so that nothing is lost far from the world's origin. */
+typedef struct fdcg_contact {
+  double god_object[3];
+  double hip[3];          /* of the last tick with a finite HIP; in Free after a bounded sweep, the last point swept */
+  uint32_t started;       /* 0 before the first tick */
+  uint32_t state;         /* fdcg_state */
+  uint32_t feature;       /* node, connection or corner, by state; FDCG_NONE in Free */
+  uint32_t seat_state;    /* FDCG_EDGE or FDCG_VERTEX: where the god-object was placed and still is; else FDCG_FREE */
+  uint32_t seat_feature;
+  uint32_t slipping;      /* 1: dynamic friction holds */
+  uint64_t non_finite_ticks;
+  uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_MAX_TRANSITIONS */
+  uint64_t sweep_bound_ticks;      /* ... because of FDCG_MAX_SWEEP_VISITS */
+} fdcg_contact;
+
+typedef enum fdcg_result_flag {
+  FDCG_RESULT_NON_FINITE = 1,       /* HIP was NaN or infinite: nothing moved, no force */
+  FDCG_RESULT_TRANSITION_BOUND = 2, /* the god-object is valid and goes on next tick */
+  FDCG_RESULT_SWEEP_BOUND = 4       /* Free, no force; the sweep goes on next tick */
+} fdcg_result_flag;
+
+typedef struct fdcg_result {
+  double force_n[3];        /* on the user's hand */
+  double god_object_m[3];   /* object's frame */
+  uint32_t state;           /* fdcg_state */
+  uint32_t feature;         /* FDCG_NONE in Free */
+  uint32_t slipping;
+  uint32_t transitions;     /* changes of state in this tick, Free included */
+  uint32_t flags;           /* fdcg_result_flag */
+  uint32_t reserved;
+} fdcg_result;
+
+/* Moves the contact to the HIP of this tick, in metres in the object's frame, and says what the hand should feel. */
+void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
+               fdcg_result* result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* FDCG_FDCG_H */
