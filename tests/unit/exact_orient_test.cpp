@@ -12,7 +12,7 @@ namespace {
 using Point = fdcg::Vec3<double>;
 
 int rational_sign(const Point& a, const Point& b, const Point& c, const Point& d) {
-  const auto q = [](double x, double y) { return mpq_class(x) - mpq_class(y); };
+  const auto q = [](double x, double y) -> mpq_class { return mpq_class(x) - mpq_class(y); };
   const mpq_class ux = q(b.x, a.x), uy = q(b.y, a.y), uz = q(b.z, a.z);
   const mpq_class vx = q(c.x, a.x), vy = q(c.y, a.y), vz = q(c.z, a.z);
   const mpq_class wx = q(d.x, a.x), wy = q(d.y, a.y), wz = q(d.z, a.z);
@@ -21,8 +21,10 @@ int rational_sign(const Point& a, const Point& b, const Point& c, const Point& d
 }
 
 double nudge(double x, int steps) {
-  for (; steps > 0; --steps) x = std::nextafter(x, 1e300);
-  for (; steps < 0; ++steps) x = std::nextafter(x, -1e300);
+  for (; steps > 0; --steps)
+    x = std::nextafter(x, 1e300);
+  for (; steps < 0; ++steps)
+    x = std::nextafter(x, -1e300);
   return x;
 }
 
@@ -50,7 +52,9 @@ TEST_CASE("orientation is exact within units in the last place of a plane, at an
       for (int i = 0; i < 300; ++i) {
         const Point a = point(), b = point(), c = point();
         const double s = uniform(random), t = uniform(random);
-        const auto on_plane = [&](double pa, double pb, double pc) { return nudge(pa + s * (pb - pa) + t * (pc - pa), steps(random)); };
+        const auto on_plane = [&](double pa, double pb, double pc) {
+          return nudge(pa + s * (pb - pa) + t * (pc - pa), steps(random));
+        };
         const Point d = {on_plane(a.x, b.x, c.x), on_plane(a.y, b.y, c.y), on_plane(a.z, b.z, c.z)};
         const int expected = rational_sign(a, b, c, d);
         REQUIRE(fdcg::orient3d_sign(a, b, c, d) == expected);
