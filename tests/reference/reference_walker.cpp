@@ -21,7 +21,13 @@ Real absolute(const Real& x) {
 
 template <class Real>
 void ReferenceWalker<Real>::note(const Real& distance) {
-  step_.margin = std::min(step_.margin, static_cast<double>(absolute(distance)) / surface_.extent);
+  step_.margin = std::min(step_.margin, static_cast<double>(absolute(distance)) / (surface_.extent * step_.amplification));
+}
+
+// A way of this length changes its distance to what it meets by this much.
+template <class Real>
+void ReferenceWalker<Real>::amplify(const Real& way, const Real& change) {
+  if (change > 0) step_.amplification = std::max(step_.amplification, static_cast<double>(way / change));
 }
 
 template <class Real>
@@ -120,6 +126,7 @@ void ReferenceWalker<Real>::step_free() {
     rest();
     return;
   }
+  if (hit->state != FDCG_VERTEX) amplify(length(hip_ - contact.god_object), hit->change);
   contact.god_object = hit->point;
   const bool is_seat = hit->state != FDCG_FACE;
   seat(is_seat ? hit->state : static_cast<std::uint32_t>(FDCG_FREE), hit->feature);
@@ -171,18 +178,19 @@ auto ReferenceWalker<Real>::meet(std::uint32_t f, const Point& from, const Point
   }
   note(is_met ? met_by : missed_by);
   if (!is_met) return std::nullopt;
-  return located(face, f, side_from / (side_from - side_to), from, to);
+  return located(face, f, side_from, side_to, from, to);
 }
 
 // What of the face the segment meets: a corner or an edge when it does so exactly.
 template <class Real>
-auto ReferenceWalker<Real>::located(const Face& face, std::uint32_t f, const Real& t, const Point& from, const Point& to) const
-    -> Hit {
+auto ReferenceWalker<Real>::located(const Face& face, std::uint32_t f, const Real& side_from, const Real& side_to,
+                                    const Point& from, const Point& to) const -> Hit {
+  const Real change = side_from - side_to, t = side_from / change;
   const Point along = to - from;
   for (const std::uint32_t v : face.corners) {
     const Point& corner = surface_.corners[v].point;
     const Point off = cross(along, corner - from);
-    if (dot(off, off) == 0) return {t, FDCG_VERTEX, v, corner};
+    if (dot(off, off) == 0) return {t, change, FDCG_VERTEX, v, corner};
   }
   const Point point = from + along * t;
   for (const std::uint32_t c : face.connections) {
@@ -190,9 +198,9 @@ auto ReferenceWalker<Real>::located(const Face& face, std::uint32_t f, const Rea
     const Point& v0 = surface_.corners[edge.corner[0]].point;
     if (dot(along, cross(edge.span, v0 - from)) != 0) continue;
     const Real u = dot(point - v0, edge.direction);
-    if (u > 0 && u < edge.length) return {t, FDCG_EDGE, c, v0 + edge.direction * u};
+    if (u > 0 && u < edge.length) return {t, change, FDCG_EDGE, c, v0 + edge.direction * u};
   }
-  return {t, FDCG_FACE, f, point};
+  return {t, change, FDCG_FACE, f, point};
 }
 
 // ---- face ------------------------------------------------------------------------------------------------------------------
@@ -249,6 +257,7 @@ void ReferenceWalker<Real>::move_on_face(const Face& face, const Point& target) 
   const Point from = contact.god_object;
   const Real distance = length(target - from);
   std::optional<Real> first;
+  Real change = 0;
   std::uint32_t crossed = FDCG_NONE;
   for (const std::uint32_t c : face.connections) {
     const Edge& edge = surface_.edges[c];
@@ -260,6 +269,7 @@ void ReferenceWalker<Real>::move_on_face(const Face& face, const Point& target) 
     if (first) note((t - *first) * distance);
     if (!first || t < *first) {
       first = t;
+      change = s1 - s0;
       crossed = c;
     }
   }
@@ -269,6 +279,7 @@ void ReferenceWalker<Real>::move_on_face(const Face& face, const Point& target) 
     rest();
     return;
   }
+  amplify(distance, change);
   const Edge& edge = surface_.edges[crossed];
   const Point landing = from + (target - from) * *first;
   place_on_edge(crossed, dot(landing - surface_.corners[edge.corner[0]].point, edge.direction));
@@ -441,13 +452,18 @@ void ReferenceWalker<Real>::step_vertex() {
 
 std::string describe(const ReferenceStep& step) {
   static const char* const names[] = {"free", "face", "edge", "vertex"};
+  constexpr std::size_t kShown = 12;
   std::ostringstream text;
-  for (const auto& [state, feature] : step.visited) {
-    text << names[state];
-    if (feature != FDCG_NONE) text << ' ' << feature;
+  for (std::size_t i = 0; i < step.visited.size(); ++i) {
+    const bool is_shown = i < kShown || i + kShown >= step.visited.size();
+    if (i == kShown && !is_shown) text << "... (" << step.visited.size() << " in all); ";
+    if (!is_shown) continue;
+    text << names[step.visited[i].first];
+    if (step.visited[i].second != FDCG_NONE) text << ' ' << step.visited[i].second;
     text << "; ";
   }
-  text << "margin " << step.margin << (step.met_again ? ", ended by meeting a feature again" : "");
+  text << "margin " << step.margin << ", amplification " << step.amplification
+       << (step.met_again ? ", ended by meeting a feature again" : "");
   return text.str();
 }
 

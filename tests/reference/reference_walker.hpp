@@ -34,8 +34,11 @@ struct ReferenceContact {
 struct ReferenceStep {
   std::uint32_t transitions = 0;
   // The smallest change of any length compared in the step, as a part of the extent, that could have turned a decision; at or
-  // below rounding two outcomes are equally right.
+  // below rounding two outcomes are equally right. Divided by the amplification reached before the decision.
   double margin = std::numeric_limits<double>::infinity();
+  // How much farther along its way a point of meeting moves than the surface or the way moves across it: where both are nearly
+  // parallel, rounding is magnified by this much. The largest of the step, at least 1.
+  double amplification = 1;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> visited;  // state and feature, in order
   bool met_again = false;                                        // ended by the rule of section 1 against cycles
 };
@@ -59,7 +62,7 @@ class ReferenceWalker {
   using Edge = typename ReferenceSurface<Real>::Edge;
   using Corner = typename ReferenceSurface<Real>::Corner;
   struct Hit {
-    Real t;
+    Real t, change;  // where on the segment; by how much it goes below the face's plane from the front
     std::uint32_t state, feature;
     Point point;
   };
@@ -80,8 +83,10 @@ class ReferenceWalker {
   Real edge_load(const Edge& edge, const Real& h, Real& load_error, bool& is_fold) const;
   std::optional<Hit> sweep(const Point& from, const Point& to);
   std::optional<Hit> meet(std::uint32_t face, const Point& from, const Point& to);
-  Hit located(const Face& face, std::uint32_t f, const Real& t, const Point& from, const Point& to) const;
+  Hit located(const Face& face, std::uint32_t f, const Real& side_from, const Real& side_to, const Point& from,
+              const Point& to) const;
   void note(const Real& distance);
+  void amplify(const Real& way, const Real& change);
 
   const ReferenceSurface<Real>& surface_;
   ReferenceFriction friction_;
