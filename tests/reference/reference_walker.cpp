@@ -71,7 +71,7 @@ template <class Real>
 void ReferenceWalker<Real>::resynchronise(const fdcg_contact& other) {
   const auto point = [](const double* v) { return Point{Real(v[0]), Real(v[1]), Real(v[2])}; };
   contact.god_object = point(other.god_object);
-  contact.hip = point(other.hip);
+  contact.hip = other.state == FDCG_FREE ? contact.god_object : point(other.hip);
   contact.is_started = other.started != 0;
   contact.state = other.state;
   contact.feature = other.feature;
