@@ -30,6 +30,7 @@ namespace fdcg::bake {
 struct Failure {
   int exit_code = 4;
   std::string message;  // one line: file, element, value, limit, remedy
+  std::string rule{};   // the rule it stands for in a report, where there is one: "unreadable" or "empty-mesh"
 };
 
 // A value or a Failure; named like std::expected, which C++20 does not have.
