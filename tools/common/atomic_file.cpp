@@ -118,7 +118,9 @@ int AtomicFile::open_beside() {
   }
 }
 
-AtomicFile::~AtomicFile() { discard(); }
+AtomicFile::~AtomicFile() {
+  discard();
+}
 
 void AtomicFile::write(std::string_view bytes) {
   while (ok() && !bytes.empty()) {

@@ -11,13 +11,15 @@
 namespace fdcg::tools {
 namespace {
 
-constexpr auto kQuietTime = std::chrono::seconds(1);            // work shorter than this shows no bar
+constexpr auto kQuietTime = std::chrono::seconds(1);  // work shorter than this shows no bar
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 30;
 
 }  // namespace
 
-bool is_terminal(Stream stream) { return isatty(static_cast<int>(stream)) == 1; }
+bool is_terminal(Stream stream) {
+  return isatty(static_cast<int>(stream)) == 1;
+}
 
 bool wants_colour(Stream stream) {
   const char* const no_color = std::getenv("NO_COLOR");

@@ -70,10 +70,10 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   changed(compiled.flipped_faces, "turned round by --orient");
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
-  text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") + " (" +
-          grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " + grouped(types[FDCG_COPLANAR]) +
-          " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " + plural(header.corner_count, "corner") + ", " +
-          plural(header.file_bytes, "byte") + "\n";
+  text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") +
+          " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
+          grouped(types[FDCG_COPLANAR]) + " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " +
+          plural(header.corner_count, "corner") + ", " + plural(header.file_bytes, "byte") + "\n";
   return text;
 }
 
@@ -126,7 +126,8 @@ int run_compile(CompileArguments& arguments) {
   if (!out.ok()) return fail(kFile, out.error());
   ProgressBar bar(!arguments.quiet);
   bake::ImportOptions import_options;
-  import_options.progress = arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
+  import_options.progress =
+      arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
   const auto soup = bake::import_mesh(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
@@ -183,21 +184,25 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
     }
     const auto degrees = parse_number_between(text, 0, 90);
     if (!degrees) {
-      throw CLI::ValidationError("--coplanar", "'" + text + "' is none of exact, quantum, or an angle between 0 and 90 degrees");
+      throw CLI::ValidationError("--coplanar",
+                                 "'" + text + "' is none of exact, quantum, or an angle between 0 and 90 degrees");
     }
     arguments->options.coplanar = {bake::Coplanar::Kind::angle, *degrees * std::numbers::pi / 180};
   };
-  command.add_option_function<std::string>("--coplanar", parse_coplanar,
-                                           "Which edges are flat: exactly; within the input's own rounding (quantum, the default); "
-                                           "within ANGLE degrees")
+  command
+      .add_option_function<std::string>(
+          "--coplanar", parse_coplanar,
+          "Which edges are flat: exactly; within the input's own rounding (quantum, the default); "
+          "within ANGLE degrees")
       ->type_name("exact|quantum|ANGLE");
   command.add_flag("--merge,!--no-merge", arguments->options.merge, "Merge coplanar faces into convex polygons; default: yes");
   const auto parse_planes = [arguments](const std::string& text) {
     require_choice("--planes", text, {"stored", "derived"});
     arguments->options.store_voronoi_planes = text == "stored";
   };
-  command.add_option_function<std::string>("--planes", parse_planes,
-                                           "Voronoi planes in the file (stored, the default), or computed in the step: a smaller file")
+  command
+      .add_option_function<std::string>(
+          "--planes", parse_planes, "Voronoi planes in the file (stored, the default), or computed in the step: a smaller file")
       ->type_name("stored|derived");
   const auto parse_without = [arguments](const std::vector<std::string>& names) {
     for (const std::string& name : names) {
@@ -226,7 +231,9 @@ A mesh with errors is refused with the report that 'fdcg validate' prints, and n
 The same mesh and options give the same bytes.)");
   const auto arguments = std::make_shared<CompileArguments>();
   command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY or STL")->required()->type_name("MESH");
-  command->add_option("-o,--output", arguments->output, "The file to write; - is standard output")->required()->type_name("FILE");
+  command->add_option("-o,--output", arguments->output, "The file to write; - is standard output")
+      ->required()
+      ->type_name("FILE");
   add_unit_options(*command, arguments);
   add_graph_options(*command, arguments);
   add_weld_option(*command, arguments->options.weld);

@@ -12,9 +12,12 @@ namespace {
 
 std::string_view severity_name(bake::Severity severity) {
   switch (severity) {
-    case bake::Severity::note: return "note";
-    case bake::Severity::warning: return "warning";
-    case bake::Severity::error: break;
+    case bake::Severity::note:
+      return "note";
+    case bake::Severity::warning:
+      return "warning";
+    case bake::Severity::error:
+      break;
   }
   return "error";
 }
@@ -22,7 +25,8 @@ std::string_view severity_name(bake::Severity severity) {
 // Edits (insert, delete, replace one letter) between two words.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t j = 0; j <= b.size(); ++j)
+    row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::size_t diagonal = std::exchange(row[0], i);
     for (std::size_t j = 1; j <= b.size(); ++j) {
@@ -35,9 +39,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string_view nearest_rule(std::string_view name) {
   const auto& rules = bake::rules();
-  return std::min_element(rules.begin(), rules.end(), [name](const bake::Rule& a, const bake::Rule& b) {
-           return edit_distance(a.name, name) < edit_distance(b.name, name);
-         })->name;
+  return std::min_element(rules.begin(), rules.end(),
+                          [name](const bake::Rule& a, const bake::Rule& b) {
+                            return edit_distance(a.name, name) < edit_distance(b.name, name);
+                          })
+      ->name;
 }
 
 std::string list_of_rules() {

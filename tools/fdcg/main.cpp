@@ -22,11 +22,14 @@ Exit codes: 0 clean; 1 findings; 2 wrong usage; 3 an input that cannot be read o
 4 a fault of the program.
 'fdcg COMMAND --help' tells the options of each command.)";
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
 
 int usage_error(const CLI::ParseError& error, const CLI::App& app) {
   std::string command = "fdcg";
-  for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
+  for (const CLI::App* chosen : app.get_subcommands())
+    command += " " + chosen->get_name();
   return fail(kUsage, first_line(error.what()) + " (see '" + command + " --help')");
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : ", ") + word;
   return text;
 }
 
@@ -46,8 +47,10 @@ void add_weld_option(CLI::App& command, bake::Weld& weld) {
     }
     weld = {bake::Weld::Kind::distance, *distance};
   };
-  command.add_option_function<std::string>("--weld", parse, "Vertices that are one: at equal coordinates (exact, the default), "
-                                                            "none, or within DISTANCE in the file's units")
+  command
+      .add_option_function<std::string>("--weld", parse,
+                                        "Vertices that are one: at equal coordinates (exact, the default), "
+                                        "none, or within DISTANCE in the file's units")
       ->type_name("exact|none|DISTANCE");
 }
 
@@ -67,7 +70,9 @@ void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable
       throw CLI::ValidationError("--allow", "'" + name + why + "these can: " + joined(choices));
     }
   };
-  command.add_option_function<std::vector<std::string>>("--allow", insert, "Findings of RULE do not fail the mesh; may be repeated")
+  command
+      .add_option_function<std::vector<std::string>>("--allow", insert,
+                                                     "Findings of RULE do not fail the mesh; may be repeated")
       ->type_name("RULE")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -42,7 +42,8 @@ bool fails(const bake::Report& report, const std::string& fail_on) {
 
 int run_validate(ValidateArguments& arguments) {
   for (const std::string& mesh : arguments.meshes) {
-    if (is_same_file(mesh, arguments.output)) return fail(kUsage, "-o " + arguments.output + " would overwrite the mesh itself");
+    if (is_same_file(mesh, arguments.output))
+      return fail(kUsage, "-o " + arguments.output + " would overwrite the mesh itself");
   }
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
@@ -51,9 +52,8 @@ int run_validate(ValidateArguments& arguments) {
   for (const std::string& mesh : arguments.meshes) {
     ProgressBar bar(!arguments.quiet);
     bake::ImportOptions import_options;
-    import_options.progress = arguments.options.progress = [&bar](std::string_view stage, double done) {
-      bar.update(stage, done);
-    };
+    import_options.progress =
+        arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
     const auto soup = bake::import_mesh(mesh, import_options);
     if (soup) {
       reports.push_back(bake::validate(*soup, arguments.options));
