@@ -12,7 +12,9 @@ constexpr int kLanes = 8;
 constexpr uint64_t kMultiplier = 0x9E3779B97F4A7C15u;  // odd, bits well mixed: 2^64 over the golden ratio
 constexpr uint64_t kSeed = 0x46444347'00000001u;       // "FDCG", version of the checksum
 
-uint64_t rotate(uint64_t x, int bits) { return (x << bits) | (x >> (64 - bits)); }
+uint64_t rotate(uint64_t x, int bits) {
+  return (x << bits) | (x >> (64 - bits));
+}
 
 uint64_t load_word(const unsigned char* bytes) {
   static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the format is little-endian and read in place");
@@ -22,7 +24,8 @@ uint64_t load_word(const unsigned char* bytes) {
 }
 
 void absorb_block(uint64_t* lanes, const unsigned char* block) {
-  for (int i = 0; i < kLanes; ++i) lanes[i] = rotate((lanes[i] ^ load_word(block + 8 * i)) * kMultiplier, 29);
+  for (int i = 0; i < kLanes; ++i)
+    lanes[i] = rotate((lanes[i] ^ load_word(block + 8 * i)) * kMultiplier, 29);
 }
 
 }  // namespace
@@ -31,9 +34,11 @@ extern "C" uint64_t fdcg_checksum(const void* data, uint64_t bytes) {
   constexpr uint64_t kBlock = 8 * kLanes;
   const auto* at = static_cast<const unsigned char*>(data);
   uint64_t lanes[kLanes];
-  for (int i = 0; i < kLanes; ++i) lanes[i] = kSeed + static_cast<uint64_t>(i);
+  for (int i = 0; i < kLanes; ++i)
+    lanes[i] = kSeed + static_cast<uint64_t>(i);
   const uint64_t whole = bytes / kBlock;
-  for (uint64_t i = 0; i < whole; ++i) absorb_block(lanes, at + kBlock * i);
+  for (uint64_t i = 0; i < whole; ++i)
+    absorb_block(lanes, at + kBlock * i);
   if (const uint64_t rest = bytes % kBlock) {
     unsigned char block[kBlock] = {};
     memcpy(block, at + kBlock * whole, rest);

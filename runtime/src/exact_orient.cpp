@@ -65,9 +65,11 @@ void grow(Expansion<kCapacity>& e, double b) {
 template <int A, int B>
 Expansion<A + B> sum(const Expansion<A>& a, const Expansion<B>& b, double sign_of_b) {
   Expansion<A + B> e;
-  for (int i = 0; i < a.count; ++i) e.part[i] = a.part[i];
+  for (int i = 0; i < a.count; ++i)
+    e.part[i] = a.part[i];
   e.count = a.count;
-  for (int i = 0; i < b.count; ++i) grow(e, sign_of_b * b.part[i]);
+  for (int i = 0; i < b.count; ++i)
+    grow(e, sign_of_b * b.part[i]);
   return e;
 }
 

@@ -17,13 +17,15 @@ class Message {
     error_->message[0] = '\0';
   }
   Message& text(const char* words) {
-    while (*words != '\0') put(*words++);
+    while (*words != '\0')
+      put(*words++);
     return *this;
   }
   // At most `limit` bytes of a text that came from outside.
   Message& quoted(const char* words, int limit) {
     put('\'');
-    for (int i = 0; i < limit && words[i] != '\0'; ++i) put(words[i]);
+    for (int i = 0; i < limit && words[i] != '\0'; ++i)
+      put(words[i]);
     put('\'');
     return *this;
   }
@@ -34,7 +36,8 @@ class Message {
       digits[count++] = static_cast<char>('0' + value % 10);
       value /= 10;
     } while (value != 0);
-    while (count > 0) put(digits[--count]);
+    while (count > 0)
+      put(digits[--count]);
     return *this;
   }
   // Six significant digits: enough to see what is wrong with a setting.
@@ -47,8 +50,10 @@ class Message {
     if (value > 1e300) return text("infinite");
     int exponent = 0;
     if (value != 0) {
-      for (; value >= 10; value /= 10) ++exponent;
-      for (; value < 1; value *= 10) --exponent;
+      for (; value >= 10; value /= 10)
+        ++exponent;
+      for (; value < 1; value *= 10)
+        --exponent;
     }
     auto scaled = static_cast<uint64_t>(value * 1e5 + 0.5);
     if (scaled >= 1000000) {
@@ -61,10 +66,12 @@ class Message {
       --digits;
     }
     uint64_t unit = 1;
-    for (int i = 1; i < digits; ++i) unit *= 10;
+    for (int i = 1; i < digits; ++i)
+      unit *= 10;
     number(scaled / unit);
     if (digits > 1) put('.');
-    for (; unit > 1; unit /= 10) put(static_cast<char>('0' + (scaled % unit) / (unit / 10)));
+    for (; unit > 1; unit /= 10)
+      put(static_cast<char>('0' + (scaled % unit) / (unit / 10)));
     if (exponent != 0) {
       text(exponent < 0 ? "e-" : "e");
       number(static_cast<uint64_t>(exponent < 0 ? -exponent : exponent));

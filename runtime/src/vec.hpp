@@ -39,10 +39,18 @@ inline Vec3<Real> cross(Vec3<Real> a, Vec3<Real> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-inline double absolute(double a) { return fabs(a); }
-inline float absolute(float a) { return fabsf(a); }
-inline double root(double a) { return sqrt(a); }
-inline float root(float a) { return sqrtf(a); }
+inline double absolute(double a) {
+  return fabs(a);
+}
+inline float absolute(float a) {
+  return fabsf(a);
+}
+inline double root(double a) {
+  return sqrt(a);
+}
+inline float root(float a) {
+  return sqrtf(a);
+}
 
 template <class Real>
 inline Real norm(Vec3<Real> a) {

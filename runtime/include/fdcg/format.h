@@ -28,7 +28,9 @@
 #include <stdint.h>
 
 #define FDCG_FORMAT_VERSION 1u
-#define FDCG_MAGIC "\x89" "FDCG\r\n\x1a" /* 8 bytes; a text-mode copy or a 7-bit channel breaks it visibly */
+#define FDCG_MAGIC \
+  "\x89"           \
+  "FDCG\r\n\x1a" /* 8 bytes; a text-mode copy or a 7-bit channel breaks it visibly */
 #define FDCG_ALIGNMENT 64u
 #define FDCG_NONE 0xFFFFFFFFu /* "no node here": the far side of an open edge; a dropped source face */
 #define FDCG_LEAF_NODES 4u    /* nodes in one leaf of the hierarchy */
