@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file's bytes as one range of memory. The platform's part of the import: map_file.cpp is the POSIX one.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::bake {
+
+// Regular files are mapped read-only, anything else (a pipe, a device) is read to its end. The bytes are valid while the object
+// lives; another process that shortens the file meanwhile makes them unreadable, as with every mapping.
+class FileBytes {
+ public:
+  // Fails with exit code 3 on a path that does not exist, is a directory or cannot be read. An empty file is no failure here.
+  static Result<FileBytes> open(const std::filesystem::path& path);
+
+  FileBytes() = default;
+  FileBytes(FileBytes&& other) noexcept;
+  FileBytes& operator=(FileBytes&& other) noexcept;
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
+  ~FileBytes();
+
+  [[nodiscard]] std::string_view bytes() const {
+    return mapping_ == nullptr ? std::string_view(buffer_) : std::string_view(static_cast<const char*>(mapping_), size_);
+  }
+
+ private:
+  void* mapping_ = nullptr;  // nullptr: the bytes are in buffer_
+  std::size_t size_ = 0;
+  std::string buffer_;
+};
+
+}  // namespace fdcg::bake

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "soup_reader.hpp"
+
+#include <charconv>
+#include <string>
+
+namespace fdcg::bake {
+
+Failure refuse(const std::string& name, const std::string& what, const char* rule) {
+  std::string message = name + ": " + what;
+  for (char& c : message) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = '?';
+  }
+  return Failure{3, message, rule};
+}
+
+bool SoupReader::fail_big_face(std::uint64_t count) {
+  const std::string place = soup_.face_line.size() == soup_.face_first.size()
+                                ? "line " + std::to_string(soup_.face_line.back()) + ": "
+                                : std::string();
+  return fail(place + "face " + std::to_string(soup_.face_first.size() - 1) + " has " + std::to_string(count) +
+              " corners; the limit is " + std::to_string(kMaxFaceCorners) + ": cut it into smaller polygons");
+}
+
+void SoupReader::report(std::size_t offset) {
+  constexpr std::size_t kSteps = 100;
+  next_report_ = offset + std::max<std::size_t>(input_.bytes.size() / kSteps, std::size_t{1} << 20);
+  if (input_.progress) input_.progress("import", static_cast<double>(offset) / static_cast<double>(input_.bytes.size()));
+}
+
+double TextSoupReader::absolute_quantum() const {
+  if (finest_decimals_ == TextScanner::kNoDecimals || finest_decimals_ <= 0) return 0;
+  const std::string half_unit = "5e-" + std::to_string(finest_decimals_ + 1);
+  double value = 0;
+  std::from_chars(half_unit.data(), half_unit.data() + half_unit.size(), value);  // left 0 where it is below every double
+  return value;
+}
+
+}  // namespace fdcg::bake

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tokens of a text file in memory, with line numbers. Numbers come out correctly rounded: what std::from_chars leaves out (a
+// leading '+', results out of range, the spellings of NaN and infinity that C libraries print) is added here.
+#pragma once
+
+#include <array>
+#include <climits>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+namespace fdcg::bake {
+
+class TextScanner {
+ public:
+  struct Syntax {
+    bool hash_comments = false;  // '#' starts a comment that ends with the line
+    bool continuation = false;   // '\' before the end of a line joins it with the next
+  };
+  static constexpr int kNoDecimals = INT_MIN;  // a number that says nothing about the precision of its file
+
+  // A byte order mark is skipped. Lines end in LF or CRLF; in CR where the text has no LF at all.
+  TextScanner(std::string_view text, Syntax syntax);
+
+  [[nodiscard]] std::uint32_t line() const { return line_; }  // 1-based
+  [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(p_ - begin_); }
+  [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - p_); }
+  [[nodiscard]] bool at_end() const { return p_ == end_; }
+  [[nodiscard]] char peek() const { return p_ == end_ ? '\0' : *p_; }
+
+  // Skips blanks and a comment; true if nothing more stands on this line.
+  bool line_done() {
+    skip_blanks();
+    return p_ == end_ || *p_ == line_end_;
+  }
+
+  // Skips blanks, comments and ends of lines; false if the text ends before a token.
+  bool find_token() {
+    while (line_done()) {
+      if (p_ == end_) return false;
+      ++p_;
+      ++line_;
+    }
+    return true;
+  }
+
+  // Skips what is left of this line, and its end. A continuation is not honoured: names and comments may end in '\'.
+  void next_line() {
+    const void* found = std::memchr(p_, line_end_, remaining());
+    p_ = found == nullptr ? end_ : static_cast<const char*>(found) + 1;
+    line_ += found != nullptr;
+  }
+
+  // Each of the following starts at the cursor, which must stand on a token. On false the cursor has not moved.
+
+  // A real number, up to the token's end. last_decimals() then tells how finely it was printed.
+  bool read_real(double& value) {
+    const char* q = p_;
+    const bool negative = q != end_ && *q == '-';
+    if (negative || (q != end_ && *q == '+')) ++q;
+    std::uint64_t mantissa = 0;
+    const char* const whole = q;
+    while (q != end_ && is_digit(*q))
+      mantissa = mantissa * 10 + static_cast<std::uint64_t>(*q++ - '0');
+    std::ptrdiff_t digits = q - whole, decimals = 0;
+    if (q != end_ && *q == '.') {
+      const char* const fraction = ++q;
+      while (q != end_ && is_digit(*q))
+        mantissa = mantissa * 10 + static_cast<std::uint64_t>(*q++ - '0');
+      decimals = q - fraction;
+      digits += decimals;
+    }
+    // Up to here both factors are exact in a double, so that one division rounds once: correctly (Clinger 1990).
+    constexpr std::uint64_t kExact = std::uint64_t{1} << 53;
+    if (digits == 0 || digits > 19 || mantissa > kExact || (q != end_ && !ends_token(*q))) return read_unusual_real(value);
+    const double magnitude = static_cast<double>(mantissa) / kPowersOfTen[static_cast<std::size_t>(decimals)];
+    value = negative ? -magnitude : magnitude;
+    last_decimals_ = static_cast<int>(decimals);
+    p_ = q;
+    return true;
+  }
+  [[nodiscard]] int last_decimals() const { return last_decimals_; }
+
+  // A whole number; stops at the first character that is no digit, whatever it is. Beyond +-2^62 it stays there.
+  bool read_integer_prefix(std::int64_t& value) {
+    const char* q = p_;
+    const bool negative = q != end_ && *q == '-';
+    if (negative || (q != end_ && *q == '+')) ++q;
+    const char* const first = q;
+    std::int64_t magnitude = 0;
+    constexpr std::int64_t kLimit = std::int64_t{1} << 62;
+    while (q != end_ && is_digit(*q)) {
+      magnitude = magnitude < kLimit / 10 - 1 ? magnitude * 10 + (*q - '0') : kLimit;
+      ++q;
+    }
+    if (q == first) return false;
+    value = negative ? -magnitude : magnitude;
+    p_ = q;
+    return true;
+  }
+
+  // A whole number that the token's end follows.
+  bool read_integer(std::int64_t& value) {
+    const char* const start = p_;
+    if (read_integer_prefix(value) && token_ended()) return true;
+    p_ = start;
+    return false;
+  }
+
+  [[nodiscard]] bool token_ended() const { return p_ == end_ || ends_token(*p_); }
+
+  // Everything up to the token's end.
+  std::string_view read_word() {
+    const char* const start = p_;
+    while (p_ != end_ && !ends_token(*p_))
+      ++p_;
+    return {start, static_cast<std::size_t>(p_ - start)};
+  }
+
+  // The token at the cursor in quotes, for messages: at most 32 characters, unprintable ones as '?'.
+  [[nodiscard]] std::string quote() const;
+
+ private:
+  static bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
+  [[nodiscard]] bool ends_token(char c) const { return static_cast<unsigned char>(c) <= ' ' || c == comment_ || c == joiner_; }
+
+  void skip_blanks() {
+    for (; p_ != end_; ++p_) {
+      const char c = *p_;
+      if (c == ' ' || c == '\t') continue;
+      if (c == line_end_) return;
+      if (static_cast<unsigned char>(c) > ' ' && c != comment_ && c != joiner_) return;
+      if (!skip_rare_blank()) return;
+    }
+  }
+  bool skip_rare_blank();
+  bool read_unusual_real(double& value);
+  [[nodiscard]] const char* real_token_end() const;
+
+  static constexpr std::array<double, 20> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
+                                                          1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
+
+  const char* begin_;
+  const char* p_;
+  const char* end_;
+  std::uint32_t line_ = 1;
+  int last_decimals_ = kNoDecimals;
+  char line_end_ = '\n';
+  char comment_ = ' ';  // ' ': none; every blank ends a token anyhow
+  char joiner_ = ' ';
+};
+
+}  // namespace fdcg::bake
