@@ -31,7 +31,6 @@ struct Failure {
   int exit_code = 4;
   std::string message;  // one line: file, element, value, limit, remedy
   std::string rule{};   // the rule that the report lists it under: unreadable or empty-mesh; empty where none fits
-  std::string rule{};   // the rule that the report lists it under: unreadable or empty-mesh; empty where none fits
 };
 
 // A value or a Failure; named like std::expected, which C++20 does not have.
