@@ -95,10 +95,11 @@ struct Camera {
 // ---- the path --------------------------------------------------------------------------------------------------------------
 
 constexpr double kTick = 0.001;       // s
-constexpr double kStrokeTime = 6;     // s on the surface
+constexpr double kStrokeTime = 10;    // s on the surface
 constexpr double kLiftTime = 0.3;     // s of leaving
-constexpr double kStrokes = 5;        // there and back
-constexpr double kFollow = 0.25;      // how much of the error in depth the hand mends in a tick
+constexpr double kStrokes = 4;        // there and back
+constexpr double kFollow = 0.12;      // how much of the error in depth the hand would mend in a tick
+constexpr double kEase = 0.4;         // how much of a change of its speed it manages in a tick
 constexpr double kFastest = 0.00012;  // m a tick, across the picture plane
 
 // Where the hand wants to be in the picture, and how deep it presses, both in parts of the object's size.
@@ -107,7 +108,8 @@ struct Wish {
 };
 Wish wish_at(double t) {
   const double along = t / kStrokeTime, phase = 2 * std::numbers::pi * kStrokes * along;
-  return {0.02 + 0.15 * std::cos(phase), 0.07 - 0.24 * along, 0.006 + 0.003 * std::sin(5 * std::numbers::pi * along)};
+  const double middle = 0.07 * along, reach = 0.13 - 0.05 * along;  // stays clear of the outline
+  return {middle - reach * std::cos(phase), 0.02 - 0.18 * along, 0.0045 + 0.002 * std::sin(5 * std::numbers::pi * along)};
 }
 
 // The hand goes over the picture as it wishes and presses so that the spring of a frictionless contact keeps the wished length.
@@ -117,7 +119,7 @@ void write_path(const Graph& graph) {
   params.mu_static = params.mu_dynamic = 0;
   fdcg_contact contact{};
   fdcg_result result{};
-  double height = 0.6 * graph.size, t = 0;
+  double height = 0.4 * graph.size, speed = 0, t = 0;
   bool touched = false;
   double touch_time = 0;
   std::puts("t,x,y,z");
@@ -134,7 +136,9 @@ void write_path(const Graph& graph) {
     }
     const bool leaving = touched && t > touch_time + kStrokeTime;
     const double error = wish.depth * graph.size - length(god_object - hip);
-    height += leaving ? kFastest : -std::clamp(kFollow * error, -kFastest, kFastest);
+    const double wanted = leaving ? kFastest : -std::clamp(kFollow * error, -kFastest, kFastest);
+    speed += kEase * (wanted - speed);
+    height += speed;
     if (height < -graph.size) {
       std::fputs("fdcg_demo_data: the path misses the object\n", stderr);
       std::exit(3);
@@ -315,7 +319,7 @@ std::array<Window, 2> windows_of(const Graph& graph, const Camera& camera, const
     }
   }
   const double side = 1.04 * std::max(high[0] - low[0], high[1] - low[1]);
-  const Window whole{0.5 * (low[0] + high[0] - side), 0.5 * (low[1] + high[1] - side), side, side, 900, 900, false};
+  const Window whole{0.5 * (low[0] + high[0] - side), 0.5 * (low[1] + high[1] - side), side, side, 660, 660, false};
   std::vector<const LogRow*> touching;
   for (const LogRow& row : rows) {
     if (row.state != "free") touching.push_back(&row);
@@ -324,10 +328,10 @@ std::array<Window, 2> windows_of(const Graph& graph, const Camera& camera, const
     std::fputs("fdcg_demo_data: the log never touches\n", stderr);
     std::exit(3);
   }
-  constexpr double kPart = 0.4;
+  constexpr double kPart = 0.375;
   const Vec at = camera.project(touching[static_cast<std::size_t>(kPart * static_cast<double>(touching.size()))]->god_object);
-  const double near = 0.12 * side;
-  return {whole, Window{at[0] - 0.5 * near, at[1] - 0.5 * near, near, near, 560, 560, true}};
+  const double near = 0.05 * side;
+  return {whole, Window{at[0] - 0.5 * near, at[1] - 0.5 * near, near, near, 360, 360, true}};
 }
 
 void write_picture(const Graph& graph, const char* log, const std::string& folder) {
