@@ -16,6 +16,7 @@ struct Records<double> {
   using Node = fdcg_node_f64;
   using Connection = fdcg_connection_f64;
   using Corner = fdcg_corner_f64;
+  using FanBox = fdcg_fan_box_f64;
 };
 template <>
 struct Records<float> {
@@ -23,6 +24,7 @@ struct Records<float> {
   using Node = fdcg_node_f32;
   using Connection = fdcg_connection_f32;
   using Corner = fdcg_corner_f32;
+  using FanBox = fdcg_fan_box_f32;
 };
 
 // normal.x + offset: positive outside.
@@ -39,6 +41,7 @@ struct GraphView {
   using Node = typename Records<Real>::Node;
   using Connection = typename Records<Real>::Connection;
   using Corner = typename Records<Real>::Corner;
+  using FanBox = typename Records<Real>::FanBox;
 
   const fdcg_header* header;
   const Node* nodes;
@@ -47,6 +50,7 @@ struct GraphView {
   const Connection* connections;
   const Corner* corners;
   const uint32_t* fans;
+  const FanBox* fan_boxes;
   const fdcg_box* hierarchy;
 
   explicit GraphView(const fdcg_graph& graph)
@@ -57,6 +61,7 @@ struct GraphView {
         connections(static_cast<const Connection*>(graph.connections)),
         corners(static_cast<const Corner*>(graph.corners)),
         fans(graph.fans),
+        fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
         hierarchy(graph.hierarchy) {}
 
   [[nodiscard]] Plane<Real> face_plane(const Node& node) const { return {vec(node.plane.normal), node.plane.offset}; }

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "fdcg/fdcg.h"
-#include "hierarchy_layout.hpp"
+#include "implicit_tree.hpp"
 #include "map_file.hpp"
 #include "message.hpp"
 #include "verify.hpp"
@@ -114,6 +114,7 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box), sizeof(fdcg_box), false},
     {FDCG_SECTION_SOURCE_MAP, 4, 4, false},
     {FDCG_SECTION_INFO, 1, 1, false},
+    {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), false},
 };
 
 uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found) {
@@ -130,9 +131,11 @@ uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found
     case FDCG_SECTION_FANS:
       return header.fan_count;
     case FDCG_SECTION_HIERARCHY:
-      return HierarchyLayout(header.node_count).boxes;
+      return ImplicitTree(header.node_count, FDCG_LEAF_NODES).boxes;
     case FDCG_SECTION_SOURCE_MAP:
       return header.source_face_count;
+    case FDCG_SECTION_FAN_BOXES:
+      return header.fan_box_count;
     default:
       return found;
   }
@@ -209,6 +212,7 @@ fdcg_graph view(const void* data, const fdcg_header& header) {
   graph.connections = section(FDCG_SECTION_CONNECTIONS);
   graph.corners = section(FDCG_SECTION_CORNERS);
   graph.fans = static_cast<const uint32_t*>(section(FDCG_SECTION_FANS));
+  graph.fan_boxes = section(FDCG_SECTION_FAN_BOXES);
   graph.hierarchy = static_cast<const fdcg_box*>(section(FDCG_SECTION_HIERARCHY));
   graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
   graph.info = static_cast<const char*>(find_section(data, header, FDCG_SECTION_INFO, &graph.info_bytes));

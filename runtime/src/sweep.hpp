@@ -2,7 +2,7 @@
 // The free-space sweep (contact-model section 4): what a straight move from one point to another meets first.
 #pragma once
 
-#include "hierarchy_layout.hpp"
+#include "implicit_tree.hpp"
 #include "walk.hpp"
 
 namespace fdcg {
@@ -48,7 +48,7 @@ class Sweep {
         try_node(n);
       return result();
     }
-    const HierarchyLayout layout(graph_.header->node_count);
+    const ImplicitTree layout(graph_.header->node_count, FDCG_LEAF_NODES);
     const int root = layout.levels - 1;
     const Real entry = box_entry(graph_.hierarchy[0]);
     if (entry <= best_fraction_) push({entry, 0, root});
@@ -81,7 +81,7 @@ class Sweep {
   void push(const Waiting& waiting) { stack_[waiting_++] = waiting; }
 
   // Nearer child on top; one level more on the stack costs at most one entry.
-  void push_children(const HierarchyLayout& layout, const Waiting& parent) {
+  void push_children(const ImplicitTree& layout, const Waiting& parent) {
     const int level = parent.level - 1;
     const uint32_t first = parent.box * 2;
     const bool has_two = first + 1 < layout.size[level];

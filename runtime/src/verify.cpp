@@ -2,7 +2,7 @@
 #include "verify.hpp"
 
 #include "graph_view.hpp"
-#include "hierarchy_layout.hpp"
+#include "implicit_tree.hpp"
 #include "message.hpp"
 
 namespace fdcg {
@@ -119,7 +119,7 @@ class Verifier {
   }
 
   fdcg_status corners() {
-    uint64_t first_fan = 0;
+    uint64_t first_fan = 0, fan_boxes = 0;
     for (uint32_t v = 0; v < header_.corner_count; ++v) {
       const auto& corner = graph_.corners[v];
       const bool is_open = (corner.flags & FDCG_CORNER_OPEN) != 0;
@@ -128,7 +128,13 @@ class Verifier {
         return refuse("corner", v, "fan out of range");
       }
       first_fan += corner.fan_count;
-      if ((corner.flags & ~FDCG_CORNER_OPEN) != 0) return refuse("corner", v, "unknown flags");
+      if (const uint32_t tree = corner.flags >> FDCG_CORNER_TREE_SHIFT; tree != 0) {
+        const uint64_t boxes = ImplicitTree(corner.fan_count, FDCG_LEAF_FAN).boxes;
+        if (tree - 1 != fan_boxes || boxes > header_.fan_box_count - fan_boxes) {
+          return refuse("corner", v, "its tree is out of range");
+        }
+        fan_boxes += boxes;
+      }
       for (int k = 0; k < 3; ++k) {
         const double x = corner.point[k];
         if (!(absolute(x) <= header_.extent) || x < header_.bounds_min[k] || x > header_.bounds_max[k]) {
@@ -138,8 +144,23 @@ class Verifier {
       }
       if (const fdcg_status status = fan(v, corner, is_open); status != FDCG_OK) return status;
     }
-    return first_fan == header_.fan_count ? FDCG_OK
-                                          : refuse("header.fan_count", header_.fan_count, "not the sum of the corners'");
+    if (first_fan != header_.fan_count) return refuse("header.fan_count", header_.fan_count, "not the sum of the corners'");
+    return trees(fan_boxes);
+  }
+
+  fdcg_status trees(uint64_t counted) {
+    if (counted != header_.fan_box_count)
+      return refuse("header.fan_box_count", header_.fan_box_count, "not the sum of the corners'");
+    if (counted != 0 && raw_.fan_boxes == nullptr)
+      return refuse("header.fan_box_count", counted, "but there is no such section");
+    for (uint32_t i = 0; i < header_.fan_box_count; ++i) {
+      const auto& box = graph_.fan_boxes[i];
+      bool is_in_range = norm1(vec(box.centre)) <= 4;
+      for (const auto& axis : box.axis)
+        is_in_range = is_in_range && norm1(vec(axis)) <= 8;
+      if (!is_in_range) return refuse("fan box", i, "out of range");
+    }
+    return FDCG_OK;
   }
 
   // Each entry starts at this corner; the node to its left comes in along the next entry.
@@ -163,7 +184,7 @@ class Verifier {
 
   // Leaf boxes hold their nodes' corners, every box its two below.
   fdcg_status hierarchy() {
-    const HierarchyLayout layout(header_.node_count);
+    const ImplicitTree layout(header_.node_count, FDCG_LEAF_NODES);
     for (uint32_t n = 0; n < header_.node_count; ++n) {
       const fdcg_box& box = raw_.hierarchy[layout.first[0] + n / FDCG_LEAF_NODES];
       const auto& node = graph_.nodes[n];
