@@ -44,7 +44,6 @@ class HipWalk {
   std::uint32_t random_corner_slot();
   Hip somewhere();
   void move();
-  void move();
   void add(Hip& hip, double distance);
 
   const bake::PolygonSoup& soup_;

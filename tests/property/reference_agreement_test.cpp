@@ -156,8 +156,8 @@ TEST_CASE("the reference in long double agrees with itself in 150 digits") {
       INFO(soup.name << " step " << i << ": " << describe(b));
       CHECK(std::min(a.margin, b.margin) < 1e-17);
       ++differences;
-      walker = ReferenceWalker<long double>(surface, {0.6, 0.4});
-      exact = ReferenceWalker<HighPrecision>(exact_surface, {0.6, 0.4});
+      walker.contact = {};
+      exact.contact = {};
     }
     CHECK(contacts > 200);
     CHECK(differences < 60);
