@@ -40,7 +40,7 @@ class Message {
       put(digits[--count]);
     return *this;
   }
-  // Six significant digits: enough to see what is wrong with a setting.
+  // Six decimals, with a power of ten where the number is very large or small: enough to see what is wrong with a setting.
   Message& real(double value) {
     if (value != value) return text("NaN");
     if (value < 0) {
@@ -49,29 +49,20 @@ class Message {
     }
     if (value > 1e300) return text("infinite");
     int exponent = 0;
-    if (value != 0) {
+    if (value != 0 && (value >= 1e6 || value < 1e-3)) {
       for (; value >= 10; value /= 10)
         ++exponent;
       for (; value < 1; value *= 10)
         --exponent;
     }
-    auto scaled = static_cast<uint64_t>(value * 1e5 + 0.5);
-    if (scaled >= 1000000) {
-      scaled /= 10;
-      ++exponent;
+    const auto millionths = static_cast<uint64_t>(value * 1e6 + 0.5);
+    number(millionths / 1000000);
+    uint64_t rest = millionths % 1000000;
+    if (rest != 0) put('.');
+    for (uint64_t unit = 100000; rest != 0; unit /= 10) {
+      put(static_cast<char>('0' + rest / unit));
+      rest %= unit;
     }
-    int digits = 6;
-    while (digits > 1 && scaled % 10 == 0) {
-      scaled /= 10;
-      --digits;
-    }
-    uint64_t unit = 1;
-    for (int i = 1; i < digits; ++i)
-      unit *= 10;
-    number(scaled / unit);
-    if (digits > 1) put('.');
-    for (; unit > 1; unit /= 10)
-      put(static_cast<char>('0' + (scaled % unit) / (unit / 10)));
     if (exponent != 0) {
       text(exponent < 0 ? "e-" : "e");
       number(static_cast<uint64_t>(exponent < 0 ? -exponent : exponent));

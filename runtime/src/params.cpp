@@ -46,7 +46,7 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
         .real(range.low)
         .text(" to ")
         .real(range.high)
-        .text(range.value < params->mu_dynamic && range.value == params->mu_static ? " (at least mu_dynamic)" : "");
+        .text(range.low == params->mu_dynamic && range.low > 0 ? " (at least mu_dynamic)" : "");
   }
   if (params->edge_friction > FDCG_EDGE_PAPER) {
     return Message(error, FDCG_E_ARGUMENT)
