@@ -10,7 +10,9 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point3 = Kernel::Point_3;
 using Point2 = Kernel::Point_2;
 
-Point3 point(const Vec3& v) { return {v.x, v.y, v.z}; }
+Point3 point(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
 
 // The projection along axis k that keeps the cyclic order of the other two.
 Point2 project(const Vec3& v, int k) {
@@ -29,7 +31,9 @@ int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int k) {
   return static_cast<int>(CGAL::orientation(project(a, k), project(b, k), project(c, k)));
 }
 
-bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) { return CGAL::collinear(point(a), point(b), point(c)); }
+bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return CGAL::collinear(point(a), point(b), point(c));
+}
 
 int dot_sign(const Vec3& a, const Vec3& b, const Vec3& c) {
   return static_cast<int>(CGAL::angle(point(b), point(a), point(c)));

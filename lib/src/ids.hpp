@@ -12,8 +12,14 @@ enum class HalfedgeId : std::uint32_t {};  // a slot of Mesh::corners: the edge 
 
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
-constexpr std::uint32_t operator+(VertexId id) { return static_cast<std::uint32_t>(id); }
-constexpr std::uint32_t operator+(FaceId id) { return static_cast<std::uint32_t>(id); }
-constexpr std::uint32_t operator+(HalfedgeId id) { return static_cast<std::uint32_t>(id); }
+constexpr std::uint32_t operator+(VertexId id) {
+  return static_cast<std::uint32_t>(id);
+}
+constexpr std::uint32_t operator+(FaceId id) {
+  return static_cast<std::uint32_t>(id);
+}
+constexpr std::uint32_t operator+(HalfedgeId id) {
+  return static_cast<std::uint32_t>(id);
+}
 
 }  // namespace fdcg::bake

@@ -12,8 +12,8 @@
 namespace fdcg::bake {
 
 struct Mesh {
-  std::vector<Vec3> points;  // local: (source - origin), rounded to the storage precision
-  Vec3 origin;               // source units
+  std::vector<Vec3> points;                 // local: (source - origin), rounded to the storage precision
+  Vec3 origin;                              // source units
   std::vector<std::uint32_t> face_first;    // face f: corner slots face_first[f] .. face_first[f + 1] - 1
   std::vector<VertexId> corners;            // welded vertices, or VertexId{kNone} where the soup's index was invalid
   std::vector<std::uint32_t> source_point;  // of each vertex: the first source vertex welded into it
@@ -33,8 +33,8 @@ struct Topology {
   static constexpr HalfedgeId kSameWay{0xFFFFFFFDu};      // two that run along it in the same direction
   static constexpr HalfedgeId kSkipped{0xFFFFFFFCu};      // the face is degenerate or invalid and takes no part
 
-  std::vector<HalfedgeId> twin;    // of each corner slot: the opposite half-edge, or one of the above
-  std::vector<FaceId> face_of;     // of each corner slot; empty where every face is a triangle (then slot / 3)
+  std::vector<HalfedgeId> twin;  // of each corner slot: the opposite half-edge, or one of the above
+  std::vector<FaceId> face_of;   // of each corner slot; empty where every face is a triangle (then slot / 3)
 
   [[nodiscard]] FaceId face(HalfedgeId h) const { return face_of.empty() ? FaceId{+h / 3} : face_of[+h]; }
 };

@@ -37,7 +37,7 @@ struct Failure {
 template <class T>
 class Result {
  public:
-  Result(T value) : state_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
+  Result(T value) : state_(std::move(value)) {}            // NOLINT(google-explicit-constructor)
   Result(Failure failure) : state_(std::move(failure)) {}  // NOLINT(google-explicit-constructor)
   [[nodiscard]] bool has_value() const { return std::holds_alternative<T>(state_); }
   explicit operator bool() const { return has_value(); }
@@ -185,10 +185,10 @@ struct CompileOptions {
 
 struct Compiled {
   Report report;
-  std::uint64_t flipped_faces = 0;     // by orient
-  std::uint64_t split_faces = 0;       // not convex or not planar: cut into several nodes
-  std::uint64_t merged_faces = 0;      // source faces that share their node with others
-  std::vector<std::byte> bytes;        // the file; empty if the report does not pass
+  std::uint64_t flipped_faces = 0;  // by orient
+  std::uint64_t split_faces = 0;    // not convex or not planar: cut into several nodes
+  std::uint64_t merged_faces = 0;   // source faces that share their node with others
+  std::vector<std::byte> bytes;     // the file; empty if the report does not pass
 };
 
 // Fails only where the options contradict one another (2), the mesh outgrows the format (3), or by our own fault (4).

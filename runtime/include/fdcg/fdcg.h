@@ -62,17 +62,18 @@ typedef enum fdcg_verify {
 /* A read-only view; the bytes that it points into must outlive it. Read its fields, do not write them. */
 typedef struct fdcg_graph {
   const fdcg_header* header;
-  const void* nodes;              /* fdcg_node_f64 or _f32, by header->real_bytes */
+  const void* nodes; /* fdcg_node_f64 or _f32, by header->real_bytes */
   const uint32_t* sides;
-  const void* voronoi_planes;     /* NULL: derived in the step */
+  const void* voronoi_planes; /* NULL: derived in the step */
   const void* connections;
   const void* corners;
   const uint32_t* fans;
-  const fdcg_box* hierarchy;      /* NULL: the free-space sweep looks at every node */
-  const uint32_t* source_map;     /* NULL: not in the file; else header->source_face_count entries */
-  const char* info;               /* JSON, not zero-terminated; NULL: not in the file */
+  const void* fan_boxes;      /* NULL: no busy corner */
+  const fdcg_box* hierarchy;  /* NULL: the free-space sweep looks at every node */
+  const uint32_t* source_map; /* NULL: not in the file; else header->source_face_count entries */
+  const char* info;           /* JSON, not zero-terminated; NULL: not in the file */
   uint64_t info_bytes;
-  void* mapping;                  /* what fdcg_close unmaps; NULL for fdcg_open_memory */
+  void* mapping; /* what fdcg_close unmaps; NULL for fdcg_open_memory */
   uint64_t mapping_bytes;
 } fdcg_graph;
 
@@ -98,13 +99,13 @@ typedef enum fdcg_state { FDCG_FREE = 0, FDCG_FACE = 1, FDCG_EDGE = 2, FDCG_VERT
 typedef enum fdcg_edge_friction { FDCG_EDGE_WEDGE = 0, FDCG_EDGE_PAPER = 1 } fdcg_edge_friction;
 
 typedef struct fdcg_params {
-  uint32_t struct_bytes;         /* sizeof(fdcg_params); fdcg_default_params sets it */
-  uint32_t edge_friction;        /* fdcg_edge_friction */
-  double mu_static;              /* >= mu_dynamic */
-  double mu_dynamic;             /* >= 0 */
-  double stiffness_n_per_m;      /* >= 0 */
-  double damping_n_s_per_m;      /* >= 0; acts along the spring's direction and never pulls. 0: off */
-  double tick_s;                 /* time between ticks; read only where damping is on */
+  uint32_t struct_bytes;    /* sizeof(fdcg_params); fdcg_default_params sets it */
+  uint32_t edge_friction;   /* fdcg_edge_friction */
+  double mu_static;         /* >= mu_dynamic */
+  double mu_dynamic;        /* >= 0 */
+  double stiffness_n_per_m; /* >= 0 */
+  double damping_n_s_per_m; /* >= 0; acts along the spring's direction and never pulls. 0: off */
+  double tick_s;            /* time between ticks; read only where damping is on */
 } fdcg_params;
 
 /* mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge. */
@@ -117,14 +118,14 @@ fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
 /* One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Positions are local to
  * the graph (see format.h), so that nothing is lost far from the world's origin. */
 typedef struct fdcg_contact {
-  double god_object[3];
-  double hip[3];          /* of the last tick with a finite HIP; in Free after a bounded sweep, the last point swept */
-  uint32_t started;       /* 0 before the first tick */
-  uint32_t state;         /* fdcg_state */
-  uint32_t feature;       /* node, connection or corner, by state; FDCG_NONE in Free */
-  uint32_t seat_state;    /* FDCG_EDGE or FDCG_VERTEX: where the god-object was placed and still is; else FDCG_FREE */
+  double god_object[3]; /* in Free: the HIP, or after a bounded sweep the last point swept */
+  double hip[3];        /* of the last tick with a finite HIP */
+  uint32_t started;     /* 0 before the first tick */
+  uint32_t state;       /* fdcg_state */
+  uint32_t feature;     /* node, connection or corner, by state; FDCG_NONE in Free */
+  uint32_t seat_state;  /* FDCG_EDGE or FDCG_VERTEX: where the god-object was placed and still is; else FDCG_FREE */
   uint32_t seat_feature;
-  uint32_t slipping;      /* 1: dynamic friction holds */
+  uint32_t slipping; /* 1: dynamic friction holds */
   uint64_t non_finite_ticks;
   uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_MAX_TRANSITIONS */
   uint64_t sweep_bound_ticks;      /* ... because of FDCG_MAX_SWEEP_VISITS */
@@ -137,13 +138,13 @@ typedef enum fdcg_result_flag {
 } fdcg_result_flag;
 
 typedef struct fdcg_result {
-  double force_n[3];        /* on the user's hand */
-  double god_object_m[3];   /* object's frame */
-  uint32_t state;           /* fdcg_state */
-  uint32_t feature;         /* FDCG_NONE in Free */
+  double force_n[3];      /* on the user's hand */
+  double god_object_m[3]; /* object's frame */
+  uint32_t state;         /* fdcg_state */
+  uint32_t feature;       /* FDCG_NONE in Free */
   uint32_t slipping;
-  uint32_t transitions;     /* changes of state in this tick, Free included */
-  uint32_t flags;           /* fdcg_result_flag */
+  uint32_t transitions; /* changes of state in this tick, Free included */
+  uint32_t flags;       /* fdcg_result_flag */
   uint32_t reserved;
 } fdcg_result;
 

@@ -28,11 +28,15 @@
 #include <stdint.h>
 
 #define FDCG_FORMAT_VERSION 1u
-#define FDCG_MAGIC "\x89" "FDCG\r\n\x1a" /* 8 bytes; a text-mode copy or a 7-bit channel breaks it visibly */
+#define FDCG_MAGIC \
+  "\x89"           \
+  "FDCG\r\n\x1a" /* 8 bytes; a text-mode copy or a 7-bit channel breaks it visibly */
 #define FDCG_ALIGNMENT 64u
 #define FDCG_NONE 0xFFFFFFFFu /* "no node here": the far side of an open edge; a dropped source face */
 #define FDCG_LEAF_NODES 4u    /* nodes in one leaf of the hierarchy */
 #define FDCG_MAX_SIDES 65535u /* sides of one node */
+#define FDCG_LEAF_FAN 8u      /* fan entries in one leaf of a corner's tree */
+#define FDCG_BUSY_FAN 32u     /* a corner with more fan entries has a tree */
 
 #ifdef __cplusplus
 extern "C" {
@@ -48,7 +52,8 @@ enum fdcg_section_id {
   FDCG_SECTION_FANS = 6,        /* uint32_t: connection << 1 | end, fan_count of them; end 0: the corner is corner[0] */
   FDCG_SECTION_HIERARCHY = 7,   /* fdcg_box: the implicit bounding-volume tree. Optional: without it no free-space sweep */
   FDCG_SECTION_SOURCE_MAP = 8,  /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
-  FDCG_SECTION_INFO = 9         /* UTF-8 JSON: source, options, verdict. Optional */
+  FDCG_SECTION_INFO = 9,        /* UTF-8 JSON: source, options, verdict. Optional */
+  FDCG_SECTION_FAN_BOXES = 10   /* fdcg_fan_box_f64 or _f32: the busy corners' trees. Optional where no corner is busy */
 };
 
 enum fdcg_connection_type { FDCG_CONVEX = 0, FDCG_CONCAVE = 1, FDCG_COPLANAR = 2, FDCG_BOUNDARY = 3 };
@@ -63,6 +68,8 @@ enum fdcg_flatness { FDCG_FLAT_EXACT = 0, FDCG_FLAT_QUANTUM = 1, FDCG_FLAT_ANGLE
 /* fdcg_corner.flags. Set when a boundary connection ends here; then the fan is open and starts at the boundary connection
  * whose face lies to its left. */
 #define FDCG_CORNER_OPEN 1u
+/* The other bits of fdcg_corner.flags: 0, or 1 + the index of the root box of the corner's tree in section FAN_BOXES. */
+#define FDCG_CORNER_TREE_SHIFT 1u
 
 typedef struct fdcg_header {
   uint8_t magic[8];
@@ -87,7 +94,8 @@ typedef struct fdcg_header {
   uint32_t connection_type_count[4]; /* by fdcg_connection_type */
   uint32_t source_vertex_count;
   uint32_t source_face_count;
-  uint8_t reserved[56];     /* zero */
+  uint32_t fan_box_count;   /* in section FAN_BOXES */
+  uint8_t reserved[52];     /* zero */
   uint64_t table_checksum;  /* of the section table with its padding */
   uint64_t header_checksum; /* of the bytes before this field */
 } fdcg_header;
@@ -154,7 +162,7 @@ typedef struct fdcg_corner_f64 {
   uint32_t first_fan;
   uint32_t fan_count;
   float normal[3]; /* angle-weighted sum of the nodes' normals, scaled to unit length: only the sign of t.normal is used */
-  uint32_t flags;
+  uint32_t flags;  /* FDCG_CORNER_OPEN and the tree */
 } fdcg_corner_f64;
 typedef struct fdcg_corner_f32 {
   float point[3];
@@ -163,6 +171,18 @@ typedef struct fdcg_corner_f32 {
   float normal[3];
   uint32_t flags;
 } fdcg_corner_f32;
+
+/* A busy corner's tree: which directions along the surface the corner offers, so that the steepest is found without looking at
+ * every edge. An implicit binary tree as the hierarchy's: level 0 has one box for every FDCG_LEAF_FAN consecutive fan entries.
+ * The unit directions of these edges and of the faces to their left all lie in centre + sum of s_k axis[k], |s_k| <= 1. */
+typedef struct fdcg_fan_box_f64 {
+  double centre[3];
+  double axis[3][3];
+} fdcg_fan_box_f64;
+typedef struct fdcg_fan_box_f32 {
+  float centre[3];
+  float axis[3][3];
+} fdcg_fan_box_f32;
 
 /* The hierarchy is an implicit binary tree: level 0 has one box for every FDCG_LEAF_NODES consecutive nodes, each level above
  * it one for every two boxes below, up to a single root. Stored root first, then level after level down to level 0. Bounds are
@@ -191,5 +211,6 @@ FDCG_STATIC_ASSERT(offsetof(fdcg_connection_f64, corner) == 40 && offsetof(fdcg_
 FDCG_STATIC_ASSERT(offsetof(fdcg_connection_f32, corner) == 20 && offsetof(fdcg_connection_f32, type) == 40, "connection_f32");
 FDCG_STATIC_ASSERT(sizeof(fdcg_corner_f64) == 48 && sizeof(fdcg_corner_f32) == 36, "corner: 48 or 36 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_box) == 24, "box: 24 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_fan_box_f64) == 96 && sizeof(fdcg_fan_box_f32) == 48, "fan box: 96 or 48 bytes");
 
 #endif /* FDCG_FORMAT_H */

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace fdcg::bake {
+namespace {
+
+bool is_halfedge(HalfedgeId h) {
+  return +h < +Topology::kSkipped;
+}
+
+// How many corners a vertex has among the sound faces, and the first of them.
+struct Star {
+  std::uint32_t corners = 0;
+  std::uint32_t first = kNone;
+};
+
+// The corners of the fan that holds corner `start`, as far as pairs of opposite half-edges lead; 0 if it meets an odd edge.
+std::uint32_t walk_fan(const Mesh& mesh, const Topology& topology, HalfedgeId start) {
+  std::uint32_t count = 1;
+  HalfedgeId h = start;
+  for (;;) {  // counter-clockwise: across the half-edge that comes in
+    h = topology.twin[+previous(mesh, topology.face(h), h)];
+    if (h == start) return count;
+    if (!is_halfedge(h)) break;
+    ++count;
+  }
+  if (h != Topology::kBoundary) return 0;
+  h = start;
+  for (;;) {  // clockwise: across the half-edge that goes out
+    h = topology.twin[+h];
+    if (!is_halfedge(h)) return h == Topology::kBoundary ? count : 0;
+    h = next(mesh, topology.face(h), h);
+    ++count;
+  }
+}
+
+// The fans of one vertex, given the vertices at the far ends of its corners' two edges: corners that share one are joined.
+// `ends` holds (far vertex, corner number).
+std::uint32_t count_fans(std::vector<std::pair<VertexId, std::uint32_t>>& ends) {
+  std::sort(ends.begin(), ends.end());
+  std::vector<std::uint32_t> parent(ends.size() / 2);
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto find = [&](std::uint32_t i) {
+    while (parent[i] != i)
+      i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  auto fans = static_cast<std::uint32_t>(parent.size());
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    if (ends[i].first != ends[i - 1].first) continue;
+    const std::uint32_t a = find(ends[i].second), b = find(ends[i - 1].second);
+    if (a == b) continue;
+    parent[std::max(a, b)] = std::min(a, b);
+    --fans;
+  }
+  return fans;
+}
+
+// The vertices of `odd` (ascending) with more than one fan, by comparing all edges around each.
+void count_odd_vertices(const Mesh& mesh, const std::vector<FaceState>& states, const std::vector<std::uint32_t>& odd,
+                        std::vector<VertexId>& several) {
+  std::vector<bool> is_odd(mesh.points.size(), false);
+  for (const std::uint32_t v : odd)
+    is_odd[v] = true;
+  std::vector<std::array<std::uint32_t, 3>> entries;  // vertex, slot, face
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (states[f] != FaceState::sound) continue;
+    for (std::uint32_t h = mesh.face_first[f]; h < mesh.face_first[f + 1]; ++h) {
+      if (is_odd[+mesh.corners[h]]) entries.push_back({+mesh.corners[h], h, f});
+    }
+  }
+  std::sort(entries.begin(), entries.end());
+  std::vector<std::pair<VertexId, std::uint32_t>> ends;
+  for (std::size_t i = 0; i < entries.size();) {
+    const std::size_t begin = i;
+    ends.clear();
+    for (; i < entries.size() && entries[i][0] == entries[begin][0]; ++i) {
+      const FaceId f{entries[i][2]};
+      const HalfedgeId h{entries[i][1]};
+      const auto corner = static_cast<std::uint32_t>(i - begin);
+      ends.emplace_back(mesh.corners[+next(mesh, f, h)], corner);
+      ends.emplace_back(mesh.corners[+previous(mesh, f, h)], corner);
+    }
+    if (count_fans(ends) > 1) several.push_back(VertexId{entries[begin][0]});
+  }
+}
+
+}  // namespace
+
+std::vector<OddEdge> odd_edges(const Mesh& mesh, const Topology& topology) {
+  struct Entry {
+    std::uint32_t low, high, slot;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::vector<Entry> entries;
+  for (std::uint32_t h = 0; h < topology.twin.size(); ++h) {
+    if (topology.twin[h] != Topology::kSameWay && topology.twin[h] != Topology::kNonManifold) continue;
+    const std::uint32_t u = +mesh.corners[h];
+    const std::uint32_t v = +mesh.corners[+next(mesh, topology.face(HalfedgeId{h}), HalfedgeId{h})];
+    entries.push_back({std::min(u, v), std::max(u, v), h});
+  }
+  std::sort(entries.begin(), entries.end());
+  std::vector<OddEdge> edges;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (i == 0 || entries[i].low != entries[i - 1].low || entries[i].high != entries[i - 1].high) edges.emplace_back();
+    edges.back().halfedges.push_back(HalfedgeId{entries[i].slot});
+  }
+  std::sort(edges.begin(), edges.end(), [](const OddEdge& a, const OddEdge& b) { return a.halfedges[0] < b.halfedges[0]; });
+  return edges;
+}
+
+std::vector<VertexId> vertices_of_several_fans(const Mesh& mesh, const Topology& topology,
+                                               const std::vector<FaceState>& states) {
+  std::vector<Star> stars(mesh.points.size());
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (states[f] != FaceState::sound) continue;
+    for (std::uint32_t h = mesh.face_first[f]; h < mesh.face_first[f + 1]; ++h) {
+      Star& star = stars[+mesh.corners[h]];
+      if (star.corners++ == 0) star.first = h;
+    }
+  }
+  std::vector<VertexId> several;
+  std::vector<std::uint32_t> odd;
+  for (std::uint32_t v = 0; v < stars.size(); ++v) {
+    if (stars[v].corners < 2) continue;
+    const std::uint32_t walked = walk_fan(mesh, topology, HalfedgeId{stars[v].first});
+    if (walked == 0) {
+      odd.push_back(v);
+    } else if (walked < stars[v].corners) {
+      several.push_back(VertexId{v});
+    }
+  }
+  if (!odd.empty()) {
+    count_odd_vertices(mesh, states, odd, several);
+    std::sort(several.begin(), several.end());
+  }
+  return several;
+}
+
+}  // namespace fdcg::bake

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "info.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "fdcg/fdcg.h"
+
+namespace fdcg::bake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(Format format) {
+  switch (format) {
+    case Format::off:
+      return "off";
+    case Format::obj:
+      return "obj";
+    case Format::ply:
+      return "ply";
+    case Format::stl:
+      return "stl";
+  }
+  return "";
+}
+
+const char* name_of(Weld::Kind kind) {
+  switch (kind) {
+    case Weld::Kind::exact:
+      return "exact";
+    case Weld::Kind::none:
+      return "none";
+    case Weld::Kind::distance:
+      return "distance";
+  }
+  return "";
+}
+
+const char* name_of(Coplanar::Kind kind) {
+  switch (kind) {
+    case Coplanar::Kind::exact:
+      return "exact";
+    case Coplanar::Kind::quantum:
+      return "quantum";
+    case Coplanar::Kind::angle:
+      return "angle";
+  }
+  return "";
+}
+
+Json options_json(const CompileOptions& options) {
+  Json json;
+  json["metres_per_unit"] = options.metres_per_unit;
+  json["precision"] = options.precision == Precision::f32 ? "f32" : "f64";
+  json["coplanar"] = name_of(options.coplanar.kind);
+  if (options.coplanar.kind == Coplanar::Kind::angle) json["coplanar_angle_rad"] = options.coplanar.angle_rad;
+  json["merge"] = options.merge;
+  json["weld"] = name_of(options.weld.kind);
+  if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
+  json["orient"] = options.orient;
+  json["planes"] = options.store_voronoi_planes ? "stored" : "derived";
+  json["without"] = options.without;
+  json["allow"] = options.allow;
+  return json;
+}
+
+}  // namespace
+
+std::string info_json(const PolygonSoup& soup, const CompileOptions& options, const Compiled& compiled) {
+  Json json;
+  json["tool"] = "fdcg " FDCG_VERSION_STRING;
+  json["source"] = {{"file_sha256", soup.sha256},
+                    {"format", name_of(soup.format)},
+                    {"vertices", soup.points.size()},
+                    {"faces", soup.face_count()}};
+  json["options"] = options_json(options);
+  json["verdict"] = compiled.report.passes() ? "pass" : "fail";
+  json["checks"] = compiled.report.checks;
+  Json issues = Json::object();
+  for (const Issue& issue : compiled.report.issues)
+    issues[issue.rule] = issue.total;
+  json["issues"] = issues;
+  json["flipped_faces"] = compiled.flipped_faces;
+  json["split_faces"] = compiled.split_faces;
+  json["merged_faces"] = compiled.merged_faces;
+  return json.dump();
+}
+
+}  // namespace fdcg::bake

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The catalogue of rules. Names and severities are promises to people's scripts: add rows, change none.
+#include <algorithm>
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::bake {
+
+const std::vector<Rule>& rules() {
+  using enum Severity;
+  static const std::vector<Rule> kRules{
+      {"unreadable", error, "files that cannot be read as a mesh", "There is nothing to touch.",
+       "Check the path and the format; export the mesh again as OFF, OBJ, PLY or STL.", false},
+      {"non-finite-coordinate", error,
+       "vertices with a coordinate that is NaN or infinite, or too large for the precision asked",
+       "Planes through such a vertex are NaN, and so is every force computed from them.",
+       "Export the mesh again, or delete the vertices and the faces that use them.", false},
+      {"index-out-of-range", error, "faces that name a vertex the file does not have",
+       "The face has no shape; the surface has a hole where it should be.",
+       "Export the mesh again; the file is likely cut short or its indices start at the wrong number.", false},
+      {"empty-mesh", error, "files without a single face", "There is no surface to touch.",
+       "Export faces and not only points or lines.", false},
+      {"degenerate-face", error, "faces with a corner named twice, or whose corners all lie exactly on one line",
+       "Such a face has no normal, so that nothing says which way it pushes.",
+       "Delete the face and join its long edge to its neighbours; `fdcg repair` does so.", false},
+      {"duplicate-face", error, "the second and later faces on the same vertices, in whatever order",
+       "Contact would have two answers at one place, and the edges around it more than two faces.",
+       "Delete the copies; `fdcg repair` does so.", false},
+      {"non-manifold-edge", error, "edges with more than two faces",
+       "Sliding over such an edge the god-object has no single face to go on to.",
+       "Split the surface along the edge, or remove the inner faces.", false},
+      {"non-manifold-vertex", error, "vertices whose faces form more than one fan",
+       "At such a vertex separate sheets touch in a point; the faces around it have no cyclic order.",
+       "Give each fan a vertex of its own; `fdcg repair` does so.", false},
+      {"winding-inconsistent", error, "edges whose two faces run along them in the same direction",
+       "One of the two faces looks inwards: the hand would fall through it.",
+       "Compile with `--orient`, or flip the faces in the modelling program.", false},
+      {"not-orientable", error, "patches, joined across edges of two faces, that no flipping can make consistent",
+       "A one-sided surface such as a Moebius strip has no outside to be touched from.",
+       "Cut the strip, or thicken it into a solid.", false},
+      {"inside-out", error, "closed patches that enclose negative volume where they should bound solid",
+       "All of their faces look inwards: one can enter freely and is held inside.",
+       "Compile with `--orient`, or flip the part; `--allow inside-out` keeps it if the inside is to be touched.", true},
+      {"folded-edge", error, "edges whose two faces lie exactly in one plane on the same side of the edge",
+       "Nothing tells whether the edge is a knife of no thickness or a slit, so that the god-object cannot be led around it.",
+       "Delete one of the two faces, or give the part a thickness.", false},
+      {"boundary-edge", warning, "edges with one face",
+       "The surface ends there: the hand can pass around the edge to the back, where nothing is felt.",
+       "Close the hole if the object is meant to be solid.", true},
+      {"self-intersection", warning, "pairs of faces that meet other than in a shared vertex or edge",
+       "Inside the overlap the god-object follows one sheet and ignores the other.",
+       "Unite the overlapping parts in the modelling program.", true},
+      {"non-planar-face", warning, "polygons with corners off their plane by more than the rounding of the file explains",
+       "A node of the graph is one plane: compile cuts such a polygon into triangles, and the cut can be felt.",
+       "Triangulate the polygon where the crease should run, or flatten it.", true},
+      {"t-junction", note, "vertices inside a boundary edge",
+       "The two sides of the seam are not connected: the god-object leaves the surface there.",
+       "Split the long edge at the vertex.", true},
+      {"sliver-face", note, "faces much thinner than long",
+       "Their normals are sensitive to rounding, and crossing many of them costs steps.",
+       "Remesh the region with better shaped faces.", true},
+      {"isolated-vertex", note, "vertices of no face", "None: they are left out of the graph.",
+       "Nothing needs to be done; delete them to make the file smaller.", true},
+      {"duplicate-vertex", note, "vertices that the weld joined to an earlier one",
+       "None where faces are meant to hang together; with `--weld none` every such face stands alone.",
+       "Nothing needs to be done; `--weld none` keeps the vertices apart.", true},
+  };
+  return kRules;
+}
+
+const Rule* find_rule(std::string_view name) {
+  const auto rule = std::find_if(rules().begin(), rules().end(), [&](const Rule& r) { return r.name == name; });
+  return rule == rules().end() ? nullptr : &*rule;
+}
+
+}  // namespace fdcg::bake

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Unit normals, offsets and edge directions, good to a unit or two in the last place whatever the triangle's shape.
+#pragma once
+
+#include <span>
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::bake {
+
+// distance(x) = normal . x + offset, positive outside.
+struct Plane {
+  Vec3 normal;
+  double offset = 0;
+};
+
+// unit((b - a) x (c - a)): differences and products without rounding error where it matters, so that needles come out as
+// well as equilateral triangles. Zero where the three are exactly collinear.
+[[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
+
+// unit(b - a); edge_direction(b, a) is its exact negative.
+[[nodiscard]] Vec3 edge_direction(const Vec3& a, const Vec3& b);
+
+// unit(v), with no loss at either end of the exponent's range.
+[[nodiscard]] Vec3 unit(const Vec3& v);
+
+// The offset that makes the largest distance of the points from the plane smallest, for the normal as it was rounded.
+[[nodiscard]] double balanced_offset(const Vec3& normal, std::span<const Vec3> points);
+
+// The plane of these corners as the file will store it: the normal rounded to the precision, then the offset balanced for
+// that normal and rounded.
+[[nodiscard]] Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision precision);
+
+// The plane through the edge, facing out of the face: `along` is the edge's direction in the face's own winding and m equals
+// along x normal; `v0` is the end of the edge that the connection calls corner 0.
+[[nodiscard]] Plane voronoi_plane(const Vec3& along, const Vec3& normal, const Vec3& v0);
+
+// The angle between two unit vectors, 0 .. pi, within 1e-8: by additions, products, square root and division alone, so that
+// every compiler and C library gives the same bits.
+[[nodiscard]] double angle_between(const Vec3& a, const Vec3& b);
+
+}  // namespace fdcg::bake

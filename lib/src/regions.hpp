@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which triangles form one planar region and share one plane.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "classify.hpp"
+#include "fdcg/bake.hpp"
+#include "mesh.hpp"
+#include "planes.hpp"
+#include "quantum.hpp"
+
+namespace fdcg::bake {
+
+// Two or more triangles that share one plane bit for bit.
+struct Region {
+  Plane plane;              // at storage precision
+  bool is_exact = false;    // all its corners are exactly coplanar
+  Flat tier = Flat::exact;  // the loosest tier that was needed
+};
+
+struct Regions {
+  std::vector<std::uint32_t> of_face;  // of each face: its region, or kNone for a face on its own; empty where all are
+  std::vector<Region> list;
+
+  [[nodiscard]] std::uint32_t of(FaceId f) const { return of_face.empty() ? kNone : of_face[+f]; }
+};
+
+struct RegionOptions {
+  Coplanar coplanar;
+  Quantum quantum;
+  Precision precision = Precision::f64;
+};
+
+}  // namespace fdcg::bake

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "topology.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace fdcg::bake {
+namespace {
+
+bool all_triangles(const Mesh& mesh) {
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.face_first[f + 1] != 3 * (f + 1)) return false;
+  }
+  return true;
+}
+
+// Calls visit(slot, vertex, next vertex) for every half-edge of every sound face, in slot order.
+template <class Visit>
+void for_each_halfedge(const Mesh& mesh, const std::vector<FaceState>& states, Visit visit) {
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (states[f] != FaceState::sound) continue;
+    const std::uint32_t first = mesh.face_first[f];
+    const std::uint32_t last = mesh.face_first[f + 1] - 1;
+    for (std::uint32_t h = first; h < last; ++h)
+      visit(h, +mesh.corners[h], +mesh.corners[h + 1]);
+    visit(last, +mesh.corners[last], +mesh.corners[first]);
+  }
+}
+
+void sort_bucket(std::uint64_t* begin, std::uint64_t* end) {
+  constexpr std::ptrdiff_t kInsertionSortBelow = 24;  // most vertices have about three edges in their bucket
+  if (end - begin >= kInsertionSortBelow) {
+    std::sort(begin, end);
+    return;
+  }
+  for (std::uint64_t* i = begin + 1; i < end; ++i) {
+    const std::uint64_t key = *i;
+    std::uint64_t* hole = i;
+    for (; hole > begin && hole[-1] > key; --hole)
+      *hole = hole[-1];
+    *hole = key;
+  }
+}
+
+// One bucket: keys (larger vertex, slot), sorted, so that the half-edges of an edge stand together in slot order.
+void pair_bucket(const Mesh& mesh, const std::uint64_t* begin, const std::uint64_t* end, std::vector<HalfedgeId>& twin) {
+  const auto slot = [](std::uint64_t key) { return static_cast<std::uint32_t>(key); };
+  while (begin < end) {
+    const std::uint64_t* stop = begin + 1;
+    while (stop < end && *stop >> 32 == *begin >> 32)
+      ++stop;
+    const std::uint32_t a = slot(begin[0]);
+    if (stop - begin == 1) {
+      twin[a] = Topology::kBoundary;
+    } else if (stop - begin == 2) {
+      const std::uint32_t b = slot(begin[1]);
+      const bool same_way = mesh.corners[a] == mesh.corners[b];
+      twin[a] = same_way ? Topology::kSameWay : HalfedgeId{b};
+      twin[b] = same_way ? Topology::kSameWay : HalfedgeId{a};
+    } else {
+      for (const std::uint64_t* i = begin; i < stop; ++i)
+        twin[slot(*i)] = Topology::kNonManifold;
+    }
+    begin = stop;
+  }
+}
+
+}  // namespace
+
+std::vector<FaceState> face_states(const Mesh& mesh) {
+  std::vector<FaceState> states(mesh.face_count(), FaceState::sound);
+  std::vector<std::uint32_t> seen_in;  // of each vertex: the last face that named it; only polygons need it
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    const VertexId* corner = mesh.corners.data() + mesh.face_first[f];
+    const std::uint32_t count = mesh.face_first[f + 1] - mesh.face_first[f];
+    if (std::find(corner, corner + count, VertexId{kNone}) != corner + count) {
+      states[f] = FaceState::invalid_corner;
+    } else if (count < 3) {
+      states[f] = FaceState::repeated_corner;
+    } else if (count == 3) {
+      if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) states[f] = FaceState::repeated_corner;
+    } else {
+      if (seen_in.empty()) seen_in.assign(mesh.points.size(), kNone);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (seen_in[+corner[i]] == f) states[f] = FaceState::repeated_corner;
+        seen_in[+corner[i]] = f;
+      }
+    }
+  }
+  return states;
+}
+
+Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states) {
+  Topology topology;
+  topology.twin.assign(mesh.corners.size(), Topology::kSkipped);
+  if (!all_triangles(mesh)) {
+    topology.face_of.resize(mesh.corners.size());
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+      std::fill(topology.face_of.begin() + mesh.face_first[f], topology.face_of.begin() + mesh.face_first[f + 1], FaceId{f});
+    }
+  }
+
+  // A counting sort by the smaller vertex: afterwards first[v] is where the bucket of v ends and that of v + 1 starts.
+  std::vector<std::uint32_t> first(mesh.points.size() + 1, 0);
+  for_each_halfedge(mesh, states, [&](std::uint32_t, std::uint32_t u, std::uint32_t v) { ++first[std::min(u, v)]; });
+  std::uint32_t sum = 0;
+  for (std::uint32_t& entry : first) {
+    const std::uint32_t count = entry;
+    entry = sum;
+    sum += count;
+  }
+  std::vector<std::uint64_t> keys(sum);
+  for_each_halfedge(mesh, states, [&](std::uint32_t slot, std::uint32_t u, std::uint32_t v) {
+    keys[first[std::min(u, v)]++] = std::uint64_t{std::max(u, v)} << 32 | slot;
+  });
+
+  std::uint32_t begin = 0;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    sort_bucket(keys.data() + begin, keys.data() + first[v]);
+    pair_bucket(mesh, keys.data() + begin, keys.data() + first[v], topology.twin);
+    begin = first[v];
+  }
+  return topology;
+}
+
+Topology pair_halfedges(const Mesh& mesh) {
+  return pair_halfedges(mesh, face_states(mesh));
+}
+
+}  // namespace fdcg::bake

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The checks themselves, on a welded mesh; validate() of bake.hpp and compile() both end here, so that they cannot disagree.
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fdcg/bake.hpp"
+#include "mesh.hpp"
+#include "topology.hpp"
+
+namespace fdcg::bake {
+
+struct CheckOptions {
+  std::set<std::string> allow;           // of these, the rules that can be allowed
+  std::size_t max_elements = 100;        // listed under a rule
+  Precision precision = Precision::f64;  // that weld_points rounded to: non-planar-face tolerates it
+  Progress progress;
+};
+
+// Runs every rule of the catalogue but unreadable (import's), self-intersection, t-junction and sliver-face; Report::checks
+// names them. `mesh` is weld_points(soup, ...), perhaps oriented; `states` and `topology` are those of face_states and
+// pair_halfedges. Report::vertices counts the welded vertices, as the rules do. Elements speak of the soup's own numbers: of
+// joined vertices the first. An element names at most 32 faces. Near linear.
+[[nodiscard]] Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology,
+                           const std::vector<FaceState>& states, const CheckOptions& options);
+
+}  // namespace fdcg::bake

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "weld.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace fdcg::bake {
+namespace {
+
+bool is_finite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+// The range of the finite values on one axis.
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void add(double x) {
+    // Comparisons with NaN are false; infinities are kept out by the finite bounds.
+    constexpr double kLargest = std::numeric_limits<double>::max();
+    if (x < low && x >= -kLargest) low = x;
+    if (x > high && x <= kLargest) high = x;
+  }
+  [[nodiscard]] double origin() const {
+    if (!(low <= high)) return 0;
+    const double centre = low / 2 + high / 2;
+    const double half = high / 2 - low / 2;
+    return centre != 0 && std::abs(centre) >= 3 * half ? centre : 0;
+  }
+};
+
+Vec3 choose_origin(const std::vector<Vec3>& points) {
+  Range x, y, z;
+  for (const Vec3& p : points) {
+    x.add(p.x);
+    y.add(p.y);
+    z.add(p.z);
+  }
+  return {x.origin(), y.origin(), z.origin()};
+}
+
+double as_stored(double x, Precision precision) {
+  // Adding zero turns -0 into 0, so that equal coordinates have equal bits.
+  if (precision == Precision::f64) return x + 0.0;
+  // Out of a float's range the conversion is undefined in C++: such a coordinate becomes an infinity, which validate reports.
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  if (x > kLargest * (1 + 0x1p-25)) return std::numeric_limits<double>::infinity();
+  if (x < -kLargest * (1 + 0x1p-25)) return -std::numeric_limits<double>::infinity();
+  return static_cast<double>(static_cast<float>(x)) + 0.0;
+}
+
+std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
+  a = (a ^ b) * 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio: odd, bits well spread
+  return a ^ (a >> 29);
+}
+
+std::uint64_t hash_of(const Vec3& p) {
+  const std::uint64_t h = mix(mix(std::bit_cast<std::uint64_t>(p.x), std::rotl(std::bit_cast<std::uint64_t>(p.y), 21)),
+                              std::rotl(std::bit_cast<std::uint64_t>(p.z), 42));
+  return mix(h, 0);
+}
+
+// Open addressing over vertex numbers; the points themselves are the keys.
+class VertexTable {
+ public:
+  explicit VertexTable(std::size_t expected) { allocate(expected); }
+
+  [[nodiscard]] std::size_t slot_of(std::uint64_t hash) const { return hash >> shift_; }
+  void prefetch(std::uint64_t hash) const { __builtin_prefetch(&slots_[slot_of(hash)]); }
+  [[nodiscard]] std::uint32_t peek(std::uint64_t hash) const { return slots_[slot_of(hash)]; }
+
+  // The vertex at `p`, or `fresh`, which is then entered; `points` holds the vertices so far.
+  std::uint32_t find_or_enter(const Vec3& p, std::uint64_t hash, std::uint32_t fresh, const std::vector<Vec3>& points) {
+    for (std::size_t slot = slot_of(hash);; slot = (slot + 1) & mask_) {
+      const std::uint32_t vertex = slots_[slot];
+      if (vertex == kNone) {
+        slots_[slot] = fresh;
+        if (++used_ > mask_ / 2) grow(points, p, fresh);
+        return fresh;
+      }
+      if (points[vertex] == p) return vertex;
+    }
+  }
+
+ private:
+  void allocate(std::size_t expected) {
+    const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(64, 2 * expected + 2));
+    slots_.assign(capacity, kNone);
+    mask_ = capacity - 1;
+    shift_ = 64 - std::countr_zero(capacity);
+  }
+  void grow(const std::vector<Vec3>& points, const Vec3& newest, std::uint32_t newest_vertex) {
+    std::vector<std::uint32_t> old;
+    old.swap(slots_);
+    allocate(old.size() - 1);
+    for (const std::uint32_t vertex : old) {
+      if (vertex == kNone) continue;
+      std::size_t slot = slot_of(hash_of(vertex == newest_vertex ? newest : points[vertex]));
+      while (slots_[slot] != kNone)
+        slot = (slot + 1) & mask_;
+      slots_[slot] = vertex;
+    }
+  }
+
+  std::vector<std::uint32_t> slots_;
+  std::size_t mask_ = 0, used_ = 0;
+  int shift_ = 0;
+};
+
+// Where the points go: vertices of the mesh as they are found, and the vertex of each source point.
+struct Welder {
+  Mesh& mesh;
+  std::vector<std::uint32_t> vertex_of;
+
+  [[nodiscard]] std::uint32_t fresh() const { return static_cast<std::uint32_t>(mesh.points.size()); }
+  void put(std::uint32_t source, const Vec3& p, std::uint32_t vertex) {
+    vertex_of[source] = vertex;
+    if (vertex == mesh.points.size()) {
+      mesh.points.push_back(p);
+      mesh.source_point.push_back(source);
+    } else {
+      ++mesh.joined_vertices;
+    }
+  }
+};
+
+void weld_exact(const std::vector<Vec3>& local, std::size_t expected, Welder& out) {
+  // Points are looked up in blocks, so that the misses to memory of a block overlap: first the slots, then the keys.
+  constexpr std::size_t kBlock = 32;
+  VertexTable table(expected);
+  std::array<std::uint64_t, kBlock> hash{};
+  for (std::size_t first = 0; first < local.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, local.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      hash[i] = hash_of(local[first + i]);
+      table.prefetch(hash[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t vertex = table.peek(hash[i]);
+      if (vertex != kNone) __builtin_prefetch(&out.mesh.points[vertex]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3& p = local[first + i];
+      const std::uint32_t fresh = out.fresh();
+      const std::uint32_t vertex = is_finite(p) ? table.find_or_enter(p, hash[i], fresh, out.mesh.points) : fresh;
+      out.put(static_cast<std::uint32_t>(first + i), p, vertex);
+    }
+  }
+}
+
+// Standing vertices in cells somewhat wider than the distance: whoever is within reach stands in the 27 cells around.
+class Grid {
+ public:
+  Grid(double distance, std::size_t expected)
+      // Wider by a little, so that the rounding of x / cell never puts two points in reach two cells apart.
+      : distance_(distance), cell_(distance * (1 + 0x1p-20)), heads_(std::bit_ceil(expected + 1), kNone) {}
+
+  // The lowest-numbered standing vertex within the distance of `p`, or kNone.
+  [[nodiscard]] std::uint32_t find(const Vec3& p, const std::vector<Vec3>& points) const {
+    const Vec3 home = cell_of(p);
+    std::uint32_t best = kNone;
+    for (int i = 0; i < 27; ++i) {
+      const Vec3 cell{home.x + (i % 3 - 1), home.y + (i / 3 % 3 - 1), home.z + (i / 9 - 1)};
+      for (std::uint32_t v = heads_[bucket(cell)]; v != kNone; v = next_[v]) {
+        const Vec3& q = points[v];
+        if (v < best && std::hypot(p.x - q.x, p.y - q.y, p.z - q.z) <= distance_) best = v;
+      }
+    }
+    return best;
+  }
+  void enter(const Vec3& p, std::uint32_t vertex) {
+    std::uint32_t& head = heads_[bucket(cell_of(p))];
+    next_.resize(vertex + std::size_t{1}, kNone);
+    next_[vertex] = head;
+    head = vertex;
+  }
+
+ private:
+  [[nodiscard]] Vec3 cell_of(const Vec3& p) const {
+    return {std::floor(p.x / cell_), std::floor(p.y / cell_), std::floor(p.z / cell_)};
+  }
+  [[nodiscard]] std::size_t bucket(const Vec3& cell) const {
+    return hash_of({cell.x + 0.0, cell.y + 0.0, cell.z + 0.0}) >> 20 & (heads_.size() - 1);
+  }
+
+  double distance_, cell_;
+  std::vector<std::uint32_t> heads_, next_;
+};
+
+void weld_distance(const std::vector<Vec3>& local, double distance, Welder& out) {
+  Grid grid(distance, local.size());
+  for (std::uint32_t source = 0; source < local.size(); ++source) {
+    const Vec3& p = local[source];
+    std::uint32_t vertex = is_finite(p) ? grid.find(p, out.mesh.points) : kNone;
+    if (vertex == kNone) {
+      vertex = out.fresh();
+      if (is_finite(p)) grid.enter(p, vertex);
+    }
+    out.put(source, p, vertex);
+  }
+}
+
+void weld_none(const std::vector<Vec3>& local, Welder& out) {
+  for (std::uint32_t source = 0; source < local.size(); ++source)
+    out.put(source, local[source], source);
+}
+
+}  // namespace
+
+Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision, [[maybe_unused]] unsigned jobs) {
+  Mesh mesh;
+  mesh.origin = choose_origin(soup.points);
+  const Vec3 o = mesh.origin;
+  std::vector<Vec3> local;
+  local.reserve(soup.points.size());
+  for (const Vec3& p : soup.points) {
+    local.push_back({as_stored(p.x - o.x, precision), as_stored(p.y - o.y, precision), as_stored(p.z - o.z, precision)});
+  }
+
+  // An STL file repeats each vertex about six times; elsewhere few are repeated.
+  const std::size_t expected = soup.format == Format::stl ? local.size() / 5 : local.size();
+  Welder out{mesh, std::vector<std::uint32_t>(local.size())};
+  mesh.points.reserve(expected);
+  mesh.source_point.reserve(expected);
+  if (weld.kind == Weld::Kind::none) {
+    weld_none(local, out);
+  } else if (weld.kind == Weld::Kind::distance && weld.distance > 0) {
+    weld_distance(local, weld.distance, out);
+  } else {
+    weld_exact(local, expected, out);
+  }
+
+  mesh.face_first = soup.face_first;
+  mesh.corners.reserve(soup.corners.size());
+  for (const std::uint32_t corner : soup.corners) {
+    mesh.corners.push_back(VertexId{corner < out.vertex_of.size() ? out.vertex_of[corner] : kNone});
+  }
+  return mesh;
+}
+
+}  // namespace fdcg::bake

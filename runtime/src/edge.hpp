@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The god-object on an edge (contact-model section 6; Melder 2004, sections 5d to 5f and 6).
+#pragma once
+
+#include "walk.hpp"
+
+namespace fdcg {
+
+// In a groove the two faces together press harder than the distance from the edge says, by 1 / sin(opening / 2). At most this
+// factor is allowed: an opening of 0.11 degrees.
+inline constexpr int kMaxWedgeFactor = 1024;
+
+// How a HIP lies to a connection's two faces.
+template <class Real>
+struct EdgeSides {
+  Real side[2];     // to the faces' planes
+  Real voronoi[2];  // to their Voronoi planes
+};
+
+template <class Real>
+inline EdgeSides<Real> edge_sides(const Walk<Real>& walk, const typename Records<Real>::Connection& connection) {
+  EdgeSides<Real> s = {};
+  const int faces = connection.type == FDCG_BOUNDARY ? 1 : 2;
+  for (int k = 0; k < faces; ++k) {
+    const auto& node = walk.graph.nodes[connection.node[k]];
+    s.side[k] = walk.side(node);
+    s.voronoi[k] = walk.graph.voronoi_plane(node, connection.side[k]).distance(walk.hip);
+  }
+  return s;
+}
+
+inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
+  return type == FDCG_CONCAVE ? !is_behind_a && !is_behind_b : !is_behind_a || !is_behind_b;
+}
+
+// The sum of the two normal loads of the groove, or the paper's distance of HIP from the edge.
+template <class Real>
+inline Real edge_load(const Walk<Real>& walk, const typename Records<Real>::Connection& connection, const EdgeLine<Real>& line,
+                      Real distance) {
+  if (!walk.friction.wedge || connection.type == FDCG_BOUNDARY) return distance;
+  const auto& a = walk.graph.nodes[connection.node[0]];
+  const auto& b = walk.graph.nodes[connection.node[1]];
+  const Vec3<Real> sum = vec(a.plane.normal) + vec(b.plane.normal);
+  const Real most = Real(kMaxWedgeFactor) * distance;
+  const Real sum2 = dot(sum, sum);
+  const Real load = -2 * dot(sum, walk.hip - line.start);
+  if (sum2 > 0 && !(load > 0)) return 0;
+  return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
+}
+
+// Cost: two face planes, two Voronoi planes.
+template <class Real>
+inline Decision edge_rule(Walk<Real>& walk) {
+  const uint32_t index = walk.active.index;
+  const auto& connection = walk.graph.connections[index];
+  const EdgeSides<Real> s = edge_sides(walk, connection);
+  const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
+  if (connection.type == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node[0]} : kFree);
+  if (is_free_of_edge(connection.type, s.side[0] < 0, s.side[1] < 0)) return go_to(kFree);
+  const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
+  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0])) return go_to({FDCG_FACE, connection.node[0]});
+  if (is_candidate_b) return go_to({FDCG_FACE, connection.node[1]});
+
+  const EdgeLine<Real> line(walk.graph, connection);
+  const Real foot = line.parameter(walk.hip);
+  const Real ahead = line.parameter(walk.god_object) - foot;
+  const Real gap = absolute(ahead);
+  const Real distance = norm(walk.hip - (line.start + line.direction * foot));
+  const Real allowed = friction_gap(walk, gap, edge_load(walk, connection, line, distance));
+  if (!(allowed < gap)) return rest();
+  const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + allowed : foot - allowed);
+  return landed == walk.active ? rest() : go_to(landed);
+}
+
+}  // namespace fdcg

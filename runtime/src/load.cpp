@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opening: header and section table are checked always, the rest by verify.cpp where the caller does not trust the file.
+#include <string.h>
+
+#include "fdcg/fdcg.h"
+#include "implicit_tree.hpp"
+#include "map_file.hpp"
+#include "message.hpp"
+#include "verify.hpp"
+
+namespace fdcg {
+namespace {
+
+constexpr uint32_t kMaxSections = 64;
+
+// Without a hierarchy the free-space sweep looks at every node, which must stay a bounded piece of work.
+constexpr uint32_t kMaxNodesWithoutHierarchy = 4096;
+
+// With more, connection << 1 would not fit into 32 bits.
+constexpr uint32_t kMaxConnections = 0x7FFFFFFFu;
+
+uint64_t padded(uint64_t bytes) {
+  return (bytes + FDCG_ALIGNMENT - 1) / FDCG_ALIGNMENT * FDCG_ALIGNMENT;
+}
+
+uint64_t table_bytes(const fdcg_header& header) {
+  return header.section_count * uint64_t{sizeof(fdcg_section)};
+}
+
+bool in_range(double value, double low, double high) {
+  return value >= low && value <= high;
+}
+
+// Beyond this, products of three coordinates would leave the range of a double (f64) or a float (f32).
+double largest_extent(const fdcg_header& header) {
+  return header.real_bytes == 8 ? 1e60 : 1e9;
+}
+
+fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
+  if (bytes < sizeof(fdcg_header)) {
+    return Message(error, FDCG_E_TRUNCATED, bytes)
+        .text("the file has ")
+        .number(bytes)
+        .text(" bytes, an FDCG header alone has 256; it is truncated or not an FDCG file");
+  }
+  const auto& header = *static_cast<const fdcg_header*>(data);
+  if (memcmp(header.magic, FDCG_MAGIC, sizeof header.magic) != 0) {
+    return Message(error, FDCG_E_MAGIC)
+        .text("the first 8 bytes are not those of an FDCG file; compile the mesh with fdcg compile");
+  }
+  if (header.format_version != FDCG_FORMAT_VERSION) {
+    return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, format_version))
+        .text("format version ")
+        .number(header.format_version)
+        .text(", this library reads version ")
+        .number(FDCG_FORMAT_VERSION)
+        .text("; compile the mesh again or update the library");
+  }
+  if (header.header_checksum != fdcg_checksum(&header, offsetof(fdcg_header, header_checksum))) {
+    return Message(error, FDCG_E_CHECKSUM, offsetof(fdcg_header, header_checksum))
+        .text("the header's checksum does not match; the file is damaged, compile the mesh again");
+  }
+  if (header.file_bytes != bytes) {
+    return Message(error, FDCG_E_TRUNCATED, bytes)
+        .text("the header promises ")
+        .number(header.file_bytes)
+        .text(" bytes, there are ")
+        .number(bytes)
+        .text("; copy the file again");
+  }
+  return FDCG_OK;
+}
+
+fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
+  const auto refuse = [&](const char* field, uint64_t value) -> fdcg_status {
+    return Message(error, FDCG_E_LAYOUT)
+        .text("header.")
+        .text(field)
+        .text(" is ")
+        .number(value)
+        .text(", which no writer produces");
+  };
+  if (header.header_bytes != sizeof(fdcg_header)) return refuse("header_bytes", header.header_bytes);
+  if (header.real_bytes != 4 && header.real_bytes != 8) return refuse("real_bytes", header.real_bytes);
+  if (header.section_count > kMaxSections) return refuse("section_count", header.section_count);
+  if (header.node_count == 0) return refuse("node_count", header.node_count);
+  if (header.connection_count > kMaxConnections) return refuse("connection_count", header.connection_count);
+  for (int k = 0; k < 3; ++k) {
+    const double limit = largest_extent(header);
+    if (!in_range(header.bounds_min[k], -limit, limit) || !in_range(header.bounds_max[k], header.bounds_min[k], limit) ||
+        !in_range(header.origin[k], -1e100, 1e100)) {
+      return Message(error, FDCG_E_LAYOUT).text("header: bounds or origin are not finite or too large");
+    }
+  }
+  if (!in_range(header.metres_per_unit, 1e-30, 1e30) || !in_range(header.extent, 0, largest_extent(header)) ||
+      !in_range(header.max_deviation, 0, largest_extent(header)) || !in_range(header.quantum, 0, largest_extent(header))) {
+    return Message(error, FDCG_E_LAYOUT).text("header: metres_per_unit, extent, max_deviation or quantum is out of range");
+  }
+  return FDCG_OK;
+}
+
+struct SectionRule {
+  uint32_t id;
+  uint32_t record_f64, record_f32;
+  bool is_required;
+};
+constexpr SectionRule kSectionRules[] = {
+    {FDCG_SECTION_NODES, sizeof(fdcg_node_f64), sizeof(fdcg_node_f32), true},
+    {FDCG_SECTION_SIDES, 4, 4, true},
+    {FDCG_SECTION_VORONOI, sizeof(fdcg_plane_f64), sizeof(fdcg_plane_f32), false},
+    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection_f64), sizeof(fdcg_connection_f32), true},
+    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), true},
+    {FDCG_SECTION_FANS, 4, 4, true},
+    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box), sizeof(fdcg_box), false},
+    {FDCG_SECTION_SOURCE_MAP, 4, 4, false},
+    {FDCG_SECTION_INFO, 1, 1, false},
+    {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), false},
+};
+
+uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found) {
+  switch (id) {
+    case FDCG_SECTION_NODES:
+      return header.node_count;
+    case FDCG_SECTION_SIDES:
+    case FDCG_SECTION_VORONOI:
+      return header.side_count;
+    case FDCG_SECTION_CONNECTIONS:
+      return header.connection_count;
+    case FDCG_SECTION_CORNERS:
+      return header.corner_count;
+    case FDCG_SECTION_FANS:
+      return header.fan_count;
+    case FDCG_SECTION_HIERARCHY:
+      return ImplicitTree(header.node_count, FDCG_LEAF_NODES).boxes;
+    case FDCG_SECTION_SOURCE_MAP:
+      return header.source_face_count;
+    case FDCG_SECTION_FAN_BOXES:
+      return header.fan_box_count;
+    default:
+      return found;
+  }
+}
+
+// The sections follow one another without gaps, each padded to 64 bytes, up to the end of the file.
+fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& header, fdcg_error* error) {
+  uint64_t at = padded(sizeof(fdcg_header) + table_bytes(header));
+  for (uint32_t i = 0; i < header.section_count; ++i) {
+    const fdcg_section& section = sections[i];
+    const auto refuse = [&](const char* what) -> fdcg_status {
+      return Message(error, FDCG_E_LAYOUT, sizeof(fdcg_header) + i * sizeof(fdcg_section))
+          .text("section ")
+          .number(section.id)
+          .text(": ")
+          .text(what);
+    };
+    if (i > 0 && section.id <= sections[i - 1].id) return refuse("ids do not ascend");
+    if (section.offset != at) return refuse("does not start where the one before it ends");
+    if (section.reserved != 0) return refuse("reserved field is not zero");
+    if (section.record_bytes == 0 || section.record_count > (header.file_bytes - at) / section.record_bytes) {
+      return refuse("reaches beyond the end of the file");
+    }
+    at += padded(section.record_bytes * section.record_count);
+    if (at > header.file_bytes) return refuse("reaches beyond the end of the file");
+    for (const SectionRule& rule : kSectionRules) {
+      if (rule.id != section.id) continue;
+      if (section.record_bytes != (header.real_bytes == 8 ? rule.record_f64 : rule.record_f32))
+        return refuse("has records of a wrong size");
+      if (section.record_count != expected_records(section.id, header, section.record_count))
+        return refuse("has a wrong number of records");
+    }
+  }
+  if (at != header.file_bytes) {
+    return Message(error, FDCG_E_LAYOUT, at)
+        .text("the last section ends at ")
+        .number(at)
+        .text(", the file at ")
+        .number(header.file_bytes);
+  }
+  return FDCG_OK;
+}
+
+fdcg_status check_table(const void* data, const fdcg_header& header, fdcg_error* error) {
+  const uint64_t end = padded(sizeof(fdcg_header) + table_bytes(header));
+  if (end > header.file_bytes)
+    return Message(error, FDCG_E_LAYOUT).text("the section table reaches beyond the end of the file");
+  const auto* table = static_cast<const unsigned char*>(data) + sizeof(fdcg_header);
+  if (header.table_checksum != fdcg_checksum(table, end - sizeof(fdcg_header))) {
+    return Message(error, FDCG_E_CHECKSUM, sizeof(fdcg_header))
+        .text("the section table's checksum does not match; the file is damaged, compile the mesh again");
+  }
+  return check_sections(reinterpret_cast<const fdcg_section*>(table), header, error);
+}
+
+const void* find_section(const void* data, const fdcg_header& header, uint32_t id, uint64_t* records = nullptr) {
+  const auto* bytes = static_cast<const unsigned char*>(data);
+  const auto* sections = reinterpret_cast<const fdcg_section*>(bytes + sizeof(fdcg_header));
+  for (uint32_t i = 0; i < header.section_count; ++i) {
+    if (sections[i].id != id) continue;
+    if (records != nullptr) *records = sections[i].record_count;
+    return bytes + sections[i].offset;
+  }
+  return nullptr;
+}
+
+fdcg_graph view(const void* data, const fdcg_header& header) {
+  fdcg_graph graph = {};
+  const auto section = [&](uint32_t id) { return find_section(data, header, id); };
+  graph.header = &header;
+  graph.nodes = section(FDCG_SECTION_NODES);
+  graph.sides = static_cast<const uint32_t*>(section(FDCG_SECTION_SIDES));
+  graph.voronoi_planes = section(FDCG_SECTION_VORONOI);
+  graph.connections = section(FDCG_SECTION_CONNECTIONS);
+  graph.corners = section(FDCG_SECTION_CORNERS);
+  graph.fans = static_cast<const uint32_t*>(section(FDCG_SECTION_FANS));
+  graph.fan_boxes = section(FDCG_SECTION_FAN_BOXES);
+  graph.hierarchy = static_cast<const fdcg_box*>(section(FDCG_SECTION_HIERARCHY));
+  graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
+  graph.info = static_cast<const char*>(find_section(data, header, FDCG_SECTION_INFO, &graph.info_bytes));
+  return graph;
+}
+
+fdcg_status check_presence(const void* data, const fdcg_header& header, fdcg_error* error) {
+  for (const SectionRule& rule : kSectionRules) {
+    if (rule.is_required && find_section(data, header, rule.id) == nullptr) {
+      return Message(error, FDCG_E_LAYOUT).text("section ").number(rule.id).text(" is missing, and a graph needs it");
+    }
+  }
+  if (header.node_count > kMaxNodesWithoutHierarchy && find_section(data, header, FDCG_SECTION_HIERARCHY) == nullptr) {
+    return Message(error, FDCG_E_LAYOUT)
+        .text("no hierarchy: only graphs of up to ")
+        .number(kMaxNodesWithoutHierarchy)
+        .text(" nodes may leave it out, this one has ")
+        .number(header.node_count)
+        .text("; compile the mesh without --without hierarchy");
+  }
+  return FDCG_OK;
+}
+
+fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
+  if (data == nullptr) return Message(error, FDCG_E_ARGUMENT).text("data: null pointer");
+  if (reinterpret_cast<uintptr_t>(data) % alignof(fdcg_header) != 0) {
+    return Message(error, FDCG_E_ALIGNMENT)
+        .text("the memory must start at a multiple of 8 bytes; align the buffer (64 is best)");
+  }
+  fdcg_status status = check_header(data, bytes, error);
+  if (status != FDCG_OK) return status;
+  const auto& header = *static_cast<const fdcg_header*>(data);
+  status = check_header_values(header, error);
+  if (status == FDCG_OK) status = check_table(data, header, error);
+  if (status == FDCG_OK) status = check_presence(data, header, error);
+  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_checksums(data, header, error);
+  if (status != FDCG_OK) return status;
+  const fdcg_graph candidate = view(data, header);
+  if (verify == FDCG_VERIFY_FULL) status = verify_graph(candidate, error);
+  if (status == FDCG_OK) *graph = candidate;
+  return status;
+}
+
+}  // namespace
+}  // namespace fdcg
+
+extern "C" fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph,
+                                        fdcg_error* error) {
+  if (graph == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("graph: null pointer");
+  *graph = {};
+  return fdcg::open_checked(data, bytes, verify, graph, error);
+}
+
+extern "C" fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
+  if (graph == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("graph: null pointer");
+  *graph = {};
+  if (path == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("path: null pointer");
+  fdcg::MappedFile file;
+  fdcg_error why = {};
+  fdcg_status status = fdcg::map_file(path, &file, &why);
+  if (status == FDCG_OK) {
+    status = fdcg::open_checked(file.data, file.bytes, verify, graph, &why);
+    if (status != FDCG_OK) fdcg::unmap_file(file);
+  }
+  if (status != FDCG_OK) {
+    constexpr int kPathShown = 100;
+    return fdcg::Message(error, status, why.offset).quoted(path, kPathShown).text(": ").text(why.message);
+  }
+  graph->mapping = file.data;
+  graph->mapping_bytes = file.bytes;
+  return FDCG_OK;
+}
+
+extern "C" void fdcg_close(fdcg_graph* graph) {
+  if (graph == nullptr) return;
+  if (graph->mapping != nullptr) fdcg::unmap_file({graph->mapping, graph->mapping_bytes});
+  *graph = {};
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "map_file.hpp"
+#include "message.hpp"
+
+namespace fdcg {
+namespace {
+
+fdcg_status refuse(fdcg_error* error, const char* why) {
+  return Message(error, FDCG_E_IO).text(why);
+}
+
+fdcg_status map_descriptor(int descriptor, MappedFile* file, fdcg_error* error) {
+  struct stat status = {};
+  if (fstat(descriptor, &status) != 0) return refuse(error, strerror(errno));
+  if (S_ISDIR(status.st_mode)) return refuse(error, "is a directory; give an .fdcg file");
+  if (!S_ISREG(status.st_mode)) return refuse(error, "is not a regular file and cannot be mapped");
+  if (status.st_size == 0) return refuse(error, "is empty; compile the mesh again");
+  const auto bytes = static_cast<uint64_t>(status.st_size);
+  void* data = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, descriptor, 0);
+  if (data == MAP_FAILED) return refuse(error, strerror(errno));
+  *file = {data, bytes};
+  return FDCG_OK;
+}
+
+}  // namespace
+
+fdcg_status map_file(const char* path, MappedFile* file, fdcg_error* error) {
+  const int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return refuse(error, strerror(errno));
+  const fdcg_status status = map_descriptor(descriptor, file, error);
+  close(descriptor);
+  return status;
+}
+
+void unmap_file(const MappedFile& file) {
+  munmap(file.data, file.bytes);
+}
+
+}  // namespace fdcg

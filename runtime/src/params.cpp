@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fdcg/fdcg.h"
+#include "message.hpp"
+
+extern "C" fdcg_params fdcg_default_params(void) {
+  fdcg_params params = {};
+  params.struct_bytes = sizeof(fdcg_params);
+  params.edge_friction = FDCG_EDGE_WEDGE;
+  params.mu_static = 0.6;
+  params.mu_dynamic = 0.4;
+  params.stiffness_n_per_m = 1000;
+  params.damping_n_s_per_m = 0;
+  params.tick_s = 0.001;
+  return params;
+}
+
+extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error) {
+  using fdcg::Message;
+  constexpr double kLargest = 1e9;  // far beyond any device; keeps products finite
+  if (params == nullptr) return Message(error, FDCG_E_ARGUMENT).text("params: null pointer");
+  if (params->struct_bytes != sizeof(fdcg_params)) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.struct_bytes is ")
+        .number(params->struct_bytes)
+        .text(", this library's is ")
+        .number(sizeof(fdcg_params))
+        .text("; start from fdcg_default_params()");
+  }
+  struct Range {
+    const char* name;
+    double value, low, high;
+  };
+  const Range ranges[] = {{"mu_dynamic", params->mu_dynamic, 0, kLargest},
+                          {"mu_static", params->mu_static, params->mu_dynamic, kLargest},
+                          {"stiffness_n_per_m", params->stiffness_n_per_m, 0, kLargest},
+                          {"damping_n_s_per_m", params->damping_n_s_per_m, 0, kLargest},
+                          {"tick_s", params->tick_s, 1e-9, kLargest}};
+  for (const Range& range : ranges) {
+    if (range.value >= range.low && range.value <= range.high) continue;
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.")
+        .text(range.name)
+        .text(" is ")
+        .real(range.value)
+        .text(", allowed ")
+        .real(range.low)
+        .text(" to ")
+        .real(range.high)
+        .text(range.low == params->mu_dynamic && range.low > 0 ? " (at least mu_dynamic)" : "");
+  }
+  if (params->edge_friction > FDCG_EDGE_PAPER) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.edge_friction is ")
+        .number(params->edge_friction)
+        .text(", allowed 0 (wedge) and 1 (paper)");
+  }
+  return FDCG_OK;
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Three numbers of the graph's real type, and what the step does with them. Order of operations is part of the contract: the
+// same bits everywhere.
+#pragma once
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+
+namespace fdcg {
+
+template <class Real>
+struct Vec3 {
+  Real x, y, z;
+};
+
+template <class Real>
+inline Vec3<Real> vec(const Real (&a)[3]) {
+  return {a[0], a[1], a[2]};
+}
+template <class Real>
+inline Vec3<Real> operator+(Vec3<Real> a, Vec3<Real> b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Real>
+inline Vec3<Real> operator-(Vec3<Real> a, Vec3<Real> b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Real>
+inline Vec3<Real> operator*(Vec3<Real> a, Real s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+template <class Real>
+inline Real dot(Vec3<Real> a, Vec3<Real> b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class Real>
+inline Vec3<Real> cross(Vec3<Real> a, Vec3<Real> b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+inline double absolute(double a) {
+  return fabs(a);
+}
+inline float absolute(float a) {
+  return fabsf(a);
+}
+inline double root(double a) {
+  return sqrt(a);
+}
+inline float root(float a) {
+  return sqrtf(a);
+}
+
+template <class Real>
+inline Real norm(Vec3<Real> a) {
+  return root(dot(a, a));
+}
+// |x| + |y| + |z|: an upper bound of the length that costs no root.
+template <class Real>
+inline Real norm1(Vec3<Real> a) {
+  return absolute(a.x) + absolute(a.y) + absolute(a.z);
+}
+template <class Real>
+inline bool is_finite(Vec3<Real> a) {
+  const Real zero = (a.x - a.x) + (a.y - a.y) + (a.z - a.z);  // NaN for NaN and for infinities
+  return zero == Real(0);
+}
+
+// The spacing of the numbers at 1, and the smallest normal one.
+template <class Real>
+struct RealLimits;
+template <>
+struct RealLimits<double> {
+  static constexpr double kEpsilon = DBL_EPSILON, kTiny = DBL_MIN;
+};
+template <>
+struct RealLimits<float> {
+  static constexpr float kEpsilon = FLT_EPSILON, kTiny = FLT_MIN;
+};
+
+}  // namespace fdcg

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
+// of contact-model sections 5, 6 and 7, sweep.hpp that of section 4; servo_step.cpp drives them.
+#pragma once
+
+#include "graph_view.hpp"
+
+namespace fdcg {
+
+// Where the god-object is: free, or on a node, a connection or a corner.
+struct Feature {
+  uint32_t state = FDCG_FREE;  // fdcg_state
+  uint32_t index = FDCG_NONE;
+
+  friend bool operator==(Feature a, Feature b) { return a.state == b.state && a.index == b.index; }
+};
+inline constexpr Feature kFree = {};
+
+template <class Real>
+struct Friction {
+  Real mu_static, mu_dynamic;
+  bool wedge;
+};
+
+template <class Real>
+struct Walk {
+  const GraphView<Real>& graph;
+  Friction<Real> friction;
+  Vec3<Real> hip;
+  Real hip_bound;  // plane_rounding_bound of hip
+  Vec3<Real> god_object;
+  Feature active;
+  Feature seat;  // the edge or vertex on which the god-object was last placed and still is; kFree: none
+  bool is_slipping;
+
+  [[nodiscard]] Real side(const typename Records<Real>::Node& node) const { return side_of(graph, node, hip, hip_bound); }
+
+  // A move on a face's inside or along an edge.
+  void place(Vec3<Real> point, Feature new_seat) {
+    god_object = point;
+    seat = new_seat;
+  }
+};
+
+// What a rule decides: stay (rest), or go on at another feature.
+struct Decision {
+  bool is_rest;
+  Feature next;
+};
+inline Decision rest() {
+  return {true, kFree};
+}
+inline Decision go_to(Feature next) {
+  return {false, next};
+}
+
+// Friction on a face or an edge: `gap` is the distance of the god-object from the surface point, `load` the depth that presses
+// it on. Returns the gap that friction allows: the same one where the god-object rests. Slipping starts beyond mu_static and
+// ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on the dynamic circle and rounding
+// must not toss a coin every tick (contact-model section 5; Melder 2004, figure 4).
+template <class Real>
+inline Real friction_gap(Walk<Real>& walk, Real gap, Real load) {
+  constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
+  const Real dynamic_gap = walk.friction.mu_dynamic * load;
+  if (walk.is_slipping) {
+    if (gap <= kStickAgain * dynamic_gap) walk.is_slipping = false;
+  } else if (gap > walk.friction.mu_static * load) {
+    walk.is_slipping = true;
+  }
+  if (!walk.is_slipping || gap <= dynamic_gap) return gap;
+  return dynamic_gap;
+}
+
+// A connection's line: v0 + u edge, 0 <= u <= length.
+template <class Real>
+struct EdgeLine {
+  Vec3<Real> start, direction;
+  Real length;
+  Real end_tolerance;  // within it of an end, the vertex is meant (contact-model section 5)
+
+  EdgeLine(const GraphView<Real>& graph, const typename Records<Real>::Connection& connection)
+      : start(graph.corner_point(connection.corner[0])),
+        direction(vec(connection.edge)),
+        length(-(connection.end_offset[0] + connection.end_offset[1])),
+        end_tolerance(8 * RealLimits<Real>::kEpsilon * (norm1(start) + length)) {}
+
+  [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - start, direction); }
+};
+
+// Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
+template <class Real>
+inline Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
+  const auto& connection = walk.graph.connections[connection_index];
+  for (uint32_t end = 0; end < 2; ++end) {
+    const Real from_end = end == 0 ? u : line.length - u;
+    if (!(from_end <= line.end_tolerance)) continue;
+    const Feature vertex = {FDCG_VERTEX, connection.corner[end]};
+    walk.place(walk.graph.corner_point(vertex.index), vertex);
+    return vertex;
+  }
+  const Feature edge = {FDCG_EDGE, connection_index};
+  walk.place(line.start + line.direction * u, edge);
+  return edge;
+}
+
+}  // namespace fdcg

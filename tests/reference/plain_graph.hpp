@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// A graph made the plain way, one node a polygon, nothing merged, split or reordered: a second maker beside the compiler, so
+// that the runtime can be tested without it. Its faces must be convex, planar (to rounding) and consistently wound; every edge
+// has at most two faces, every vertex one fan.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fdcg/bake.hpp"
+#include "fdcg/fdcg.h"
+
+namespace fdcg::test {
+
+class PlainGraph {
+ public:
+  PlainGraph(const bake::PolygonSoup& soup, bake::Precision precision, bool with_hierarchy = true);
+  PlainGraph(const PlainGraph&) = delete;
+  PlainGraph& operator=(const PlainGraph&) = delete;
+
+  [[nodiscard]] const fdcg_graph& view() const { return view_; }
+
+ private:
+  template <class Traits>
+  void build(const bake::PolygonSoup& soup);
+  void build_hierarchy();
+
+  fdcg_header header_{};
+  std::vector<std::uint64_t> nodes_, connections_, corners_, voronoi_;  // raw storage, aligned for every record
+  std::vector<std::uint32_t> sides_, fans_;
+  std::vector<fdcg_box> boxes_;       // root first
+  std::vector<fdcg_box> node_boxes_;  // of single nodes
+  fdcg_graph view_{};
+};
+
+}  // namespace fdcg::test

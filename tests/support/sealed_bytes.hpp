@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// FDCG bytes in memory as aligned as a mapped file, and a way to make damaged ones pass their checksums, so that a test
+// reaches the checks behind them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "fdcg/fdcg.h"
+
+namespace fdcg::test {
+
+class AlignedBytes {
+ public:
+  explicit AlignedBytes(std::span<const std::byte> bytes) : words_(bytes.size() / 8 + 1), bytes_(bytes.size()) {
+    if (!bytes.empty()) std::memcpy(words_.data(), bytes.data(), bytes.size());
+  }
+  [[nodiscard]] unsigned char* data() { return reinterpret_cast<unsigned char*>(words_.data()); }
+  [[nodiscard]] std::uint64_t size() const { return bytes_; }
+  [[nodiscard]] fdcg_header& header() { return *reinterpret_cast<fdcg_header*>(words_.data()); }
+
+ private:
+  std::vector<std::uint64_t> words_;
+  std::size_t bytes_;
+};
+
+// Recomputes every checksum that the header and the section table still lead to.
+inline void seal(AlignedBytes& file) {
+  if (file.size() < sizeof(fdcg_header)) return;
+  fdcg_header& header = file.header();
+  const std::uint64_t table_end = (sizeof(fdcg_header) + header.section_count * sizeof(fdcg_section) + 63) / 64 * 64;
+  if (header.section_count <= 64 && table_end <= file.size()) {
+    auto* sections = reinterpret_cast<fdcg_section*>(file.data() + sizeof(fdcg_header));
+    for (std::uint32_t i = 0; i < header.section_count; ++i) {
+      const std::uint64_t end = i + 1 < header.section_count ? sections[i + 1].offset : file.size();
+      if (sections[i].offset > end || end > file.size()) continue;
+      sections[i].checksum = fdcg_checksum(file.data() + sections[i].offset, end - sections[i].offset);
+    }
+    header.table_checksum = fdcg_checksum(file.data() + sizeof(fdcg_header), table_end - sizeof(fdcg_header));
+  }
+  header.header_checksum = fdcg_checksum(&header, offsetof(fdcg_header, header_checksum));
+}
+
+// Steps a contact back and forth through the whole object and beyond: whatever the file says, nothing undefined may happen.
+inline void touch_everywhere(const fdcg_graph& graph, std::uint32_t steps) {
+  const fdcg_header& header = *graph.header;
+  fdcg_params params = fdcg_default_params();
+  fdcg_contact contact = {};
+  fdcg_result result;
+  std::uint64_t random = 88172645463325252u;
+  for (std::uint32_t i = 0; i < steps; ++i) {
+    double hip[3];
+    for (int k = 0; k < 3; ++k) {
+      random ^= random << 13, random ^= random >> 7, random ^= random << 17;
+      const double share = static_cast<double>(random >> 11) * 0x1p-53 * 1.5 - 0.25;
+      const double local = header.bounds_min[k] + share * (header.bounds_max[k] - header.bounds_min[k]);
+      hip[k] = (local + header.origin[k]) * header.metres_per_unit;
+    }
+    params.mu_static = params.mu_dynamic = i % 3 == 0 ? 0 : 0.4;
+    params.edge_friction = i % 2;
+    fdcg_step(&graph, &params, &contact, hip, &result);
+  }
+}
+
+}  // namespace fdcg::test

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "fdcg/bake.hpp"
+#include "fdcg/fdcg.hpp"
+#include "meshes.hpp"
+#include "sealed_bytes.hpp"
+
+using namespace fdcg::test;
+namespace bake = fdcg::bake;
+
+namespace {
+
+AlignedBytes compiled(const bake::PolygonSoup& soup, const bake::CompileOptions& options = {}) {
+  auto result = bake::compile(soup, options);
+  REQUIRE(result);
+  REQUIRE(result->report.passes());
+  return AlignedBytes(result->bytes);
+}
+
+bake::CompileOptions small_f32() {
+  bake::CompileOptions options;
+  options.precision = bake::Precision::f32;
+  options.without = {"info"};
+  return options;
+}
+
+fdcg_status open(AlignedBytes& file, std::uint64_t bytes, fdcg_error& error, fdcg_verify verify = FDCG_VERIFY_FULL) {
+  fdcg_graph graph;
+  error = {};
+  const fdcg_status status = fdcg_open_memory(file.data(), bytes, verify, &graph, &error);
+  if (status != FDCG_OK) REQUIRE(graph.header == nullptr);
+  return status;
+}
+
+}  // namespace
+
+TEST_CASE("opening a compiled file gives its graph, in both precisions and both trusts") {
+  for (const auto precision : {bake::Precision::f64, bake::Precision::f32}) {
+    bake::CompileOptions options;
+    options.precision = precision;
+    AlignedBytes file = compiled(cube(), options);
+    for (const auto verify : {FDCG_VERIFY_FULL, FDCG_VERIFY_TRUSTED}) {
+      fdcg_graph graph;
+      fdcg_error error = {};
+      REQUIRE(fdcg_open_memory(file.data(), file.size(), verify, &graph, &error) == FDCG_OK);
+      CHECK(graph.header->node_count == 6);
+      CHECK(graph.header->connection_count == 12);
+      CHECK(graph.header->corner_count == 8);
+      CHECK(graph.info_bytes > 0);
+      CHECK(graph.mapping == nullptr);
+      fdcg_close(&graph);
+      CHECK(graph.header == nullptr);
+    }
+  }
+}
+
+TEST_CASE("every truncation of a file is refused with a message") {
+  AlignedBytes file = compiled(cube(), small_f32());
+  for (std::uint64_t bytes = 0; bytes < file.size(); ++bytes) {
+    for (const auto verify : {FDCG_VERIFY_FULL, FDCG_VERIFY_TRUSTED}) {
+      fdcg_error error;
+      const fdcg_status status = open(file, bytes, error, verify);
+      REQUIRE(status == FDCG_E_TRUNCATED);
+      REQUIRE(error.status == status);
+      REQUIRE(std::string(error.message).size() > 20);
+    }
+  }
+}
+
+TEST_CASE("every change of a single byte is refused with a message") {
+  AlignedBytes file = compiled(cube(), small_f32());
+  INFO("file of " << file.size() << " bytes");
+  for (std::uint64_t at = 0; at < file.size(); ++at) {
+    const unsigned char before = file.data()[at];
+    for (unsigned change = 1; change < 256; ++change) {
+      file.data()[at] = static_cast<unsigned char>(before ^ change);
+      fdcg_error error;
+      if (open(file, file.size(), error) == FDCG_OK || error.message[0] == '\0') FAIL("byte " << at << " xor " << change);
+    }
+    file.data()[at] = before;
+  }
+  fdcg_error error;
+  REQUIRE(open(file, file.size(), error) == FDCG_OK);
+}
+
+TEST_CASE("bytes after the end are refused") {
+  AlignedBytes file = compiled(cube(), small_f32());
+  AlignedBytes longer(std::vector<std::byte>(file.size() + 64));
+  std::memcpy(longer.data(), file.data(), file.size());
+  fdcg_error error;
+  REQUIRE(open(longer, longer.size(), error) == FDCG_E_TRUNCATED);
+}
+
+TEST_CASE("a changed word under valid checksums is refused or harmless to step on") {
+  for (const auto precision : {bake::Precision::f64, bake::Precision::f32}) {
+    bake::CompileOptions options;
+    options.precision = precision;
+    options.without = {"info"};
+    AlignedBytes file = compiled(l_prism(), options);
+    std::uint64_t refused = 0, opened = 0;
+    for (std::uint64_t at = 0; at + 4 <= file.size(); at += 4) {
+      std::uint32_t before;
+      std::memcpy(&before, file.data() + at, 4);
+      for (const std::uint32_t value :
+           {0u, 1u, before + 1, before - 1, before ^ 0x80000000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7FFFFFFFu}) {
+        std::memcpy(file.data() + at, &value, 4);
+        seal(file);
+        fdcg_graph graph;
+        fdcg_error error = {};
+        if (fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_OK) {
+          ++opened;
+          touch_everywhere(graph, 40);
+        } else {
+          ++refused;
+          REQUIRE(error.message[0] != '\0');
+        }
+      }
+      std::memcpy(file.data() + at, &before, 4);
+      seal(file);
+    }
+    INFO("refused " << refused << ", opened " << opened);
+    CHECK(refused > opened);
+  }
+}
+
+TEST_CASE("optional sections may be absent, and the step feels the same") {
+  bake::CompileOptions bare;
+  bare.without = {"hierarchy", "source-map", "info"};
+  bare.store_voronoi_planes = false;
+  AlignedBytes whole = compiled(star_sphere(2, 0.3, 5)), lean = compiled(star_sphere(2, 0.3, 5), bare);
+  REQUIRE(lean.size() < whole.size() * 3 / 4);
+  fdcg_graph a, b;
+  REQUIRE(fdcg_open_memory(whole.data(), whole.size(), FDCG_VERIFY_FULL, &a, nullptr) == FDCG_OK);
+  REQUIRE(fdcg_open_memory(lean.data(), lean.size(), FDCG_VERIFY_FULL, &b, nullptr) == FDCG_OK);
+  CHECK(b.hierarchy == nullptr);
+  CHECK(b.voronoi_planes == nullptr);
+  const fdcg_params params = fdcg_default_params();
+  fdcg_contact contact_a = {}, contact_b = {};
+  std::uint32_t touching = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double angle = 1e-3 * i, radius = 1.05 + 0.35 * std::cos(7e-3 * i);
+    const double hip[3] = {radius * std::cos(angle), radius * std::sin(angle) * 0.8, radius * std::sin(angle) * 0.6};
+    fdcg_result ra, rb;
+    fdcg_step(&a, &params, &contact_a, hip, &ra);
+    fdcg_step(&b, &params, &contact_b, hip, &rb);
+    touching += ra.state != FDCG_FREE;
+    REQUIRE(std::memcmp(&ra, &rb, sizeof ra) == 0);
+  }
+  CHECK(touching > 5000);
+}
+
+TEST_CASE("misused calls are refused by name") {
+  AlignedBytes file = compiled(cube(), small_f32());
+  fdcg_graph graph;
+  fdcg_error error = {};
+  CHECK(fdcg_open_memory(nullptr, 100, FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_ARGUMENT);
+  CHECK(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, nullptr, &error) == FDCG_E_ARGUMENT);
+  CHECK(fdcg_open_memory(file.data() + 4, file.size() - 4, FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_ALIGNMENT);
+  CHECK(fdcg_open_file(nullptr, FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_ARGUMENT);
+  CHECK(fdcg_open_file("no such file", FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_IO);
+  CHECK(std::string(error.message).find("no such file") != std::string::npos);
+  CHECK(fdcg_open_file(".", FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_IO);
+  CHECK(std::string(error.message).find("directory") != std::string::npos);
+  CHECK(fdcg_open_file("/dev/null", FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_E_IO);
+  fdcg_close(&graph);
+  fdcg_close(nullptr);
+}
+
+TEST_CASE("a file is mapped, and a foreign one refused") {
+  const AlignedBytes file = compiled(cube(), small_f32());
+  const std::string path = std::tmpnam(nullptr);  // NOLINT: the race is harmless in a test
+  const auto write = [&](const char* bytes, std::uint64_t count) {
+    std::ofstream(path, std::ios::binary).write(bytes, static_cast<std::streamsize>(count));
+  };
+  AlignedBytes copy = file;
+  write(reinterpret_cast<const char*>(copy.data()), copy.size());
+  {
+    fdcg::Graph graph;
+    fdcg_error error = {};
+    REQUIRE(graph.open_file(path.c_str(), &error));
+    CHECK(graph.header().node_count == 6);
+    fdcg::Graph moved = std::move(graph);
+    CHECK(moved.header().node_count == 6);
+  }
+  const std::string text(400, 'x');
+  write(text.data(), text.size());
+  fdcg_graph graph;
+  fdcg_error error = {};
+  CHECK(fdcg_open_file(path.c_str(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_MAGIC);
+  CHECK(std::string(error.message).find(path) != std::string::npos);
+  write("", 0);
+  CHECK(fdcg_open_file(path.c_str(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_IO);
+  std::remove(path.c_str());
+}
+
+TEST_CASE("a later version of the format is refused by its number") {
+  AlignedBytes file = compiled(cube(), small_f32());
+  file.header().format_version = 2;
+  seal(file);
+  fdcg_error error;
+  REQUIRE(open(file, file.size(), error) == FDCG_E_VERSION);
+  CHECK(std::string(error.message).find("version 2") != std::string::npos);
+}
+
+TEST_CASE("parameters out of range are refused with field, value and limit") {
+  fdcg_params params = fdcg_default_params();
+  fdcg_error error = {};
+  REQUIRE(fdcg_check_params(&params, &error) == FDCG_OK);
+  params.mu_static = 0.3;
+  REQUIRE(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
+  CHECK(std::string(error.message) == "params.mu_static is 0.3, allowed 0.4 to 1e9 (at least mu_dynamic)");
+  params.mu_static = std::numeric_limits<double>::quiet_NaN();
+  CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
+  params = fdcg_default_params();
+  params.stiffness_n_per_m = -1;
+  CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
+  params = fdcg_default_params();
+  params.struct_bytes = 8;
+  CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
+  params = fdcg_default_params();
+  params.edge_friction = 7;
+  CHECK(fdcg_check_params(&params, nullptr) == FDCG_E_ARGUMENT);
+  CHECK(fdcg_check_params(nullptr, &error) == FDCG_E_ARGUMENT);
+}

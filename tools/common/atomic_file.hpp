@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Output that appears whole or not at all: written beside its target and renamed onto it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace fdcg::tools {
+
+// An output named by the user. "-" is standard output; a device or a pipe is written straight; a symbolic link stays a link and
+// its target is replaced. Until commit() nothing is seen under the name, and what was there before stays as it was: the file
+// beside it is removed by the destructor, by a failure, and when SIGINT, SIGTERM or SIGHUP ends the program.
+// Errors stick: after the first one write() does nothing and commit() returns false.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::string path);  // opens now, so that an unwritable target is known before the work is done
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  [[nodiscard]] bool ok() const { return error_.empty(); }
+  [[nodiscard]] const std::string& error() const { return error_; }  // one line: the path, what went wrong
+  void write(std::string_view bytes);
+  bool commit();  // true: every byte has reached the file system under its name
+
+ private:
+  int open_target();  // 0, or an errno
+  int open_beside();
+  void fail(int error_number);
+  void discard();
+
+  std::string path_;    // as the user gave it
+  std::string target_;  // what is renamed onto; empty where the output is written straight
+  std::string beside_;
+  std::string error_;
+  int descriptor_ = -1;
+  int cleanup_slot_ = -1;
+};
+
+// Both name one existing file, however they are spelt.
+bool is_same_file(const std::string& a, const std::string& b);
+
+}  // namespace fdcg::tools

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// fdcg-servo replay: the step over a recorded HIP, as fast as it goes.
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "../common/atomic_file.hpp"
+#include "../common/terminal.hpp"
+#include "command.hpp"
+#include "fdcg/fdcg.h"
+#include "step_time_histogram.hpp"
+#include "trajectory_csv.hpp"
+
+namespace fdcg::servo {
+namespace {
+
+using tools::AtomicFile;
+using tools::grouped;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kChunkTicks =
+    4096;  // stepped in one go, then logged: so that writing the log does not chill the step's caches
+constexpr int kClockSamples = 20001;
+constexpr int kBarWidth = 50;
+constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
+constexpr const char* kLogHeader = "t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions\n";
+
+struct ReplayArguments {
+  std::string graph;
+  std::string trajectory;
+  std::string log;
+  fdcg_params params = fdcg_default_params();
+  bool quiet = false;
+};
+
+struct Tick {
+  fdcg_result result{};
+  std::uint64_t step_ns = 0;
+};
+
+struct Summary {
+  StepTimeHistogram step_ns, contact_ns, transitions;
+  std::uint64_t ticks = 0, slipping = 0;
+  std::uint64_t in_state[4] = {};
+  double largest_force_n = 0;
+  double largest_ratio = 0;  // |Ft| / |Fn| on faces
+
+  void add(const Tick& tick) {
+    ++ticks;
+    ++in_state[std::min<std::uint32_t>(tick.result.state, FDCG_VERTEX)];
+    slipping += tick.result.slipping;
+    step_ns.add(tick.step_ns);
+    if (tick.result.state != FDCG_FREE) contact_ns.add(tick.step_ns);
+    transitions.add(tick.result.transitions);
+  }
+};
+
+std::uint64_t nanoseconds(Clock::duration time) {
+  return static_cast<std::uint64_t>(
+      std::max<std::int64_t>(0, std::chrono::duration_cast<std::chrono::nanoseconds>(time).count()));
+}
+
+// Between two readings with nothing between them: what each measured step contains of the clock itself.
+std::uint64_t clock_cost_ns() {
+  StepTimeHistogram cost;
+  for (int i = 0; i < kClockSamples; ++i) {
+    const Clock::time_point before = Clock::now();
+    cost.add(nanoseconds(Clock::now() - before));
+  }
+  return cost.quantile(0.5);
+}
+
+// The force against the plane of the active face: its normal and tangential part.
+void measure_force(const fdcg_graph& graph, const fdcg_result& result, Summary& summary) {
+  const double* const f = result.force_n;
+  const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+  summary.largest_force_n = std::max(summary.largest_force_n, std::sqrt(square));
+  if (result.state != FDCG_FACE) return;
+  double n[3], normal_part = 0, tangential_square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    n[axis] = graph.header->real_bytes == 8
+                  ? static_cast<const fdcg_node_f64*>(graph.nodes)[result.feature].plane.normal[axis]
+                  : static_cast<double>(static_cast<const fdcg_node_f32*>(graph.nodes)[result.feature].plane.normal[axis]);
+    normal_part += f[axis] * n[axis];
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double along = f[axis] - normal_part * n[axis];
+    tangential_square += along * along;
+  }
+  if (normal_part > 0) summary.largest_ratio = std::max(summary.largest_ratio, std::sqrt(tangential_square) / normal_part);
+}
+
+void append(std::string& line, double value) {
+  char digits[40];
+  line.append(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 17).ptr);
+  line += ',';
+}
+
+void append_row(std::string& text, const TrajectoryPoint& point, const fdcg_result& result) {
+  append(text, point.t_s);
+  for (const double x : point.hip_object_m)
+    append(text, x);
+  for (const double x : result.god_object_m)
+    append(text, x);
+  for (const double x : result.force_n)
+    append(text, x);
+  text += kStates[std::min<std::uint32_t>(result.state, FDCG_VERTEX)];
+  text += ',' + (result.feature == FDCG_NONE ? std::string("-1") : std::to_string(result.feature));
+  text += ',' + std::to_string(result.slipping) + ',' + std::to_string(result.transitions) + '\n';
+}
+
+// Steps every point, logs every tick. The clock is read around the step alone.
+Summary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
+               fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile* log) {
+  Summary summary;
+  std::vector<Tick> ticks(std::min(kChunkTicks, points.size()));
+  std::string text = kLogHeader;
+  for (std::size_t begin = 0; begin < points.size(); begin += kChunkTicks) {
+    const std::size_t count = std::min(kChunkTicks, points.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Clock::time_point before = Clock::now();
+      fdcg_step(&graph, &params, &contact, points[begin + i].hip_object_m.data(), &ticks[i].result);
+      const std::uint64_t measured = nanoseconds(Clock::now() - before);
+      ticks[i].step_ns = measured - std::min(measured, clock_ns);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      summary.add(ticks[i]);
+      measure_force(graph, ticks[i].result, summary);
+      if (log != nullptr) append_row(text, points[begin + i], ticks[i].result);
+    }
+    if (log != nullptr) log->write(text);
+    text.clear();
+  }
+  return summary;
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%",
+                whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+  return text;
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string quantiles(const StepTimeHistogram& histogram, const char* unit) {
+  const auto value = [&](double fraction) { return grouped(histogram.quantile(fraction)); };
+  return "p50 " + value(0.5) + ", p99 " + value(0.99) + ", p99.9 " + value(0.999) + ", max " + grouped(histogram.largest()) +
+         unit;
+}
+
+// One line a doubling of the time; a count that is not zero shows at least one mark.
+std::string histogram_text(const StepTimeHistogram& histogram) {
+  std::vector<std::uint64_t> counts;
+  for (std::uint64_t low = 0; low <= histogram.largest(); low = low == 0 ? 16 : 2 * low) {
+    counts.push_back(histogram.count_between(low, low == 0 ? 16 : 2 * low));
+  }
+  const std::uint64_t most = std::max<std::uint64_t>(1, *std::max_element(counts.begin(), counts.end()));
+  std::string text;
+  std::uint64_t low = 0;
+  for (const std::uint64_t count : counts) {
+    const std::uint64_t high = low == 0 ? 16 : 2 * low;
+    char line[64];
+    std::snprintf(line, sizeof line, "  %9s to %9s ns %12s  ", grouped(low).c_str(), grouped(high).c_str(),
+                  grouped(count).c_str());
+    text += line + std::string((count * kBarWidth + most - 1) / most, '#') + "\n";
+    low = high;
+  }
+  return text;
+}
+
+std::string summary_text(const Summary& summary, const fdcg_contact& contact, std::uint64_t clock_ns) {
+  const std::uint64_t touching = summary.ticks - summary.in_state[FDCG_FREE];
+  std::string text = "ticks            " + grouped(summary.ticks) + ", " + percent(touching, summary.ticks) + " in contact, " +
+                     percent(summary.slipping, touching) + " of these slipping\n";
+  text += "states          ";
+  for (int state = FDCG_FREE; state <= FDCG_VERTEX; ++state) {
+    text += std::string(state == 0 ? " " : ", ") + kStates[state] + " " + grouped(summary.in_state[state]);
+  }
+  text += "\ntransitions      p50 " + grouped(summary.transitions.quantile(0.5)) + ", p99.9 " +
+          grouped(summary.transitions.quantile(0.999)) + ", max " + grouped(summary.transitions.largest()) + " a step\n";
+  text += "step time        " + quantiles(summary.step_ns, " ns") + "\n";
+  text += "  in contact     " + quantiles(summary.contact_ns, " ns") + "\n";
+  text +=
+      "  (the clock's own " + grouped(clock_ns) + " ns, a median, subtracted from each)\n" + histogram_text(summary.step_ns);
+  text += "largest force    " + short_number(summary.largest_force_n) + " N\n";
+  text += "friction ratio   " + short_number(summary.largest_ratio) + " at most on faces (tangential over normal force)\n";
+  const auto counted = [&text](std::uint64_t ticks, const char* what) {
+    if (ticks != 0) text += grouped(ticks) + " ticks " + what + "\n";
+  };
+  counted(contact.non_finite_ticks, "with a HIP that is NaN or infinite: no force");
+  counted(contact.transition_bound_ticks, "reached the bound on transitions and went on in the next tick");
+  counted(contact.sweep_bound_ticks, "reached the bound on the sweep and went on in the next tick");
+  return text;
+}
+
+int check_arguments(const ReplayArguments& arguments) {
+  fdcg_error error{};
+  if (fdcg_check_params(&arguments.params, &error) != FDCG_OK) return fail(kUsage, error.message);
+  for (const std::string* input : {&arguments.graph, &arguments.trajectory}) {
+    if (tools::is_same_file(*input, arguments.log)) return fail(kUsage, "-o " + arguments.log + " would overwrite an input");
+  }
+  return kClean;
+}
+
+int run_replay(const ReplayArguments& arguments) {
+  if (const int code = check_arguments(arguments); code != kClean) return code;
+  std::optional<AtomicFile> log;
+  if (!arguments.log.empty()) log.emplace(arguments.log);
+  if (log && !log->ok()) return fail(kFile, log->error());
+  std::vector<TrajectoryPoint> points;
+  std::string message;
+  if (!read_trajectory(arguments.trajectory, points, message)) return fail(kFile, message);
+  fdcg_graph graph{};
+  fdcg_error error{};
+  if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
+    return fail(kFile, arguments.graph + ": " + error.message);
+  }
+  const std::uint64_t clock_ns = clock_cost_ns();
+  fdcg_contact contact{};
+  const Summary summary = replay(graph, arguments.params, points, contact, clock_ns, log ? &*log : nullptr);
+  fdcg_close(&graph);
+  if (log && !log->commit()) return fail(kFile, log->error());
+  if (!arguments.quiet) std::fputs(summary_text(summary, contact, clock_ns).c_str(), arguments.log == "-" ? stderr : stdout);
+  return kClean;
+}
+
+}  // namespace
+
+Command add_replay(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand("replay", "Run the step over a recorded path, log every tick, time every step");
+  command->footer(R"(
+Examples:
+  fdcg-servo replay bunny.fdcg --trajectory hip.csv -o log.csv
+  fdcg-servo replay bunny.fdcg --trajectory hip.csv -o - --mu-s 0 --mu-d 0 | head
+  fdcg-servo replay bunny.fdcg --trajectory hip.csv --stiffness 2000 --edge-friction paper
+
+The trajectory's header names at least t, x, y and z: seconds, and metres in the object's frame. Replaying twice gives the
+same log, byte for byte. Without -o only the summary is printed.)");
+  const auto arguments = std::make_shared<ReplayArguments>();
+  fdcg_params& params = arguments->params;
+  command->add_option("graph", arguments->graph, "FDCG file")->required()->type_name("GRAPH");
+  command->add_option("--trajectory", arguments->trajectory, "Recorded HIP: CSV")->required()->type_name("FILE");
+  command->add_option("-o,--output", arguments->log, "Write the log to FILE (CSV); - is standard output")->type_name("FILE");
+  command->add_option("--mu-s", params.mu_static, "Static friction coefficient, at least --mu-d; default: 0.6")
+      ->type_name("MU");
+  command->add_option("--mu-d", params.mu_dynamic, "Dynamic friction coefficient; default: 0.4")->type_name("MU");
+  command->add_option("--stiffness", params.stiffness_n_per_m, "N/m; default: 1000")->type_name("K");
+  const auto parse_edge_friction = [arguments](const std::string& name) {
+    if (name != "wedge" && name != "paper")
+      throw CLI::ValidationError("--edge-friction", "'" + name + "' is none of wedge, paper");
+    arguments->params.edge_friction = name == "wedge" ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
+  };
+  command
+      ->add_option_function<std::string>("--edge-friction", parse_edge_friction,
+                                         "In a groove: by the load of both faces (wedge, the default), or by the distance from "
+                                         "the edge as the 2004 paper has it")
+      ->type_name("wedge|paper");
+  command->add_flag("-q,--quiet", arguments->quiet, "No summary");
+  return {command, [arguments] { return run_replay(*arguments); }};
+}
+
+}  // namespace fdcg::servo

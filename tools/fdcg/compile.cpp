@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// fdcg compile: a mesh in, an FDCG file out, or a report and nothing written.
+#include <cstdio>
+#include <cstring>
+#include <numbers>
+
+#include "../common/atomic_file.hpp"
+#include "../common/terminal.hpp"
+#include "command.hpp"
+#include "fdcg/bake.hpp"
+#include "fdcg/format.h"
+#include "mesh_options.hpp"
+
+namespace fdcg::tools {
+namespace {
+
+struct UnitName {
+  const char* name;
+  double metres;
+};
+constexpr UnitName kUnits[] = {{"m", 1}, {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}};
+
+struct CompileArguments {
+  std::string mesh;
+  std::string output;
+  std::string depfile;
+  std::string report;
+  std::string unit_text = "metres (the default)";
+  bake::CompileOptions options;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+// Spaces, # and $ as Make and Ninja want them in a file name.
+std::string escaped_for_make(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == ' ' || c == '#' || c == '\\') text += '\\';
+    if (c == '$') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string plural(std::uint64_t count, const std::string& singular) {
+  return grouped(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+// What came out, for a person: sizes, types, and everything that was changed on the way.
+std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
+  fdcg_header header;
+  std::memcpy(&header, compiled.bytes.data(), sizeof header);
+  const double scale = header.metres_per_unit;
+  std::string size;
+  for (int axis = 0; axis < 3; ++axis) {
+    size += (axis == 0 ? "" : " x ") + number((header.bounds_max[axis] - header.bounds_min[axis]) * scale);
+  }
+  const std::uint32_t* const types = header.connection_type_count;
+  std::string text = soup.name + ": " + plural(soup.points.size(), "point") + ", " + plural(soup.face_count(), "face") + "\n";
+  text += "units: " + arguments.unit_text + ", so the object measures " + size + " m\n";
+  const auto changed = [&text](std::uint64_t count, const std::string& what) {
+    if (count != 0) text += plural(count, "face") + " " + what + "\n";
+  };
+  changed(compiled.flipped_faces, "turned round by --orient");
+  changed(compiled.split_faces, "split: not convex or not planar");
+  changed(compiled.merged_faces, "merged with coplanar neighbours");
+  text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") +
+          " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
+          grouped(types[FDCG_COPLANAR]) + " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " +
+          plural(header.corner_count, "corner") + ", " + plural(header.file_bytes, "byte") + "\n";
+  return text;
+}
+
+std::string_view as_text(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Everything is written before anything gets its name, so that a failure leaves nothing.
+int write_outputs(const CompileArguments& arguments, const bake::Compiled& compiled, AtomicFile& out) {
+  out.write(as_text(compiled.bytes));
+  std::optional<AtomicFile> depfile, report;
+  if (!arguments.depfile.empty()) {
+    depfile.emplace(arguments.depfile);
+    depfile->write(escaped_for_make(arguments.output) + ": " + escaped_for_make(arguments.mesh) + "\n");
+    if (!depfile->ok()) return fail(kFile, depfile->error());
+  }
+  if (!arguments.report.empty()) {
+    report.emplace(arguments.report);
+    report->write(bake::report_json({compiled.report}));
+    if (!report->ok()) return fail(kFile, report->error());
+  }
+  if (report && !report->commit()) return fail(kFile, report->error());
+  if (depfile && !depfile->commit()) return fail(kFile, depfile->error());
+  if (!out.commit()) return fail(kFile, out.error());
+  return kClean;
+}
+
+// The mesh is refused: its report on standard error, and in --report.
+int refuse(const CompileArguments& arguments, const bake::Report& report) {
+  const std::string text = bake::report_text(report, wants_colour(Stream::standard_error));
+  std::fputs(text.c_str(), stderr);
+  if (arguments.report.empty()) return kFindings;
+  AtomicFile file(arguments.report);
+  file.write(bake::report_json({report}));
+  return file.commit() ? kFindings : fail(kFile, file.error());
+}
+
+int check_paths(const CompileArguments& arguments) {
+  for (const std::string* path : {&arguments.output, &arguments.depfile, &arguments.report}) {
+    if (is_same_file(arguments.mesh, *path)) return fail(kUsage, "'" + *path + "' would overwrite the mesh itself");
+  }
+  if (arguments.output == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a file name after -o, not -");
+  if (arguments.output == "-" && arguments.report == "-") return fail(kUsage, "-o and --report cannot both be standard output");
+  return kClean;
+}
+
+int run_compile(CompileArguments& arguments) {
+  if (const int code = check_paths(arguments); code != kClean) return code;
+  AtomicFile out(arguments.output);
+  if (!out.ok()) return fail(kFile, out.error());
+  ProgressBar bar(!arguments.quiet);
+  bake::ImportOptions import_options;
+  import_options.progress =
+      arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
+  const auto soup = bake::import_mesh(arguments.mesh, import_options);
+  bar.wipe();
+  if (!soup) return fail(soup.error().exit_code, soup.error().message);
+  const auto compiled = bake::compile(*soup, arguments.options);
+  bar.wipe();
+  if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
+  if (compiled->bytes.empty()) return refuse(arguments, compiled->report);
+  if (const int code = write_outputs(arguments, *compiled, out); code != kClean) return code;
+  if (arguments.quiet) return kClean;
+  const bool binary_on_stdout = arguments.output == "-" || arguments.report == "-";
+  std::FILE* const stream = binary_on_stdout ? stderr : stdout;
+  if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
+    const bool colour = wants_colour(binary_on_stdout ? Stream::standard_error : Stream::standard_output);
+    std::fputs(bake::report_text(compiled->report, colour).c_str(), stream);
+  }
+  std::fputs(summary(arguments, *soup, *compiled).c_str(), stream);
+  return kClean;
+}
+
+void add_unit_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
+  const auto parse_units = [arguments](const std::string& text) {
+    require_choice("--units", text, {"m", "mm", "cm", "in"});
+    for (const UnitName& unit : kUnits) {
+      if (text != unit.name) continue;
+      arguments->options.metres_per_unit = unit.metres;
+      arguments->unit_text = text;
+    }
+  };
+  const auto parse_scale = [arguments](const std::string& text) {
+    const auto scale = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+    if (!scale) throw CLI::ValidationError("--scale", "'" + text + "' is no number above 0 (metres for one unit of the file)");
+    arguments->options.metres_per_unit = *scale;
+    arguments->unit_text = "1 unit = " + number(*scale) + " m";
+  };
+  CLI::Option* const units =
+      command.add_option_function<std::string>("--units", parse_units, "Unit of the file's coordinates; default: metres");
+  units->type_name("m|mm|cm|in");
+  command.add_option_function<std::string>("--scale", parse_scale, "Metres for one unit of the file")
+      ->type_name("METRES")
+      ->excludes(units);
+}
+
+void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
+  const auto parse_precision = [arguments](const std::string& text) {
+    require_choice("--precision", text, {"f64", "f32"});
+    arguments->options.precision = text == "f32" ? bake::Precision::f32 : bake::Precision::f64;
+  };
+  command.add_option_function<std::string>("--precision", parse_precision, "Numbers in the file; default: f64")
+      ->type_name("f64|f32");
+  const auto parse_coplanar = [arguments](const std::string& text) {
+    if (text == "exact" || text == "quantum") {
+      arguments->options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};
+      return;
+    }
+    const auto degrees = parse_number_between(text, 0, 90);
+    if (!degrees) {
+      throw CLI::ValidationError("--coplanar",
+                                 "'" + text + "' is none of exact, quantum, or an angle between 0 and 90 degrees");
+    }
+    arguments->options.coplanar = {bake::Coplanar::Kind::angle, *degrees * std::numbers::pi / 180};
+  };
+  command
+      .add_option_function<std::string>(
+          "--coplanar", parse_coplanar,
+          "Which edges are flat: exactly; within the input's own rounding (quantum, the default); "
+          "within ANGLE degrees")
+      ->type_name("exact|quantum|ANGLE");
+  command.add_flag("--merge,!--no-merge", arguments->options.merge, "Merge coplanar faces into convex polygons; default: yes");
+  const auto parse_planes = [arguments](const std::string& text) {
+    require_choice("--planes", text, {"stored", "derived"});
+    arguments->options.store_voronoi_planes = text == "stored";
+  };
+  command
+      .add_option_function<std::string>(
+          "--planes", parse_planes, "Voronoi planes in the file (stored, the default), or computed in the step: a smaller file")
+      ->type_name("stored|derived");
+  const auto parse_without = [arguments](const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      require_choice("--without", name, {"hierarchy", "source-map", "info"});
+      arguments->options.without.insert(name);
+    }
+  };
+  command.add_option_function<std::vector<std::string>>("--without", parse_without, "Leave SECTION out; may be repeated")
+      ->type_name("hierarchy|source-map|info")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+}  // namespace
+
+Command add_compile(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand("compile", "Compile a mesh into an FDCG file");
+  command->footer(R"(
+Examples:
+  fdcg compile bunny.off -o bunny.fdcg
+  fdcg compile part.stl -o part.fdcg --units mm --coplanar 0.5 --precision f32
+  fdcg compile scan.ply -o scan.fdcg --orient --depfile scan.d --report scan.json
+  fdcg compile cube.obj -o - | fdcg inspect -
+
+A mesh with errors is refused with the report that 'fdcg validate' prints, and nothing is written.
+The same mesh and options give the same bytes.)");
+  const auto arguments = std::make_shared<CompileArguments>();
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY or STL")->required()->type_name("MESH");
+  command->add_option("-o,--output", arguments->output, "The file to write; - is standard output")
+      ->required()
+      ->type_name("FILE");
+  add_unit_options(*command, arguments);
+  add_graph_options(*command, arguments);
+  add_weld_option(*command, arguments->options.weld);
+  command->add_flag("--orient", arguments->options.orient, "Make the winding consistent and outward, and say what was turned");
+  add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
+  command->add_option("--depfile", arguments->depfile, "Write the dependency for Make and Ninja")->type_name("FILE");
+  command->add_option("--report", arguments->report, "Write the JSON report")->type_name("FILE");
+  command->add_option("--jobs", arguments->options.jobs, "Threads; default: one a core. The bytes do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  CLI::Option* const quiet = command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->add_flag("-v,--verbose", arguments->verbose, "Print the whole report")->excludes(quiet);
+  return {command, [arguments] { return run_compile(*arguments); }};
+}
+
+}  // namespace fdcg::tools

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_options.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+namespace fdcg::tools {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+bool may_be_allowed(const bake::Rule& rule, Allowable allowable) {
+  if (rule.severity == bake::Severity::error) return rule.can_be_allowed;
+  return rule.can_be_allowed || allowable == Allowable::also_warnings_and_notes;
+}
+
+}  // namespace
+
+std::optional<double> parse_number_between(const std::string& text, double low, double high) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stopped != end || !(value > low && value < high)) return std::nullopt;
+  return value;
+}
+
+void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices) {
+  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+  throw CLI::ValidationError(option, "'" + value + "' is none of " + joined(choices));
+}
+
+void add_weld_option(CLI::App& command, bake::Weld& weld) {
+  const auto parse = [&weld](const std::string& text) {
+    if (text == "exact" || text == "none") {
+      weld = {text == "exact" ? bake::Weld::Kind::exact : bake::Weld::Kind::none, 0};
+      return;
+    }
+    const auto distance = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+    if (!distance) {
+      throw CLI::ValidationError("--weld", "'" + text + "' is none of exact, none, or a distance above 0 in the file's units");
+    }
+    weld = {bake::Weld::Kind::distance, *distance};
+  };
+  command
+      .add_option_function<std::string>("--weld", parse,
+                                        "Vertices that are one: at equal coordinates (exact, the default), "
+                                        "none, or within DISTANCE in the file's units")
+      ->type_name("exact|none|DISTANCE");
+}
+
+void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable) {
+  const auto insert = [&allow, allowable](const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      const bake::Rule* const rule = bake::find_rule(name);
+      if (rule != nullptr && may_be_allowed(*rule, allowable)) {
+        allow.insert(name);
+        continue;
+      }
+      std::vector<std::string> choices;
+      for (const bake::Rule& known : bake::rules()) {
+        if (may_be_allowed(known, allowable)) choices.emplace_back(known.name);
+      }
+      const std::string why = rule == nullptr ? "' is no rule; " : "' cannot be allowed: no graph can stand it; ";
+      throw CLI::ValidationError("--allow", "'" + name + why + "these can: " + joined(choices));
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--allow", insert,
+                                                     "Findings of RULE do not fail the mesh; may be repeated")
+      ->type_name("RULE")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+}  // namespace fdcg::tools

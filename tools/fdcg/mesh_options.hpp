@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values that compile and validate read alike. A wrong one throws CLI::ValidationError, which names the right ones.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <set>
+#include <string>
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::tools {
+
+enum class Allowable { errors_the_graph_stands, also_warnings_and_notes };
+
+void add_weld_option(CLI::App& command, bake::Weld& weld);
+void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable);
+
+// The whole of `text` as a finite number in (low, high); nothing else counts.
+std::optional<double> parse_number_between(const std::string& text, double low, double high);
+
+// `value` is one of `choices`, or a ValidationError that lists them.
+void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices);
+
+}  // namespace fdcg::tools

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by tools/check and tools/demo: packages, configure, build. Needs $root.
+
+say() { printf '== %s\n' "$*"; }
+stop() {
+  printf '%s: %s\n' "${0##*/}" "$*" >&2
+  exit 1
+}
+
+packages_of() { # GROUP...
+  local group
+  for group in "$@"; do sed -n "s/^$group: //p" "$root/tools/packages"; done | tr ' ' '\n' | sort -u
+}
+
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null)" = 'ii ' ]; }
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    stop "needs root to install packages, and there is no sudo; install these first: ${missing[*]}"
+  fi
+}
+
+# Installs what is missing of the groups; touches neither network nor root when all is there.
+install_packages() { # GROUP...
+  local package
+  missing=()
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    [ -n "${FDCG_SKIP_PACKAGES:-}" ] && return
+    printf 'This is not a Debian system. What Debian calls these packages is needed:\n' >&2
+    packages_of "$@" | sed 's/^/  /' >&2
+    stop 'install them by the means of your system, then run this again with FDCG_SKIP_PACKAGES=1'
+  fi
+  for package in $(packages_of "$@"); do
+    is_installed "$package" || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  say "installing ${missing[*]}"
+  export DEBIAN_FRONTEND=noninteractive
+  as_root apt-get update -q </dev/null || stop 'apt-get update failed; is there a network?'
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}" </dev/null ||
+    stop "apt-get could not install: ${missing[*]}"
+}
+
+# As many as there are cores, but no more than memory holds at 1.5 GB each: what the largest unit takes, with room.
+build_jobs() {
+  local cores memory_kb fitting
+  cores=$(nproc)
+  memory_kb=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo 2>/dev/null)
+  fitting=$((${memory_kb:-1500000} / 1500000))
+  [ "$fitting" -ge 1 ] || fitting=1
+  [ "$fitting" -lt "$cores" ] && echo "$fitting" || echo "$cores"
+}
+
+configure() { # PRESET
+  say "configuring ($1)"
+  cmake --preset "$1" >"$root/build/configure-$1.log" 2>&1 || {
+    cat "$root/build/configure-$1.log" >&2
+    stop 'cmake failed'
+  }
+}
+
+build() { # PRESET [TARGET...]
+  local preset=$1 jobs
+  shift
+  jobs=$(build_jobs)
+  say "building ($preset, $jobs jobs)"
+  cmake --build --preset "$preset" --parallel "$jobs" ${1:+--target "$@"} || stop 'the build failed'
+}
