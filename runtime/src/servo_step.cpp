@@ -114,8 +114,9 @@ uint32_t move_god_object(Walk<Real>& walk, uint32_t* flags) {
   }
 }
 
+// Never inlined: GCC 12's basic-block vectoriser (-O2) drops the rounding of a double to float and back where it sees both.
 template <class Real>
-Vec3<Real> to_local(const fdcg_header& header, const double hip_object_m[3]) {
+[[gnu::noinline]] Vec3<Real> to_local(const fdcg_header& header, const double hip_object_m[3]) {
   double local[3];
   for (int k = 0; k < 3; ++k)
     local[k] = hip_object_m[k] / header.metres_per_unit - header.origin[k];
