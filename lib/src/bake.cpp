@@ -3,21 +3,46 @@
 #include "fdcg/bake.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
 #include <utility>
 
 #include "classify.hpp"
 #include "graph.hpp"
 #include "info.hpp"
+#include "merge.hpp"
+#include "orient.hpp"
 #include "parallel.hpp"
 #include "quantum.hpp"
 #include "regions.hpp"
 #include "serialise.hpp"
 #include "topology.hpp"
+#include "triangulate.hpp"
+#include "validate.hpp"
 #include "vec.hpp"
 #include "weld.hpp"
 
 namespace fdcg::bake {
 namespace {
+
+// Why the options make no sense; empty where they do.
+std::string contradiction_in(const CompileOptions& options) {
+  if (!(options.metres_per_unit > 0) || !std::isfinite(options.metres_per_unit))
+    return "the scale is " + std::to_string(options.metres_per_unit) + " metres per unit; it must be above 0 and finite";
+  if (options.coplanar.kind == Coplanar::Kind::angle &&
+      !(options.coplanar.angle_rad >= 0 && options.coplanar.angle_rad < std::numbers::pi / 2))
+    return "the coplanar angle is " + std::to_string(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
+  if (options.weld.kind == Weld::Kind::distance && !(options.weld.distance >= 0 && std::isfinite(options.weld.distance)))
+    return "the weld distance is " + std::to_string(options.weld.distance) + "; it must be at least 0 and finite";
+  constexpr std::array<std::string_view, 3> kOptional{"hierarchy", "source-map", "info"};
+  for (const std::string& section : options.without) {
+    if (std::find(kOptional.begin(), kOptional.end(), section) == kOptional.end())
+      return "the section '" + section + "' cannot be left out; hierarchy, source-map and info can";
+  }
+  return {};
+}
 
 Quantum quantum_of(const PolygonSoup& soup, const Mesh& mesh, Precision precision) {
   constexpr double kHalfUlpOfFloat = 0x1p-24;
@@ -30,6 +55,62 @@ double header_quantum(const PolygonSoup& soup, const Mesh& mesh) {
   for (const Vec3& point : mesh.points)
     extent = std::max(extent, largest_component(point + mesh.origin));
   return std::max(soup.relative_quantum * extent, soup.absolute_quantum);
+}
+
+// A polygon that crosses itself has no inside to stand on: the one defect that only cutting it finds.
+void report_uncuttable(const PolygonSoup& soup, const Mesh& mesh, const std::vector<std::uint32_t>& faces,
+                       std::size_t max_elements, Report& report) {
+  Issue issue{"non-planar-face",
+              Severity::error,
+              faces.size(),
+              std::to_string(faces.size()) + " polygons cross themselves and cannot be cut into triangles; redraw them",
+              {}};
+  for (std::size_t i = 0; i < std::min(max_elements, faces.size()); ++i) {
+    Element element;
+    const std::uint32_t face = mesh.source_of(FaceId{faces[i]});
+    element.faces = {face};
+    if (!soup.face_line.empty()) element.line = soup.face_line[face];
+    issue.elements.push_back(std::move(element));
+  }
+  report.allowed.erase(issue.rule);
+  report.issues.insert(report.issues.begin(), std::move(issue));
+}
+
+// Where each face of the soup ended up: through the mesh, the triangles it was cut into, and the polygons they were merged to.
+std::vector<std::uint32_t> trace_sources(std::size_t source_faces, const std::vector<std::uint32_t>& source_face,
+                                         const std::vector<std::uint32_t>& polygon,
+                                         const std::vector<std::uint32_t>& face_of_triangle) {
+  if (source_face.empty() && polygon.empty() && face_of_triangle.empty()) return {};
+  std::vector<std::uint32_t> face_of_source(source_faces, kNone);
+  const std::size_t triangles = polygon.empty() ? std::max(source_faces, face_of_triangle.size()) : polygon.size();
+  for (std::size_t i = triangles; i-- > 0;) {  // downwards: a polygon is where its first triangle is
+    const auto triangle = static_cast<std::uint32_t>(i);
+    const std::uint32_t mesh_face = polygon.empty() ? triangle : polygon[triangle];
+    const std::uint32_t source = source_face.empty() ? mesh_face : source_face[mesh_face];
+    face_of_source[source] = face_of_triangle.empty() ? triangle : face_of_triangle[triangle];
+  }
+  return face_of_source;
+}
+
+std::uint64_t count_sharing(const std::vector<std::uint32_t>& face_of_source, std::size_t faces) {
+  std::vector<std::uint32_t> count(faces, 0);
+  for (const std::uint32_t face : face_of_source) {
+    if (face != kNone) ++count[face];
+  }
+  std::uint64_t sharing = 0;
+  for (const std::uint32_t n : count)
+    sharing += n > 1 ? n : 0;
+  return sharing;
+}
+
+// Polygons that cannot stay one node: not convex, too many sides, or not in one plane.
+std::uint64_t count_split(const Triangulation& cut, const Regions& regions) {
+  std::vector<std::uint8_t> is_whole = cut.is_whole;
+  for (std::uint32_t t = 1; t < cut.polygon.size(); ++t) {
+    const bool is_apart = regions.of(FaceId{t}) == kNone || regions.of(FaceId{t}) != regions.of(FaceId{t - 1});
+    if (cut.polygon[t] == cut.polygon[t - 1] && is_apart) is_whole[cut.polygon[t]] = 0;
+  }
+  return static_cast<std::uint64_t>(std::count(is_whole.begin(), is_whole.end(), 0));
 }
 
 SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const CompileOptions& options, unsigned jobs) {
@@ -47,22 +128,58 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   return input;
 }
 
+// From a mesh that has passed the checks to bytes. Empty bytes: the report now says why.
+Result<std::vector<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
+                                     unsigned jobs, Compiled& compiled) {
+  SerialiseInput input = serialise_input(soup, mesh, options, jobs);
+  const Quantum quantum = quantum_of(soup, mesh, options.precision);
+  const std::vector<std::uint32_t> source_face = mesh.source_face;
+  Triangulation cut = triangulate(std::move(mesh), std::move(topology));
+  if (!cut.uncuttable.empty()) {
+    report_uncuttable(soup, cut.mesh, cut.uncuttable, options.max_elements, compiled.report);
+    return std::vector<std::byte>{};
+  }
+  Merged faces;
+  faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
+  faces.regions = find_regions(cut.mesh, cut.topology, faces.edges, {options.coplanar, quantum, options.precision});
+  compiled.split_faces = count_split(cut, faces.regions);
+  if (faces.regions.list.empty()) {
+    faces.mesh = std::move(cut.mesh);
+    faces.topology = std::move(cut.topology);
+  } else {
+    const MergeOptions how{options.merge, options.coplanar, quantum, cut.polygon.empty() ? nullptr : &cut.polygon};
+    faces = merge_regions(std::move(cut.mesh), std::move(cut.topology), std::move(faces.edges), std::move(faces.regions), how);
+  }
+  input.face_of_source = trace_sources(soup.face_count(), source_face, cut.polygon, faces.face_of_triangle);
+  compiled.merged_faces = count_sharing(input.face_of_source, faces.mesh.face_count());
+  if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
+  const Graph graph =
+      order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
+  return serialise(graph, input);
+}
+
 }  // namespace
 
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options) {
+  if (std::string reason = contradiction_in(options); !reason.empty()) return Failure{2, std::move(reason)};
   const unsigned jobs = resolve_jobs(options.jobs);
+  const auto stage = [&](std::string_view name, double fraction) {
+    if (options.progress) options.progress(name, fraction);
+  };
   Compiled compiled;
+  stage("weld", 0);
   Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
-  Topology topology = pair_halfedges(mesh);
-  const Quantum quantum = quantum_of(soup, mesh, options.precision);
-  std::vector<EdgeClass> edges = classify_edges(mesh, topology, quantum, options.coplanar, jobs);
-  Regions regions;
-  SerialiseInput input = serialise_input(soup, mesh, options, jobs);
-  if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
-  const Graph graph = order_graph(std::move(mesh), std::move(topology), std::move(edges), std::move(regions), jobs);
-  auto bytes = serialise(graph, input);
+  const std::vector<FaceState> states = face_states(mesh);
+  Topology topology = pair_halfedges(mesh, states);
+  if (options.orient) compiled.flipped_faces = orient(mesh, topology, states).size();
+  stage("check", 0.2);
+  compiled.report = check(soup, mesh, topology, states, {options.allow, options.max_elements, options.precision, {}});
+  if (!compiled.report.passes()) return compiled;
+  stage("graph", 0.5);
+  auto bytes = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);
   if (!bytes) return bytes.error();
   compiled.bytes = std::move(*bytes);
+  stage("graph", 1);
   return compiled;
 }
 

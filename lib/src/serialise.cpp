@@ -10,9 +10,11 @@
 #include <numeric>
 #include <span>
 
+#include "fan_tree.hpp"
 #include "fdcg/fdcg.h"
 #include "fdcg/format.h"
 #include "hierarchy.hpp"
+#include "large_pages.hpp"
 #include "parallel.hpp"
 #include "planes.hpp"
 #include "vec.hpp"
@@ -29,6 +31,7 @@ struct Records64 {
   using Node = fdcg_node_f64;
   using Connection = fdcg_connection_f64;
   using Corner = fdcg_corner_f64;
+  using FanBox = fdcg_fan_box_f64;
 };
 struct Records32 {
   using Real = float;
@@ -36,6 +39,7 @@ struct Records32 {
   using Node = fdcg_node_f32;
   using Connection = fdcg_connection_f32;
   using Corner = fdcg_corner_f32;
+  using FanBox = fdcg_fan_box_f32;
 };
 
 constexpr std::uint64_t padded(std::uint64_t bytes) {
@@ -92,7 +96,10 @@ class Writer {
 
   std::vector<std::byte> run() {
     plan();
-    std::vector<std::byte> bytes(layout_.bytes());
+    std::vector<std::byte> bytes;
+    bytes.reserve(layout_.bytes());
+    prefer_large_pages(bytes.data(), layout_.bytes());
+    bytes.resize(layout_.bytes());
     file_ = bytes;
     nodes_ = layout_.records<typename Records::Node>(file_, FDCG_SECTION_NODES);
     sides_ = layout_.records<std::uint32_t>(file_, FDCG_SECTION_SIDES);
@@ -106,6 +113,7 @@ class Writer {
       for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
         write_corner(c);
     });
+    write_fan_trees();
     if (input_.with_hierarchy) {
       build_hierarchy(graph_, header_.max_deviation, layout_.records<fdcg_box>(file_, FDCG_SECTION_HIERARCHY), input_.jobs);
     }
@@ -129,7 +137,18 @@ class Writer {
     }
     if (input_.with_source_map) layout_.add(FDCG_SECTION_SOURCE_MAP, sizeof(std::uint32_t), input_.source_face_count);
     if (!input_.info.empty()) layout_.add(FDCG_SECTION_INFO, 1, input_.info.size());
+    find_busy_corners();
+    if (fan_boxes_ > 0) layout_.add(FDCG_SECTION_FAN_BOXES, sizeof(typename Records::FanBox), fan_boxes_);
     layout_.place();
+  }
+
+  void find_busy_corners() {
+    for (std::uint32_t c = 0; c < graph_.corner_count(); ++c) {
+      const std::uint32_t boxes = fan_box_count(graph_.first_fan[c + 1] - graph_.first_fan[c]);
+      if (boxes == 0) continue;
+      busy_corners_.push_back({c, fan_boxes_});
+      fan_boxes_ += boxes;
+    }
   }
 
   void find_bounds() {
@@ -255,9 +274,8 @@ class Writer {
     for (std::uint32_t i = 0; i < faces; ++i) {
       const std::uint32_t incoming = graph_.previous(side);
       *entry++ = graph_.connection[side];
-      const auto& plane = nodes_[graph_.node(side)].plane;
       const double angle = angle_between(leaving(graph_.connection[side]), leaving(graph_.connection[incoming] ^ 1u));
-      sum = sum + angle * Vec3{plane.normal[0], plane.normal[1], plane.normal[2]};
+      sum = sum + angle * normal_of(graph_.node(side));
       if (i + 1 == faces && is_open) *entry = graph_.connection[incoming] ^ 1u;
       side = graph_.twin[incoming];
     }
@@ -265,6 +283,35 @@ class Writer {
     corner.normal[0] = static_cast<float>(normal.x);
     corner.normal[1] = static_cast<float>(normal.y);
     corner.normal[2] = static_cast<float>(normal.z);
+  }
+
+  void write_fan_trees() {
+    const auto boxes = layout_.records<typename Records::FanBox>(file_, FDCG_SECTION_FAN_BOXES);
+    parallel_for(input_.jobs, busy_corners_.size(), 1, [&](std::size_t i, std::size_t) {
+      typename Records::Corner& corner = corners_[busy_corners_[i].corner];
+      corner.flags |= (1 + busy_corners_[i].first_box) << FDCG_CORNER_TREE_SHIFT;
+      std::vector<FanDirection> fan(corner.fan_count);
+      for (std::uint32_t k = 0; k < corner.fan_count; ++k) {
+        const std::uint32_t entry = fans_[corner.first_fan + k];
+        fan[k].edge = leaving(entry);
+        const std::uint32_t node = connections_[entry >> 1].node[entry & 1u];
+        if (node != FDCG_NONE) fan[k].face_normal = normal_of(node);
+      }
+      std::uint32_t at = busy_corners_[i].first_box;
+      for (const FanBox& box : build_fan_tree(fan, std::numeric_limits<Real>::epsilon())) {
+        for (int k = 0; k < 3; ++k) {
+          boxes[at].centre[k] = static_cast<Real>(component(box.centre, k));
+          for (int axis = 0; axis < 3; ++axis)
+            boxes[at].axis[axis][k] = static_cast<Real>(component(box.axis[axis], k));
+        }
+        ++at;
+      }
+    });
+  }
+
+  [[nodiscard]] Vec3 normal_of(std::uint32_t node) const {
+    const auto& normal = nodes_[node].plane.normal;
+    return {normal[0], normal[1], normal[2]};
   }
 
   // The direction in which the connection leaves the corner that the fan entry belongs to.
@@ -305,6 +352,7 @@ class Writer {
       header_.origin[k] = component(input_.origin, k);
     header_.metres_per_unit = input_.metres_per_unit;
     header_.quantum = input_.quantum;
+    header_.fan_box_count = fan_boxes_;
     header_.source_vertex_count = input_.source_vertex_count;
     header_.source_face_count = input_.source_face_count;
     header_.table_checksum = fdcg_checksum(file_.data() + sizeof header_, layout_.table_end() - sizeof header_);
@@ -316,6 +364,11 @@ class Writer {
   const SerialiseInput& input_;
   Layout layout_;
   fdcg_header header_{};
+  struct BusyCorner {
+    std::uint32_t corner, first_box;
+  };
+  std::vector<BusyCorner> busy_corners_;
+  std::uint32_t fan_boxes_ = 0;
   std::span<std::byte> file_;
   std::span<typename Records::Node> nodes_;
   std::span<std::uint32_t> sides_;
