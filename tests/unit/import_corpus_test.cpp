@@ -122,6 +122,7 @@ TEST_CASE("every truncation of a file with counts is refused, but for its last b
 TEST_CASE("a single changed byte leads to a soup or a refusal") {
   for (const auto& path : files_in(testdata() / "meshes" / "good")) {
     std::string bytes = read_bytes(path);
+    if (bytes.size() > 4096) continue;
     const Format format = import_text(bytes).format;
     INFO(path);
     for (std::size_t i = 0; i < bytes.size(); ++i) {
