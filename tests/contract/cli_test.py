@@ -390,6 +390,17 @@ class BadInput(Case):
             self.assertEqual(3, done.returncode, arguments)
             self.assert_one_line(done, "standard output")
 
+    def test_a_file_that_the_runtime_would_refuse_is_not_written(self):
+        side = 72
+        lines = ["OFF", f"{(side + 1) ** 2} {side * side} 0"]
+        lines += [f"{x} {y} {((x * 7 + y * 13) % 11) / 10}" for y in range(side + 1) for x in range(side + 1)]
+        corner = lambda x, y: y * (side + 1) + x
+        lines += [f"4 {corner(x, y)} {corner(x + 1, y)} {corner(x + 1, y + 1)} {corner(x, y + 1)}" for y in range(side) for x in range(side)]
+        mesh = self.write("hills.off", "\n".join(lines) + "\n")
+        self.assert_one_line(self.fdcg("compile", mesh, "-o", self.path("out.fdcg"), "--no-merge", "--without", "hierarchy",
+                                       code=2), "hierarchy")
+        self.assert_only("hills.off")
+
     def test_interrupt_leaves_no_half_written_file(self):
         os.mkfifo(self.path("mesh.off"))
         for number in (signal.SIGINT, signal.SIGTERM):
