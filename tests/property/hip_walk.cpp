@@ -57,9 +57,38 @@ void HipWalk::begin_stretch() {
   heading_ = {d.x * speed, d.y * speed, d.z * speed};
 }
 
+void HipWalk::put_on_edge(std::uint32_t slot) {
+  const auto after_face = std::upper_bound(soup_.face_first.begin(), soup_.face_first.end(), slot);
+  const std::uint32_t next = slot + 1 < *after_face ? slot + 1 : *(after_face - 1);
+  const Hip a = corner(soup_.corners[slot]), b = corner(soup_.corners[next]);
+  const double part = random_.below(5) / 4.0;
+  for (std::size_t k = 0; k < 3; ++k)
+    hip_[k] = a[k] + part * (b[k] - a[k]);
+}
+
+void HipWalk::put_on_face() {
+  const std::uint32_t f = random_.below(static_cast<std::uint32_t>(soup_.face_count()));
+  const std::uint32_t first = soup_.face_first[f], last = soup_.face_first[f + 1];
+  hip_ = {};
+  for (std::uint32_t i = first; i < last; ++i) {
+    const Hip p = corner(soup_.corners[i]);
+    for (std::size_t k = 0; k < 3; ++k)
+      hip_[k] += p[k] / (last - first);
+  }
+}
+
 Hip HipWalk::next(const Hip& god_object) {
   if (left_ == 0) begin_stretch();
   --left_;
+  if (habit_ == Habit::hovers_about_god_object) hip_ = god_object;
+  move();
+  const bool keeps = habit_ == Habit::holds || habit_ == Habit::creeps;
+  const bool is_put = habit_ >= Habit::meets_corners && habit_ <= Habit::goes_home;
+  is_on_feature_ = is_put || (keeps && is_on_feature_);
+  return hip_;
+}
+
+void HipWalk::move() {
   const std::uint32_t slot = random_corner_slot();
   switch (habit_) {
     case Habit::strolls:
@@ -72,7 +101,6 @@ Hip HipWalk::next(const Hip& god_object) {
       add(hip_, size_ * 1e-12);
       break;
     case Habit::hovers_about_god_object:
-      hip_ = god_object;
       add(hip_, size_ * std::pow(10, random_.uniform(-6, -1)));
       break;
     case Habit::presses:
@@ -89,48 +117,28 @@ Hip HipWalk::next(const Hip& god_object) {
     case Habit::meets_corners:
       hip_ = corner(soup_.corners[slot]);
       break;
-    case Habit::meets_edges: {
-      const auto face = static_cast<std::size_t>(std::upper_bound(soup_.face_first.begin(), soup_.face_first.end(), slot) -
-                                                 soup_.face_first.begin() - 1);
-      const std::uint32_t after = slot + 1 < soup_.face_first[face + 1] ? slot + 1 : soup_.face_first[face];
-      const Hip a = corner(soup_.corners[slot]), b = corner(soup_.corners[after]);
-      const double part = random_.below(5) / 4.0;
-      for (std::size_t k = 0; k < 3; ++k)
-        hip_[k] = a[k] + part * (b[k] - a[k]);
+    case Habit::meets_edges:
+      put_on_edge(slot);
       break;
-    }
-    case Habit::meets_faces: {
-      const std::uint32_t f = random_.below(static_cast<std::uint32_t>(soup_.face_count()));
-      const std::uint32_t first = soup_.face_first[f], last = soup_.face_first[f + 1];
-      hip_ = {};
-      for (std::uint32_t i = first; i < last; ++i) {
-        const Hip p = corner(soup_.corners[i]);
-        for (std::size_t k = 0; k < 3; ++k)
-          hip_[k] += p[k] / (last - first);
-      }
+    case Habit::meets_faces:
+      put_on_face();
       break;
-    }
-    case Habit::meets_planes: {
+    case Habit::meets_planes:
       add(hip_, size_ * 0.03);
-      const std::size_t k = random_.below(3);
-      hip_[k] = corner(soup_.corners[slot])[k];
+      hip_[slot % 3] = corner(soup_.corners[slot])[slot % 3];
       break;
-    }
     case Habit::goes_home:
       hip_ = left_ % 2 == 0 ? corner(soup_.corners[slot]) : anchor_;
       break;
-    case Habit::rounds: {
+    case Habit::rounds:
       add(hip_, size_ * 0.003);
-      const double step = size_ * 0x1p-10;
       for (double& c : hip_)
-        c = std::round(c / step) * step;
+        c = std::round(c / (size_ * 0x1p-10)) * (size_ * 0x1p-10);
       break;
-    }
     case Habit::holds:
     case Habit::count:
       break;
   }
-  return hip_;
 }
 
 }  // namespace fdcg::test

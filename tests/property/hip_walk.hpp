@@ -17,6 +17,8 @@ class HipWalk {
   HipWalk(const bake::PolygonSoup& soup, std::uint64_t seed);
   // The next HIP, in the soup's units; `god_object` is where the contact is now.
   Hip next(const Hip& god_object);
+  // The HIP was put on a corner, an edge, a face or its plane, and has not left it by more than 1e-12 of the size.
+  [[nodiscard]] bool is_on_feature() const { return is_on_feature_; }
 
  private:
   enum class Habit {
@@ -36,9 +38,12 @@ class HipWalk {
     count
   };
   void begin_stretch();
+  void put_on_edge(std::uint32_t slot);
+  void put_on_face();
   Hip corner(std::uint32_t index) const;
   std::uint32_t random_corner_slot();
   Hip somewhere();
+  void move();
   void add(Hip& hip, double distance);
 
   const bake::PolygonSoup& soup_;
@@ -47,6 +52,7 @@ class HipWalk {
   double size_ = 0;
   Habit habit_ = Habit::strolls;
   std::uint32_t left_ = 0;
+  bool is_on_feature_ = false;
 };
 
 }  // namespace fdcg::test

@@ -11,7 +11,9 @@ namespace fdcg::test {
 namespace {
 
 using Wide = long double;
-constexpr int kCarryTicks = 100;   // more than any walk here needs to come to an end
+constexpr int kCarryTicks = 100;  // more than any walk here needs to come to an end
+// The runtime carries a step over at 256 transitions; jumps across a body of 500 sides need up to 500, legitimately.
+constexpr std::uint32_t kTransitionsWithoutCarry = 250;
 constexpr double kRoundings = 64;  // a decision within so many eps of the extent is a tie
 
 Vector<Wide> wide(const double* v) {
@@ -77,7 +79,9 @@ void Pair::step(const Hip& hip_object) {
   ++result.steps;
   result.transitions += output.transitions;
   result.contact_steps += contact_.state != FDCG_FREE;
-  result.bound_hits += (output.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
+  const bool is_carried = (output.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
+  result.bound_hits += is_carried;
+  result.needless_bound_hits += is_carried && taken.transitions < kTransitionsWithoutCarry;
   for (int tick = 0; tick < kCarryTicks && (output.flags & FDCG_RESULT_TRANSITION_BOUND) != 0; ++tick) {
     fdcg_step(&graph_, &params_, &contact_, hip_object.data(), &output);
   }
@@ -130,25 +134,24 @@ void Pair::judge(const fdcg_contact& before, const Hip& hip, double apart_before
 
 }  // namespace
 
-fdcg_params contact_params(double mu_static, double mu_dynamic, std::uint32_t edge_friction) {
-  fdcg_params params = fdcg_default_params();
-  params.mu_static = mu_static;
-  params.mu_dynamic = mu_dynamic;
-  params.edge_friction = edge_friction;
-  return params;
-}
-
 Lockstep run_lockstep(const fdcg_graph& graph, const bake::PolygonSoup& soup, const fdcg_params& params, std::uint64_t steps,
                       std::uint64_t seed) {
   Pair pair(graph, params);
   HipWalk walk(soup, seed);
+  bool was_on_feature = true;
   for (std::uint64_t i = 0; i < steps; ++i) {
     const fdcg_contact& c = pair.contact();
     const fdcg_header& h = *graph.header;
     Hip god_object{};
     for (std::size_t k = 0; k < 3; ++k)
       god_object[k] = (c.god_object[k] + h.origin[k]) * h.metres_per_unit;
-    pair.step(walk.next(god_object));
+    const Hip hip = walk.next(god_object);
+    const bool is_off_features = !walk.is_on_feature() && !was_on_feature;
+    was_on_feature = walk.is_on_feature();
+    const std::uint64_t ties_before = pair.result.ties;
+    pair.step(hip);
+    pair.result.steps_off_features += is_off_features;
+    pair.result.ties_off_features += is_off_features ? pair.result.ties - ties_before : 0;
   }
   return pair.result;
 }
