@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """The worked dump of schemas/fdcg-v1.md: a tetrahedron's file, byte by byte. Run with --write to renew it there."""
-import os
 import re
 import struct
 import subprocess
@@ -9,7 +8,7 @@ import tempfile
 import pathlib
 import unittest
 
-from support import FDCG, ROOT, TETRAHEDRON
+from support import FDCG, ROOT, TETRAHEDRON, checksum
 
 DOCUMENT = ROOT / "schemas" / "fdcg-v1.md"
 BLOCK = re.compile(r"(<!-- dump -->\n```\n)(.*?)(```\n<!-- end of dump -->)", re.S)
@@ -98,21 +97,6 @@ class WorkedDump(unittest.TestCase):
 
     def test_the_checksum_is_the_one_described(self):
         data = tetrahedron_file()
-        mask, multiplier, seed = 2**64 - 1, 0x9E3779B97F4A7C15, 0x4644434700000001
-
-        def checksum(block):
-            lanes = [seed + i for i in range(8)]
-            padded = block + bytes(-len(block) % 64)
-            for at in range(0, len(padded), 64):
-                for i, word in enumerate(struct.unpack_from("<8Q", padded, at)):
-                    product = (lanes[i] ^ word) * multiplier & mask
-                    lanes[i] = (product << 29 | product >> 35) & mask
-            total = seed ^ (len(block) * multiplier & mask)
-            for lane in lanes:
-                total = (total ^ lane) * multiplier & mask
-                total ^= total >> 32
-            return total
-
         self.assertEqual(struct.unpack_from("<Q", data, 248)[0], checksum(data[:248]))
         count = struct.unpack_from("<I", data, 28)[0]
         starts = [struct.unpack_from("<Q", data, 256 + 40 * i + 8)[0] for i in range(count)] + [len(data)]
