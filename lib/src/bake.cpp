@@ -139,7 +139,8 @@ Result<std::vector<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topolog
     report_uncuttable(soup, cut.mesh, cut.uncuttable, options.max_elements, compiled.report);
     return std::vector<std::byte>{};
   }
-  Merged faces{.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs)};
+  Merged faces;
+  faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
   faces.regions = find_regions(cut.mesh, cut.topology, faces.edges, {options.coplanar, quantum, options.precision});
   compiled.split_faces = count_split(cut, faces.regions);
   if (faces.regions.list.empty()) {

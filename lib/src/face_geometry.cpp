@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "exact.hpp"
+#include "volume.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -117,19 +118,20 @@ bool FaceGeometry::is_flat(FaceId f) {
   return flat == Flat::yes;
 }
 
-// The exact sign of the area seen along `axis`: that of the turn at the lexicographically smallest corner, which a simple
-// polygon cannot have but convex.
+// The exact sign of the area seen along `axis`; of a polygon that crosses itself, of what its windings add up to.
 int FaceGeometry::sign_along(FaceId f, int axis) const {
   if ((bits_[+f] & 1U << axis) != 0) return 1;
   if ((bits_[+f] & 8U << axis) != 0) return -1;
+  if (size(f) == 3) return exact::orient2d(point(first(f)), point(first(f) + 1), point(first(f) + 2), axis);
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  std::uint32_t least = first(f);
-  for (std::uint32_t h = first(f) + 1; h < first(f) + size(f); ++h) {
-    const double du = component(point(h), u) - component(point(least), u);
-    if (du < 0 || (du == 0 && component(point(h), v) < component(point(least), v))) least = h;
+  ExactSum sum;
+  for (std::uint32_t h = first(f); h < first(f) + size(f); ++h) {
+    const Vec3& p = point(h);
+    const Vec3& q = point(+next(mesh_, f, HalfedgeId{h}));
+    sum.add_product(component(p, u), component(q, v), 1, false);
+    sum.add_product(component(p, v), component(q, u), 1, true);
   }
-  const HalfedgeId h{least};
-  return exact::orient2d(point(+previous(mesh_, f, h)), point(least), point(+next(mesh_, f, h)), axis);
+  return sum.sign();
 }
 
 bool FaceGeometry::is_fold(FaceId a, HalfedgeId h, FaceId b, HalfedgeId other) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <utility>
 
@@ -42,36 +43,42 @@ std::pair<Vec3, Vec3> bounds_of(const std::vector<Vec3>& points) {
   return {low, high};
 }
 
-std::vector<Ranked> positions_along_curve(const Mesh& mesh, unsigned jobs) {
+// Bits an axis: cells small enough that a surface of so many faces has some four cells for each.
+unsigned curve_bits(std::uint32_t faces) {
+  constexpr unsigned kLeast = 5, kMost = 16;
+  return std::clamp(static_cast<unsigned>(std::bit_width(faces)) / 2 + 1, kLeast, kMost);
+}
+
+std::vector<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsigned jobs) {
   const auto [low, high] = bounds_of(mesh.points);
   const double size = largest_component(high - low);
-  constexpr double kCells = 1u << kHilbertBits;
-  const double cells_per_unit = size > 0 ? 0.5 * kCells / size : 0;
+  const double cells = 1u << bits;
+  const double cells_per_unit = size > 0 ? 0.5 * cells / size : 0;
   const auto cell = [&](double doubled, double from) {
-    return static_cast<std::uint32_t>(std::clamp((doubled - 2 * from) * cells_per_unit, 0.0, kCells - 1));
+    return static_cast<std::uint32_t>(std::clamp((doubled - 2 * from) * cells_per_unit, 0.0, cells - 1));
   };
   std::vector<Ranked> ranked(mesh.face_count());
   parallel_for(jobs, ranked.size(), kGrain, [&, from = low](std::size_t begin, std::size_t end) {
     for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
       const Vec3 c = doubled_centre(mesh, f);
-      ranked[f] = {hilbert_position({cell(c.x, from.x), cell(c.y, from.y), cell(c.z, from.z)}), f};
+      ranked[f] = {hilbert_position({cell(c.x, from.x), cell(c.y, from.y), cell(c.z, from.z)}, bits), f};
     }
   });
   return ranked;
 }
 
 // Stable, least significant digit first.
-void radix_sort(std::vector<Ranked>& items) {
-  constexpr unsigned kDigitBits = 11, kDigits = 4;
-  static_assert(kDigitBits * kDigits >= 3 * kHilbertBits);
+void radix_sort(std::vector<Ranked>& items, unsigned key_bits) {
+  constexpr unsigned kDigitBits = 11;
   constexpr std::uint64_t kMask = (1u << kDigitBits) - 1;
-  std::vector<std::array<std::uint32_t, kMask + 1>> counts(kDigits);
+  const unsigned digits = (key_bits + kDigitBits - 1) / kDigitBits;
+  std::vector<std::array<std::uint32_t, kMask + 1>> counts(digits);
   for (const Ranked& item : items) {
-    for (unsigned d = 0; d < kDigits; ++d)
+    for (unsigned d = 0; d < digits; ++d)
       ++counts[d][item.key >> (d * kDigitBits) & kMask];
   }
   std::vector<Ranked> other(items.size());
-  for (unsigned d = 0; d < kDigits; ++d) {
+  for (unsigned d = 0; d < digits; ++d) {
     std::uint32_t sum = 0;
     for (std::uint32_t& entry : counts[d])
       sum += std::exchange(entry, sum);
@@ -107,8 +114,9 @@ class Orderer {
 
   Graph run() {
     {
-      std::vector<Ranked> ranked = positions_along_curve(mesh_, jobs_);
-      radix_sort(ranked);
+      const unsigned bits = curve_bits(mesh_.face_count());
+      std::vector<Ranked> ranked = positions_along_curve(mesh_, bits, jobs_);
+      radix_sort(ranked, 3 * bits);
       place_nodes(ranked);
     }
     copy_sides();

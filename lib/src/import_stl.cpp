@@ -91,7 +91,7 @@ class TextStlReader : TextSoupReader {
  private:
   bool read_solids() {
     while (scan_.find_token()) {
-      if (!take("solid")) return fail_here("found " + scan_.quote() + " where 'solid' was due");
+      if (!expect("solid")) return false;
       scan_.next_line();  // the rest is a name, of any words
       while (look("facet")) {
         if (!read_facet()) return false;
@@ -134,28 +134,10 @@ class TextStlReader : TextSoupReader {
     return true;
   }
 
-  // Keywords in either case.
-  static bool is_same(std::string_view word, std::string_view keyword) {
-    if (word.size() != keyword.size()) return false;
-    for (std::size_t i = 0; i < word.size(); ++i) {
-      if (word[i] != keyword[i] && (word[i] < 'A' || word[i] > 'Z' || word[i] - 'A' + 'a' != keyword[i])) return false;
-    }
-    return true;
-  }
-  bool take(std::string_view keyword) {
-    const TextScanner start = scan_;
-    if (is_same(scan_.read_word(), keyword)) return true;
-    scan_ = start;
-    return false;
-  }
-  bool look(std::string_view keyword) {
-    if (!scan_.find_token()) return false;
-    TextScanner ahead = scan_;
-    return is_same(ahead.read_word(), keyword);
-  }
-  bool expect(std::string_view keyword) {
-    if (!scan_.find_token()) return fail_end("'" + std::string(keyword) + "'");
-    return take(keyword) || fail_here("found " + scan_.quote() + " where '" + std::string(keyword) + "' was due");
+  bool look(std::string_view keyword) { return scan_.find_token() && scan_.is_keyword(keyword); }
+  bool expect(const char* keyword) {
+    if (!scan_.find_token()) return fail_end(std::string("'") + keyword + "'");
+    return scan_.take_keyword(keyword) || fail_here("found " + scan_.quote() + " where '" + keyword + "' was due");
   }
   bool fail_end(const std::string& due) {
     return fail_here("truncated: the file ends after " + std::to_string(soup_.face_first.size() - 1) + " facets where " + due +
@@ -166,13 +148,8 @@ class TextStlReader : TextSoupReader {
 // Text starts with "solid"; but so do the headers of some binary files, which then have a zero byte soon.
 bool is_text(std::string_view bytes) {
   constexpr std::size_t kLook = 512;
-  std::size_t i = bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0;
-  while (i < bytes.size() && (bytes[i] == ' ' || bytes[i] == '\t' || bytes[i] == '\r' || bytes[i] == '\n'))
-    ++i;
-  std::string_view word = bytes.substr(i, 5);
-  const auto same = [](char a, char b) { return (a | 0x20) == b; };
-  return std::equal(word.begin(), word.end(), "solid", "solid" + 5, same) &&
-         bytes.substr(0, kLook).find('\0') == std::string_view::npos;
+  TextScanner scan(bytes, {});
+  return scan.find_token() && scan.is_keyword("solid") && bytes.substr(0, kLook).find('\0') == std::string_view::npos;
 }
 
 }  // namespace

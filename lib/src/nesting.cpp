@@ -53,12 +53,27 @@ int side_of(const Vec3& a, const Vec3& b, const Vec3& p) {
   return b.y > a.y ? 1 : b.y < a.y ? -1 : 0;
 }
 
+// p lies on the triangle, its edges and corners included. Not asked of triangles on a line, whose neighbours cover them.
+bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  const auto is_between = [](double x, double u, double v, double w) {
+    return x >= std::min({u, v, w}) && x <= std::max({u, v, w});
+  };
+  if (!is_between(p.x, a.x, b.x, c.x) || !is_between(p.y, a.y, b.y, c.y) || !is_between(p.z, a.z, b.z, c.z)) return false;
+  if (exact::orient3d(a, b, c, p) != 0) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int sign = exact::orient2d(a, b, c, axis);
+    if (sign == 0) continue;
+    return exact::orient2d(a, b, p, axis) * sign >= 0 && exact::orient2d(b, c, p, axis) * sign >= 0 &&
+           exact::orient2d(c, a, p, axis) * sign >= 0;
+  }
+  return false;
+}
+
 Hit cast(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  if (is_on(a, b, c, p)) return Hit::touched;
   const int side = side_of(a, b, p);
   if (side == 0 || side_of(b, c, p) != side || side_of(c, a, p) != side) return Hit::none;
-  const int front = exact::orient3d(a, b, c, p);
-  if (front == 0) return Hit::touched;
-  return front == side ? Hit::none : Hit::crossed;  // `side` is the sign of the normal's x
+  return exact::orient3d(a, b, c, p) == side ? Hit::none : Hit::crossed;  // `side` is the sign of the normal's x
 }
 
 // The faces of all enclosing patches in a binary tree of boxes, in the order of a space-filling curve.
@@ -82,6 +97,7 @@ class RayTree {
   // The number of enclosing patches other than `own` around p; none if p lies on one and `skip_touched` is not set.
   [[nodiscard]] std::optional<std::uint32_t> depth(const Vec3& p, std::uint32_t own, bool skip_touched) {
     crossed_.clear();
+    touched_.clear();
     stack_.assign(1, {levels_.size() - 1, 0});
     while (!stack_.empty()) {
       const auto [level, box] = stack_.back();
@@ -141,6 +157,7 @@ class RayTree {
     for (std::uint32_t h = first + 1; h + 1 < mesh_.face_first[f + 1]; ++h) {
       const Hit hit = cast(point(first), point(h), point(h + 1), p);
       if (hit == Hit::touched && !skip_touched) return false;
+      if (hit == Hit::touched) touched_.push_back(patches_.of_face[f]);
       if (hit == Hit::crossed) crossed_.push_back(patches_.of_face[f]);
     }
     return true;
@@ -153,7 +170,8 @@ class RayTree {
       const std::size_t begin = i;
       while (i < crossed_.size() && crossed_[i] == crossed_[begin])
         ++i;
-      depth += (i - begin) % 2;
+      const bool is_touched = std::find(touched_.begin(), touched_.end(), crossed_[begin]) != touched_.end();
+      depth += is_touched ? 0 : (i - begin) % 2;
     }
     return depth;
   }
@@ -164,6 +182,7 @@ class RayTree {
   std::vector<std::vector<Shadow>> levels_;  // [0]: one box for every kLeaf faces
   std::vector<std::pair<std::size_t, std::size_t>> stack_;
   std::vector<std::uint32_t> crossed_;  // the patch of each crossing
+  std::vector<std::uint32_t> touched_;  // patches that p lies on, where those are skipped
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "planes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "vec.hpp"
@@ -55,15 +56,12 @@ bool is_moderate(double size) {
 
 }  // namespace
 
-Vec3 unit(const Vec3& v) {
+Vec3 unit_of_any_size(const Vec3& v) {
   const double size = largest_component(v);
   if (size == 0) return v;
-  if (!is_moderate(size)) {
-    const Vec3 scaled = scale_for(size) * v;
-    return is_moderate(largest_component(scaled)) ? unit(scaled) : scaled;
-  }
-  const double norm = length(v);
-  return {v.x / norm, v.y / norm, v.z / norm};
+  const Vec3 scaled = scale_for(size) * v;
+  // The least numbers need more than one step.
+  return is_moderate(largest_component(scaled)) ? unit(scaled) : unit(scale_for(largest_component(scaled)) * scaled);
 }
 
 Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -78,10 +76,6 @@ Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     if (is_moderate(again)) return unit_normal(scaled_a, scaled_b, scaled_c);
   }
   return unit({cross_component(uy, uz, vy, vz), cross_component(uz, ux, vz, vx), cross_component(ux, uy, vx, vy)});
-}
-
-Vec3 edge_direction(const Vec3& a, const Vec3& b) {
-  return unit(b - a);
 }
 
 double balanced_offset(const Vec3& normal, std::span<const Vec3> points) {
@@ -104,13 +98,6 @@ Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision p
   return {rounded, static_cast<float>(balanced_offset(rounded, points))};
 }
 
-Plane voronoi_plane(const Vec3& along, const Vec3& normal, const Vec3& v0) {
-  const Vec3 m = cross(along, normal);
-  const double norm = length(m);
-  const Vec3 out{m.x / norm, m.y / norm, m.z / norm};
-  return {out, -dot(out, v0)};
-}
-
 double angle_between(const Vec3& a, const Vec3& b) {
   const double sine = length(cross(a, b)), cosine = dot(a, b);
   const double low = std::min(sine, std::fabs(cosine)), high = std::max(sine, std::fabs(cosine));
@@ -118,9 +105,11 @@ double angle_between(const Vec3& a, const Vec3& b) {
   // arctan on [0, 1], halved once by tan(x / 2) = t / (1 + sqrt(1 + t^2)), then its series: |r| <= 0.415.
   const double t = low / high;
   const double r = t / (1 + std::sqrt(1 + t * t)), s = r * r;
+  constexpr std::array<double, 10> kSeries{-1.0 / 19, 1.0 / 17, -1.0 / 15, 1.0 / 13, -1.0 / 11,
+                                           1.0 / 9,   -1.0 / 7, 1.0 / 5,   -1.0 / 3, 1.0};
   double sum = 0;
-  for (int k = 19; k >= 1; k -= 2)
-    sum = (k % 4 == 1 ? 1.0 : -1.0) / k + s * sum;
+  for (const double coefficient : kSeries)
+    sum = coefficient + s * sum;
   constexpr double kPi = 3.14159265358979323846;
   double angle = 2 * r * sum;
   if (sine > std::fabs(cosine)) angle = kPi / 2 - angle;

@@ -2,9 +2,11 @@
 // Unit normals, offsets and edge directions, good to a unit or two in the last place whatever the triangle's shape.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "fdcg/bake.hpp"
+#include "vec.hpp"
 
 namespace fdcg::bake {
 
@@ -18,11 +20,20 @@ struct Plane {
 // well as equilateral triangles. Zero where the three are exactly collinear.
 [[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
-// unit(b - a); edge_direction(b, a) is its exact negative.
-[[nodiscard]] Vec3 edge_direction(const Vec3& a, const Vec3& b);
+// unit(v), with no loss at either end of the exponent's range; zero stays zero.
+[[nodiscard]] Vec3 unit_of_any_size(const Vec3& v);
+[[nodiscard]] inline Vec3 unit(const Vec3& v) {
+  constexpr double kSmall = 1e-200, kLarge = 1e200;  // their squares and products stay in range
+  const double squared = squared_length(v);
+  if (!(squared > kSmall && squared < kLarge)) return unit_of_any_size(v);
+  const double norm = std::sqrt(squared);
+  return {v.x / norm, v.y / norm, v.z / norm};
+}
 
-// unit(v), with no loss at either end of the exponent's range.
-[[nodiscard]] Vec3 unit(const Vec3& v);
+// unit(b - a); edge_direction(b, a) is its exact negative.
+[[nodiscard]] inline Vec3 edge_direction(const Vec3& a, const Vec3& b) {
+  return unit(b - a);
+}
 
 // The offset that makes the largest distance of the points from the plane smallest, for the normal as it was rounded.
 [[nodiscard]] double balanced_offset(const Vec3& normal, std::span<const Vec3> points);
@@ -33,7 +44,12 @@ struct Plane {
 
 // The plane through the edge, facing out of the face: `along` is the edge's direction in the face's own winding and m equals
 // along x normal; `v0` is the end of the edge that the connection calls corner 0.
-[[nodiscard]] Plane voronoi_plane(const Vec3& along, const Vec3& normal, const Vec3& v0);
+[[nodiscard]] inline Plane voronoi_plane(const Vec3& along, const Vec3& normal, const Vec3& v0) {
+  const Vec3 m = cross(along, normal);
+  const double norm = length(m);
+  const Vec3 out{m.x / norm, m.y / norm, m.z / norm};
+  return {out, -dot(out, v0)};
+}
 
 // The angle between two unit vectors, 0 .. pi, within 1e-8: by additions, products, square root and division alone, so that
 // every compiler and C library gives the same bits.

@@ -14,6 +14,7 @@
 #include "fdcg/fdcg.h"
 #include "fdcg/format.h"
 #include "hierarchy.hpp"
+#include "large_pages.hpp"
 #include "parallel.hpp"
 #include "planes.hpp"
 #include "vec.hpp"
@@ -95,7 +96,10 @@ class Writer {
 
   std::vector<std::byte> run() {
     plan();
-    std::vector<std::byte> bytes(layout_.bytes());
+    std::vector<std::byte> bytes;
+    bytes.reserve(layout_.bytes());
+    prefer_large_pages(bytes.data(), layout_.bytes());
+    bytes.resize(layout_.bytes());
     file_ = bytes;
     nodes_ = layout_.records<typename Records::Node>(file_, FDCG_SECTION_NODES);
     sides_ = layout_.records<std::uint32_t>(file_, FDCG_SECTION_SIDES);

@@ -30,7 +30,7 @@ void SoupReader::report(std::size_t offset) {
 
 double TextSoupReader::absolute_quantum() const {
   if (finest_decimals_ == TextScanner::kNoDecimals || finest_decimals_ <= 0) return 0;
-  const std::string half_unit = "5e-" + std::to_string(finest_decimals_ + 1);
+  const std::string half_unit = "5e-" + std::to_string(std::int64_t{finest_decimals_} + 1);
   double value = 0;
   std::from_chars(half_unit.data(), half_unit.data() + half_unit.size(), value);  // left 0 where it is below every double
   return value;

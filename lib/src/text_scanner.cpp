@@ -23,7 +23,7 @@ bool is_word(std::string_view token, std::string_view lower_case) {
 
 // inf, nan and nan(...) as C99 prints them; 1.#INF, 1.#QNAN, 1.#IND, 1.#SNAN and what rounding leaves of them (1.#J, 1.#IO) as
 // Microsoft's library did.
-bool read_special(std::string_view unsigned_token, double& value) {
+bool parse_special(std::string_view unsigned_token, double& value) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   if (is_word(unsigned_token, "inf") || is_word(unsigned_token, "infinity")) {
@@ -43,60 +43,29 @@ bool read_special(std::string_view unsigned_token, double& value) {
   return true;
 }
 
-// What a decimal's own characters say about it.
-struct Decimal {
-  bool is_valid = false;
-  bool is_zero = true;
-  bool has_exponent = false;
-  int decimals = 0;                  // digits after the point, less the exponent: the last digit is worth 10^-decimals
-  std::ptrdiff_t leading_power = 0;  // the first digit that is not 0 is worth 10^leading_power
-};
+constexpr std::ptrdiff_t kFarExponent = 1'000'000'000;  // exponents beyond it change nothing any more
 
-Decimal examine(std::string_view token) {
-  constexpr std::ptrdiff_t kFar = 1'000'000;  // exponents beyond it change nothing any more
-  Decimal result;
-  std::size_t i = 0;
-  std::ptrdiff_t digits = 0, point = -1, first = -1;
-  for (; i < token.size(); ++i) {
-    const char c = token[i];
-    if (c == '.' && point < 0) {
-      point = digits;
-    } else if (c >= '0' && c <= '9') {
-      if (c != '0' && first < 0) first = digits;
-      ++digits;
-    } else {
-      break;
-    }
-  }
-  if (digits == 0) return result;
+// Whether a decimal that no double can hold is too large; else it is too small.
+bool is_large(std::string_view decimal) {
+  const std::size_t mantissa_end = std::min(decimal.find_first_of("eE"), decimal.size());
+  const std::string_view mantissa = decimal.substr(0, mantissa_end);
+  const std::size_t first = mantissa.find_first_of("123456789");
+  if (first == std::string_view::npos) return false;
+  const auto point = static_cast<std::ptrdiff_t>(std::min(mantissa.find('.'), mantissa.size()));
   std::ptrdiff_t exponent = 0;
-  if (i < token.size()) {
-    if (token[i] != 'e' && token[i] != 'E') return result;
-    ++i;
-    const bool negative = i < token.size() && token[i] == '-';
-    if (i < token.size() && (token[i] == '-' || token[i] == '+')) ++i;
-    if (i == token.size()) return result;
-    for (; i < token.size(); ++i) {
-      if (token[i] < '0' || token[i] > '9') return result;
-      exponent = std::min(exponent * 10 + (token[i] - '0'), kFar);
-    }
-    if (negative) exponent = -exponent;
-    result.has_exponent = true;
+  const bool is_negative = decimal.substr(mantissa_end).find('-') != std::string_view::npos;
+  for (const char c : decimal.substr(mantissa_end)) {
+    if (c >= '0' && c <= '9') exponent = std::min(exponent * 10 + (c - '0'), kFarExponent);
   }
-  if (point < 0) point = digits;
-  result.is_valid = true;
-  result.is_zero = first < 0;
-  result.leading_power = point - 1 - first + exponent;
-  result.decimals = static_cast<int>(std::clamp(digits - point - exponent, -kFar, kFar));
-  return result;
+  return point - static_cast<std::ptrdiff_t>(first) + (is_negative ? -exponent : exponent) > 0;
 }
 
 }  // namespace
 
 TextScanner::TextScanner(std::string_view text, Syntax syntax) : begin_(text.data()), p_(begin_), end_(begin_ + text.size()) {
   if (text.starts_with("\xEF\xBB\xBF")) p_ += 3;
-  const bool has_cr = !text.empty() && std::memchr(begin_, '\r', text.size()) != nullptr;
-  if (has_cr && std::memchr(begin_, '\n', text.size()) == nullptr) line_end_ = '\r';
+  const auto has = [text](char c) { return text.find(c) != std::string_view::npos; };
+  if (!has('\n') && has('\r')) line_end_ = '\r';
   if (syntax.hash_comments) comment_ = '#';
   if (syntax.continuation) joiner_ = '\\';
 }
@@ -124,37 +93,41 @@ bool TextScanner::skip_rare_blank() {
   return false;
 }
 
-const char* TextScanner::real_token_end() const {
-  const char* q = p_;
-  while (q != end_) {
-    const bool in_special =
-        *q == '#' && q - p_ >= 2 && q[-1] == '.' && q[-2] == '1' && q + 1 != end_ && lower(q[1]) >= 'a' && lower(q[1]) <= 'z';
-    if (ends_token(*q) && !in_special) break;
-    ++q;
-  }
-  return q;
+// The end of the exponent that starts at q, after its 'e'; nullptr if it has no digit.
+const char* TextScanner::read_exponent(const char* q, std::ptrdiff_t& exponent) const {
+  const bool is_negative = q != end_ && *q == '-';
+  if (is_negative || (q != end_ && *q == '+')) ++q;
+  const char* const first = q;
+  for (; q != end_ && is_digit(*q); ++q)
+    exponent = std::min(exponent * 10 + (*q - '0'), kFarExponent);
+  if (is_negative) exponent = -exponent;
+  return q == first ? nullptr : q;
 }
 
-bool TextScanner::read_unusual_real(double& value) {
-  const char* const token_end = real_token_end();
-  std::string_view token(p_, static_cast<std::size_t>(token_end - p_));
-  const bool negative = token.starts_with('-');
-  if (negative || token.starts_with('+')) token.remove_prefix(1);
+// Of digits, a point and an exponent, already known to be well formed.
+double TextScanner::round_decimal(std::string_view decimal) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(decimal.data(), decimal.data() + decimal.size(), value);
+  if (error == std::errc::result_out_of_range) return is_large(decimal) ? std::numeric_limits<double>::infinity() : 0.0;
+  return value;
+}
+
+bool TextScanner::read_special(double& value) {
+  const char* q = p_;
+  const auto is_in_special = [&q, this] {
+    return *q == '#' && q - p_ >= 2 && q[-1] == '.' && q[-2] == '1' && q + 1 != end_ && lower(q[1]) >= 'a' &&
+           lower(q[1]) <= 'z';
+  };
+  while (q != end_ && (!ends_token(*q) || is_in_special()))
+    ++q;
+  std::string_view token(p_, static_cast<std::size_t>(q - p_));
+  const bool is_negative = token.starts_with('-');
+  if (is_negative || token.starts_with('+')) token.remove_prefix(1);
   double magnitude = 0;
+  if (!parse_special(token, magnitude)) return false;
+  value = is_negative ? -magnitude : magnitude;
   last_decimals_ = kNoDecimals;
-  if (const Decimal decimal = examine(token); decimal.is_valid) {
-    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), magnitude, std::chars_format::general);
-    if (error == std::errc::result_out_of_range) {
-      magnitude = !decimal.is_zero && decimal.leading_power > 0 ? std::numeric_limits<double>::infinity() : 0.0;
-    } else if (error != std::errc{} || end != token_end) {
-      return false;
-    }
-    if (!(decimal.is_zero && decimal.has_exponent)) last_decimals_ = decimal.decimals;  // "0e0" stands for any precision
-  } else if (!read_special(token, magnitude)) {
-    return false;
-  }
-  value = negative ? -magnitude : magnitude;
-  p_ = token_end;
+  p_ = q;
   return true;
 }
 

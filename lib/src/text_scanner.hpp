@@ -57,26 +57,40 @@ class TextScanner {
   // A real number, up to the token's end. last_decimals() then tells how finely it was printed.
   bool read_real(double& value) {
     const char* q = p_;
-    const bool negative = q != end_ && *q == '-';
-    if (negative || (q != end_ && *q == '+')) ++q;
-    std::uint64_t mantissa = 0;
-    const char* const whole = q;
-    while (q != end_ && is_digit(*q))
-      mantissa = mantissa * 10 + static_cast<std::uint64_t>(*q++ - '0');
-    std::ptrdiff_t digits = q - whole, decimals = 0;
+    const bool is_negative = q != end_ && *q == '-';
+    if (is_negative || (q != end_ && *q == '+')) ++q;
+    const char* const unsigned_part = q;
+    std::uint64_t mantissa = 0;  // of more than 19 digits: meaningless
+    q = read_digits(q, mantissa);
+    std::ptrdiff_t digits = q - unsigned_part, decimals = 0;
     if (q != end_ && *q == '.') {
       const char* const fraction = ++q;
-      while (q != end_ && is_digit(*q))
-        mantissa = mantissa * 10 + static_cast<std::uint64_t>(*q++ - '0');
+      q = read_digits(q, mantissa);
       decimals = q - fraction;
       digits += decimals;
+      if (q != end_ && *q == '#' && decimals == 0 && read_special(value)) return true;  // 1.#INF, where '#' is no comment
     }
-    // Up to here both factors are exact in a double, so that one division rounds once: correctly (Clinger 1990).
+    if (digits == 0) return read_special(value);
+    bool is_blank_zero = false;  // "0e0" stands for any precision
+    if (q != end_ && (*q == 'e' || *q == 'E')) {
+      std::ptrdiff_t exponent = 0;
+      q = read_exponent(q + 1, exponent);
+      decimals -= exponent;
+      is_blank_zero = mantissa == 0;
+    }
+    if (q == nullptr || (q != end_ && !ends_token(*q))) return read_special(value);
+    // Up to here both factors are exact in a double, so that one operation rounds once: correctly (Clinger 1990).
     constexpr std::uint64_t kExact = std::uint64_t{1} << 53;
-    if (digits == 0 || digits > 19 || mantissa > kExact || (q != end_ && !ends_token(*q))) return read_unusual_real(value);
-    const double magnitude = static_cast<double>(mantissa) / kPowersOfTen[static_cast<std::size_t>(decimals)];
-    value = negative ? -magnitude : magnitude;
-    last_decimals_ = static_cast<int>(decimals);
+    double magnitude = static_cast<double>(mantissa);
+    if (digits > 19 || mantissa > kExact || decimals > kExactPowers || decimals < -kExactPowers) {
+      magnitude = round_decimal({unsigned_part, static_cast<std::size_t>(q - unsigned_part)});
+    } else if (decimals > 0) {
+      magnitude /= kPowersOfTen[static_cast<std::size_t>(decimals)];
+    } else {
+      magnitude *= kPowersOfTen[static_cast<std::size_t>(-decimals)];
+    }
+    value = is_negative ? -magnitude : magnitude;
+    last_decimals_ = is_blank_zero ? kNoDecimals : static_cast<int>(decimals);
     p_ = q;
     return true;
   }
@@ -108,7 +122,33 @@ class TextScanner {
     return false;
   }
 
+  // The same, and not negative.
+  bool read_count(std::uint64_t& value) {
+    const char* const start = p_;
+    std::int64_t number = 0;
+    if (read_integer(number) && number >= 0) {
+      value = static_cast<std::uint64_t>(number);
+      return true;
+    }
+    p_ = start;
+    return false;
+  }
+
   [[nodiscard]] bool token_ended() const { return p_ == end_ || ends_token(*p_); }
+
+  // Whether the token is `keyword`, which is in lower case, in either case.
+  [[nodiscard]] bool is_keyword(std::string_view keyword) const {
+    if (remaining() < keyword.size()) return false;
+    for (std::size_t i = 0; i < keyword.size(); ++i) {
+      if ((p_[i] | 0x20) != keyword[i]) return false;
+    }
+    return p_ + keyword.size() == end_ || ends_token(p_[keyword.size()]);
+  }
+  bool take_keyword(std::string_view keyword) {
+    if (!is_keyword(keyword)) return false;
+    p_ += keyword.size();
+    return true;
+  }
 
   // Everything up to the token's end.
   std::string_view read_word() {
@@ -135,11 +175,19 @@ class TextScanner {
     }
   }
   bool skip_rare_blank();
-  bool read_unusual_real(double& value);
-  [[nodiscard]] const char* real_token_end() const;
+  const char* read_digits(const char* q, std::uint64_t& number) const {
+    while (q != end_ && is_digit(*q))
+      number = number * 10 + static_cast<std::uint64_t>(*q++ - '0');
+    return q;
+  }
+  const char* read_exponent(const char* q, std::ptrdiff_t& exponent) const;
+  static double round_decimal(std::string_view decimal);
+  bool read_special(double& value);
 
-  static constexpr std::array<double, 20> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
-                                                          1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
+  static constexpr std::ptrdiff_t kExactPowers = 22;  // 10^22 is the largest power of ten that is a double
+  static constexpr std::array<double, kExactPowers + 1> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                                        1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                                        1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
   const char* begin_;
   const char* p_;

@@ -367,7 +367,7 @@ Report Checker::run() {
     if (options_.progress) options_.progress("check", static_cast<double>(report.checks.size()) / std::size(kRules));
     if (issue.total == 0) continue;
     const Phrase& phrase =
-        *std::find_if(std::begin(kPhrases), std::end(kPhrases), [&](const Phrase& p) { return p.rule == name; });
+        *std::find_if(std::begin(kPhrases), std::end(kPhrases), [&](const Phrase& p) { return p.rule == rule.name; });
     issue.message = std::to_string(issue.total) + " " + std::string(issue.total == 1 ? phrase.one : phrase.many) + ". " +
                     std::string(rule.remedy);
     report.issues.push_back(std::move(issue));

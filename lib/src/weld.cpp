@@ -54,6 +54,20 @@ double as_stored(double x, Precision precision) {
   return static_cast<double>(static_cast<float>(x)) + 0.0;
 }
 
+// The soup's points in the local frame as they will be stored, computed where they are used: a copy of all of them would cost
+// more than the arithmetic.
+struct LocalPoints {
+  const std::vector<Vec3>& source;
+  Vec3 origin;
+  Precision precision;
+
+  [[nodiscard]] std::size_t size() const { return source.size(); }
+  Vec3 operator[](std::size_t i) const {
+    const Vec3& p = source[i];
+    return {as_stored(p.x - origin.x, precision), as_stored(p.y - origin.y, precision), as_stored(p.z - origin.z, precision)};
+  }
+};
+
 std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
   a = (a ^ b) * 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio: odd, bits well spread
   return a ^ (a >> 29);
@@ -129,15 +143,17 @@ struct Welder {
   }
 };
 
-void weld_exact(const std::vector<Vec3>& local, std::size_t expected, Welder& out) {
+void weld_exact(const LocalPoints& local, std::size_t expected, Welder& out) {
   // Points are looked up in blocks, so that the misses to memory of a block overlap: first the slots, then the keys.
   constexpr std::size_t kBlock = 32;
   VertexTable table(expected);
   std::array<std::uint64_t, kBlock> hash{};
+  std::array<Vec3, kBlock> block{};
   for (std::size_t first = 0; first < local.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, local.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
-      hash[i] = hash_of(local[first + i]);
+      block[i] = local[first + i];
+      hash[i] = hash_of(block[i]);
       table.prefetch(hash[i]);
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -145,7 +161,7 @@ void weld_exact(const std::vector<Vec3>& local, std::size_t expected, Welder& ou
       if (vertex != kNone) __builtin_prefetch(&out.mesh.points[vertex]);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3& p = local[first + i];
+      const Vec3& p = block[i];
       const std::uint32_t fresh = out.fresh();
       const std::uint32_t vertex = is_finite(p) ? table.find_or_enter(p, hash[i], fresh, out.mesh.points) : fresh;
       out.put(static_cast<std::uint32_t>(first + i), p, vertex);
@@ -192,10 +208,10 @@ class Grid {
   std::vector<std::uint32_t> heads_, next_;
 };
 
-void weld_distance(const std::vector<Vec3>& local, double distance, Welder& out) {
+void weld_distance(const LocalPoints& local, double distance, Welder& out) {
   Grid grid(distance, local.size());
   for (std::uint32_t source = 0; source < local.size(); ++source) {
-    const Vec3& p = local[source];
+    const Vec3 p = local[source];
     std::uint32_t vertex = is_finite(p) ? grid.find(p, out.mesh.points) : kNone;
     if (vertex == kNone) {
       vertex = out.fresh();
@@ -205,7 +221,7 @@ void weld_distance(const std::vector<Vec3>& local, double distance, Welder& out)
   }
 }
 
-void weld_none(const std::vector<Vec3>& local, Welder& out) {
+void weld_none(const LocalPoints& local, Welder& out) {
   for (std::uint32_t source = 0; source < local.size(); ++source)
     out.put(source, local[source], source);
 }
@@ -215,12 +231,7 @@ void weld_none(const std::vector<Vec3>& local, Welder& out) {
 Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision, [[maybe_unused]] unsigned jobs) {
   Mesh mesh;
   mesh.origin = choose_origin(soup.points);
-  const Vec3 o = mesh.origin;
-  std::vector<Vec3> local;
-  local.reserve(soup.points.size());
-  for (const Vec3& p : soup.points) {
-    local.push_back({as_stored(p.x - o.x, precision), as_stored(p.y - o.y, precision), as_stored(p.z - o.z, precision)});
-  }
+  const LocalPoints local{soup.points, mesh.origin, precision};
 
   // An STL file repeats each vertex about six times; elsewhere few are repeated.
   const std::size_t expected = soup.format == Format::stl ? local.size() / 5 : local.size();

@@ -38,7 +38,7 @@ extern "C" void remove_unfinished_files(int signal_number) {
 
 void install_handlers_once() {
   static const bool installed = [] {
-    for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) {
       struct sigaction old {};
       sigaction(signal_number, nullptr, &old);
       if (old.sa_handler != SIG_DFL) continue;  // nohup and the like stay in force

@@ -9,7 +9,7 @@ namespace fdcg::tools {
 
 // An output named by the user. "-" is standard output; a device or a pipe is written straight; a symbolic link stays a link and
 // its target is replaced. Until commit() nothing is seen under the name, and what was there before stays as it was: the file
-// beside it is removed by the destructor, by a failure, and when SIGINT, SIGTERM or SIGHUP ends the program.
+// beside it is removed by the destructor, by a failure, and when a signal that can be caught ends the program.
 // Errors stick: after the first one write() does nothing and commit() returns false.
 class AtomicFile {
  public:

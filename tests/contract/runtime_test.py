@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What those who embed the runtime rely on: C alone is enough, the step calls nothing, the README's example runs."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+from support import ROOT, Case
+
+LIBRARY = os.environ["FDCG_RUNTIME_LIBRARY"]
+CC = os.environ["FDCG_CC"]
+NM = os.environ["FDCG_NM"]
+C_FLAGS = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I", str(ROOT / "runtime" / "include")]
+
+# What a C compiler may call on its own account; anything else that the library does not define itself stands out.
+COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp", "_GLOBAL_OFFSET_TABLE_"}
+PLATFORM_CALLS = {"open", "open64", "close", "fstat", "fstat64", "mmap", "mmap64", "munmap", "__errno_location", "strerror",
+                  "strerror_r", "__xpg_strerror_r", "strlen"}
+
+
+def symbols():
+    """Of each object of the library: the names it defines, and those it lacks."""
+    text = subprocess.run([NM, LIBRARY], capture_output=True, check=True, text=True).stdout
+    objects, name = {}, None
+    for line in text.splitlines():
+        if line.endswith(":"):
+            name = line[:-1]
+            objects[name] = (set(), set())
+        elif line.strip():
+            kind, symbol = line.split()[-2:]
+            objects[name][1 if kind == "U" else 0].add(symbol)
+    return objects
+
+
+class Embedding(Case):
+    def compiled_by_c(self, source):
+        program = self.path("program")
+        self.run_program(CC, *C_FLAGS, source, LIBRARY, "-o", program, "-lm")
+        return program
+
+    def test_a_c_program_needs_the_headers_and_the_library_alone(self):
+        graph = self.compiled_cube()
+        program = self.compiled_by_c(str(ROOT / "tests" / "contract" / "header_c11.c"))
+        self.assertEqual(b"0 0 250\n", self.run_program(program, graph).stdout)
+
+    def test_each_header_compiles_alone(self):
+        for header in ("fdcg/format.h", "fdcg/fdcg.h"):
+            for compiler, language in ((CC, "c"), (CC, "c++")):
+                source = self.write("alone." + language, f'#include "{header}"\n#include "{header}"\n')
+                standard = "-std=c11" if language == "c" else "-std=c++20"
+                self.run_program(compiler, "-x", language, standard, *C_FLAGS[1:], "-fsyntax-only", source)
+
+    def test_the_readme_example_runs(self):
+        readme = (ROOT / "README.md").read_text()
+        example = re.search(r"```c\n(.*?)```", readme, re.S).group(1)
+        self.compiled_cube("--units", "cm")
+        program = self.compiled_by_c(self.write("example.c", example))
+        done = self.run_program(program, cwd=self.folder)
+        promised = re.search(r"It prints\n\n```\n(.*?)```", readme, re.S).group(1)
+        self.assertEqual(promised, done.stdout.decode())
+
+    def test_the_library_calls_no_heap_no_exceptions_no_clock_no_locks(self):
+        objects = symbols()
+        defined = set().union(*(own for own, _ in objects.values()))
+        for name, (_, lacking) in objects.items():
+            allowed = COMPILER_CALLS | (PLATFORM_CALLS if name.startswith("map_file") else set())
+            self.assertEqual(set(), lacking - defined - allowed, name)
+
+    def test_the_step_stands_alone_in_its_object(self):
+        objects = {name: lacking for name, (_, lacking) in symbols().items() if name.startswith("servo_step")}
+        self.assertEqual(1, len(objects))
+        for lacking in objects.values():
+            self.assertFalse([symbol for symbol in lacking if re.search(r"malloc|free|_Zn|_Zd|throw|cxa|unwind|clock|pthread", symbol)])
+
+
+class RuntimeOnly(Case):
+    def test_the_preset_configures_and_builds_where_the_compiler_library_is_not(self):
+        tree = self.path("tree")
+        for name in ("CMakeLists.txt", "CMakePresets.json", "runtime", "cmake"):
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(source, os.path.join(tree, name))
+            elif source.exists():
+                os.makedirs(tree, exist_ok=True)
+                shutil.copy(source, tree)
+        self.run_program("cmake", "--preset", "runtime-only", "-DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON", cwd=tree)
+        self.run_program("cmake", "--build", "--preset", "runtime-only", cwd=tree)
+        self.assertTrue(list(pathlib.Path(tree).glob("build/runtime-only/runtime/libfdcg_runtime.a")))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+# Tests, fuzz targets and the benchmark of the readers. They link nothing but the import.
+if(FDCG_BUILD_TESTS)
+  find_package(OpenMesh REQUIRED)
+  add_library(fdcg_import_testing INTERFACE)
+  target_include_directories(fdcg_import_testing INTERFACE ${PROJECT_SOURCE_DIR}/lib/src ${CMAKE_CURRENT_SOURCE_DIR})
+  target_compile_definitions(fdcg_import_testing INTERFACE FDCG_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  fdcg_test(text_scanner SOURCES unit/text_scanner_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import SOURCES unit/import_test.cpp unit/import_off_test.cpp unit/import_obj_test.cpp unit/import_ply_test.cpp
+            unit/import_ply_binary_test.cpp unit/import_stl_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import_corpus SOURCES unit/import_corpus_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import_allocation SOURCES unit/import_allocation_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import_openmesh SOURCES unit/import_openmesh_test.cpp LIBRARIES fdcg_import fdcg_import_testing OpenMeshCore)
+endif()
+
+if(FDCG_BUILD_FUZZERS)
+  # One target a reader. Run: fdcg_fuzz_import_ply testdata/fuzz/import_ply
+  foreach(format off obj ply stl)
+    add_executable(fdcg_fuzz_import_${format} fuzz/fuzz_import_${format}.cpp)
+    target_link_libraries(fdcg_fuzz_import_${format} PRIVATE fdcg_import fdcg_flags)
+    target_link_options(fdcg_fuzz_import_${format} PRIVATE -fsanitize=fuzzer)
+  endforeach()
+endif()
+
+if(FDCG_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+  find_package(OpenMesh REQUIRED)
+  add_executable(fdcg_bench_import bench/import_bench.cpp)
+  target_link_libraries(fdcg_bench_import PRIVATE fdcg_import fdcg_flags OpenMeshCore benchmark::benchmark)
+endif()
