@@ -11,10 +11,6 @@ namespace fdcg::test {
 namespace {
 
 using Wide = long double;
-constexpr int kCarryTicks = 100;  // more than any walk here needs to come to an end
-// The runtime carries a step over at 256 transitions; jumps across a body of 500 sides need up to 500, legitimately. Below half
-// of its bound nothing excuses it.
-constexpr std::uint32_t kTransitionsWithoutCarry = 128;
 constexpr double kGrowthShown = 16;
 constexpr double kRoundings = 64;  // a decision within so many eps of the extent is a tie
 
@@ -83,17 +79,12 @@ void Pair::step(const Hip& hip_object) {
   ++result.steps;
   result.transitions += output.transitions;
   result.contact_steps += contact_.state != FDCG_FREE;
-  const bool is_carried = (output.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
-  result.bound_hits += is_carried;
-  for (int tick = 0; tick < kCarryTicks && (output.flags & FDCG_RESULT_TRANSITION_BOUND) != 0; ++tick) {
-    fdcg_step(&graph_, &params_, &contact_, hip_object.data(), &output);
-  }
+  result.bound_hits += (output.flags & (FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND)) != 0;
   result.most_transitions = std::max<std::uint64_t>(result.most_transitions, taken.transitions);
   measure(before, hip, output);
   const double apart = difference(walker_.contact.god_object, contact_.god_object) / surface_.extent;
   if (agree(walker_.contact, contact_) && apart <= tolerance_) {
     result.worst_god_object = std::max(result.worst_god_object, apart);
-    result.needless_bound_hits += is_carried && taken.transitions < kTransitionsWithoutCarry;
   } else {
     judge(before, hip, before.started ? apart_before : 0);
     walker_.resynchronise(contact_);

@@ -64,7 +64,7 @@ void check(const fdcg_graph& graph, const PolygonSoup& soup, double mu_static, d
   const double n = static_cast<double>(run.steps);
   CHECK(run.failures == 0);
   CHECK(run.worst_growth <= kGrowthInEps);
-  CHECK(run.needless_bound_hits == 0);
+  CHECK(run.bound_hits == 0);
   CHECK(run.contact_steps > run.steps / 50);
   CHECK(static_cast<double>(run.ties) <= kTieShare * n);
   CHECK(static_cast<double>(run.ties_off_features) <= kTieShareOffFeatures * n + 2);
