@@ -247,7 +247,9 @@ bool VertexRemover::has_edge(std::uint32_t from, std::uint32_t to) const {
 
 bool VertexRemover::is_near(const Vec3& from, const Vec3& to, const Vec3& x) const {
   const Vec3 edge = to - from, d = x - from;
-  const double along = dot(edge, d), squared = squared_length(edge), reach = kQuantumReach * options_.quantum.at(x);
+  const Quantum& quantum = options_.quantum;
+  const double reach = kQuantumReach * std::max({quantum.at(x), quantum.at(from), quantum.at(to)});
+  const double along = dot(edge, d), squared = squared_length(edge);
   return along > 0 && along < squared && squared_length(cross(edge, d)) <= reach * reach * squared;
 }
 
