@@ -31,7 +31,7 @@ struct Merged {
 // Inside each region, seen along one axis, exactly:
 //   1. vertices inside the region go, and those between two straight edges of the same two regions (or of one and the open
 //      boundary) go from both sides at once; the hole is cut into triangles anew. Straight is exactly so or, unless `coplanar`
-//      is exact, with every vertex that the edge has swallowed within kQuantumReach of its quantum of the edge;
+//      is exact, with every vertex that the edge has swallowed within kQuantumReach of the largest quantum of it and the ends;
 //   2. diagonals are dropped, longest first, while the polygon stays convex and has at most kMaxMergedSides sides
 //      (Hertel and Mehlhorn 1983: at most four times the fewest pieces).
 // The mesh stays manifold and covers the same area; edges between regions keep their class. A region one of whose triangles

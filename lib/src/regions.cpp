@@ -110,7 +110,8 @@ class Grower {
   [[nodiscard]] bool is_within_quantum(std::uint32_t face, const Candidate& plane) const {
     for (std::uint32_t i = 0; i < 3; ++i) {
       const Vec3& p = corner(face, i);
-      if (std::fabs(dot(plane.normal, p - plane.point)) > kQuantumReach * options_.quantum.at(p)) return false;
+      const double reach = std::max(reach_, kQuantumReach * options_.quantum.at(p));
+      if (std::fabs(dot(plane.normal, p - plane.point)) > reach) return false;
     }
     return dot(area_vector(face), plane.normal) > 0;
   }
@@ -144,6 +145,10 @@ class Grower {
     members_.push_back(atom);
     faces_ += static_cast<std::uint32_t>(atoms_.of(atom).size());
     add_to(fit, atom);
+    for (const std::uint32_t face : atoms_.of(atom)) {
+      for (std::uint32_t i = 0; i < 3; ++i)
+        reach_ = std::max(reach_, kQuantumReach * options_.quantum.at(corner(face, i)));
+    }
   }
 
   // The plane through all members, if it suits every one of them (and `extra`).
@@ -160,6 +165,7 @@ class Grower {
     PlaneFit fit(plane.point);
     members_.clear();
     faces_ = 0;
+    reach_ = 0;
     take(seed, fit);
     if (options_.coplanar.kind != Coplanar::Kind::exact) {
       // Members always suit `plane`. It is fitted anew whenever the region has doubled and once growth has come to a stop.
@@ -234,6 +240,7 @@ class Grower {
   std::uint32_t round_ = 0;
   std::vector<std::uint32_t> members_;
   std::uint32_t faces_ = 0;
+  double reach_ = 0;  // from the plane: by the largest quantum of a member, for it moves the whole plane
   std::vector<Vec3> points_;
   Regions regions_;
 };

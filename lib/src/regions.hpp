@@ -35,7 +35,7 @@ struct RegionOptions {
 
 // Joins triangles across flat edges (classify.hpp) into regions, each bounded by the whole region's plane:
 //   exact     every corner is exactly coplanar with every other. Exactly flat edges never lie between two regions.
-//   quantum   every corner is within kQuantumReach of its quantum of the plane, and every normal agrees with it
+//   quantum   every corner is within kQuantumReach of the region's largest quantum of the plane, and every normal agrees
 //   angle     as quantum, or every normal is within the angle of the plane's normal
 // so that chains of small angles cannot drift. Largest parts first; a region whose plane would move off one of its corners by
 // growing on stops there. Near linear; a mesh without flat edges costs one pass over them. Triangles only.

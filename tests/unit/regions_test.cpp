@@ -41,6 +41,11 @@ Vec3 normal_of(const Mesh& mesh, std::uint32_t f) {
 // The bound that the header promises, face by face.
 void check_bounds(const Found& found, double angle) {
   const Mesh& mesh = found.cut.mesh;
+  std::vector<double> quantum(found.regions.list.size(), 0);  // the largest in each region
+  for (std::uint32_t slot = 0; slot < mesh.corners.size(); ++slot) {
+    const std::uint32_t r = found.regions.of(FaceId{slot / 3});
+    if (r != kNone) quantum[r] = std::max(quantum[r], found.quantum.at(mesh.points[+mesh.corners[slot]]));
+  }
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
     const std::uint32_t r = found.regions.of(FaceId{f});
     if (r == kNone) continue;
@@ -49,7 +54,7 @@ void check_bounds(const Found& found, double angle) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       const Vec3& p = mesh.points[+mesh.corners[3 * f + i]];
       const double off = std::fabs(dot(region.plane.normal, p) + region.plane.offset);
-      within_quantum = within_quantum && off <= 2 * kQuantumReach * found.quantum.at(p) + 1e-15;
+      within_quantum = within_quantum && off <= kQuantumReach * quantum[r] * (1 + 1e-9) + 1e-15;
     }
     const bool within_angle = dot(normal_of(mesh, f), region.plane.normal) >= std::cos(angle) - 1e-12;
     const bool is_bounded = within_quantum || (region.tier == Flat::angle && within_angle);
