@@ -101,6 +101,11 @@ void VertexRemover::read_ring(Star& star, bool is_closed) const {
 }
 
 bool VertexRemover::cut(Star& star, std::uint32_t vertex) {
+  star.ears.clear();
+  if (star.ring.size() == 2) {  // one thin triangle: what lies behind it takes over its border
+    const HalfedgeId behind{star.ring_edges.front().across};
+    return behind != Topology::kBoundary && region(+behind) == region(star.out.front());
+  }
   star.points.clear();
   for (const std::uint32_t v : star.ring)
     star.points.push_back(point(v));
@@ -116,6 +121,11 @@ std::uint32_t VertexRemover::replace(Star& star) {
   const Region& home = regions_.list[r];
   const EdgeClass inner = home.is_exact ? EdgeClass{FDCG_COPLANAR, Flat::exact} : EdgeClass{FDCG_CONVEX, home.tier};
   std::uint32_t closing = kNone;
+  if (star.ring.size() == 2) {
+    closing = star.ring_edges.front().across;
+    slot_of_[tail(closing)] = closing;
+    slot_of_[head(closing)] = next(closing);
+  }
   const auto close = [&](std::uint32_t ring_index, std::uint32_t slot) {
     const RingEdge& edge = star.ring_edges[ring_index];
     edges_[slot] = edge.edge;
@@ -190,16 +200,15 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
   right_star_.out.insert(right_star_.out.end(), fan_.begin(), fan_.begin() + static_cast<std::ptrdiff_t>(begin));
   if (is_closed && !is_sound(region(right_star_.out.front()))) return Outcome::kept;
   const std::uint32_t edge_out = left_star_.out.front(), edge_in = previous(left_star_.out.back());
-  if (left_star_.out.size() < 2 || (is_closed && right_star_.out.size() < 2) ||
-      edges_[edge_out].sign() != edges_[edge_in].sign())
-    return Outcome::later;
+  if (edges_[edge_out].sign() != edges_[edge_in].sign()) return Outcome::later;
 
   left = head(edge_out);
   right = tail(edge_in);
   const std::uint32_t list_out = swallowed_[edge_out], list_in = swallowed_[edge_in];
   bool is_exact = false;
   if (!is_straight(left, vertex, right, list_in, list_out, is_exact)) return Outcome::later;
-  if (!is_exact && has_edge(left, right)) return Outcome::later;
+  const std::size_t thin = (left_star_.out.size() == 1 ? 1u : 0u) + (is_closed && right_star_.out.size() == 1 ? 1u : 0u);
+  if (count_edges(left, right) != thin) return Outcome::later;
   read_ring(left_star_, false);
   if (!cut(left_star_, vertex)) return Outcome::later;
   if (is_closed) {
@@ -228,21 +237,24 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
   return Outcome::removed;
 }
 
-bool VertexRemover::has_edge(std::uint32_t from, std::uint32_t to) const {
+std::size_t VertexRemover::count_edges(std::uint32_t from, std::uint32_t to) const {
   const std::uint32_t start = slot_of_[from];
   std::uint32_t slot = start;
+  std::size_t count = 0;
   do {
-    if (head(slot) == to || tail(previous(slot)) == to) return true;
+    count += head(slot) == to ? 1 : 0;
     const HalfedgeId across = twin(previous(slot));
-    if (across == Topology::kBoundary) break;
+    if (across == Topology::kBoundary) {
+      count += tail(previous(slot)) == to ? 1 : 0;
+      for (HalfedgeId back = twin(start); back != Topology::kBoundary; back = twin(slot)) {
+        slot = next(+back);
+        count += head(slot) == to ? 1 : 0;
+      }
+      return count;
+    }
     slot = +across;
   } while (slot != start);
-  if (twin(previous(slot)) != Topology::kBoundary) return false;
-  for (HalfedgeId back = twin(start); back != Topology::kBoundary; back = twin(slot)) {
-    slot = next(+back);
-    if (head(slot) == to) return true;
-  }
-  return false;
+  return count;
 }
 
 bool VertexRemover::is_near(const Vec3& from, const Vec3& to, const Vec3& x) const {

@@ -62,7 +62,7 @@ class VertexRemover {
   bool cut(Star& star, std::uint32_t vertex);
   std::uint32_t replace(Star& star);
   [[nodiscard]] bool goes_once_round(const Star& star, std::uint32_t vertex) const;
-  [[nodiscard]] bool has_edge(std::uint32_t from, std::uint32_t to) const;
+  [[nodiscard]] std::size_t count_edges(std::uint32_t from, std::uint32_t to) const;
   [[nodiscard]] bool is_near(const Vec3& from, const Vec3& to, const Vec3& x) const;
   [[nodiscard]] bool all_near(const Vec3& from, const Vec3& to, std::uint32_t list) const;
   [[nodiscard]] bool is_straight(std::uint32_t from, std::uint32_t vertex, std::uint32_t to, std::uint32_t list_in,
