@@ -10,11 +10,11 @@
 namespace fdcg::bake {
 
 VertexRemover::VertexRemover(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, const Regions& regions,
-                             const std::vector<RegionView>& views, const MergeOptions& options)
+                             const std::vector<Projection>& views, const MergeOptions& options)
     : mesh_(mesh), topology_(topology), edges_(edges), regions_(regions), views_(views), options_(options) {
   slot_of_.assign(mesh.points.size(), kNone);
   for (std::uint32_t slot = 0; slot < mesh.corners.size(); ++slot) {
-    if (is_sound(region(slot))) slot_of_[tail(slot)] = slot;
+    if (region(slot) != kNone) slot_of_[tail(slot)] = slot;
   }
   swallowed_.assign(mesh.corners.size(), kNone);
   next_swallowed_.assign(mesh.points.size(), kNone);
@@ -109,7 +109,7 @@ bool VertexRemover::cut(Star& star, std::uint32_t vertex) {
   star.points.clear();
   for (const std::uint32_t v : star.ring)
     star.points.push_back(point(v));
-  const Projection& projection = views_[region(star.out.front())].projection;
+  const Projection& projection = views_[region(star.out.front())];
   const std::span<const Ear> ears = cutter_.cut_star(projection, star.points, point(vertex));
   star.ears.assign(ears.begin(), ears.end());
   return !ears.empty();
@@ -158,7 +158,7 @@ std::uint32_t VertexRemover::replace(Star& star) {
 }
 
 bool VertexRemover::goes_once_round(const Star& star, std::uint32_t vertex) const {
-  const Projection& projection = views_[region(star.out.front())].projection;
+  const Projection& projection = views_[region(star.out.front())];
   const double height = projection.v(point(vertex));
   int rounds = 0;
   bool was_below = projection.v(point(star.ring.back())) < height;
@@ -173,7 +173,7 @@ bool VertexRemover::goes_once_round(const Star& star, std::uint32_t vertex) cons
 VertexRemover::Outcome VertexRemover::try_inner(std::uint32_t vertex, std::size_t largest_fan) {
   if (!read_fan(vertex)) return Outcome::kept;
   const std::uint32_t r = region(fan_.front());
-  if (!is_sound(r) || !std::all_of(fan_.begin(), fan_.end(), [&](std::uint32_t slot) { return region(slot) == r; }))
+  if (r == kNone || !std::all_of(fan_.begin(), fan_.end(), [&](std::uint32_t slot) { return region(slot) == r; }))
     return Outcome::kept;
   if (fan_.size() > largest_fan) return Outcome::later;
   left_star_.out.assign(fan_.begin(), fan_.end());
@@ -194,11 +194,11 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
   for (std::size_t i = is_closed ? 0 : 1; i < count; ++i) {
     if (differ(fan_[i > 0 ? i - 1 : count - 1], fan_[i])) (changes++ == 0 ? begin : end) = i;
   }
-  if (changes != (is_closed ? 2u : 0u) || !is_sound(region(fan_[begin]))) return Outcome::kept;
+  if (changes != (is_closed ? 2u : 0u) || region(fan_[begin]) == kNone) return Outcome::kept;
   left_star_.out.assign(fan_.begin() + static_cast<std::ptrdiff_t>(begin), fan_.begin() + static_cast<std::ptrdiff_t>(end));
   right_star_.out.assign(fan_.begin() + static_cast<std::ptrdiff_t>(end), fan_.end());
   right_star_.out.insert(right_star_.out.end(), fan_.begin(), fan_.begin() + static_cast<std::ptrdiff_t>(begin));
-  if (is_closed && !is_sound(region(right_star_.out.front()))) return Outcome::kept;
+  if (is_closed && region(right_star_.out.front()) == kNone) return Outcome::kept;
   const std::uint32_t edge_out = left_star_.out.front(), edge_in = previous(left_star_.out.back());
   if (edges_[edge_out].sign() != edges_[edge_in].sign()) return Outcome::later;
 
