@@ -22,7 +22,8 @@ class Merger {
         options_(options) {}
 
   Merged run() {
-    look_at_regions();
+    for (const Region& region : regions_.list)
+      views_.emplace_back(region.plane.normal);
     find_centres();
     if (options_.across_faces) VertexRemover(mesh_, topology_, edges_, regions_, views_, options_).run();
     drop_diagonals();
@@ -35,17 +36,6 @@ class Merger {
   [[nodiscard]] const Vec3& start(std::uint32_t slot) const { return mesh_.points[+mesh_.corners[slot]]; }
   [[nodiscard]] std::uint32_t region(std::uint32_t slot) const { return regions_.of_face[slot / 3]; }
   [[nodiscard]] bool is_alive(std::uint32_t face) const { return mesh_.corners[3 * face] != VertexId{kNone}; }
-
-  void look_at_regions() {
-    views_.reserve(regions_.list.size());
-    for (const Region& region : regions_.list)
-      views_.push_back({Projection(region.plane.normal), true});
-    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
-      const std::uint32_t r = regions_.of_face[f];
-      if (r == kNone || !views_[r].is_sound) continue;
-      if (views_[r].projection.orient(start(3 * f), start(3 * f + 1), start(3 * f + 2)) <= 0) views_[r].is_sound = false;
-    }
-  }
 
   // Before triangles change: where each was.
   void find_centres() {
@@ -90,7 +80,7 @@ class Merger {
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       const HalfedgeId twin = topology_.twin[slot];
       const std::uint32_t r = region(slot);
-      if (r == kNone || !views_[r].is_sound || !is_alive(slot / 3) || twin == Topology::kBoundary || +twin < slot) continue;
+      if (r == kNone || !is_alive(slot / 3) || twin == Topology::kBoundary || +twin < slot) continue;
       if (region(+twin) != r || !may_join(slot / 3, +twin / 3)) continue;
       diagonals.push_back({squared_length(start(+twin) - start(slot)), slot});
     }
@@ -109,7 +99,7 @@ class Merger {
     const std::uint32_t twin = +topology_.twin[slot];
     const std::uint32_t a = root(slot / 3), b = root(twin / 3);
     if (a == b || sides_[a] + sides_[b] - 2 > kMaxMergedSides) return;
-    const Projection& view = views_[region(slot)].projection;
+    const Projection& view = views_[region(slot)];
     if (!stays_convex(view, previous_[slot], slot, next_[next_[twin]])) return;
     if (!stays_convex(view, previous_[twin], twin, next_[next_[slot]])) return;
     link(previous_[slot], next_[twin]);
@@ -176,7 +166,7 @@ class Merger {
   std::vector<EdgeClass> edges_;
   Regions regions_;
   const MergeOptions& options_;
-  std::vector<RegionView> views_;
+  std::vector<Projection> views_;
   std::vector<Vec3> centre_;
   std::vector<std::uint32_t> next_, previous_;  // of each slot in its polygon; next_ is kNone for a dropped diagonal
   std::vector<std::uint32_t> parent_, sides_;   // of each triangle: union-find, and at the root the polygon's sides
@@ -214,13 +204,13 @@ void Merger::locate_triangles() {
   out_.face_of_triangle.resize(mesh_.face_count());
   for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
     const std::uint32_t r = regions_.of_face[f];
-    if (r == kNone || !views_[r].is_sound) {
+    if (r == kNone) {
       out_.face_of_triangle[f] = face_of_root_[f];
       continue;
     }
     double best = -std::numeric_limits<double>::infinity();
     for (std::uint32_t i = first[r]; i < first[r + 1] && best < 0; ++i) {
-      const double d = first[r + 1] - first[r] == 1 ? 0 : depth(views_[r].projection, faces[i], centre_[f]);
+      const double d = first[r + 1] - first[r] == 1 ? 0 : depth(views_[r], faces[i], centre_[f]);
       if (d <= best) continue;
       best = d;
       out_.face_of_triangle[f] = faces[i];

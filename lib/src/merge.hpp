@@ -34,8 +34,7 @@ struct Merged {
 //      is exact, with every vertex that the edge has swallowed within kQuantumReach of the largest quantum of it and the ends;
 //   2. diagonals are dropped, longest first, while the polygon stays convex and has at most kMaxMergedSides sides
 //      (Hertel and Mehlhorn 1983: at most four times the fewest pieces).
-// The mesh stays manifold and covers the same area; edges between regions keep their class. A region one of whose triangles
-// does not face the region's own way is left as it is. Triangles only; near linear.
+// The mesh stays manifold and covers the same area; edges between regions keep their class. Triangles only; near linear.
 [[nodiscard]] Merged merge_regions(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions,
                                    const MergeOptions& options);
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "plane_fit.hpp"
+#include "projection.hpp"
 #include "vec.hpp"
 
 namespace fdcg::bake {
@@ -143,7 +144,7 @@ class Grower {
   void take(std::uint32_t atom, PlaneFit& fit) {
     taken_[atom] = 1;
     members_.push_back(atom);
-    faces_ += static_cast<std::uint32_t>(atoms_.of(atom).size());
+    face_count_ += static_cast<std::uint32_t>(atoms_.of(atom).size());
     add_to(fit, atom);
     for (const std::uint32_t face : atoms_.of(atom)) {
       for (std::uint32_t i = 0; i < 3; ++i)
@@ -164,7 +165,7 @@ class Grower {
     Candidate plane{unit_normal(corner(face, 0), corner(face, 1), corner(face, 2)), corner(face, 0)};
     PlaneFit fit(plane.point);
     members_.clear();
-    faces_ = 0;
+    face_count_ = 0;
     reach_ = 0;
     take(seed, fit);
     if (options_.coplanar.kind != Coplanar::Kind::exact) {
@@ -176,16 +177,16 @@ class Grower {
         plane = *better;
       }
     }
-    if (faces_ > 1) finish(plane);
+    if (face_count_ > 1) finish(plane);
   }
 
   // Takes what suits the plane across flat edges, until the region has doubled or there is nothing left. True: something was
   // taken.
   bool spread(PlaneFit& fit, Candidate& plane) {
     constexpr std::uint32_t kFewFaces = 32;  // so small a region's plane is uncertain: it may tilt for each new face
-    const std::uint32_t limit = std::max(2 * faces_, kFewFaces), before = faces_;
+    const std::uint32_t limit = std::max(2 * face_count_, kFewFaces), before = face_count_;
     ++round_;
-    for (std::size_t m = 0; m < members_.size() && faces_ < limit; ++m) {
+    for (std::size_t m = 0; m < members_.size() && face_count_ < limit; ++m) {
       for (const std::uint32_t face : atoms_.of(members_[m])) {
         for (std::uint32_t slot = 3 * face; slot < 3 * face + 3; ++slot) {
           if (edges_[slot].flat() == Flat::no) continue;
@@ -194,7 +195,7 @@ class Grower {
           tried_[atom] = round_;
           if (fits(atom, plane)) {
             take(atom, fit);
-          } else if (faces_ + atoms_.of(atom).size() <= kFewFaces) {
+          } else if (face_count_ + atoms_.of(atom).size() <= kFewFaces) {
             PlaneFit wider = fit;
             add_to(wider, atom);
             if (const std::optional<Candidate> tilted = refit(wider, plane.normal, atom)) {
@@ -205,10 +206,36 @@ class Grower {
         }
       }
     }
-    return faces_ > before;
+    return face_count_ > before;
+  }
+
+  // Every triangle of a region faces the region's own way, exactly, seen along the axis that merging will use. Slivers whose
+  // corners are within the quantum but whose normals are not are left on their own.
+  [[nodiscard]] bool faces(std::uint32_t atom, const Vec3& normal) const {
+    const Projection view(normal);
+    const auto all = atoms_.of(atom);
+    return std::all_of(all.begin(), all.end(),
+                       [&](std::uint32_t face) { return view.orient(corner(face, 0), corner(face, 1), corner(face, 2)) > 0; });
   }
 
   void finish(const Candidate& plane) {
+    const Vec3 stored_normal = stored_plane(plane.normal, {&plane.point, 1}, options_.precision).normal;
+    std::vector<std::uint32_t> left_out;
+    std::erase_if(members_, [&](std::uint32_t atom) {
+      const bool leaves = members_.size() > 1 && !faces(atom, stored_normal);
+      if (leaves) left_out.push_back(atom);
+      return leaves;
+    });
+    if (!members_.empty()) add_region(plane);
+    for (const std::uint32_t atom : left_out) {
+      members_.assign(1, atom);
+      const std::uint32_t face = largest_face_[atom];
+      add_region({unit_normal(corner(face, 0), corner(face, 1), corner(face, 2)), corner(face, 0)});
+    }
+  }
+
+  void add_region(const Candidate& plane) {
+    if (members_.size() == 1 && atoms_.of(members_[0]).size() == 1) return;
     Region region;
     region.is_exact = members_.size() == 1;
     points_.clear();
@@ -239,7 +266,7 @@ class Grower {
   std::vector<std::uint32_t> tried_;  // the round in which an atom was last looked at
   std::uint32_t round_ = 0;
   std::vector<std::uint32_t> members_;
-  std::uint32_t faces_ = 0;
+  std::uint32_t face_count_ = 0;
   double reach_ = 0;  // from the plane: by the largest quantum of a member, for it moves the whole plane
   std::vector<Vec3> points_;
   Regions regions_;

@@ -10,11 +10,11 @@
 namespace fdcg::bake {
 
 VertexRemover::VertexRemover(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, const Regions& regions,
-                             const std::vector<RegionView>& views, const MergeOptions& options)
+                             const std::vector<Projection>& views, const MergeOptions& options)
     : mesh_(mesh), topology_(topology), edges_(edges), regions_(regions), views_(views), options_(options) {
   slot_of_.assign(mesh.points.size(), kNone);
   for (std::uint32_t slot = 0; slot < mesh.corners.size(); ++slot) {
-    if (is_sound(region(slot))) slot_of_[tail(slot)] = slot;
+    if (region(slot) != kNone) slot_of_[tail(slot)] = slot;
   }
   swallowed_.assign(mesh.corners.size(), kNone);
   next_swallowed_.assign(mesh.points.size(), kNone);
@@ -101,10 +101,15 @@ void VertexRemover::read_ring(Star& star, bool is_closed) const {
 }
 
 bool VertexRemover::cut(Star& star, std::uint32_t vertex) {
+  star.ears.clear();
+  if (star.ring.size() == 2) {  // one thin triangle: what lies behind it takes over its border
+    const HalfedgeId behind{star.ring_edges.front().across};
+    return behind != Topology::kBoundary && region(+behind) == region(star.out.front());
+  }
   star.points.clear();
   for (const std::uint32_t v : star.ring)
     star.points.push_back(point(v));
-  const Projection& projection = views_[region(star.out.front())].projection;
+  const Projection& projection = views_[region(star.out.front())];
   const std::span<const Ear> ears = cutter_.cut_star(projection, star.points, point(vertex));
   star.ears.assign(ears.begin(), ears.end());
   return !ears.empty();
@@ -116,6 +121,11 @@ std::uint32_t VertexRemover::replace(Star& star) {
   const Region& home = regions_.list[r];
   const EdgeClass inner = home.is_exact ? EdgeClass{FDCG_COPLANAR, Flat::exact} : EdgeClass{FDCG_CONVEX, home.tier};
   std::uint32_t closing = kNone;
+  if (star.ring.size() == 2) {
+    closing = star.ring_edges.front().across;
+    slot_of_[tail(closing)] = closing;
+    slot_of_[head(closing)] = next(closing);
+  }
   const auto close = [&](std::uint32_t ring_index, std::uint32_t slot) {
     const RingEdge& edge = star.ring_edges[ring_index];
     edges_[slot] = edge.edge;
@@ -148,7 +158,7 @@ std::uint32_t VertexRemover::replace(Star& star) {
 }
 
 bool VertexRemover::goes_once_round(const Star& star, std::uint32_t vertex) const {
-  const Projection& projection = views_[region(star.out.front())].projection;
+  const Projection& projection = views_[region(star.out.front())];
   const double height = projection.v(point(vertex));
   int rounds = 0;
   bool was_below = projection.v(point(star.ring.back())) < height;
@@ -163,7 +173,7 @@ bool VertexRemover::goes_once_round(const Star& star, std::uint32_t vertex) cons
 VertexRemover::Outcome VertexRemover::try_inner(std::uint32_t vertex, std::size_t largest_fan) {
   if (!read_fan(vertex)) return Outcome::kept;
   const std::uint32_t r = region(fan_.front());
-  if (!is_sound(r) || !std::all_of(fan_.begin(), fan_.end(), [&](std::uint32_t slot) { return region(slot) == r; }))
+  if (r == kNone || !std::all_of(fan_.begin(), fan_.end(), [&](std::uint32_t slot) { return region(slot) == r; }))
     return Outcome::kept;
   if (fan_.size() > largest_fan) return Outcome::later;
   left_star_.out.assign(fan_.begin(), fan_.end());
@@ -184,22 +194,21 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
   for (std::size_t i = is_closed ? 0 : 1; i < count; ++i) {
     if (differ(fan_[i > 0 ? i - 1 : count - 1], fan_[i])) (changes++ == 0 ? begin : end) = i;
   }
-  if (changes != (is_closed ? 2u : 0u) || !is_sound(region(fan_[begin]))) return Outcome::kept;
+  if (changes != (is_closed ? 2u : 0u) || region(fan_[begin]) == kNone) return Outcome::kept;
   left_star_.out.assign(fan_.begin() + static_cast<std::ptrdiff_t>(begin), fan_.begin() + static_cast<std::ptrdiff_t>(end));
   right_star_.out.assign(fan_.begin() + static_cast<std::ptrdiff_t>(end), fan_.end());
   right_star_.out.insert(right_star_.out.end(), fan_.begin(), fan_.begin() + static_cast<std::ptrdiff_t>(begin));
-  if (is_closed && !is_sound(region(right_star_.out.front()))) return Outcome::kept;
+  if (is_closed && region(right_star_.out.front()) == kNone) return Outcome::kept;
   const std::uint32_t edge_out = left_star_.out.front(), edge_in = previous(left_star_.out.back());
-  if (left_star_.out.size() < 2 || (is_closed && right_star_.out.size() < 2) ||
-      edges_[edge_out].sign() != edges_[edge_in].sign())
-    return Outcome::later;
+  if (edges_[edge_out].sign() != edges_[edge_in].sign()) return Outcome::later;
 
   left = head(edge_out);
   right = tail(edge_in);
   const std::uint32_t list_out = swallowed_[edge_out], list_in = swallowed_[edge_in];
   bool is_exact = false;
   if (!is_straight(left, vertex, right, list_in, list_out, is_exact)) return Outcome::later;
-  if (!is_exact && has_edge(left, right)) return Outcome::later;
+  const std::size_t thin = (left_star_.out.size() == 1 ? 1u : 0u) + (is_closed && right_star_.out.size() == 1 ? 1u : 0u);
+  if (count_edges(left, right) != thin) return Outcome::later;
   read_ring(left_star_, false);
   if (!cut(left_star_, vertex)) return Outcome::later;
   if (is_closed) {
@@ -228,21 +237,24 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
   return Outcome::removed;
 }
 
-bool VertexRemover::has_edge(std::uint32_t from, std::uint32_t to) const {
+std::size_t VertexRemover::count_edges(std::uint32_t from, std::uint32_t to) const {
   const std::uint32_t start = slot_of_[from];
   std::uint32_t slot = start;
+  std::size_t count = 0;
   do {
-    if (head(slot) == to || tail(previous(slot)) == to) return true;
+    count += head(slot) == to ? 1 : 0;
     const HalfedgeId across = twin(previous(slot));
-    if (across == Topology::kBoundary) break;
+    if (across == Topology::kBoundary) {
+      count += tail(previous(slot)) == to ? 1 : 0;
+      for (HalfedgeId back = twin(start); back != Topology::kBoundary; back = twin(slot)) {
+        slot = next(+back);
+        count += head(slot) == to ? 1 : 0;
+      }
+      return count;
+    }
     slot = +across;
   } while (slot != start);
-  if (twin(previous(slot)) != Topology::kBoundary) return false;
-  for (HalfedgeId back = twin(start); back != Topology::kBoundary; back = twin(slot)) {
-    slot = next(+back);
-    if (head(slot) == to) return true;
-  }
-  return false;
+  return count;
 }
 
 bool VertexRemover::is_near(const Vec3& from, const Vec3& to, const Vec3& x) const {

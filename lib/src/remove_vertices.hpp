@@ -13,18 +13,12 @@
 
 namespace fdcg::bake {
 
-// A region as merging sees it.
-struct RegionView {
-  Projection projection;
-  bool is_sound;  // every one of its triangles faces the projection, so that it can be edited there
-};
-
 // Edits a triangle mesh in place. Slots are half-edges, three a triangle; of a triangle that is no longer there the corners are
 // kNone.
 class VertexRemover {
  public:
   VertexRemover(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, const Regions& regions,
-                const std::vector<RegionView>& views, const MergeOptions& options);
+                const std::vector<Projection>& views, const MergeOptions& options);
   void run();
 
  private:
@@ -50,7 +44,6 @@ class VertexRemover {
   [[nodiscard]] std::uint32_t head(std::uint32_t slot) const { return +mesh_.corners[next(slot)]; }
   [[nodiscard]] HalfedgeId twin(std::uint32_t slot) const { return topology_.twin[slot]; }
   [[nodiscard]] std::uint32_t region(std::uint32_t slot) const { return regions_.of_face[slot / 3]; }
-  [[nodiscard]] bool is_sound(std::uint32_t region) const { return region != kNone && views_[region].is_sound; }
   [[nodiscard]] const Vec3& point(std::uint32_t vertex) const { return mesh_.points[vertex]; }
 
   void remove_inner();
@@ -62,7 +55,7 @@ class VertexRemover {
   bool cut(Star& star, std::uint32_t vertex);
   std::uint32_t replace(Star& star);
   [[nodiscard]] bool goes_once_round(const Star& star, std::uint32_t vertex) const;
-  [[nodiscard]] bool has_edge(std::uint32_t from, std::uint32_t to) const;
+  [[nodiscard]] std::size_t count_edges(std::uint32_t from, std::uint32_t to) const;
   [[nodiscard]] bool is_near(const Vec3& from, const Vec3& to, const Vec3& x) const;
   [[nodiscard]] bool all_near(const Vec3& from, const Vec3& to, std::uint32_t list) const;
   [[nodiscard]] bool is_straight(std::uint32_t from, std::uint32_t vertex, std::uint32_t to, std::uint32_t list_in,
@@ -73,9 +66,9 @@ class VertexRemover {
   Topology& topology_;
   std::vector<EdgeClass>& edges_;
   const Regions& regions_;
-  const std::vector<RegionView>& views_;
+  const std::vector<Projection>& views_;
   const MergeOptions& options_;
-  std::vector<std::uint32_t> slot_of_;  // of each vertex of a sound region: a half-edge that leaves it; else kNone
+  std::vector<std::uint32_t> slot_of_;  // of each vertex of a region: a half-edge that leaves it; else kNone
   // Vertices that a border edge took in without passing through them exactly, as linked lists: the first by slot (the same for
   // both halves of an edge), the next by vertex.
   std::vector<std::uint32_t> swallowed_, next_swallowed_;
