@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "exact.hpp"
 #include "hilbert.hpp"
 #include "parallel.hpp"
+#include "projection.hpp"
 #include "vec.hpp"
 
 namespace fdcg::bake {
@@ -88,17 +88,18 @@ void radix_sort(std::vector<Ranked>& items, unsigned key_bits) {
   }
 }
 
-// Which corner of a polygon comes first: the three from there make the largest triangle, and an exactly proper one.
-std::uint32_t best_start(const Mesh& mesh, std::uint32_t f) {
+// Which corner of a polygon comes first: the three from there make the largest triangle, seen as the region was when it was cut
+// up, and an exactly proper one.
+std::uint32_t best_start(const Mesh& mesh, std::uint32_t f, const Vec3& normal) {
   const std::uint32_t first = mesh.face_first[f], count = mesh.face_first[f + 1] - first;
-  if (count == 3) return 0;
+  const Projection view(normal);
   const auto point = [&](std::uint32_t i) -> const Vec3& { return mesh.points[+mesh.corners[first + i % count]]; };
   std::uint32_t best = 0;
   double best_area = -1;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3 &a = point(i), &b = point(i + 1), &c = point(i + 2);
-    const double area = squared_length(cross(b - a, c - a));
-    if (area > best_area && !exact::collinear(a, b, c)) {
+    const double area = dot(normal, cross(b - a, c - a));
+    if (area > best_area && view.orient(a, b, c) > 0) {
       best = i;
       best_area = area;
     }
@@ -144,7 +145,7 @@ class Orderer {
         const std::uint32_t f = ranked[n].face, first = mesh_.face_first[f], count = mesh_.face_first[f + 1] - first;
         graph_.node_of_face[f] = n;
         if (!graph_.region.empty()) graph_.region[n] = regions_.of_face[f];
-        const std::uint32_t start = best_start(mesh_, f);
+        const std::uint32_t start = count == 3 ? 0 : best_start(mesh_, f, graph_.regions[graph_.region[n]].plane.normal);
         for (std::uint32_t i = 0; i < count; ++i) {
           const std::uint32_t side = graph_.first_side[n] + (i + count - start) % count;
           side_of_slot_[first + i] = side;

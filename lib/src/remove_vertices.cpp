@@ -92,11 +92,11 @@ void VertexRemover::read_ring(Star& star, bool is_closed) const {
   for (const std::uint32_t slot : star.out) {
     const std::uint32_t outer = next(slot);
     star.ring.push_back(head(slot));
-    star.ring_edges.push_back({+twin(outer), edges_[outer], swallowed_[outer]});
+    star.ring_edges.push_back({+twin(outer), edges_[outer], swallowed_[outer], false});
   }
   if (!is_closed) {
     star.ring.push_back(tail(previous(star.out.back())));
-    star.ring_edges.push_back({kNone, {}, kNone});
+    star.ring_edges.push_back({+Topology::kBoundary, {}, kNone, true});
   }
 }
 
@@ -121,7 +121,7 @@ std::uint32_t VertexRemover::replace(Star& star) {
     edges_[slot] = edge.edge;
     swallowed_[slot] = edge.swallowed;
     topology_.twin[slot] = HalfedgeId{edge.across};
-    if (edge.across == kNone) closing = slot;
+    if (edge.closes) closing = slot;
     if (HalfedgeId{edge.across} != Topology::kBoundary) topology_.twin[edge.across] = HalfedgeId{slot};
   };
   for (std::size_t i = 0; i < star.out.size(); ++i) {
@@ -139,7 +139,7 @@ std::uint32_t VertexRemover::replace(Star& star) {
     if (i + 1 < star.ears.size()) {
       edges_[slot + 2] = inner;
       swallowed_[slot + 2] = kNone;
-      star.ring_edges[star.ears[i][0]] = {slot + 2, inner, kNone};
+      star.ring_edges[star.ears[i][0]] = {slot + 2, inner, kNone, false};
     } else {
       close(star.ears[i][2], slot + 2);
     }

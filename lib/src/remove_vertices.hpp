@@ -29,9 +29,10 @@ class VertexRemover {
 
  private:
   struct RingEdge {
-    std::uint32_t across;  // the slot there, +kBoundary, or kNone for the edge that will close the ring of a border vertex
+    std::uint32_t across;  // the slot there, or +kBoundary
     EdgeClass edge;
     std::uint32_t swallowed;
+    bool closes;  // the edge along the border that will close the ring
   };
   // One region's part of a vertex' fan: the ring of vertices around, and its edges.
   struct Star {

@@ -24,20 +24,6 @@ std::set<Place> corner_places(const WalkedGraph& graph) {
   return places;
 }
 
-// Each node as the set of its corners' places.
-std::multiset<std::set<Place>> node_shapes(const WalkedGraph& graph) {
-  std::multiset<std::set<Place>> shapes;
-  for (const fdcg_node_f64& n : graph.nodes) {
-    std::set<Place> shape;
-    for (std::uint32_t s = 0; s < n.side_count; ++s) {
-      const double* p = graph.corners[graph.corner_of_side(n.first_side + s)].point;
-      shape.insert({p[0], p[1], p[2]});
-    }
-    shapes.insert(shape);
-  }
-  return shapes;
-}
-
 CompileOptions unmerged() {
   CompileOptions options;
   options.merge = false;
