@@ -55,15 +55,17 @@ struct StoredPlane {
   Real normal[3], offset;
 };
 
-// The plane through the edge, facing out of the face: `along` is the edge's direction in the face's own winding and m equals
-// along x normal; `v0` is the end of the edge that the connection calls corner 0. From the stored numbers by the expression
-// that the runtime uses where planes are not stored (graph_view.hpp), so that both ways give the same bits.
+// The plane through the edge, facing out of the face: `along` is the edge's direction in the face's own winding and m is
+// unit(along x normal); `v0` is the end of the edge that the connection calls corner 0. From the stored numbers by the
+// expression that the runtime uses where planes are not stored (graph_view.hpp), so that both ways give the same bits.
 template <class Real>
 [[nodiscard]] StoredPlane<Real> voronoi_plane(const Stored3<Real>& along, const Stored3<Real>& normal,
                                               const Stored3<Real>& v0) {
-  const Real x = along.y * normal.z - along.z * normal.y;
-  const Real y = along.z * normal.x - along.x * normal.z;
-  const Real z = along.x * normal.y - along.y * normal.x;
+  const Real out_x = along.y * normal.z - along.z * normal.y;
+  const Real out_y = along.z * normal.x - along.x * normal.z;
+  const Real out_z = along.x * normal.y - along.y * normal.x;
+  const Real length = std::sqrt(out_x * out_x + out_y * out_y + out_z * out_z);
+  const Real x = out_x / length, y = out_y / length, z = out_z / length;
   return {{x, y, z}, -(x * v0.x + y * v0.y + z * v0.z)};
 }
 

@@ -77,7 +77,9 @@ struct GraphView {
     if (voronoi_planes != nullptr) return {vec(voronoi_planes[side].normal), voronoi_planes[side].offset};
     const Connection& connection = connections[sides[side] >> 1];
     const Vec3<Real> e = vec(connection.edge), n = vec(node.plane.normal);
-    const Vec3<Real> m = (sides[side] & 1) == 0 ? cross(e, n) : cross(n, e);
+    const Vec3<Real> out = (sides[side] & 1) == 0 ? cross(e, n) : cross(n, e);
+    const Real length = norm(out);
+    const Vec3<Real> m = {out.x / length, out.y / length, out.z / length};
     return {m, -dot(m, corner_point(connection.corner[0]))};
   }
 };
