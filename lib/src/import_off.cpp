@@ -68,13 +68,9 @@ class OffReader : TextSoupReader {
   }
 
   bool read_count(const char* what, std::uint64_t& count) {
-    std::int64_t value = 0;
     if (!scan_.find_token()) return fail_here(std::string("truncated: the file ends before the ") + what + " count");
-    if (!scan_.read_integer(value) || value < 0) {
-      return fail_here(std::string("the ") + what + " count " + scan_.quote() + " is not a whole number of 0 or more");
-    }
-    count = static_cast<std::uint64_t>(value);
-    return true;
+    return scan_.read_count(count) ||
+           fail_here(std::string("the ") + what + " count " + scan_.quote() + " is not a whole number of 0 or more");
   }
 
   // The third count is of no use to anyone, and some writers leave it out.
@@ -118,13 +114,13 @@ class OffReader : TextSoupReader {
     for (std::uint64_t f = 0; f < face_count_; ++f) {
       if (!scan_.find_token()) return fail_promise("faces", f, face_count_);
       soup_.face_line.push_back(scan_.line());
-      std::int64_t count = 0;
-      if (!scan_.read_integer(count) || count < 0) {
+      std::uint64_t count = 0;
+      if (!scan_.read_count(count)) {
         return fail_here("face " + std::to_string(f) + ": the corner count " + scan_.quote() +
                          " is not a whole number of 0 or more");
       }
-      if (count > kMaxFaceCorners) return fail_big_face(static_cast<std::uint64_t>(count));
-      for (std::int64_t k = 0; k < count; ++k) {
+      if (count > kMaxFaceCorners) return fail_big_face(count);
+      for (std::uint64_t k = 0; k < count; ++k) {
         std::int64_t index = 0;
         if (!scan_.find_token()) return fail_promise("faces", f, face_count_);
         if (!scan_.read_integer(index)) {

@@ -132,12 +132,8 @@ class AsciiBody : TextSoupReader {
 
   bool read_list_count(const ElementKind& element, std::uint64_t row, std::uint64_t& count) {
     if (!scan_.find_token()) return fail_end(element, row);
-    std::int64_t value = 0;
-    if (!scan_.read_integer(value) || value < 0) {
-      return fail_here(row_name(element, row) + ": the list's count " + scan_.quote() + " is not a whole number of 0 or more");
-    }
-    count = static_cast<std::uint64_t>(value);
-    return true;
+    return scan_.read_count(count) ||
+           fail_here(row_name(element, row) + ": the list's count " + scan_.quote() + " is not a whole number of 0 or more");
   }
 
   bool skip_value(const ElementKind& element, std::uint64_t row, const Property& property) {

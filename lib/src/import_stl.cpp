@@ -148,13 +148,8 @@ class TextStlReader : TextSoupReader {
 // Text starts with "solid"; but so do the headers of some binary files, which then have a zero byte soon.
 bool is_text(std::string_view bytes) {
   constexpr std::size_t kLook = 512;
-  std::size_t i = bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0;
-  while (i < bytes.size() && (bytes[i] == ' ' || bytes[i] == '\t' || bytes[i] == '\r' || bytes[i] == '\n'))
-    ++i;
-  std::string_view word = bytes.substr(i, 5);
-  const auto same = [](char a, char b) { return (a | 0x20) == b; };
-  return std::equal(word.begin(), word.end(), "solid", "solid" + 5, same) &&
-         bytes.substr(0, kLook).find('\0') == std::string_view::npos;
+  TextScanner scan(bytes, {});
+  return scan.find_token() && scan.is_keyword("solid") && bytes.substr(0, kLook).find('\0') == std::string_view::npos;
 }
 
 }  // namespace

@@ -42,13 +42,29 @@ struct Plane {
 // that normal and rounded.
 [[nodiscard]] Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision precision);
 
+// A vector in the file's own precision.
+template <class Real>
+struct Stored3 {
+  Real x, y, z;
+
+  explicit Stored3(const Vec3& v) : x(static_cast<Real>(v.x)), y(static_cast<Real>(v.y)), z(static_cast<Real>(v.z)) {}
+};
+
+template <class Real>
+struct StoredPlane {
+  Real normal[3], offset;
+};
+
 // The plane through the edge, facing out of the face: `along` is the edge's direction in the face's own winding and m equals
-// along x normal; `v0` is the end of the edge that the connection calls corner 0.
-[[nodiscard]] inline Plane voronoi_plane(const Vec3& along, const Vec3& normal, const Vec3& v0) {
-  const Vec3 m = cross(along, normal);
-  const double norm = length(m);
-  const Vec3 out{m.x / norm, m.y / norm, m.z / norm};
-  return {out, -dot(out, v0)};
+// along x normal; `v0` is the end of the edge that the connection calls corner 0. From the stored numbers by the expression
+// that the runtime uses where planes are not stored (graph_view.hpp), so that both ways give the same bits.
+template <class Real>
+[[nodiscard]] StoredPlane<Real> voronoi_plane(const Stored3<Real>& along, const Stored3<Real>& normal,
+                                              const Stored3<Real>& v0) {
+  const Real x = along.y * normal.z - along.z * normal.y;
+  const Real y = along.z * normal.x - along.x * normal.z;
+  const Real z = along.x * normal.y - along.y * normal.x;
+  return {{x, y, z}, -(x * v0.x + y * v0.y + z * v0.z)};
 }
 
 // The angle between two unit vectors, 0 .. pi, within 1e-8: by additions, products, square root and division alone, so that

@@ -210,7 +210,11 @@ class Writer {
       const Vec3 along = edge_direction(from, to);
       const std::uint32_t entry = graph_.connection[side];
       sides_[side] = entry;
-      if (!voronoi_.empty()) voronoi_[side] = stored(voronoi_plane(along, plane.normal, (entry & 1u) == 0 ? from : to));
+      if (!voronoi_.empty()) {
+        const StoredPlane<Real> m =
+            voronoi_plane(Stored3<Real>(along), Stored3<Real>(plane.normal), Stored3<Real>((entry & 1u) == 0 ? from : to));
+        voronoi_[side] = {{m.normal[0], m.normal[1], m.normal[2]}, m.offset};
+      }
       if ((entry & 1u) == 0) ++tally.types[write_connection(entry >> 1, side, n, along, from, to)];
       if (!is_exact) tally.max_deviation = std::max(tally.max_deviation, deviation(plane, from));
     }

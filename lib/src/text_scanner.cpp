@@ -64,8 +64,8 @@ bool is_large(std::string_view decimal) {
 
 TextScanner::TextScanner(std::string_view text, Syntax syntax) : begin_(text.data()), p_(begin_), end_(begin_ + text.size()) {
   if (text.starts_with("\xEF\xBB\xBF")) p_ += 3;
-  const bool has_cr = !text.empty() && std::memchr(begin_, '\r', text.size()) != nullptr;
-  if (has_cr && std::memchr(begin_, '\n', text.size()) == nullptr) line_end_ = '\r';
+  const auto has = [text](char c) { return text.find(c) != std::string_view::npos; };
+  if (!has('\n') && has('\r')) line_end_ = '\r';
   if (syntax.hash_comments) comment_ = '#';
   if (syntax.continuation) joiner_ = '\\';
 }

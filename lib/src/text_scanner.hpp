@@ -122,6 +122,18 @@ class TextScanner {
     return false;
   }
 
+  // The same, and not negative.
+  bool read_count(std::uint64_t& value) {
+    const char* const start = p_;
+    std::int64_t number = 0;
+    if (read_integer(number) && number >= 0) {
+      value = static_cast<std::uint64_t>(number);
+      return true;
+    }
+    p_ = start;
+    return false;
+  }
+
   [[nodiscard]] bool token_ended() const { return p_ == end_ || ends_token(*p_); }
 
   // Whether the token is `keyword`, which is in lower case, in either case.

@@ -16,9 +16,9 @@
 namespace fdcg {
 namespace {
 
-// Changes of state that one step may make.
+// Changes of state that one step may make. A jump across a strip of needles needs some 1,500, a hand's motion a handful.
 #ifndef FDCG_MAX_TRANSITIONS
-#define FDCG_MAX_TRANSITIONS 256
+#define FDCG_MAX_TRANSITIONS 2048
 #endif
 constexpr uint32_t kMaxTransitions = FDCG_MAX_TRANSITIONS;
 
@@ -102,7 +102,7 @@ uint32_t move_god_object(Walk<Real>& walk, uint32_t* flags) {
     walk.active = decision.next;
     ++transitions;
     if (walk.active == kFree) {
-      *flags |= sweep_to_hip(walk, walk.seat == kFree ? at : walk.seat);
+      *flags |= sweep_to_hip(walk, at);
       if (walk.active == kFree) return transitions;
       ++transitions;
     }
@@ -161,7 +161,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   const GraphView<Real> graph(raw);
   const Vec3<Real> hip = to_local<Real>(*raw.header, hip_object_m);
   *result = {};
-  if (!is_finite(hip)) {
+  if (!is_usable(hip)) {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
     for (int k = 0; k < 3; ++k) {

@@ -61,22 +61,22 @@ template <class Real>
 inline Real norm1(Vec3<Real> a) {
   return absolute(a.x) + absolute(a.y) + absolute(a.z);
 }
-template <class Real>
-inline bool is_finite(Vec3<Real> a) {
-  const Real zero = (a.x - a.x) + (a.y - a.y) + (a.z - a.z);  // NaN for NaN and for infinities
-  return zero == Real(0);
-}
-
-// The spacing of the numbers at 1, and the smallest normal one.
+// The spacing of the numbers at 1, the smallest normal one, and a coordinate whose products of three still are numbers.
 template <class Real>
 struct RealLimits;
 template <>
 struct RealLimits<double> {
-  static constexpr double kEpsilon = DBL_EPSILON, kTiny = DBL_MIN;
+  static constexpr double kEpsilon = DBL_EPSILON, kTiny = DBL_MIN, kFar = 1e70;
 };
 template <>
 struct RealLimits<float> {
-  static constexpr float kEpsilon = FLT_EPSILON, kTiny = FLT_MIN;
+  static constexpr float kEpsilon = FLT_EPSILON, kTiny = FLT_MIN, kFar = 1e10F;
 };
+
+// Neither NaN nor infinite nor so far away that the step's arithmetic would overflow.
+template <class Real>
+inline bool is_usable(Vec3<Real> a) {
+  return norm1(a) <= RealLimits<Real>::kFar;
+}
 
 }  // namespace fdcg

@@ -111,7 +111,8 @@ class Verifier {
       if (connection.corner[1 - which] != graph_.start_corner(next)) return refuse("node", n, "its sides do not form a loop");
       if (raw_.voronoi_planes != nullptr) {
         const Plane<Real> plane = graph_.voronoi_plane(node, k);
-        if (!is_unit(plane.normal) || !(absolute(plane.offset) <= 4 * header_.extent))
+        const Real length2 = dot(plane.normal, plane.normal);  // below 1 where the edge lies off the node's plane
+        if (!(length2 >= Real(0.25) && length2 <= Real(1.01)) || !(absolute(plane.offset) <= 4 * header_.extent))
           return refuse("side", side, "Voronoi plane out of range");
       }
     }

@@ -54,10 +54,17 @@ inline Decision go_to(Feature next) {
   return {false, next};
 }
 
+// How far apart two computations of the same gap may lie when the god-object was rounded to its place in between.
+template <class Real>
+inline Real gap_rounding(Vec3<Real> god_object, Real gap) {
+  return RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
+}
+
 // Friction on a face or an edge: `gap` is the distance of the god-object from the surface point, `load` the depth that presses
 // it on. Returns the gap that friction allows: the same one where the god-object rests. Slipping starts beyond mu_static and
 // ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on the dynamic circle and rounding
-// must not toss a coin every tick (contact-model section 5; Melder 2004, figure 4).
+// must not toss a coin every tick (contact-model section 5; Melder 2004, figure 4); for the same reason it is not placed anew
+// for less than a rounding.
 template <class Real>
 inline Real friction_gap(Walk<Real>& walk, Real gap, Real load) {
   constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
@@ -67,7 +74,7 @@ inline Real friction_gap(Walk<Real>& walk, Real gap, Real load) {
   } else if (gap > walk.friction.mu_static * load) {
     walk.is_slipping = true;
   }
-  if (!walk.is_slipping || gap <= dynamic_gap) return gap;
+  if (!walk.is_slipping || gap <= dynamic_gap + gap_rounding(walk.god_object, gap)) return gap;
   return dynamic_gap;
 }
 

@@ -6,13 +6,14 @@ import math
 import os
 import pathlib
 import signal
+import struct
 import subprocess
 import time
 import unittest
 
 import jsonschema
 
-from support import CUBE, FDCG, ROOT, SERVO, TETRAHEDRON, Case
+from support import CUBE, FDCG, ROOT, SERVO, TETRAHEDRON, Case, checksum
 
 MISSING_FACE = CUBE.replace("8 6 0", "8 5 0").replace("4 3 0 4 7\n", "")
 THREE_ON_AN_EDGE = "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n3 0 1 2\n3 1 0 3\n3 0 1 4\n"
@@ -297,6 +298,37 @@ class Inspect(Case):
         self.assertIn("checksums", text)
         self.assertNotIn("FAIL", text)
 
+    def test_verify_measures_geometry_that_a_wrong_writer_sealed_with_right_checksums(self):
+        graph = pathlib.Path(self.compiled_cube())
+        whole = graph.read_bytes()
+        count = struct.unpack_from("<I", whole, 28)[0]
+        starts = {}
+        for i in range(count):
+            section_id, _, offset = struct.unpack_from("<IIQ", whole, 256 + 40 * i)
+            starts[section_id] = (i, offset)
+        ends = sorted(offset for _, offset in starts.values()) + [len(whole)]
+
+        def forged(section_id, at, code, value, types=None):
+            data = bytearray(whole)
+            entry, offset = starts[section_id]
+            struct.pack_into(code, data, offset + at, value)
+            struct.pack_into("<Q", data, 256 + 40 * entry + 24, checksum(bytes(data[offset:ends[ends.index(offset) + 1]])))
+            if types:
+                struct.pack_into("<4I", data, 160, *types)
+            struct.pack_into("<Q", data, 240, checksum(bytes(data[256:ends[0]])))
+            struct.pack_into("<Q", data, 248, checksum(bytes(data[:248])))
+            graph.write_bytes(data)
+
+        for section_id, at, code, value, types, invariant in (
+                (4, 60, "<B", 1, (11, 1, 0, 0), "types agree"), (1, 24, "<d", -0.25, None, "corners lie"),
+                (3, 24, "<d", 0.5, None, "Voronoi planes"), (4, 24, "<d", 0.5, None, "end planes"),
+                (5, 0, "<d", 0.5, None, "corners lie")):
+            with self.subTest(invariant=invariant, section=section_id):
+                forged(section_id, at, code, value, types)
+                self.fdcg("inspect", str(graph))
+                text = self.fdcg("inspect", "--verify", str(graph), code=1).stdout.decode()
+                self.assertRegex(text, f"FAIL +{invariant}")
+
     def test_damage_is_refused_wherever_it_is(self):
         graph = pathlib.Path(self.compiled_cube())
         whole = graph.read_bytes()
@@ -389,6 +421,17 @@ class BadInput(Case):
                 done = subprocess.run([FDCG, *arguments], stdout=full, stderr=subprocess.PIPE, check=False, timeout=60)
             self.assertEqual(3, done.returncode, arguments)
             self.assert_one_line(done, "standard output")
+
+    def test_a_file_that_the_runtime_would_refuse_is_not_written(self):
+        side = 72
+        lines = ["OFF", f"{(side + 1) ** 2} {side * side} 0"]
+        lines += [f"{x} {y} {((x * 7 + y * 13) % 11) / 10}" for y in range(side + 1) for x in range(side + 1)]
+        corner = lambda x, y: y * (side + 1) + x
+        lines += [f"4 {corner(x, y)} {corner(x + 1, y)} {corner(x + 1, y + 1)} {corner(x, y + 1)}" for y in range(side) for x in range(side)]
+        mesh = self.write("hills.off", "\n".join(lines) + "\n")
+        self.assert_one_line(self.fdcg("compile", mesh, "-o", self.path("out.fdcg"), "--no-merge", "--without", "hierarchy",
+                                       code=2), "hierarchy")
+        self.assert_only("hills.off")
 
     def test_interrupt_leaves_no_half_written_file(self):
         os.mkfifo(self.path("mesh.off"))

@@ -55,7 +55,7 @@ class Embedding(Case):
     def test_the_readme_example_runs(self):
         readme = (ROOT / "README.md").read_text()
         example = re.search(r"```c\n(.*?)```", readme, re.S).group(1)
-        shutil.copy(self.compiled_cube("--units", "cm"), self.path("cube.fdcg"))
+        self.compiled_cube("--units", "cm")
         program = self.compiled_by_c(self.write("example.c", example))
         done = self.run_program(program, cwd=self.folder)
         promised = re.search(r"It prints\n\n```\n(.*?)```", readme, re.S).group(1)

@@ -68,8 +68,10 @@ TEST_CASE("a groove holds along its line what the chosen rule says: wedge or pap
       for (const double lean : {0.0, 0.2}) {  // HIP off the groove's middle plane, still behind both walls
         const double mu_s = 0.6, mu_d = 0.4, h = 0.05;
         Contact contact(graph.view(), contact_params(mu_s, mu_d, rule));
-        const double y = h * std::sin(lean * opening), z = -h * std::cos(lean * opening);
+        const double angle = lean * (std::numbers::pi - opening);  // the walls' normals span pi - opening
+        const double y = h * std::sin(angle), z = -h * std::cos(angle);
         contact.step(-0.5, 0, 0.3);
+        contact.step(-0.5, 0, -h);
         contact.step(-0.5, y, z);
         INFO("opening " << opening / kDegree << ", rule " << rule << ", lean " << lean << ": " << contact.describe());
         REQUIRE(contact.result.state == FDCG_EDGE);

@@ -59,11 +59,12 @@ void check(const fdcg_graph& graph, const PolygonSoup& soup, double mu_static, d
                  << run.ties_off_features << "), slip ties " << run.slip_ties << ", drifts " << run.drifts << ", carried "
                  << run.bound_hits << ", god-objects apart " << run.worst_god_object << ", growth " << run.worst_growth
                  << " eps\n"
-                 << run.first_failure);
+                 << run.first_failure << '\n'
+                 << run.first_growth);
   const double n = static_cast<double>(run.steps);
   CHECK(run.failures == 0);
   CHECK(run.worst_growth <= kGrowthInEps);
-  CHECK(run.needless_bound_hits == 0);
+  CHECK(run.bound_hits == 0);
   CHECK(run.contact_steps > run.steps / 50);
   CHECK(static_cast<double>(run.ties) <= kTieShare * n);
   CHECK(static_cast<double>(run.ties_off_features) <= kTieShareOffFeatures * n + 2);
@@ -159,7 +160,8 @@ TEST_CASE("the reference in long double agrees with itself in 150 digits") {
       walker.contact = {};
       exact.contact = {};
     }
-    CHECK(contacts > 200);
+    INFO(soup.name);
+    CHECK(contacts > 100);
     CHECK(differences < 60);
   }
 }

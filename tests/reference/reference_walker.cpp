@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Over 400 lines: the whole contact model in one place, in its own order.
 #include "reference_walker.hpp"
 
 #include <algorithm>
@@ -46,6 +47,7 @@ ReferenceStep ReferenceWalker<Real>::step(const std::array<double, 3>& hip_local
   const Point offset = contact.god_object - hip_;
   met_[{contact.state, contact.feature}] = dot(offset, offset);
   step_.visited.emplace_back(contact.state, contact.feature);
+  is_exact_place_ = std::numeric_limits<Real>::digits > 256;
   for (is_resting_ = false; !is_resting_;) {
     switch (contact.state) {
       case FDCG_FREE:
@@ -128,6 +130,7 @@ void ReferenceWalker<Real>::step_free() {
   }
   if (hit->state != FDCG_VERTEX) amplify(length(hip_ - contact.god_object), hit->change);
   contact.god_object = hit->point;
+  is_exact_place_ = is_exact_place_ && hit->state == FDCG_VERTEX;
   const bool is_seat = hit->state != FDCG_FACE;
   seat(is_seat ? hit->state : static_cast<std::uint32_t>(FDCG_FREE), hit->feature);
   change(hit->state, hit->feature);
@@ -176,7 +179,7 @@ auto ReferenceWalker<Real>::meet(std::uint32_t f, const Point& from, const Point
     require(volume >= 0,
             along_length > 0 ? Real(volume / (along_length * surface_.edges[face.connections[k]].length)) : Real(0));
   }
-  note(is_met ? met_by : missed_by);
+  if (!is_exact_place_ || !face.is_exact) note(is_met ? met_by : missed_by);
   if (!is_met) return std::nullopt;
   return located(face, f, side_from, side_to, from, to);
 }
@@ -184,7 +187,7 @@ auto ReferenceWalker<Real>::meet(std::uint32_t f, const Point& from, const Point
 // What of the face the segment meets: a corner or an edge when it does so exactly.
 template <class Real>
 auto ReferenceWalker<Real>::located(const Face& face, std::uint32_t f, const Real& side_from, const Real& side_to,
-                                    const Point& from, const Point& to) const -> Hit {
+                                    const Point& from, const Point& to) -> Hit {
   const Real change = side_from - side_to, t = side_from / change;
   const Point along = to - from;
   for (const std::uint32_t v : face.corners) {
@@ -198,6 +201,9 @@ auto ReferenceWalker<Real>::located(const Face& face, std::uint32_t f, const Rea
     const Point& v0 = surface_.corners[edge.corner[0]].point;
     if (dot(along, cross(edge.span, v0 - from)) != 0) continue;
     const Real u = dot(point - v0, edge.direction);
+    // Whether a place this near an end is the corner the model leaves open for a sweep.
+    const Real tolerance = 8 * surface_.epsilon * (length(v0) + 2 * edge.length);
+    if (u <= tolerance || edge.length - u <= tolerance) note(Real(0));
     if (u > 0 && u < edge.length) return {t, change, FDCG_EDGE, c, v0 + edge.direction * u};
   }
   return {t, change, FDCG_FACE, f, point};
@@ -275,6 +281,7 @@ void ReferenceWalker<Real>::move_on_face(const Face& face, const Point& target) 
   }
   if (!first) {
     contact.god_object = target;
+    is_exact_place_ = false;
     seat(FDCG_FREE, FDCG_NONE);
     rest();
     return;
@@ -296,11 +303,13 @@ void ReferenceWalker<Real>::place_on_edge(std::uint32_t c, const Real& along) {
   note(from_end[nearer] - tolerance);
   if (from_end[nearer] <= tolerance) {
     contact.god_object = corner;
+    is_exact_place_ = std::numeric_limits<Real>::digits > 256;
     seat(FDCG_VERTEX, edge.corner[nearer]);
     change(FDCG_VERTEX, edge.corner[nearer]);
     return;
   }
   contact.god_object = surface_.corners[edge.corner[0]].point + edge.direction * along;
+  is_exact_place_ = false;
   seat(FDCG_EDGE, c);
   if (contact.state == FDCG_EDGE) {
     rest();  // moved along it: r = R

@@ -84,7 +84,7 @@ class ReferenceWalker {
   std::optional<Hit> sweep(const Point& from, const Point& to);
   std::optional<Hit> meet(std::uint32_t face, const Point& from, const Point& to);
   Hit located(const Face& face, std::uint32_t f, const Real& side_from, const Real& side_to, const Point& from,
-              const Point& to) const;
+              const Point& to);
   void note(const Real& distance);
   void amplify(const Real& way, const Real& change);
 
@@ -92,6 +92,9 @@ class ReferenceWalker {
   ReferenceFriction friction_;
   Point hip_;
   bool is_resting_ = false;
+  // The god-object is a HIP, a stored corner or was taken over as double: with HighPrecision a sweep from there is exact, and
+  // its signs are no matter of rounding.
+  bool is_exact_place_ = false;
   std::vector<std::uint32_t> left_out_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Real> met_;  // squared |GO - HIP| where a feature was entered
   ReferenceStep step_;

@@ -249,7 +249,11 @@ class Walker {
     if (g_.voronoi.empty()) return;
     const fdcg_node_f64& n = g_.nodes[c.node[which]];
     const fdcg_plane_f64& m = g_.voronoi[n.first_side + c.side[which]];
-    check(std::fabs(std::sqrt(dot(m.normal, m.normal)) - 1) <= 4 * eps_, "a Voronoi normal has unit length", id);
+    // edge x normal: of unit length but for what the edge lies off the node's plane.
+    const double off_plane = dot(c.edge, n.plane.normal);
+    const double length = std::sqrt(1 - off_plane * off_plane);
+    check(std::fabs(std::sqrt(dot(m.normal, m.normal)) - length) <= 4 * eps_,
+          "a Voronoi normal has the length of edge x normal", id);
     Point expected = which == 0 ? cross(c.edge, n.plane.normal) : cross(n.plane.normal, c.edge);
     const bool is_exact = (n.flags & FDCG_NODE_INEXACT) == 0;
     if (is_exact) {

@@ -106,14 +106,13 @@ TEST_CASE("a truncated mesh is refused or sound, at every byte") {
 }
 
 TEST_CASE("every truncation of a file with counts is refused, but for its last blanks") {
-  for (const char* name : {"cube_quads.off", "cube_colours.off", "cube_ascii.ply", "cube_little.ply", "cube_big.ply",
-                           "cube_double_extra.ply", "cube_solid_binary.stl"}) {
+  for (const char* name : {"cube_quads.off", "cube_ascii.ply", "cube_little.ply", "cube_big.ply", "cube_double_extra.ply",
+                           "cube_solid_binary.stl"}) {
     INFO(name);
     const std::string bytes = read_bytes(testdata() / "meshes" / "good" / name);
     const Format format = import_text(bytes).format;
     // Cut in its last word, a text may still be whole: "10" is a number, and so is "1".
-    const std::size_t last_word =
-        name == std::string("cube_colours.off") ? bytes.rfind("255") : bytes.find_last_of(" \n", bytes.size() - 2);
+    const std::size_t last_word = bytes.find_last_of(" \n", bytes.size() - 2);
     const std::size_t end = import_text(bytes).is_text ? last_word : bytes.size();
     for (std::size_t size = 0; size < end; ++size)
       refusal(bytes.substr(0, size), format);
@@ -123,6 +122,7 @@ TEST_CASE("every truncation of a file with counts is refused, but for its last b
 TEST_CASE("a single changed byte leads to a soup or a refusal") {
   for (const auto& path : files_in(testdata() / "meshes" / "good")) {
     std::string bytes = read_bytes(path);
+    if (bytes.size() > 4096) continue;
     const Format format = import_text(bytes).format;
     INFO(path);
     for (std::size_t i = 0; i < bytes.size(); ++i) {

@@ -46,7 +46,7 @@ TEST_CASE("OFF: several vertices and faces may stand on one line") {
   CHECK(soup.points == std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   CHECK(faces_of(soup) == std::vector<std::vector<std::uint32_t>>{{0, 1, 2}, {2, 1, 0}});
   CHECK(import_text("OFF\n3 2 0\n0 0 0 1 0 0\n0 1 0\n3 0 1 2 3 2 1 0\n").face_count() == 2);
-  CHECK(import_text("OFF\n3 1 0\n0\n0\n0 1 0 0\n0 1 0\n3\n0\n1 2\n").face_count() == 1);
+  CHECK(import_text("OFF\n3 1 0\n0\n0\n0\n1 0 0\n0 1 0\n3\n0\n1 2\n").face_count() == 1);
 }
 
 TEST_CASE("OFF: a number that no vertex has keeps its place as invalid") {

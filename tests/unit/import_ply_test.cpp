@@ -69,7 +69,7 @@ TEST_CASE("PLY text: triangle strips become triangles of one winding") {
                                              "5 0 2 1 3 4\n9 -1 0 2 1 -1 3 4 -1 9\n"));
   check_invariants(soup);
   CHECK(faces_of(soup) == Faces{{0, 2, 1}, {1, 2, 3}, {1, 3, 4}, {0, 2, 1}});
-  CHECK(soup.face_line == std::vector<std::uint32_t>{15, 15, 15, 16});
+  CHECK(soup.face_line == std::vector<std::uint32_t>{16, 16, 16, 17});
 }
 
 TEST_CASE("PLY text: rows may run over several lines, but not share one") {

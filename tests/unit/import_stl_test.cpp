@@ -96,8 +96,7 @@ TEST_CASE("STL binary: triangles keep their float coordinates") {
 }
 
 TEST_CASE("STL binary: a size that belies the count is refused, padding of less than a triangle is not") {
-  CHECK(refusal(binary("solid a", 4, 3), Format::stl) ==
-        "mesh: line 1: truncated: the file ends after 0 facets where 'endsolid' was due; fetch or export it again");
+  CHECK(refusal(binary("solid a", 4, 3)).find("promises 4 triangles") != std::string::npos);  // its zero bytes give it away
   CHECK(refusal(binary("a", 4, 3), Format::stl) ==
         "mesh: truncated: the header promises 4 triangles (284 bytes), the file has 234 bytes; fetch or export it again");
   CHECK(refusal(binary("a", 4'294'967'295, 3), Format::stl).find("promises 4294967295 triangles (214748364834 bytes)") !=

@@ -221,7 +221,7 @@ int run_replay(const ReplayArguments& arguments) {
   fdcg_graph graph{};
   fdcg_error error{};
   if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
-    return fail(kFile, arguments.graph + ": " + error.message);
+    return fail(kFile, error.message);
   }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};

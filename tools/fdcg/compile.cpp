@@ -8,7 +8,7 @@
 #include "../common/terminal.hpp"
 #include "command.hpp"
 #include "fdcg/bake.hpp"
-#include "fdcg/format.h"
+#include "fdcg/fdcg.h"
 #include "mesh_options.hpp"
 
 namespace fdcg::tools {
@@ -120,6 +120,15 @@ int check_paths(const CompileArguments& arguments) {
   return kClean;
 }
 
+// What was asked for may be more than the runtime accepts (a large graph without its hierarchy): better known now than there.
+int check_loads(const bake::Compiled& compiled) {
+  fdcg_graph graph{};
+  fdcg_error error{};
+  if (fdcg_open_memory(compiled.bytes.data(), compiled.bytes.size(), FDCG_VERIFY_TRUSTED, &graph, &error) == FDCG_OK)
+    return kClean;
+  return fail(kUsage, std::string("these options make a file that the runtime refuses: ") + error.message);
+}
+
 int run_compile(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
   AtomicFile out(arguments.output);
@@ -135,6 +144,7 @@ int run_compile(CompileArguments& arguments) {
   bar.wipe();
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
   if (compiled->bytes.empty()) return refuse(arguments, compiled->report);
+  if (const int code = check_loads(*compiled); code != kClean) return code;
   if (const int code = write_outputs(arguments, *compiled, out); code != kClean) return code;
   if (arguments.quiet) return kClean;
   const bool binary_on_stdout = arguments.output == "-" || arguments.report == "-";

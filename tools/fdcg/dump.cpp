@@ -86,6 +86,8 @@ void dump_corners(const TypedGraph<Records>& graph, DumpText& text) {
     const auto& corner = graph.corners[v];
     text << "corner " << v << ": " << corner.point << ", normal " << corner.normal
          << ((corner.flags & FDCG_CORNER_OPEN) != 0 ? ", open" : "") << ", fan";
+    if (const std::uint32_t tree = corner.flags >> FDCG_CORNER_TREE_SHIFT; tree != 0)
+      text << " with its tree at box " << tree - 1 << ":";
     for (std::uint32_t i = corner.first_fan; i < corner.first_fan + corner.fan_count; ++i)
       text << " " << (graph.fans[i] >> 1);
     text.end_line();

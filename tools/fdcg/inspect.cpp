@@ -50,7 +50,7 @@ class OpenGraph {
 
 std::string section_name(std::uint32_t id) {
   constexpr const char* kNames[] = {"nodes", "sides",     "voronoi",    "connections", "corners",
-                                    "fans",  "hierarchy", "source-map", "info"};
+                                    "fans",  "hierarchy", "source-map", "info",        "fan-boxes"};
   if (id >= 1 && id <= std::size(kNames)) return kNames[id - 1];
   return "unknown-" + std::to_string(id);
 }
@@ -172,7 +172,8 @@ std::string verification_text(const fdcg_graph& graph, const std::vector<Invaria
 int run_inspect(const InspectArguments& arguments) {
   OpenGraph opened;
   fdcg_error error{};
-  if (opened.open(arguments.file, error) != FDCG_OK) return fail(kFile, arguments.file + ": " + error.message);
+  if (opened.open(arguments.file, error) != FDCG_OK)
+    return fail(kFile, arguments.file == "-" ? std::string("standard input: ") + error.message : error.message);
   const fdcg_graph& graph = opened.graph();
   const std::vector<Invariant> invariants = arguments.verify ? check_invariants(graph) : std::vector<Invariant>{};
   Json about = description_of(graph);

@@ -132,7 +132,7 @@ typedef struct fdcg_contact {
 } fdcg_contact;
 
 typedef enum fdcg_result_flag {
-  FDCG_RESULT_NON_FINITE = 1,       /* HIP was NaN or infinite: nothing moved, no force */
+  FDCG_RESULT_NON_FINITE = 1,       /* HIP was NaN, infinite or absurdly far away: nothing moved, no force */
   FDCG_RESULT_TRANSITION_BOUND = 2, /* the god-object is valid and goes on next tick */
   FDCG_RESULT_SWEEP_BOUND = 4       /* Free, no force; the sweep goes on next tick */
 } fdcg_result_flag;

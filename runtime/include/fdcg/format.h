@@ -131,7 +131,8 @@ typedef struct fdcg_node_f32 {
 } fdcg_node_f32;
 
 /* SharedVertex, Nodes, EdgeVector, ConType and EndPlane of the paper; its VoronoiPlane[k] is the plane of side
- * nodes[node[k]].first_side + side[k] in section VORONOI: m_0 = e x n_0, m_1 = n_1 x e.
+ * nodes[node[k]].first_side + side[k] in section VORONOI: m_0 = e x n_0, m_1 = n_1 x e, offset
+ * -m.corner[0], evaluated in the file's precision on the stored numbers, so that deriving gives the bits that storing does.
  * edge = unit(corner[1] - corner[0]). node[0]'s loop runs corner[0] -> corner[1], node[1]'s the other way; node[1] is
  * FDCG_NONE on a boundary. End plane 0 has the normal -edge and passes through corner[0], end plane 1 +edge and corner[1]. */
 typedef struct fdcg_connection_f64 {

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Takes each rule of the contact model that implementers get wrong out of a copy of the runtime, and expects the test of that
+rule to fail. A rule whose test passes without it is either not needed or not tested.
+
+Usage: rules_matter.py --source DIR --work DIR --compiler CXX --link ARGUMENTS...
+`--link` gets everything that makes the contact_rules program but the runtime's own objects.
+"""
+import argparse
+import concurrent.futures
+import pathlib
+import shutil
+import subprocess
+import sys
+
+FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fno-exceptions", "-fno-rtti"]
+
+# (tag of the test, what is taken out, file, the text as it stands, what replaces it)
+MUTANTS = [
+    ("met-again", "a feature met again is a rest", "servo_step.cpp",
+     "if (trail.has_met_again(walk)) return transitions;", ""),
+    ("crossing", "crossed means on or beyond, and further out than before: the paper's change of sign instead", "face.hpp",
+     "if (!(s1 > s0)) continue;", "if (!(s1 * s0 < 0)) continue;"),
+    ("crossing", "... or from not beyond to beyond instead", "face.hpp",
+     "if (!(s1 > s0)) continue;", "if (!(s0 <= 0 && s1 > 0)) continue;"),
+    ("first-crossing", "the first crossing, not the last", "face.hpp",
+     "|| fraction < first.fraction)", "|| fraction > first.fraction)"),
+    ("on-plane", "on a face's plane is outside", "face.hpp", "if (!(side < 0)) return", "if (side > 0) return"),
+    ("seat", "the seat's rule decides", "face.hpp", "return go_to(walk.seat);", "return go_to(kFree);"),
+    ("last-tick-segment", "the sweep starts where the HIP was", "servo_step.cpp",
+     "*flags |= sweep_to_hip(walk, kFree);", "walk.god_object = walk.hip; *flags |= sweep_to_hip(walk, kFree);"),
+    ("exact-feature", "an edge met exactly becomes active, not one of its faces", "sweep.hpp",
+     "best_ = met_exactly > 0 ? on_rim(node, point)", "best_ = met_exactly > 99 ? on_rim(node, point)"),
+    ("watertight", "exact orientations", "exact_orient.cpp",
+     "return exact_sign(a, b, c, d);", "return det > 0 ? 1 : (det < 0 ? -1 : 0);"),
+    ("leave-out", "the faces at the feature just left are left out", "sweep.hpp",
+     "|| is_left_out(n, node)) return;", ") return;"),
+    ("no-distance-tolerance", "no distance tolerance where contact was lost", "sweep.hpp",
+     "|| is_left_out(n, node)) return;", "|| is_left_out(n, node) || (left_.state != FDCG_FREE && fraction < Real(1e-4))) return;"),
+    ("slip-at-once", "dynamic friction holds in the tick in which slip begins", "walk.hpp",
+     "walk.is_slipping = true;", "walk.is_slipping = true; return walk.friction.mu_static * load;"),
+    ("stick-factor", "sticking again only below the circle by a factor", "walk.hpp",
+     "if (gap <= kStickAgain * dynamic_gap)", "if (gap <= dynamic_gap + gap_rounding(walk.god_object, gap))"),
+    ("slip-flag", "the slip flag survives a change of feature", "walk.hpp",
+     "const Feature edge = {FDCG_EDGE, connection_index};",
+     "walk.is_slipping = false; const Feature edge = {FDCG_EDGE, connection_index};"),
+    ("slip-flag", "a tick that ends free resets the slip flag", "servo_step.cpp",
+     "if (walk.active == kFree) walk.is_slipping = false;", ""),
+    ("rest-untouched", "at rest the god-object is not placed anew", "face.hpp",
+     "if (!(allowed < gap)) return rest();", "if (!(allowed <= gap)) return rest();"),
+    ("lands-on-vertex", "a god-object that lands on an edge's end is on the vertex", "walk.hpp",
+     "if (!(from_end <= line.end_tolerance)) continue;", "if (!(from_end < 0)) continue;"),
+    ("steeper-face", "behind both faces: the nearer plane", "edge.hpp",
+     "s.voronoi[1] < s.voronoi[0]", "false"),
+    ("open-corner", "an apex with a boundary edge is free", "corner.hpp",
+     "if ((corner.flags & FDCG_CORNER_OPEN) != 0) return go_to(kFree);", ""),
+    ("steepest-at-vertex", "the longest way at a corner wins", "corner.hpp",
+     "if (along > best.reach)", "if (best.feature == kFree && along > 0)"),
+]
+
+
+def build(args, name, directory):
+    objects = []
+    for source in sorted(directory.glob("*.cpp")):
+        target = directory / (source.name + ".o")
+        command = [args.compiler, *FLAGS, "-I", args.source + "/runtime/include", "-I", str(directory), "-c", str(source), "-o", str(target)]
+        subprocess.run(command, check=True)
+        objects.append(str(target))
+    program = directory / "contact_rules"
+    subprocess.run([args.compiler, *objects, *args.link, "-o", str(program)], check=True)
+    return program
+
+
+def run(program, tag):
+    """Whether the tagged tests pass; a program that hangs or dies has failed too."""
+    try:
+        done = subprocess.run([str(program), f"[{tag}]"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
+    except subprocess.TimeoutExpired:
+        return False
+    return done.returncode == 0
+
+
+def try_mutant(args, index, mutant):
+    tag, rule, file, before, after = mutant
+    directory = pathlib.Path(args.work) / f"{index:02d}-{tag}"
+    shutil.copytree(args.source + "/runtime/src", directory)
+    path = directory / file
+    text = path.read_text()
+    if text.count(before) != 1:
+        return f"{tag}: the text of this rule stands {text.count(before)} times in {file}, expected once: {before}"
+    path.write_text(text.replace(before, after))
+    if run(build(args, tag, directory), tag):
+        return f"{tag}: the test passes without the rule: {rule}"
+    print(f"without '{rule}' [{tag}] fails, as it must", flush=True)
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    for name in ("source", "work", "compiler"):
+        parser.add_argument("--" + name, required=True)
+    parser.add_argument("--link", nargs=argparse.REMAINDER, required=True)
+    args = parser.parse_args()
+    shutil.rmtree(args.work, ignore_errors=True)
+    pathlib.Path(args.work).mkdir(parents=True)
+    whole = pathlib.Path(args.work) / "whole"
+    shutil.copytree(args.source + "/runtime/src", whole)
+    program = build(args, "whole", whole)
+    for tag in sorted({mutant[0] for mutant in MUTANTS}):
+        if not run(program, tag):
+            sys.exit(f"[{tag}] fails with every rule in place")
+    with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
+        faults = [f for f in pool.map(lambda m: try_mutant(args, *m), enumerate(MUTANTS)) if f]
+    print(f"{len(MUTANTS) - len(faults)} of {len(MUTANTS)} rules matter")
+    sys.exit("\n".join(faults) if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
