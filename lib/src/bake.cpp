@@ -63,7 +63,9 @@ void report_uncuttable(const PolygonSoup& soup, const Mesh& mesh, const std::vec
   Issue issue{"non-planar-face",
               Severity::error,
               faces.size(),
-              std::to_string(faces.size()) + " polygons cross themselves and cannot be cut into triangles; redraw them",
+              std::to_string(faces.size()) +
+                  " polygons cannot be cut into triangles: they cross themselves or have tens of thousands of inward corners; "
+                  "triangulate them",
               {}};
   for (std::size_t i = 0; i < std::min(max_elements, faces.size()); ++i) {
     Element element;

@@ -61,6 +61,8 @@ std::span<const Ear> PolygonCutter::cut(const Projection& projection, std::span<
     if (projection.orient(polygon[i > 0 ? i - 1 : count - 1], polygon[i], polygon[i + 1 < count ? i + 1 : 0]) <= 0)
       not_convex_.push_back(i);
   }
+  constexpr std::uint64_t kMostTests = std::uint64_t{1} << 31;  // some ten seconds
+  if (std::uint64_t{count} * not_convex_.size() > kMostTests) return {};
   return clip(count, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t) {
     if (projection.orient(polygon[a], polygon[b], polygon[c]) <= 0) return false;
     // A corner that was strictly convex at the start stays so and cannot be the one nearest to the tip. Corners cut off

@@ -20,7 +20,7 @@ class PolygonCutter {
  public:
   // The ears of a simple polygon in the order of cutting, count - 2 of them, all turning strictly left, the last one what
   // remains; corners in a straight line are allowed. Empty where that cannot be done: the polygon crosses itself, turns right
-  // or has no area. n corners, r of them not strictly convex: some n (r + 1) orientation tests.
+  // or has no area, or it has so many corners n, r of them not strictly convex, that the n (r + 1) tests would exceed 2^31.
   std::span<const Ear> cut(const Projection& projection, std::span<const Vec3> polygon);
 
   // The same for a polygon every corner of which is visible from `kernel`, inside or on it: n tests. All ears turn strictly
