@@ -114,13 +114,22 @@ uint32_t move_god_object(Walk<Real>& walk, uint32_t* flags) {
   }
 }
 
+// A HIP further away than this is nowhere near any graph (load.cpp limits scale and origin), and its arithmetic might
+// overflow before it is found out.
+constexpr double kFarthestHip_m = 1e110;
+
+// The HIP in the graph's frame. False, without an overflow on the way, where it is not usable.
 // Never inlined: GCC 12's basic-block vectoriser (-O2) drops the rounding of a double to float and back where it sees both.
 template <class Real>
-[[gnu::noinline]] Vec3<Real> to_local(const fdcg_header& header, const double hip_object_m[3]) {
+[[gnu::noinline]] bool to_local(const fdcg_header& header, const double hip_object_m[3], Vec3<Real>* hip) {
   double local[3];
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3; ++k) {
+    if (!(absolute(hip_object_m[k]) <= kFarthestHip_m)) return false;
     local[k] = hip_object_m[k] / header.metres_per_unit - header.origin[k];
-  return {static_cast<Real>(local[0]), static_cast<Real>(local[1]), static_cast<Real>(local[2])};
+    if (!(absolute(local[k]) <= RealLimits<Real>::kFar)) return false;
+  }
+  *hip = {static_cast<Real>(local[0]), static_cast<Real>(local[1]), static_cast<Real>(local[2])};
+  return is_usable(*hip);
 }
 
 template <class Real>
@@ -159,9 +168,9 @@ template <class Real>
 void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
           fdcg_result* result) {
   const GraphView<Real> graph(raw);
-  const Vec3<Real> hip = to_local<Real>(*raw.header, hip_object_m);
+  Vec3<Real> hip;
   *result = {};
-  if (!is_usable(hip)) {
+  if (!to_local(*raw.header, hip_object_m, &hip)) {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
     for (int k = 0; k < 3; ++k) {

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "fp_trap.hpp"
 #include "meshes.hpp"
 #include "vector.hpp"
 
@@ -68,6 +69,7 @@ fdcg_params contact_params(double mu_static, double mu_dynamic, std::uint32_t ed
 }
 
 const fdcg_result& Contact::step(const Hip& hip_object_m) {
+  const FpTrap trap(hip_object_m.data());
   fdcg_step(graph_, &params_, &state, hip_object_m.data(), &result);
   bound_hits += (result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
   return result;

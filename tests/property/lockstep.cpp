@@ -7,6 +7,8 @@
 #include <memory>
 #include <sstream>
 
+#include "fp_trap.hpp"
+
 namespace fdcg::test {
 namespace {
 
@@ -73,7 +75,10 @@ void Pair::step(const Hip& hip_object) {
   const fdcg_contact before = contact_;
   const double apart_before = difference(walker_.contact.god_object, before.god_object) / surface_.extent;
   fdcg_result output;
-  fdcg_step(&graph_, &params_, &contact_, hip_object.data(), &output);
+  {
+    const FpTrap trap(hip_object.data());
+    fdcg_step(&graph_, &params_, &contact_, hip_object.data(), &output);
+  }
   const Hip hip = surface_.local(hip_object.data());
   const ReferenceStep taken = walker_.step(hip);
   ++result.steps;

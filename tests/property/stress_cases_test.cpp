@@ -261,16 +261,20 @@ TEST_CASE("NaN and infinity: the contact keeps its state, the force is zero, the
 }
 
 TEST_CASE("coordinates too large to square do no harm") {
-  const PlainGraph graph(cube(), Precision::f64);
-  for (const double far : {1e30, 1e160, 1e308}) {
-    Contact contact(graph.view(), contact_params(0.6, 0.4));
-    for (const Hip& hip : {Hip{far, 0, 0}, Hip{-far, 1e-3, 1e-3}, Hip{0.1, 0.1, 0.1}, Hip{far, far, -far}, Hip{0, 0, 2}}) {
-      contact.step(hip);
-      INFO("far " << far << ": " << contact.describe());
-      for (const double f : contact.force())
-        CHECK_FALSE(std::isnan(f));
-      for (const double g : contact.god_object())
-        CHECK(std::isfinite(g));
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    const PlainGraph graph(cube(), precision);
+    for (const double far : {1e9, 1e30, 1e60, 1e160, 1e308, std::numeric_limits<double>::max()}) {
+      Contact contact(graph.view(), contact_params(0.6, 0.4));
+      for (const Hip& hip : {Hip{far, 0, 0}, Hip{-far, 1e-3, 1e-3}, Hip{0.1, 0.1, 0.1}, Hip{far, far, -far}, Hip{0, 0, 2},
+                             Hip{0.1, 0.1, -far}}) {
+        contact.step(hip);
+        INFO("far " << far << ": " << contact.describe());
+        for (const double f : contact.force())
+          CHECK(std::isfinite(f));
+        for (const double g : contact.god_object())
+          CHECK(std::isfinite(g));
+        if (far > 1e110 && norm(hip) > 10) CHECK(contact.result.flags == FDCG_RESULT_NON_FINITE);
+      }
     }
   }
 }
