@@ -153,6 +153,7 @@ class Merger {
       part.resize(taken);
       const std::uint32_t from = part.front(), to = rest.front();
       if (!has_area(part, to) || !has_area(rest, from)) continue;
+      if (!runs_along(regions_.list[region(from)].plane.normal, start(from), start(to))) continue;
       const std::uint32_t cut = spare.back(), back = +topology_.twin[cut];
       spare.pop_back();
       mesh_.corners[cut] = mesh_.corners[to];
