@@ -62,10 +62,17 @@ class Merger {
     return face;
   }
 
-  // p -> x -> q does not turn right in the view, nor back.
-  [[nodiscard]] bool stays_convex(const Projection& view, std::uint32_t before, std::uint32_t at, std::uint32_t after) const {
-    const int turn = view.orient(start(before), start(at), start(after));
-    return turn > 0 || (turn == 0 && view.goes_on(start(before), start(at), start(after)));
+  // before -> at -> after does not turn right in the view, nor back. Of corners off their plane the same is asked as seen along
+  // the plane's normal, for that is how the Voronoi planes stand; there rounding is let pass.
+  [[nodiscard]] bool stays_convex(std::uint32_t before, std::uint32_t at, std::uint32_t after) const {
+    const Vec3 &a = start(before), &b = start(at), &c = start(after);
+    const Projection& view = views_[region(at)];
+    const int turn = view.orient(a, b, c);
+    if (turn < 0 || (turn == 0 && !view.goes_on(a, b, c))) return false;
+    const Region& home = regions_.list[region(at)];
+    if (home.is_exact) return true;
+    constexpr double kRounding = 1e-14;
+    return dot(home.plane.normal, cross(b - a, c - b)) >= -kRounding * length(b - a) * length(c - b);
   }
 
   void drop_diagonals() {
@@ -103,9 +110,8 @@ class Merger {
     const std::uint32_t twin = +topology_.twin[slot];
     const std::uint32_t a = root(slot / 3), b = root(twin / 3);
     if (a == b) return;
-    const Projection& view = views_[region(slot)];
-    if (!stays_convex(view, previous_[slot], slot, next_[next_[twin]])) return;
-    if (!stays_convex(view, previous_[twin], twin, next_[next_[slot]])) return;
+    if (!stays_convex(previous_[slot], slot, next_[next_[twin]])) return;
+    if (!stays_convex(previous_[twin], twin, next_[next_[slot]])) return;
     link(previous_[slot], next_[twin]);
     link(previous_[twin], next_[slot]);
     parent_[std::max(a, b)] = std::min(a, b);
@@ -153,6 +159,7 @@ class Merger {
       part.resize(taken);
       const std::uint32_t from = part.front(), to = rest.front();
       if (!has_area(part, to) || !has_area(rest, from)) continue;
+      if (!runs_along(regions_.list[region(from)].plane.normal, start(from), start(to))) continue;
       const std::uint32_t cut = spare.back(), back = +topology_.twin[cut];
       spare.pop_back();
       mesh_.corners[cut] = mesh_.corners[to];

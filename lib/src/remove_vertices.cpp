@@ -5,6 +5,7 @@
 #include <span>
 
 #include "exact.hpp"
+#include "planes.hpp"
 #include "vec.hpp"
 
 namespace fdcg::bake {
@@ -112,7 +113,13 @@ bool VertexRemover::cut(Star& star, std::uint32_t vertex) {
   const Projection& projection = views_[region(star.out.front())];
   const std::span<const Ear> ears = cutter_.cut_star(projection, star.points, point(vertex));
   star.ears.assign(ears.begin(), ears.end());
-  return !ears.empty();
+  // Every edge of the result is a side of an ear.
+  const Vec3& normal = regions_.list[region(star.out.front())].plane.normal;
+  return !ears.empty() && std::all_of(ears.begin(), ears.end(), [&](const Ear& ear) {
+    return runs_along(normal, star.points[ear[0]], star.points[ear[2]]) &&
+           runs_along(normal, star.points[ear[0]], star.points[ear[1]]) &&
+           runs_along(normal, star.points[ear[1]], star.points[ear[2]]);
+  });
 }
 
 // Puts the ears where the star's triangles were. Returns the slot of the edge that closes the ring of a border vertex.
