@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "classify.hpp"
 #include "graph.hpp"
 #include "info.hpp"
+#include "large_pages.hpp"
 #include "merge.hpp"
 #include "orient.hpp"
 #include "parallel.hpp"
@@ -130,16 +132,24 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   return input;
 }
 
-// From a mesh that has passed the checks to bytes. Empty bytes: the report now says why.
-Result<std::vector<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
-                                     unsigned jobs, Compiled& compiled) {
+// Memory of the result's own, in pages as large as can be had.
+std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t count) {
+  bytes.reserve(count);
+  prefer_large_pages(bytes.data(), count);
+  bytes.resize(count);
+  return bytes;
+}
+
+// From a mesh that has passed the checks to the bytes of a file. No bytes: the report now says why.
+Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
+                                   unsigned jobs, Compiled& compiled) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
   if (!cut.uncuttable.empty()) {
     report_uncuttable(soup, cut.mesh, cut.uncuttable, options.max_elements, compiled.report);
-    return std::vector<std::byte>{};
+    return std::span<std::byte>{};
   }
   Merged faces;
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
@@ -157,7 +167,8 @@ Result<std::vector<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topolog
   if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
   const Graph graph =
       order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
-  return serialise(graph, input);
+  if (options.allocate) return serialise(graph, input, options.allocate);
+  return serialise(graph, input, [&](std::size_t count) { return allocate_in(compiled.bytes, count); });
 }
 
 }  // namespace
@@ -175,12 +186,12 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   Topology topology = pair_halfedges(mesh, states);
   if (options.orient) compiled.flipped_faces = orient(mesh, topology, states).size();
   stage("check", 0.2);
-  compiled.report = check(soup, mesh, topology, states, {options.allow, options.max_elements, options.precision, {}});
+  compiled.report = check(soup, mesh, topology, states, {options.allow, options.max_elements, options.precision, jobs, {}});
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
-  auto bytes = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);
-  if (!bytes) return bytes.error();
-  compiled.bytes = std::move(*bytes);
+  const auto file = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);
+  if (!file) return file.error();
+  if (options.allocate) compiled.placed = *file;
   stage("graph", 1);
   return compiled;
 }

@@ -3,6 +3,7 @@
 #include "atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -108,7 +109,7 @@ int AtomicFile::open_beside() {
   for (int attempt = 0;; ++attempt) {  // a leftover of a killed program with our number may be in the way
     beside_ = stem + (attempt == 0 ? "" : "-" + std::to_string(attempt));
     cleanup_slot_ = arm_cleanup(beside_);
-    descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = open(beside_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) return 0;
     const int error_number = errno;
     disarm_cleanup(cleanup_slot_);
@@ -131,8 +132,29 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
+std::span<std::byte> AtomicFile::map(std::size_t bytes) {
+  if (!ok() || beside_.empty() || bytes == 0) return {};
+  // Reserved first: a page that finds no room when it is written to would be a signal, not an error.
+  const int error_number = posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+  if (error_number == ENOSPC || error_number == EFBIG) fail(error_number);
+  if (error_number != 0) return {};
+  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
+  if (memory == MAP_FAILED) {
+    if (ftruncate(descriptor_, 0) != 0) fail(errno);
+    return {};
+  }
+  mapping_ = {static_cast<std::byte*>(memory), bytes};
+  return mapping_;
+}
+
+void AtomicFile::unmap() {
+  if (!mapping_.empty()) munmap(mapping_.data(), mapping_.size());
+  mapping_ = {};
+}
+
 bool AtomicFile::commit() {
   if (!ok()) return false;
+  unmap();
   if (descriptor_ == kStandardOutput) return true;
   const int descriptor = descriptor_;
   descriptor_ = -1;
@@ -160,6 +182,7 @@ void AtomicFile::fail(int error_number) {
 }
 
 void AtomicFile::discard() {
+  unmap();
   if (descriptor_ > kStandardOutput) close(descriptor_);
   descriptor_ = -1;
   if (!beside_.empty()) unlink(beside_.c_str());

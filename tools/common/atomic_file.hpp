@@ -2,6 +2,8 @@
 // Output that appears whole or not at all: written beside its target and renamed onto it.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,6 +23,9 @@ class AtomicFile {
   [[nodiscard]] bool ok() const { return error_.empty(); }
   [[nodiscard]] const std::string& error() const { return error_; }  // one line: the path, what went wrong
   void write(std::string_view bytes);
+  // The whole content as memory to be filled, zeroed, instead of write(); the space is there. Empty where the output is no
+  // file of its own (standard output, a device), where the file system cannot, and after a failure.
+  [[nodiscard]] std::span<std::byte> map(std::size_t bytes);
   bool commit();  // true: every byte has reached the file system under its name
 
  private:
@@ -28,11 +33,13 @@ class AtomicFile {
   int open_beside();
   void fail(int error_number);
   void discard();
+  void unmap();
 
   std::string path_;    // as the user gave it
   std::string target_;  // what is renamed onto; empty where the output is written straight
   std::string beside_;
   std::string error_;
+  std::span<std::byte> mapping_;
   int descriptor_ = -1;
   int cleanup_slot_ = -1;
 };
