@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "classify.hpp"
+#include "fdcg/format.h"
 #include "graph.hpp"
 #include "info.hpp"
 #include "large_pages.hpp"
@@ -172,6 +173,20 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
 }
 
 }  // namespace
+
+// A closed mesh has half as many connections as sides, and some six fan entries to a corner.
+std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& options) {
+  const bool is_f32 = options.precision == Precision::f32;
+  const std::size_t node = is_f32 ? sizeof(fdcg_node_f32) : sizeof(fdcg_node_f64);
+  const std::size_t plane = !options.store_voronoi_planes ? 0 : is_f32 ? sizeof(fdcg_plane_f32) : sizeof(fdcg_plane_f64);
+  const std::size_t connection = is_f32 ? sizeof(fdcg_connection_f32) : sizeof(fdcg_connection_f64);
+  const std::size_t corner = is_f32 ? sizeof(fdcg_corner_f32) : sizeof(fdcg_corner_f64);
+  const std::size_t side_and_fan = 2 * sizeof(std::uint32_t), hierarchy = 2 * sizeof(fdcg_box) / FDCG_LEAF_NODES;
+  const std::size_t per_face = node + hierarchy + sizeof(std::uint32_t);
+  const std::size_t per_side = side_and_fan + plane + connection / 2 + corner / 6;
+  constexpr std::size_t kHeaderAndInfo = 4096;
+  return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side;
+}
 
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options) {
   if (std::string reason = contradiction_in(options); !reason.empty()) return Failure{2, std::move(reason)};

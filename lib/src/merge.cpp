@@ -8,11 +8,26 @@
 #include <span>
 #include <utility>
 
+#include "lazy_array.hpp"
 #include "remove_vertices.hpp"
 #include "vec.hpp"
 
 namespace fdcg::bake {
 namespace {
+
+// Where the entries of a triangle's slots, and of a triangle, start.
+struct NextInTriangle {
+  std::uint32_t operator()(std::uint32_t slot) const { return slot % 3 == 2 ? slot - 2 : slot + 1; }
+};
+struct PreviousInTriangle {
+  std::uint32_t operator()(std::uint32_t slot) const { return slot % 3 == 0 ? slot + 2 : slot - 1; }
+};
+struct Itself {
+  std::uint32_t operator()(std::uint32_t face) const { return face; }
+};
+struct ThreeSides {
+  std::uint32_t operator()(std::uint32_t) const { return 3; }
+};
 
 class Merger {
  public:
@@ -44,19 +59,18 @@ class Merger {
   [[nodiscard]] std::uint32_t region(std::uint32_t slot) const { return regions_.of_face[slot / 3]; }
   [[nodiscard]] bool is_alive(std::uint32_t face) const { return mesh_.corners[3 * face] != VertexId{kNone}; }
 
-  // Before triangles change: where each was.
+  // Before triangles change: where each of a region was, in their order.
   void find_centres() {
-    centre_.resize(mesh_.face_count());
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (regions_.of_face[f] == kNone) continue;
       const Vec3& a = start(3 * f);
-      centre_[f] = a + (1.0 / 3) * ((start(3 * f + 1) - a) + (start(3 * f + 2) - a));
+      centre_.push_back(a + (1.0 / 3) * ((start(3 * f + 1) - a) + (start(3 * f + 2) - a)));
     }
   }
 
   [[nodiscard]] std::uint32_t root(std::uint32_t face) {
     while (parent_[face] != face) {
-      parent_[face] = parent_[parent_[face]];
+      parent_.set(face, parent_[parent_[face]]);
       face = parent_[face];
     }
     return face;
@@ -77,15 +91,10 @@ class Merger {
 
   void drop_diagonals() {
     const auto slots = static_cast<std::uint32_t>(mesh_.corners.size());
-    next_.resize(slots);
-    previous_.resize(slots);
-    for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      next_[slot] = slot % 3 == 2 ? slot - 2 : slot + 1;
-      previous_[slot] = slot % 3 == 0 ? slot + 2 : slot - 1;
-    }
-    parent_.resize(mesh_.face_count());
-    std::iota(parent_.begin(), parent_.end(), 0u);
-    sides_.assign(mesh_.face_count(), 3);
+    next_ = LazyArray<NextInTriangle>(slots);
+    previous_ = LazyArray<PreviousInTriangle>(slots);
+    parent_ = LazyArray<Itself>(mesh_.face_count());
+    sides_ = LazyArray<ThreeSides>(mesh_.face_count());
     std::vector<Diagonal> diagonals;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       const HalfedgeId twin = topology_.twin[slot];
@@ -114,9 +123,10 @@ class Merger {
     if (!stays_convex(previous_[twin], twin, next_[next_[slot]])) return;
     link(previous_[slot], next_[twin]);
     link(previous_[twin], next_[slot]);
-    parent_[std::max(a, b)] = std::min(a, b);
-    sides_[std::min(a, b)] = sides_[a] + sides_[b] - 2;
-    next_[slot] = next_[twin] = kNone;  // dropped
+    parent_.set(std::max(a, b), std::min(a, b));
+    sides_.set(std::min(a, b), sides_[a] + sides_[b] - 2);
+    next_.set(slot, kNone);  // dropped
+    next_.set(twin, kNone);
   }
 
   // Polygons with more sides than a node may have are cut again, into as few pieces of like size as will do; dropped diagonals
@@ -186,8 +196,8 @@ class Merger {
   }
 
   void link(std::uint32_t slot, std::uint32_t after) {
-    next_[slot] = after;
-    previous_[after] = slot;
+    next_.set(slot, after);
+    previous_.set(after, slot);
   }
 
   // The polygons as a mesh of their own, in the order of their first half-edges.
@@ -197,6 +207,9 @@ class Merger {
     mesh.face_first.push_back(0);
     face_of_loner_.assign(mesh_.face_count(), kNone);
     std::vector<std::uint32_t> source;  // slots, in their new order
+    source.reserve(mesh_.corners.size());
+    mesh.face_first.reserve(mesh_.face_count() + 1);
+    out_.regions.of_face.reserve(mesh_.face_count());
     for (std::uint32_t first = 0; first < slot_now.size(); ++first) {
       if (!is_alive(first / 3) || next_[first] == kNone || slot_now[first] != kNone) continue;
       std::uint32_t slot = first;
@@ -209,8 +222,9 @@ class Merger {
       out_.regions.of_face.push_back(region(first));
       mesh.face_first.push_back(static_cast<std::uint32_t>(source.size()));
     }
+    out_.topology.face_of.reserve(source.size());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
-      out_.topology.face_of.resize(mesh.face_first[f + 1], FaceId{f});
+      out_.topology.face_of.insert(out_.topology.face_of.end(), mesh.face_first[f + 1] - mesh.face_first[f], FaceId{f});
     mesh.corners.reserve(source.size());
     out_.topology.twin.reserve(source.size());
     out_.edges.reserve(source.size());
@@ -241,10 +255,12 @@ class Merger {
   Regions regions_;
   const MergeOptions& options_;
   std::vector<Projection> views_;
-  std::vector<Vec3> centre_;
-  std::vector<std::uint32_t> next_, previous_;  // of each slot in its polygon; next_ is kNone for a dropped diagonal
-  std::vector<std::uint32_t> parent_, sides_;   // of each triangle: union-find, and at the root the polygon's sides
-  std::vector<std::uint32_t> face_of_loner_;    // of each triangle in no region: its face of the result
+  std::vector<Vec3> centre_;        // of the regions' triangles, in order
+  LazyArray<NextInTriangle> next_;  // of each slot in its polygon; kNone for a dropped diagonal
+  LazyArray<PreviousInTriangle> previous_;
+  LazyArray<Itself> parent_;                  // of each triangle: union-find
+  LazyArray<ThreeSides> sides_;               // at the root: the polygon's
+  std::vector<std::uint32_t> face_of_loner_;  // of each triangle in no region: its face of the result
   Merged out_;
 };
 
@@ -306,6 +322,7 @@ void Merger::locate_triangles() {
   for (std::size_t r = 0; r < last_found.size(); ++r)
     last_found[r] = faces[first[r]];
   out_.face_of_triangle.resize(mesh_.face_count());
+  std::size_t of_regions = 0;  // triangles so far, as find_centres counted them
   for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
     const std::uint32_t r = regions_.of_face[f];
     if (r == kNone) {
@@ -313,7 +330,8 @@ void Merger::locate_triangles() {
       continue;
     }
     const std::span<const std::uint32_t> of_region{faces.data() + first[r], first[r + 1] - first[r]};
-    if (of_region.size() > 1) last_found[r] = locate(views_[r], of_region, last_found[r], centre_[f]);
+    const Vec3& centre = centre_[of_regions++];
+    if (of_region.size() > 1) last_found[r] = locate(views_[r], of_region, last_found[r], centre);
     out_.face_of_triangle[f] = last_found[r];
   }
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "../common/atomic_file.hpp"
+#include "../common/heap.hpp"
 #include "../common/terminal.hpp"
 #include "command.hpp"
 #include "fdcg/bake.hpp"
@@ -142,6 +143,7 @@ int run_compile(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
+  keep_large_arrays();
   ProgressBar bar(!arguments.quiet);
   bake::ImportOptions import_options;
   import_options.progress =
@@ -149,6 +151,7 @@ int run_compile(CompileArguments& arguments) {
   const auto soup = bake::import_mesh(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
+  out.expect(bake::likely_file_bytes(*soup, arguments.options));
   std::vector<std::byte> buffer;
   arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };
   const auto compiled = bake::compile(*soup, arguments.options);

@@ -199,6 +199,9 @@ struct Compiled {
   [[nodiscard]] std::span<const std::byte> file() const { return placed.empty() ? std::span<const std::byte>(bytes) : placed; }
 };
 
+// About how large the file will be; larger than it comes out where faces are merged.
+std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& options);
+
 // Fails only where the options contradict one another (2), the mesh outgrows the format (3), or by our own fault (4).
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options);
 
