@@ -6,12 +6,15 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "classify.hpp"
+#include "fdcg/format.h"
 #include "graph.hpp"
 #include "info.hpp"
+#include "large_pages.hpp"
 #include "merge.hpp"
 #include "orient.hpp"
 #include "parallel.hpp"
@@ -130,16 +133,24 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   return input;
 }
 
-// From a mesh that has passed the checks to bytes. Empty bytes: the report now says why.
-Result<std::vector<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
-                                     unsigned jobs, Compiled& compiled) {
+// Memory of the result's own, in pages as large as can be had.
+std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t count) {
+  bytes.reserve(count);
+  prefer_large_pages(bytes.data(), count);
+  bytes.resize(count);
+  return bytes;
+}
+
+// From a mesh that has passed the checks to the bytes of a file. No bytes: the report now says why.
+Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
+                                   unsigned jobs, Compiled& compiled) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
   if (!cut.uncuttable.empty()) {
     report_uncuttable(soup, cut.mesh, cut.uncuttable, options.max_elements, compiled.report);
-    return std::vector<std::byte>{};
+    return std::span<std::byte>{};
   }
   Merged faces;
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
@@ -157,10 +168,25 @@ Result<std::vector<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topolog
   if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
   const Graph graph =
       order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
-  return serialise(graph, input);
+  if (options.allocate) return serialise(graph, input, options.allocate);
+  return serialise(graph, input, [&](std::size_t count) { return allocate_in(compiled.bytes, count); });
 }
 
 }  // namespace
+
+// A closed mesh has half as many connections as sides, and some six fan entries to a corner.
+std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& options) {
+  const bool is_f32 = options.precision == Precision::f32;
+  const std::size_t node = is_f32 ? sizeof(fdcg_node_f32) : sizeof(fdcg_node_f64);
+  const std::size_t plane = !options.store_voronoi_planes ? 0 : is_f32 ? sizeof(fdcg_plane_f32) : sizeof(fdcg_plane_f64);
+  const std::size_t connection = is_f32 ? sizeof(fdcg_connection_f32) : sizeof(fdcg_connection_f64);
+  const std::size_t corner = is_f32 ? sizeof(fdcg_corner_f32) : sizeof(fdcg_corner_f64);
+  const std::size_t side_and_fan = 2 * sizeof(std::uint32_t), hierarchy = 2 * sizeof(fdcg_box) / FDCG_LEAF_NODES;
+  const std::size_t per_face = node + hierarchy + sizeof(std::uint32_t);
+  const std::size_t per_side = side_and_fan + plane + connection / 2 + corner / 6;
+  constexpr std::size_t kHeaderAndInfo = 4096;
+  return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side;
+}
 
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options) {
   if (std::string reason = contradiction_in(options); !reason.empty()) return Failure{2, std::move(reason)};
@@ -175,12 +201,12 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   Topology topology = pair_halfedges(mesh, states);
   if (options.orient) compiled.flipped_faces = orient(mesh, topology, states).size();
   stage("check", 0.2);
-  compiled.report = check(soup, mesh, topology, states, {options.allow, options.max_elements, options.precision, {}});
+  compiled.report = check(soup, mesh, topology, states, {options.allow, options.max_elements, options.precision, jobs, {}});
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
-  auto bytes = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);
-  if (!bytes) return bytes.error();
-  compiled.bytes = std::move(*bytes);
+  const auto file = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);
+  if (!file) return file.error();
+  if (options.allocate) compiled.placed = *file;
   stage("graph", 1);
   return compiled;
 }

@@ -8,11 +8,26 @@
 #include <span>
 #include <utility>
 
+#include "lazy_array.hpp"
 #include "remove_vertices.hpp"
 #include "vec.hpp"
 
 namespace fdcg::bake {
 namespace {
+
+// Where the entries of a triangle's slots, and of a triangle, start.
+struct NextInTriangle {
+  std::uint32_t operator()(std::uint32_t slot) const { return slot % 3 == 2 ? slot - 2 : slot + 1; }
+};
+struct PreviousInTriangle {
+  std::uint32_t operator()(std::uint32_t slot) const { return slot % 3 == 0 ? slot + 2 : slot - 1; }
+};
+struct Itself {
+  std::uint32_t operator()(std::uint32_t face) const { return face; }
+};
+struct ThreeSides {
+  std::uint32_t operator()(std::uint32_t) const { return 3; }
+};
 
 class Merger {
  public:
@@ -44,41 +59,42 @@ class Merger {
   [[nodiscard]] std::uint32_t region(std::uint32_t slot) const { return regions_.of_face[slot / 3]; }
   [[nodiscard]] bool is_alive(std::uint32_t face) const { return mesh_.corners[3 * face] != VertexId{kNone}; }
 
-  // Before triangles change: where each was.
+  // Before triangles change: where each of a region was, in their order.
   void find_centres() {
-    centre_.resize(mesh_.face_count());
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (regions_.of_face[f] == kNone) continue;
       const Vec3& a = start(3 * f);
-      centre_[f] = a + (1.0 / 3) * ((start(3 * f + 1) - a) + (start(3 * f + 2) - a));
+      centre_.push_back(a + (1.0 / 3) * ((start(3 * f + 1) - a) + (start(3 * f + 2) - a)));
     }
   }
 
   [[nodiscard]] std::uint32_t root(std::uint32_t face) {
     while (parent_[face] != face) {
-      parent_[face] = parent_[parent_[face]];
+      parent_.set(face, parent_[parent_[face]]);
       face = parent_[face];
     }
     return face;
   }
 
-  // p -> x -> q does not turn right in the view, nor back.
-  [[nodiscard]] bool stays_convex(const Projection& view, std::uint32_t before, std::uint32_t at, std::uint32_t after) const {
-    const int turn = view.orient(start(before), start(at), start(after));
-    return turn > 0 || (turn == 0 && view.goes_on(start(before), start(at), start(after)));
+  // before -> at -> after does not turn right in the view, nor back. Of corners off their plane the same is asked as seen along
+  // the plane's normal, for that is how the Voronoi planes stand; there rounding is let pass.
+  [[nodiscard]] bool stays_convex(std::uint32_t before, std::uint32_t at, std::uint32_t after) const {
+    const Vec3 &a = start(before), &b = start(at), &c = start(after);
+    const Projection& view = views_[region(at)];
+    const int turn = view.orient(a, b, c);
+    if (turn < 0 || (turn == 0 && !view.goes_on(a, b, c))) return false;
+    const Region& home = regions_.list[region(at)];
+    if (home.is_exact) return true;
+    constexpr double kRounding = 1e-14;
+    return dot(home.plane.normal, cross(b - a, c - b)) >= -kRounding * length(b - a) * length(c - b);
   }
 
   void drop_diagonals() {
     const auto slots = static_cast<std::uint32_t>(mesh_.corners.size());
-    next_.resize(slots);
-    previous_.resize(slots);
-    for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      next_[slot] = slot % 3 == 2 ? slot - 2 : slot + 1;
-      previous_[slot] = slot % 3 == 0 ? slot + 2 : slot - 1;
-    }
-    parent_.resize(mesh_.face_count());
-    std::iota(parent_.begin(), parent_.end(), 0u);
-    sides_.assign(mesh_.face_count(), 3);
+    next_ = LazyArray<NextInTriangle>(slots);
+    previous_ = LazyArray<PreviousInTriangle>(slots);
+    parent_ = LazyArray<Itself>(mesh_.face_count());
+    sides_ = LazyArray<ThreeSides>(mesh_.face_count());
     std::vector<Diagonal> diagonals;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       const HalfedgeId twin = topology_.twin[slot];
@@ -103,14 +119,14 @@ class Merger {
     const std::uint32_t twin = +topology_.twin[slot];
     const std::uint32_t a = root(slot / 3), b = root(twin / 3);
     if (a == b) return;
-    const Projection& view = views_[region(slot)];
-    if (!stays_convex(view, previous_[slot], slot, next_[next_[twin]])) return;
-    if (!stays_convex(view, previous_[twin], twin, next_[next_[slot]])) return;
+    if (!stays_convex(previous_[slot], slot, next_[next_[twin]])) return;
+    if (!stays_convex(previous_[twin], twin, next_[next_[slot]])) return;
     link(previous_[slot], next_[twin]);
     link(previous_[twin], next_[slot]);
-    parent_[std::max(a, b)] = std::min(a, b);
-    sides_[std::min(a, b)] = sides_[a] + sides_[b] - 2;
-    next_[slot] = next_[twin] = kNone;  // dropped
+    parent_.set(std::max(a, b), std::min(a, b));
+    sides_.set(std::min(a, b), sides_[a] + sides_[b] - 2);
+    next_.set(slot, kNone);  // dropped
+    next_.set(twin, kNone);
   }
 
   // Polygons with more sides than a node may have are cut again, into as few pieces of like size as will do; dropped diagonals
@@ -153,6 +169,7 @@ class Merger {
       part.resize(taken);
       const std::uint32_t from = part.front(), to = rest.front();
       if (!has_area(part, to) || !has_area(rest, from)) continue;
+      if (!runs_along(regions_.list[region(from)].plane.normal, start(from), start(to))) continue;
       const std::uint32_t cut = spare.back(), back = +topology_.twin[cut];
       spare.pop_back();
       mesh_.corners[cut] = mesh_.corners[to];
@@ -179,8 +196,8 @@ class Merger {
   }
 
   void link(std::uint32_t slot, std::uint32_t after) {
-    next_[slot] = after;
-    previous_[after] = slot;
+    next_.set(slot, after);
+    previous_.set(after, slot);
   }
 
   // The polygons as a mesh of their own, in the order of their first half-edges.
@@ -190,6 +207,9 @@ class Merger {
     mesh.face_first.push_back(0);
     face_of_loner_.assign(mesh_.face_count(), kNone);
     std::vector<std::uint32_t> source;  // slots, in their new order
+    source.reserve(mesh_.corners.size());
+    mesh.face_first.reserve(mesh_.face_count() + 1);
+    out_.regions.of_face.reserve(mesh_.face_count());
     for (std::uint32_t first = 0; first < slot_now.size(); ++first) {
       if (!is_alive(first / 3) || next_[first] == kNone || slot_now[first] != kNone) continue;
       std::uint32_t slot = first;
@@ -202,8 +222,9 @@ class Merger {
       out_.regions.of_face.push_back(region(first));
       mesh.face_first.push_back(static_cast<std::uint32_t>(source.size()));
     }
+    out_.topology.face_of.reserve(source.size());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
-      out_.topology.face_of.resize(mesh.face_first[f + 1], FaceId{f});
+      out_.topology.face_of.insert(out_.topology.face_of.end(), mesh.face_first[f + 1] - mesh.face_first[f], FaceId{f});
     mesh.corners.reserve(source.size());
     out_.topology.twin.reserve(source.size());
     out_.edges.reserve(source.size());
@@ -234,10 +255,12 @@ class Merger {
   Regions regions_;
   const MergeOptions& options_;
   std::vector<Projection> views_;
-  std::vector<Vec3> centre_;
-  std::vector<std::uint32_t> next_, previous_;  // of each slot in its polygon; next_ is kNone for a dropped diagonal
-  std::vector<std::uint32_t> parent_, sides_;   // of each triangle: union-find, and at the root the polygon's sides
-  std::vector<std::uint32_t> face_of_loner_;    // of each triangle in no region: its face of the result
+  std::vector<Vec3> centre_;        // of the regions' triangles, in order
+  LazyArray<NextInTriangle> next_;  // of each slot in its polygon; kNone for a dropped diagonal
+  LazyArray<PreviousInTriangle> previous_;
+  LazyArray<Itself> parent_;                  // of each triangle: union-find
+  LazyArray<ThreeSides> sides_;               // at the root: the polygon's
+  std::vector<std::uint32_t> face_of_loner_;  // of each triangle in no region: its face of the result
   Merged out_;
 };
 
@@ -299,6 +322,7 @@ void Merger::locate_triangles() {
   for (std::size_t r = 0; r < last_found.size(); ++r)
     last_found[r] = faces[first[r]];
   out_.face_of_triangle.resize(mesh_.face_count());
+  std::size_t of_regions = 0;  // triangles so far, as find_centres counted them
   for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
     const std::uint32_t r = regions_.of_face[f];
     if (r == kNone) {
@@ -306,7 +330,8 @@ void Merger::locate_triangles() {
       continue;
     }
     const std::span<const std::uint32_t> of_region{faces.data() + first[r], first[r + 1] - first[r]};
-    if (of_region.size() > 1) last_found[r] = locate(views_[r], of_region, last_found[r], centre_[f]);
+    const Vec3& centre = centre_[of_regions++];
+    if (of_region.size() > 1) last_found[r] = locate(views_[r], of_region, last_found[r], centre);
     out_.face_of_triangle[f] = last_found[r];
   }
 }

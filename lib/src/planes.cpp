@@ -99,20 +99,9 @@ Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision p
 }
 
 double angle_between(const Vec3& a, const Vec3& b) {
-  const double sine = length(cross(a, b)), cosine = dot(a, b);
-  const double low = std::min(sine, std::fabs(cosine)), high = std::max(sine, std::fabs(cosine));
-  if (high == 0) return 0;
-  // arctan on [0, 1], halved once by tan(x / 2) = t / (1 + sqrt(1 + t^2)), then its series: |r| <= 0.415.
-  const double t = low / high;
-  const double r = t / (1 + std::sqrt(1 + t * t)), s = r * r;
-  constexpr std::array<double, 10> kSeries{-1.0 / 19, 1.0 / 17, -1.0 / 15, 1.0 / 13, -1.0 / 11,
-                                           1.0 / 9,   -1.0 / 7, 1.0 / 5,   -1.0 / 3, 1.0};
-  double sum = 0;
-  for (const double coefficient : kSeries)
-    sum = coefficient + s * sum;
   constexpr double kPi = 3.14159265358979323846;
-  double angle = 2 * r * sum;
-  if (sine > std::fabs(cosine)) angle = kPi / 2 - angle;
+  const double cosine = dot(a, b), c = std::min(std::fabs(cosine), 1.0);
+  const double angle = std::sqrt(1 - c) * (1.5707288 + c * (-0.2121144 + c * (0.0742610 + c * -0.0187293)));
   return cosine < 0 ? kPi - angle : angle;
 }
 

@@ -69,8 +69,17 @@ template <class Real>
   return {{x, y, z}, -(x * v0.x + y * v0.y + z * v0.z)};
 }
 
-// The angle between two unit vectors, 0 .. pi, within 1e-8: by additions, products, square root and division alone, so that
-// every compiler and C library gives the same bits.
+// The step from a to b runs along the plane rather than off it: within 45 degrees. An edge that does not has no Voronoi plane
+// to speak of; noise makes such edges where they are as short as the quantum.
+[[nodiscard]] inline bool runs_along(const Vec3& normal, const Vec3& a, const Vec3& b) {
+  const Vec3 step = b - a;
+  const double off = dot(normal, step);
+  return 2 * off * off <= squared_length(step);
+}
+
+// The angle between two unit vectors, 0 .. pi, within 7e-5 (Abramowitz and Stegun 4.4.45): a weight for a corner's normal,
+// of which only the side counts. By additions, products and square root alone, so that every compiler and C library gives the
+// same bits.
 [[nodiscard]] double angle_between(const Vec3& a, const Vec3& b);
 
 }  // namespace fdcg::bake

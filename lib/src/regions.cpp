@@ -126,7 +126,9 @@ class Grower {
     const bool by_angle = options_.coplanar.kind == Coplanar::Kind::angle;
     const auto faces = atoms_.of(atom);
     return std::all_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
-      return is_within_quantum(face, plane) || (by_angle && is_within_angle(face, plane));
+      const Vec3 &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
+      return (is_within_quantum(face, plane) || (by_angle && is_within_angle(face, plane))) && runs_along(plane.normal, a, b) &&
+             runs_along(plane.normal, b, c) && runs_along(plane.normal, c, a);
     });
   }
 

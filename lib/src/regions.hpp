@@ -37,9 +37,9 @@ struct RegionOptions {
 //   exact     every corner is exactly coplanar with every other. Exactly flat edges never lie between two regions.
 //   quantum   every corner is within kQuantumReach of the region's largest quantum of the plane, and every normal agrees
 //   angle     as quantum, or every normal is within the angle of the plane's normal
-// so that chains of small angles cannot drift; and every triangle faces the plane's way, exactly, seen along its axis. Largest
-// parts first; a region whose plane would move off one of its corners by growing on stops there. Near linear; a mesh without
-// flat edges costs one pass over them. Triangles only.
+// so that chains of small angles cannot drift; every edge runs along the plane (planes.hpp) and every triangle faces the
+// plane's way, exactly, seen along its axis. Largest parts first; a region whose plane would move off one of its corners by
+// growing on stops there. Near linear; a mesh without flat edges costs one pass over them. Triangles only.
 [[nodiscard]] Regions find_regions(const Mesh& mesh, const Topology& topology, const std::vector<EdgeClass>& edges,
                                    const RegionOptions& options);
 

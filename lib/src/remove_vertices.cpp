@@ -5,6 +5,7 @@
 #include <span>
 
 #include "exact.hpp"
+#include "planes.hpp"
 #include "vec.hpp"
 
 namespace fdcg::bake {
@@ -16,8 +17,8 @@ VertexRemover::VertexRemover(Mesh& mesh, Topology& topology, std::vector<EdgeCla
   for (std::uint32_t slot = 0; slot < mesh.corners.size(); ++slot) {
     if (region(slot) != kNone) slot_of_[tail(slot)] = slot;
   }
-  swallowed_.assign(mesh.corners.size(), kNone);
-  next_swallowed_.assign(mesh.points.size(), kNone);
+  swallowed_ = LazyArray<NoneYet>(mesh.corners.size());
+  next_swallowed_ = LazyArray<NoneYet>(mesh.points.size());
 }
 
 void VertexRemover::run() {
@@ -112,7 +113,13 @@ bool VertexRemover::cut(Star& star, std::uint32_t vertex) {
   const Projection& projection = views_[region(star.out.front())];
   const std::span<const Ear> ears = cutter_.cut_star(projection, star.points, point(vertex));
   star.ears.assign(ears.begin(), ears.end());
-  return !ears.empty();
+  // Every edge of the result is a side of an ear.
+  const Vec3& normal = regions_.list[region(star.out.front())].plane.normal;
+  return !ears.empty() && std::all_of(ears.begin(), ears.end(), [&](const Ear& ear) {
+    return runs_along(normal, star.points[ear[0]], star.points[ear[2]]) &&
+           runs_along(normal, star.points[ear[0]], star.points[ear[1]]) &&
+           runs_along(normal, star.points[ear[1]], star.points[ear[2]]);
+  });
 }
 
 // Puts the ears where the star's triangles were. Returns the slot of the edge that closes the ring of a border vertex.
@@ -129,7 +136,7 @@ std::uint32_t VertexRemover::replace(Star& star) {
   const auto close = [&](std::uint32_t ring_index, std::uint32_t slot) {
     const RingEdge& edge = star.ring_edges[ring_index];
     edges_[slot] = edge.edge;
-    swallowed_[slot] = edge.swallowed;
+    swallowed_.set(slot, edge.swallowed);
     topology_.twin[slot] = HalfedgeId{edge.across};
     if (edge.closes) closing = slot;
     if (HalfedgeId{edge.across} != Topology::kBoundary) topology_.twin[edge.across] = HalfedgeId{slot};
@@ -148,7 +155,7 @@ std::uint32_t VertexRemover::replace(Star& star) {
     close(star.ears[i][1], slot + 1);
     if (i + 1 < star.ears.size()) {
       edges_[slot + 2] = inner;
-      swallowed_[slot + 2] = kNone;
+      swallowed_.set(slot + 2, kNone);
       star.ring_edges[star.ears[i][0]] = {slot + 2, inner, kNone, false};
     } else {
       close(star.ears[i][2], slot + 2);
@@ -218,18 +225,18 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
   const EdgeClass border = edges_[edge_out];
   std::uint32_t list = join_lists(list_in, list_out);
   if (!is_exact) {
-    next_swallowed_[vertex] = list;
+    next_swallowed_.set(vertex, list);
     list = vertex;
   }
   const std::uint32_t left_slot = replace(left_star_);
   edges_[left_slot] = border;
-  swallowed_[left_slot] = list;
+  swallowed_.set(left_slot, list);
   topology_.twin[left_slot] = Topology::kBoundary;
   if (is_closed) {
     read_ring(right_star_, false);  // anew: a triangle of the left star may have lain across
     const std::uint32_t right_slot = replace(right_star_);
     edges_[right_slot] = border;
-    swallowed_[right_slot] = list;
+    swallowed_.set(right_slot, list);
     topology_.twin[right_slot] = HalfedgeId{left_slot};
     topology_.twin[left_slot] = HalfedgeId{right_slot};
   }
@@ -286,7 +293,7 @@ std::uint32_t VertexRemover::join_lists(std::uint32_t a, std::uint32_t b) {
   std::uint32_t last = a;
   while (next_swallowed_[last] != kNone)
     last = next_swallowed_[last];
-  next_swallowed_[last] = b;
+  next_swallowed_.set(last, b);
   return a;
 }
 

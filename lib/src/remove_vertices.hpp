@@ -7,11 +7,16 @@
 #include <vector>
 
 #include "classify.hpp"
+#include "lazy_array.hpp"
 #include "merge.hpp"
 #include "polygon_cut.hpp"
 #include "projection.hpp"
 
 namespace fdcg::bake {
+
+struct NoneYet {
+  std::uint32_t operator()(std::uint32_t) const { return kNone; }
+};
 
 // Edits a triangle mesh in place. Slots are half-edges, three a triangle; of a triangle that is no longer there the corners are
 // kNone.
@@ -71,7 +76,7 @@ class VertexRemover {
   std::vector<std::uint32_t> slot_of_;  // of each vertex of a region: a half-edge that leaves it; else kNone
   // Vertices that a border edge took in without passing through them exactly, as linked lists: the first by slot (the same for
   // both halves of an edge), the next by vertex.
-  std::vector<std::uint32_t> swallowed_, next_swallowed_;
+  LazyArray<NoneYet> swallowed_, next_swallowed_;
   std::vector<std::uint32_t> fan_;
   Star left_star_, right_star_;
   PolygonCutter cutter_;

@@ -14,7 +14,6 @@
 #include "fdcg/fdcg.h"
 #include "fdcg/format.h"
 #include "hierarchy.hpp"
-#include "large_pages.hpp"
 #include "parallel.hpp"
 #include "planes.hpp"
 #include "vec.hpp"
@@ -94,13 +93,10 @@ class Writer {
  public:
   Writer(const Graph& graph, const SerialiseInput& input) : graph_(graph), input_(input) {}
 
-  std::vector<std::byte> run() {
+  Result<std::span<std::byte>> run(const Allocate& allocate) {
     plan();
-    std::vector<std::byte> bytes;
-    bytes.reserve(layout_.bytes());
-    prefer_large_pages(bytes.data(), layout_.bytes());
-    bytes.resize(layout_.bytes());
-    file_ = bytes;
+    file_ = allocate(layout_.bytes());
+    if (file_.empty()) return Failure{3, "no memory for a file of " + std::to_string(layout_.bytes()) + " bytes", {}};
     nodes_ = layout_.records<typename Records::Node>(file_, FDCG_SECTION_NODES);
     sides_ = layout_.records<std::uint32_t>(file_, FDCG_SECTION_SIDES);
     voronoi_ = layout_.records<typename Records::Plane>(file_, FDCG_SECTION_VORONOI);
@@ -120,7 +116,7 @@ class Writer {
     write_source_map();
     std::memcpy(layout_.records<char>(file_, FDCG_SECTION_INFO).data(), input_.info.data(), input_.info.size());
     write_header();
-    return bytes;
+    return file_;
   }
 
  private:
@@ -384,13 +380,13 @@ class Writer {
 
 }  // namespace
 
-Result<std::vector<std::byte>> serialise(const Graph& graph, const SerialiseInput& input) {
+Result<std::span<std::byte>> serialise(const Graph& graph, const SerialiseInput& input, const Allocate& allocate) {
   // Sides and fan entries carry a connection's number and one bit.
   constexpr std::uint64_t kMostConnections = 1u << 31;
   if (graph.connection_count >= kMostConnections)
     return Failure{3, "the mesh has " + std::to_string(graph.connection_count) + " edges, the format holds fewer than 2^31"};
-  if (input.precision == Precision::f32) return Writer<Records32>(graph, input).run();
-  return Writer<Records64>(graph, input).run();
+  if (input.precision == Precision::f32) return Writer<Records32>(graph, input).run(allocate);
+  return Writer<Records64>(graph, input).run(allocate);
 }
 
 }  // namespace fdcg::bake

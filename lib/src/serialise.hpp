@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct SerialiseInput {
   unsigned jobs = 1;
 };
 
-// Same input, same bytes, whatever `jobs`. Fails (3) where a count outgrows the format.
-[[nodiscard]] Result<std::vector<std::byte>> serialise(const Graph& graph, const SerialiseInput& input);
+// Same input, same bytes, whatever `jobs`. Fails (3) where a count outgrows the format or there is no memory to be had.
+[[nodiscard]] Result<std::span<std::byte>> serialise(const Graph& graph, const SerialiseInput& input, const Allocate& allocate);
 
 }  // namespace fdcg::bake

@@ -2,12 +2,15 @@
 #include "validate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "duplicates.hpp"
 #include "edges.hpp"
 #include "face_geometry.hpp"
+#include "parallel.hpp"
 #include "patches.hpp"
 #include "weld.hpp"
 
@@ -60,6 +63,15 @@ class Checker {
   Report run();
 
  private:
+  struct Row {
+    std::string_view name;
+    void (Checker::*run)(Issue&);
+  };
+  static constexpr std::size_t kRuleCount = 15;
+  static const Row kRules[kRuleCount];
+  Issue issue_of(const Row& row);
+  std::array<Issue, kRuleCount> all_issues();
+
   // ---- elements
   Element at_vertex(std::uint32_t source) const;
   Element at_face(FaceId f) const;
@@ -328,49 +340,77 @@ bool Checker::is_planar_within_quantum(FaceId f) const {
 
 // ---- the report
 
-Report Checker::run() {
-  using Run = void (Checker::*)(Issue&);
-  // In the order of the catalogue, which report and checks keep.
-  static constexpr std::pair<std::string_view, Run> kRules[] = {
-      {"non-finite-coordinate", &Checker::non_finite_coordinate},
-      {"index-out-of-range", &Checker::index_out_of_range},
-      {"empty-mesh", &Checker::empty_mesh},
-      {"degenerate-face", &Checker::degenerate_face},
-      {"duplicate-face", &Checker::duplicate_face},
-      {"non-manifold-edge", &Checker::non_manifold_edge},
-      {"non-manifold-vertex", &Checker::non_manifold_vertex},
-      {"winding-inconsistent", &Checker::winding_inconsistent},
-      {"not-orientable", &Checker::not_orientable},
-      {"inside-out", &Checker::inside_out},
-      {"folded-edge", &Checker::folded_edge},
-      {"boundary-edge", &Checker::boundary_edge},
-      {"non-planar-face", &Checker::non_planar_face},
-      {"isolated-vertex", &Checker::isolated_vertex},
-      {"duplicate-vertex", &Checker::duplicate_vertex},
-  };
-  odd_ = odd_edges(mesh_, topology_);
-  patches_ = find_patches(mesh_, topology_, states_, odd_, geometry_);
+// In the order of the catalogue, which report and checks keep.
+const Checker::Row Checker::kRules[kRuleCount] = {
+    {"non-finite-coordinate", &Checker::non_finite_coordinate},
+    {"index-out-of-range", &Checker::index_out_of_range},
+    {"empty-mesh", &Checker::empty_mesh},
+    {"degenerate-face", &Checker::degenerate_face},
+    {"duplicate-face", &Checker::duplicate_face},
+    {"non-manifold-edge", &Checker::non_manifold_edge},
+    {"non-manifold-vertex", &Checker::non_manifold_vertex},
+    {"winding-inconsistent", &Checker::winding_inconsistent},
+    {"not-orientable", &Checker::not_orientable},
+    {"inside-out", &Checker::inside_out},
+    {"folded-edge", &Checker::folded_edge},
+    {"boundary-edge", &Checker::boundary_edge},
+    {"non-planar-face", &Checker::non_planar_face},
+    {"isolated-vertex", &Checker::isolated_vertex},
+    {"duplicate-vertex", &Checker::duplicate_vertex},
+};
 
+Issue Checker::issue_of(const Row& row) {
+  const Rule& rule = *find_rule(row.name);
+  Issue issue;
+  issue.rule = rule.name;
+  issue.severity = rule.severity;
+  (this->*row.run)(issue);
+  if (issue.total == 0) return issue;
+  const Phrase& phrase =
+      *std::find_if(std::begin(kPhrases), std::end(kPhrases), [&](const Phrase& p) { return p.rule == rule.name; });
+  issue.message = std::to_string(issue.total) + " " + std::string(issue.total == 1 ? phrase.one : phrase.many) + ". " +
+                  std::string(rule.remedy);
+  return issue;
+}
+
+// The rules look at the mesh only, so they run side by side; those that speak of patches wait for these on the thread that
+// finds them, which takes longest and so comes first.
+std::array<Issue, Checker::kRuleCount> Checker::all_issues() {
+  std::array<Issue, kRuleCount> issues;
+  std::mutex progress_lock;
+  std::size_t done = 0;
+  const auto run_rule = [&](std::size_t rule) {
+    issues[rule] = issue_of(kRules[rule]);
+    if (!options_.progress) return;
+    const std::lock_guard<std::mutex> lock(progress_lock);
+    options_.progress("check", static_cast<double>(++done) / kRuleCount);
+  };
+  const auto speaks_of_patches = [](const Row& row) { return row.name == "not-orientable" || row.name == "inside-out"; };
+  parallel_for(options_.jobs, kRuleCount + 1, 1, [&](std::size_t task, std::size_t) {
+    if (task > 0) {
+      if (!speaks_of_patches(kRules[task - 1])) run_rule(task - 1);
+      return;
+    }
+    patches_ = find_patches(mesh_, topology_, states_, odd_, geometry_);
+    for (std::size_t rule = 0; rule < kRuleCount; ++rule) {
+      if (speaks_of_patches(kRules[rule])) run_rule(rule);
+    }
+  });
+  return issues;
+}
+
+Report Checker::run() {
+  odd_ = odd_edges(mesh_, topology_);
+  std::array<Issue, kRuleCount> issues = all_issues();
   Report report;
   report.file = soup_.name;
   report.vertices = mesh_.points.size();
   report.faces = mesh_.face_count();
   report.components = patches_.components;
-  for (const auto& [name, rule_check] : kRules) {
-    const Rule& rule = *find_rule(name);
-    Issue issue;
-    issue.rule = rule.name;
-    issue.severity = rule.severity;
-    (this->*rule_check)(issue);
-    report.checks.emplace_back(name);
-    if (rule.can_be_allowed && options_.allow.count(issue.rule) != 0) report.allowed.insert(issue.rule);
-    if (options_.progress) options_.progress("check", static_cast<double>(report.checks.size()) / std::size(kRules));
-    if (issue.total == 0) continue;
-    const Phrase& phrase =
-        *std::find_if(std::begin(kPhrases), std::end(kPhrases), [&](const Phrase& p) { return p.rule == rule.name; });
-    issue.message = std::to_string(issue.total) + " " + std::string(issue.total == 1 ? phrase.one : phrase.many) + ". " +
-                    std::string(rule.remedy);
-    report.issues.push_back(std::move(issue));
+  for (Issue& issue : issues) {
+    report.checks.push_back(issue.rule);
+    if (find_rule(issue.rule)->can_be_allowed && options_.allow.count(issue.rule) != 0) report.allowed.insert(issue.rule);
+    if (issue.total != 0) report.issues.push_back(std::move(issue));
   }
   std::stable_sort(report.issues.begin(), report.issues.end(),
                    [](const Issue& a, const Issue& b) { return a.severity > b.severity; });
@@ -388,7 +428,8 @@ Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
   const Mesh mesh = weld_points(soup, options.weld, Precision::f64);
   const std::vector<FaceState> states = face_states(mesh);
   const Topology topology = pair_halfedges(mesh, states);
-  return check(soup, mesh, topology, states, {options.allow, options.max_elements, Precision::f64, options.progress});
+  return check(soup, mesh, topology, states,
+               {options.allow, options.max_elements, Precision::f64, resolve_jobs(0), options.progress});
 }
 
 }  // namespace fdcg::bake

@@ -17,7 +17,8 @@ struct CheckOptions {
   std::set<std::string> allow;           // of these, the rules that can be allowed
   std::size_t max_elements = 100;        // listed under a rule
   Precision precision = Precision::f64;  // that weld_points rounded to: non-planar-face tolerates it
-  Progress progress;
+  unsigned jobs = 1;                     // threads; the report does not depend on it
+  Progress progress;                     // called from one thread at a time
 };
 
 // Runs every rule of the catalogue but unreadable (import's), self-intersection, t-junction and sliver-face; Report::checks

@@ -3,11 +3,12 @@
 #include "atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -108,7 +109,7 @@ int AtomicFile::open_beside() {
   for (int attempt = 0;; ++attempt) {  // a leftover of a killed program with our number may be in the way
     beside_ = stem + (attempt == 0 ? "" : "-" + std::to_string(attempt));
     cleanup_slot_ = arm_cleanup(beside_);
-    descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = open(beside_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) return 0;
     const int error_number = errno;
     disarm_cleanup(cleanup_slot_);
@@ -131,8 +132,62 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
+void AtomicFile::expect(std::size_t bytes) {
+  if (!ok() || beside_.empty() || bytes == 0 || room_maker_.joinable()) return;
+  is_room_wanted_ = true;
+  room_maker_ = std::thread([this, bytes] { make_room(bytes); });
+}
+
+// On a thread of its own. Whatever fails here is tried again, and reported, by map().
+void AtomicFile::make_room(std::size_t bytes) {
+  if (posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes)) != 0) return;
+  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
+  if (memory == MAP_FAILED) return;
+  mapping_ = {static_cast<std::byte*>(memory), bytes};
+#ifdef MADV_POPULATE_WRITE
+  constexpr std::size_t kChunk = std::size_t{4} << 20;
+  for (std::size_t at = 0; at < bytes && is_room_wanted_; at += kChunk) {
+    if (madvise(mapping_.data() + at, std::min(kChunk, bytes - at), MADV_POPULATE_WRITE) != 0) return;
+  }
+#endif
+}
+
+std::span<std::byte> AtomicFile::map(std::size_t bytes) {
+  is_room_wanted_ = false;
+  if (room_maker_.joinable()) room_maker_.join();
+  if (!ok() || beside_.empty() || bytes == 0) return {};
+  content_bytes_ = bytes;
+  if (mapping_.size() >= bytes) return mapping_.first(bytes);
+  unmap();
+  // Reserved first: a page that finds no room when it is written to would be a signal, not an error.
+  const int error_number = posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+  if (error_number == ENOSPC || error_number == EFBIG) fail(error_number);
+  if (error_number == 0) {
+    void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
+    if (memory != MAP_FAILED) mapping_ = {static_cast<std::byte*>(memory), bytes};
+  }
+  if (mapping_.empty() && ok()) {  // write() will do instead
+    content_bytes_ = 0;
+    if (ftruncate(descriptor_, 0) != 0) fail(errno);
+  }
+  return mapping_;
+}
+
+void AtomicFile::unmap() {
+  is_room_wanted_ = false;
+  if (room_maker_.joinable()) room_maker_.join();
+  if (!mapping_.empty()) munmap(mapping_.data(), mapping_.size());
+  mapping_ = {};
+}
+
 bool AtomicFile::commit() {
   if (!ok()) return false;
+  const bool is_too_long = mapping_.size() > content_bytes_;
+  unmap();
+  if (is_too_long && ftruncate(descriptor_, static_cast<off_t>(content_bytes_)) != 0) {
+    fail(errno);
+    return false;
+  }
   if (descriptor_ == kStandardOutput) return true;
   const int descriptor = descriptor_;
   descriptor_ = -1;
@@ -160,6 +215,7 @@ void AtomicFile::fail(int error_number) {
 }
 
 void AtomicFile::discard() {
+  unmap();
   if (descriptor_ > kStandardOutput) close(descriptor_);
   descriptor_ = -1;
   if (!beside_.empty()) unlink(beside_.c_str());

@@ -2,8 +2,12 @@
 // Output that appears whole or not at all: written beside its target and renamed onto it.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace fdcg::tools {
 
@@ -21,6 +25,12 @@ class AtomicFile {
   [[nodiscard]] bool ok() const { return error_.empty(); }
   [[nodiscard]] const std::string& error() const { return error_; }  // one line: the path, what went wrong
   void write(std::string_view bytes);
+  // Begins, beside the caller's work, to make room for about so many bytes that map() will ask for: the system then has the
+  // pages ready. A wrong guess costs time only.
+  void expect(std::size_t bytes);
+  // The whole content as memory to be filled, zeroed, instead of write(); the space is there. Empty where the output is no
+  // file of its own (standard output, a device), where the file system cannot, and after a failure.
+  [[nodiscard]] std::span<std::byte> map(std::size_t bytes);
   bool commit();  // true: every byte has reached the file system under its name
 
  private:
@@ -28,11 +38,18 @@ class AtomicFile {
   int open_beside();
   void fail(int error_number);
   void discard();
+  void unmap();
 
   std::string path_;    // as the user gave it
   std::string target_;  // what is renamed onto; empty where the output is written straight
   std::string beside_;
   std::string error_;
+  void make_room(std::size_t bytes);
+
+  std::span<std::byte> mapping_;   // of the file, perhaps longer than its content
+  std::size_t content_bytes_ = 0;  // of a mapped file
+  std::thread room_maker_;
+  std::atomic<bool> is_room_wanted_{false};
   int descriptor_ = -1;
   int cleanup_slot_ = -1;
 };

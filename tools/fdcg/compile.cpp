@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "../common/atomic_file.hpp"
+#include "../common/heap.hpp"
 #include "../common/terminal.hpp"
 #include "command.hpp"
 #include "fdcg/bake.hpp"
@@ -55,7 +56,7 @@ std::string plural(std::uint64_t count, const std::string& singular) {
 // What came out, for a person: sizes, types, and everything that was changed on the way.
 std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
   fdcg_header header;
-  std::memcpy(&header, compiled.bytes.data(), sizeof header);
+  std::memcpy(&header, compiled.file().data(), sizeof header);
   const double scale = header.metres_per_unit;
   std::string size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -82,8 +83,9 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 }
 
 // Everything is written before anything gets its name, so that a failure leaves nothing.
-int write_outputs(const CompileArguments& arguments, const bake::Compiled& compiled, AtomicFile& out) {
-  out.write(as_text(compiled.bytes));
+int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report, const std::vector<std::byte>& buffer,
+                  AtomicFile& out) {
+  out.write(as_text(buffer));  // empty where the file was made in place
   std::optional<AtomicFile> depfile, report;
   if (!arguments.depfile.empty()) {
     depfile.emplace(arguments.depfile);
@@ -92,7 +94,7 @@ int write_outputs(const CompileArguments& arguments, const bake::Compiled& compi
   }
   if (!arguments.report.empty()) {
     report.emplace(arguments.report);
-    report->write(bake::report_json({compiled.report}));
+    report->write(bake::report_json({mesh_report}));
     if (!report->ok()) return fail(kFile, report->error());
   }
   if (report && !report->commit()) return fail(kFile, report->error());
@@ -124,15 +126,24 @@ int check_paths(const CompileArguments& arguments) {
 int check_loads(const bake::Compiled& compiled) {
   fdcg_graph graph{};
   fdcg_error error{};
-  if (fdcg_open_memory(compiled.bytes.data(), compiled.bytes.size(), FDCG_VERIFY_TRUSTED, &graph, &error) == FDCG_OK)
+  if (fdcg_open_memory(compiled.file().data(), compiled.file().size(), FDCG_VERIFY_TRUSTED, &graph, &error) == FDCG_OK)
     return kClean;
   return fail(kUsage, std::string("these options make a file that the runtime refuses: ") + error.message);
+}
+
+// The output file itself where it can be mapped; else a buffer, to be written at the end.
+std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<std::byte>& buffer) {
+  const std::span<std::byte> mapped = out.map(bytes);
+  if (!mapped.empty() || !out.ok()) return mapped;
+  buffer.resize(bytes);
+  return buffer;
 }
 
 int run_compile(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
+  keep_large_arrays();
   ProgressBar bar(!arguments.quiet);
   bake::ImportOptions import_options;
   import_options.progress =
@@ -140,12 +151,16 @@ int run_compile(CompileArguments& arguments) {
   const auto soup = bake::import_mesh(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
+  out.expect(bake::likely_file_bytes(*soup, arguments.options));
+  std::vector<std::byte> buffer;
+  arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };
   const auto compiled = bake::compile(*soup, arguments.options);
   bar.wipe();
+  if (!out.ok()) return fail(kFile, out.error());
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
-  if (compiled->bytes.empty()) return refuse(arguments, compiled->report);
+  if (compiled->file().empty()) return refuse(arguments, compiled->report);
   if (const int code = check_loads(*compiled); code != kClean) return code;
-  if (const int code = write_outputs(arguments, *compiled, out); code != kClean) return code;
+  if (const int code = write_outputs(arguments, compiled->report, buffer, out); code != kClean) return code;
   if (arguments.quiet) return kClean;
   const bool binary_on_stdout = arguments.output == "-" || arguments.report == "-";
   std::FILE* const stream = binary_on_stdout ? stderr : stdout;

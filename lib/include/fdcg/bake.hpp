@@ -15,6 +15,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -168,6 +169,9 @@ struct ValidateOptions {
 
 Report validate(const PolygonSoup& soup, const ValidateOptions& options = {});
 
+// Gives memory for a file of so many bytes: zeroed, starting at a multiple of 64; empty where there is none to be had.
+using Allocate = std::function<std::span<std::byte>(std::size_t bytes)>;
+
 struct CompileOptions {
   double metres_per_unit = 1;
   Precision precision = Precision::f64;
@@ -181,6 +185,7 @@ struct CompileOptions {
   std::size_t max_elements = 100;
   unsigned jobs = 0;  // threads; 0: as many as there are cores. The bytes do not depend on it
   Progress progress;
+  Allocate allocate;  // where the file goes, a mapped output file say; default: Compiled::bytes
 };
 
 struct Compiled {
@@ -188,8 +193,14 @@ struct Compiled {
   std::uint64_t flipped_faces = 0;  // by orient
   std::uint64_t split_faces = 0;    // not convex or not planar: cut into several nodes
   std::uint64_t merged_faces = 0;   // source faces that share their node with others
-  std::vector<std::byte> bytes;     // the file; empty if the report does not pass
+  std::vector<std::byte> bytes;     // the file, unless CompileOptions::allocate placed it; empty if the report does not pass
+  std::span<std::byte> placed;      // the file, where CompileOptions::allocate placed it
+
+  [[nodiscard]] std::span<const std::byte> file() const { return placed.empty() ? std::span<const std::byte>(bytes) : placed; }
 };
+
+// About how large the file will be; larger than it comes out where faces are merged.
+std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& options);
 
 // Fails only where the options contradict one another (2), the mesh outgrows the format (3), or by our own fault (4).
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// An array of numbers that start at a default of their own and of which few are ever changed: what is not touched costs
+// address space only, so that a stage whose work is local does not pay for the whole mesh.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+namespace fdcg::bake {
+
+// `Default` gives the value that entry i starts with. Cells hold the difference to it (exclusive or), and so start at zero,
+// which the system gives without touching the memory.
+template <class Default>
+class LazyArray {
+ public:
+  LazyArray() = default;
+  explicit LazyArray(std::size_t count) : cells_(static_cast<std::uint32_t*>(std::calloc(count + 1, sizeof(std::uint32_t)))) {
+    if (!cells_) throw std::bad_alloc();
+  }
+  [[nodiscard]] std::uint32_t operator[](std::size_t i) const { return cells_[i] ^ Default()(static_cast<std::uint32_t>(i)); }
+  void set(std::size_t i, std::uint32_t value) { cells_[i] = value ^ Default()(static_cast<std::uint32_t>(i)); }
+
+ private:
+  struct Free {
+    void operator()(std::uint32_t* memory) const { std::free(memory); }
+  };
+  std::unique_ptr<std::uint32_t[], Free> cells_;
+};
+
+}  // namespace fdcg::bake

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the C library's heap treats a program that works through a few large arrays, one after the other.
+#pragma once
+
+namespace fdcg::tools {
+
+// Freed arrays stay with the process and serve again, in large pages where the system has them: otherwise each stage faults
+// its memory in anew, page by page. To be called once, before large allocations. A hint; does nothing where there is no glibc.
+void keep_large_arrays();
+
+}  // namespace fdcg::tools
