@@ -160,6 +160,7 @@ int run_compile(CompileArguments& arguments) {
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
   if (compiled->file().empty()) return refuse(arguments, compiled->report);
   if (const int code = check_loads(*compiled); code != kClean) return code;
+  const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
   if (const int code = write_outputs(arguments, compiled->report, buffer, out); code != kClean) return code;
   if (arguments.quiet) return kClean;
   const bool binary_on_stdout = arguments.output == "-" || arguments.report == "-";
@@ -168,7 +169,7 @@ int run_compile(CompileArguments& arguments) {
     const bool colour = wants_colour(binary_on_stdout ? Stream::standard_error : Stream::standard_output);
     std::fputs(bake::report_text(compiled->report, colour).c_str(), stream);
   }
-  std::fputs(summary(arguments, *soup, *compiled).c_str(), stream);
+  std::fputs(what_was_written.c_str(), stream);
   return kClean;
 }
 
