@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Every rule of the catalogue that runs on a mesh, one short function each; together a little over 400 lines.
 #include "validate.hpp"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "face_geometry.hpp"
 #include "parallel.hpp"
 #include "patches.hpp"
+#include "phrases.hpp"
 #include "weld.hpp"
 
 namespace fdcg::bake {
@@ -27,31 +29,6 @@ bool is_finite(const Vec3& p) {
 Vec3 middle(const Vec3& a, const Vec3& b) {
   return {a.x / 2 + b.x / 2, a.y / 2 + b.y / 2, a.z / 2 + b.z / 2};
 }
-
-// What a message says it found: one of them, or several.
-struct Phrase {
-  std::string_view rule, one, many;
-};
-constexpr Phrase kPhrases[] = {
-    {"non-finite-coordinate", "vertex has a coordinate that is NaN, infinite or out of range",
-     "vertices have a coordinate that is NaN, infinite or out of range"},
-    {"index-out-of-range", "face names a vertex that the file does not have",
-     "faces name a vertex that the file does not have"},
-    {"empty-mesh", "file has no face", "files have no face"},
-    {"degenerate-face", "face has no area", "faces have no area"},
-    {"duplicate-face", "face repeats the vertices of an earlier one", "faces repeat the vertices of an earlier one"},
-    {"non-manifold-edge", "edge has more than two faces", "edges have more than two faces"},
-    {"non-manifold-vertex", "vertex joins more than one fan of faces", "vertices join more than one fan of faces"},
-    {"winding-inconsistent", "edge has two faces that run along it the same way",
-     "edges have two faces that run along them the same way"},
-    {"not-orientable", "patch of faces has no consistent winding", "patches of faces have no consistent winding"},
-    {"inside-out", "closed patch looks inwards", "closed patches look inwards"},
-    {"folded-edge", "edge has two faces that lie on one another", "edges have two faces that lie on one another"},
-    {"boundary-edge", "edge has one face only", "edges have one face only"},
-    {"non-planar-face", "polygon is not flat", "polygons are not flat"},
-    {"isolated-vertex", "vertex belongs to no face", "vertices belong to no face"},
-    {"duplicate-vertex", "vertex was joined to an earlier one", "vertices were joined to an earlier one"},
-};
 
 // Gathers the findings of one rule: counts all, keeps the first few.
 class Checker {
@@ -365,11 +342,7 @@ Issue Checker::issue_of(const Row& row) {
   issue.rule = rule.name;
   issue.severity = rule.severity;
   (this->*row.run)(issue);
-  if (issue.total == 0) return issue;
-  const Phrase& phrase =
-      *std::find_if(std::begin(kPhrases), std::end(kPhrases), [&](const Phrase& p) { return p.rule == rule.name; });
-  issue.message = std::to_string(issue.total) + " " + std::string(issue.total == 1 ? phrase.one : phrase.many) + ". " +
-                  std::string(rule.remedy);
+  if (issue.total != 0) issue.message = finding_message(rule, issue.total);
   return issue;
 }
 
