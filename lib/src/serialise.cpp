@@ -114,7 +114,7 @@ class Writer {
       build_hierarchy(graph_, header_.max_deviation, layout_.records<fdcg_box>(file_, FDCG_SECTION_HIERARCHY), input_.jobs);
     }
     write_source_map();
-    std::memcpy(layout_.records<char>(file_, FDCG_SECTION_INFO).data(), input_.info.data(), input_.info.size());
+    std::copy(input_.info.begin(), input_.info.end(), layout_.records<char>(file_, FDCG_SECTION_INFO).begin());
     write_header();
     return file_;
   }

@@ -31,7 +31,8 @@ bool in_range(double value, double low, double high) {
   return value >= low && value <= high;
 }
 
-// Beyond this, products of three coordinates would leave the range of a double (f64) or a float (f32).
+// Beyond this, products of three coordinates would leave the range of a double (f64) or a float (f32); below its inverse the
+// squares of what rounding leaves of them would be lost.
 double largest_extent(const fdcg_header& header) {
   return header.real_bytes == 8 ? 1e60 : 1e9;
 }
@@ -85,16 +86,26 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   if (header.section_count > kMaxSections) return refuse("section_count", header.section_count);
   if (header.node_count == 0) return refuse("node_count", header.node_count);
   if (header.connection_count > kMaxConnections) return refuse("connection_count", header.connection_count);
+  const double largest = largest_extent(header);
+  if (!in_range(header.extent, 1 / largest, largest)) {
+    return Message(error, FDCG_E_LAYOUT, offsetof(fdcg_header, extent))
+        .text("header.extent is ")
+        .real(header.extent)
+        .text(", allowed ")
+        .real(1 / largest)
+        .text(" to ")
+        .real(largest)
+        .text(header.real_bytes == 8 ? "; scale the mesh" : "; scale the mesh or compile it as f64");
+  }
   for (int k = 0; k < 3; ++k) {
-    const double limit = largest_extent(header);
-    if (!in_range(header.bounds_min[k], -limit, limit) || !in_range(header.bounds_max[k], header.bounds_min[k], limit) ||
+    if (!in_range(header.bounds_min[k], -largest, largest) || !in_range(header.bounds_max[k], header.bounds_min[k], largest) ||
         !in_range(header.origin[k], -1e100, 1e100)) {
       return Message(error, FDCG_E_LAYOUT).text("header: bounds or origin are not finite or too large");
     }
   }
-  if (!in_range(header.metres_per_unit, 1e-30, 1e30) || !in_range(header.extent, 0, largest_extent(header)) ||
-      !in_range(header.max_deviation, 0, largest_extent(header)) || !in_range(header.quantum, 0, largest_extent(header))) {
-    return Message(error, FDCG_E_LAYOUT).text("header: metres_per_unit, extent, max_deviation or quantum is out of range");
+  if (!in_range(header.metres_per_unit, 1e-30, 1e30) || !in_range(header.max_deviation, 0, largest) ||
+      !in_range(header.quantum, 0, largest)) {
+    return Message(error, FDCG_E_LAYOUT).text("header: metres_per_unit, max_deviation or quantum is out of range");
   }
   return FDCG_OK;
 }

@@ -109,11 +109,9 @@ class Verifier {
       const uint32_t next = node.first_side + (k + 1 < node.side_count ? k + 1 : 0);
       if (graph_.sides[next] >> 1 >= header_.connection_count) return refuse("side", next, "connection out of range");
       if (connection.corner[1 - which] != graph_.start_corner(next)) return refuse("node", n, "its sides do not form a loop");
-      if (raw_.voronoi_planes != nullptr) {
-        const Plane<Real> plane = graph_.voronoi_plane(node, k);
-        if (!is_unit(plane.normal) || !(absolute(plane.offset) <= 4 * header_.extent))
-          return refuse("side", side, "Voronoi plane out of range");
-      }
+      const Plane<Real> plane = graph_.voronoi_plane(node, k);  // stored, or as the step will derive it
+      if (!is_unit(plane.normal) || !(absolute(plane.offset) <= 4 * header_.extent))
+        return refuse("side", side, "Voronoi plane out of range");
     }
     return FDCG_OK;
   }
@@ -128,7 +126,9 @@ class Verifier {
         return refuse("corner", v, "fan out of range");
       }
       first_fan += corner.fan_count;
-      if (const uint32_t tree = corner.flags >> FDCG_CORNER_TREE_SHIFT; tree != 0) {
+      const uint32_t tree = corner.flags >> FDCG_CORNER_TREE_SHIFT;
+      if (tree == 0 && corner.fan_count > FDCG_BUSY_FAN) return refuse("corner", v, "busy, but it has no tree");
+      if (tree != 0) {
         const uint64_t boxes = ImplicitTree(corner.fan_count, FDCG_LEAF_FAN).boxes;
         if (tree - 1 != fan_boxes || boxes > header_.fan_box_count - fan_boxes) {
           return refuse("corner", v, "its tree is out of range");

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.hpp"
 #include "meshes.hpp"
+#include "random.hpp"
 #include "sealed_bytes.hpp"
 
 using namespace fdcg::test;
@@ -39,6 +42,62 @@ fdcg_status open(AlignedBytes& file, std::uint64_t bytes, fdcg_error& error, fdc
   const fdcg_status status = fdcg_open_memory(file.data(), bytes, verify, &graph, &error);
   if (status != FDCG_OK) REQUIRE(graph.header == nullptr);
   return status;
+}
+
+bool loads(std::span<const std::byte> bytes) {
+  AlignedBytes file(bytes);
+  fdcg_graph graph;
+  return fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK;
+}
+
+// Few nodes, but every kind of record: busy corner, open border, nodes that are not exactly planar, both precisions.
+std::vector<AlignedBytes> varied_files() {
+  bake::CompileOptions stored, derived;
+  stored.without = {"info"};
+  derived.without = {"info", "hierarchy"};
+  derived.store_voronoi_planes = false;
+  std::vector<AlignedBytes> files;
+  for (const auto precision : {bake::Precision::f64, bake::Precision::f32}) {
+    stored.precision = derived.precision = precision;
+    const auto inexact = rounded_to_float(transformed(grid_box(2, 2, 1, {1, 1, 0.5}), random_rotation(3)));
+    for (const auto& soup : {l_prism(), cone(40), plane_grid(2, 2), inexact}) {
+      files.push_back(compiled(soup, stored));
+      files.push_back(compiled(soup, derived));
+    }
+  }
+  return files;
+}
+
+// Changes 1 to 6 words, mostly to something that a damaged or forged file might well hold there. The header seldom.
+void corrupt(AlignedBytes& file, Random& random) {
+  const auto words = static_cast<std::uint32_t>(file.size() / 4), header_words = std::uint32_t{sizeof(fdcg_header) / 4};
+  for (std::uint32_t changes = 1 + random.below(6); changes > 0; --changes) {
+    const std::uint32_t first = random.below(16) == 0 ? 0 : header_words;
+    const std::uint32_t at = first + random.below(words - first);
+    std::uint32_t word, other;
+    std::memcpy(&word, file.data() + 4 * at, 4);
+    std::memcpy(&other, file.data() + 4 * (header_words + random.below(words - header_words)), 4);
+    switch (random.below(6)) {
+      case 0:
+        word = other;
+        break;
+      case 1:
+        word ^= std::uint32_t{1} << random.below(32);
+        break;
+      case 2:
+        word += static_cast<std::uint32_t>(random.below(9)) - 4;
+        break;
+      case 3:  // a word of the same section's neighbourhood: another index of its kind
+        std::memcpy(&word, file.data() + 4 * (at - random.below(at - first + 1) % 32), 4);
+        break;
+      case 4:
+        word = static_cast<std::uint32_t>(random.bits());
+        break;
+      default:
+        word = 0;
+    }
+    std::memcpy(file.data() + 4 * at, &word, 4);
+  }
 }
 
 }  // namespace
@@ -130,6 +189,76 @@ TEST_CASE("a changed word under valid checksums is refused or harmless to step o
     INFO("refused " << refused << ", opened " << opened);
     CHECK(refused > opened);
   }
+}
+
+TEST_CASE("several changed words under valid checksums are refused or harmless to step on") {
+  constexpr int kCases = 20000;
+  const std::vector<AlignedBytes> files = varied_files();
+  int opened = 0;
+  for (int i = 0; i < kCases; ++i) {
+    const std::uint64_t seed = 1000 + static_cast<std::uint64_t>(i);
+    INFO("seed " << seed);
+    Random random(seed);
+    AlignedBytes file = files[random.below(files.size())];
+    corrupt(file, random);
+    opened += open_and_touch(std::as_bytes(std::span(file.data(), file.size())), 40);
+  }
+  CHECK(opened > kCases / 50);  // else the step was hardly reached
+  CHECK(opened < kCases / 2);
+}
+
+TEST_CASE("every fuzz find and seed is refused or harmless to step on") {
+  int files = 0, opened = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(FDCG_SOURCE_DIR "/testdata/fuzz/load")) {
+    INFO(entry.path());
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    opened += open_and_touch(std::as_bytes(std::span(bytes)), 1000) > 0;
+    ++files;
+  }
+  CHECK(files >= 8);
+  CHECK(opened >= 8);
+}
+
+TEST_CASE("a busy corner without its tree is refused: the step would look at every edge") {
+  AlignedBytes file = compiled(cone(40), small_f32());
+  fdcg_graph graph;
+  REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);
+  auto* corners = const_cast<fdcg_corner_f32*>(static_cast<const fdcg_corner_f32*>(graph.corners));
+  for (std::uint32_t v = 0; v < graph.header->corner_count; ++v)
+    corners[v].flags &= FDCG_CORNER_OPEN;
+  seal(file);
+  fdcg_error error;
+  CHECK(open(file, file.size(), error) == FDCG_E_GRAPH);
+  CHECK(std::string(error.message).find("no tree") != std::string::npos);
+}
+
+TEST_CASE("objects too large or too small for the step's arithmetic are refused") {
+  bake::CompileOptions options = small_f32();
+  for (const double size : {1e-70, 1e-20, 1e-10, 1e-8, 1e8, 1e10, 1e65}) {
+    INFO("size " << size);
+    options.precision = bake::Precision::f64;
+    const auto f64 = bake::compile(scaled(cube(), size), options);
+    CHECK((f64.has_value() && !f64->file().empty() && loads(f64->file())) == (size > 1e-60 && size < 1e60));
+    options.precision = bake::Precision::f32;
+    const auto f32 = bake::compile(scaled(cube(), size), options);
+    CHECK((f32.has_value() && !f32->file().empty() && loads(f32->file())) == (size > 1e-9 && size < 1e9));
+  }
+}
+
+TEST_CASE("a Voronoi plane that cannot be derived is refused") {
+  bake::CompileOptions options = small_f32();
+  options.store_voronoi_planes = false;
+  AlignedBytes file = compiled(cube(), options);
+  fdcg_graph graph;
+  REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);
+  auto* connections = const_cast<fdcg_connection_f32*>(static_cast<const fdcg_connection_f32*>(graph.connections));
+  const float* normal = static_cast<const fdcg_node_f32*>(graph.nodes)[connections[0].node[0]].plane.normal;
+  std::copy_n(normal, 3, connections[0].edge);  // parallel: their cross product has no direction
+  seal(file);
+  fdcg_error error;
+  CHECK(open(file, file.size(), error) == FDCG_E_GRAPH);
+  CHECK(std::string(error.message).find("Voronoi") != std::string::npos);
 }
 
 TEST_CASE("optional sections may be absent, and the step feels the same") {
