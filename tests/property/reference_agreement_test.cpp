@@ -65,6 +65,8 @@ void check(const fdcg_graph& graph, const PolygonSoup& soup, double mu_static, d
   CHECK(run.failures == 0);
   CHECK(run.worst_growth <= kGrowthInEps);
   CHECK(run.bound_hits == 0);
+  constexpr std::uint64_t kStepsForShares = 2000;  // of a walk cut short by FDCG_STEPS shares say nothing
+  if (run.steps < kStepsForShares) return;
   CHECK(run.contact_steps > run.steps / 50);
   CHECK(static_cast<double>(run.ties) <= kTieShare * n);
   CHECK(static_cast<double>(run.ties_off_features) <= kTieShareOffFeatures * n + 2);
