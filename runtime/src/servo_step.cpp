@@ -211,7 +211,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     }
   }
   result->state = contact->state;
-  result->feature = contact->feature;
+  result->feature = contact->state == FDCG_FREE ? FDCG_NONE : contact->feature;  // a contact of zeros is free, and on nothing
   result->slipping = contact->slipping;
 }
 

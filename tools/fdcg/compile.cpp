@@ -114,11 +114,15 @@ int refuse(const CompileArguments& arguments, const bake::Report& report) {
 }
 
 int check_paths(const CompileArguments& arguments) {
+  if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; it is empty");
+  const auto is_same = [](const std::string& a, const std::string& b) { return !a.empty() && (a == b || is_same_file(a, b)); };
+  if (is_same(arguments.output, arguments.report) || is_same(arguments.output, arguments.depfile) ||
+      is_same(arguments.report, arguments.depfile))
+    return fail(kUsage, "-o, --report and --depfile must be different files");
   for (const std::string* path : {&arguments.output, &arguments.depfile, &arguments.report}) {
     if (is_same_file(arguments.mesh, *path)) return fail(kUsage, "'" + *path + "' would overwrite the mesh itself");
   }
   if (arguments.output == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a file name after -o, not -");
-  if (arguments.output == "-" && arguments.report == "-") return fail(kUsage, "-o and --report cannot both be standard output");
   return kClean;
 }
 
