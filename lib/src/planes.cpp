@@ -101,7 +101,12 @@ Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision p
 double angle_between(const Vec3& a, const Vec3& b) {
   constexpr double kPi = 3.14159265358979323846;
   const double cosine = dot(a, b), c = std::min(std::fabs(cosine), 1.0);
-  const double angle = std::sqrt(1 - c) * (1.5707288 + c * (-0.2121144 + c * (0.0742610 + c * -0.0187293)));
+  constexpr std::array<double, 8> kSeries{-0.0012624911, 0.0066700901, -0.0170881256, 0.0308918810,
+                                          -0.0501743046, 0.0889789874, -0.2145988016, 1.5707963050};
+  double sum = 0;
+  for (const double coefficient : kSeries)
+    sum = coefficient + c * sum;
+  const double angle = std::sqrt(1 - c) * sum;
   return cosine < 0 ? kPi - angle : angle;
 }
 

@@ -77,7 +77,7 @@ template <class Real>
   return 2 * off * off <= squared_length(step);
 }
 
-// The angle between two unit vectors, 0 .. pi, within 7e-5 (Abramowitz and Stegun 4.4.45): a weight for a corner's normal,
+// The angle between two unit vectors, 0 .. pi, within 4e-8 (Abramowitz and Stegun 4.4.46): a weight for a corner's normal,
 // of which only the side counts. By additions, products and square root alone, so that every compiler and C library gives the
 // same bits.
 [[nodiscard]] double angle_between(const Vec3& a, const Vec3& b);
