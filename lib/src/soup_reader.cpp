@@ -2,6 +2,7 @@
 #include "soup_reader.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <string>
 
 namespace fdcg::bake {
@@ -33,7 +34,15 @@ double TextSoupReader::absolute_quantum() const {
   const std::string half_unit = "5e-" + std::to_string(std::int64_t{finest_decimals_} + 1);
   double value = 0;
   std::from_chars(half_unit.data(), half_unit.data() + half_unit.size(), value);  // left 0 where it is below every double
-  return value;
+  // Few digits were typed, not rounded to: 0.3 beside 1 means 0.3. No exporter rounds this coarsely.
+  constexpr double kLargestShare = 1e-5;
+  double extent = 0;
+  for (const Vec3& p : soup_.points) {
+    for (const double c : {p.x, p.y, p.z}) {
+      if (std::isfinite(c)) extent = std::max(extent, std::fabs(c));
+    }
+  }
+  return std::min(value, kLargestShare * extent);
 }
 
 }  // namespace fdcg::bake

@@ -346,27 +346,31 @@ Issue Checker::issue_of(const Row& row) {
   return issue;
 }
 
-// The rules look at the mesh only, so they run side by side; those that speak of patches wait for these on the thread that
-// finds them, which takes longest and so comes first.
+// The rules look at the mesh only, so they run side by side, but for those that share what one of them works out: the patches,
+// and which polygons are flat (FaceGeometry keeps that). These two groups take longest and so come first.
 std::array<Issue, Checker::kRuleCount> Checker::all_issues() {
   std::array<Issue, kRuleCount> issues;
   std::mutex progress_lock;
   std::size_t done = 0;
+  const auto group_of = [](const Row& row) -> std::size_t {
+    if (row.name == "not-orientable" || row.name == "inside-out") return 1;
+    return row.name == "folded-edge" || row.name == "non-planar-face" ? 2 : 0;
+  };
   const auto run_rule = [&](std::size_t rule) {
     issues[rule] = issue_of(kRules[rule]);
     if (!options_.progress) return;
     const std::lock_guard<std::mutex> lock(progress_lock);
     options_.progress("check", static_cast<double>(++done) / kRuleCount);
   };
-  const auto speaks_of_patches = [](const Row& row) { return row.name == "not-orientable" || row.name == "inside-out"; };
-  parallel_for(options_.jobs, kRuleCount + 1, 1, [&](std::size_t task, std::size_t) {
-    if (task > 0) {
-      if (!speaks_of_patches(kRules[task - 1])) run_rule(task - 1);
+  constexpr std::size_t kGroups = 2;
+  parallel_for(options_.jobs, kGroups + kRuleCount, 1, [&](std::size_t task, std::size_t) {
+    if (task >= kGroups) {
+      if (group_of(kRules[task - kGroups]) == 0) run_rule(task - kGroups);
       return;
     }
-    patches_ = find_patches(mesh_, topology_, states_, odd_, geometry_);
+    if (task == 0) patches_ = find_patches(mesh_, topology_, states_, odd_, geometry_);
     for (std::size_t rule = 0; rule < kRuleCount; ++rule) {
-      if (speaks_of_patches(kRules[rule])) run_rule(rule);
+      if (group_of(kRules[rule]) == task + 1) run_rule(rule);
     }
   });
   return issues;

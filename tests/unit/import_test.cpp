@@ -124,15 +124,16 @@ TEST_CASE("the relative quantum is that of floats where every finite coordinate 
 }
 
 TEST_CASE("the absolute quantum is half a unit of the last digit printed, 0 for whole numbers") {
-  CHECK(obj_with("0.5 1.25 16").absolute_quantum == 0.005);
+  CHECK(obj_with("0.50000 1.25 16").absolute_quantum == 5e-6);
   CHECK(obj_with("0.100000 0 0").absolute_quantum == 5e-7);
-  CHECK(obj_with("1.5e-3 0 0").absolute_quantum == 5e-5);
+  CHECK(obj_with("1.50000e-3 10 0").absolute_quantum == 5e-9);
+  CHECK(obj_with("0.5 1.25 16").absolute_quantum == 1e-5 * 16);  // few digits were meant, not rounded to
   CHECK(obj_with("1.5e+3 0 0").absolute_quantum == 0);
   CHECK(obj_with("1 2 3").absolute_quantum == 0);
   CHECK(obj_with("nan inf 1").absolute_quantum == 0);
   CHECK(obj_with("1e-400 0 0").absolute_quantum == 0);
-  CHECK(import_text("OFF\n1 1 0\n0 0.125 0 0.123456789\n1 0 0.55\n").absolute_quantum ==
-        0.0005);  // of coordinates, not of colours
+  CHECK(import_text("OFF\n1 1 0\n0 0.125000 0 0.123456789\n1 0 0.55\n").absolute_quantum ==
+        5e-7);  // of coordinates, not of colours
 }
 
 TEST_CASE("progress rises to 1") {

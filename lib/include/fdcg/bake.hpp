@@ -79,7 +79,7 @@ struct PolygonSoup {
   // Half the spacing of the numbers in the file, as a bound on what rounding did to them: a coordinate c was known to within
   // max(relative_quantum * |c|, absolute_quantum).
   double relative_quantum = 0;  // 2^-24 where every coordinate is a float, 2^-53 else
-  double absolute_quantum = 0;  // decimal text: half a unit of the last digit printed; else 0
+  double absolute_quantum = 0;  // decimal text: half a unit of the last digit printed, at most 1e-5 of the extent; else 0
   std::string sha256;           // of the file's bytes, 64 lower-case hex digits
 
   [[nodiscard]] std::size_t face_count() const { return face_first.empty() ? 0 : face_first.size() - 1; }
