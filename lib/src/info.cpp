@@ -20,6 +20,10 @@ const char* name_of(Format format) {
       return "ply";
     case Format::stl:
       return "stl";
+    case Format::gltf:
+      return "gltf";
+    case Format::drc:
+      return "drc";
   }
   return "";
 }

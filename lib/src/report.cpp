@@ -101,7 +101,7 @@ Json to_json(const Element& element) {
   return json;
 }
 
-Json to_json(const Report& report) {
+Json to_json(const Report& report, std::size_t max_elements) {
   Json json;
   json["file"] = utf8(report.file);
   json["verdict"] = report.passes() ? "pass" : "fail";
@@ -116,8 +116,8 @@ Json to_json(const Report& report) {
     entry["total"] = issue.total;
     entry["message"] = utf8(issue.message);
     entry["elements"] = Json::array();
-    for (const Element& element : issue.elements)
-      entry["elements"].push_back(to_json(element));
+    for (std::size_t i = 0; i < std::min(issue.elements.size(), max_elements); ++i)
+      entry["elements"].push_back(to_json(issue.elements[i]));
     json["issues"].push_back(std::move(entry));
   }
   json["checks"] = report.checks;
@@ -127,9 +127,9 @@ Json to_json(const Report& report) {
 
 }  // namespace
 
-bool Report::passes(Severity fail_on) const {
-  return std::none_of(issues.begin(), issues.end(), [&](const Issue& issue) {
-    return issue.total > 0 && issue.severity >= fail_on && allowed.count(issue.rule) == 0;
+bool Report::passes(std::optional<Severity> level) const {
+  return !level || std::none_of(issues.begin(), issues.end(), [&](const Issue& issue) {
+    return issue.total > issue.known && issue.severity >= *level && allowed.count(issue.rule) == 0;
   });
 }
 
@@ -144,12 +144,12 @@ std::string report_text(const Report& report, bool colour) {
   return out;
 }
 
-std::string report_json(const std::vector<Report>& reports) {
+std::string report_json(const std::vector<Report>& reports, std::size_t max_elements) {
   Json json;
   json["tool"] = "fdcg";
   json["files"] = Json::array();
   for (const Report& report : reports)
-    json["files"].push_back(to_json(report));
+    json["files"].push_back(to_json(report, max_elements));
   return json.dump(1) + "\n";
 }
 

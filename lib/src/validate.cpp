@@ -402,11 +402,14 @@ Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology
 }
 
 Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
-  const Mesh mesh = weld_points(soup, options.weld, Precision::f64);
+  const unsigned jobs = resolve_jobs(options.jobs);
+  const Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
   const std::vector<FaceState> states = face_states(mesh);
   const Topology topology = pair_halfedges(mesh, states);
-  return check(soup, mesh, topology, states,
-               {options.allow, options.max_elements, Precision::f64, resolve_jobs(0), options.progress});
+  Report report =
+      check(soup, mesh, topology, states, {options.allow, options.max_elements, options.precision, jobs, options.progress});
+  report.fail_on = options.fail_on;
+  return report;
 }
 
 }  // namespace fdcg::bake

@@ -15,7 +15,6 @@ struct ValidateArguments {
   std::vector<std::string> meshes;
   std::string format = "text";
   std::string output = "-";
-  std::string fail_on = "error";
   bake::ValidateOptions options;
   bool quiet = false;
 };
@@ -33,11 +32,10 @@ bake::Report report_of_failure(const std::string& file, const bake::Failure& fai
   return report;
 }
 
-bool fails(const bake::Report& report, const std::string& fail_on) {
-  if (fail_on == "never") return false;
-  if (fail_on == "note") return !report.passes(bake::Severity::note);
-  if (fail_on == "warning") return !report.passes(bake::Severity::warning);
-  return !report.passes(bake::Severity::error);
+std::optional<bake::Severity> severity_of(const std::string& name) {
+  if (name == "never") return std::nullopt;
+  if (name == "note") return bake::Severity::note;
+  return name == "warning" ? bake::Severity::warning : bake::Severity::error;
 }
 
 int run_validate(ValidateArguments& arguments) {
@@ -58,7 +56,7 @@ int run_validate(ValidateArguments& arguments) {
     if (soup) {
       reports.push_back(bake::validate(*soup, arguments.options));
       bar.wipe();
-      if (fails(reports.back(), arguments.fail_on)) code = std::max<int>(code, kFindings);
+      if (!reports.back().passes()) code = std::max<int>(code, kFindings);
       continue;
     }
     bar.wipe();
@@ -70,7 +68,7 @@ int run_validate(ValidateArguments& arguments) {
   } else {
     const bool colour = arguments.output == "-" && wants_colour(Stream::standard_output);
     for (const bake::Report& report : reports) {
-      if (arguments.quiet && !fails(report, arguments.fail_on)) continue;
+      if (arguments.quiet && report.passes()) continue;
       out.write(bake::report_text(report, colour));
     }
   }
@@ -101,7 +99,7 @@ Examples:
   add_weld_option(*command, arguments->options.weld);
   const auto check_fail_on = [arguments](const std::string& value) {
     require_choice("--fail-on", value, {"error", "warning", "note", "never"});
-    arguments->fail_on = value;
+    arguments->options.fail_on = severity_of(value);
   };
   command->add_option_function<std::string>("--fail-on", check_fail_on, "Findings from this severity on give exit code 1")
       ->type_name("error|warning|note|never");

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -62,7 +64,21 @@ using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 // ---- import --------------------------------------------------------------------------------------------------------------
 
-enum class Format { off, obj, ply, stl };
+enum class Format { off, obj, ply, stl, gltf, drc };  // gltf: both JSON (.gltf) and binary (.glb)
+
+// What a file has beside faces, or what its encoding adds: left out of the soup, and counted so that nothing goes in silence.
+struct Ignored {
+  std::string what;  // plural: "line elements", "strip joints"
+  std::uint64_t count = 0;
+};
+
+// A named run of faces: an OBJ object or group with its material, a glTF node with its mesh's primitive. It ends where the next
+// begins.
+struct Part {
+  std::string name;
+  std::uint32_t first_face = 0;
+  std::uint32_t first_point = 0;  // glTF: of the primitive, whose own numbering starts there. Other formats: 0
+};
 
 // The faces of a mesh file as the file has them: nothing merged, moved, rounded or dropped.
 struct PolygonSoup {
@@ -81,6 +97,8 @@ struct PolygonSoup {
   double relative_quantum = 0;  // 2^-24 where every coordinate is a float, 2^-53 else
   double absolute_quantum = 0;  // decimal text: half a unit of the last digit printed, at most 1e-5 of the extent; else 0
   std::string sha256;           // of the file's bytes, 64 lower-case hex digits
+  std::vector<Part> parts;      // ascending first_face; empty where the file names none
+  std::vector<Ignored> ignored;
 
   [[nodiscard]] std::size_t face_count() const { return face_first.empty() ? 0 : face_first.size() - 1; }
 };
@@ -108,6 +126,11 @@ struct Element {
   std::vector<std::uint32_t> vertices;
   std::optional<Vec3> point;          // source units
   std::optional<std::uint32_t> line;  // text formats
+  std::string part;                   // the name of the Part that the first face belongs to, if any
+  // Of the rule and the exact coordinates of what was found, not of their numbers: stays when the file is renumbered or changed
+  // elsewhere. Several findings may share one, so compare as multisets.
+  std::uint64_t fingerprint = 0;
+  bool is_known = false;  // a baseline has it
 };
 
 // Everything found under one rule.
@@ -117,16 +140,24 @@ struct Issue {
   std::uint64_t total = 0;        // exact, however few elements are listed
   std::string message;            // what, how many, and the remedy
   std::vector<Element> elements;  // the first max_elements of them, in source order
+  std::uint64_t known = 0;        // of these, accepted by a baseline: they do not fail the verdict
 };
 
 struct Report {
   std::string file;
   std::uint64_t vertices = 0, faces = 0, components = 0;
+  // Faces that can be touched: every other face is listed under degenerate-face, index-out-of-range, non-finite-coordinate (by
+  // its vertices) or duplicate-face.
+  std::uint64_t kept_faces = 0;
+  std::vector<Ignored> ignored;     // as the soup has it
   std::vector<Issue> issues;        // errors first, then warnings, then notes; in the catalogue's order within
   std::vector<std::string> checks;  // the rules that were run
   std::set<std::string> allowed;    // rules whose errors do not fail the verdict
+  std::optional<Severity> fail_on = Severity::error;  // findings from this severity on fail the verdict; none: nothing does
 
-  [[nodiscard]] bool passes(Severity fail_on = Severity::error) const;
+  // No finding at or above `level` is neither allowed nor known.
+  [[nodiscard]] bool passes(std::optional<Severity> level) const;
+  [[nodiscard]] bool passes() const { return passes(fail_on); }
 };
 
 // One row of the catalogue of rules.
@@ -141,8 +172,13 @@ struct Rule {
 const std::vector<Rule>& rules();
 const Rule* find_rule(std::string_view name);
 
+inline constexpr std::size_t kListedElements = 100;  // of each rule, in a report that is not full
+
+// At most `max_elements` of each issue's elements are written; totals are exact all the same.
 std::string report_text(const Report& report, bool colour);
-std::string report_json(const std::vector<Report>& reports);
+std::string report_json(const std::vector<Report>& reports, std::size_t max_elements = kListedElements);
+std::string report_sarif(const std::vector<Report>& reports, std::size_t max_elements = kListedElements);  // 2.1.0
+std::string report_junit(const std::vector<Report>& reports, std::size_t max_elements = kListedElements);
 
 // ---- validate and compile --------------------------------------------------------------------------------------------------
 
@@ -160,11 +196,17 @@ struct Coplanar {
 
 enum class Precision { f64, f32 };
 
+inline constexpr std::size_t kAllElements = std::numeric_limits<std::size_t>::max();
+
 struct ValidateOptions {
   Weld weld;
   std::set<std::string> allow;
-  std::size_t max_elements = 100;
+  std::size_t max_elements = kListedElements;
   Progress progress;
+  std::map<std::string, std::optional<Severity>> severities{};  // in place of the catalogue's; none: the rule is not run
+  std::optional<Severity> fail_on = Severity::error;
+  Precision precision = Precision::f64;  // of the graph to be: coordinates are rounded to it before anything is judged
+  unsigned jobs = 0;                     // threads; 0: as many as there are cores. The report does not depend on it
 };
 
 Report validate(const PolygonSoup& soup, const ValidateOptions& options = {});
@@ -182,7 +224,8 @@ struct CompileOptions {
   bool store_voronoi_planes = true;
   std::set<std::string> without;  // optional sections left out: hierarchy, source-map, info
   std::set<std::string> allow;
-  std::size_t max_elements = 100;
+  bool self_intersections = false;  // run that rule too
+  std::size_t max_elements = kListedElements;
   unsigned jobs = 0;  // threads; 0: as many as there are cores. The bytes do not depend on it
   Progress progress;
   Allocate allocate;  // where the file goes, a mapped output file say; default: Compiled::bytes
@@ -204,5 +247,47 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
 
 // Fails only where the options contradict one another (2), the mesh outgrows the format (3), or by our own fault (4).
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options);
+
+// ---- repair ----------------------------------------------------------------------------------------------------------------
+
+// What may be done to a mesh; each step is taken only where it is asked for, in this order.
+struct RepairOptions {
+  std::optional<Weld> weld;  // join vertices, so that the written file has them once
+  bool drop_degenerate_faces = false;
+  bool drop_duplicate_faces = false;
+  bool split_non_manifold_vertices = false;  // a vertex for each fan
+  bool orient = false;                       // each orientable patch consistent
+  bool reverse_inside_out = false;           // closed patches at even nesting depth that enclose negative volume
+  std::optional<double> simplify_error;      // source units: no point of the result or the input farther from the other surface
+  unsigned jobs = 0;
+  Progress progress;
+};
+
+// What one step did.
+struct RepairAction {
+  std::string name;  // as on the command line: weld, drop-degenerate-faces, ...
+  std::uint64_t total = 0;
+  std::string message;            // one line
+  std::vector<Element> elements;  // the first kListedElements, in source order and the input's numbering
+};
+
+struct Repaired {
+  PolygonSoup soup;
+  std::vector<RepairAction> actions;  // one a step asked for, also where there was nothing to do
+  Report before, after;               // validate() of the input and of `soup`
+};
+
+Result<Repaired> repair(const PolygonSoup& soup, const RepairOptions& options);
+
+// ---- export ----------------------------------------------------------------------------------------------------------------
+
+struct ExportOptions {
+  Format format = Format::off;  // off, obj, ply, stl
+  bool is_text = false;         // ply, stl: ascii in place of binary little-endian
+};
+
+// The bytes of a mesh file. Numbers read back as the same doubles: text with the shortest digits that do, PLY as float where
+// every coordinate is one and as double else. STL holds floats and triangles only: fails (2) where that would lose anything.
+Result<std::string> export_mesh(const PolygonSoup& soup, const ExportOptions& options);
 
 }  // namespace fdcg::bake
