@@ -77,7 +77,7 @@ class BoxTree {
 
  private:
   static constexpr std::size_t kArity = 4;
-  static constexpr std::size_t kParts = 8192;  // at most; enough for a smooth progress bar and an even share of the work
+  static constexpr std::size_t kParts = 2048;  // at most; enough for a smooth progress bar and an even share of the work
 
   struct Children {
     std::size_t begin, end;
@@ -103,12 +103,19 @@ class BoxTree {
   template <class Visit>
   void between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
     if (level == 0) return visit(order_[a], order_[b]);
-    const std::vector<CellBox>& below = levels_[level - 1];
+    const CellBox* const below = levels_[level - 1].data();
+    const CellBox other = levels_[level][b];
     const Children in_a = children(level, a), in_b = children(level, b);
     for (std::size_t i = in_a.begin; i < in_a.end; ++i) {
-      if (!below[i].meets(levels_[level][b])) continue;
+      const CellBox box = below[i];
+      if (!box.meets(other)) continue;
       for (std::size_t j = in_b.begin; j < in_b.end; ++j) {
-        if (below[i].meets(below[j])) between(level - 1, i, j, visit);
+        if (!box.meets(below[j])) continue;
+        if (level == 1) {
+          visit(order_[i], order_[j]);
+        } else {
+          between(level - 1, i, j, visit);
+        }
       }
     }
   }

@@ -67,7 +67,7 @@ class Search {
     Findings all(options_.max_listed);
     std::mutex lock;
     std::size_t done = 0;
-    constexpr std::size_t kPartsAtOnce = 16;
+    constexpr std::size_t kPartsAtOnce = 4;
     parallel_for(options_.jobs, tree.part_count(), kPartsAtOnce, [&](std::size_t begin, std::size_t end) {
       Findings found(options_.max_listed);
       for (std::size_t part = begin; part < end; ++part) {
