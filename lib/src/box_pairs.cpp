@@ -90,7 +90,7 @@ Cell CellGrid::cell(const Vec3& p) const {
          place(axes_[2], p.z / 2) << (2 * kCellBits + 2);
 }
 
-BoxTree::BoxTree(const std::vector<CellBox>& boxes, unsigned jobs) {
+BoxTree::BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs) {
   std::vector<std::uint64_t> keys(boxes.size());
   parallel_for(jobs, boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -98,12 +98,15 @@ BoxTree::BoxTree(const std::vector<CellBox>& boxes, unsigned jobs) {
   });
   sort_by_upper_half(keys);
   order_.resize(boxes.size());
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    order_[i] = static_cast<std::uint32_t>(keys[i]);
+  if (!labels.empty()) {  // boxes of one label stand together, so that they share nodes
+    std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) { return labels[i] < labels[j]; });
+  }
   levels_.emplace_back(boxes.size());
   parallel_for(jobs, boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      order_[i] = static_cast<std::uint32_t>(keys[i]);
+    for (std::size_t i = begin; i < end; ++i)
       levels_[0][i] = boxes[order_[i]];
-    }
   });
   while (levels_.back().size() > 1) {
     const std::vector<CellBox>& below = levels_.back();
@@ -114,8 +117,24 @@ BoxTree::BoxTree(const std::vector<CellBox>& boxes, unsigned jobs) {
     }
     levels_.push_back(std::move(above));
   }
+  if (!labels.empty()) label_levels(labels);
   while (levels_[part_level_].size() > kParts)
     ++part_level_;
+}
+
+void BoxTree::label_levels(const std::vector<std::uint32_t>& labels) {
+  labels_.emplace_back(order_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    labels_[0][i] = labels[order_[i]];
+  while (labels_.size() < levels_.size()) {
+    const std::vector<std::uint32_t>& below = labels_.back();
+    std::vector<std::uint32_t> above(levels_[labels_.size()].size());
+    for (std::size_t i = 0; i < below.size(); ++i) {
+      std::uint32_t& label = above[i / kArity];
+      label = i % kArity == 0 || label == below[i] ? below[i] : kNone;
+    }
+    labels_.push_back(std::move(above));
+  }
 }
 
 }  // namespace fdcg::bake

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "ids.hpp"
 
 namespace fdcg::bake {
 
@@ -62,7 +63,9 @@ struct CellBox {
 
 class BoxTree {
  public:
-  explicit BoxTree(const std::vector<CellBox>& boxes, unsigned jobs);
+  // Pairs of boxes with the same label are left out and, where many have it, not even looked at. `labels`: of each box, kNone
+  // for none; or empty.
+  BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs);
 
   // The work in parts that can be done side by side, and do not depend on the number of threads.
   [[nodiscard]] std::size_t part_count() const { return levels_[part_level_].size(); }
@@ -90,7 +93,7 @@ class BoxTree {
   // Pairs of boxes below one node.
   template <class Visit>
   void within(std::size_t level, std::size_t node, Visit& visit) const {
-    if (level == 0) return;
+    if (level == 0 || label(level, node) != kNone) return;
     const auto [begin, end] = children(level, node);
     for (std::size_t i = begin; i < end; ++i) {
       within(level - 1, i, visit);
@@ -102,6 +105,7 @@ class BoxTree {
   // Pairs of a box below one node with a box below another that meets it.
   template <class Visit>
   void between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
+    if (have_same_label(level, a, b)) return;
     if (level == 0) return visit(order_[a], order_[b]);
     const CellBox* const below = levels_[level - 1].data();
     const CellBox other = levels_[level][b];
@@ -112,7 +116,7 @@ class BoxTree {
       for (std::size_t j = in_b.begin; j < in_b.end; ++j) {
         if (!box.meets(below[j])) continue;
         if (level == 1) {
-          visit(order_[i], order_[j]);
+          if (!have_same_label(0, i, j)) visit(order_[i], order_[j]);
         } else {
           between(level - 1, i, j, visit);
         }
@@ -131,8 +135,17 @@ class BoxTree {
       with_later_parts(level - 1, i, part, visit);
   }
 
-  std::vector<std::uint32_t> order_;          // the number of each box along the curve
-  std::vector<std::vector<CellBox>> levels_;  // [0]: the boxes in that order
+  [[nodiscard]] std::uint32_t label(std::size_t level, std::size_t node) const {
+    return labels_.empty() ? kNone : labels_[level][node];
+  }
+  [[nodiscard]] bool have_same_label(std::size_t level, std::size_t a, std::size_t b) const {
+    return !labels_.empty() && labels_[level][a] == labels_[level][b] && labels_[level][a] != kNone;
+  }
+  void label_levels(const std::vector<std::uint32_t>& labels);
+
+  std::vector<std::uint32_t> order_;                // the number of each box along the curve
+  std::vector<std::vector<CellBox>> levels_;        // [0]: the boxes in that order
+  std::vector<std::vector<std::uint32_t>> labels_;  // likewise: what all boxes below have; empty where there are none
   std::size_t part_level_ = 0;
 };
 

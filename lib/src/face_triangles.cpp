@@ -7,8 +7,20 @@
 #include "exact.hpp"
 #include "parallel.hpp"
 #include "polygon_cut.hpp"
+#include "vec.hpp"
 
 namespace fdcg::bake {
+namespace {
+
+// Twice the area vector of the polygon (Newell).
+Vec3 area_vector(std::span<const Vec3> polygon) {
+  Vec3 sum;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+    sum = sum + cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
+  return sum;
+}
+
+}  // namespace
 
 // Cuts one face after another; one to a thread.
 class FaceTriangles::Cutter {
@@ -18,7 +30,7 @@ class FaceTriangles::Cutter {
   void cut(std::uint32_t f, std::vector<Cut>& out) {
     const std::uint32_t first = mesh_.face_first[f], count = mesh_.face_first[f + 1] - first;
     const auto add = [&](const Ear& ear) {
-      Cut triangle;
+      Cut triangle{{}, FaceId{f}, 0};
       for (unsigned i = 0; i < 3; ++i) {
         const std::uint32_t from = ear[i], to = ear[(i + 1) % 3];
         triangle.corner[i] = mesh_.corners[first + from];
@@ -43,30 +55,19 @@ class FaceTriangles::Cutter {
   PolygonCutter cutter_;
 };
 
-FaceTriangles::FaceTriangles(const Mesh& mesh, const FaceGeometry& geometry, unsigned jobs) : mesh_(mesh) {
-  if (geometry.has_triangles_only()) return;
+FaceTriangles::FaceTriangles(const Mesh& mesh, const FaceGeometry& geometry, unsigned jobs)
+    : mesh_(mesh), is_plain_(geometry.has_triangles_only()) {
+  if (is_plain_) return;
   constexpr std::size_t kGrain = 1024;
-  struct Batch {
-    std::vector<Cut> cut;
-    std::vector<std::uint32_t> end;
-  };
-  std::vector<Batch> batches((mesh.face_count() + kGrain - 1) / kGrain);
+  std::vector<std::vector<Cut>> batches((mesh.face_count() + kGrain - 1) / kGrain);
   parallel_for(jobs, mesh.face_count(), kGrain, [&](std::size_t begin, std::size_t end) {
     Cutter cutter(mesh);
-    Batch& batch = batches[begin / kGrain];
     for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
-      if (geometry.is_finite(FaceId{f}) && !geometry.is_degenerate(FaceId{f})) cutter.cut(f, batch.cut);
-      batch.end.push_back(static_cast<std::uint32_t>(batch.cut.size()));
+      if (geometry.is_finite(FaceId{f}) && !geometry.is_degenerate(FaceId{f})) cutter.cut(f, batches[begin / kGrain]);
     }
   });
-  first_.reserve(mesh.face_count() + std::size_t{1});
-  first_.push_back(0);
-  for (const Batch& batch : batches) {
-    const auto before = static_cast<std::uint32_t>(cut_.size());
-    for (const std::uint32_t end : batch.end)
-      first_.push_back(before + end);
-    cut_.insert(cut_.end(), batch.cut.begin(), batch.cut.end());
-  }
+  for (const std::vector<Cut>& batch : batches)
+    cut_.insert(cut_.end(), batch.begin(), batch.end());
 }
 
 }  // namespace fdcg::bake

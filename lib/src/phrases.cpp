@@ -28,6 +28,7 @@ constexpr Phrase kPhrases[] = {
     {"inside-out", "closed patch looks inwards", "closed patches look inwards"},
     {"folded-edge", "edge has two faces that lie on one another", "edges have two faces that lie on one another"},
     {"boundary-edge", "edge has one face only", "edges have one face only"},
+    {"self-intersection", "pair of faces meets", "pairs of faces meet"},
     {"non-planar-face", "polygon is not flat", "polygons are not flat"},
     {"isolated-vertex", "vertex belongs to no face", "vertices belong to no face"},
     {"duplicate-vertex", "vertex was joined to an earlier one", "vertices were joined to an earlier one"},

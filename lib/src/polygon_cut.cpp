@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "polygon_cut.hpp"
 
-#include "vec.hpp"
-
 namespace fdcg::bake {
 namespace {
 
@@ -26,13 +24,6 @@ int turning_number(const Projection& projection, std::span<const Vec3> polygon) 
 }
 
 }  // namespace
-
-Vec3 area_vector(std::span<const Vec3> polygon) {
-  Vec3 sum;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-    sum = sum + cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-  return sum;
-}
 
 template <class IsEar>
 std::span<const Ear> PolygonCutter::clip(std::uint32_t count, const IsEar& is_ear) {

@@ -12,9 +12,6 @@
 
 namespace fdcg::bake {
 
-// Twice the area vector of the polygon (Newell), rounded.
-[[nodiscard]] Vec3 area_vector(std::span<const Vec3> polygon);
-
 // An ear: corners before, tip, after of the polygon as it stood when the tip was cut off. Indices into the polygon.
 using Ear = std::array<std::uint32_t, 3>;
 

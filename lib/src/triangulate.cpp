@@ -8,9 +8,18 @@
 #include "merge.hpp"
 #include "polygon_cut.hpp"
 #include "projection.hpp"
+#include "vec.hpp"
 
 namespace fdcg::bake {
 namespace {
+
+// Twice the area vector of the polygon (Newell).
+Vec3 area_vector(std::span<const Vec3> polygon) {
+  Vec3 sum;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+    sum = sum + cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
+  return sum;
+}
 
 class Triangulator {
  public:
