@@ -139,11 +139,17 @@ class AsciiBody : TextSoupReader {
   bool skip_value(const ElementKind& element, std::uint64_t row, const Property& property) {
     std::uint64_t words = 1;
     if (property.is_list && !read_list_count(element, row, words)) return false;
+    if (words > scan_.remaining()) return fail_long_list(element, row, words);
     for (; words > 0; --words) {
       if (!scan_.find_token()) return fail_end(element, row);
       scan_.read_word();
     }
     return true;
+  }
+
+  bool fail_long_list(const ElementKind& element, std::uint64_t row, std::uint64_t count) {
+    return fail_here("truncated: " + row_name(element, row) + " has a list of " + std::to_string(count) + " values, the " +
+                     std::to_string(scan_.remaining()) + " bytes left hold fewer; fetch or export it again");
   }
 
   bool fail_end(const ElementKind& element, std::uint64_t row) {

@@ -150,11 +150,13 @@ class TextScanner {
     return true;
   }
 
-  // Everything up to the token's end.
+  // Everything up to the token's end. A control character that is no blank is a word of its own, so that whoever reads words
+  // always gets on.
   std::string_view read_word() {
     const char* const start = p_;
     while (p_ != end_ && !ends_token(*p_))
       ++p_;
+    if (p_ == start && p_ != end_) ++p_;
     return {start, static_cast<std::size_t>(p_ - start)};
   }
 

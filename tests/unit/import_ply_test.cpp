@@ -132,6 +132,18 @@ TEST_CASE("PLY text: a refusal names the line, what was promised and what was fo
         "mesh: line 14: face 0 has 65537 corners; the limit is 65536: cut it into smaller polygons");
 }
 
+TEST_CASE("PLY text: a list of more values than the file has bytes is refused before any of them is looked for") {
+  // A control character was taken for a value of no length, 2^62 times over.
+  const std::string vertex = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  for (const std::string count : {"4611686018427387904", "99999999999999999999", "1000"}) {
+    INFO(count);
+    CHECK(refusal(ascii(vertex + "property list int int a\nelement face 1\n" + kFace, "0 0 0 " + count + " \x01 0\n3 0 0 0\n"))
+              .find("line 11: truncated: row 0 of 1 of element 'vertex' has a list of ") != std::string::npos);
+  }
+  CHECK(import_text(ascii(vertex + "property list int int a\nelement face 1\n" + kFace, "0 0 0 2 \x01 0\n3 0 0 0\n"))
+            .face_count() == 1);
+}
+
 TEST_CASE("a strip of n vertices holds n - 2 triangles, wound alike") {
   fdcg::bake::ply::StripDecoder strip;
   CHECK_FALSE(strip.add(1));

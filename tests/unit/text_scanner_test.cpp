@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 using fdcg::bake::TextScanner;
 
@@ -154,6 +155,14 @@ TEST_CASE("lines are counted over LF, CRLF, CR, comments and joined lines") {
     CHECK_FALSE(scan.find_token());
     CHECK(scan.at_end());
   }
+}
+
+TEST_CASE("a control character is a word of its own, so that reading words always ends") {
+  TextScanner scan(std::string_view("\x01\0b\x02 c", 6), {});
+  std::vector<std::string> words;
+  while (words.size() < 10 && scan.find_token())
+    words.emplace_back(scan.read_word());
+  CHECK(words == std::vector<std::string>{"\x01", std::string(1, '\0'), "b", "\x02", "c"});
 }
 
 TEST_CASE("a comment ends a number, and a byte order mark is skipped") {
