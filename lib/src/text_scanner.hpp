@@ -160,6 +160,9 @@ class TextScanner {
     return {start, static_cast<std::size_t>(p_ - start)};
   }
 
+  // What is left of the line, without blanks around it, as names have it: '#' and '\\' are part of it.
+  std::string_view read_rest_of_line();
+
   // The token at the cursor in quotes, for messages: at most 32 characters, unprintable ones as '?'.
   [[nodiscard]] std::string quote() const;
 
