@@ -262,9 +262,9 @@ bool Seeder::delete_many(double probability) {
 
 const std::vector<std::string>& Seeder::kinds() {
   static const std::vector<std::string> kKinds = {
-      "flip",           "delete",          "duplicate",      "pinch",     "poke",       "unweld", "non-finite",
-      "isolated",       "repeated-point",  "collapse",       "repeated-corner", "collinear",  "bad-index", "split-edge",
-      "fin",            "moebius",         "fold",           "sliver",    "bow-tie",    "bulge"};
+      "flip",     "delete",         "duplicate", "pinch",           "poke",      "unweld",    "non-finite",
+      "isolated", "repeated-point", "collapse",  "repeated-corner", "collinear", "bad-index", "split-edge",
+      "fin",      "moebius",        "fold",      "sliver",          "bow-tie",   "bulge"};
   return kKinds;
 }
 

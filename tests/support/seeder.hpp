@@ -123,7 +123,7 @@ class Seeder {
   Random& random_;
   std::vector<Polygon> clean_loops_;
   std::vector<std::vector<Face>> faces_at_;
-  std::vector<std::uint32_t> shell_of_;  // of each face, those added too; kNone: of none
+  std::vector<std::uint32_t> shell_of_;        // of each face, those added too; kNone: of none
   std::vector<bool> is_broken_, is_reversed_;  // of each shell
   std::vector<bool> is_taken_;                 // of each clean vertex
 
