@@ -48,7 +48,7 @@ class Seeder {
   bool plant();
   // Plants one of this kind: a name of kinds().
   bool plant(const std::string& kind);
-  static const std::vector<std::string>& kinds();
+  static std::vector<std::string> kinds();
 
   // Turns over the whole of a shell drawn at random; before anything else.
   void reverse_shell();
@@ -92,6 +92,7 @@ class Seeder {
   void make_equal(Vertex v, Vertex w);
 
   // ---- kinds of defects
+  static const std::map<std::string, bool (Seeder::*)()>& planters();
   bool flip_face();
   bool delete_face();
   bool duplicate_face();
