@@ -30,6 +30,7 @@ bool is_obj_keyword(std::string_view word) {
 }
 
 std::optional<Format> format_by_content(std::string_view bytes) {
+  if (bytes.starts_with("DRACO")) return Format::drc;
   if (has_binary_stl_size(bytes)) return Format::stl;
   constexpr std::string_view kBlanks = " \t\r\n";
   if (bytes.size() > 3 && bytes.starts_with("ply") && kBlanks.find(bytes[3]) != std::string_view::npos) return Format::ply;
@@ -48,6 +49,7 @@ std::optional<Format> format_by_ending(const std::string& name) {
   if (ending == ".obj") return Format::obj;
   if (ending == ".ply") return Format::ply;
   if (ending == ".stl") return Format::stl;
+  if (ending == ".drc") return Format::drc;
   return std::nullopt;
 }
 
@@ -61,8 +63,9 @@ Result<PolygonSoup> read_as(Format format, const MeshText& input) {
       return read_ply(input);
     case Format::stl:
       return read_stl(input);
-    case Format::gltf:
     case Format::drc:
+      return read_drc(input);
+    case Format::gltf:
       break;
   }
   return Failure{4, "import: a format without a reader", {}};

@@ -26,6 +26,7 @@ Result<PolygonSoup> read_off(const MeshText& input);
 Result<PolygonSoup> read_obj(const MeshText& input);
 Result<PolygonSoup> read_ply(const MeshText& input);
 Result<PolygonSoup> read_stl(const MeshText& input);
+Result<PolygonSoup> read_drc(const MeshText& input);
 
 // Content that gives its format away.
 bool is_off_keyword(std::string_view word);        // OFF, COFF, STCNOFF, 4OFF, ...
