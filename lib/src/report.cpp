@@ -52,6 +52,7 @@ std::string line_of(const Element& element) {
   append_list(out, "edge", "edges", element.edges,
               [](const std::array<std::uint32_t, 2>& e) { return std::to_string(e[0]) + "-" + std::to_string(e[1]); });
   append_list(out, "face", "faces", element.faces, index);
+  if (element.more_faces != 0) out += " (" + std::to_string(element.faces.size() + element.more_faces) + " in all)";
   if (element.point) {
     out += ", at (" + number(element.point->x) + ", " + number(element.point->y) + ", " + number(element.point->z) + ")";
   }
@@ -92,6 +93,7 @@ Json finite_or_null(double x) {
 Json to_json(const Element& element) {
   Json json = Json::object();
   json["faces"] = element.faces;
+  if (element.more_faces != 0) json["more_faces"] = element.more_faces;
   json["edges"] = element.edges;
   json["vertices"] = element.vertices;
   if (element.point) {
