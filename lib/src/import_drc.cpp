@@ -3,6 +3,7 @@
 #include <string>
 
 #include "draco_decode.hpp"
+#include "quantised.hpp"
 #include "soup_reader.hpp"
 
 namespace fdcg::bake {
@@ -32,7 +33,7 @@ Result<PolygonSoup> read_drc(const MeshText& input) {
   for (std::size_t first = 0; first <= soup.corners.size(); first += 3)
     soup.face_first.push_back(static_cast<std::uint32_t>(first));
   if (mesh.is_float) soup.relative_quantum = 0x1p-24;
-  soup.absolute_quantum = mesh.absolute_quantum;
+  if (mesh.absolute_quantum > 0) soup.absolute_quantum = at_most_a_share(mesh.absolute_quantum, soup.points);
   return soup;
 }
 
