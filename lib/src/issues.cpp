@@ -25,7 +25,8 @@ const std::vector<Rule>& rules() {
        "as around a bridge to a hole, has no single inside there.",
        "Delete faces without area and join the long edge to its neighbours; triangulate polygons with holes.", false},
       {"self-crossing-face", error,
-       "polygons whose outline crosses or touches itself, seen along the axis nearest to their mean normal",
+       "polygons whose outline crosses or touches itself: seen along the axis nearest to their mean normal and, if far from "
+       "flat, along the others too",
        "Nothing tells which side of the outline is the face: there is no cutting it into convex pieces.",
        "Triangulate the polygon in the modelling program, or put its corners in order.", false},
       {"duplicate-face", error, "the second and later faces on the same vertices, in whatever order",

@@ -99,6 +99,34 @@ class OutlineSweep {
   std::vector<std::uint32_t> rank_, order_;
 };
 
+// Of a view beside the nearest to the mean normal: the polygon's area in it, as a share of the box around it as seen from its
+// broadest side. A flat polygon that is seen edge-on shows nothing but its rounding, and that may look simple.
+constexpr double kLeastShown = 1.0 / 16;
+
+double largest_box_area(std::span<const Vec3> polygon) {
+  Vec3 low = polygon[0], high = polygon[0];
+  for (const Vec3& p : polygon) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 extent = high - low;
+  return std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
+}
+
+// Twice the area vector.
+std::array<FilteredSum, 3> filtered_area(std::span<const Vec3> polygon) {
+  std::array<FilteredSum, 3> area;
+  Vec3 a = polygon[1] - polygon[0];
+  for (const Vec3& corner : polygon.subspan(2)) {
+    const Vec3 b = corner - polygon[0];
+    area[0].add(a.y, a.z, b.y, b.z);
+    area[1].add(a.z, a.x, b.z, b.x);
+    area[2].add(a.x, a.y, b.x, b.y);
+    a = b;
+  }
+  return area;
+}
+
 }  // namespace
 
 int area_sign(std::span<const Vec3> polygon, int k) {
@@ -110,27 +138,6 @@ int area_sign(std::span<const Vec3> polygon, int k) {
     sum.add_product(component(p, v), component(q, u), 1, true);
   }
   return sum.sign();
-}
-
-std::optional<Projection> view_of(std::span<const Vec3> polygon) {
-  std::array<FilteredSum, 3> area;
-  Vec3 a = polygon[1] - polygon[0];
-  for (const Vec3& corner : polygon.subspan(2)) {
-    const Vec3 b = corner - polygon[0];
-    area[0].add(a.y, a.z, b.y, b.z);
-    area[1].add(a.z, a.x, b.z, b.x);
-    area[2].add(a.x, a.y, b.x, b.y);
-    a = b;
-  }
-  std::array<int, 3> axes{0, 1, 2};
-  const auto size = [&](int k) { return std::isfinite(area[k].value) ? std::abs(area[k].value) : 0; };
-  std::stable_sort(axes.begin(), axes.end(), [&](int k, int l) { return size(k) > size(l); });
-  for (const int k : axes) {
-    const bool is_certain = area[k].is_certain(static_cast<double>(polygon.size()) - 2);
-    const int sign = is_certain ? (area[k].value > 0 ? 1 : -1) : area_sign(polygon, k);
-    if (sign != 0) return Projection(Vec3{k == 0 ? sign : 0.0, k == 1 ? sign : 0.0, k == 2 ? sign : 0.0});
-  }
-  return std::nullopt;
 }
 
 Turns turns_of(const Projection& view, std::span<const Vec3> polygon) {
@@ -154,6 +161,24 @@ Turns turns_of(const Projection& view, std::span<const Vec3> polygon) {
 bool is_simple(const Projection& view, std::span<const Vec3> polygon) {
   const Turns turns = turns_of(view, polygon);
   return turns.number == 1 && (!turns.has_right || !OutlineSweep(view, polygon).meets_itself());
+}
+
+std::optional<Projection> simple_view(std::span<const Vec3> polygon) {
+  const std::array<FilteredSum, 3> area = filtered_area(polygon);
+  std::array<int, 3> axes{0, 1, 2};
+  const auto size = [&](int k) { return std::isfinite(area[k].value) ? std::abs(area[k].value) : 0; };
+  std::stable_sort(axes.begin(), axes.end(), [&](int k, int l) { return size(k) > size(l); });
+  bool is_first = true;
+  for (const int k : axes) {
+    if (!is_first && !(size(k) / 2 > kLeastShown * largest_box_area(polygon))) break;
+    const bool is_certain = area[k].is_certain(static_cast<double>(polygon.size()) - 2);
+    const int sign = is_certain ? (area[k].value > 0 ? 1 : -1) : area_sign(polygon, k);
+    if (sign == 0) continue;
+    is_first = false;
+    const Projection view(Vec3{k == 0 ? sign : 0.0, k == 1 ? sign : 0.0, k == 2 ? sign : 0.0});
+    if (is_simple(view, polygon)) return view;
+  }
+  return std::nullopt;
 }
 
 }  // namespace fdcg::bake

@@ -14,10 +14,6 @@ namespace fdcg::bake {
 // add up to.
 [[nodiscard]] int area_sign(std::span<const Vec3> polygon, int k);
 
-// The polygon seen along the axis nearest to its mean normal, from the side on which it runs counter-clockwise; none where its
-// area vector is exactly zero. Of a planar polygon the view shows all there is. Linear.
-[[nodiscard]] std::optional<Projection> view_of(std::span<const Vec3> polygon);
-
 // How the outline winds.
 struct Turns {
   // How often its direction goes round, counter-clockwise: 1 for every polygon that does not meet itself and runs
@@ -30,5 +26,10 @@ struct Turns {
 // The outline meets itself nowhere, in edges or corners, and runs counter-clockwise; corners in a straight line are allowed.
 // Linear where no corner points inwards, else n log n (Shamos and Hoey 1976: a line sweeps over the edges).
 [[nodiscard]] bool is_simple(const Projection& view, std::span<const Vec3> polygon);
+
+// The polygon seen along the axis nearest to its mean normal, from the side on which it runs counter-clockwise; where it is not
+// simple there, along the other axes from which it is broad, since what is far from flat may cross itself in one view and not
+// in another. None: it is simple in no view. At most three times is_simple().
+[[nodiscard]] std::optional<Projection> simple_view(std::span<const Vec3> polygon);
 
 }  // namespace fdcg::bake

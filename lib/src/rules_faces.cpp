@@ -112,8 +112,7 @@ bool has_area(const Subject& subject, std::uint32_t f) {
 }
 
 bool has_inside(std::span<const Vec3> polygon) {
-  const std::optional<Projection> view = view_of(polygon);
-  return view && is_simple(*view, polygon);
+  return simple_view(polygon).has_value();
 }
 
 // A float file rounds by 6e-8 of its extent: a face of a hundredth of the extent in length that is thinner than this has a

@@ -50,7 +50,7 @@ class Triangulator {
     polygon_.clear();
     for (std::uint32_t i = 0; i < count; ++i)
       polygon_.push_back(in_.points[+in_.corners[first + i]]);
-    const std::optional<Projection> view = view_of(polygon_);
+    const std::optional<Projection> view = simple_view(polygon_);
     out_.is_whole[f] = view && count <= kMaxMergedSides && !turns_of(*view, polygon_).has_right;
     const std::span<const Ear> ears = view ? cutter_.cut(*view, polygon_) : std::span<const Ear>{};
     if (ears.empty()) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -141,12 +142,27 @@ class Recount {
     degenerate_.resize(loops_.size());
   }
 
-  // Seen along the axis of the largest component of the area vector: all pairs of edges.
+  // Seen along the axis of the largest component of the area vector, and along those that show a sixteenth of the box.
   [[nodiscard]] bool crosses_itself(const Loop& loop) const {
     const Point n = area(loop);
-    const Integer x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+    const std::array<Integer, 3> shown{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     if (is_zero(n)) return true;
-    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    Point low = points_[loop[0]], high = low;
+    for (const std::uint32_t v : loop) {
+      const Point& p = points_[v];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const Point e{high.x - low.x, high.y - low.y, high.z - low.z};
+    const Integer box = std::max({e.x * e.y, e.y * e.z, e.z * e.x});
+    const auto largest = std::max_element(shown.begin(), shown.end()) - shown.begin();
+    if (!crosses_itself(loop, static_cast<int>(largest))) return false;
+    for (int axis = 0; axis < 3; ++axis)
+      if (axis != largest && 8 * shown[axis] > box && !crosses_itself(loop, axis)) return false;
+    return true;
+  }
+  // All pairs of edges.
+  [[nodiscard]] bool crosses_itself(const Loop& loop, int axis) const {
     const auto flat = [&](std::uint32_t v) {
       const Point& p = points_[v];
       return axis == 0 ? Point{p.y, p.z, 0} : axis == 1 ? Point{p.z, p.x, 0} : Point{p.x, p.y, 0};
