@@ -2,25 +2,15 @@
 #include "face_triangles.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "exact.hpp"
+#include "outline.hpp"
 #include "parallel.hpp"
 #include "polygon_cut.hpp"
-#include "vec.hpp"
 
 namespace fdcg::bake {
-namespace {
-
-// Twice the area vector of the polygon (Newell).
-Vec3 area_vector(std::span<const Vec3> polygon) {
-  Vec3 sum;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-    sum = sum + cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-  return sum;
-}
-
-}  // namespace
 
 // Cuts one face after another; one to a thread.
 class FaceTriangles::Cutter {
@@ -42,7 +32,8 @@ class FaceTriangles::Cutter {
     polygon_.clear();
     for (std::uint32_t i = 0; i < count; ++i)
       polygon_.push_back(mesh_.points[+mesh_.corners[first + i]]);
-    const std::span<const Ear> ears = cutter_.cut(Projection(area_vector(polygon_)), polygon_);
+    const std::optional<Projection> view = simple_view(polygon_);
+    const std::span<const Ear> ears = view ? cutter_.cut(*view, polygon_) : std::span<const Ear>{};
     if (!ears.empty()) return std::for_each(ears.begin(), ears.end(), add), void();
     for (std::uint32_t i = 1; i + 1 < count; ++i) {
       if (!exact::collinear(polygon_[0], polygon_[i], polygon_[i + 1])) add({0, i, i + 1});
