@@ -56,7 +56,7 @@ class BadMeshes(Case):
             done = self.fdcg("validate", "-q", path, code=3)
             self.assert_one_line(done, name, *words)
             self.assertRegex(done.stderr.decode(), r"[;:] .*\b(export|fetch|correct|convert|put|write|cut|run|use|leave|decompress|"
-                             r"unpack|compress|is it another format)\b")
+                             r"unpack|compress|save|is it another format)\b")
 
     def found(self, name, content, rule, total=1):
         with self.subTest(name=name, rule=rule):
