@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Self-intersections of about a million triangles, beside CGAL's sequential self_intersections on the same mesh in the same run;
-// prints both times, their ratio and the pairs found. With a mesh file as argument, of that mesh. Exit code 1 where the pairs
-// differ or the ratio is above the bar.
+// Self-intersections of about a million triangles, beside CGAL's sequential self_intersections on the same mesh in the same
+// run; prints both times, their ratio and the pairs found. With a mesh file as argument, of that mesh. Exit code 1 where the
+// pairs differ or the ratio is above the bar.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
@@ -98,9 +98,10 @@ int main(int argc, char** argv) {
   const bool is_same = std::equal(found.listed.begin(), found.listed.end(), pairs.begin(), pairs.end(),
                                   [](const MeetingFaces& p, const auto& q) { return +p.a == q.first && +p.b == q.second; });
   const double ratio = median(ours) / median(theirs);
-  std::printf("%u faces, %u threads: %.3f s, CGAL %.3f s, ratio %.3f (bar %.2f); %zu pairs (%llu cross, %llu touch), CGAL %zu: %s\n",
-              mesh.face_count(), jobs, median(ours), median(theirs), ratio, kBar, found.listed.size(),
-              static_cast<unsigned long long>(found.crossing), static_cast<unsigned long long>(found.touching), pairs.size(),
-              is_same ? "the same" : "DIFFERENT");
+  std::printf(
+      "%u faces, %u threads: %.3f s, CGAL %.3f s, ratio %.3f (bar %.2f); %zu pairs (%llu cross, %llu touch), CGAL %zu: %s\n",
+      mesh.face_count(), jobs, median(ours), median(theirs), ratio, kBar, found.listed.size(),
+      static_cast<unsigned long long>(found.crossing), static_cast<unsigned long long>(found.touching), pairs.size(),
+      is_same ? "the same" : "DIFFERENT");
   return is_same && ratio <= kBar ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Self-intersections against CGAL: its self_intersections on manifold triangle meshes, its box_self_intersection_d with its exact
-// predicates elsewhere, and the exactly constructed intersection of each pair for how the two meet. FDCG_PAIR_SEEDS sets how many
-// random soups are tried (default 300), FDCG_PAIR_BYTES up to which size real files are (default 1,000,000).
+// Self-intersections against CGAL: its self_intersections on manifold triangle meshes, its box_self_intersection_d with its
+// exact predicates elsewhere, and the exactly constructed intersection of each pair for how the two meet. FDCG_PAIR_SEEDS sets
+// how many random soups are tried (default 300), FDCG_PAIR_BYTES up to which size real files are (default 1,000,000).
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
@@ -188,8 +188,8 @@ Contact contact_by_construction(const Subject& subject, std::uint32_t f, std::ui
   const std::vector<std::uint32_t> shared = shared_corners(subject.corners(f), subject.corners(g));
   for (const Exact::Point_3& p : corners.points) {
     sum = sum + (p - CGAL::ORIGIN);
-    all_shared = all_shared && std::any_of(shared.begin(), shared.end(),
-                                           [&](std::uint32_t v) { return subject.point<Exact>(v) == p; });
+    all_shared =
+        all_shared && std::any_of(shared.begin(), shared.end(), [&](std::uint32_t v) { return subject.point<Exact>(v) == p; });
   }
   if (all_shared) return Contact::none;
   const Exact::Point_3 middle = CGAL::ORIGIN + sum / static_cast<double>(corners.points.size());

@@ -94,15 +94,15 @@ TEST_CASE("triangles without a common corner: every kind of contact") {
 }
 
 TEST_CASE("triangles in one plane without a common corner") {
-  CHECK(contact_with_floor({1, 1, 0}, {1.5, 1, 0}, {1, 1.5, 0}) == "crossing");   // inside
-  CHECK(contact_with_floor({-9, -9, 0}, {20, 0, 0}, {0, 20, 0}) == "crossing");   // around
-  CHECK(contact_with_floor({1, 1, 0}, {9, 1, 0}, {9, 2, 0}) == "crossing");       // across the rim
-  CHECK(contact_with_floor({-1, 1, 0}, {6, 1, 0}, {6, 1.5, 0}) == "crossing");    // a bar across
-  CHECK(contact_with_floor({2, 2, 0}, {9, 2, 0}, {9, 9, 0}) == "touching");       // a vertex on the rim
-  CHECK(contact_with_floor({1, 0, 0}, {3, 0, 0}, {2, -1, 0}) == "touching");      // along the rim
-  CHECK(contact_with_floor({-3, 0, 0}, {0, 0, 0}, {-3, -1, 0}) == "touching");    // vertex at vertex
-  CHECK(contact_with_floor({3, 3, 0}, {9, 2, 0}, {9, 9, 0}) == "none");           // beside
-  CHECK(contact_with_floor({0.1, 4.5, 0}, {4.5, 0.1, 0}, {9, 9, 0}) == "none");   // beside, boxes overlap
+  CHECK(contact_with_floor({1, 1, 0}, {1.5, 1, 0}, {1, 1.5, 0}) == "crossing");  // inside
+  CHECK(contact_with_floor({-9, -9, 0}, {20, 0, 0}, {0, 20, 0}) == "crossing");  // around
+  CHECK(contact_with_floor({1, 1, 0}, {9, 1, 0}, {9, 2, 0}) == "crossing");      // across the rim
+  CHECK(contact_with_floor({-1, 1, 0}, {6, 1, 0}, {6, 1.5, 0}) == "crossing");   // a bar across
+  CHECK(contact_with_floor({2, 2, 0}, {9, 2, 0}, {9, 9, 0}) == "touching");      // a vertex on the rim
+  CHECK(contact_with_floor({1, 0, 0}, {3, 0, 0}, {2, -1, 0}) == "touching");     // along the rim
+  CHECK(contact_with_floor({-3, 0, 0}, {0, 0, 0}, {-3, -1, 0}) == "touching");   // vertex at vertex
+  CHECK(contact_with_floor({3, 3, 0}, {9, 2, 0}, {9, 9, 0}) == "none");          // beside
+  CHECK(contact_with_floor({0.1, 4.5, 0}, {4.5, 0.1, 0}, {9, 9, 0}) == "none");  // beside, boxes overlap
 }
 
 TEST_CASE("triangles that share a corner: what they have beyond it") {
@@ -111,19 +111,19 @@ TEST_CASE("triangles that share a corner: what they have beyond it") {
     points.insert(points.end(), {b, c});
     return contact(points, {0, 1, 2}, {0, 3, 4});
   };
-  CHECK(with({-1, 0, 0}, {0, -1, 0}) == "none");       // opposite in the plane
-  CHECK(with({1, 0, 1}, {0, 1, 1}) == "none");         // off the plane
-  CHECK(with({-1, 0, 1}, {0, -1, -1}) == "none");      // through the plane, on the other side
-  CHECK(with({1, 1, -1}, {1, 1, 1}) == "crossing");    // pierces
-  CHECK(with({9, 9, -1}, {9, 9, 1}) == "crossing");    // out across the opposite rim
-  CHECK(with({1, 1, 0}, {1, 1, 1}) == "touching");     // an edge on the face
-  CHECK(with({9, 9, 0}, {9, 9, 1}) == "touching");     // and beyond
-  CHECK(with({2, 0, 0}, {2, 0, 1}) == "touching");     // an edge along an edge
-  CHECK(with({2, 0, 0}, {2, -1, 0}) == "touching");    // the same in the plane
-  CHECK(with({-2, 0, 0}, {-2, -1, 0}) == "none");      // in the plane, an edge straight on
-  CHECK(with({2, 1, 0}, {1, 2, 0}) == "crossing");     // inside in the plane
-  CHECK(with({2, 1, 0}, {2, -1, 0}) == "crossing");    // overlapping in the plane
-  CHECK(with({9, -1, 0}, {-1, 9, 0}) == "crossing");   // around in the plane
+  CHECK(with({-1, 0, 0}, {0, -1, 0}) == "none");      // opposite in the plane
+  CHECK(with({1, 0, 1}, {0, 1, 1}) == "none");        // off the plane
+  CHECK(with({-1, 0, 1}, {0, -1, -1}) == "none");     // through the plane, on the other side
+  CHECK(with({1, 1, -1}, {1, 1, 1}) == "crossing");   // pierces
+  CHECK(with({9, 9, -1}, {9, 9, 1}) == "crossing");   // out across the opposite rim
+  CHECK(with({1, 1, 0}, {1, 1, 1}) == "touching");    // an edge on the face
+  CHECK(with({9, 9, 0}, {9, 9, 1}) == "touching");    // and beyond
+  CHECK(with({2, 0, 0}, {2, 0, 1}) == "touching");    // an edge along an edge
+  CHECK(with({2, 0, 0}, {2, -1, 0}) == "touching");   // the same in the plane
+  CHECK(with({-2, 0, 0}, {-2, -1, 0}) == "none");     // in the plane, an edge straight on
+  CHECK(with({2, 1, 0}, {1, 2, 0}) == "crossing");    // inside in the plane
+  CHECK(with({2, 1, 0}, {2, -1, 0}) == "crossing");   // overlapping in the plane
+  CHECK(with({9, -1, 0}, {-1, 9, 0}) == "crossing");  // around in the plane
 }
 
 TEST_CASE("triangles that share a side, or all corners") {
