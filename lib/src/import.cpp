@@ -4,6 +4,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <iterator>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -29,10 +30,39 @@ bool is_obj_keyword(std::string_view word) {
   return std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
 }
 
+// What the content gives away, and no reader reads: the start of it, its name, and the remedy.
+struct ForeignKind {
+  std::string_view start, remedy;
+};
+constexpr ForeignKind kForeignKinds[] = {
+    {"\x1F\x8B", "is compressed with gzip; decompress it first (gunzip)"},
+    {"BZh", "is compressed with bzip2; decompress it first (bunzip2)"},
+    {"\xFD"
+     "7zXZ",
+     "is compressed with xz; decompress it first (unxz)"},
+    {"\x28\xB5\x2F\xFD", "is compressed with zstd; decompress it first (unzstd)"},
+    {"7z\xBC\xAF\x27\x1C", "is a 7z archive; unpack the mesh first"},
+    {"PK\x03\x04", "is a ZIP archive (3MF files are, too); unpack the mesh first, or export it in another format"},
+    {"Kaydara FBX Binary", "is FBX, which is not read; export it as glTF, OBJ or PLY"},
+    {"BLENDER", "is a Blender file, which is not read; export it as glTF, OBJ or PLY"},
+    {"ISO-10303-21;", "is a STEP file, which holds surfaces and no mesh; export it as STL or OBJ"},
+    {"<", "is XML (or HTML), in which no format that is read is written; export it as glTF, OBJ or PLY"},
+};
+
+const ForeignKind* foreign_kind(std::string_view bytes) {
+  if (has_binary_stl_size(bytes)) return nullptr;  // which may start with anything
+  const auto* const kind = std::find_if(std::begin(kForeignKinds), std::end(kForeignKinds),
+                                        [bytes](const ForeignKind& k) { return bytes.starts_with(k.start); });
+  return kind == std::end(kForeignKinds) ? nullptr : kind;
+}
+
 std::optional<Format> format_by_content(std::string_view bytes) {
+  if (bytes.starts_with("DRACO")) return Format::drc;
+  if (is_glb(bytes) || is_gltf_json(bytes)) return Format::gltf;
   if (has_binary_stl_size(bytes)) return Format::stl;
   constexpr std::string_view kBlanks = " \t\r\n";
-  if (bytes.size() > 3 && bytes.starts_with("ply") && kBlanks.find(bytes[3]) != std::string_view::npos) return Format::ply;
+  const std::string_view text = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+  if (text.size() > 3 && text.starts_with("ply") && kBlanks.find(text[3]) != std::string_view::npos) return Format::ply;
   TextScanner scan(bytes, {.hash_comments = true});
   if (!scan.find_token()) return std::nullopt;
   const std::string_view word = scan.read_word();
@@ -48,6 +78,8 @@ std::optional<Format> format_by_ending(const std::string& name) {
   if (ending == ".obj") return Format::obj;
   if (ending == ".ply") return Format::ply;
   if (ending == ".stl") return Format::stl;
+  if (ending == ".gltf" || ending == ".glb") return Format::gltf;
+  if (ending == ".drc") return Format::drc;
   return std::nullopt;
 }
 
@@ -61,9 +93,10 @@ Result<PolygonSoup> read_as(Format format, const MeshText& input) {
       return read_ply(input);
     case Format::stl:
       return read_stl(input);
-    case Format::gltf:
     case Format::drc:
-      break;
+      return read_drc(input);
+    case Format::gltf:
+      return read_gltf(input);
   }
   return Failure{4, "import: a format without a reader", {}};
 }
@@ -79,18 +112,21 @@ double relative_quantum(const std::vector<Vec3>& points) {
   return all_floats ? 0x1p-24 : 0x1p-53;
 }
 
-Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options) {
+// `file`: where the bytes are from; null: from memory.
+Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                                 const std::filesystem::path* file) {
   if (bytes.empty()) return refuse(name, "is empty; export the mesh again", "empty-mesh");
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
     return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
   }
+  if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);
   if (!format) format = format_by_ending(name);
-  if (!format) return refuse(name, "is of no known mesh format; OFF, OBJ, PLY and STL are read");
+  if (!format) return refuse(name, "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read");
 
   Sha256Task hash(bytes);
-  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress});
+  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file});
   if (!soup) return soup;
   if (soup->face_count() == 0) {
     return refuse(name, "holds no face, " + std::to_string(soup->points.size()) + " vertices; export the mesh with its faces",
@@ -103,9 +139,10 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   return soup;
 }
 
-Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& name, const ImportOptions& options) {
+Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                                   const std::filesystem::path* file) {
   try {
-    return import_bytes(bytes, name, options);
+    return import_bytes(bytes, name, options, file);
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
@@ -117,11 +154,11 @@ Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& na
 Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options) {
   const Result<FileBytes> file = FileBytes::open(path);
   if (!file) return file.error();
-  return import_guarded(file->bytes(), path.string(), options);
+  return import_guarded(file->bytes(), path.string(), options, &path);
 }
 
 Result<PolygonSoup> import_memory(std::string_view bytes, std::string name, const ImportOptions& options) {
-  return import_guarded(bytes, name, options);
+  return import_guarded(bytes, name, options, nullptr);
 }
 
 }  // namespace fdcg::bake
