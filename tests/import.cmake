@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Tests, fuzz targets and the benchmark of the readers. They link nothing but the import.
+# Tests, fuzz targets and the benchmark of the readers, and the tests of the writers. They link nothing but these two.
 if(FDCG_BUILD_TESTS)
   find_package(OpenMesh REQUIRED)
   add_library(fdcg_import_testing INTERFACE)
@@ -11,8 +11,11 @@ if(FDCG_BUILD_TESTS)
   fdcg_test(import_corpus SOURCES unit/import_corpus_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import_allocation SOURCES unit/import_allocation_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import_openmesh SOURCES unit/import_openmesh_test.cpp LIBRARIES fdcg_import fdcg_import_testing OpenMeshCore)
+  fdcg_test(export SOURCES unit/export_test.cpp LIBRARIES fdcg_export fdcg_import fdcg_import_testing OpenMeshCore)
   # with sanitizers GCC 12 sees OpenMesh's vectors copied before they are set
-  target_compile_options(fdcg_test_import_openmesh PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  foreach(test import_openmesh export)
+    target_compile_options(fdcg_test_${test} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  endforeach()
 endif()
 
 if(FDCG_BUILD_FUZZERS)

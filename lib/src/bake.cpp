@@ -201,7 +201,12 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   Topology topology = pair_halfedges(mesh, states);
   if (options.orient) compiled.flipped_faces = orient(mesh, topology, states).size();
   stage("check", 0.2);
-  compiled.report = check(soup, mesh, topology, states, {options.allow, options.max_elements, options.precision, jobs, {}});
+  CheckOptions how;
+  how.allow = options.allow;
+  how.max_elements = options.max_elements;
+  how.precision = options.precision;
+  how.jobs = jobs;
+  compiled.report = check(soup, mesh, topology, states, how);
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
   const auto file = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);

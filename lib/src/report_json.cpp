@@ -86,6 +86,7 @@ void end_json_document(JsonWriter& json, std::string& out) {
 void write_json_element(JsonWriter& json, const Element& element) {
   json.begin_object(one_line);
   write_list(json, "faces", element.faces);
+  if (element.more_faces != 0) json.member("more_faces", element.more_faces);
   json.key("edges");
   json.begin_array();
   for (const auto& edge : element.edges) {

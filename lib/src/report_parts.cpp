@@ -47,6 +47,7 @@ std::string place_of(const Element& element) {
   append_list(out, "edge", "edges", element.edges,
               [](const std::array<std::uint32_t, 2>& e) { return std::to_string(e[0]) + "-" + std::to_string(e[1]); });
   append_list(out, "face", "faces", element.faces, index);
+  if (element.more_faces != 0) out += " (" + std::to_string(element.faces.size() + element.more_faces) + " in all)";
   if (!element.part.empty()) out += ", part \"" + printable(element.part, kLongestName) + "\"";
   if (element.point) {
     out += ", at (" + number(element.point->x) + ", " + number(element.point->y) + ", " + number(element.point->z) + ")";

@@ -269,6 +269,7 @@ class ResultWriter {
     json_.key("properties");
     json_.begin_object();
     write_indices(json_, "faces", element.faces);
+    if (element.more_faces != 0) json_.member("more_faces", element.more_faces);
     if (!element.edges.empty()) {
       json_.key("edges");
       json_.begin_array();

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,17 +16,19 @@
 namespace fdcg::bake {
 
 struct CheckOptions {
-  std::set<std::string> allow;           // of these, the rules that can be allowed
-  std::size_t max_elements = 100;        // listed under a rule
-  Precision precision = Precision::f64;  // that weld_points rounded to: non-planar-face tolerates it
-  unsigned jobs = 1;                     // threads; the report does not depend on it
-  Progress progress;                     // called from one thread at a time
+  std::set<std::string> allow;                                // of these, the rules that can be allowed
+  std::map<std::string, std::optional<Severity>> severities;  // in place of the catalogue's; none: the rule is not run
+  std::optional<Severity> fail_on = Severity::error;
+  std::size_t max_elements = kListedElements;  // listed under a rule
+  Precision precision = Precision::f64;        // that weld_points rounded to: non-planar-face tolerates it
+  unsigned jobs = 1;                           // threads; the report does not depend on it
+  Progress progress;                           // called from one thread at a time
 };
 
-// Runs every rule of the catalogue but unreadable (import's), self-intersection, t-junction and sliver-face; Report::checks
-// names them. `mesh` is weld_points(soup, ...), perhaps oriented; `states` and `topology` are those of face_states and
-// pair_halfedges. Report::vertices counts the welded vertices, as the rules do. Elements speak of the soup's own numbers: of
-// joined vertices the first. An element names at most 32 faces. Near linear.
+// Runs the rules of the catalogue but unreadable (import's), self-intersection, t-junction and sliver-face; Report::checks
+// names those that ran. `mesh` is weld_points(soup, ...), perhaps oriented; `states` and `topology` are those of face_states
+// and pair_halfedges. Report::vertices counts the welded vertices, as the rules do. Elements speak of the soup's own numbers:
+// of joined vertices the first. An element names at most 32 faces and counts the rest. Near linear.
 [[nodiscard]] Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology,
                            const std::vector<FaceState>& states, const CheckOptions& options);
 

@@ -122,14 +122,15 @@ enum class Severity { note, warning, error };
 
 // One located finding. Indices in the source file's own numbering (0-based as they stand in the soup).
 struct Element {
-  std::vector<std::uint32_t> faces;
+  std::vector<std::uint32_t> faces;  // at most 32
+  std::uint64_t more_faces = 0;      // beyond these
   std::vector<std::array<std::uint32_t, 2>> edges;
   std::vector<std::uint32_t> vertices;
   std::optional<Vec3> point;          // source units
   std::optional<std::uint32_t> line;  // text formats
   std::string part;                   // the name of the Part that the first face belongs to, if any
-  // Of the rule and the exact coordinates of what was found, not of their numbers: stays when the file is renumbered or changed
-  // elsewhere. Several findings may share one, so compare as multisets.
+  // Of the rule and the exact coordinates of what was found (a patch: of its least corner), not of their numbers: stays when
+  // the file is renumbered or changed elsewhere. Several findings may share one, so compare as multisets.
   std::uint64_t fingerprint = 0;
   bool is_known = false;  // a baseline has it
 };

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "findings.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "phrases.hpp"
+
+namespace fdcg::bake {
+namespace {
+
+// Halved first: the middle of two finite points is finite.
+Vec3 middle(const Vec3& a, const Vec3& b) {
+  return {a.x / 2 + b.x / 2, a.y / 2 + b.y / 2, a.z / 2 + b.z / 2};
+}
+
+bool is_less(const Vec3& a, const Vec3& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+}  // namespace
+
+Findings::Findings(const Subject& subject, const Rule& rule, Severity severity, std::size_t max_elements)
+    : subject_(subject), rule_(rule), max_elements_(max_elements) {
+  issue_.rule = rule.name;
+  issue_.severity = severity;
+}
+
+Element* Findings::found() {
+  if (issue_.total++ >= max_elements_) return nullptr;
+  return &issue_.elements.emplace_back();
+}
+
+void Findings::add_face(Element& element, FaceId f) const {
+  constexpr std::size_t kMaxFaces = 32;  // an edge may have a million, and a report stays small
+  const std::uint32_t source = subject_.mesh.source_of(f);
+  if (element.faces.size() == kMaxFaces) {
+    ++element.more_faces;
+    return;
+  }
+  element.faces.push_back(source);
+  if (element.faces.size() > 1) return;
+  const PolygonSoup& soup = subject_.soup;
+  if (!element.line && source < soup.face_line.size()) element.line = soup.face_line[source];
+  const auto after = std::upper_bound(soup.parts.begin(), soup.parts.end(), source,
+                                      [](std::uint32_t face, const Part& part) { return face < part.first_face; });
+  if (after != soup.parts.begin()) element.part = std::prev(after)->name;
+}
+
+void Findings::at_file() {
+  if (Element* const element = found()) element->fingerprint = Fingerprint(rule_.name).value();
+}
+
+void Findings::at_vertex(std::uint32_t source) {
+  Element* const element = found();
+  if (element == nullptr) return;
+  element->vertices.push_back(source);
+  element->point = subject_.soup.points[source];
+  if (source < subject_.soup.point_line.size()) element->line = subject_.soup.point_line[source];
+  Fingerprint fingerprint(rule_.name);
+  fingerprint.add(*element->point);
+  element->fingerprint = fingerprint.value();
+}
+
+void Findings::at_face(FaceId f) {
+  Element* const element = found();
+  if (element == nullptr) return;
+  add_face(*element, f);
+  Fingerprint fingerprint(rule_.name);
+  for (std::uint32_t h = subject_.mesh.face_first[+f]; h < subject_.mesh.face_first[+f + 1]; ++h) {
+    const VertexId v = subject_.mesh.corners[h];
+    if (v == VertexId{kNone}) {
+      fingerprint.add_missing_corner();
+      continue;
+    }
+    if (!element->point) element->point = subject_.source_point(v);
+    fingerprint.add(subject_.source_point(v));
+  }
+  element->fingerprint = fingerprint.value();
+}
+
+void Findings::at_face(FaceId f, FaceId original) {
+  at_face(f);
+  if (issue_.total <= max_elements_) add_face(issue_.elements.back(), original);
+}
+
+void Findings::at_edge(std::span<const HalfedgeId> halfedges) {
+  Element* const element = found();
+  if (element == nullptr) return;
+  const VertexId u = subject_.start_of(halfedges[0]), v = subject_.end_of(halfedges[0]);
+  element->edges.push_back({subject_.mesh.source_point[+u], subject_.mesh.source_point[+v]});
+  element->point = middle(subject_.source_point(u), subject_.source_point(v));
+  for (const HalfedgeId h : halfedges)
+    add_face(*element, subject_.topology.face(h));
+  Fingerprint fingerprint(rule_.name);
+  fingerprint.add(subject_.source_point(u));
+  fingerprint.add(subject_.source_point(v));
+  element->fingerprint = fingerprint.value();
+}
+
+// One pass finds it for all patches: the rules of patches rarely find anything, and then it may be thousands.
+Vec3 Findings::least_corner(std::uint32_t patch) {
+  const Patches& patches = subject_.patches;
+  if (least_corners_.empty()) {
+    for (const Patch& p : patches.patches)
+      least_corners_.push_back(subject_.source_point(subject_.mesh.corners[subject_.mesh.face_first[+p.first_face]]));
+    for (std::uint32_t f = 0; f < subject_.mesh.face_count(); ++f) {
+      if (patches.of_face[f] == kNone) continue;
+      Vec3& least = least_corners_[patches.of_face[f]];
+      for (std::uint32_t h = subject_.mesh.face_first[f]; h < subject_.mesh.face_first[f + 1]; ++h) {
+        const Vec3& point = subject_.source_point(subject_.mesh.corners[h]);
+        if (is_less(point, least)) least = point;
+      }
+    }
+  }
+  return least_corners_[patch];
+}
+
+void Findings::at_patch(std::uint32_t patch) {
+  Element* const element = found();
+  if (element == nullptr) return;
+  const Patch& p = subject_.patches.patches[patch];
+  add_face(*element, p.first_face);
+  element->point = subject_.source_point(subject_.mesh.corners[subject_.mesh.face_first[+p.first_face]]);
+  if (p.conflict != HalfedgeId{kNone}) {
+    element->edges.push_back(
+        {subject_.mesh.source_point[+subject_.start_of(p.conflict)], subject_.mesh.source_point[+subject_.end_of(p.conflict)]});
+  }
+  Fingerprint fingerprint(rule_.name);
+  fingerprint.add(least_corner(patch));
+  element->fingerprint = fingerprint.value();
+}
+
+Issue Findings::take() && {
+  if (issue_.total != 0 && issue_.message.empty()) issue_.message = finding_message(rule_, issue_.total);
+  return std::move(issue_);
+}
+
+}  // namespace fdcg::bake
