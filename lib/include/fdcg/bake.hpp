@@ -141,7 +141,7 @@ struct Issue {
   Severity severity = Severity::error;
   std::uint64_t total = 0;        // exact, however few elements are listed
   std::string message;            // what, how many, and the remedy
-  std::vector<Element> elements;  // the first max_elements of them, in source order
+  std::vector<Element> elements;  // the first max_elements of them, in source order; known ones last
   std::uint64_t known = 0;        // of these, accepted by a baseline: they do not fail the verdict
 };
 
@@ -193,8 +193,8 @@ enum class ReportFormat {
 struct ReportOptions {
   std::size_t max_elements = kListedElements;  // of each issue; totals are exact all the same
   bool colour = false;                         // text
-  std::string source_root;                     // sarif: the absolute folder that relative paths start from; files in it get relative URIs
-  bool result_per_element = false;             // sarif: a result for each listed element in place of one for each rule
+  std::string source_root;          // sarif: the absolute folder that relative paths start from; files in it get relative URIs
+  bool result_per_element = false;  // sarif: a result for each listed element in place of one for each rule
   std::string timestamp = "1970-01-01T00:00:00";  // junit: when the run began, UTC
 };
 
@@ -215,6 +215,37 @@ inline std::string report_json(const std::vector<Report>& reports) {
   return report_string(ReportFormat::json, reports);
 }
 
+// Elements on their way into a full report, as JSON text: in memory, or in a temporary file once they are many.
+class ElementSpool {
+ public:
+  ElementSpool();
+  ElementSpool(ElementSpool&&) noexcept;
+  ElementSpool& operator=(ElementSpool&&) noexcept;
+  ~ElementSpool();
+  void add(std::string_view rule, const Element& element);  // of one rule one at a time, of several rules at once
+
+ private:
+  friend class FullReportWriter;
+  struct Pile;
+  std::vector<Pile> piles_;  // of each rule of the catalogue
+};
+
+// The JSON of ReportFormat::json with every element, from spools in place of Issue::elements.
+class FullReportWriter {
+ public:
+  explicit FullReportWriter(std::function<void(std::string_view)> write);
+  ~FullReportWriter();
+  FullReportWriter(const FullReportWriter&) = delete;
+  FullReportWriter& operator=(const FullReportWriter&) = delete;
+  // False where the temporary files could not hold the elements; nothing is of use then.
+  [[nodiscard]] bool add(const Report& report, ElementSpool& spool);
+  void finish();
+
+ private:
+  struct Document;
+  std::unique_ptr<Document> document_;
+};
+
 // ---- validate and compile --------------------------------------------------------------------------------------------------
 
 // Vertices at equal coordinates are one (exact; -0 = 0), each is its own (none), or those within a distance are joined.
@@ -233,6 +264,11 @@ enum class Precision { f64, f32 };
 
 inline constexpr std::size_t kAllElements = std::numeric_limits<std::size_t>::max();
 
+// Sees every finding before it is listed, and whether or not it will be: those of one rule in source order, one at a time;
+// those of several rules perhaps at once, from several threads. May set is_known: then it counts in Issue::known, and gives way
+// in the list to what is not known.
+using EachElement = std::function<void(std::string_view rule, Element& element)>;
+
 struct ValidateOptions {
   Weld weld;
   std::set<std::string> allow;
@@ -242,6 +278,7 @@ struct ValidateOptions {
   std::optional<Severity> fail_on = Severity::error;
   Precision precision = Precision::f64;  // of the graph to be: coordinates are rounded to it before anything is judged
   unsigned jobs = 0;                     // threads; 0: as many as there are cores. The report does not depend on it
+  EachElement each_element{};
 };
 
 Report validate(const PolygonSoup& soup, const ValidateOptions& options = {});
