@@ -4,6 +4,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <iterator>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -29,10 +30,37 @@ bool is_obj_keyword(std::string_view word) {
   return std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
 }
 
+// What the content gives away, and no reader reads: the start of it, its name, and the remedy.
+struct ForeignKind {
+  std::string_view start, remedy;
+};
+constexpr ForeignKind kForeignKinds[] = {
+    {"\x1F\x8B", "is compressed with gzip; decompress it first (gunzip)"},
+    {"BZh", "is compressed with bzip2; decompress it first (bunzip2)"},
+    {"\xFD"
+     "7zXZ",
+     "is compressed with xz; decompress it first (unxz)"},
+    {"\x28\xB5\x2F\xFD", "is compressed with zstd; decompress it first (unzstd)"},
+    {"7z\xBC\xAF\x27\x1C", "is a 7z archive; unpack the mesh first"},
+    {"PK\x03\x04", "is a ZIP archive (3MF files are, too); unpack the mesh first, or export it in another format"},
+    {"Kaydara FBX Binary", "is FBX, which is not read; export it as glTF, OBJ or PLY"},
+    {"BLENDER", "is a Blender file, which is not read; export it as glTF, OBJ or PLY"},
+    {"ISO-10303-21;", "is a STEP file, which holds surfaces and no mesh; export it as STL or OBJ"},
+    {"<", "is XML (or HTML), in which no format that is read is written; export it as glTF, OBJ or PLY"},
+};
+
+const ForeignKind* foreign_kind(std::string_view bytes) {
+  if (has_binary_stl_size(bytes)) return nullptr;  // which may start with anything
+  const auto* const kind = std::find_if(std::begin(kForeignKinds), std::end(kForeignKinds),
+                                        [bytes](const ForeignKind& k) { return bytes.starts_with(k.start); });
+  return kind == std::end(kForeignKinds) ? nullptr : kind;
+}
+
 std::optional<Format> format_by_content(std::string_view bytes) {
   if (has_binary_stl_size(bytes)) return Format::stl;
   constexpr std::string_view kBlanks = " \t\r\n";
-  if (bytes.size() > 3 && bytes.starts_with("ply") && kBlanks.find(bytes[3]) != std::string_view::npos) return Format::ply;
+  const std::string_view text = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+  if (text.size() > 3 && text.starts_with("ply") && kBlanks.find(text[3]) != std::string_view::npos) return Format::ply;
   TextScanner scan(bytes, {.hash_comments = true});
   if (!scan.find_token()) return std::nullopt;
   const std::string_view word = scan.read_word();
@@ -84,6 +112,7 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
     return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
   }
+  if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);
   if (!format) format = format_by_ending(name);

@@ -9,7 +9,8 @@
 namespace fdcg::bake {
 namespace {
 
-// The letters before OFF say what follows x y z on a vertex's line.
+// The letters before OFF say what follows x y z on a vertex's line. Geomview has them in the order ST, C, N, 4, n; others write
+// NCOFF.
 struct OffKeyword {
   bool is_valid = false, has_texture = false, has_colour = false, has_normal = false, is_homogeneous = false,
        has_dimension = false;
@@ -22,12 +23,22 @@ OffKeyword parse_keyword(std::string_view word) {
     word.remove_prefix(prefix.size());
     return true;
   };
-  keyword.has_texture = take("ST");
-  keyword.has_colour = take("C");
-  keyword.has_normal = take("N");
-  keyword.is_homogeneous = take("4");
-  keyword.has_dimension = take("n");
-  keyword.is_valid = word == "OFF";
+  while (!keyword.is_valid && !word.empty()) {
+    if (!keyword.has_texture && take("ST")) {
+      keyword.has_texture = true;
+    } else if (!keyword.has_colour && take("C")) {
+      keyword.has_colour = true;
+    } else if (!keyword.has_normal && take("N")) {
+      keyword.has_normal = true;
+    } else if (!keyword.is_homogeneous && take("4")) {
+      keyword.is_homogeneous = true;
+    } else if (!keyword.has_dimension && take("n")) {
+      keyword.has_dimension = true;
+    } else {
+      keyword.is_valid = word == "OFF";
+      break;
+    }
+  }
   return keyword.is_valid ? keyword : OffKeyword{};
 }
 
@@ -94,7 +105,7 @@ class OffReader : TextSoupReader {
       for (double& value : xyz) {
         if (!scan_.find_token()) return fail_promise("vertices", i, vertex_count_);
         if (!read_coordinate(value)) {
-          return fail_here("vertex " + std::to_string(i) + ": " + scan_.quote() + " is not a number");
+          return fail_here("vertex " + std::to_string(i) + ": " + not_a_number());
         }
       }
       soup_.points.push_back({xyz[0], xyz[1], xyz[2]});

@@ -104,6 +104,11 @@ class HeaderParser : SoupReader {
   }
 
   bool parse_element() {
+    // Each is compared with all others; and nobody has more than a handful.
+    constexpr std::size_t kMostElements = 256;
+    if (header_.elements.size() >= kMostElements) {
+      return fail_here("the PLY header declares more than " + std::to_string(kMostElements) + " elements; leave some out");
+    }
     ElementKind element;
     element.name = next_word();
     std::int64_t count = 0;
@@ -158,6 +163,7 @@ class HeaderParser : SoupReader {
       property.role = role_of(element.kind, property.name);
       if (property.role == Role::none) continue;
       if (++seen[static_cast<std::size_t>(property.role)] > 1) {
+        if (property.role == Role::indices) return fail("element '" + element.name + "' has two lists of vertices; leave one");
         return fail("element '" + element.name + "' has property '" + property.name + "' twice");
       }
       if (property.is_list != (property.role == Role::indices)) {
@@ -186,13 +192,18 @@ class HeaderParser : SoupReader {
 
 }  // namespace
 
+std::string ignored_name(const ElementKind& element) {
+  return "'" + readable_name(element.name) + "' elements";
+}
+
 std::string row_name(const ElementKind& element, std::uint64_t row) {
   return "row " + std::to_string(row) + " of " + std::to_string(element.count) + " of element '" + element.name.substr(0, 32) +
          "'";
 }
 
 Result<Header> read_header(const MeshText& input) {
-  if (!input.bytes.starts_with("ply")) return refuse(input.name, "does not start with 'ply'; is it another format?");
+  if (!input.bytes.starts_with("ply") && !input.bytes.starts_with("\xEF\xBB\xBFply"))
+    return refuse(input.name, "does not start with 'ply'; is it another format?");
   const HeaderExtent extent = find_header(input.bytes);
   if (extent.bytes == 0)
     return refuse(input.name, "truncated: the PLY header has no line 'end_header'; fetch or export it again");

@@ -57,15 +57,35 @@ struct Header {
 // Reads and checks the header: the elements and properties that a mesh needs are there, once each, with usable types.
 Result<Header> read_header(const MeshText& input);
 
+// Whether a number in a list of strips ends a strip: -1, also where an unsigned type made a large number of it.
+[[nodiscard]] inline bool ends_strip(double number, Scalar type, std::uint64_t vertex_count) {
+  if (number == -1) return true;
+  const bool is_all_ones = (type == Scalar::u8 && number == 0xFF) || (type == Scalar::u16 && number == 0xFFFF) ||
+                           (type == Scalar::u32 && number == 0xFFFFFFFFu);
+  return is_all_ones && number >= static_cast<double>(vertex_count);
+}
+
 // Turns the triangle strips of a list of vertex numbers into triangles: -1 starts a new strip.
 class StripDecoder {
  public:
-  void restart() { length_ = 0; }
+  // Ends the strip at hand, also the last one. False if it had vertices, but too few for a triangle.
+  bool restart() {
+    const bool is_short = length_ == 1 || length_ == 2;
+    length_ = 0;
+    return !is_short;
+  }
   // True if the vertex completes a triangle, which is then in corners(), wound like the first of its strip.
   bool add(std::uint32_t vertex) {
     last_ = {last_[1], last_[2], vertex};
     ++length_;
     return length_ >= 3;
+  }
+  // Whether the triangle is no face but a joint, by which writers string strips together: a vertex of the file repeated.
+  [[nodiscard]] bool is_joint() const {
+    const auto& [a, b, c] = last_;
+    const bool is_known =
+        a != PolygonSoup::kInvalidVertex && b != PolygonSoup::kInvalidVertex && c != PolygonSoup::kInvalidVertex;
+    return is_known && (a == b || b == c || c == a);
   }
   [[nodiscard]] std::array<std::uint32_t, 3> corners() const {
     if (length_ % 2 == 1) return last_;
@@ -76,6 +96,12 @@ class StripDecoder {
   std::array<std::uint32_t, 3> last_{};
   std::uint64_t length_ = 0;
 };
+
+// What StripDecoder leaves out, as Ignored::what.
+inline constexpr std::string_view kStripJoints = "strip joints", kShortStrips = "strips of fewer than three vertices";
+
+// Ignored::what of an element that holds no faces: "'edge' elements".
+std::string ignored_name(const ElementKind& element);
 
 // "row N of M of element 'name'", for messages.
 std::string row_name(const ElementKind& element, std::uint64_t row);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -27,6 +28,7 @@ class AsciiBody : TextSoupReader {
 
   bool read_element(const ElementKind& element) {
     if (element.properties.empty()) return true;
+    if (element.kind == Kind::other) ignore(ignored_name(element), element.count);
     const std::uint64_t possible = (scan_.remaining() + 1) / (2 * element.properties.size());  // a digit and a blank each
     if (element.count > possible) {
       return fail("truncated: the header promises " + std::to_string(element.count) + " rows of element '" +
@@ -67,7 +69,7 @@ class AsciiBody : TextSoupReader {
       }
       if (!scan_.find_token()) return fail_end(element, row);
       double value = 0;
-      if (!read_coordinate(value)) return fail_here(row_name(element, row) + ": " + scan_.quote() + " is not a number");
+      if (!read_coordinate(value)) return fail_here(row_name(element, row) + ": " + not_a_number());
       (property.role == Role::x ? point.x : property.role == Role::y ? point.y : point.z) = value;
     }
     soup_.points.push_back(point);
@@ -83,39 +85,44 @@ class AsciiBody : TextSoupReader {
       }
       std::uint64_t count = 0;
       if (!read_list_count(element, row, count)) return false;
-      if (!(element.kind == Kind::face ? read_face(element, row, count, row_line)
-                                       : read_strips(element, row, count, row_line))) {
+      if (!(element.kind == Kind::face ? read_face(element, row, property.value, count, row_line)
+                                       : read_strips(element, row, property.value, count, row_line))) {
         return false;
       }
     }
     return true;
   }
 
-  bool read_face(const ElementKind& element, std::uint64_t row, std::uint64_t count, std::uint32_t row_line) {
+  bool read_face(const ElementKind& element, std::uint64_t row, Scalar type, std::uint64_t count, std::uint32_t row_line) {
     soup_.face_line.push_back(row_line);
     if (count > kMaxFaceCorners) return fail_big_face(count);
     for (std::uint64_t k = 0; k < count; ++k) {
       std::int64_t index = 0;
-      if (!read_index(element, row, index)) return false;
+      if (!read_index(element, row, type, index)) return false;
       soup_.corners.push_back(resolve(index));
     }
     return close_face();
   }
 
-  bool read_strips(const ElementKind& element, std::uint64_t row, std::uint64_t count, std::uint32_t row_line) {
+  bool read_strips(const ElementKind& element, std::uint64_t row, Scalar type, std::uint64_t count, std::uint32_t row_line) {
     StripDecoder strip;
     for (std::uint64_t k = 0; k < count; ++k) {
       std::int64_t index = 0;
-      if (!read_index(element, row, index)) return false;
-      if (index == -1) {
-        strip.restart();
+      if (!read_index(element, row, type, index)) return false;
+      if (ends_strip(static_cast<double>(index), type, header_.vertex_count)) {
+        if (!strip.restart()) ignore(kShortStrips);
       } else if (strip.add(resolve(index))) {
+        if (strip.is_joint()) {
+          ignore(kStripJoints);
+          continue;
+        }
         const auto corners = strip.corners();
         soup_.corners.insert(soup_.corners.end(), corners.begin(), corners.end());
         soup_.face_line.push_back(row_line);
         if (!close_face()) return false;
       }
     }
+    if (!strip.restart()) ignore(kShortStrips);
     return true;
   }
 
@@ -124,10 +131,23 @@ class AsciiBody : TextSoupReader {
     return is_known ? static_cast<std::uint32_t>(index) : PolygonSoup::kInvalidVertex;
   }
 
-  bool read_index(const ElementKind& element, std::uint64_t row, std::int64_t& index) {
+  bool read_index(const ElementKind& element, std::uint64_t row, Scalar type, std::int64_t& index) {
     if (!scan_.find_token()) return fail_end(element, row);
-    return scan_.read_integer(index) ||
+    if (scan_.read_integer(index)) return true;
+    return read_real_index(type, index) ||
            fail_here(row_name(element, row) + ": the vertex number " + scan_.quote() + " is not a whole number");
+  }
+
+  // "2.0", in a list of a floating-point type.
+  bool read_real_index(Scalar type, std::int64_t& index) {
+    constexpr double kFar = 0x1p62;  // no vertex has such a number
+    double value = 0;
+    TextScanner ahead = scan_;
+    if ((type != Scalar::f32 && type != Scalar::f64) || !ahead.read_real(value)) return false;
+    if (!std::isfinite(value) || value != std::floor(value)) return false;
+    scan_ = ahead;
+    index = static_cast<std::int64_t>(std::clamp(value, -kFar, kFar));
+    return true;
   }
 
   bool read_list_count(const ElementKind& element, std::uint64_t row, std::uint64_t& count) {
@@ -139,11 +159,17 @@ class AsciiBody : TextSoupReader {
   bool skip_value(const ElementKind& element, std::uint64_t row, const Property& property) {
     std::uint64_t words = 1;
     if (property.is_list && !read_list_count(element, row, words)) return false;
+    if (words > scan_.remaining()) return fail_long_list(element, row, words);
     for (; words > 0; --words) {
       if (!scan_.find_token()) return fail_end(element, row);
       scan_.read_word();
     }
     return true;
+  }
+
+  bool fail_long_list(const ElementKind& element, std::uint64_t row, std::uint64_t count) {
+    return fail_here("truncated: " + row_name(element, row) + " has a list of " + std::to_string(count) + " values, the " +
+                     std::to_string(scan_.remaining()) + " bytes left hold fewer; fetch or export it again");
   }
 
   bool fail_end(const ElementKind& element, std::uint64_t row) {

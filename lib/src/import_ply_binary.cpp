@@ -86,6 +86,7 @@ class BinaryBody : SoupReader {
   bool read_element(const ElementKind& element) {
     const std::size_t row_bytes = element.least_bytes();
     if (row_bytes == 0) return true;
+    if (element.kind == Kind::other) ignore(ignored_name(element), element.count);
     const std::uint64_t possible = left() / row_bytes;
     if (element.count > possible) {
       return fail("truncated: byte " + std::to_string(offset()) + ": the header promises " + std::to_string(element.count) +
@@ -281,14 +282,19 @@ class BinaryBody : SoupReader {
     StripDecoder strip;
     for (std::uint64_t k = 0; k < n; ++k) {
       const double number = load_scalar<kSwap>(type, values + k * size_of(type));
-      if (number == -1 || (type == Scalar::u32 && number == 0xFFFFFFFFu)) {
-        strip.restart();
+      if (ends_strip(number, type, header_.vertex_count)) {
+        if (!strip.restart()) ignore(kShortStrips);
       } else if (strip.add(resolve(number))) {
+        if (strip.is_joint()) {
+          ignore(kStripJoints);
+          continue;
+        }
         const auto corners = strip.corners();
         soup_.corners.insert(soup_.corners.end(), corners.begin(), corners.end());
         if (!close_face()) return false;
       }
     }
+    if (!strip.restart()) ignore(kShortStrips);
     return true;
   }
 

@@ -92,7 +92,8 @@ class TextStlReader : TextSoupReader {
   bool read_solids() {
     while (scan_.find_token()) {
       if (!expect("solid")) return false;
-      scan_.next_line();  // the rest is a name, of any words
+      name_ = readable_name(scan_.read_rest_of_line());  // of any words
+      is_new_solid_ = true;
       while (look("facet")) {
         if (!read_facet()) return false;
         advance(scan_.offset());
@@ -110,6 +111,7 @@ class TextStlReader : TextSoupReader {
     scan_.next_line();
     do {
       if (!expect("outer") || !expect("loop")) return false;
+      if (is_new_solid_) begin_solid();
       soup_.face_line.push_back(line);
       while (look("vertex")) {
         if (!read_vertex()) return false;
@@ -125,13 +127,19 @@ class TextStlReader : TextSoupReader {
     std::array<double, 3> xyz{};
     for (double& value : xyz) {
       if (!scan_.find_token()) return fail_end("a coordinate");
-      if (!read_coordinate(value)) return fail_here("the vertex coordinate " + scan_.quote() + " is not a number");
+      if (!read_coordinate(value)) return fail_here("the vertex coordinate " + not_a_number());
     }
     if (soup_.points.size() >= kMaxPoints) return fail_here("more than 4,294,967,040 vertices; cut the mesh into parts");
     soup_.corners.push_back(static_cast<std::uint32_t>(soup_.points.size()));
     soup_.points.push_back({xyz[0], xyz[1], xyz[2]});
     soup_.point_line.push_back(line);
     return true;
+  }
+
+  // Only a name makes a part; or the end of the one before.
+  void begin_solid() {
+    is_new_solid_ = false;
+    if ((!name_.empty() || !soup_.parts.empty()) && !takes_no_parts()) begin_part(name_);
   }
 
   bool look(std::string_view keyword) { return scan_.find_token() && scan_.is_keyword(keyword); }
@@ -143,6 +151,9 @@ class TextStlReader : TextSoupReader {
     return fail_here("truncated: the file ends after " + std::to_string(soup_.face_first.size() - 1) + " facets where " + due +
                      " was due; fetch or export it again");
   }
+
+  std::string name_;  // of the solid at hand
+  bool is_new_solid_ = false;
 };
 
 // Text starts with "solid"; but so do the headers of some binary files, which then have a zero byte soon.

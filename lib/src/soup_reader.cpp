@@ -15,6 +15,42 @@ Failure refuse(const std::string& name, const std::string& what, const char* rul
   return Failure{3, message, rule};
 }
 
+std::string readable_name(std::string_view name) {
+  constexpr std::size_t kShown = 48;
+  std::size_t length = name.size();
+  if (length > kShown) {
+    length = kShown;
+    while (length > kShown - 4 && (static_cast<unsigned char>(name[length]) & 0xC0) == 0x80)
+      --length;  // in the middle of a UTF-8 character
+  }
+  std::string text(name.substr(0, length));
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = '?';
+  }
+  return length < name.size() ? text + "..." : text;
+}
+
+void SoupReader::ignore(std::string_view what, std::uint64_t count) {
+  if (count == 0) return;
+  const auto same = [what](const Ignored& i) { return i.what == what; };
+  const auto found = std::find_if(soup_.ignored.begin(), soup_.ignored.end(), same);
+  if (found != soup_.ignored.end()) {
+    found->count += count;
+  } else {
+    soup_.ignored.push_back({std::string(what), count});
+  }
+}
+
+void SoupReader::begin_part(std::string name) {
+  constexpr std::size_t kAlways = 64, kBytesOfFile = 16;  // a part costs some 40 to 200 bytes
+  const std::size_t most = kAlways + input_.bytes.size() / kBytesOfFile;
+  if (soup_.parts.size() >= most) {
+    name = "(further parts)";
+    has_further_parts_ = true;
+  }
+  soup_.parts.push_back({std::move(name), static_cast<std::uint32_t>(soup_.face_count())});
+}
+
 bool SoupReader::fail_big_face(std::uint64_t count) {
   const std::string place = soup_.face_line.size() == soup_.face_first.size()
                                 ? "line " + std::to_string(soup_.face_line.back()) + ": "
@@ -27,6 +63,12 @@ void SoupReader::report(std::size_t offset) {
   constexpr std::size_t kSteps = 100;
   next_report_ = offset + std::max<std::size_t>(input_.bytes.size() / kSteps, std::size_t{1} << 20);
   if (input_.progress) input_.progress("import", static_cast<double>(offset) / static_cast<double>(input_.bytes.size()));
+}
+
+std::string TextSoupReader::not_a_number() const {
+  const std::string token = scan_.quote();
+  const bool has_comma = token.find(',') != std::string::npos;
+  return token + " is not a number" + (has_comma ? "; write decimals with a point" : "");
 }
 
 double TextSoupReader::absolute_quantum() const {

@@ -34,6 +34,9 @@ bool has_binary_stl_size(std::string_view bytes);  // 84 + 50 n, with n where th
 // `name`: `what`, on one line whatever the name holds.
 Failure refuse(const std::string& name, const std::string& what, const char* rule = "unreadable");
 
+// A name out of a file, for reports: control characters as '?', cut after some 48 bytes between two characters.
+std::string readable_name(std::string_view name);
+
 inline constexpr std::uint32_t kMaxFaceCorners = 65'536;
 // Corner slots are numbered with 32 bits, of which the later stages keep the last few values for themselves.
 inline constexpr std::size_t kMaxCorners = 0xFFFFFF00u;
@@ -64,6 +67,18 @@ class SoupReader {
   }
   bool fail_big_face(std::uint64_t count);
 
+  // Counts what the file holds beside faces. `what` is plural.
+  void ignore(std::string_view what, std::uint64_t count = 1);
+
+  // The faces from the next one on are a part of this name, until the next call. To be called right before that face's corners,
+  // unless takes_no_parts(): a file that changes parts all the time ends with one that takes the rest, which is said in
+  // `ignored`, so that names stay a small multiple of the file.
+  void begin_part(std::string name);
+  [[nodiscard]] bool takes_no_parts() {
+    if (has_further_parts_) ignore("further parts");
+    return has_further_parts_;
+  }
+
   // Tells the caller how far the reading has come, a hundred times at most.
   void advance(std::size_t offset) {
     if (offset >= next_report_) report(offset);
@@ -82,6 +97,7 @@ class SoupReader {
 
   Failure failure_;
   std::size_t next_report_ = 0;
+  bool has_further_parts_ = false;
 };
 
 // For the text formats: a scanner, and the precision of the coordinates as printed.
@@ -104,6 +120,9 @@ class TextSoupReader : public SoupReader {
   // Half a unit of the last digit of the most finely printed coordinate. Whole numbers are taken as exact, 0: nobody rounds a
   // mesh to whole units, they come from grids, voxels and drawings by hand, and half a unit would flatten a unit cube.
   [[nodiscard]] double absolute_quantum() const;
+
+  // "'x' is not a number", of the token at the cursor, with the remedy where there is one.
+  [[nodiscard]] std::string not_a_number() const;
 
   TextScanner scan_;
 

@@ -131,6 +131,16 @@ bool TextScanner::read_special(double& value) {
   return true;
 }
 
+std::string_view TextScanner::read_rest_of_line() {
+  const void* found = std::memchr(p_, line_end_, remaining());
+  const char* const start = p_;
+  p_ = found == nullptr ? end_ : static_cast<const char*>(found);
+  const std::string_view rest(start, static_cast<std::size_t>(p_ - start));
+  constexpr std::string_view kBlanks = " \t\r\v\f";
+  const std::size_t first = rest.find_first_not_of(kBlanks);
+  return first == std::string_view::npos ? std::string_view() : rest.substr(first, rest.find_last_not_of(kBlanks) - first + 1);
+}
+
 std::string TextScanner::quote() const {
   constexpr std::size_t kShown = 32;
   std::string text = "'";

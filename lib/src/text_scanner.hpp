@@ -150,13 +150,18 @@ class TextScanner {
     return true;
   }
 
-  // Everything up to the token's end.
+  // Everything up to the token's end. A control character that is no blank is a word of its own, so that whoever reads words
+  // always gets on.
   std::string_view read_word() {
     const char* const start = p_;
     while (p_ != end_ && !ends_token(*p_))
       ++p_;
+    if (p_ == start && p_ != end_) ++p_;
     return {start, static_cast<std::size_t>(p_ - start)};
   }
+
+  // What is left of the line, without blanks around it, as names have it: '#' and '\\' are part of it.
+  std::string_view read_rest_of_line();
 
   // The token at the cursor in quotes, for messages: at most 32 characters, unprintable ones as '?'.
   [[nodiscard]] std::string quote() const;

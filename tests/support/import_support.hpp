@@ -46,6 +46,20 @@ inline std::vector<std::vector<std::uint32_t>> faces_of(const PolygonSoup& soup)
   return faces;
 }
 
+// "name@first_face", and "what: count".
+inline std::vector<std::string> parts_of(const PolygonSoup& soup) {
+  std::vector<std::string> parts;
+  for (const Part& part : soup.parts)
+    parts.push_back(part.name + "@" + std::to_string(part.first_face));
+  return parts;
+}
+inline std::vector<std::string> ignored_of(const PolygonSoup& soup) {
+  std::vector<std::string> lines;
+  for (const Ignored& ignored : soup.ignored)
+    lines.push_back(ignored.what + ": " + std::to_string(ignored.count));
+  return lines;
+}
+
 // What every soup promises, whatever file it came from.
 inline void check_invariants(const PolygonSoup& soup) {
   REQUIRE(soup.face_count() > 0);
@@ -63,6 +77,12 @@ inline void check_invariants(const PolygonSoup& soup) {
   REQUIRE((soup.relative_quantum == 0x1p-24 || soup.relative_quantum == 0x1p-53));
   REQUIRE(soup.absolute_quantum >= 0);
   REQUIRE(soup.sha256.size() == 64);
+  for (std::size_t p = 0; p < soup.parts.size(); ++p) {
+    REQUIRE(soup.parts[p].first_face < soup.face_count());
+    REQUIRE((p == 0 || soup.parts[p - 1].first_face < soup.parts[p].first_face));
+  }
+  for (const Ignored& ignored : soup.ignored)
+    REQUIRE((ignored.count > 0 && !ignored.what.empty()));
 }
 
 inline std::string read_bytes(const std::filesystem::path& path) {

@@ -82,9 +82,16 @@ TEST_CASE("a mesh costs a small multiple of its file") {
     obj += "v 0 0 0\n";
   for (int i = 0; i < 120'000; ++i)
     obj += "f\n";
+  std::string parts = "v 0 0 0\no " + std::string(1000, 'o') + "\nusemtl " + std::string(1000, 'm') + "\n";
+  for (int i = 0; i < 200'000; ++i)
+    parts += i % 2 == 0 ? "g a\nf\n" : "g\nf\n";
+  std::string solids;
+  for (int i = 0; i < 20'000; ++i)
+    solids += "solid " + std::string(50, 's') + "\nfacet normal\nouter loop\nendloop\nendfacet\nendsolid\n";
   put<std::int32_t>(strips, 1'000'000);
-  strips.resize(strips.size() + 1'000'000, '\1');
-  for (const std::string& file : {off, obj, strips}) {
+  for (int i = 0; i < 1'000'000; ++i)
+    strips += static_cast<char>(i % 3);
+  for (const std::string& file : {off, obj, strips, parts, solids}) {
     INFO(file.substr(0, 200));
     requested = 0;
     const Result<PolygonSoup> soup = import_memory(file, "mesh");

@@ -32,7 +32,7 @@ TEST_CASE("OFF: the header may have counts on its line, comments, no edge count,
 }
 
 TEST_CASE("OFF: colours, normals and texture coordinates after a vertex or a face are ignored") {
-  for (const std::string keyword : {"OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCNOFF"}) {
+  for (const std::string keyword : {"OFF", "COFF", "NOFF", "CNOFF", "NCOFF", "STOFF", "STCNOFF", "NCSTOFF"}) {
     INFO(keyword);
     const PolygonSoup soup = import_text(
         keyword + "\n3 2 0\n0 0 0 255 0 0 1\n1 0 0 0.5 .5 .5\n0 1 0 1\n3 0 1 2 255 255 255\n3 2 1 0 0.1 0.2 0.3 1\n");
@@ -65,6 +65,12 @@ TEST_CASE("OFF: faces of fewer than three corners are kept as they are") {
 TEST_CASE("OFF: kinds that are not read are refused by name") {
   CHECK(refusal("OFF BINARY\n\0\0\0\3").find("binary OFF") != std::string::npos);
   CHECK(refusal("COFF BINARY\n\0\0\0\3").find("binary OFF") != std::string::npos);
+  CHECK(refusal("C4nOFF 4\n1 1 0\n0 0 0 1\n1 0\n").find("'C4nOFF'") != std::string::npos);
+  for (const std::string keyword : {"CCOFF", "XOFF", "COF", "off", "OFFC", "ST", "C"}) {
+    INFO(keyword);
+    CHECK(refusal(keyword + "\n3 1 0\n" + kTriangle, Format::off).find("'" + keyword + "' in place of the keyword OFF") !=
+          std::string::npos);
+  }
   CHECK(refusal("4OFF\n1 1 0\n0 0 0 1\n1 0\n").find("'4OFF'") != std::string::npos);
   CHECK(refusal("nOFF 4\n1 1 0\n0 0 0 1\n1 0\n").find("'nOFF'") != std::string::npos);
 }
@@ -83,6 +89,8 @@ TEST_CASE("OFF: a refusal names the line, what was promised and what was found")
         std::string::npos);
   CHECK(refusal("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n").find("line 6: face 0: the corner count '-3'") !=
         std::string::npos);
+  CHECK(refusal("OFF\n3 1 0\n0 0 0\n1 0,5 0\n0 1 0\n3 0 1 2\n").find("'0,5' is not a number; write decimals with a point") !=
+        std::string::npos);
   CHECK(refusal("OFF\n-3 1 0\n").find("the vertex count '-3'") != std::string::npos);
   CHECK(refusal("OFF\n3\n").find("before the face count") != std::string::npos);
   CHECK(refusal("OFF\n").find("before the vertex count") != std::string::npos);
@@ -99,4 +107,15 @@ TEST_CASE("OFF: a face of more corners than the limit is refused, one at the lim
   };
   CHECK(import_text(file(65'536)).corners.size() == 65'539);
   CHECK(refusal(file(65'537)) == "mesh: line 7: face 1 has 65537 corners; the limit is 65536: cut it into smaller polygons");
+}
+
+TEST_CASE("OFF: line numbers hold over CRLF, CR, comments and empty lines") {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text;
+    for (const char c : std::string("# made by hand\nCOFF # colours\n\n3 # vertices\n1 0\n") + kTriangle)
+      text += c == '\n' ? end : std::string(1, c);
+    const PolygonSoup soup = import_text(text);
+    CHECK(soup.point_line == std::vector<std::uint32_t>{6, 7, 8});
+    CHECK(soup.face_line == std::vector<std::uint32_t>{9});
+  }
 }

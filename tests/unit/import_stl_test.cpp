@@ -50,6 +50,25 @@ TEST_CASE("STL text: several solids, any names, either case, any line ends") {
   }
 }
 
+TEST_CASE("STL text: named solids are parts") {
+  const auto parts = [](const std::string& text) { return parts_of(import_text(text)); };
+  using Lines = std::vector<std::string>;
+  CHECK(parts("solid\n" + kFacet + "endsolid\n").empty());
+  CHECK(parts("solid  left foot \t\r\n" + kFacet + "endsolid left foot\nsolid none\nendsolid\nsolid right\n" + kFacet + kFacet +
+              "endsolid\nsolid\n" + kFacet + "endsolid\nsolid right\n" + kFacet + "endsolid\n") ==
+        Lines{"left foot@0", "right@1", "@3", "right@4"});
+  CHECK(parts("solid\n" + kFacet + "endsolid\nsolid b\n" + kFacet + "endsolid\nsolid b\n" + kFacet + "endsolid\n") ==
+        Lines{"b@1", "b@2"});
+  CHECK(parts("\xEF\xBB\xBFSolid  a\n" + kFacet + "EndSolid\n") == Lines{"a@0"});
+}
+
+TEST_CASE("STL text: any blanks between the words, and none of them a line's end") {
+  CHECK(import_text(
+            "  solid a\n\tfacet\tnormal 0 0 1\n\n outer\n loop vertex 0\v0\f0\nvertex 1 0\n0 VERTEX 0 1 0 endloop endfacet "
+            "endsolid")
+            .face_count() == 1);
+}
+
 TEST_CASE("STL text: a normal that is no number does not matter") {
   CHECK(import_text("solid\nfacet normal -nan(ind) x\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
                     "0\nendloop\nendfacet\nendsolid\n")
@@ -71,6 +90,8 @@ TEST_CASE("STL text: a refusal names the line") {
         std::string::npos);
   CHECK(refusal("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\n").find("line 4: the vertex coordinate 'zero'") !=
         std::string::npos);
+  CHECK(refusal("solid a\r\nfacet normal 0 0 1\r\nouter loop\r\nvertex 0 0,5 0\r\n") ==
+        "mesh: line 4: the vertex coordinate '0,5' is not a number; write decimals with a point");
   CHECK(refusal("solid a\nendsolid\nrubbish\n").find("line 3: found 'rubbish' where 'solid' was due") != std::string::npos);
   CHECK(refusal("solid a\nendsolid\n").find("holds no face") != std::string::npos);
 }
@@ -105,4 +126,19 @@ TEST_CASE("STL binary: a size that belies the count is refused, padding of less 
         std::string::npos);
   CHECK(refusal("short", Format::stl).find("the file has 5") != std::string::npos);
   CHECK(import_text(binary("a", 3, 3) + std::string(49, '\0'), Format::stl).face_count() == 3);
+}
+
+TEST_CASE("STL binary: a header that says solid does not make it text, whatever the size says") {
+  for (const std::string title :
+       {"solid", "solid ascii", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "SOLID x"}) {
+    INFO(title);
+    CHECK_FALSE(import_text(binary(title, 3, 3)).is_text);
+    CHECK_FALSE(import_text(binary(title, 3, 3) + std::string(2, '\0')).is_text);  // padded
+    CHECK(refusal(binary(title, 3, 3) + std::string(120, 'x')).find("contradicts itself: the header promises 3") !=
+          std::string::npos);
+    CHECK(refusal(binary(title, 0, 3)).find("contradicts itself: the header promises 0 triangles (84 bytes)") !=
+          std::string::npos);
+    CHECK(refusal(binary(title, 0, 0)).find("holds no face") != std::string::npos);
+    CHECK(refusal(binary(title, 4'294'967'295, 3)).find("truncated: the header promises 4294967295") != std::string::npos);
+  }
 }

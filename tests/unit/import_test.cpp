@@ -108,6 +108,30 @@ TEST_CASE("UTF-16 text is refused by name") {
   CHECK(refusal(std::string("\xFE\xFF\0v\0 ", 6)).find("UTF-16") != std::string::npos);
 }
 
+TEST_CASE("what is compressed, packed or of a format that is not read is refused by name, with what to do") {
+  const auto says = [](const std::string& bytes, const std::string& what) {
+    INFO(what);
+    CHECK(refusal(bytes).find(what) != std::string::npos);
+    CHECK(refusal(bytes, Format::ply).find(what) != std::string::npos);
+  };
+  says("\x1F\x8B\x08 rest", "compressed with gzip; decompress it first (gunzip)");
+  says("BZh91AY rest", "compressed with bzip2");
+  says(std::string("\xFD") + "7zXZ rest", "compressed with xz");
+  says("\x28\xB5\x2F\xFD rest", "compressed with zstd");
+  says("PK\x03\x04 rest", "is a ZIP archive (3MF files are, too); unpack the mesh first");
+  says("7z\xBC\xAF\x27\x1C", "is a 7z archive");
+  says("Kaydara FBX Binary  ", "is FBX, which is not read");
+  says("<?xml version=\"1.0\"?><COLLADA/>", "is XML (or HTML)");
+  says("<!DOCTYPE html>", "is XML (or HTML)");
+  says("ISO-10303-21;\nHEADER;", "is a STEP file");
+  // a binary STL may start with anything
+  std::string stl = "PK\x03\x04";
+  stl.resize(80, ' ');
+  put<std::uint32_t>(stl, 1);
+  stl.resize(stl.size() + 50, '\1');
+  CHECK(import_text(stl).format == Format::stl);
+}
+
 TEST_CASE("the hash is SHA-256 of the bytes, of large files too") {
   CHECK(import_text(kOff).sha256 == "fb24d942999fec35fed007b5f84ca44064f763225bc01c58ef70e281a1eff083");
   std::string large = kOff;

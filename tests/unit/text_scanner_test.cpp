@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 using fdcg::bake::TextScanner;
 
@@ -86,6 +87,10 @@ TEST_CASE("signs, bare points and both exponent letters are understood") {
   CHECK(real("5.") == 5);
   CHECK(real("1e+2") == 100);
   CHECK(std::signbit(real("-0")));
+  CHECK(real("1.") == 1);
+  CHECK(real("+1") == 1);
+  CHECK(real("00001.50") == 1.5);
+  CHECK(real("5e-324") == 0x1p-1074);
 }
 
 TEST_CASE("NaN and infinity are understood in the spellings of C libraries") {
@@ -100,8 +105,9 @@ TEST_CASE("NaN and infinity are understood in the spellings of C libraries") {
 }
 
 TEST_CASE("what is no number is refused, and the cursor stays") {
-  for (const char* text : {"",   "-",    "+",    ".",    "e5",  "1e",  "1e+", "1.2.3",  "1,5", "0x10",
-                           "1f", "infi", "nano", "nan(", "--1", "+-1", "1.#", "1.#FOO", "one", "\xff"}) {
+  for (const char* text : {"",      "-",     "+",     ".",   "e5",  "1e",  "1e+",    "1.2.3",    "1,5",  "0x10",     "1f",
+                           "infi",  "nano",  "nan(",  "--1", "+-1", "1.#", "1.#FOO", "one",      "\xff", "1d5",      "1D+5",
+                           "0x1p3", "1'000", "1_000", "1;",  "..5", ".e5", "1e5.5",  "\xC2\xB2", "inf1"}) {
     TextScanner scan(text, {});
     double value = 7;
     INFO(text);
@@ -156,6 +162,14 @@ TEST_CASE("lines are counted over LF, CRLF, CR, comments and joined lines") {
   }
 }
 
+TEST_CASE("a control character is a word of its own, so that reading words always ends") {
+  TextScanner scan(std::string_view("\x01\0b\x02 c", 6), {});
+  std::vector<std::string> words;
+  while (words.size() < 10 && scan.find_token())
+    words.emplace_back(scan.read_word());
+  CHECK(words == std::vector<std::string>{"\x01", std::string(1, '\0'), "b", "\x02", "c"});
+}
+
 TEST_CASE("a comment ends a number, and a byte order mark is skipped") {
   TextScanner scan(
       "\xEF\xBB\xBF"
@@ -168,6 +182,19 @@ TEST_CASE("a comment ends a number, and a byte order mark is skipped") {
   TextScanner one("1.# note", {.hash_comments = true});
   CHECK(one.read_real(value));
   CHECK(value == 1);
+}
+
+TEST_CASE("the rest of a line is a name, with all that stands in it") {
+  TextScanner scan("o  a #1 \\ \t\r\n\r\nb", {.hash_comments = true, .continuation = true});
+  CHECK(scan.read_word() == "o");
+  CHECK(scan.read_rest_of_line() == "a #1 \\");
+  CHECK(scan.line() == 1);
+  scan.next_line();
+  CHECK(scan.read_rest_of_line().empty());
+  scan.next_line();
+  CHECK(scan.line() == 3);
+  CHECK(scan.read_rest_of_line() == "b");
+  CHECK(scan.read_rest_of_line().empty());
 }
 
 TEST_CASE("a token is quoted on one line of printable characters") {
