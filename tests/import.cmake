@@ -8,6 +8,8 @@ if(FDCG_BUILD_TESTS)
   fdcg_test(text_scanner SOURCES unit/text_scanner_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import SOURCES unit/import_test.cpp unit/import_off_test.cpp unit/import_obj_test.cpp unit/import_ply_test.cpp
             unit/import_ply_binary_test.cpp unit/import_stl_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import_drc SOURCES unit/import_drc_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers)
+  fdcg_test(import_gltf SOURCES unit/import_gltf_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers)
   fdcg_test(import_corpus SOURCES unit/import_corpus_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import_allocation SOURCES unit/import_allocation_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import_openmesh SOURCES unit/import_openmesh_test.cpp LIBRARIES fdcg_import fdcg_import_testing OpenMeshCore)

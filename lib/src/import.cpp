@@ -57,6 +57,8 @@ const ForeignKind* foreign_kind(std::string_view bytes) {
 }
 
 std::optional<Format> format_by_content(std::string_view bytes) {
+  if (bytes.starts_with("DRACO")) return Format::drc;
+  if (is_glb(bytes) || is_gltf_json(bytes)) return Format::gltf;
   if (has_binary_stl_size(bytes)) return Format::stl;
   constexpr std::string_view kBlanks = " \t\r\n";
   const std::string_view text = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
@@ -76,6 +78,8 @@ std::optional<Format> format_by_ending(const std::string& name) {
   if (ending == ".obj") return Format::obj;
   if (ending == ".ply") return Format::ply;
   if (ending == ".stl") return Format::stl;
+  if (ending == ".gltf" || ending == ".glb") return Format::gltf;
+  if (ending == ".drc") return Format::drc;
   return std::nullopt;
 }
 
@@ -89,9 +93,10 @@ Result<PolygonSoup> read_as(Format format, const MeshText& input) {
       return read_ply(input);
     case Format::stl:
       return read_stl(input);
-    case Format::gltf:
     case Format::drc:
-      break;
+      return read_drc(input);
+    case Format::gltf:
+      return read_gltf(input);
   }
   return Failure{4, "import: a format without a reader", {}};
 }
@@ -107,7 +112,9 @@ double relative_quantum(const std::vector<Vec3>& points) {
   return all_floats ? 0x1p-24 : 0x1p-53;
 }
 
-Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options) {
+// `file`: where the bytes are from; null: from memory.
+Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                                 const std::filesystem::path* file) {
   if (bytes.empty()) return refuse(name, "is empty; export the mesh again", "empty-mesh");
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
     return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
@@ -116,10 +123,10 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);
   if (!format) format = format_by_ending(name);
-  if (!format) return refuse(name, "is of no known mesh format; OFF, OBJ, PLY and STL are read");
+  if (!format) return refuse(name, "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read");
 
   Sha256Task hash(bytes);
-  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress});
+  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file});
   if (!soup) return soup;
   if (soup->face_count() == 0) {
     return refuse(name, "holds no face, " + std::to_string(soup->points.size()) + " vertices; export the mesh with its faces",
@@ -132,9 +139,10 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   return soup;
 }
 
-Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& name, const ImportOptions& options) {
+Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                                   const std::filesystem::path* file) {
   try {
-    return import_bytes(bytes, name, options);
+    return import_bytes(bytes, name, options, file);
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
@@ -146,11 +154,11 @@ Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& na
 Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options) {
   const Result<FileBytes> file = FileBytes::open(path);
   if (!file) return file.error();
-  return import_guarded(file->bytes(), path.string(), options);
+  return import_guarded(file->bytes(), path.string(), options, &path);
 }
 
 Result<PolygonSoup> import_memory(std::string_view bytes, std::string name, const ImportOptions& options) {
-  return import_guarded(bytes, name, options);
+  return import_guarded(bytes, name, options, nullptr);
 }
 
 }  // namespace fdcg::bake

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@ struct MeshText {
   std::string_view bytes;
   const std::string& name;
   const Progress& progress;
+  const std::filesystem::path* file = nullptr;  // where the bytes are from; null: from memory
 };
 
 // One reader a format. Each fails with exit code 3 and one line; a soup without faces is left to the caller to refuse. They set
@@ -26,9 +28,13 @@ Result<PolygonSoup> read_off(const MeshText& input);
 Result<PolygonSoup> read_obj(const MeshText& input);
 Result<PolygonSoup> read_ply(const MeshText& input);
 Result<PolygonSoup> read_stl(const MeshText& input);
+Result<PolygonSoup> read_gltf(const MeshText& input);
+Result<PolygonSoup> read_drc(const MeshText& input);
 
 // Content that gives its format away.
-bool is_off_keyword(std::string_view word);        // OFF, COFF, STCNOFF, 4OFF, ...
+bool is_off_keyword(std::string_view word);  // OFF, COFF, STCNOFF, 4OFF, ...
+bool is_gltf_json(std::string_view bytes);   // an object that has an "asset"
+bool is_glb(std::string_view bytes);
 bool has_binary_stl_size(std::string_view bytes);  // 84 + 50 n, with n where the format has it
 
 // `name`: `what`, on one line whatever the name holds.

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the JSON of a glTF 2.0 file says about geometry, checked: every index that stands in here has its target. Parts that no
+// triangle needs (images, materials, animations, other accessors) are not looked at, whatever is wrong with them.
+//
+// Places in messages are JSON paths: "meshes[2].primitives[0].attributes.POSITION".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::bake::gltf {
+
+// Thrown where a file is found wanting, caught by read_gltf: the place is known deep down, the file's name at the top.
+struct Refusal {
+  std::string what;
+  const char* rule = "unreadable";
+};
+
+// What a bufferView, an accessor, ... that is used refers to.
+using Index = std::uint32_t;
+
+enum class Component : std::uint8_t { i8, u8, i16, u16, u32, f32 };
+[[nodiscard]] constexpr std::size_t size_of(Component type) {
+  constexpr std::array<std::size_t, 6> kSizes = {1, 1, 2, 2, 4, 4};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+
+struct Buffer {
+  bool is_used = false;
+  std::optional<std::string> uri;  // none: the binary chunk of the GLB
+  std::uint64_t bytes = 0;
+};
+
+struct View {
+  bool is_used = false;
+  Index buffer = 0;
+  std::uint64_t offset = 0, bytes = 0, stride = 0;  // stride 0: tightly packed
+};
+
+// A run of values in a view.
+struct Run {
+  Index view = 0;
+  std::uint64_t offset = 0;
+};
+
+struct Sparse {
+  std::uint64_t count = 0;
+  Run indices, values;
+  Component index_type = Component::u32;
+};
+
+struct Accessor {
+  bool is_used = false;
+  std::optional<Run> run;  // none: zeros, or compressed data that stands elsewhere
+  Component type = Component::f32;
+  unsigned components = 1;  // 3 for positions, 1 for indices
+  bool is_normalized = false;
+  std::uint64_t count = 0;
+  std::optional<Sparse> sparse;
+};
+
+enum class Mode : std::uint8_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
+
+struct Primitive {
+  Mode mode = Mode::triangles;
+  std::optional<Index> positions, indices;  // accessors
+  std::optional<Index> draco_view;          // KHR_draco_mesh_compression
+  std::uint32_t draco_positions = 0;        // unique id of the attribute
+  bool has_targets = false;
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+// Column by column: x' = m[0] x + m[4] y + m[8] z + m[12].
+using Matrix = std::array<double, 16>;
+inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+inline constexpr Index kNone = 0xFFFFFFFF;
+
+struct Node {
+  std::string name;
+  std::vector<Index> children;
+  Index parent = kNone;
+  Index mesh = kNone;
+  Index matrix = kNone;  // in Document::matrices; none: identity
+  bool has_skin = false;
+};
+
+// The nodes make up trees: none has two parents or is its own ancestor.
+struct Document {
+  std::vector<Buffer> buffers;
+  std::vector<View> views;
+  std::vector<Accessor> accessors;
+  std::vector<Mesh> meshes;
+  std::vector<Node> nodes;
+  std::vector<Matrix> matrices;
+  std::vector<Index> roots;  // of the scene that is shown: the default one, else the first; without scenes, all roots
+};
+
+// Throws Refusal.
+Document parse_document(std::string_view json);
+
+}  // namespace fdcg::bake::gltf

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The quantum of coordinates that a format stores as steps of a grid (Draco, KHR_mesh_quantization).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::bake {
+
+// `half_step`, but at most a thousandth of the largest coordinate: a grid of fewer than 500 steps was drawn on, not rounded to,
+// and half a step of it would flatten what was drawn.
+inline double at_most_a_share(double half_step, const std::vector<Vec3>& points) {
+  constexpr double kLargestShare = 1e-3;
+  double extent = 0;
+  for (const Vec3& p : points) {
+    for (const double c : {p.x, p.y, p.z}) {
+      if (std::isfinite(c)) extent = std::max(extent, std::fabs(c));
+    }
+  }
+  return std::min(half_step, kLargestShare * extent);
+}
+
+}  // namespace fdcg::bake

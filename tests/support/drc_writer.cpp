@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drc_writer.hpp"
+
+#include <draco/compression/encode.h>
+#include <draco/mesh/mesh.h>
+
+#include <array>
+#include <stdexcept>
+
+namespace fdcg::test {
+namespace {
+
+bool is_float(const bake::PolygonSoup& soup) {
+  for (const bake::Vec3& p : soup.points) {
+    for (const double c : {p.x, p.y, p.z}) {
+      if (c == c && static_cast<double>(static_cast<float>(c)) != c) return false;
+    }
+  }
+  return true;
+}
+
+template <class T>
+void add_positions(draco::Mesh& mesh, const bake::PolygonSoup& soup, draco::DataType type) {
+  const auto count = static_cast<std::uint32_t>(soup.points.size());
+  draco::GeometryAttribute shape;
+  shape.Init(draco::GeometryAttribute::POSITION, nullptr, 3, type, false, 3 * sizeof(T), 0);
+  const int id = mesh.AddAttribute(shape, true, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bake::Vec3& p = soup.points[i];
+    const std::array<T, 3> xyz = {static_cast<T>(p.x), static_cast<T>(p.y), static_cast<T>(p.z)};
+    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), xyz.data());
+  }
+}
+
+}  // namespace
+
+std::string write_drc(const bake::PolygonSoup& soup, const DracoWriteOptions& options) {
+  draco::Mesh mesh;
+  mesh.set_num_points(static_cast<std::uint32_t>(soup.points.size()));
+  if (is_float(soup)) {
+    add_positions<float>(mesh, soup, draco::DT_FLOAT32);
+  } else {
+    add_positions<double>(mesh, soup, draco::DT_FLOAT64);
+  }
+  for (std::size_t f = 0; f < soup.face_count(); ++f) {
+    if (soup.face_first[f + 1] - soup.face_first[f] != 3) throw std::invalid_argument("write_drc: not a triangle");
+    draco::Mesh::Face face;
+    for (std::uint32_t k = 0; k < 3; ++k)
+      face[k] = draco::PointIndex(soup.corners.at(soup.face_first[f] + k));
+    mesh.AddFace(face);
+  }
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(options.method == DracoMethod::sequential ? draco::MESH_SEQUENTIAL_ENCODING
+                                                                      : draco::MESH_EDGEBREAKER_ENCODING);
+  if (options.position_bits > 0) {
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, options.position_bits);
+  }
+  draco::EncoderBuffer buffer;
+  const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
+  if (!status.ok()) throw std::runtime_error("write_drc: " + status.error_msg_string());
+  return {buffer.data(), buffer.size()};
+}
+
+}  // namespace fdcg::test

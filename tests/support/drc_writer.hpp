@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Soups of triangles as Draco files, by libdraco's encoder.
+#pragma once
+
+#include <string>
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::test {
+
+// sequential keeps the points, their numbers, the faces and their order as they are; edgebreaker renumbers, leaves isolated
+// points and degenerate faces out and cuts non-manifold edges open.
+enum class DracoMethod { sequential, edgebreaker };
+
+struct DracoWriteOptions {
+  DracoMethod method = DracoMethod::sequential;
+  int position_bits = 0;  // 0: not quantised, exact (float where every coordinate is one, else double)
+};
+
+// The soup has triangles alone, with corners in range.
+std::string write_drc(const bake::PolygonSoup& soup, const DracoWriteOptions& options = {});
+
+}  // namespace fdcg::test
