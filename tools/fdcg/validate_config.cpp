@@ -3,8 +3,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "../common/nearest.hpp"
 #include "command.hpp"
@@ -105,14 +105,14 @@ std::string first_line(const std::string& text) {
 
 bake::Result<ValidateConfig> read_config(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  if (!file || !(text << file.rdbuf()) || file.bad()) {
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  if (!file.is_open() || file.bad()) {
     return bake::Failure{kFile, path + ": cannot be read; check its permissions, or pass --no-config", {}};
   }
   ValidateConfig config{path, {}};
   DuplicateKeys duplicates;
   try {
-    const Json json = Json::parse(text.str(), std::ref(duplicates));
+    const Json json = Json::parse(text, std::ref(duplicates));
     Complaint complaint;
     if (!json.is_object()) complaint = "holds no JSON object; write { \"fail-on\": \"warning\" }, say";
     if (!duplicates.duplicate.empty()) complaint = "'" + duplicates.duplicate + "' stands twice; keep one";
