@@ -47,38 +47,12 @@ std::string contradiction_in(const CompileOptions& options) {
   return {};
 }
 
-Quantum quantum_of(const PolygonSoup& soup, const Mesh& mesh, Precision precision) {
-  constexpr double kHalfUlpOfFloat = 0x1p-24;
-  return {soup.relative_quantum, soup.absolute_quantum, precision == Precision::f32 ? kHalfUlpOfFloat : 0, mesh.origin};
-}
-
 // Of one coordinate at the object's extent: what the header tells.
 double header_quantum(const PolygonSoup& soup, const Mesh& mesh) {
   double extent = 0;
   for (const Vec3& point : mesh.points)
     extent = std::max(extent, largest_component(point + mesh.origin));
   return std::max(soup.relative_quantum * extent, soup.absolute_quantum);
-}
-
-// A polygon that crosses itself has no inside to stand on: the one defect that only cutting it finds.
-void report_uncuttable(const PolygonSoup& soup, const Mesh& mesh, const std::vector<std::uint32_t>& faces,
-                       std::size_t max_elements, Report& report) {
-  Issue issue{"non-planar-face",
-              Severity::error,
-              faces.size(),
-              std::to_string(faces.size()) +
-                  " polygons cannot be cut into triangles: they cross themselves or have tens of thousands of inward corners; "
-                  "triangulate them",
-              {}};
-  for (std::size_t i = 0; i < std::min(max_elements, faces.size()); ++i) {
-    Element element;
-    const std::uint32_t face = mesh.source_of(FaceId{faces[i]});
-    element.faces = {face};
-    if (!soup.face_line.empty()) element.line = soup.face_line[face];
-    issue.elements.push_back(std::move(element));
-  }
-  report.allowed.erase(issue.rule);
-  report.issues.insert(report.issues.begin(), std::move(issue));
 }
 
 // Where each face of the soup ended up: through the mesh, the triangles it was cut into, and the polygons they were merged to.
@@ -141,16 +115,16 @@ std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t coun
   return bytes;
 }
 
-// From a mesh that has passed the checks to the bytes of a file. No bytes: the report now says why.
+// From a mesh that has passed the checks to the bytes of a file.
 Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
                                    unsigned jobs, Compiled& compiled) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
-  if (!cut.uncuttable.empty()) {
-    report_uncuttable(soup, cut.mesh, cut.uncuttable, options.max_elements, compiled.report);
-    return std::span<std::byte>{};
+  if (!cut.uncuttable.empty()) {  // self-crossing-face has let it pass
+    return Failure{4, soup.name + ": no cut was found for polygon " + std::to_string(cut.uncuttable[0]) +
+                          ", which does not cross itself; triangulate it, and please report this fault"};
   }
   Merged faces;
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
