@@ -119,8 +119,8 @@ void Findings::at_edge(std::span<const HalfedgeId> halfedges) {
 
 void Findings::in_edge(VertexId v, HalfedgeId h) {
   at_vertex(subject_.mesh.source_point[+v]);
-  if (issue_.total > max_elements_) return;
-  Element& element = issue_.elements.back();
+  if (current_ == nullptr) return;
+  Element& element = *current_;
   const VertexId p = subject_.start_of(h), q = subject_.end_of(h);
   element.edges.push_back({subject_.mesh.source_point[+p], subject_.mesh.source_point[+q]});
   element.line.reset();  // elements that name faces give the line of the first
