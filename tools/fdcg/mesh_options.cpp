@@ -38,24 +38,23 @@ void require_choice(const std::string& option, const std::string& value, const s
   throw CLI::ValidationError(option, "'" + value + "' is none of " + joined(choices) + did_you_mean(value, choices));
 }
 
+bake::Weld parse_weld_value(const std::string& text) {
+  if (text == "exact" || text == "none") return {text == "exact" ? bake::Weld::Kind::exact : bake::Weld::Kind::none, 0};
+  const auto distance = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+  if (!distance) {
+    throw CLI::ValidationError("--weld", "'" + text + "' is none of exact, none, or a distance above 0 in the file's units");
+  }
+  return {bake::Weld::Kind::distance, *distance};
+}
+
 namespace {
 
-void add_weld_option_to(CLI::App& command, const std::function<void(bake::Weld)>& set) {
-  const auto parse = [set](const std::string& text) {
-    if (text == "exact" || text == "none") {
-      set({text == "exact" ? bake::Weld::Kind::exact : bake::Weld::Kind::none, 0});
-      return;
-    }
-    const auto distance = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
-    if (!distance) {
-      throw CLI::ValidationError("--weld", "'" + text + "' is none of exact, none, or a distance above 0 in the file's units");
-    }
-    set({bake::Weld::Kind::distance, *distance});
-  };
+void add_weld_option_to(CLI::App& command, const std::function<void(const bake::Weld&)>& set) {
   command
-      .add_option_function<std::string>("--weld", parse,
-                                        "Vertices that are one: at equal coordinates (exact, the default), "
-                                        "none, or within DISTANCE in the file's units")
+      .add_option_function<std::string>(
+          "--weld", [set](const std::string& text) { set(parse_weld_value(text)); },
+          "Vertices that are one: at equal coordinates (exact, the default), "
+          "none, or within DISTANCE in the file's units")
       ->type_name("exact|none|DISTANCE");
 }
 

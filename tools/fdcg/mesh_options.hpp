@@ -14,6 +14,7 @@ namespace fdcg::tools {
 
 enum class Allowable { errors_the_graph_stands, also_warnings_and_notes };
 
+bake::Weld parse_weld_value(const std::string& text);
 void add_weld_option(CLI::App& command, bake::Weld& weld);
 void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld);
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format);
