@@ -15,7 +15,7 @@ namespace fdcg::bake {
 using Write = std::function<void(std::string_view)>;
 
 // Bytes of a part's name that a report repeats with every element: names may be long, reports stay small.
-inline constexpr std::size_t kLongestName = 120;
+inline constexpr std::size_t kLongestName = 80;
 
 [[nodiscard]] std::string_view name_of(Severity severity);
 

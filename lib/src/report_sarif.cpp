@@ -18,7 +18,9 @@ using enum JsonWriter::Layout;
 
 constexpr std::string_view kRoot = "%SRCROOT%";  // what relative URIs start from; code scanning knows the name
 constexpr std::size_t kLinked = 10;              // places that a message links to
-constexpr std::size_t kNamedInLocation = 8;      // logical locations of an element; all of its indices are in the properties
+constexpr std::size_t kNamedInLocation = 4;      // logical locations of an element; all of its indices are in the properties
+// Places in one file's results: where many rules found something, each lists less, and a report stays below a megabyte.
+constexpr std::size_t kPlacesOfRules = 900, kPlacesOfElements = 700;
 constexpr std::string_view kSchemaUri =
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json";
 
@@ -118,7 +120,10 @@ class ResultWriter {
   }
 
  private:
-  [[nodiscard]] std::size_t listed(const Issue& issue) const { return std::min(issue.elements.size(), options_.max_elements); }
+  [[nodiscard]] std::size_t listed(const Issue& issue) const {
+    const std::size_t most = (options_.result_per_element ? kPlacesOfElements : kPlacesOfRules) / report_.issues.size();
+    return std::min({issue.elements.size(), options_.max_elements, most});
+  }
 
   void write_aggregate(const Issue& issue) {
     const std::size_t count = listed(issue);
@@ -255,10 +260,11 @@ class ResultWriter {
     if (names.empty()) return;
     json_.key("logicalLocations");
     json_.begin_array();
-    for (const auto& [name, kind] : names) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto& [name, kind] = names[i];
       json_.begin_object();
       json_.member("name", name);
-      if (!part.empty() && kind != "part") json_.member("fullyQualifiedName", part + "/" + name);
+      if (!part.empty() && i == 1) json_.member("fullyQualifiedName", part + "/" + name);  // names may be long: once will do
       json_.member("kind", kind);
       json_.end_object();
     }

@@ -401,6 +401,16 @@ class StandardInput(ValidateCase):
             done = self.validate_bytes(content, "--format", "json", code=3)
             self.assertEqual(rule, json.loads(done.stdout)["files"][0]["issues"][0]["rule"])
 
+    def test_compile_reads_it_too(self):
+        mesh = self.write("cube.off", CUBE)
+        self.fdcg("compile", mesh, "-o", self.path("file.fdcg"), "-q")
+        command = [FDCG, "compile", "-", "--input-format", "off", "-o", self.path("pipe.fdcg"), "-q"]
+        subprocess.run(command, input=CUBE.encode(), check=True, timeout=60)
+        self.assertEqual((self.folder / "file.fdcg").read_bytes(), (self.folder / "pipe.fdcg").read_bytes())
+        done = subprocess.run([*command, "--depfile", self.path("d")], input=b"", capture_output=True, check=False, timeout=60)
+        self.assertEqual(2, done.returncode)
+        self.assert_one_line(done, "--depfile")
+
     def test_settings_are_found_from_the_current_folder(self):
         self.write(CONFIG, '{"fail-on": "warning"}')
         done = subprocess.run([FDCG, "validate", "-"], input=MISSING_FACE.encode(), capture_output=True, cwd=self.folder, check=False)

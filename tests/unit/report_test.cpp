@@ -124,3 +124,31 @@ TEST_CASE("a report stays under a megabyte however bad the mesh is") {
   CHECK(report.issues[0].elements.size() == 100);
   CHECK(report_json({report}).size() < 1000000);
 }
+
+TEST_CASE("no format passes a megabyte when every rule has as many and as large elements as can be listed") {
+  Report report;
+  report.file = std::string(200, 'x');
+  for (const Rule& rule : rules()) {
+    Issue issue{std::string(rule.name), rule.severity, 4000000000, std::string(rule.remedy), {}, 0};
+    for (std::uint32_t i = 0; i < kListedElements; ++i) {
+      Element element;
+      element.faces.assign(rule.name == "non-manifold-edge" ? 32 : 2, 4000000000u - i);
+      element.edges = {{4000000000u, 4000000001u}};
+      element.vertices = {4000000002u};
+      element.point = Vec3{-1.2345678901234567e-100, -1.2345678901234567e-101, -1.2345678901234567e-102};
+      element.line = 4000000000u;
+      element.part = std::string(5000, 'p');
+      element.fingerprint = ~std::uint64_t{0} - i;
+      issue.elements.push_back(element);
+    }
+    report.issues.push_back(issue);
+    report.checks.push_back(issue.rule);
+  }
+  ReportOptions each;
+  each.result_per_element = true;
+  CHECK(report_text(report, false).size() < 1000000);
+  CHECK(report_string(ReportFormat::json, {report}).size() < 1000000);
+  CHECK(report_string(ReportFormat::junit, {report}).size() < 1000000);
+  CHECK(report_string(ReportFormat::sarif, {report}).size() < 1000000);
+  CHECK(report_string(ReportFormat::sarif, {report}, each).size() < 1000000);
+}
