@@ -51,7 +51,8 @@ Shape shape_of(const Mesh& mesh, const Topology& topology, const std::vector<Fac
   for (const HalfedgeId twin : topology.twin)
     (twin == Topology::kBoundary ? borders : halfedges)++;
   shape.euler_characteristic = std::count(is_used.begin(), is_used.end(), true) -
-                               static_cast<std::int64_t>(halfedges / 2 + borders) + static_cast<std::int64_t>(mesh.face_count());
+                               static_cast<std::int64_t>(halfedges / 2 + borders) +
+                               static_cast<std::int64_t>(mesh.face_count());
   shape.is_manifold = simplify_obstacle(mesh, topology, states).empty();
   if (shape.is_manifold) shape.boundary_loops = count_boundary_loops(mesh, topology);
   return shape;

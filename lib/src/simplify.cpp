@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "edges.hpp"
 #include "exact.hpp"
@@ -12,14 +15,11 @@
 #include "surface_cover.hpp"
 #include "vec.hpp"
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#include <OpenMesh/Core/Geometry/QuadricT.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModBaseT.hh>
-#pragma GCC diagnostic pop
+// after the others, whose names it needs
+#include <OpenMesh/Core/Geometry/QuadricT.hh>
 
 namespace fdcg::bake {
 namespace {
@@ -41,12 +41,21 @@ class BoundedMesh : public HalfedgeMesh {
  public:
   void collapse(HalfedgeHandle h);
   Judge* judge = nullptr;
+  std::function<bool(HalfedgeHandle)> is_legal;
 };
 
 class Judge {
  public:
-  Judge(BoundedMesh& halfedges, const Mesh& mesh, double error, double largest, const std::vector<bool>& is_locked)
-      : halfedges_(halfedges), mesh_(mesh), cover_(error, largest), is_locked_(is_locked), quadrics_(mesh.points.size()) {
+  Judge(BoundedMesh& halfedges, const Mesh& mesh, double error, double largest, const std::vector<bool>& is_locked,
+        const Progress& progress)
+      : halfedges_(halfedges),
+        mesh_(mesh),
+        cover_(error, largest),
+        is_locked_(is_locked),
+        progress_(progress),
+        quadrics_(mesh.points.size()),
+        version_(mesh.points.size(), 1),
+        refused_in_(halfedges.n_halfedges(), 0) {
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
       originals_.push_back({{point(f, 0), point(f, 1), point(f, 2)}, {vertex(f, 0), vertex(f, 1), vertex(f, 2)}});
       normals_.push_back(unit_normal(originals_[f].point));
@@ -65,23 +74,40 @@ class Judge {
   // Less is earlier; negative: not at all.
   [[nodiscard]] double priority(HalfedgeHandle h) {
     const VertexHandle v0 = halfedges_.from_vertex_handle(h);
-    if (is_locked_[static_cast<std::size_t>(v0.idx())] || !find_new_faces(h)) return -1;
+    const auto from = static_cast<std::size_t>(v0.idx());
+    if (is_locked_[from] || refused_in_[static_cast<std::size_t>(h.idx())] == version_[from] || !find_new_faces(h)) return -1;
     const OpenMesh::Vec3d to = halfedges_.point(halfedges_.to_vertex_handle(h));
     // Of flat neighbourhoods the shortest edges first, so that the triangles stay round.
     constexpr double kTieBreak = 1e-9;
     const double l2 = (to - halfedges_.point(v0)).sqrnorm();
-    return std::max(0.0, quadrics_[static_cast<std::size_t>(v0.idx())](to)) + kTieBreak * l2 * l2;
+    return std::max(0.0, quadrics_[from](to)) + kTieBreak * l2 * l2;
   }
 
-  // Collapses one of the edges at the vertex that h leaves, h first, if the bound can be proved.
-  template <class Collapse>
-  void collapse(HalfedgeHandle h, Collapse collapse_edge) {
+  // Collapses one of the edges at the vertex that h leaves: h, or where its bound cannot be proved the next in the order of
+  // priorities. `is_legal` speaks of topology, `collapse_edge` does it.
+  template <class IsLegal, class Collapse>
+  void collapse(HalfedgeHandle h, IsLegal is_legal, Collapse collapse_edge) {
     const VertexHandle v0 = halfedges_.from_vertex_handle(h);
-    if (!find_new_faces(h) || !prove()) return;
-    const VertexHandle v1 = halfedges_.to_vertex_handle(h);
-    quadrics_[static_cast<std::size_t>(v1.idx())] += quadrics_[static_cast<std::size_t>(v0.idx())];
-    collapse_edge(h);
-    commit();
+    std::vector<std::pair<double, HalfedgeHandle>> edges;
+    for (const HalfedgeHandle edge : halfedges_.voh_range(v0)) {
+      const double order = priority(edge);
+      if (order >= 0 && is_legal(edge)) edges.emplace_back(order, edge);
+    }
+    std::sort(edges.begin(), edges.end());
+    for (const auto& [order, edge] : edges) {
+      if (!find_new_faces(edge) || !prove(mesh_.points[static_cast<std::size_t>(v0.idx())])) {
+        refused_in_[static_cast<std::size_t>(edge.idx())] = version_[static_cast<std::size_t>(v0.idx())];
+        continue;
+      }
+      const VertexHandle v1 = halfedges_.to_vertex_handle(edge);
+      quadrics_[static_cast<std::size_t>(v1.idx())] += quadrics_[static_cast<std::size_t>(v0.idx())];
+      for (const VertexHandle v : halfedges_.vv_range(v0))
+        ++version_[static_cast<std::size_t>(v.idx())];
+      collapse_edge(edge);
+      commit();
+      tell();
+      return;
+    }
   }
 
  private:
@@ -131,7 +157,11 @@ class Judge {
   }
 
   // Both directions: the new faces near what they stand for, and that near the new faces and those around them.
-  bool prove() {
+  bool prove(const Vec3& removed) {
+    // The vertex to go is a point of the surface given: mostly it settles the question.
+    if (std::none_of(new_faces_.begin(), new_faces_.end(),
+                     [&](const NamedTriangle& t) { return cover_.is_near(removed, t.point); }))
+      return false;
     std::vector<std::uint32_t> used;
     concerned_.clear();
     for (const std::uint32_t f : old_faces_)
@@ -175,6 +205,12 @@ class Judge {
     }
   }
 
+  void tell() {
+    constexpr std::uint64_t kInterval = 256;  // collapses from one call to the next
+    if (progress_ && ++collapses_ % kInterval == 0)
+      progress_("simplify", static_cast<double>(collapses_) / static_cast<double>(mesh_.points.size()));
+  }
+
   void commit() {
     for (const std::uint32_t f : old_faces_)
       stands_for_[f].clear();  // all of these are concerned
@@ -192,7 +228,12 @@ class Judge {
   const Mesh& mesh_;
   SurfaceCover cover_;
   const std::vector<bool>& is_locked_;
+  const Progress& progress_;
+  std::uint64_t collapses_ = 0;
   std::vector<OpenMesh::Geometry::Quadricd> quadrics_;
+  // How often the faces around a vertex have changed, from 1; and when, in these terms, the collapse of a half-edge was
+  // refused.
+  std::vector<std::uint32_t> version_, refused_in_;
   std::vector<NamedTriangle> originals_;
   std::vector<Vec3> normals_;                           // of the faces as they were given
   std::vector<std::vector<std::uint32_t>> stands_for_;  // of each face: the originals whose proof rests on it
@@ -204,8 +245,15 @@ class Judge {
 };
 
 void BoundedMesh::collapse(HalfedgeHandle h) {
-  judge->collapse(h, [this](HalfedgeHandle edge) { HalfedgeMesh::collapse(edge); });
+  judge->collapse(h, is_legal, [this](HalfedgeHandle edge) { HalfedgeMesh::collapse(edge); });
 }
+
+// With its test of topology in reach.
+class Decimater : public OpenMesh::Decimater::DecimaterT<BoundedMesh> {
+ public:
+  explicit Decimater(BoundedMesh& mesh) : BaseDecimaterT(mesh), DecimaterT(mesh) {}  // the base is virtual
+  using DecimaterT::is_collapse_legal;
+};
 
 class PriorityModule : public OpenMesh::Decimater::ModBaseT<BoundedMesh> {
  public:
@@ -221,21 +269,6 @@ class PriorityModule : public OpenMesh::Decimater::ModBaseT<BoundedMesh> {
   float collapse_priority(const CollapseInfo& info) override {
     return static_cast<float>(Base::mesh().judge->priority(info.v0v1));
   }
-};
-
-// Passes on how many faces have been looked at, as far as that can be known.
-class ProgressObserver : public OpenMesh::Decimater::Observer {
- public:
-  ProgressObserver(const Progress& progress, std::size_t vertices)
-      : Observer(kInterval), progress_(progress), vertices_(vertices) {}
-  void notify(std::size_t steps) override {
-    if (progress_) progress_("simplify", std::min(1.0, static_cast<double>(steps) / static_cast<double>(vertices_)));
-  }
-
- private:
-  static constexpr std::size_t kInterval = 256;
-  const Progress& progress_;
-  std::size_t vertices_;
 };
 
 std::string place(const Mesh& mesh, FaceId f) {
@@ -255,14 +288,16 @@ std::string simplify_obstacle(const Mesh& mesh, const Topology& topology, const 
   for (std::uint32_t h = 0; h < topology.twin.size(); ++h) {
     const bool is_crowded = topology.twin[h] == Topology::kNonManifold;
     if (!is_crowded && topology.twin[h] != Topology::kSameWay) continue;
-    return place(mesh, topology.face(HalfedgeId{h})) + (is_crowded ? " has an edge of more than two faces" : " is wound against a neighbour");
+    return place(mesh, topology.face(HalfedgeId{h})) +
+           (is_crowded ? " has an edge of more than two faces" : " is wound against a neighbour");
   }
   const std::vector<VertexId> several = vertices_of_several_fans(mesh, topology, states);
   if (!several.empty()) return "vertex " + std::to_string(mesh.source_point[+several[0]]) + " joins more than one fan of faces";
   return {};
 }
 
-std::optional<Simplified> simplify(const Mesh& mesh, double error, const std::vector<bool>& is_locked, const Progress& progress) {
+std::optional<Simplified> simplify(const Mesh& mesh, double error, const std::vector<bool>& is_locked,
+                                   const Progress& progress) {
   double largest = 0;
   for (const Vec3& p : mesh.points)
     largest = std::max(largest, largest_component(p));
@@ -274,16 +309,17 @@ std::optional<Simplified> simplify(const Mesh& mesh, double error, const std::ve
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
     if (!halfedges.add_face(handle(3 * f), handle(3 * f + 1), handle(3 * f + 2)).is_valid()) return std::nullopt;
   }
-  Judge judge(halfedges, mesh, error, largest, is_locked);
+  Judge judge(halfedges, mesh, error, largest, is_locked, progress);
   halfedges.judge = &judge;
   {
-    OpenMesh::Decimater::DecimaterT<BoundedMesh> decimater(halfedges);
+    Decimater decimater(halfedges);
+    halfedges.is_legal = [&](HalfedgeHandle h) {
+      return decimater.is_collapse_legal(PriorityModule::CollapseInfo(halfedges, h));
+    };
     PriorityModule::Handle module;
     decimater.add(module);
     decimater.initialize();
-    ProgressObserver observer(progress, mesh.points.size());
-    decimater.set_observer(&observer);
-    decimater.decimate(0);
+    decimater.decimate(std::numeric_limits<std::uint32_t>::max());  // it counts refusals too
 
     result.corners.resize(mesh.corners.size(), Simplified::kGone);
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {

@@ -102,7 +102,7 @@ bool SurfaceCover::is_near_one(const std::array<Vec3, 3>& triangle, std::vector<
     for (std::size_t k = 0; k < 3; ++k) {
       // Once a corner is known to be near something, it matters only where the others are near this one.
       if (!all && is_near[k]) continue;
-      const bool near = distance_bound(triangle[k], candidates_[i].point) <= reach_;
+      const bool near = is_near(triangle[k], candidates_[i].point);
       is_near[k] = is_near[k] || near;
       all = all && near;
     }
@@ -135,7 +135,8 @@ bool SurfaceCover::is_below_a_sheet(const std::array<Vec3, 3>& triangle, std::ve
   const double inset = slack_ * inradius / longest;
   if (!(inradius > 4 * inset) || !(inset > longest * 0x1p-48)) return false;
   const double a = length(triangle[2] - triangle[1]), b = length(w), c = width;
-  const Point2 centre{(a * t[0][0] + b * t[1][0] + c * t[2][0]) / perimeter, (a * t[0][1] + b * t[1][1] + c * t[2][1]) / perimeter};
+  const Point2 centre{(a * t[0][0] + b * t[1][0] + c * t[2][0]) / perimeter,
+                      (a * t[0][1] + b * t[1][1] + c * t[2][1]) / perimeter};
   const double scale = 1 - inset / inradius;
   for (Point2& p : t)
     p = {centre[0] + scale * (p[0] - centre[0]), centre[1] + scale * (p[1] - centre[1])};
