@@ -144,10 +144,11 @@ RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const 
   const std::uint64_t meetings_before = total(meetings(mesh, resolve_jobs(jobs)));
   std::vector<bool> is_locked(mesh.points.size(), false);
   std::optional<Simplified> simplified;
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 8, kLocking = 3;
+  double tried = error;
   std::uint64_t more = 0;
   for (int round = 0; round < kRounds; ++round) {
-    simplified = simplify(mesh, error, is_locked, progress);
+    simplified = simplify(mesh, tried, is_locked, progress);
     if (!simplified) return leave("its connectivity does not fit OpenMesh");
     std::vector<std::uint32_t> face_of;
     const Mesh result = reduced(mesh, *simplified, face_of);
@@ -156,7 +157,8 @@ RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const 
     const SelfIntersections found = meetings(result, resolve_jobs(jobs));
     more = total(found) > meetings_before ? total(found) - meetings_before : 0;
     if (more == 0) break;
-    // Whatever meets now did so at vertices that had moved closer: around these nothing may go.
+    // Around the faces that meet nothing may go; where that is not enough, sheets are closer than the error, which is halved.
+    if (round >= kLocking) tried /= 2;
     for (const MeetingFaces& pair : found.listed) {
       for (const FaceId f : {pair.a, pair.b}) {
         for (std::uint32_t k = 0; k < 3; ++k) {

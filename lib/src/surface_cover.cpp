@@ -96,21 +96,21 @@ bool SurfaceCover::is_covered(const std::array<Vec3, 3>& triangle, std::vector<s
 
 // `is_far`: a corner is near no candidate, so that no proof can succeed.
 bool SurfaceCover::is_near_one(const std::array<Vec3, 3>& triangle, std::vector<std::uint32_t>& used, bool& is_far) {
-  std::array<bool, 3> is_near{};
+  std::array<bool, 3> has_near{};
   for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
     bool all = true;
     for (std::size_t k = 0; k < 3; ++k) {
       // Once a corner is known to be near something, it matters only where the others are near this one.
-      if (!all && is_near[k]) continue;
+      if (!all && has_near[k]) continue;
       const bool near = is_near(triangle[k], candidates_[i].point);
-      is_near[k] = is_near[k] || near;
+      has_near[k] = has_near[k] || near;
       all = all && near;
     }
     if (!all) continue;
     used.push_back(i);
     return true;
   }
-  is_far = !(is_near[0] && is_near[1] && is_near[2]);
+  is_far = !(has_near[0] && has_near[1] && has_near[2]);
   return false;
 }
 
