@@ -23,7 +23,7 @@ const std::vector<Rule>& rules() {
       {"degenerate-face", error, "faces with a corner named twice, or whose corners all lie exactly on one line",
        "A face without area has no normal, so that nothing says which way it pushes; an outline that comes twice to a corner, "
        "as around a bridge to a hole, has no single inside there.",
-       "Delete faces without area and join the long edge to its neighbours; triangulate polygons with holes.", false},
+       "Run `fdcg repair --drop-degenerate` for faces without area; triangulate polygons with holes.", false},
       {"self-crossing-face", error,
        "polygons whose outline crosses or touches itself: seen along the axis nearest to their mean normal and, if far from "
        "flat, along the others too",
