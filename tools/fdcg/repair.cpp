@@ -145,6 +145,12 @@ int export_repaired(const RepairArguments& arguments, const bake::Repaired& repa
   return kClean;
 }
 
+// Unless it was asked to and had to leave the mesh as it is.
+bool did_simplify(const bake::Repaired& repaired) {
+  return std::none_of(repaired.actions.begin(), repaired.actions.end(),
+                      [](const bake::RepairAction& action) { return action.name == "simplify" && action.left != 0; });
+}
+
 int run_repair(RepairArguments& arguments) {
   if (const int code = check(arguments); code != kClean) return code;
   std::optional<AtomicFile> out, report;
@@ -184,7 +190,7 @@ int run_repair(RepairArguments& arguments) {
     if (repaired->read_with == bake::Weld::Kind::none)
       std::fputs("read it with --weld none: vertices at equal coordinates are apart on purpose\n", stream);
   }
-  return repaired->after.passes() ? kClean : kFindings;
+  return repaired->after.passes() && did_simplify(*repaired) ? kClean : kFindings;
 }
 
 void add_step_options(CLI::App& command, const std::shared_ptr<RepairArguments>& arguments) {
@@ -207,6 +213,16 @@ void add_step_options(CLI::App& command, const std::shared_ptr<RepairArguments>&
                    "Turn faces to agree with their patch, closed patches of mixed winding outwards");
   command.add_flag("--reverse-inside-out", options.reverse_inside_out,
                    "Turn closed patches that enclose negative volume, by nesting depth");
+  const auto parse_error = [arguments](const std::string& text) {
+    const auto error = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+    if (!error) throw CLI::ValidationError("--simplify", "'" + text + "' is no distance above 0 in the file's units");
+    arguments->options.simplify_error = *error;
+  };
+  command
+      .add_option_function<std::string>("--simplify", parse_error,
+                                        "Fewer triangles of the same topology, no point of either surface farther than ERROR "
+                                        "(in the file's units) from the other")
+      ->type_name("ERROR");
 }
 
 }  // namespace
