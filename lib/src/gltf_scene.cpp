@@ -324,7 +324,8 @@ class SceneBuilder {
       return;
     }
     if (corners < 3) {
-      count("corners left over after the last triangle") += corners;
+      if (corners > 0)
+        ++count(mode == Mode::triangle_fan ? "fans of fewer than three vertices" : "strips of fewer than three vertices");
       return;
     }
     charge(corners_, 3 * (corners - 2));
@@ -341,8 +342,9 @@ class SceneBuilder {
 
   // Strips are joined into one by repeating vertices: what has a vertex twice is no triangle but such a joint.
   void add_strip_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool is_flipped) {
-    const auto is_same = [](std::uint32_t p, std::uint32_t q) { return p == q && p != PolygonSoup::kInvalidVertex; };
-    if (is_same(a, b) || is_same(b, c) || is_same(c, a)) {
+    constexpr std::uint32_t kInvalid = PolygonSoup::kInvalidVertex;
+    const bool is_known = a != kInvalid && b != kInvalid && c != kInvalid;
+    if (is_known && (a == b || b == c || c == a)) {
       ++count("strip joints");
     } else {
       add_face(a, b, c, is_flipped);

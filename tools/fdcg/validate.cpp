@@ -85,7 +85,7 @@ Examples:
   fdcg validate --format json -o report.json meshes/*.ply
   fdcg validate --fail-on warning --allow boundary-edge scan.obj)");
   const auto arguments = std::make_shared<ValidateArguments>();
-  command->add_option("mesh", arguments->meshes, "Mesh files: OFF, OBJ, PLY, STL")->required()->type_name("MESH");
+  command->add_option("mesh", arguments->meshes, "Mesh files: OFF, OBJ, PLY, STL, glTF, GLB, Draco")->required()->type_name("MESH");
   const auto check_format = [arguments](const std::string& value) {
     if (value == "sarif" || value == "junit") {
       throw CLI::ValidationError("--format", value + " is not written by this version; choose text or json");
