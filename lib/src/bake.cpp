@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <span>
 #include <string>
@@ -32,8 +33,9 @@ namespace {
 
 // Why the options make no sense; empty where they do.
 std::string contradiction_in(const CompileOptions& options) {
-  if (!(options.metres_per_unit > 0) || !std::isfinite(options.metres_per_unit))
-    return "the scale is " + std::to_string(options.metres_per_unit) + " metres per unit; it must be above 0 and finite";
+  constexpr double kLargestScale = 1e30;  // what the runtime takes
+  if (!(options.metres_per_unit >= 1 / kLargestScale && options.metres_per_unit <= kLargestScale))
+    return "the scale is " + std::to_string(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
   if (options.coplanar.kind == Coplanar::Kind::angle &&
       !(options.coplanar.angle_rad >= 0 && options.coplanar.angle_rad < std::numbers::pi / 2))
     return "the coplanar angle is " + std::to_string(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
@@ -47,38 +49,12 @@ std::string contradiction_in(const CompileOptions& options) {
   return {};
 }
 
-Quantum quantum_of(const PolygonSoup& soup, const Mesh& mesh, Precision precision) {
-  constexpr double kHalfUlpOfFloat = 0x1p-24;
-  return {soup.relative_quantum, soup.absolute_quantum, precision == Precision::f32 ? kHalfUlpOfFloat : 0, mesh.origin};
-}
-
 // Of one coordinate at the object's extent: what the header tells.
 double header_quantum(const PolygonSoup& soup, const Mesh& mesh) {
   double extent = 0;
   for (const Vec3& point : mesh.points)
     extent = std::max(extent, largest_component(point + mesh.origin));
   return std::max(soup.relative_quantum * extent, soup.absolute_quantum);
-}
-
-// A polygon that crosses itself has no inside to stand on: the one defect that only cutting it finds.
-void report_uncuttable(const PolygonSoup& soup, const Mesh& mesh, const std::vector<std::uint32_t>& faces,
-                       std::size_t max_elements, Report& report) {
-  Issue issue{"non-planar-face",
-              Severity::error,
-              faces.size(),
-              std::to_string(faces.size()) +
-                  " polygons cannot be cut into triangles: they cross themselves or have tens of thousands of inward corners; "
-                  "triangulate them",
-              {}};
-  for (std::size_t i = 0; i < std::min(max_elements, faces.size()); ++i) {
-    Element element;
-    const std::uint32_t face = mesh.source_of(FaceId{faces[i]});
-    element.faces = {face};
-    if (!soup.face_line.empty()) element.line = soup.face_line[face];
-    issue.elements.push_back(std::move(element));
-  }
-  report.allowed.erase(issue.rule);
-  report.issues.insert(report.issues.begin(), std::move(issue));
 }
 
 // Where each face of the soup ended up: through the mesh, the triangles it was cut into, and the polygons they were merged to.
@@ -133,6 +109,32 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   return input;
 }
 
+std::string said(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+// Why no file can hold the object; empty where one can.
+std::string out_of_range(const Graph& graph, const SerialiseInput& input) {
+  const bool is_f32 = input.precision == Precision::f32;
+  const double largest = is_f32 ? FDCG_LARGEST_EXTENT_F32 : FDCG_LARGEST_EXTENT_F64;
+  constexpr double kLargestOrigin = 1e100;  // what the runtime takes
+  double extent = 0;
+  for (const Vec3& point : graph.points)
+    extent = std::max(extent, largest_component(point));
+  if (!(extent >= 1 / largest && extent <= largest && input.quantum <= largest)) {
+    return "the object reaches " + said(extent) + " from its middle, in coordinates known to within " + said(input.quantum) +
+           "; the format holds " + said(1 / largest) + " to " + said(largest) + ": scale the mesh" +
+           (is_f32 ? ", or compile it with --precision f64" : "");
+  }
+  if (!(largest_component(input.origin) <= kLargestOrigin)) {
+    return "the object lies " + said(largest_component(input.origin)) + " from the origin, the format holds up to " +
+           said(kLargestOrigin) + ": move the mesh";
+  }
+  return {};
+}
+
 // Memory of the result's own, in pages as large as can be had.
 std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t count) {
   bytes.reserve(count);
@@ -141,16 +143,16 @@ std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t coun
   return bytes;
 }
 
-// From a mesh that has passed the checks to the bytes of a file. No bytes: the report now says why.
+// From a mesh that has passed the checks to the bytes of a file.
 Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
                                    unsigned jobs, Compiled& compiled) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
-  if (!cut.uncuttable.empty()) {
-    report_uncuttable(soup, cut.mesh, cut.uncuttable, options.max_elements, compiled.report);
-    return std::span<std::byte>{};
+  if (!cut.uncuttable.empty()) {  // self-crossing-face has let it pass
+    return Failure{4, soup.name + ": no cut was found for polygon " + std::to_string(cut.uncuttable[0]) +
+                          ", which does not cross itself; triangulate it, and please report this fault"};
   }
   Merged faces;
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
@@ -168,6 +170,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
   const Graph graph =
       order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
+  if (std::string reason = out_of_range(graph, input); !reason.empty()) return Failure{3, soup.name + ": " + reason};
   if (options.allocate) return serialise(graph, input, options.allocate);
   return serialise(graph, input, [&](std::size_t count) { return allocate_in(compiled.bytes, count); });
 }

@@ -16,14 +16,17 @@ void duplicate_vertex(const Subject& subject, Findings& out);
 void index_out_of_range(const Subject& subject, Findings& out);
 void empty_mesh(const Subject& subject, Findings& out);
 void degenerate_face(const Subject& subject, Findings& out);
+void self_crossing_face(const Subject& subject, Findings& out);
 void duplicate_face(const Subject& subject, Findings& out);
 void non_planar_face(const Subject& subject, Findings& out);
+void sliver_face(const Subject& subject, Findings& out);
 
 // rules_edges.cpp
 void non_manifold_edge(const Subject& subject, Findings& out);
 void winding_inconsistent(const Subject& subject, Findings& out);
 void folded_edge(const Subject& subject, Findings& out);
 void boundary_edge(const Subject& subject, Findings& out);
+void t_junction(const Subject& subject, Findings& out);
 
 // rules_patches.cpp
 void not_orientable(const Subject& subject, Findings& out);

@@ -2,11 +2,10 @@
 #include "face_geometry.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "exact.hpp"
-#include "volume.hpp"
+#include "filtered_sum.hpp"
+#include "outline.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -14,26 +13,6 @@ namespace {
 bool finite(const Vec3& p) {
   // NaN and infinities, and nothing else, turn into NaN when multiplied by zero.
   return p.x * 0 + p.y * 0 + p.z * 0 == 0;
-}
-
-// A sum of 2 x 2 determinants with what bounds its rounding error.
-struct FilteredSum {
-  double value = 0, magnitude = 0;
-  void add(double a, double b, double c, double d) {
-    const double p = a * d, q = b * c;
-    value += p - q;
-    magnitude += std::abs(p) + std::abs(q);
-  }
-  // Entries are rounded differences (u each, u = 2^-53), products and their difference add 2u more, the sum u a term; the rest
-  // covers products of these and the rounding of the bound. Below 1e-280 underflow could interfere.
-  [[nodiscard]] bool is_certain(double terms) const {
-    return std::abs(value) > (terms + 8) * 0x1p-53 * magnitude && magnitude > 1e-280 &&
-           magnitude < std::numeric_limits<double>::max();
-  }
-};
-
-double component(const Vec3& v, int k) {
-  return k == 0 ? v.x : k == 1 ? v.y : v.z;
 }
 
 }  // namespace
@@ -123,15 +102,10 @@ int FaceGeometry::sign_along(FaceId f, int axis) const {
   if ((bits_[+f] & 1U << axis) != 0) return 1;
   if ((bits_[+f] & 8U << axis) != 0) return -1;
   if (size(f) == 3) return exact::orient2d(point(first(f)), point(first(f) + 1), point(first(f) + 2), axis);
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  ExactSum sum;
-  for (std::uint32_t h = first(f); h < first(f) + size(f); ++h) {
-    const Vec3& p = point(h);
-    const Vec3& q = point(+next(mesh_, f, HalfedgeId{h}));
-    sum.add_product(component(p, u), component(q, v), 1, false);
-    sum.add_product(component(p, v), component(q, u), 1, true);
-  }
-  return sum.sign();
+  std::vector<Vec3> polygon;
+  for (std::uint32_t h = first(f); h < first(f) + size(f); ++h)
+    polygon.push_back(point(h));
+  return area_sign(polygon, axis);
 }
 
 bool FaceGeometry::is_fold(FaceId a, HalfedgeId h, FaceId b, HalfedgeId other) {

@@ -99,6 +99,20 @@ void Findings::at_edge(std::span<const HalfedgeId> halfedges) {
   element->fingerprint = fingerprint.value();
 }
 
+void Findings::in_edge(VertexId v, HalfedgeId h) {
+  at_vertex(subject_.mesh.source_point[+v]);
+  if (issue_.total > max_elements_) return;
+  Element& element = issue_.elements.back();
+  const VertexId p = subject_.start_of(h), q = subject_.end_of(h);
+  element.edges.push_back({subject_.mesh.source_point[+p], subject_.mesh.source_point[+q]});
+  element.line.reset();  // elements that name faces give the line of the first
+  add_face(element, subject_.topology.face(h));
+  Fingerprint fingerprint(rule_.name);
+  for (const VertexId vertex : {v, p, q})
+    fingerprint.add(subject_.source_point(vertex));
+  element.fingerprint = fingerprint.value();
+}
+
 // One pass finds it for all patches: the rules of patches rarely find anything, and then it may be thousands.
 Vec3 Findings::least_corner(std::uint32_t patch) {
   const Patches& patches = subject_.patches;

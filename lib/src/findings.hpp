@@ -48,9 +48,10 @@ class Findings {
   void at_face(FaceId f);
   void at_face(FaceId f, FaceId original);              // a copy, and what it copies
   void at_edge(std::span<const HalfedgeId> halfedges);  // all of one edge, at least one
+  void in_edge(VertexId v, HalfedgeId h);               // the vertex, the edge and its face
   void at_patch(std::uint32_t patch);                   // ascending: of Subject::patches
 
-  // In place of the catalogue's phrase, number first, without a full stop; and of its remedy where that is not empty.
+  // In place of the catalogue's phrase and remedy; the total comes first.
   void say(std::string message) { issue_.message = std::move(message); }
   [[nodiscard]] std::uint64_t total() const { return issue_.total; }
 

@@ -18,7 +18,8 @@ constexpr Phrase kPhrases[] = {
     {"index-out-of-range", "face names a vertex that the file does not have",
      "faces name a vertex that the file does not have"},
     {"empty-mesh", "file has no face", "files have no face"},
-    {"degenerate-face", "face has no area", "faces have no area"},
+    {"self-crossing-face", "polygon has an outline that crosses or touches itself",
+     "polygons have an outline that crosses or touches itself"},
     {"duplicate-face", "face repeats the vertices of an earlier one", "faces repeat the vertices of an earlier one"},
     {"non-manifold-edge", "edge has more than two faces", "edges have more than two faces"},
     {"non-manifold-vertex", "vertex joins more than one fan of faces", "vertices join more than one fan of faces"},
@@ -29,6 +30,8 @@ constexpr Phrase kPhrases[] = {
     {"folded-edge", "edge has two faces that lie on one another", "edges have two faces that lie on one another"},
     {"boundary-edge", "edge has one face only", "edges have one face only"},
     {"non-planar-face", "polygon is not flat", "polygons are not flat"},
+    {"t-junction", "vertex lies inside a boundary edge of another face", "vertices lie inside a boundary edge of another face"},
+    {"sliver-face", "face is thinner than a thousandth of its length", "faces are thinner than a thousandth of their length"},
     {"isolated-vertex", "vertex belongs to no face", "vertices belong to no face"},
     {"duplicate-vertex", "vertex was joined to an earlier one", "vertices were joined to an earlier one"},
 };

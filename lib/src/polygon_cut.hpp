@@ -19,8 +19,8 @@ using Ear = std::array<std::uint32_t, 3>;
 class PolygonCutter {
  public:
   // The ears of a simple polygon in the order of cutting, count - 2 of them, all turning strictly left, the last one what
-  // remains; corners in a straight line are allowed. Empty where that cannot be done: the polygon crosses itself, turns right
-  // or has no area, or it has so many corners n, r of them not strictly convex, that the n (r + 1) tests would exceed 2^31.
+  // remains; corners in a straight line are allowed. Of a polygon that is_simple() refuses perhaps none. Of n corners, r of
+  // them not strictly convex, n r tests at most, and as a rule few more than n: only corners level with an ear are looked at.
   std::span<const Ear> cut(const Projection& projection, std::span<const Vec3> polygon);
 
   // The same for a polygon every corner of which is visible from `kernel`, inside or on it: n tests. All ears turn strictly

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fdcg/bake.hpp"
+#include "mesh.hpp"
 #include "vec.hpp"
 
 namespace fdcg::bake {
@@ -27,5 +28,11 @@ struct Quantum {
            (std::max(relative * largest_component(local + origin), absolute) + local_relative * largest_component(local));
   }
 };
+
+// Of a mesh that weld_points made of the soup.
+inline Quantum quantum_of(const PolygonSoup& soup, const Mesh& mesh, Precision precision) {
+  constexpr double kHalfUlpOfFloat = 0x1p-24;
+  return {soup.relative_quantum, soup.absolute_quantum, precision == Precision::f32 ? kHalfUlpOfFloat : 0, mesh.origin};
+}
 
 }  // namespace fdcg::bake

@@ -3,6 +3,8 @@
 #include <array>
 
 #include "check_rules.hpp"
+#include "quantum.hpp"
+#include "t_junctions.hpp"
 
 namespace fdcg::bake::checks {
 
@@ -22,6 +24,12 @@ void boundary_edge(const Subject& subject, Findings& out) {
   for (std::uint32_t h = 0; h < subject.topology.twin.size(); ++h) {
     if (subject.topology.twin[h] == Topology::kBoundary) out.at_edge(std::array{HalfedgeId{h}});
   }
+}
+
+void t_junction(const Subject& subject, Findings& out) {
+  const Quantum quantum = quantum_of(subject.soup, subject.mesh, subject.precision);
+  for (const TJunction& found : find_t_junctions(subject.mesh, subject.topology, subject.states, quantum))
+    out.in_edge(found.vertex, found.edge);
 }
 
 void folded_edge(const Subject& subject, Findings& out) {

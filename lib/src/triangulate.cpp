@@ -2,24 +2,16 @@
 #include "triangulate.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "merge.hpp"
+#include "outline.hpp"
 #include "polygon_cut.hpp"
-#include "projection.hpp"
-#include "vec.hpp"
 
 namespace fdcg::bake {
 namespace {
-
-// Twice the area vector of the polygon (Newell).
-Vec3 area_vector(std::span<const Vec3> polygon) {
-  Vec3 sum;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-    sum = sum + cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-  return sum;
-}
 
 class Triangulator {
  public:
@@ -58,9 +50,9 @@ class Triangulator {
     polygon_.clear();
     for (std::uint32_t i = 0; i < count; ++i)
       polygon_.push_back(in_.points[+in_.corners[first + i]]);
-    const Projection projection(area_vector(polygon_));
-    out_.is_whole[f] = count <= kMaxMergedSides && is_convex(projection);
-    const std::span<const Ear> ears = cutter_.cut(projection, polygon_);
+    const std::optional<Projection> view = simple_view(polygon_);
+    out_.is_whole[f] = view && count <= kMaxMergedSides && !turns_of(*view, polygon_).has_right;
+    const std::span<const Ear> ears = view ? cutter_.cut(*view, polygon_) : std::span<const Ear>{};
     if (ears.empty()) {
       out_.uncuttable.push_back(f);
       return;
@@ -97,14 +89,6 @@ class Triangulator {
     out_.mesh.face_first.push_back(static_cast<std::uint32_t>(out_.mesh.corners.size()));
     out_.topology.twin.resize(out_.mesh.corners.size(), Topology::kBoundary);
     out_.polygon.push_back(f);
-  }
-
-  [[nodiscard]] bool is_convex(const Projection& projection) const {
-    const std::size_t count = polygon_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      if (projection.orient(polygon_[i], polygon_[(i + 1) % count], polygon_[(i + 2) % count]) < 0) return false;
-    }
-    return true;
   }
 
   Mesh in_;

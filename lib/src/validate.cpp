@@ -35,6 +35,7 @@ constexpr Row kRows[] = {
     {"index-out-of-range", Group::none, checks::index_out_of_range},
     {"empty-mesh", Group::none, checks::empty_mesh},
     {"degenerate-face", Group::none, checks::degenerate_face},
+    {"self-crossing-face", Group::none, checks::self_crossing_face},
     {"duplicate-face", Group::duplicates, checks::duplicate_face},
     {"non-manifold-edge", Group::none, checks::non_manifold_edge},
     {"non-manifold-vertex", Group::none, checks::non_manifold_vertex},
@@ -44,6 +45,8 @@ constexpr Row kRows[] = {
     {"folded-edge", Group::polygons, checks::folded_edge},
     {"boundary-edge", Group::none, checks::boundary_edge},
     {"non-planar-face", Group::polygons, checks::non_planar_face},
+    {"t-junction", Group::none, checks::t_junction},
+    {"sliver-face", Group::none, checks::sliver_face},
     {"isolated-vertex", Group::none, checks::isolated_vertex},
     {"duplicate-vertex", Group::none, checks::duplicate_vertex},
 };

@@ -120,10 +120,10 @@ void check_file(const SeededMesh& seeded, FileKind kind, bool welds, bool commen
 
 Seeder::Setting setting_for(FileKind kind, Random& random) {
   Seeder::Setting setting;
-  setting.has_vertices = !is_stl(kind);
-  setting.has_bad_indices = !is_stl(kind);
-  setting.triangles_only = is_stl(kind);
-  setting.welds = is_stl(kind) || random.chance(0.75);
+  setting.has_vertices = holds_vertices(kind);
+  setting.has_bad_indices = holds_bad_indices(kind);
+  setting.triangles_only = !holds_polygons(kind);
+  setting.welds = !holds_vertices(kind) || random.chance(0.75);
   return setting;
 }
 
@@ -135,7 +135,7 @@ std::uint32_t draw_faces(Random& random, std::uint32_t most) {
 }  // namespace
 
 TEST_CASE("clean meshes have no finding in any format") {
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 66; ++i) {
     Random random(1000 + static_cast<std::uint64_t>(i));
     const FileKind kind = kFileKinds[static_cast<std::size_t>(i) % kFileKinds.size()];
     INFO("case " << i << ", " << name_of(kind));
@@ -153,7 +153,7 @@ TEST_CASE("clean meshes have no finding in any format") {
 TEST_CASE("a single defect of each kind is found where it is, and nothing else") {
   for (const std::string& defect : Seeder::kinds()) {
     int planted = 0;
-    for (int i = 0; i < 28; ++i) {
+    for (int i = 0; i < 33; ++i) {
       Random random(77 * static_cast<std::uint64_t>(i) + 5);
       const FileKind kind = kFileKinds[static_cast<std::size_t>(i) % kFileKinds.size()];
       Seeder::Setting setting = setting_for(kind, random);

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "drc_writer.hpp"
+#include "gltf_writer.hpp"
+
 namespace fdcg::test {
 namespace {
 
@@ -154,8 +157,28 @@ class Writer {
 }  // namespace
 
 const char* name_of(FileKind kind) {
-  constexpr const char* kNames[] = {"off", "obj", "ply text", "ply little-endian", "ply big-endian", "stl text", "stl binary"};
+  constexpr const char* kNames[] = {"off",
+                                    "obj",
+                                    "ply text",
+                                    "ply little-endian",
+                                    "ply big-endian",
+                                    "stl text",
+                                    "stl binary",
+                                    "gltf",
+                                    "glb",
+                                    "glb with draco",
+                                    "drc"};
   return kNames[static_cast<int>(kind)];
+}
+
+bool holds_polygons(FileKind kind) {
+  return kind < FileKind::stl_text;
+}
+bool holds_vertices(FileKind kind) {
+  return kind != FileKind::stl_text && kind != FileKind::stl_binary;
+}
+bool holds_bad_indices(FileKind kind) {
+  return kind < FileKind::stl_text || kind == FileKind::gltf || kind == FileKind::glb;
 }
 
 MeshFile write_mesh(const bake::PolygonSoup& soup, FileKind kind, bool comments) {
@@ -177,9 +200,17 @@ MeshFile write_mesh(const bake::PolygonSoup& soup, FileKind kind, bool comments)
     case FileKind::stl_text:
       return writer.stl_text();
     case FileKind::stl_binary:
+      return writer.stl_binary();
+    case FileKind::gltf:
+      return {write_gltf(soup), {}, {}};
+    case FileKind::glb:
+      return {write_glb(soup), {}, {}};
+    case FileKind::glb_draco:
+      return {write_glb_draco(soup), {}, {}};
+    case FileKind::drc:
       break;
   }
-  return writer.stl_binary();
+  return {write_drc(soup), {}, {}};
 }
 
 }  // namespace fdcg::test

@@ -164,13 +164,25 @@ class Counter {
     }
   }
 
-  // Seen along the axis of the largest component of the area vector, as exact comparisons give it; where two are equal both
-  // views are of the same kind for flat polygons, which is what real files hold.
+  // Seen along the axis of the largest component of the area vector, as exact comparisons give it, and along those that show a
+  // sixteenth of the box; where two are equal both views are of the same kind for flat polygons.
   [[nodiscard]] bool crosses_itself(const Loop& loop) const {
     const Exact::Vector_3 normal = area(loop);
     const std::array<Exact::FT, 3> size = {CGAL::abs(normal.x()), CGAL::abs(normal.y()), CGAL::abs(normal.z())};
     if (size[0] == 0 && size[1] == 0 && size[2] == 0) return true;
-    const int axis = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+    const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
+    CGAL::Bbox_3 box = points_[loop[0]].bbox();
+    for (const std::uint32_t v : loop)
+      box += points_[v].bbox();
+    const std::array<Real, 3> extent = {box.x_span(), box.y_span(), box.z_span()};
+    const Real broadest = std::max({extent[0] * extent[1], extent[1] * extent[2], extent[2] * extent[0]});
+    if (!crosses_itself(loop, static_cast<int>(largest))) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis != largest && Real(CGAL::to_double(size[axis])) / 2 > broadest / 16 && !crosses_itself(loop, axis)) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] bool crosses_itself(const Loop& loop, int axis) const {
     std::vector<Kernel::Point_2> flat;
     for (const std::uint32_t v : loop)
       flat.emplace_back(points_[v][(axis + 1) % 3], points_[v][(axis + 2) % 3]);

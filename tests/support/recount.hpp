@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -30,6 +31,7 @@ class Recount {
     read(soup, weld);
     count_faces();
     count_edges();
+    count_t_junctions();
     count_vertices(soup);
     count_patches();
   }
@@ -132,9 +134,93 @@ class Recount {
       Loop sorted = loop;
       std::sort(sorted.begin(), sorted.end());
       if (!loop.empty()) add("duplicate-face", copies[sorted]++ > 0);
-      if (!degenerate && is_finite(loop)) add("non-planar-face", !are_coplanar(loop));
+      if (degenerate || !is_finite(loop)) continue;
+      add("non-planar-face", !are_coplanar(loop));
+      add("self-crossing-face", loop.size() > 3 && crosses_itself(loop));
+      add("sliver-face", !(loop.size() > 3 && crosses_itself(loop)) && is_sliver(loop));
     }
     degenerate_.resize(loops_.size());
+  }
+
+  // Seen along the axis of the largest component of the area vector, and along those that show a sixteenth of the box.
+  [[nodiscard]] bool crosses_itself(const Loop& loop) const {
+    const Point n = area(loop);
+    const std::array<Integer, 3> shown{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+    if (is_zero(n)) return true;
+    Point low = points_[loop[0]], high = low;
+    for (const std::uint32_t v : loop) {
+      const Point& p = points_[v];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const Point e{high.x - low.x, high.y - low.y, high.z - low.z};
+    const Integer box = std::max({e.x * e.y, e.y * e.z, e.z * e.x});
+    const auto largest = std::max_element(shown.begin(), shown.end()) - shown.begin();
+    if (!crosses_itself(loop, static_cast<int>(largest))) return false;
+    for (int axis = 0; axis < 3; ++axis)
+      if (axis != largest && 8 * shown[axis] > box && !crosses_itself(loop, axis)) return false;
+    return true;
+  }
+  // All pairs of edges.
+  [[nodiscard]] bool crosses_itself(const Loop& loop, int axis) const {
+    const auto flat = [&](std::uint32_t v) {
+      const Point& p = points_[v];
+      return axis == 0 ? Point{p.y, p.z, 0} : axis == 1 ? Point{p.z, p.x, 0} : Point{p.x, p.y, 0};
+    };
+    const auto turn = [](const Point& a, const Point& b, const Point& c) {
+      const Integer t = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      return t > 0 ? 1 : t < 0 ? -1 : 0;
+    };
+    const auto is_between = [](const Point& a, const Point& b, const Point& c) {  // on a line
+      return std::min(a.x, b.x) <= c.x && c.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= c.y && c.y <= std::max(a.y, b.y);
+    };
+    const std::size_t size = loop.size();
+    for (std::size_t i = 0; i < size; ++i) {
+      const Point a = flat(loop[i]), b = flat(loop[(i + 1) % size]);
+      for (std::size_t j = i + 1; j < size; ++j) {
+        const Point c = flat(loop[j]), d = flat(loop[(j + 1) % size]);
+        if (j == i + 1 || (i == 0 && j == size - 1)) {
+          const Point &before = j == i + 1 ? a : c, &tip = j == i + 1 ? b : a, &after = j == i + 1 ? d : b;
+          if (turn(before, tip, after) == 0 && (is_between(before, tip, after) || is_between(tip, after, before))) return true;
+          continue;
+        }
+        const int abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
+        if (abc * abd < 0 && cda * cdb < 0) return true;
+        if ((abc == 0 && is_between(a, b, c)) || (abd == 0 && is_between(a, b, d)) || (cda == 0 && is_between(c, d, a)) ||
+            (cdb == 0 && is_between(c, d, b)))
+          return true;
+      }
+    }
+    return false;
+  }
+  [[nodiscard]] bool is_sliver(const Loop& loop) const {
+    const Point n = area(loop);
+    const double twice_area = std::sqrt(static_cast<double>(dot(n, n)));
+    double longest = 0, outline = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Point e = minus(loop[(i + 1) % loop.size()], loop[i]);
+      const double edge = std::sqrt(static_cast<double>(dot(e, e)));
+      longest = std::max(longest, edge);
+      outline += edge;
+    }
+    return loop.size() == 3 ? twice_area / longest < 1e-3 * longest : twice_area / outline < 1e-3 * (outline / 2);
+  }
+
+  // Exactly inside: among small integers a vertex near an edge but not on it is far away.
+  void count_t_junctions() {
+    for (std::uint32_t v = 0; v < points_.size(); ++v) {
+      bool has_face = false, is_inside = false;
+      for (std::size_t f = 0; f < loops_.size(); ++f)
+        has_face = has_face || (sound_[f] && std::find(loops_[f].begin(), loops_[f].end(), v) != loops_[f].end());
+      for (const auto& [edge, uses] : edges_) {
+        if (uses.size() != 1 || !is_finite({v, edge.first, edge.second})) continue;
+        const Loop& loop = loops_[uses[0].face];
+        const Point e = minus(edge.second, edge.first), a = minus(v, edge.first), b = minus(v, edge.second);
+        is_inside = is_inside || (std::find(loop.begin(), loop.end(), v) == loop.end() && is_zero(cross(e, a)) &&
+                                  dot(e, a) > 0 && dot(e, b) < 0);
+      }
+      add("t-junction", has_face && is_inside);
+    }
   }
 
   void count_edges() {

@@ -37,10 +37,10 @@ TEST_CASE("the catalogue names every rule once, with texts, and find_rule finds 
   }
   for (const char* name : {"self-intersection", "t-junction", "sliver-face", "unreadable"})
     CHECK(names.count(name) == 1);
-  CHECK(names.size() == 19);
+  CHECK(names.size() == 20);
   CHECK(find_rule("no-such-rule") == nullptr);
   CHECK(find_rule("") == nullptr);
-  for (const char* name : {"index-out-of-range", "non-manifold-edge", "not-orientable", "folded-edge"}) {
+  for (const char* name : {"index-out-of-range", "non-manifold-edge", "not-orientable", "folded-edge", "self-crossing-face"}) {
     CHECK_FALSE(find_rule(name)->can_be_allowed);
   }
   CHECK(find_rule("inside-out")->can_be_allowed);
