@@ -68,12 +68,13 @@ TEST_CASE("what the child answers comes back; what it does otherwise stays in it
 }
 
 TEST_CASE("a child that wants too much memory is refused it") {
-  if (!guards_memory()) return;
   const ChildResult result = run_guarded(kLimits, [](ChildAnswer& answer) {
     std::vector<char> much(std::size_t{16} << 30, 'x');
     say(answer, std::string(1, much[much.size() / 2]));
   });
-  CHECK(result.trouble() == "took more than the 64 MiB of memory that a file of this size is given");
+  const bool tells = tells_of_memory();
+  CHECK(result.trouble() ==
+        (tells ? "took more than the 64 MiB of memory that a file of this size is given" : "ended without an answer"));
   const ChildResult bit_by_bit = run_guarded(kLimits, [](ChildAnswer& answer) {
     std::vector<std::string> pieces;
     for (;;)

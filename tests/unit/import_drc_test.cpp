@@ -91,7 +91,6 @@ TEST_CASE("forged counts end quickly, with the limit in the message") {
   for (const char* name : {"unreadable-half-billion-faces.drc", "unreadable-half-billion-faces-valence.drc",
                            "unreadable-billion-sequential-faces.drc"}) {
     INFO(name);
-    if (!guards_memory()) continue;
     const auto start = std::chrono::steady_clock::now();
     const Result<PolygonSoup> soup = import_mesh(testdata() / "meshes" / "bad" / name);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -99,7 +98,7 @@ TEST_CASE("forged counts end quickly, with the limit in the message") {
     CHECK(soup.error().exit_code == 3);
     CHECK(soup.error().rule == "unreadable");
     CHECK(took.count() < 5);
-    if (std::string(name).find("half") == std::string::npos) continue;
+    if (!tells_of_memory() || std::string(name).find("half") == std::string::npos) continue;
     CHECK(soup.error().message.ends_with(
         ": decoding its Draco data took more than the 256 MiB of memory that a file of this size is given; the file is damaged "
         "or forged: compress the mesh again"));

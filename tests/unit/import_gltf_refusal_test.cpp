@@ -10,17 +10,24 @@ using namespace fdcg::test;
 
 namespace {
 
-// The refusal of the square's document with the value at `pointer` changed, without the name of the file.
+// Without the name of the file, and without the remedy that is the same for all.
+std::string gist(const std::string& message) {
+  const std::string remedy = "; correct the file or export it again";
+  const std::string gist = message.substr(6);
+  return gist.ends_with(remedy) ? gist.substr(0, gist.size() - remedy.size()) : gist;
+}
+
+// The gist of the refusal of the square's document with the value at `pointer` changed.
 std::string with(const std::string& pointer, const Json& value) {
   GltfScene scene = square();
   Json whole = Json::parse(scene.text());
   whole[Json::json_pointer(pointer)] = value;
-  return refusal(whole.dump()).substr(6);
+  return gist(refusal(whole.dump()));
 }
 std::string without(const std::string& pointer, const std::string& key) {
   Json whole = Json::parse(square().text());
   whole.at(Json::json_pointer(pointer)).erase(key);
-  return refusal(whole.dump(), Format::gltf).substr(6);
+  return gist(refusal(whole.dump(), Format::gltf));
 }
 
 // A folder for one test, removed after it.
@@ -66,7 +73,8 @@ TEST_CASE("what is wrong in the JSON is refused by its path") {
         "nodes[0].rotation: is no rotation: its length is not that of a unit quaternion");
   CHECK(with("/meshes/0/primitives", Json::object()) == "meshes[0].primitives: is not an array");
   CHECK(without("/meshes/0/primitives/0", "attributes") == "meshes[0].primitives[0]: has no 'attributes', which it needs");
-  CHECK(with("/meshes/0/primitives/0/mode", 7) == "meshes[0].primitives[0].mode: is 7; the modes are 0 (points) to 6 (fan)");
+  CHECK(with("/meshes/0/primitives/0/mode", 7) ==
+        "meshes[0].primitives[0].mode: is 7; use one of the modes, 0 (points) to 6 (fan)");
   CHECK(with("/meshes/0/primitives/0/attributes/POSITION", 7) ==
         "meshes[0].primitives[0].attributes.POSITION: is 7, but the file has 2 accessors");
   CHECK(with("/meshes/0/primitives/0/attributes/POSITION", 1) ==
@@ -126,7 +134,7 @@ TEST_CASE("JSON that is broken, cut short or nested without end is refused by it
   CHECK(refusal("{\"asset\":" + std::string(200, '[')) ==
         "mesh: the JSON is nested deeper than 128 levels; the file is damaged or forged");
   CHECK(refusal("{\"asset\":1e999}") == "mesh: the JSON has a number out of range; export the file again");
-  CHECK(refusal("[]", Format::gltf) == "mesh: the JSON: is not an object");
+  CHECK(refusal("[]", Format::gltf) == "mesh: the JSON: is not an object; correct the file or export it again");
 }
 
 TEST_CASE("a GLB is refused where its lengths, its version or its first chunk are wrong") {
