@@ -209,6 +209,7 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   how.max_elements = options.max_elements;
   how.precision = options.precision;
   how.jobs = jobs;
+  if (!options.self_intersections) how.severities["self-intersection"] = std::nullopt;
   compiled.report = check(soup, mesh, topology, states, how);
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
