@@ -222,7 +222,7 @@ Examples:
 Exit codes: 0 the result has no error; 1 errors are left (the mesh is written all the same, without --strict).
 What cannot be repaired surely is left, and said.)");
   const auto arguments = std::make_shared<RepairArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL; - is standard input")
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco; - is standard input")
       ->required()
       ->type_name("MESH");
   command->add_option("-o,--output", arguments->output, "The repaired mesh; - is standard output")->type_name("OUT");
