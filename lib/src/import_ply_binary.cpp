@@ -10,7 +10,6 @@
 #include <string>
 
 #include "import_ply.hpp"
-#include "large_pages.hpp"
 
 namespace fdcg::bake::ply {
 namespace {
@@ -96,7 +95,7 @@ class BinaryBody : SoupReader {
                   std::to_string(possible) + "; fetch or export it again");
     }
     if (element.kind == Kind::vertex) {
-      reserve_large(soup_.points, static_cast<std::size_t>(element.count));
+      soup_.points.reserve(static_cast<std::size_t>(element.count));
       if (!element.has_lists()) return read_fixed_vertices(element);
     } else if (!element.has_lists()) {
       p_ += element.count * row_bytes;
@@ -189,8 +188,8 @@ class BinaryBody : SoupReader {
 
   bool read_faces(const ElementKind& element) {
     const auto rows = static_cast<std::size_t>(element.count);
-    reserve_large(soup_.face_first, soup_.face_first.size() + rows);
-    reserve_large(soup_.corners, soup_.corners.size() + std::min(rows * 3, left()));
+    soup_.face_first.reserve(soup_.face_first.size() + rows);
+    soup_.corners.reserve(soup_.corners.size() + std::min(rows * 3, left()));
     const TriangleRow triangle = triangle_row(element);
     for (std::uint64_t row = 0; row < element.count;) {
       std::size_t taken = 0;

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <limits>
 
-#include "large_pages.hpp"
 #include "parallel.hpp"
 
 namespace fdcg::bake {
@@ -100,7 +99,6 @@ std::vector<FaceState> face_states(const Mesh& mesh, unsigned jobs) {
 
 Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, unsigned jobs) {
   Topology topology;
-  reserve_large(topology.twin, mesh.corners.size());
   topology.twin.assign(mesh.corners.size(), Topology::kSkipped);
   if (!all_triangles(mesh)) {
     topology.face_of.resize(mesh.corners.size());
@@ -132,9 +130,7 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, 
     entry = sum;
     sum += count;
   }
-  std::vector<std::uint64_t> keys;
-  reserve_large(keys, sum);
-  keys.resize(sum);
+  std::vector<std::uint64_t> keys(sum);
   for_each_range([&](std::uint32_t low, std::uint32_t high) {
     std::uint32_t begin = first[low];
     for_each_halfedge(mesh, states, [&](std::uint32_t slot, std::uint32_t u, std::uint32_t v) {

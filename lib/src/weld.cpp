@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <limits>
 
-#include "large_pages.hpp"
 #include "parallel.hpp"
 
 namespace fdcg::bake {
@@ -110,7 +109,6 @@ class PointTable {
   [[nodiscard]] std::size_t slot_of(std::uint64_t hash) const { return hash >> shift_; }
   void allocate(std::size_t expected) {
     const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(64, 2 * expected + 2));
-    reserve_large(slots_, capacity);
     slots_.assign(capacity, kNone);
     mask_ = capacity - 1;
     shift_ = 64 - std::countr_zero(capacity);
@@ -262,8 +260,8 @@ Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision,
   // An STL file repeats each vertex about six times; elsewhere few are repeated.
   const std::size_t expected = soup.format == Format::stl ? local.size() / 5 : local.size();
   Welder out{mesh, std::vector<std::uint32_t>(local.size())};
-  reserve_large(mesh.points, expected);
-  reserve_large(mesh.source_point, expected);
+  mesh.points.reserve(expected);
+  mesh.source_point.reserve(expected);
   if (weld.kind == Weld::Kind::none) {
     weld_none(local, out);
   } else if (weld.kind == Weld::Kind::distance && weld.distance > 0) {
@@ -273,7 +271,6 @@ Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision,
   }
 
   mesh.face_first = soup.face_first;
-  reserve_large(mesh.corners, soup.corners.size());
   mesh.corners.resize(soup.corners.size());
   constexpr std::size_t kCornersAtOnce = 65'536;
   parallel_for(jobs, soup.corners.size(), kCornersAtOnce, [&](std::size_t begin, std::size_t end) {
