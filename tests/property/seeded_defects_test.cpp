@@ -105,7 +105,6 @@ void check_file(const SeededMesh& seeded, FileKind kind, bool welds, bool commen
   ValidateOptions options;
   options.max_elements = kAllElements;
   options.weld.kind = welds ? Weld::Kind::exact : Weld::Kind::none;
-  options.severities["self-intersection"] = std::nullopt;  // what a poked vertex pierces is not predicted in every case yet
   const Report report = validate(*soup, options);
   check_findings(report, seeded.findings);
   CHECK(report.faces == seeded.soup.face_count());
