@@ -11,7 +11,8 @@ namespace fdcg::bake {
 namespace {
 
 constexpr std::size_t kFacesAtOnce = 16'384;
-constexpr std::size_t kMostPasses = 4;  // more threads would read more than they save
+constexpr std::size_t kWorthThreads = 100'000;  // corners, some milliseconds; a thread costs a tenth of one
+constexpr std::size_t kMostPasses = 4;          // more threads would read more than they save
 
 bool all_triangles(const Mesh& mesh) {
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -110,7 +111,8 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, 
   // A counting sort by the smaller vertex. Each thread has a range of vertices to itself and passes over all the faces: reading
   // in order costs little beside writing wherever the vertices are.
   const std::size_t vertices = mesh.points.size();
-  const std::size_t ranges = std::min<std::size_t>(jobs, kMostPasses), width = vertices / ranges + 1;
+  const bool is_small = mesh.corners.size() < kWorthThreads;
+  const std::size_t ranges = is_small ? 1 : std::min<std::size_t>(jobs, kMostPasses), width = vertices / ranges + 1;
   std::vector<std::uint32_t> first(vertices + 1, 0);  // where the bucket of each vertex starts; later where it ends
   const auto for_each_range = [&](auto work) {
     parallel_for(jobs, ranges, 1, [&](std::size_t range, std::size_t) {

@@ -184,7 +184,8 @@ void find_first_equal(const LocalPoints& local, std::size_t expected, std::size_
 }
 
 void weld_exact(const LocalPoints& local, std::size_t expected, unsigned jobs, Welder& out) {
-  const std::size_t parts = std::min<std::size_t>(jobs, kMostParts);
+  constexpr std::size_t kWorthThreads = 50'000;  // points, some milliseconds; a thread costs a tenth of one
+  const std::size_t parts = local.size() < kWorthThreads ? 1 : std::min<std::size_t>(jobs, kMostParts);
   parallel_for(jobs, parts, 1,
                [&](std::size_t part, std::size_t) { find_first_equal(local, expected, part, parts, out.vertex_of); });
   for (std::uint32_t source = 0; source < local.size(); ++source) {
