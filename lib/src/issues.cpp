@@ -56,7 +56,7 @@ const std::vector<Rule>& rules() {
        "them.",
        true},
       {"self-intersection", warning, "pairs of faces that meet other than in a shared vertex or edge",
-       "Inside the overlap the god-object follows one sheet and ignores the other.",
+       "Inside the overlap the god-object follows one sheet and ignores the other; where faces only touch it may slip between.",
        "Unite the overlapping parts in the modelling program.", true},
       {"non-planar-face", warning, "polygons with corners off their plane by more than the rounding of the file explains",
        "A node of the graph is one plane: compile cuts such a polygon into triangles, and the cut can be felt.",

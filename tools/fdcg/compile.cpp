@@ -280,6 +280,8 @@ The same mesh and options give the same bytes.)");
   add_unit_options(*command, arguments);
   add_graph_options(*command, arguments);
   add_weld_option(*command, arguments->options.weld);
+  command->add_flag("--self-intersections", arguments->options.self_intersections,
+                    "Also look for faces that cross or touch others, and report them as warnings");
   command->add_flag("--orient", arguments->options.orient, "Make the winding consistent and outward, and say what was turned");
   add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
   command->add_option("--depfile", arguments->depfile, "Write the dependency for Make and Ninja")->type_name("FILE");
