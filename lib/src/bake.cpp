@@ -200,8 +200,8 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   Compiled compiled;
   stage("weld", 0);
   Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
-  const std::vector<FaceState> states = face_states(mesh);
-  Topology topology = pair_halfedges(mesh, states);
+  const std::vector<FaceState> states = face_states(mesh, jobs);
+  Topology topology = pair_halfedges(mesh, states, jobs);
   if (options.orient) compiled.flipped_faces = orient(mesh, topology, states).size();
   stage("check", 0.2);
   CheckOptions how;

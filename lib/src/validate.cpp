@@ -101,7 +101,7 @@ void Checker::run_group(Group group) {
 }
 
 std::vector<Issue> Checker::run() {
-  subject_.odd = odd_edges(subject_.mesh, subject_.topology);
+  subject_.odd = odd_edges(subject_.mesh, subject_.topology, options_.jobs);
   constexpr Group kGroups[] = {Group::patches, Group::polygons, Group::duplicates};  // these take longest and so come first
   std::vector<std::size_t> single;
   for (std::size_t row = 0; row < std::size(kRows); ++row) {
@@ -133,7 +133,7 @@ std::uint64_t count_kept(const Subject& subject) {
 
 Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology, const std::vector<FaceState>& states,
              const CheckOptions& options) {
-  FaceGeometry geometry(mesh, states);
+  FaceGeometry geometry(mesh, states, options.jobs);
   Subject subject{soup, mesh, topology, states, options.precision, options.jobs, options.progress, geometry};
   std::vector<Issue> issues = Checker(subject, options).run();
   Report report;
@@ -159,8 +159,8 @@ Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology
 Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
   const unsigned jobs = resolve_jobs(options.jobs);
   const Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
-  const std::vector<FaceState> states = face_states(mesh);
-  const Topology topology = pair_halfedges(mesh, states);
+  const std::vector<FaceState> states = face_states(mesh, jobs);
+  const Topology topology = pair_halfedges(mesh, states, jobs);
   CheckOptions how;
   how.allow = options.allow;
   how.severities = options.severities;

@@ -8,6 +8,7 @@
 #include "../common/terminal.hpp"
 #include "command.hpp"
 #include "fdcg/bake.hpp"
+#include "mesh_input.hpp"
 #include "mesh_options.hpp"
 
 namespace fdcg::tools {
@@ -22,7 +23,7 @@ struct RepairArguments {
   std::string mesh;
   std::string output;
   std::string format;
-  std::string input_format;
+  std::optional<bake::Format> input_format;
   std::string report;
   std::optional<bake::Weld> weld;
   bake::RepairOptions options;
@@ -81,22 +82,6 @@ int check(RepairArguments& arguments) {
     if (is_same_file(arguments.mesh, *path)) return fail(kUsage, "'" + *path + "' would overwrite the mesh itself");
   }
   return kClean;
-}
-
-std::string read_standard_input() {
-  std::string bytes;
-  char block[1 << 16];
-  for (std::size_t n = 0; (n = std::fread(block, 1, sizeof block, stdin)) > 0;)
-    bytes.append(block, n);
-  return bytes;
-}
-
-bake::Result<bake::PolygonSoup> import(const RepairArguments& arguments, const bake::Progress& progress) {
-  bake::ImportOptions options;
-  options.progress = progress;
-  options.format = format_named(arguments.input_format);
-  if (arguments.mesh != "-") return bake::import_mesh(arguments.mesh, options);
-  return bake::import_memory(read_standard_input(), "-", options);
 }
 
 void append_elements(std::string& text, const std::vector<bake::Element>& elements, std::uint64_t total) {
@@ -161,7 +146,7 @@ int run_repair(RepairArguments& arguments) {
 
   ProgressBar bar(!arguments.quiet);
   arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
-  const auto soup = import(arguments, arguments.options.progress);
+  const auto soup = import_input(arguments.mesh, {arguments.input_format, arguments.options.progress});
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
   auto repaired = bake::repair(*soup, arguments.options);
@@ -238,7 +223,7 @@ Examples:
 Exit codes: 0 the result has no error; 1 errors are left (the mesh is written all the same, without --strict).
 What cannot be repaired surely is left, and said.)");
   const auto arguments = std::make_shared<RepairArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL; - is standard input")
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB, Draco; - is standard input")
       ->required()
       ->type_name("MESH");
   command->add_option("-o,--output", arguments->output, "The repaired mesh; - is standard output")->type_name("OUT");
@@ -250,10 +235,7 @@ What cannot be repaired surely is left, and said.)");
   };
   command->add_option_function<std::string>("--format", choose("--format", arguments->format), "Of OUT; default: by its ending")
       ->type_name("off|obj|ply|stl");
-  command
-      ->add_option_function<std::string>("--input-format", choose("--input-format", arguments->input_format),
-                                         "Of MESH; default: by its content")
-      ->type_name("off|obj|ply|stl");
+  add_input_format_option(*command, arguments->input_format);
   command->add_flag("--ascii", arguments->ascii, "PLY and STL as text");
   add_step_options(*command, arguments);
   command->add_option("--report", arguments->report, "Write the account as JSON to FILE")->type_name("FILE");
