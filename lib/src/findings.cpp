@@ -105,6 +105,7 @@ void Findings::in_edge(VertexId v, HalfedgeId h) {
   Element& element = issue_.elements.back();
   const VertexId p = subject_.start_of(h), q = subject_.end_of(h);
   element.edges.push_back({subject_.mesh.source_point[+p], subject_.mesh.source_point[+q]});
+  element.line.reset();  // elements that name faces give the line of the first
   add_face(element, subject_.topology.face(h));
   Fingerprint fingerprint(rule_.name);
   for (const VertexId vertex : {v, p, q})

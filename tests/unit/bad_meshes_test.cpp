@@ -96,5 +96,5 @@ TEST_CASE("a T-junction names the vertex, the edge and its face") {
   CHECK(element.edges == std::vector<std::array<std::uint32_t, 2>>{{0, 1}});
   CHECK(element.faces == std::vector<std::uint32_t>{0});
   CHECK(element.point == Vec3{1, 0, 0});
-  CHECK(element.line == 8U);  // the vertex's
+  CHECK(element.line == 10U);  // of the edge's face
 }
