@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <span>
 #include <string>
@@ -32,8 +33,9 @@ namespace {
 
 // Why the options make no sense; empty where they do.
 std::string contradiction_in(const CompileOptions& options) {
-  if (!(options.metres_per_unit > 0) || !std::isfinite(options.metres_per_unit))
-    return "the scale is " + std::to_string(options.metres_per_unit) + " metres per unit; it must be above 0 and finite";
+  constexpr double kLargestScale = 1e30;  // what the runtime takes
+  if (!(options.metres_per_unit >= 1 / kLargestScale && options.metres_per_unit <= kLargestScale))
+    return "the scale is " + std::to_string(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
   if (options.coplanar.kind == Coplanar::Kind::angle &&
       !(options.coplanar.angle_rad >= 0 && options.coplanar.angle_rad < std::numbers::pi / 2))
     return "the coplanar angle is " + std::to_string(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
@@ -107,6 +109,32 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   return input;
 }
 
+std::string said(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+// Why no file can hold the object; empty where one can.
+std::string out_of_range(const Graph& graph, const SerialiseInput& input) {
+  const bool is_f32 = input.precision == Precision::f32;
+  const double largest = is_f32 ? FDCG_LARGEST_EXTENT_F32 : FDCG_LARGEST_EXTENT_F64;
+  constexpr double kLargestOrigin = 1e100;  // what the runtime takes
+  double extent = 0;
+  for (const Vec3& point : graph.points)
+    extent = std::max(extent, largest_component(point));
+  if (!(extent >= 1 / largest && extent <= largest && input.quantum <= largest)) {
+    return "the object reaches " + said(extent) + " from its middle, in coordinates known to within " + said(input.quantum) +
+           "; the format holds " + said(1 / largest) + " to " + said(largest) + ": scale the mesh" +
+           (is_f32 ? ", or compile it with --precision f64" : "");
+  }
+  if (!(largest_component(input.origin) <= kLargestOrigin)) {
+    return "the object lies " + said(largest_component(input.origin)) + " from the origin, the format holds up to " +
+           said(kLargestOrigin) + ": move the mesh";
+  }
+  return {};
+}
+
 // Memory of the result's own, in pages as large as can be had.
 std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t count) {
   bytes.reserve(count);
@@ -142,6 +170,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
   const Graph graph =
       order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
+  if (std::string reason = out_of_range(graph, input); !reason.empty()) return Failure{3, soup.name + ": " + reason};
   if (options.allocate) return serialise(graph, input, options.allocate);
   return serialise(graph, input, [&](std::size_t count) { return allocate_in(compiled.bytes, count); });
 }

@@ -62,8 +62,8 @@ bool is_flat_within(double reach, const Wedge& w, double six_volumes) {
 
 class Classifier {
  public:
-  Classifier(const Mesh& mesh, const Topology& topology, const Quantum& quantum, const Coplanar& coplanar, unsigned jobs)
-      : mesh_(mesh), topology_(topology), quantum_(quantum), coplanar_(coplanar), cos_angle_(std::cos(coplanar.angle_rad)) {
+  Classifier(const Mesh& mesh, const Quantum& quantum, const Coplanar& coplanar, unsigned jobs)
+      : mesh_(mesh), quantum_(quantum), coplanar_(coplanar), cos_angle_(std::cos(coplanar.angle_rad)) {
     const std::size_t ranges = (mesh.points.size() + kGrain - 1) / kGrain;
     std::vector<double> largest(ranges, 0);
     parallel_for(jobs, mesh.points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -112,7 +112,6 @@ class Classifier {
   }
 
   const Mesh& mesh_;
-  const Topology& topology_;
   const Quantum& quantum_;
   const Coplanar& coplanar_;
   double cos_angle_;
@@ -124,7 +123,7 @@ class Classifier {
 std::vector<EdgeClass> classify_edges(const Mesh& mesh, const Topology& topology, const Quantum& quantum,
                                       const Coplanar& coplanar, unsigned jobs) {
   std::vector<EdgeClass> classes(mesh.corners.size());
-  const Classifier classify(mesh, topology, quantum, coplanar, jobs);
+  const Classifier classify(mesh, quantum, coplanar, jobs);
   parallel_for(jobs, mesh.corners.size(), 3 * kGrain, [&](std::size_t begin, std::size_t end) {
     for (auto slot = static_cast<std::uint32_t>(begin); slot < end; ++slot) {
       const HalfedgeId twin = topology.twin[slot];

@@ -106,7 +106,7 @@ class Parser {
     const std::optional<Value> mode = item.find("mode");
     constexpr std::uint64_t kModes = 7;
     if (mode && mode->whole() >= kModes)
-      mode->fail("is " + std::to_string(mode->whole()) + "; the modes are 0 (points) to 6 (fan)");
+      mode->fail("is " + std::to_string(mode->whole()) + "; use one of the modes, 0 (points) to 6 (fan)");
     if (mode) primitive.mode = static_cast<Mode>(mode->whole());
     primitive.has_targets = item.find("targets").has_value();
     if (const std::optional<Value> positions = attributes.find("POSITION")) {

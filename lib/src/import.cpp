@@ -45,6 +45,7 @@ constexpr ForeignKind kForeignKinds[] = {
     {"PK\x03\x04", "is a ZIP archive (3MF files are, too); unpack the mesh first, or export it in another format"},
     {"Kaydara FBX Binary", "is FBX, which is not read; export it as glTF, OBJ or PLY"},
     {"BLENDER", "is a Blender file, which is not read; export it as glTF, OBJ or PLY"},
+    {"version https://git-lfs.github.com/spec/", "is a Git LFS pointer and not the mesh itself; fetch it with 'git lfs pull'"},
     {"ISO-10303-21;", "is a STEP file, which holds surfaces and no mesh; export it as STL or OBJ"},
     {"<", "is XML (or HTML), in which no format that is read is written; export it as glTF, OBJ or PLY"},
 };
@@ -123,7 +124,9 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);
   if (!format) format = format_by_ending(name);
-  if (!format) return refuse(name, "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read");
+  if (!format)
+    return refuse(name,
+                  "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read: export it as one of them");
 
   Sha256Task hash(bytes);
   Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file});
@@ -146,7 +149,8 @@ Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& na
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
-  return refuse(name, "needs more memory than there is (" + std::to_string(bytes.size()) + " bytes of file)");
+  return refuse(
+      name, "needs more memory than there is (" + std::to_string(bytes.size()) + " bytes of file); cut the mesh into parts");
 }
 
 }  // namespace

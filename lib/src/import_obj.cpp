@@ -124,7 +124,7 @@ class ObjReader : TextSoupReader {
     const std::uint32_t line = scan_.line();
     std::array<double, 3> xyz{};
     for (double& value : xyz) {
-      if (scan_.line_done()) return fail_at_line(line, "a vertex needs three coordinates; the line ends early");
+      if (scan_.line_done()) return fail_at_line(line, "a vertex needs three coordinates, but the line ends early");
       if (!read_coordinate(value)) return fail_here("the vertex coordinate " + not_a_number());
     }
     if (soup_.points.size() >= kMaxPoints) return fail_here("more than 4,294,967,040 vertices; cut the mesh into parts");

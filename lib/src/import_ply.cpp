@@ -202,7 +202,9 @@ std::string row_name(const ElementKind& element, std::uint64_t row) {
 }
 
 Result<Header> read_header(const MeshText& input) {
-  if (!input.bytes.starts_with("ply") && !input.bytes.starts_with("\xEF\xBB\xBFply"))
+  std::string_view magic = input.bytes;
+  if (magic.starts_with("\xEF\xBB\xBF")) magic.remove_prefix(3);
+  if (!magic.starts_with("ply") || magic.find_first_of(" \t\r\n") != 3)
     return refuse(input.name, "does not start with 'ply'; is it another format?");
   const HeaderExtent extent = find_header(input.bytes);
   if (extent.bytes == 0)

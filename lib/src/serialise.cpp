@@ -22,7 +22,6 @@ namespace fdcg::bake {
 namespace {
 
 constexpr std::size_t kGrain = 1u << 12;
-constexpr std::size_t kZeroGrain = 1u << 20;
 
 struct Records64 {
   using Real = double;

@@ -9,6 +9,7 @@ namespace fdcg::bake {
 
 Failure refuse(const std::string& name, const std::string& what, const char* rule) {
   std::string message = name + ": " + what;
+  if (what.find(';') == std::string::npos) message += "; correct the file or export it again";
   for (char& c : message) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = '?';
   }

@@ -37,7 +37,8 @@ bool is_gltf_json(std::string_view bytes);   // an object that has an "asset"
 bool is_glb(std::string_view bytes);
 bool has_binary_stl_size(std::string_view bytes);  // 84 + 50 n, with n where the format has it
 
-// `name`: `what`, on one line whatever the name holds.
+// `name`: `what`, on one line whatever the name holds; a remedy stands in `what` after a semicolon, else the usual one is
+// added.
 Failure refuse(const std::string& name, const std::string& what, const char* rule = "unreadable");
 
 // A name out of a file, for reports: control characters as '?', cut after some 48 bytes between two characters.

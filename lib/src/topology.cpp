@@ -34,6 +34,7 @@ void sort_bucket(std::uint64_t* begin, std::uint64_t* end) {
     std::sort(begin, end);
     return;
   }
+  if (begin == end) return;  // of no edge; null where there are none at all
   for (std::uint64_t* i = begin + 1; i < end; ++i) {
     const std::uint64_t key = *i;
     std::uint64_t* hole = i;

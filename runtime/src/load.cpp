@@ -34,7 +34,7 @@ bool in_range(double value, double low, double high) {
 // Beyond this, products of three coordinates would leave the range of a double (f64) or a float (f32); below its inverse the
 // squares of what rounding leaves of them would be lost.
 double largest_extent(const fdcg_header& header) {
-  return header.real_bytes == 8 ? 1e60 : 1e9;
+  return header.real_bytes == 8 ? FDCG_LARGEST_EXTENT_F64 : FDCG_LARGEST_EXTENT_F32;
 }
 
 fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {

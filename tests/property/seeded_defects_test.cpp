@@ -59,11 +59,7 @@ void check_element(const PolygonSoup& soup, const MeshFile& file, const Issue& i
     CHECK(is_near(*element.point, soup.points[element.vertices[0]]));
     if (!file.point_line.empty()) CHECK(element.line == file.point_line[element.vertices[0]]);
   }
-  if (issue.rule == "t-junction") {
-    if (!file.point_line.empty()) CHECK(element.line == file.point_line[element.vertices[0]]);
-  } else if (!element.faces.empty() && !file.face_line.empty()) {
-    CHECK(element.line == file.face_line[element.faces[0]]);
-  }
+  if (!element.faces.empty() && !file.face_line.empty()) CHECK(element.line == file.face_line[element.faces[0]]);
   if (file.face_line.empty()) CHECK_FALSE(element.line.has_value());
   if (is_at_edge && element.edges.size() == 1 && element.vertices.empty() && element.point) {
     const Vec3 &u = soup.points[element.edges[0][0]], &v = soup.points[element.edges[0][1]];

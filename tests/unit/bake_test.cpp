@@ -68,6 +68,33 @@ TEST_CASE("a cube has 6 nodes, 12 convex connections and 8 corners however it is
   }
 }
 
+TEST_CASE("an object too large, too small or too far away for the format is refused, and what is compiled opens") {
+  const auto compiled = [](double size, double away, Precision precision) {
+    CompileOptions options;
+    options.precision = precision;
+    return compile(moved(scaled(cube(), size), {away, 0, 0}), options);
+  };
+  using enum Precision;
+  for (const double size : {1e-59, 1e-9, 1.0, 1e9, 1e59})
+    CHECK(compiled(size, 0, f64));
+  for (const double size : {1e-8, 1.0, 1e9})
+    CHECK(compiled(size, 0, f32));
+  const auto refusal = [&](double size, double away, Precision precision) {
+    const Result<Compiled> result = compiled(size, away, precision);
+    REQUIRE_FALSE(result);
+    CHECK(result.error().exit_code == 3);
+    return result.error().message;
+  };
+  for (const double size : {1e-61, 1e61}) {
+    CHECK(refusal(size, 0, f64).find("the format holds 1e-60 to 1e+60: scale the mesh") != std::string::npos);
+  }
+  for (const double size : {1e-10, 1e10}) {
+    CHECK(refusal(size, 0, f32).find("the format holds 1e-09 to 1e+09: scale the mesh, or compile it with --precision f64") !=
+          std::string::npos);
+  }
+  CHECK(refusal(1e90, 1e103, f64).find("from its middle") != std::string::npos);
+}
+
 TEST_CASE("an L-shaped prism has exactly one concave connection") {
   for (const PolygonSoup& soup : {l_prism(), triangulated(l_prism(), 1), subdivided(l_prism(), 2)}) {
     const WalkedGraph graph = compile_sound(soup);
@@ -193,6 +220,8 @@ TEST_CASE("options that contradict one another fail as wrong usage") {
   };
   CHECK(exit_code([](CompileOptions& o) { o.metres_per_unit = 0; }) == 2);
   CHECK(exit_code([](CompileOptions& o) { o.metres_per_unit = NAN; }) == 2);
+  CHECK(exit_code([](CompileOptions& o) { o.metres_per_unit = 1e31; }) == 2);
+  CHECK(exit_code([](CompileOptions& o) { o.metres_per_unit = 1e-31; }) == 2);
   CHECK(exit_code([](CompileOptions& o) { o.coplanar = {Coplanar::Kind::angle, 2}; }) == 2);
   CHECK(exit_code([](CompileOptions& o) { o.weld = {Weld::Kind::distance, -1}; }) == 2);
   CHECK(exit_code([](CompileOptions& o) { o.without = {"nodes"}; }) == 2);

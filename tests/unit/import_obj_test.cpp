@@ -137,7 +137,8 @@ TEST_CASE("OBJ: faces of fewer than three corners are kept as they are") {
 }
 
 TEST_CASE("OBJ: a refusal names the line and the token") {
-  CHECK(refusal("v 0 0\nf 1 1 1\n") == "mesh: line 1: a vertex needs three coordinates; the line ends early");
+  CHECK(refusal("v 0 0\nf 1 1 1\n") ==
+        "mesh: line 1: a vertex needs three coordinates, but the line ends early; correct the file or export it again");
   CHECK(refusal(kPoints + "v 0,5 1 2\n") ==
         "mesh: line 5: the vertex coordinate '0,5' is not a number; write decimals with a point");
   CHECK(refusal(kPoints + "f 1 2 x\n").find("line 5: the face corner 'x'") != std::string::npos);

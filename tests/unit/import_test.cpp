@@ -54,7 +54,8 @@ TEST_CASE("the ending decides where the content does not") {
   CHECK(import_mesh(folder.write("a.Obj", "end\n" + kObj))->format == Format::obj);
   const Result<PolygonSoup> unknown = import_mesh(folder.write("a.dat", "end\n" + kObj));
   REQUIRE_FALSE(unknown);
-  CHECK(unknown.error().message.ends_with("a.dat: is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read"));
+  CHECK(unknown.error().message.ends_with(
+      "a.dat: is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read: export it as one of them"));
 }
 
 TEST_CASE("a format that the caller names is not doubted") {

@@ -140,3 +140,8 @@ TEST_CASE("a vertex of a hundred thousand faces is paired like any other") {
     CHECK(topology.twin[3 * i + 2] == HalfedgeId{3 * ((i + 1) % kFaces)});
   }
 }
+
+TEST_CASE("faces that are all unsound have no edges to pair") {
+  const Mesh mesh = weld(make_soup({{0, 0, 0}, {1, 0, 0}}, {{0, 1, 7}, {0, 0, 1}, {}}));
+  CHECK(pair_halfedges(mesh).twin == std::vector<HalfedgeId>(6, Topology::kSkipped));
+}

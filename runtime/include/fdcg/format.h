@@ -32,11 +32,13 @@
   "\x89"           \
   "FDCG\r\n\x1a" /* 8 bytes; a text-mode copy or a 7-bit channel breaks it visibly */
 #define FDCG_ALIGNMENT 64u
-#define FDCG_NONE 0xFFFFFFFFu /* "no node here": the far side of an open edge; a dropped source face */
-#define FDCG_LEAF_NODES 4u    /* nodes in one leaf of the hierarchy */
-#define FDCG_MAX_SIDES 65535u /* sides of one node */
-#define FDCG_LEAF_FAN 8u      /* fan entries in one leaf of a corner's tree */
-#define FDCG_BUSY_FAN 32u     /* a corner with more fan entries has a tree */
+#define FDCG_NONE 0xFFFFFFFFu        /* "no node here": the far side of an open edge; a dropped source face */
+#define FDCG_LEAF_NODES 4u           /* nodes in one leaf of the hierarchy */
+#define FDCG_MAX_SIDES 65535u        /* sides of one node */
+#define FDCG_LEAF_FAN 8u             /* fan entries in one leaf of a corner's tree */
+#define FDCG_BUSY_FAN 32u            /* a corner with more fan entries has a tree */
+#define FDCG_LARGEST_EXTENT_F64 1e60 /* of an object; its inverse is the smallest */
+#define FDCG_LARGEST_EXTENT_F32 1e9
 
 #ifdef __cplusplus
 extern "C" {
