@@ -17,7 +17,6 @@
 #include "info.hpp"
 #include "large_pages.hpp"
 #include "merge.hpp"
-#include "orient.hpp"
 #include "parallel.hpp"
 #include "quantum.hpp"
 #include "regions.hpp"
@@ -26,7 +25,6 @@
 #include "triangulate.hpp"
 #include "validate.hpp"
 #include "vec.hpp"
-#include "weld.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -199,20 +197,19 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   };
   Compiled compiled;
   stage("weld", 0);
-  Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
-  const std::vector<FaceState> states = face_states(mesh);
-  Topology topology = pair_halfedges(mesh, states);
-  if (options.orient) compiled.flipped_faces = orient(mesh, topology, states).size();
+  Prepared ready = prepare(soup, options.weld, options.precision, options.orient, jobs);
+  compiled.flipped_faces = ready.flipped_faces;
   stage("check", 0.2);
   CheckOptions how;
   how.allow = options.allow;
+  if (!options.self_intersections) how.severities["self-intersection"] = std::nullopt;
   how.max_elements = options.max_elements;
   how.precision = options.precision;
   how.jobs = jobs;
-  compiled.report = check(soup, mesh, topology, states, how);
+  compiled.report = check(soup, ready.mesh, ready.topology, ready.states, how);
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
-  const auto file = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);
+  const auto file = build(soup, std::move(ready.mesh), std::move(ready.topology), options, jobs, compiled);
   if (!file) return file.error();
   if (options.allocate) compiled.placed = *file;
   stage("graph", 1);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "check_rules.hpp"
+#include "orient.hpp"
 #include "parallel.hpp"
 #include "weld.hpp"
 
@@ -153,11 +154,18 @@ Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology
   return report;
 }
 
+Prepared prepare(const PolygonSoup& soup, const Weld& weld, Precision precision, bool orient, unsigned jobs) {
+  Prepared ready;
+  ready.mesh = weld_points(soup, weld, precision, jobs);
+  ready.states = face_states(ready.mesh);
+  ready.topology = pair_halfedges(ready.mesh, ready.states);
+  if (orient) ready.flipped_faces = bake::orient(ready.mesh, ready.topology, ready.states).size();
+  return ready;
+}
+
 Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
   const unsigned jobs = resolve_jobs(options.jobs);
-  const Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
-  const std::vector<FaceState> states = face_states(mesh);
-  const Topology topology = pair_halfedges(mesh, states);
+  const Prepared ready = prepare(soup, options.weld, options.precision, options.orient, jobs);
   CheckOptions how;
   how.allow = options.allow;
   how.severities = options.severities;
@@ -166,7 +174,7 @@ Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
   how.precision = options.precision;
   how.jobs = jobs;
   how.progress = options.progress;
-  return check(soup, mesh, topology, states, how);
+  return check(soup, ready.mesh, ready.topology, ready.states, how);
 }
 
 }  // namespace fdcg::bake
