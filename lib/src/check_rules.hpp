@@ -32,4 +32,7 @@ void t_junction(const Subject& subject, Findings& out);
 void not_orientable(const Subject& subject, Findings& out);
 void inside_out(const Subject& subject, Findings& out);
 
+// rules_intersections.cpp
+void self_intersection(const Subject& subject, Findings& out);
+
 }  // namespace fdcg::bake::checks

@@ -2,9 +2,9 @@
 #include "edges.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace fdcg::bake {
@@ -40,9 +40,9 @@ std::uint32_t walk_fan(const Mesh& mesh, const Topology& topology, HalfedgeId st
   }
 }
 
-// The fans of one vertex, given the vertices at the far ends of its corners' two edges: corners that share one are joined.
-// `ends` holds (far vertex, corner number).
-std::uint32_t count_fans(std::vector<std::pair<VertexId, std::uint32_t>>& ends) {
+// Numbers the fans of one vertex, given the vertices at the far ends of its corners' two edges: corners that share one are
+// joined. `ends` holds (far vertex, corner number); `corners` are those of the vertex.
+void number_fans(std::vector<std::pair<VertexId, std::uint32_t>>& ends, FanCorner* corners) {
   std::sort(ends.begin(), ends.end());
   std::vector<std::uint32_t> parent(ends.size() / 2);
   std::iota(parent.begin(), parent.end(), 0U);
@@ -51,44 +51,14 @@ std::uint32_t count_fans(std::vector<std::pair<VertexId, std::uint32_t>>& ends) 
       i = parent[i] = parent[parent[i]];
     return i;
   };
-  auto fans = static_cast<std::uint32_t>(parent.size());
   for (std::size_t i = 1; i < ends.size(); ++i) {
     if (ends[i].first != ends[i - 1].first) continue;
     const std::uint32_t a = find(ends[i].second), b = find(ends[i - 1].second);
-    if (a == b) continue;
     parent[std::max(a, b)] = std::min(a, b);
-    --fans;
   }
-  return fans;
-}
-
-// The vertices of `odd` (ascending) with more than one fan, by comparing all edges around each.
-void count_odd_vertices(const Mesh& mesh, const std::vector<FaceState>& states, const std::vector<std::uint32_t>& odd,
-                        std::vector<VertexId>& several) {
-  std::vector<bool> is_odd(mesh.points.size(), false);
-  for (const std::uint32_t v : odd)
-    is_odd[v] = true;
-  std::vector<std::array<std::uint32_t, 3>> entries;  // vertex, slot, face
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    if (states[f] != FaceState::sound) continue;
-    for (std::uint32_t h = mesh.face_first[f]; h < mesh.face_first[f + 1]; ++h) {
-      if (is_odd[+mesh.corners[h]]) entries.push_back({+mesh.corners[h], h, f});
-    }
-  }
-  std::sort(entries.begin(), entries.end());
-  std::vector<std::pair<VertexId, std::uint32_t>> ends;
-  for (std::size_t i = 0; i < entries.size();) {
-    const std::size_t begin = i;
-    ends.clear();
-    for (; i < entries.size() && entries[i][0] == entries[begin][0]; ++i) {
-      const FaceId f{entries[i][2]};
-      const HalfedgeId h{entries[i][1]};
-      const auto corner = static_cast<std::uint32_t>(i - begin);
-      ends.emplace_back(mesh.corners[+next(mesh, f, h)], corner);
-      ends.emplace_back(mesh.corners[+previous(mesh, f, h)], corner);
-    }
-    if (count_fans(ends) > 1) several.push_back(VertexId{entries[begin][0]});
-  }
+  std::uint32_t fans = 0;
+  for (std::uint32_t i = 0; i < parent.size(); ++i)  // the first corner of a fan is its root
+    corners[i].fan = find(i) == i ? fans++ : corners[find(i)].fan;
 }
 
 }  // namespace
@@ -126,21 +96,54 @@ std::vector<VertexId> vertices_of_several_fans(const Mesh& mesh, const Topology&
     }
   }
   std::vector<VertexId> several;
-  std::vector<std::uint32_t> odd;
+  std::vector<VertexId> odd;
   for (std::uint32_t v = 0; v < stars.size(); ++v) {
     if (stars[v].corners < 2) continue;
     const std::uint32_t walked = walk_fan(mesh, topology, HalfedgeId{stars[v].first});
     if (walked == 0) {
-      odd.push_back(v);
+      odd.push_back(VertexId{v});
     } else if (walked < stars[v].corners) {
       several.push_back(VertexId{v});
     }
   }
   if (!odd.empty()) {
-    count_odd_vertices(mesh, states, odd, several);
+    for (const FanCorner& corner : fans_at(mesh, states, odd)) {
+      if (corner.fan > 0 && (several.empty() || several.back() != corner.vertex)) several.push_back(corner.vertex);
+    }
     std::sort(several.begin(), several.end());
   }
   return several;
+}
+
+std::vector<FanCorner> fans_at(const Mesh& mesh, const std::vector<FaceState>& states, const std::vector<VertexId>& vertices) {
+  std::vector<bool> is_asked(mesh.points.size(), false);
+  for (const VertexId v : vertices)
+    is_asked[+v] = true;
+  std::vector<FanCorner> corners;
+  std::vector<FaceId> faces;  // of each, before they are sorted
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (states[f] != FaceState::sound) continue;
+    for (std::uint32_t h = mesh.face_first[f]; h < mesh.face_first[f + 1]; ++h) {
+      if (!is_asked[+mesh.corners[h]]) continue;
+      corners.push_back({mesh.corners[h], HalfedgeId{h}, static_cast<std::uint32_t>(faces.size())});
+      faces.push_back(FaceId{f});
+    }
+  }
+  std::sort(corners.begin(), corners.end(),
+            [](const FanCorner& a, const FanCorner& b) { return std::tie(a.vertex, a.slot) < std::tie(b.vertex, b.slot); });
+  std::vector<std::pair<VertexId, std::uint32_t>> ends;
+  for (std::size_t i = 0; i < corners.size();) {
+    const std::size_t begin = i;
+    ends.clear();
+    for (; i < corners.size() && corners[i].vertex == corners[begin].vertex; ++i) {
+      const FaceId f = faces[corners[i].fan];
+      const auto corner = static_cast<std::uint32_t>(i - begin);
+      ends.emplace_back(mesh.corners[+next(mesh, f, corners[i].slot)], corner);
+      ends.emplace_back(mesh.corners[+previous(mesh, f, corners[i].slot)], corner);
+    }
+    number_fans(ends, corners.data() + begin);
+  }
+  return corners;
 }
 
 }  // namespace fdcg::bake

@@ -23,4 +23,15 @@ struct OddEdge {
 [[nodiscard]] std::vector<VertexId> vertices_of_several_fans(const Mesh& mesh, const Topology& topology,
                                                              const std::vector<FaceState>& states);
 
+// A corner of a sound face at a vertex asked for, and the fan around that vertex which it belongs to.
+struct FanCorner {
+  VertexId vertex;
+  HalfedgeId slot;
+  std::uint32_t fan;  // 0 for that of the vertex's first corner, then in the order of their first corners
+};
+
+// All such corners, by vertex and then by slot. Linear, and k log k for the corners found.
+[[nodiscard]] std::vector<FanCorner> fans_at(const Mesh& mesh, const std::vector<FaceState>& states,
+                                             const std::vector<VertexId>& vertices);
+
 }  // namespace fdcg::bake

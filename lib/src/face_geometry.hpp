@@ -17,6 +17,8 @@ class FaceGeometry {
   // One linear pass: a floating-point filter with a proven bound, exact predicates where it cannot tell.
   FaceGeometry(const Mesh& mesh, const std::vector<FaceState>& states);
 
+  // Every face has three corners, and face f the slots 3 f to 3 f + 2.
+  [[nodiscard]] bool has_triangles_only() const { return frames_.empty(); }
   // All corners are finite. False for faces with an invalid corner.
   [[nodiscard]] bool is_finite(FaceId f) const { return (bits_[+f] & kNotFinite) == 0; }
   // A corner named twice, fewer than three corners, or all corners exactly on one line. Of a face that is not finite only the

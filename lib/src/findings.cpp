@@ -99,6 +99,20 @@ void Findings::at_edge(std::span<const HalfedgeId> halfedges) {
   element->fingerprint = fingerprint.value();
 }
 
+void Findings::at_pair(FaceId a, FaceId b, const Vec3& point) {
+  Element* const element = found();
+  if (element == nullptr) return;
+  const Vec3& origin = subject_.mesh.origin;
+  element->point = Vec3{point.x + origin.x, point.y + origin.y, point.z + origin.z};
+  Fingerprint fingerprint(rule_.name);
+  for (const FaceId f : {a, b}) {
+    add_face(*element, f);
+    for (std::uint32_t h = subject_.mesh.face_first[+f]; h < subject_.mesh.face_first[+f + 1]; ++h)
+      fingerprint.add(subject_.source_point(subject_.mesh.corners[h]));
+  }
+  element->fingerprint = fingerprint.value();
+}
+
 void Findings::in_edge(VertexId v, HalfedgeId h) {
   at_vertex(subject_.mesh.source_point[+v]);
   if (issue_.total > max_elements_) return;

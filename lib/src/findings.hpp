@@ -27,6 +27,7 @@ struct Subject {
   const std::vector<FaceState>& states;
   Precision precision;
   unsigned jobs;                        // threads for the rules that run alone
+  const Progress& progress;             // for these too
   FaceGeometry& geometry;               // is_flat() and is_fold() keep answers: for the rules of one thread only
   std::vector<OddEdge> odd{};           // odd_edges()
   Patches patches{};                    // find_patches(): for the rules of patches, and afterwards
@@ -48,12 +49,17 @@ class Findings {
   void at_face(FaceId f);
   void at_face(FaceId f, FaceId original);              // a copy, and what it copies
   void at_edge(std::span<const HalfedgeId> halfedges);  // all of one edge, at least one
+  void at_pair(FaceId a, FaceId b, const Vec3& point);  // two faces that meet; the point in the mesh's frame
   void in_edge(VertexId v, HalfedgeId h);               // the vertex, the edge and its face
   void at_patch(std::uint32_t patch);                   // ascending: of Subject::patches
+
+  // Findings beyond those listed.
+  void count_more(std::uint64_t unlisted) { issue_.total += unlisted; }
 
   // In place of the catalogue's phrase and remedy; the total comes first.
   void say(std::string message) { issue_.message = std::move(message); }
   [[nodiscard]] std::uint64_t total() const { return issue_.total; }
+  [[nodiscard]] std::size_t max_elements() const { return max_elements_; }
 
   // The issue as it stands in the report. No findings: no message.
   [[nodiscard]] Issue take() &&;

@@ -29,6 +29,7 @@ constexpr Phrase kPhrases[] = {
     {"inside-out", "closed patch looks inwards", "closed patches look inwards"},
     {"folded-edge", "edge has two faces that lie on one another", "edges have two faces that lie on one another"},
     {"boundary-edge", "edge has one face only", "edges have one face only"},
+    {"self-intersection", "pair of faces meets", "pairs of faces meet"},
     {"non-planar-face", "polygon is not flat", "polygons are not flat"},
     {"t-junction", "vertex lies inside a boundary edge of another face", "vertices lie inside a boundary edge of another face"},
     {"sliver-face", "face is thinner than a thousandth of its length", "faces are thinner than a thousandth of their length"},

@@ -85,6 +85,7 @@ class Marks {
   explicit Marks(const Box& box) : box_(box), is_marked_(std::size_t{kCells} * kCells * kCells, false) {}
 
   void mark(const Segment& s) {
+    if (is_all_marked_) return;
     int pieces = 1;
     for (int k = 0; k < 3; ++k)
       pieces = std::max(pieces, std::abs(cell(component(s.q, k), k) - cell(component(s.p, k), k)) + 1);
@@ -94,7 +95,9 @@ class Marks {
       mark(least(a, b) - Vec3{margin, margin, margin}, most(a, b) + Vec3{margin, margin, margin});
     }
   }
-  [[nodiscard]] bool has(const Vec3& p) const { return is_marked_[index(cell(p.x, 0), cell(p.y, 1), cell(p.z, 2))]; }
+  [[nodiscard]] bool has(const Vec3& p) const {
+    return is_all_marked_ || is_marked_[index(cell(p.x, 0), cell(p.y, 1), cell(p.z, 2))];
+  }
 
  private:
   static constexpr int kCells = 64;  // a quarter of a million bits: they stay in the cache
@@ -110,14 +113,22 @@ class Marks {
   }
   static std::size_t index(int x, int y, int z) { return (static_cast<std::size_t>(z) * kCells + y) * kCells + x; }
   void mark(const Vec3& low, const Vec3& high) {
-    for (int z = cell(low.z, 2); z <= cell(high.z, 2); ++z)
-      for (int y = cell(low.y, 1); y <= cell(high.y, 1); ++y)
-        for (int x = cell(low.x, 0); x <= cell(high.x, 0); ++x)
+    // A piece of a flat part takes a column, one whose reach is a tenth of the part a block: then the grid tells nothing apart
+    // (a small part far from the origin, in floats), and filling it for every edge would take hours.
+    constexpr int kMostCells = 16 * kCells;
+    const int x0 = cell(low.x, 0), x1 = cell(high.x, 0), y0 = cell(low.y, 1), y1 = cell(high.y, 1);
+    const int z0 = cell(low.z, 2), z1 = cell(high.z, 2);
+    is_all_marked_ = is_all_marked_ || (x1 - x0 + 1) * (y1 - y0 + 1) * (z1 - z0 + 1) > kMostCells;
+    if (is_all_marked_) return;
+    for (int z = z0; z <= z1; ++z)
+      for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x)
           is_marked_[index(x, y, z)] = true;
   }
 
   Box box_;
   std::vector<bool> is_marked_;
+  bool is_all_marked_ = false;
 };
 
 // A tree of vertices, each of its nodes with the box around those below. A vertex that was taken is gone.

@@ -22,6 +22,7 @@ enum class Group {
   polygons,    // which polygons are flat: FaceGeometry keeps that
   duplicates,  // what duplicate_faces() gives
   none,
+  alone,  // has a use for all threads itself
 };
 
 struct Row {
@@ -45,6 +46,7 @@ constexpr Row kRows[] = {
     {"inside-out", Group::patches, checks::inside_out},
     {"folded-edge", Group::polygons, checks::folded_edge},
     {"boundary-edge", Group::none, checks::boundary_edge},
+    {"self-intersection", Group::alone, checks::self_intersection},
     {"non-planar-face", Group::polygons, checks::non_planar_face},
     {"t-junction", Group::none, checks::t_junction},
     {"sliver-face", Group::none, checks::sliver_face},
@@ -113,6 +115,7 @@ std::vector<Issue> Checker::run() {
       run_row(single[task - std::size(kGroups)]);
     }
   });
+  run_group(Group::alone);
   return std::move(issues_);
 }
 
@@ -132,7 +135,7 @@ std::uint64_t count_kept(const Subject& subject) {
 Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology, const std::vector<FaceState>& states,
              const CheckOptions& options) {
   FaceGeometry geometry(mesh, states);
-  Subject subject{soup, mesh, topology, states, options.precision, options.jobs, geometry};
+  Subject subject{soup, mesh, topology, states, options.precision, options.jobs, options.progress, geometry};
   std::vector<Issue> issues = Checker(subject, options).run();
   Report report;
   report.file = soup.name;

@@ -35,7 +35,7 @@ struct Prepared {
 };
 [[nodiscard]] Prepared prepare(const PolygonSoup& soup, const Weld& weld, Precision precision, bool orient, unsigned jobs);
 
-// Runs the rules of the catalogue but unreadable (import's) and self-intersection; Report::checks
+// Runs the rules of the catalogue but unreadable (import's); Report::checks
 // names those that ran. `mesh` is weld_points(soup, ...), perhaps oriented; `states` and `topology` are those of face_states
 // and pair_halfedges. Report::vertices counts the welded vertices, as the rules do. Elements speak of the soup's own numbers:
 // of joined vertices the first. An element names at most 32 faces and counts the rest. Near linear.

@@ -32,7 +32,7 @@ def inside_out(off):
 
 class Usage(Case):
     def test_help_names_examples_and_version_names_the_format(self):
-        for program, commands in ((FDCG, ("compile", "validate", "inspect", "explain")), (SERVO, ("replay",))):
+        for program, commands in ((FDCG, ("compile", "validate", "repair", "inspect", "explain")), (SERVO, ("replay",))):
             self.assertIn(b"Examples:", self.run_program(program, "--help").stdout)
             self.assertRegex(self.run_program(program, "--version").stdout, rb"^fdcg(-servo)? \d+\.\d+\.\d+ \(file format 1\)\n$")
             for command in commands:
@@ -65,7 +65,7 @@ class Usage(Case):
             ((*compile_, "--self-intersections"), ()),
             (("compile", mesh, "-o", mesh), ("overwrite",)),
             (("compile", mesh, "-o", "-", "--depfile", self.path("d")), ("--depfile",)),
-            (("repair", mesh, "-o", out), ()),
+            (("repair", mesh, "-o", out), ("--orient",)),
             (("validate", mesh, "--format", "sarif"), ("sarif", "text or json")),
             (("validate", mesh, "--format", "xml"), ("text, json",)),
             (("validate", mesh, "--fail-on", "always"), ("error, warning, note, never",)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh of triangles whose coordinates are floats' values, without isolated vertices, gets the same verdict in every format,
-// however often it was converted. FDCG_CONVERSION_CASES sets the number of random meshes (default 30).
+// however often it was converted. FDCG_CONVERSION_CASES sets the number of random meshes (default 15).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -98,7 +98,7 @@ void check_all_pairs(const PolygonSoup& soup) {
 
 std::uint32_t case_count() {
   const char* value = std::getenv("FDCG_CONVERSION_CASES");
-  return value != nullptr ? static_cast<std::uint32_t>(std::strtoul(value, nullptr, 10)) : 30;
+  return value != nullptr ? static_cast<std::uint32_t>(std::strtoul(value, nullptr, 10)) : 15;
 }
 
 // Triangles of floats and no vertex without a face: what all formats hold.

@@ -110,10 +110,11 @@ PolygonSoup torus_of(std::uint32_t faces, double tube) {
 }
 
 CleanMesh hollow_torus(std::uint32_t faces) {
-  const int across = std::max(10, static_cast<int>(std::lround(std::sqrt(faces / 4.0 * 0.4))));
+  const int across = std::max(16, static_cast<int>(std::lround(std::sqrt(faces / 4.0 * 0.4))));
   const int around = 5 * across / 2;
-  // The inner tube's circle around lies where the outer one's does, so that each vertex faces its namesake.
-  return hollow(torus(around, across, 0.4), torus(around, across, 0.4 * (1 - kPi / across)), true);
+  // The inner tube's circle around lies where the outer one's does, so that each vertex faces its namesake. The wall is one and
+  // a half edges thick: the neighbours of a vertex lie well above the inner tube's tangent plane there.
+  return hollow(torus(around, across, 0.4), torus(around, across, 0.4 * (1 - 3 * kPi / across)), true);
 }
 
 PolygonSoup prism_row(std::uint32_t faces, Random& random) {

@@ -137,7 +137,7 @@ bool Seeder::pinch_vertex() {
 
 // Through the middle of a face of the other side, a little: all of the tip's faces cross that face and nothing else.
 bool Seeder::poke_vertex() {
-  constexpr double kBeyond = 0.06;  // of the way there: the tip's cross-section with the face is that fraction of its foot
+  constexpr double kBeyond = 0.03;  // of the way there: the tip's cross-section with the face is that fraction of its foot
   if (clean_.facing.empty()) return false;
   const auto [v, w] = clean_.facing[random_.below(static_cast<std::uint32_t>(clean_.facing.size()))];
   const Face f = faces_at_[w][random_.below(static_cast<std::uint32_t>(faces_at_[w].size()))];
@@ -240,7 +240,7 @@ bool Seeder::keeps_shape(Vertex v, const Vec3& p, const std::vector<Face>& gone)
 }
 
 // One end of an edge is moved onto the other: its two triangles have no area. What remains closes up again, since no third
-// triangle joins the two ends' neighbours.
+// triangle joins the two ends' neighbours. Kept apart, the faces of the one end touch those of the other.
 bool Seeder::collapse_edge() {
   constexpr int kTries = 30;
   for (int i = 0; i < kTries; ++i) {
@@ -259,6 +259,12 @@ bool Seeder::collapse_edge() {
     for (const Face f : gone) {
       find("degenerate-face", {f});
       dropped_.insert(f);
+    }
+    const auto is_gone = [&](Face f) { return f == gone[0] || f == gone[1]; };
+    for (const Face f : faces_at_[v]) {
+      for (const Face g : faces_at_[u]) {
+        if (!setting_.welds && !is_gone(f) && !is_gone(g)) find("self-intersection", {f, g});
+      }
     }
     return true;
   }

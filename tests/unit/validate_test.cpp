@@ -93,7 +93,7 @@ TEST_CASE("clean meshes pass without any finding") {
   CHECK(report.vertices == 8);
   CHECK(report.faces == 6);
   CHECK(report.components == 1);
-  CHECK(report.checks.size() == 18);
+  CHECK(report.checks.size() == 19);
   for (const std::string& name : report.checks)
     CHECK(find_rule(name) != nullptr);
 }
@@ -151,7 +151,7 @@ TEST_CASE("each rule has a mesh that raises it, located") {
     CHECK(issue(report, "non-manifold-vertex").elements[0].vertices == std::vector<std::uint32_t>{0});
     CHECK(issue(report, "duplicate-vertex").elements[0].vertices == std::vector<std::uint32_t>{4});
     CHECK(report.components == 1);
-    CHECK(totals(soup, {{Weld::Kind::none, 0}, {}, 100, {}}).empty());
+    CHECK(totals(soup, {{Weld::Kind::none, 0}, {}, 100, {}}) == Totals{{"self-intersection", 9}});  // three faces at three
   }
   SECTION("winding-inconsistent: one face of a sphere flipped") {
     PolygonSoup soup = bumpy_sphere(10, 10);
@@ -163,7 +163,7 @@ TEST_CASE("each rule has a mesh that raises it, located") {
   SECTION("folded-edge: a triangle and its back, a triangle folded over its neighbour") {
     CHECK(totals(make_soup(kGrid, {{0, 1, 2}, {0, 2, 1}}))["folded-edge"] == 3);
     const PolygonSoup over = make_soup({{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}});
-    CHECK(totals(over) == Totals{{"folded-edge", 1}, {"boundary-edge", 4}});
+    CHECK(totals(over) == Totals{{"folded-edge", 1}, {"boundary-edge", 4}, {"self-intersection", 1}});
   }
   SECTION("boundary-edge") {
     PolygonSoup soup = cube();
@@ -251,7 +251,8 @@ TEST_CASE("of two separate cubes the one inside out is found, and may be allowed
 TEST_CASE("parts that touch in a vertex are judged by one that does not touch") {
   // The small cube shares the corner (2, 2, 2) with the large one that holds it.
   const PolygonSoup inner = joined(cube({}, 4), reversed(cube({1, 1, 1}, 2)));
-  CHECK(totals(inner) == Totals{{"non-manifold-vertex", 1}, {"duplicate-vertex", 1}});
+  // Each of three walls of the large one has one of the small one's faces on it and the edges of four others.
+  CHECK(totals(inner) == Totals{{"non-manifold-vertex", 1}, {"duplicate-vertex", 1}, {"self-intersection", 15}});
   const PolygonSoup outer = joined(cube({}, 4), reversed(cube({3, 3, 3}, 2)));
   CHECK(totals(outer) == Totals{{"non-manifold-vertex", 1}, {"duplicate-vertex", 1}, {"inside-out", 1}});
 }
@@ -283,7 +284,11 @@ TEST_CASE("totals are exact when the listed elements are capped") {
     }
     return s;
   }();
-  const Report report = validate(loose, {{Weld::Kind::none, 0}, {}, 7, {}});
+  ValidateOptions unwelded{{Weld::Kind::none, 0}, {}, 7, {}};
+  // Not welded, each face meets those around it.
+  CHECK(issue(validate(loose, unwelded), "self-intersection").elements.size() == 7);
+  unwelded.severities["self-intersection"] = std::nullopt;
+  const Report report = validate(loose, unwelded);
   CHECK(totals(report) == Totals{{"boundary-edge", 3 * faces}});
   CHECK(report.issues[0].elements.size() == 7);
   CHECK(report.components == faces);
@@ -355,7 +360,9 @@ TEST_CASE("all totals agree with a recount by definition on random small meshes 
       }
     }
     const bool weld = below(4) != 0;
-    const Report report = validate(soup, {{weld ? Weld::Kind::exact : Weld::Kind::none, 0}, {}, 3, {}});
+    ValidateOptions options{{weld ? Weld::Kind::exact : Weld::Kind::none, 0}, {}, 3, {}};
+    options.severities["self-intersection"] = std::nullopt;  // has a recount of its own: self_intersection_test
+    const Report report = validate(soup, options);
     const fdcg::test::Recount recount(soup, weld);
     CHECK(totals(report) == recount.totals);
     CHECK(report.components == recount.components);

@@ -19,6 +19,7 @@ struct Command {
 
 Command add_compile(CLI::App& app);
 Command add_validate(CLI::App& app);
+Command add_repair(CLI::App& app);
 Command add_inspect(CLI::App& app);
 Command add_explain(CLI::App& app);
 

@@ -15,6 +15,7 @@ constexpr const char* kExamples = R"(
 Examples:
   fdcg validate bunny.off
   fdcg compile bunny.off -o bunny.fdcg --units mm
+  fdcg repair bunny.off -o clean.off --all
   fdcg inspect bunny.fdcg
   fdcg explain non-manifold-edge
 
@@ -39,7 +40,7 @@ int run(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "fdcg " FDCG_VERSION_STRING " (file format 1)");
   app.require_subcommand(1);
-  const std::vector<Command> commands{add_compile(app), add_validate(app), add_inspect(app), add_explain(app)};
+  const std::vector<Command> commands{add_compile(app), add_validate(app), add_repair(app), add_inspect(app), add_explain(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -35,18 +35,17 @@ void require_choice(const std::string& option, const std::string& value, const s
   throw CLI::ValidationError(option, "'" + value + "' is none of " + joined(choices));
 }
 
+bake::Weld parse_weld_value(const std::string& text) {
+  if (text == "exact" || text == "none") return {text == "exact" ? bake::Weld::Kind::exact : bake::Weld::Kind::none, 0};
+  const auto distance = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+  if (!distance) {
+    throw CLI::ValidationError("--weld", "'" + text + "' is none of exact, none, or a distance above 0 in the file's units");
+  }
+  return {bake::Weld::Kind::distance, *distance};
+}
+
 void add_weld_option(CLI::App& command, bake::Weld& weld) {
-  const auto parse = [&weld](const std::string& text) {
-    if (text == "exact" || text == "none") {
-      weld = {text == "exact" ? bake::Weld::Kind::exact : bake::Weld::Kind::none, 0};
-      return;
-    }
-    const auto distance = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
-    if (!distance) {
-      throw CLI::ValidationError("--weld", "'" + text + "' is none of exact, none, or a distance above 0 in the file's units");
-    }
-    weld = {bake::Weld::Kind::distance, *distance};
-  };
+  const auto parse = [&weld](const std::string& text) { weld = parse_weld_value(text); };
   command
       .add_option_function<std::string>("--weld", parse,
                                         "Vertices that are one: at equal coordinates (exact, the default), "

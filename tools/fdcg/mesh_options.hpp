@@ -12,6 +12,7 @@ namespace fdcg::tools {
 
 enum class Allowable { errors_the_graph_stands, also_warnings_and_notes };
 
+bake::Weld parse_weld_value(const std::string& text);
 void add_weld_option(CLI::App& command, bake::Weld& weld);
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable);
 

@@ -253,34 +253,47 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
 
 // ---- repair ----------------------------------------------------------------------------------------------------------------
 
-// What may be done to a mesh; each step is taken only where it is asked for, in this order.
+// What may be done to a mesh; each step is taken only where it is asked for, in this order. All but a weld by distance and
+// simplify leave the set of points that the surface covers as it is.
 struct RepairOptions {
-  std::optional<Weld> weld;  // join vertices, so that the written file has them once
+  // Join vertices, so that the written file has them once; none: the file's own vertices are judged, at equal coordinates or
+  // not. Absent: vertices at equal coordinates are judged as one and written as they were, unless split_non_manifold_vertices
+  // is asked for, which implies exact.
+  std::optional<Weld> weld;
   bool drop_degenerate_faces = false;
   bool drop_duplicate_faces = false;
   bool split_non_manifold_vertices = false;  // a vertex for each fan
-  bool orient = false;                       // each orientable patch consistent
+  bool orient = false;                       // each orientable patch consistent, closed ones of mixed winding outward
   bool reverse_inside_out = false;           // closed patches at even nesting depth that enclose negative volume
   std::optional<double> simplify_error;      // source units: no point of the result or the input farther from the other surface
   unsigned jobs = 0;
   Progress progress;
 };
 
-// What one step did.
+// What one step did, and what it found and left, since it could not be repaired surely.
 struct RepairAction {
-  std::string name;  // as on the command line: weld, drop-degenerate-faces, ...
+  std::string name;  // as on the command line: weld, drop-degenerate, ...
   std::uint64_t total = 0;
   std::string message;            // one line
   std::vector<Element> elements;  // the first kListedElements, in source order and the input's numbering
+  std::uint64_t left = 0;
+  std::string left_message;            // why; empty where nothing was left
+  std::vector<Element> left_elements;  // likewise
 };
 
 struct Repaired {
   PolygonSoup soup;
   std::vector<RepairAction> actions;  // one a step asked for, also where there was nothing to do
-  Report before, after;               // validate() of the input and of `soup`
+  Report before, after;               // validate() of the input and of `soup`, as they are to be read
+  // How `soup` is to be read: none where vertices at equal coordinates are apart on purpose.
+  Weld::Kind read_with = Weld::Kind::exact;
 };
 
+// Fails where no step is asked for or the options contradict the mesh (2).
 Result<Repaired> repair(const PolygonSoup& soup, const RepairOptions& options);
+
+// The account as JSON (schemas/repair-report.schema.json); `output`: the file that was written, empty where none was.
+std::string repair_json(const Repaired& repaired, const std::string& output);
 
 // ---- export ----------------------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What people's scripts rely on of fdcg repair."""
+import json
+import pathlib
+import subprocess
+import unittest
+
+import jsonschema
+
+from support import CUBE, FDCG, ROOT, TETRAHEDRON, Case
+
+# Two tetrahedra that touch in the origin; one face of the second is wound the wrong way, one stands twice, one has no area.
+DEFECTIVE = """OFF
+7 11 0
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+-1 0 0
+0 -1 0
+0 0 -1
+3 0 2 1
+3 0 1 3
+3 1 2 3
+3 0 3 2
+3 0 4 5
+3 0 6 4
+3 4 6 5
+3 0 6 5
+3 2 1 0
+3 0 1 1
+3 1 1 1
+"""
+STEPS = ("--weld", "--drop-degenerate", "--drop-duplicates", "--split-non-manifold-vertices", "--orient",
+         "--reverse-inside-out", "--simplify", "--all")
+
+
+def check_schema(report):
+    folder = ROOT / "schemas"
+    schema = json.loads((folder / "repair-report.schema.json").read_text())
+    resolver = jsonschema.RefResolver(folder.as_uri() + "/", schema)  # for what it takes from the schema of validate's report
+    jsonschema.Draft202012Validator(schema, resolver=resolver).validate(report)
+
+
+class Repair(Case):
+    def report(self):
+        report = json.loads((self.folder / "report.json").read_text())
+        check_schema(report)
+        return report
+
+    def totals(self, name, *options):
+        done = subprocess.run([FDCG, "validate", "--format", "json", *options, self.path(name)], capture_output=True, check=False)
+        return {issue["rule"]: issue["total"] for issue in json.loads(done.stdout)["files"][0]["issues"]}
+
+    def test_all_repairs_are_counted_and_the_result_is_clean(self):
+        mesh = self.write("bad.off", DEFECTIVE)
+        done = self.fdcg("repair", mesh, "-o", self.path("good.ply"), "--all", "--report", self.path("report.json"))
+        report = self.report()
+        totals = {action["name"]: action["total"] for action in report["actions"]}
+        self.assertEqual({"weld": 0, "drop-degenerate": 2, "drop-duplicates": 1, "split-non-manifold-vertices": 1, "orient": 1,
+                          "reverse-inside-out": 0}, totals)
+        elements = {action["name"]: action["elements"] for action in report["actions"]}
+        self.assertEqual([[9], [10]], [element["faces"] for element in elements["drop-degenerate"]])
+        self.assertEqual([[8]], [element["faces"] for element in elements["drop-duplicates"]])
+        self.assertEqual([0], elements["split-non-manifold-vertices"][0]["vertices"])
+        self.assertEqual((3, [7]), (elements["split-non-manifold-vertices"][0]["line"], elements["orient"][0]["faces"]))
+        self.assertEqual(("pass", "none", self.path("good.ply")),
+                         (report["verdict"], report["read_with_weld"], report["written"]))
+        self.assertEqual("fail", report["before"]["verdict"])
+        self.assertIn(b"--weld none", done.stdout)
+        self.assertEqual({}, self.totals("good.ply", "--weld", "none"))
+        self.assertEqual({"non-manifold-vertex": 1, "duplicate-vertex": 1}, self.totals("good.ply"))
+        self.fdcg("compile", self.path("good.ply"), "-o", self.path("good.fdcg"), "-q", "--weld", "none")
+        self.assert_only("bad.off", "good.ply", "good.fdcg", "report.json")
+
+    def test_the_totals_of_the_report_are_those_of_validate(self):
+        self.write("bad.off", DEFECTIVE)
+        for steps in (("--orient",), ("--drop-degenerate", "--drop-duplicates"), ("--weld", "exact"), ("--weld", "none"),
+                      ("--weld", "0.5"), ("--all",), ("--all", "--weld", "0.1")):
+            with self.subTest(steps=steps):
+                self.fdcg("repair", self.path("bad.off"), "-o", self.path("good.obj"), *steps, "--report",
+                          self.path("report.json"), "-q", code=0 if "--all" in steps else 1)
+                report = self.report()
+                for name, entry, weld in (("bad.off", report["before"], "none" if steps[-1] == "none" else "exact"),
+                                          ("good.obj", report["after"], report["read_with_weld"])):
+                    self.assertEqual(self.totals(name, "--weld", weld), {i["rule"]: i["total"] for i in entry["issues"]})
+
+    def test_only_what_is_asked_for_is_done(self):
+        mesh = self.write("bad.off", DEFECTIVE)
+        before = self.totals("bad.off")
+        self.fdcg("repair", mesh, "-o", self.path("out.off"), "--drop-degenerate", "-q", code=1)
+        after = self.totals("out.off")
+        self.assertEqual(2, before.pop("degenerate-face"))
+        self.assertEqual(before, after)
+
+    def test_every_format_is_written_by_its_ending_or_by_name(self):
+        mesh = self.write("cube.off", TETRAHEDRON)
+        for name, options, start in (("a.off", (), b"OFF\n"), ("a.OBJ", (), b"v "), ("a.ply", (), b"ply\nformat binary_little"),
+                                     ("a.ply", ("--ascii",), b"ply\nformat ascii"), ("a.stl", (), b"binary STL"),
+                                     ("a.stl", ("--ascii",), b"solid"), ("a.mesh", ("--format", "obj"), b"v ")):
+            self.fdcg("repair", mesh, "-o", self.path(name), "--orient", "-q", *options)
+            self.assertTrue((self.folder / name).read_bytes().startswith(start), (name, options))
+
+    def test_stl_refuses_what_it_would_lose(self):
+        done = self.fdcg("repair", self.write("cube.off", CUBE), "-o", self.path("a.stl"), "--orient", code=2)
+        self.assert_one_line(done, "face 0", "4 corners", "OFF, OBJ or PLY")
+        mesh = self.write("bad.off", DEFECTIVE)
+        done = self.fdcg("repair", mesh, "-o", self.path("a.stl"), "--all", code=2)
+        self.assert_one_line(done, "apart on purpose", "OFF, OBJ or PLY")
+        self.assert_only("cube.off", "bad.off")
+
+    def test_standard_input_and_output(self):
+        done = subprocess.run([FDCG, "repair", "-", "-o", "-", "--format", "off", "--all"], input=DEFECTIVE.encode(),
+                              capture_output=True, check=True)
+        self.assertTrue(done.stdout.startswith(b"OFF\n8 8 0\n"))
+        self.assertIn(b"drop-duplicates: 1 face", done.stderr)
+        done = subprocess.run([FDCG, "repair", "-", "-o", "-", "--format", "off", "--orient", "-q", "--input-format", "obj"],
+                              input=b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", capture_output=True, check=True)
+        self.assertEqual((b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", b""), (done.stdout, done.stderr))
+
+    def test_a_dry_run_writes_no_mesh(self):
+        mesh = self.write("bad.off", DEFECTIVE)
+        done = self.fdcg("repair", mesh, "--all", "--dry-run", "--report", self.path("report.json"))
+        self.assertIn(b"drop-degenerate: 2 faces", done.stdout)
+        self.assertIsNone(self.report()["written"])
+        self.assert_only("bad.off", "report.json")
+
+    def test_errors_that_are_left_are_code_1_and_with_strict_nothing_is_written(self):
+        fan = "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n3 0 1 2\n3 1 0 3\n3 0 1 4\n"
+        mesh = self.write("fan.off", fan)
+        self.fdcg("repair", mesh, "-o", self.path("strict.off"), "--all", "--strict", "-q", code=1)
+        self.assert_only("fan.off")
+        done = self.fdcg("repair", mesh, "-o", self.path("out.off"), "--all", code=1)
+        self.assertIn(b"non-manifold-edge", done.stdout)
+        self.assert_only("fan.off", "out.off")
+
+    def test_a_mesh_of_which_nothing_is_left_is_not_written(self):
+        mesh = self.write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n")
+        done = self.fdcg("repair", mesh, "-o", self.path("out.off"), "--all", "-q", code=1)
+        self.assert_one_line(done, "no face is left")
+        self.assert_only("flat.off")
+
+    def test_wrong_usage_names_what_is_right(self):
+        mesh, out = self.write("cube.off", CUBE), self.path("out.off")
+        for arguments, words in (
+            ((mesh, "-o", out), STEPS),
+            ((mesh, "--orient"), ("-o", "--dry-run")),
+            ((mesh, "-o", self.path("out.step"), "--orient"), (".off, .obj, .ply or .stl", "--format")),
+            ((mesh, "-o", "-", "--orient"), ("--format",)),
+            ((mesh, "-o", out, "--orient", "--format", "glb"), ("off, obj, ply, stl",)),
+            ((mesh, "-o", out, "--weld", "-1"), ("exact, none",)),
+            ((mesh, "-o", mesh, "--orient"), ("overwrite",)),
+            ((mesh, "-o", out, "--orient", "--report", out), ("different",)),
+            (("-o", out, "--orient"), ("mesh",)),
+        ):
+            with self.subTest(arguments=arguments):
+                self.assert_one_line(self.fdcg("repair", *arguments, code=2), *words)
+                self.assert_only("cube.off")
+        self.assertEqual(CUBE, pathlib.Path(mesh).read_text())
+
+    def test_unreadable_input_and_unwritable_output_are_code_3(self):
+        self.assert_one_line(self.fdcg("repair", self.path("none.off"), "-o", self.path("a.off"), "--all", code=3), "none.off")
+        mesh = self.write("cube.off", CUBE)
+        self.assert_one_line(self.fdcg("repair", mesh, "-o", self.path("no/where.off"), "--all", code=3), "where.off")
+        self.assert_only("cube.off")
+
+
+if __name__ == "__main__":
+    unittest.main()
