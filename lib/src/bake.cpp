@@ -29,16 +29,22 @@
 namespace fdcg::bake {
 namespace {
 
+std::string said(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
 // Why the options make no sense; empty where they do.
 std::string contradiction_in(const CompileOptions& options) {
   constexpr double kLargestScale = 1e30;  // what the runtime takes
   if (!(options.metres_per_unit >= 1 / kLargestScale && options.metres_per_unit <= kLargestScale))
-    return "the scale is " + std::to_string(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
+    return "the scale is " + said(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
   if (options.coplanar.kind == Coplanar::Kind::angle &&
       !(options.coplanar.angle_rad >= 0 && options.coplanar.angle_rad < std::numbers::pi / 2))
-    return "the coplanar angle is " + std::to_string(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
+    return "the coplanar angle is " + said(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
   if (options.weld.kind == Weld::Kind::distance && !(options.weld.distance >= 0 && std::isfinite(options.weld.distance)))
-    return "the weld distance is " + std::to_string(options.weld.distance) + "; it must be at least 0 and finite";
+    return "the weld distance is " + said(options.weld.distance) + "; it must be at least 0 and finite";
   constexpr std::array<std::string_view, 3> kOptional{"hierarchy", "source-map", "info"};
   for (const std::string& section : options.without) {
     if (std::find(kOptional.begin(), kOptional.end(), section) == kOptional.end())
@@ -105,12 +111,6 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   input.with_source_map = !options.without.contains("source-map");
   input.jobs = jobs;
   return input;
-}
-
-std::string said(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
 }
 
 // Why no file can hold the object; empty where one can.
