@@ -6,7 +6,7 @@ import resource
 import subprocess
 import unittest
 
-from support import FDCG, SERVO, CUBE, Case
+from support import CUBE, FDCG, ROOT, SERVO, Case
 
 
 def dome(rings=12, sectors=24):
@@ -88,6 +88,43 @@ class Compile(Case):
         self.assertEqual(3, done.returncode, done.stderr)
         self.assert_one_line(done, "grid.off", "memory")
         self.assert_only("grid.off")
+
+
+class Validate(Case):
+    def verdicts(self, mesh, *options):
+        compiled = subprocess.run((FDCG, "compile", mesh, "-o", "-", "-q", "--report", self.path("compile.json"), *options),
+                                  capture_output=True, check=False)
+        self.fdcg("validate", mesh, "--format", "json", "-o", self.path("validate.json"), *options, code=compiled.returncode)
+        reports = [json.loads((self.folder / name).read_text())["files"][0] for name in ("compile.json", "validate.json")]
+        for report in reports:  # compile looks for it on request only
+            report["checks"] = [rule for rule in report["checks"] if rule != "self-intersection"]
+            report["issues"] = [issue for issue in report["issues"] if issue["rule"] != "self-intersection"]
+        self.assertEqual(*reports)
+        return reports[0]["verdict"]
+
+    def test_options_that_decide_the_verdict_of_compile_are_those_of_validate(self):
+        flipped = self.write("flipped.off", CUBE.replace("4 0 3 2 1", "4 1 2 3 0"))
+        self.assertEqual("fail", self.verdicts(flipped))
+        self.assertEqual("pass", self.verdicts(flipped, "--orient"))
+        near = self.write("near.off", CUBE.replace("8 6", "9 7") + "3 0 1 8\n")
+        near = self.write("near.off", (self.folder / "near.off").read_text().replace("0 1 1\n", "0 1 1\n0.5 1e-12 0\n", 1))
+        for options in ((), ("--precision", "f32"), ("--weld", "none"), ("--weld", "0.1"), ("--orient", "--precision", "f32")):
+            with self.subTest(options=options):
+                self.verdicts(near, *options)
+        thin = self.write("thin.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1e-60\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
+        self.assertEqual("pass", self.verdicts(thin))
+        self.assertEqual("fail", self.verdicts(thin, "--precision", "f32"))
+
+    def test_every_bad_mesh_has_one_verdict(self):
+        meshes = sorted((ROOT / "testdata" / "meshes" / "bad").iterdir())
+        judged = 0
+        for mesh in meshes:
+            if mesh.name.startswith(("unreadable", "empty-mesh")):
+                continue
+            with self.subTest(mesh=mesh.name):
+                self.verdicts(str(mesh))
+                judged += 1
+        self.assertGreaterEqual(judged, 20)
 
 
 class Replay(Case):

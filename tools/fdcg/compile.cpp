@@ -238,12 +238,7 @@ void add_unit_options(CLI::App& command, const std::shared_ptr<CompileArguments>
 }
 
 void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
-  const auto parse_precision = [arguments](const std::string& text) {
-    require_choice("--precision", text, {"f64", "f32"});
-    arguments->options.precision = text == "f32" ? bake::Precision::f32 : bake::Precision::f64;
-  };
-  command.add_option_function<std::string>("--precision", parse_precision, "Numbers in the file; default: f64")
-      ->type_name("f64|f32");
+  add_precision_option(command, arguments->options.precision, "Numbers in the file; default: f64");
   const auto parse_coplanar = [arguments](const std::string& text) {
     if (text == "exact" || text == "quantum") {
       arguments->options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};

@@ -53,6 +53,14 @@ void add_weld_option(CLI::App& command, bake::Weld& weld) {
       ->type_name("exact|none|DISTANCE");
 }
 
+void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help) {
+  const auto parse = [&precision](const std::string& text) {
+    require_choice("--precision", text, {"f64", "f32"});
+    precision = text == "f32" ? bake::Precision::f32 : bake::Precision::f64;
+  };
+  command.add_option_function<std::string>("--precision", parse, help)->type_name("f64|f32");
+}
+
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable) {
   const auto insert = [&allow, allowable](const std::vector<std::string>& names) {
     for (const std::string& name : names) {

@@ -14,6 +14,7 @@ enum class Allowable { errors_the_graph_stands, also_warnings_and_notes };
 
 bake::Weld parse_weld_value(const std::string& text);
 void add_weld_option(CLI::App& command, bake::Weld& weld);
+void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help);
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable);
 
 // The whole of `text` as a finite number in (low, high); nothing else counts.

@@ -97,6 +97,9 @@ Examples:
   command->add_option("-o,--output", arguments->output, "Write the report to FILE; - is standard output (default)")
       ->type_name("FILE");
   add_weld_option(*command, arguments->options.weld);
+  add_precision_option(*command, arguments->options.precision,
+                       "Judge the mesh as a graph of this precision stores it; default: f64");
+  command->add_flag("--orient", arguments->options.orient, "Judge the mesh as 'compile --orient' leaves it");
   const auto check_fail_on = [arguments](const std::string& value) {
     require_choice("--fail-on", value, {"error", "warning", "note", "never"});
     arguments->options.fail_on = severity_of(value);
