@@ -21,15 +21,33 @@ bool is_less(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-Findings::Findings(const Subject& subject, const Rule& rule, Severity severity, std::size_t max_elements)
-    : subject_(subject), rule_(rule), max_elements_(max_elements) {
+Findings::Findings(const Subject& subject, const Rule& rule, Severity severity, std::size_t max_elements,
+                   const EachElement& each)
+    : subject_(subject), rule_(rule), max_elements_(max_elements), each_(each) {
   issue_.rule = rule.name;
   issue_.severity = severity;
 }
 
 Element* Findings::found() {
-  if (issue_.total++ >= max_elements_) return nullptr;
-  return &issue_.elements.emplace_back();
+  finish_element();
+  if (issue_.total++ >= max_elements_ && !each_) return nullptr;
+  element_ = {};
+  return current_ = &element_;
+}
+
+void Findings::finish_element() {
+  if (current_ == nullptr) return;
+  current_ = nullptr;
+  if (each_) each_(rule_.name, element_);
+  std::vector<Element>& listed = issue_.elements;
+  if (element_.is_known) ++issue_.known;
+  if (listed.size() < max_elements_) {
+    listed.push_back(std::move(element_));
+  } else if (!element_.is_known && listed.size() > issue_.total - issue_.known - 1) {
+    // Of what is listed something is known: it gives way.
+    listed.erase(std::find_if(listed.rbegin(), listed.rend(), [](const Element& e) { return e.is_known; }).base() - 1);
+    listed.push_back(std::move(element_));
+  }
 }
 
 void Findings::add_face(Element& element, FaceId f) const {
@@ -82,7 +100,7 @@ void Findings::at_face(FaceId f) {
 
 void Findings::at_face(FaceId f, FaceId original) {
   at_face(f);
-  if (issue_.total <= max_elements_) add_face(issue_.elements.back(), original);
+  if (current_ != nullptr) add_face(*current_, original);
 }
 
 void Findings::at_edge(std::span<const HalfedgeId> halfedges) {
@@ -115,8 +133,8 @@ void Findings::at_pair(FaceId a, FaceId b, const Vec3& point) {
 
 void Findings::in_edge(VertexId v, HalfedgeId h) {
   at_vertex(subject_.mesh.source_point[+v]);
-  if (issue_.total > max_elements_) return;
-  Element& element = issue_.elements.back();
+  if (current_ == nullptr) return;
+  Element& element = *current_;
   const VertexId p = subject_.start_of(h), q = subject_.end_of(h);
   element.edges.push_back({subject_.mesh.source_point[+p], subject_.mesh.source_point[+q]});
   element.line.reset();  // elements that name faces give the line of the first
@@ -161,6 +179,8 @@ void Findings::at_patch(std::uint32_t patch) {
 }
 
 Issue Findings::take() && {
+  finish_element();
+  std::stable_partition(issue_.elements.begin(), issue_.elements.end(), [](const Element& e) { return !e.is_known; });
   if (issue_.total != 0 && issue_.message.empty()) issue_.message = finding_message(rule_, issue_.total);
   return std::move(issue_);
 }

@@ -42,7 +42,7 @@ struct Subject {
 // parts and coordinates of the source.
 class Findings {
  public:
-  Findings(const Subject& subject, const Rule& rule, Severity severity, std::size_t max_elements);
+  Findings(const Subject& subject, const Rule& rule, Severity severity, std::size_t max_elements, const EachElement& each);
 
   void at_file();
   void at_vertex(std::uint32_t source);  // also one that the weld joined to another
@@ -59,21 +59,26 @@ class Findings {
   // In place of the catalogue's phrase and remedy; the total comes first.
   void say(std::string message) { issue_.message = std::move(message); }
   [[nodiscard]] std::uint64_t total() const { return issue_.total; }
-  [[nodiscard]] std::size_t max_elements() const { return max_elements_; }
+  // How many need to be located; the others may be counted by count_more().
+  [[nodiscard]] std::size_t max_elements() const { return each_ ? kAllElements : max_elements_; }
 
   // The issue as it stands in the report. No findings: no message.
   [[nodiscard]] Issue take() &&;
 
  private:
-  // Counts one; null where it is not listed.
+  // Counts one; null where it is neither listed nor shown to each_. It is complete when the next one is found, or at the end.
   Element* found();
+  void finish_element();
   void add_face(Element& element, FaceId f) const;
   [[nodiscard]] Vec3 least_corner(std::uint32_t patch);
 
   const Subject& subject_;
   const Rule& rule_;
   std::size_t max_elements_;
+  const EachElement& each_;
   Issue issue_;
+  Element element_;                  // the last one found
+  Element* current_ = nullptr;       // that, or null
   std::vector<Vec3> least_corners_;  // of each patch; empty until asked for
 };
 

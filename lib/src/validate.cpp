@@ -80,7 +80,7 @@ std::optional<Severity> severity_of(std::string_view rule, const CheckOptions& o
 
 void Checker::run_row(std::size_t row) {
   if (const std::optional<Severity> severity = severity_of(kRows[row].rule, options_)) {
-    Findings findings(subject_, *find_rule(kRows[row].rule), *severity, options_.max_elements);
+    Findings findings(subject_, *find_rule(kRows[row].rule), *severity, options_.max_elements, options_.each_element);
     kRows[row].run(subject_, findings);
     issues_[row] = std::move(findings).take();
   }
@@ -177,6 +177,7 @@ Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
   how.precision = options.precision;
   how.jobs = jobs;
   how.progress = options.progress;
+  how.each_element = options.each_element;
   return check(soup, ready.mesh, ready.topology, ready.states, how);
 }
 

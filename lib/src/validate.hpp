@@ -24,6 +24,7 @@ struct CheckOptions {
   Precision precision = Precision::f64;        // that weld_points rounded to: non-planar-face tolerates it
   unsigned jobs = 1;                           // threads; the report does not depend on it
   Progress progress;                           // called from one thread at a time
+  EachElement each_element{};
 };
 
 // A soup made ready for the checks, by compile as by validate.

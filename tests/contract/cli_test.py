@@ -66,7 +66,6 @@ class Usage(Case):
             (("compile", mesh, "-o", mesh), ("overwrite",)),
             (("compile", mesh, "-o", "-", "--depfile", self.path("d")), ("--depfile",)),
             (("repair", mesh, "-o", out), ("--orient",)),
-            (("validate", mesh, "--format", "sarif"), ("sarif", "text or json")),
             (("validate", mesh, "--format", "xml"), ("text, json",)),
             (("validate", mesh, "--fail-on", "always"), ("error, warning, note, never",)),
             (("validate", mesh, "-o", mesh), ("overwrite",)),

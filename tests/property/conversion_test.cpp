@@ -141,7 +141,7 @@ TEST_CASE("clean and seeded meshes keep their verdict through every pair of form
 }
 
 TEST_CASE("real meshes keep their verdict through every pair of formats") {
-  constexpr std::uintmax_t kMostBytes = 200'000;
+  constexpr std::uintmax_t kMostBytes = 100'000;
   std::size_t found = 0;
   for (const auto& path : real_mesh_files()) {
     if (std::filesystem::file_size(path) > kMostBytes) continue;

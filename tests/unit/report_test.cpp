@@ -98,7 +98,7 @@ TEST_CASE("bytes of a path that are not UTF-8 do not break the JSON") {
 TEST_CASE("the text gives verdict, totals, places and remedy, coloured only on request") {
   const std::string text = report_text(defective(), false);
   CAPTURE(text);
-  CHECK(text.find("dir/part \"7\".off: fail (9 vertices, 6 faces, 1 component)\n") == 0);
+  CHECK(text.find("dir/part \"7\".off: fail (9 vertices, 6 faces, 5 of them kept, 1 component)\n") == 0);
   CHECK(text.find("error index-out-of-range: 1 face names a vertex that the file does not have.") != std::string::npos);
   CHECK(text.find("line 10, face 0, at ") != std::string::npos);
   CHECK(text.find("at (nan, 1, inf)") != std::string::npos);
@@ -123,4 +123,32 @@ TEST_CASE("a report stays under a megabyte however bad the mesh is") {
   CHECK(report.issues[0].total == 500);
   CHECK(report.issues[0].elements.size() == 100);
   CHECK(report_json({report}).size() < 1000000);
+}
+
+TEST_CASE("no format passes a megabyte when every rule has as many and as large elements as can be listed") {
+  Report report;
+  report.file = std::string(200, 'x');
+  for (const Rule& rule : rules()) {
+    Issue issue{std::string(rule.name), rule.severity, 4000000000, std::string(rule.remedy), {}, 0};
+    for (std::uint32_t i = 0; i < kListedElements; ++i) {
+      Element element;
+      element.faces.assign(rule.name == "non-manifold-edge" ? 32 : 2, 4000000000u - i);
+      element.edges = {{4000000000u, 4000000001u}};
+      element.vertices = {4000000002u};
+      element.point = Vec3{-1.2345678901234567e-100, -1.2345678901234567e-101, -1.2345678901234567e-102};
+      element.line = 4000000000u;
+      element.part = std::string(5000, 'p');
+      element.fingerprint = ~std::uint64_t{0} - i;
+      issue.elements.push_back(element);
+    }
+    report.issues.push_back(issue);
+    report.checks.push_back(issue.rule);
+  }
+  ReportOptions each;
+  each.result_per_element = true;
+  CHECK(report_text(report, false).size() < 1000000);
+  CHECK(report_string(ReportFormat::json, {report}).size() < 1000000);
+  CHECK(report_string(ReportFormat::junit, {report}).size() < 1000000);
+  CHECK(report_string(ReportFormat::sarif, {report}).size() < 1000000);
+  CHECK(report_string(ReportFormat::sarif, {report}, each).size() < 1000000);
 }

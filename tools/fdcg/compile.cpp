@@ -12,6 +12,7 @@
 #include "command.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
+#include "mesh_input.hpp"
 #include "mesh_options.hpp"
 
 namespace fdcg::tools {
@@ -29,6 +30,7 @@ struct CompileArguments {
   std::string depfile;
   std::string report;
   std::string unit_text = "metres (the default)";
+  std::optional<bake::Format> input_format;
   bake::CompileOptions options;
   bool quiet = false;
   bool verbose = false;
@@ -147,6 +149,7 @@ int check_paths(const CompileArguments& arguments) {
         shown.begin(), shown.end(), [](char c) { return c == '\r' || c == '\n'; }, '?');
     return fail(kUsage, "--depfile: neither Make nor Ninja can name '" + shown + "', which has a line break; rename the file");
   }
+  if (arguments.mesh == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a mesh file, not -");
   if (arguments.output == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a file name after -o, not -");
   return kClean;
 }
@@ -174,10 +177,10 @@ int compile_mesh(CompileArguments& arguments) {
   if (!out.ok()) return fail(kFile, out.error());
   keep_large_arrays();
   ProgressBar bar(!arguments.quiet);
-  bake::ImportOptions import_options;
+  bake::ImportOptions import_options{arguments.input_format, {}};
   import_options.progress =
       arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
-  const auto soup = bake::import_mesh(arguments.mesh, import_options);
+  const auto soup = import_input(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
   out.expect(bake::likely_file_bytes(*soup, arguments.options));
@@ -292,10 +295,11 @@ Examples:
 A mesh with errors is refused with the report that 'fdcg validate' prints, and nothing is written.
 The same mesh and options give the same bytes.)");
   const auto arguments = std::make_shared<CompileArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY or STL")->required()->type_name("MESH");
+  command->add_option("mesh", arguments->mesh, "Mesh file; - is standard input")->required()->type_name("MESH");
   command->add_option("-o,--output", arguments->output, "The file to write; - is standard output")
       ->required()
       ->type_name("FILE");
+  add_input_format_option(*command, arguments->input_format);
   add_unit_options(*command, arguments);
   add_graph_options(*command, arguments);
   add_weld_option(*command, arguments->options.weld);

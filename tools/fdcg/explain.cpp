@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "../common/atomic_file.hpp"
+#include "../common/nearest.hpp"
 #include "command.hpp"
 #include "fdcg/bake.hpp"
 
@@ -22,28 +23,11 @@ std::string_view severity_name(bake::Severity severity) {
   return "error";
 }
 
-// Edits (insert, delete, replace one letter) between two words.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j)
-    row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
-  }
-  return row[b.size()];
-}
-
-std::string_view nearest_rule(std::string_view name) {
-  const auto& rules = bake::rules();
-  return std::min_element(rules.begin(), rules.end(),
-                          [name](const bake::Rule& a, const bake::Rule& b) {
-                            return edit_distance(a.name, name) < edit_distance(b.name, name);
-                          })
-      ->name;
+std::string nearest_rule(std::string_view name) {
+  std::vector<std::string> names;
+  for (const bake::Rule& rule : bake::rules())
+    names.emplace_back(rule.name);
+  return nearest(name, names);
 }
 
 std::string list_of_rules() {
@@ -80,8 +64,8 @@ Command add_explain(CLI::App& app) {
   const auto run = [name]() -> int {
     const bake::Rule* const rule = bake::find_rule(*name);
     if (!name->empty() && rule == nullptr) {
-      return fail(kUsage, "'" + *name + "' is no rule; the nearest is '" + std::string(nearest_rule(*name)) +
-                              "', 'fdcg explain' lists them all");
+      return fail(kUsage,
+                  "'" + *name + "' is no rule; the nearest is '" + nearest_rule(*name) + "', 'fdcg explain' lists them all");
     }
     AtomicFile out("-");
     out.write(rule == nullptr ? list_of_rules() : explanation(*rule));

@@ -5,6 +5,7 @@
 #include <new>
 #include <vector>
 
+#include "../common/nearest.hpp"
 #include "command.hpp"
 #include "fdcg/fdcg.h"
 
@@ -27,11 +28,32 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
+// What was likely meant by the first word that nobody expected.
+std::string hint_for(const CLI::App& app, const CLI::App& command) {
+  for (const std::string& word : app.remaining(true)) {
+    std::vector<std::string> names;
+    if (word.starts_with("-")) {
+      for (const CLI::Option* const option : command.get_options()) {
+        for (const std::string& name : option->get_lnames())
+          names.push_back("--" + name);
+      }
+    } else if (&command == &app) {
+      for (const CLI::App* const known : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(known->get_name());
+    }
+    return did_you_mean(word.substr(0, word.find('=')), names);
+  }
+  return "";
+}
+
 int usage_error(const CLI::ParseError& error, const CLI::App& app) {
-  std::string command = "fdcg";
-  for (const CLI::App* chosen : app.get_subcommands())
-    command += " " + chosen->get_name();
-  return fail(kUsage, first_line(error.what()) + " (see '" + command + " --help')");
+  std::string name = "fdcg";
+  const CLI::App* command = &app;
+  for (const CLI::App* chosen : app.get_subcommands()) {
+    name += " " + chosen->get_name();
+    command = chosen;
+  }
+  return fail(kUsage, first_line(error.what()) + hint_for(app, *command) + " (see '" + name + " --help')");
 }
 
 int run(int argc, char** argv) {

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <limits>
+
+#include "../common/nearest.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -32,7 +35,7 @@ std::optional<double> parse_number_between(const std::string& text, double low, 
 
 void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices) {
   if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
-  throw CLI::ValidationError(option, "'" + value + "' is none of " + joined(choices));
+  throw CLI::ValidationError(option, "'" + value + "' is none of " + joined(choices) + did_you_mean(value, choices));
 }
 
 bake::Weld parse_weld_value(const std::string& text) {
@@ -44,13 +47,29 @@ bake::Weld parse_weld_value(const std::string& text) {
   return {bake::Weld::Kind::distance, *distance};
 }
 
-void add_weld_option(CLI::App& command, bake::Weld& weld) {
-  const auto parse = [&weld](const std::string& text) { weld = parse_weld_value(text); };
+namespace {
+
+void add_weld_option_to(CLI::App& command, const std::function<void(const bake::Weld&)>& set) {
   command
-      .add_option_function<std::string>("--weld", parse,
-                                        "Vertices that are one: at equal coordinates (exact, the default), "
-                                        "none, or within DISTANCE in the file's units")
+      .add_option_function<std::string>(
+          "--weld", [set](const std::string& text) { set(parse_weld_value(text)); },
+          "Vertices that are one: at equal coordinates (exact, the default), "
+          "none, or within DISTANCE in the file's units")
       ->type_name("exact|none|DISTANCE");
+}
+
+}  // namespace
+
+void add_weld_option(CLI::App& command, bake::Weld& weld) {
+  add_weld_option_to(command, [&weld](const bake::Weld& value) { weld = value; });
+}
+void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld) {
+  add_weld_option_to(command, [&weld](const bake::Weld& value) { weld = value; });
+}
+
+const std::vector<std::string>& mesh_endings() {
+  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc"};
+  return kEndings;
 }
 
 void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help) {
@@ -59,6 +78,18 @@ void add_precision_option(CLI::App& command, bake::Precision& precision, const s
     precision = text == "f32" ? bake::Precision::f32 : bake::Precision::f64;
   };
   command.add_option_function<std::string>("--precision", parse, help)->type_name("f64|f32");
+}
+
+void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format) {
+  const auto parse = [&format](const std::string& text) {
+    require_choice("--input-format", text, {"off", "obj", "ply", "stl", "gltf", "glb", "drc"});
+    using enum bake::Format;
+    format = text == "off" ? off : text == "obj" ? obj : text == "ply" ? ply : text == "stl" ? stl : text == "drc" ? drc : gltf;
+  };
+  command
+      .add_option_function<std::string>("--input-format", parse,
+                                        "Format of the mesh, of standard input above all; default: by content, then by ending")
+      ->type_name("off|obj|ply|stl|gltf|glb|drc");
 }
 
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable) {
@@ -73,7 +104,8 @@ void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable
       for (const bake::Rule& known : bake::rules()) {
         if (may_be_allowed(known, allowable)) choices.emplace_back(known.name);
       }
-      const std::string why = rule == nullptr ? "' is no rule; " : "' cannot be allowed: no graph can stand it; ";
+      const std::string why = rule == nullptr ? "' is no rule" + did_you_mean(name, choices) + "; "
+                                              : "' cannot be allowed: no graph can stand it; ";
       throw CLI::ValidationError("--allow", "'" + name + why + "these can: " + joined(choices));
     }
   };

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "fdcg/bake.hpp"
 
@@ -14,13 +16,18 @@ enum class Allowable { errors_the_graph_stands, also_warnings_and_notes };
 
 bake::Weld parse_weld_value(const std::string& text);
 void add_weld_option(CLI::App& command, bake::Weld& weld);
+void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld);
+void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format);
 void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help);
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable);
+
+// Of the files that are meshes by their names, in lower case: ".off" and so on.
+const std::vector<std::string>& mesh_endings();
 
 // The whole of `text` as a finite number in (low, high); nothing else counts.
 std::optional<double> parse_number_between(const std::string& text, double low, double high);
 
-// `value` is one of `choices`, or a ValidationError that lists them.
+// `value` is one of `choices`, or a ValidationError that lists them and names the nearest.
 void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices);
 
 }  // namespace fdcg::tools

@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -140,7 +141,7 @@ struct Issue {
   Severity severity = Severity::error;
   std::uint64_t total = 0;        // exact, however few elements are listed
   std::string message;            // what, how many, and the remedy
-  std::vector<Element> elements;  // the first max_elements of them, in source order
+  std::vector<Element> elements;  // the first max_elements of them, in source order; known ones last
   std::uint64_t known = 0;        // of these, accepted by a baseline: they do not fail the verdict
 };
 
@@ -155,6 +156,10 @@ struct Report {
   std::vector<std::string> checks;  // the rules that were run
   std::set<std::string> allowed;    // rules whose errors do not fail the verdict
   std::optional<Severity> fail_on = Severity::error;  // findings from this severity on fail the verdict; none: nothing does
+  std::string config;                                 // the configuration file that was followed, if any
+  bool has_baseline = false;                          // findings were compared with a baseline
+  std::map<std::string, std::uint64_t> resolved;      // by rule: findings of the baseline that are there no more
+  double seconds = 0;                                 // spent on the file; 0: not measured
 
   // No finding at or above `level` is neither allowed nor known.
   [[nodiscard]] bool passes(std::optional<Severity> level) const;
@@ -175,11 +180,71 @@ const Rule* find_rule(std::string_view name);
 
 inline constexpr std::size_t kListedElements = 100;  // of each rule, in a report that is not full
 
-// At most `max_elements` of each issue's elements are written; totals are exact all the same.
+// The lines that people read of one file.
 std::string report_text(const Report& report, bool colour);
-std::string report_json(const std::vector<Report>& reports, std::size_t max_elements = kListedElements);
-std::string report_sarif(const std::vector<Report>& reports, std::size_t max_elements = kListedElements);  // 2.1.0
-std::string report_junit(const std::vector<Report>& reports, std::size_t max_elements = kListedElements);
+
+enum class ReportFormat {
+  text,
+  json,   // schemas/validate-report.schema.json
+  sarif,  // 2.1.0
+  junit,  // the XML of Ant's JUnit task
+};
+
+struct ReportOptions {
+  std::size_t max_elements = kListedElements;  // of each issue; totals are exact all the same
+  bool colour = false;                         // text
+  std::string source_root;          // sarif: the absolute folder that relative paths start from; files in it get relative URIs
+  bool result_per_element = false;  // sarif: a result for each listed element in place of one for each rule
+  std::string timestamp = "1970-01-01T00:00:00";  // junit: when the run began, UTC
+};
+
+// Writes the reports of many files one by one, so that only one need be in memory. add() for each file, then finish() once with
+// the exit code of the run. `write` gets pieces of any length, and is called by these two only.
+class ReportWriter {
+ public:
+  virtual ~ReportWriter() = default;
+  virtual void add(const Report& report) = 0;
+  virtual void finish(int exit_code) = 0;
+};
+std::unique_ptr<ReportWriter> make_report_writer(ReportFormat format, std::function<void(std::string_view)> write,
+                                                 const ReportOptions& options = {});
+
+// The whole of it as a string; the exit code is that of the verdicts and of files that could not be read.
+std::string report_string(ReportFormat format, const std::vector<Report>& reports, const ReportOptions& options = {});
+inline std::string report_json(const std::vector<Report>& reports) {
+  return report_string(ReportFormat::json, reports);
+}
+
+// Elements on their way into a full report, as JSON text: in memory, or in a temporary file once they are many.
+class ElementSpool {
+ public:
+  ElementSpool();
+  ElementSpool(ElementSpool&&) noexcept;
+  ElementSpool& operator=(ElementSpool&&) noexcept;
+  ~ElementSpool();
+  void add(std::string_view rule, const Element& element);  // of one rule one at a time, of several rules at once
+
+ private:
+  friend class FullReportWriter;
+  struct Pile;
+  std::vector<Pile> piles_;  // of each rule of the catalogue
+};
+
+// The JSON of ReportFormat::json with every element, from spools in place of Issue::elements.
+class FullReportWriter {
+ public:
+  explicit FullReportWriter(std::function<void(std::string_view)> write);
+  ~FullReportWriter();
+  FullReportWriter(const FullReportWriter&) = delete;
+  FullReportWriter& operator=(const FullReportWriter&) = delete;
+  // False where the temporary files could not hold the elements; nothing is of use then.
+  [[nodiscard]] bool add(const Report& report, ElementSpool& spool);
+  void finish();
+
+ private:
+  struct Document;
+  std::unique_ptr<Document> document_;
+};
 
 // ---- validate and compile --------------------------------------------------------------------------------------------------
 
@@ -199,6 +264,11 @@ enum class Precision { f64, f32 };
 
 inline constexpr std::size_t kAllElements = std::numeric_limits<std::size_t>::max();
 
+// Sees every finding before it is listed, and whether or not it will be: those of one rule in source order, one at a time;
+// those of several rules perhaps at once, from several threads. May set is_known: then it counts in Issue::known, and gives way
+// in the list to what is not known.
+using EachElement = std::function<void(std::string_view rule, Element& element)>;
+
 struct ValidateOptions {
   Weld weld;
   std::set<std::string> allow;
@@ -209,6 +279,7 @@ struct ValidateOptions {
   Precision precision = Precision::f64;  // of the graph to be: coordinates are rounded to it before anything is judged
   bool orient = false;                   // judge the mesh as compile's orient leaves it
   unsigned jobs = 0;                     // threads; 0: as many as there are cores. The report does not depend on it
+  EachElement each_element{};
 };
 
 // compile() refuses a mesh exactly where this report does not pass, with the same options and fail_on error.

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The recipes of tools/ci, run as they stand there: nobody else does, until a pipeline breaks."""
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import textwrap
+import unittest
+
+import jsonschema
+
+from support import CUBE, FDCG, ROOT, Case
+
+MISSING_FACE = CUBE.replace("8 6 0", "8 5 0").replace("4 3 0 4 7\n", "")
+THREE_ON_AN_EDGE = "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n3 0 1 2\n3 1 0 3\n3 0 1 4\n"
+README = (ROOT / "tools/ci/README.md").read_text()
+
+
+def blocks(heading, language):
+    section = re.split(r"^## ", README.split(f"## {heading}\n")[1], flags=re.M)[0]
+    found = re.findall(rf"^```{language}\n(.*?)^```$", section, flags=re.M | re.S)
+    assert found, f"no {language} under '{heading}'"
+    return found
+
+
+def environment(**more):
+    return os.environ | {"PATH": f"{pathlib.Path(FDCG).parent}:{os.environ['PATH']}"} | more
+
+
+class Recipes(Case):
+    def setUp(self):
+        super().setUp()
+        os.mkdir(self.path("meshes"))
+        self.write("meshes/part.off", CUBE)
+
+    def shell(self, script, code=0, **variables):
+        # as GitHub runs "shell: bash"
+        return self.run_program("bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script, code=code, cwd=self.folder,
+                                env=environment(**variables))
+
+    def test_settings(self):
+        settings = blocks("Settings beside the meshes", "json")[0]
+        jsonschema.validate(json.loads(settings), json.loads((ROOT / "schemas/validate-config.schema.json").read_text()))
+        self.write("meshes/.fdcg-validate.json", settings)
+        self.write("meshes/open.off", MISSING_FACE)
+        self.assertIn(b"settings: meshes/.fdcg-validate.json", self.shell("fdcg validate meshes").stdout)
+
+    def test_shell_step(self):
+        script = blocks("A shell step", "sh")[0]
+        self.shell(script)
+        for name in ("report.xml", "report.sarif"):
+            self.assertTrue((self.folder / name).is_file())
+        self.write("meshes/fan.off", THREE_ON_AN_EDGE)
+        self.assertIn(b"2 files: 1 pass, 1 fail", self.shell(script, code=1).stdout)
+
+    def test_baseline(self):
+        self.write("meshes/open.off", MISSING_FACE)
+        accept, compare = blocks("Meshes that have findings already", "sh")[0].splitlines()
+        self.shell(compare, code=3)
+        self.shell(accept)
+        self.shell(compare)
+        self.write("meshes/open.off", MISSING_FACE.replace("8 5 0", "8 4 0").replace("4 2 3 7 6\n", ""))
+        self.assertIn(b"known", self.shell(compare, code=1).stdout)
+
+    def test_ctest(self):
+        check, compile_ = blocks("CMake and CTest", "cmake")
+        self.write("CMakeLists.txt", "cmake_minimum_required(VERSION 3.22)\nproject(consumer NONE)\n" + check + compile_)
+        self.shell("cmake -G Ninja -S . -B build && cmake --build build && ctest --test-dir build --no-tests=error")
+        self.assertTrue((self.folder / "build/meshes.xml").is_file())
+        self.assertTrue((self.folder / "build/part.fdcg").is_file())
+        again = self.shell("cmake --build build").stdout
+        self.assertIn(b"no work to do", again)
+        self.write("meshes/fan.off", THREE_ON_AN_EDGE)
+        self.assertIn(b"non-manifold-edge", self.shell("ctest --test-dir build --output-on-failure", code=8).stdout)
+
+    def test_github_action(self):
+        action = (ROOT / "tools/ci/action.yml").read_text()
+        step = re.search(r"^      run: \|\n((?:        .*\n)+)", action, flags=re.M)
+        script = textwrap.dedent(step[1])
+        self.assertIn("steps.validate.outputs.report", action)
+        self.write("meshes/fan with blank.off", THREE_ON_AN_EDGE)
+        output = self.write("output", "")
+        variables = {"RUNNER_TEMP": str(self.folder), "GITHUB_OUTPUT": output}
+        self.shell(script, code=1, MESHES="meshes\n\n", ARGUMENTS="", **variables)
+        self.assertEqual(f"report={self.folder}/fdcg.sarif\n", pathlib.Path(output).read_text())
+        run = json.loads((self.folder / "fdcg.sarif").read_text())["runs"][0]
+        self.assertEqual(["meshes/fan%20with%20blank.off", "meshes/part.off"], [artifact["location"]["uri"] for artifact in run["artifacts"]])
+        # code scanning shows each result at its first line
+        self.assertIn(8, [result["locations"][0]["physicalLocation"]["region"]["startLine"] for result in run["results"]])
+        self.shell(script, MESHES="meshes/fan*.off\nmeshes/part.off", ARGUMENTS="--fail-on never --jobs 1", **variables)
+        pathlib.Path(output).write_text("")
+        self.shell(script, code=2, MESHES="meshes", ARGUMENTS="--nonsense", **variables)
+        self.assertEqual("", pathlib.Path(output).read_text())
+
+    def test_github_workflow_uses_inputs_that_the_action_has(self):
+        action = (ROOT / "tools/ci/action.yml").read_text()
+        used = re.findall(r"^    (\w+):", blocks("GitHub", "yaml")[0], flags=re.M)
+        self.assertEqual(["meshes", "arguments"], used)
+        for name in used:
+            self.assertRegex(action, rf"(?m)^  {name}:$")
+
+    def test_pre_commit_hook(self):
+        hook = dict(re.findall(r"^[- ] (\w+): (.*)$", (ROOT / ".pre-commit-hooks.yaml").read_text(), flags=re.M))
+        self.assertIn(f"id: {hook['id']}", blocks("pre-commit", "yaml")[0])
+        self.write("meshes/Open.OFF", MISSING_FACE)
+        self.write("note.txt", "no mesh")
+        staged = [str(path.relative_to(self.folder)) for path in sorted(self.folder.rglob("*")) if path.is_file()]
+        chosen = [path for path in staged if re.search(hook["files"], path)]
+        self.assertEqual(["meshes/Open.OFF", "meshes/part.off"], chosen)
+        arguments = re.search(r"args: \[(.*)\]", blocks("pre-commit", "yaml")[0])[1].split(", ")
+        command = [*shlex.split(hook["entry"]), *arguments, *chosen]
+        done = subprocess.run(command, cwd=self.folder, env=environment(), capture_output=True, check=False, timeout=60)
+        self.assertEqual(1, done.returncode)
+        self.assertIn(b"Open.OFF: fail", done.stdout)
+        self.assertNotIn(b"part.off", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
