@@ -81,7 +81,8 @@ std::uint64_t CellGrid::place(const Axis& axis, double half) {
     piece += axis.start[piece + step] <= half ? step : 0;
   constexpr unsigned kFineBits = kCellBits - kPieceBits;
   constexpr double kLast = (1u << kFineBits) - 1;
-  const double fine = std::clamp((half - axis.start[piece]) * axis.cells_per_unit[piece], 0.0, kLast);
+  // std::max of 0 and NaN, in this order, is 0: a coordinate that is no number stands somewhere.
+  const double fine = std::min(std::max(0.0, (half - axis.start[piece]) * axis.cells_per_unit[piece]), kLast);
   return std::uint64_t{piece} << kFineBits | static_cast<std::uint64_t>(fine);
 }
 

@@ -3,6 +3,7 @@
 #include "repair.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 
@@ -194,6 +195,8 @@ Report judged(const PolygonSoup& soup, Weld::Kind weld, const RepairOptions& opt
 
 Result<Repaired> repair(const PolygonSoup& soup, const RepairOptions& options) {
   if (!asks_for_anything(options)) return Failure{2, soup.name + ": no repair is asked for", {}};
+  if (options.simplify_error && !(*options.simplify_error > 0 && std::isfinite(*options.simplify_error)))
+    return Failure{2, soup.name + ": the error to simplify to is no number above 0", {}};
   std::optional<Weld> weld = options.weld;
   if (!weld && options.split_non_manifold_vertices) weld = Weld{};
 
@@ -207,6 +210,9 @@ Result<Repaired> repair(const PolygonSoup& soup, const RepairOptions& options) {
   if (options.split_non_manifold_vertices) actions.push_back(split_vertices_step(piece));
   if (options.orient) actions.push_back(orient_step(piece));
   if (options.reverse_inside_out) actions.push_back(reverse_inside_out_step(piece));
+  if (options.simplify_error) {
+    actions.push_back(simplify_step(piece, *options.simplify_error, options.jobs, options.progress));
+  }
 
   move_parts(piece);
   if (piece.identity.kind == Weld::Kind::none && has_equal_points(piece.soup)) repaired.read_with = Weld::Kind::none;

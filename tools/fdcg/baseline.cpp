@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "../common/one_line.hpp"
 #include "command.hpp"
 
 namespace fdcg::tools {
@@ -71,8 +72,7 @@ class ReportReader {
     return leaf();
   }
   bool parse_error(std::size_t, const std::string&, const Json::exception& exception) {
-    const std::string text = exception.what();
-    return stop("is no JSON: " + text.substr(0, text.find('\n')));
+    return stop(std::string("is no JSON: ") + exception.what());
   }
 
  private:
@@ -122,13 +122,15 @@ bake::Result<Baseline> Baseline::read(const std::string& path) {
         kFile, path + ": the baseline cannot be read; make it with 'fdcg validate --full " + path + " ...'", {}};
   }
   ReportReader reader;
-  if (!Json::sax_parse(file, &reader)) return bake::Failure{kFile, path + ": the baseline " + reader.error, {}};
+  if (!Json::sax_parse(file, &reader)) return bake::Failure{kFile, one_line(path + ": the baseline " + reader.error), {}};
   if (!reader.is_report) {
     return bake::Failure{kFile, path + ": the baseline is no report of fdcg; make it with 'fdcg validate --full'", {}};
   }
   if (!reader.lacking.empty()) {
     return bake::Failure{
-        kUsage, path + ": the baseline " + reader.lacking + "; make it with 'fdcg validate --full', which lists all", {}};
+        kUsage,
+        path + ": the baseline " + one_line(reader.lacking) + "; make it with 'fdcg validate --full', which lists all",
+        {}};
   }
   Baseline baseline;
   baseline.files_ = std::move(reader.files);

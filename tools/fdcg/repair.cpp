@@ -8,6 +8,7 @@
 #include "../common/terminal.hpp"
 #include "command.hpp"
 #include "fdcg/bake.hpp"
+#include "mesh_input.hpp"
 #include "mesh_options.hpp"
 
 namespace fdcg::tools {
@@ -22,7 +23,7 @@ struct RepairArguments {
   std::string mesh;
   std::string output;
   std::string format;
-  std::string input_format;
+  std::optional<bake::Format> input_format;
   std::string report;
   std::optional<bake::Weld> weld;
   bake::RepairOptions options;
@@ -83,22 +84,6 @@ int check(RepairArguments& arguments) {
   return kClean;
 }
 
-std::string read_standard_input() {
-  std::string bytes;
-  char block[1 << 16];
-  for (std::size_t n = 0; (n = std::fread(block, 1, sizeof block, stdin)) > 0;)
-    bytes.append(block, n);
-  return bytes;
-}
-
-bake::Result<bake::PolygonSoup> import(const RepairArguments& arguments, const bake::Progress& progress) {
-  bake::ImportOptions options;
-  options.progress = progress;
-  options.format = format_named(arguments.input_format);
-  if (arguments.mesh != "-") return bake::import_mesh(arguments.mesh, options);
-  return bake::import_memory(read_standard_input(), "-", options);
-}
-
 void append_elements(std::string& text, const std::vector<bake::Element>& elements, std::uint64_t total) {
   constexpr std::size_t kShown = 3;
   const std::size_t shown = std::min(elements.size(), kShown);
@@ -145,6 +130,12 @@ int export_repaired(const RepairArguments& arguments, const bake::Repaired& repa
   return kClean;
 }
 
+// Unless it was asked to and had to leave the mesh as it is.
+bool did_simplify(const bake::Repaired& repaired) {
+  return std::none_of(repaired.actions.begin(), repaired.actions.end(),
+                      [](const bake::RepairAction& action) { return action.name == "simplify" && action.left != 0; });
+}
+
 int run_repair(RepairArguments& arguments) {
   if (const int code = check(arguments); code != kClean) return code;
   std::optional<AtomicFile> out, report;
@@ -155,7 +146,7 @@ int run_repair(RepairArguments& arguments) {
 
   ProgressBar bar(!arguments.quiet);
   arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
-  const auto soup = import(arguments, arguments.options.progress);
+  const auto soup = import_input(arguments.mesh, {arguments.input_format, arguments.options.progress});
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
   auto repaired = bake::repair(*soup, arguments.options);
@@ -184,7 +175,7 @@ int run_repair(RepairArguments& arguments) {
     if (repaired->read_with == bake::Weld::Kind::none)
       std::fputs("read it with --weld none: vertices at equal coordinates are apart on purpose\n", stream);
   }
-  return repaired->after.passes() ? kClean : kFindings;
+  return repaired->after.passes() && did_simplify(*repaired) ? kClean : kFindings;
 }
 
 void add_step_options(CLI::App& command, const std::shared_ptr<RepairArguments>& arguments) {
@@ -207,6 +198,16 @@ void add_step_options(CLI::App& command, const std::shared_ptr<RepairArguments>&
                    "Turn faces to agree with their patch, closed patches of mixed winding outwards");
   command.add_flag("--reverse-inside-out", options.reverse_inside_out,
                    "Turn closed patches that enclose negative volume, by nesting depth");
+  const auto parse_error = [arguments](const std::string& text) {
+    const auto error = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+    if (!error) throw CLI::ValidationError("--simplify", "'" + text + "' is no distance above 0 in the file's units");
+    arguments->options.simplify_error = *error;
+  };
+  command
+      .add_option_function<std::string>("--simplify", parse_error,
+                                        "Fewer triangles of the same topology, no point of either surface farther than ERROR "
+                                        "(in the file's units) from the other")
+      ->type_name("ERROR");
 }
 
 }  // namespace
@@ -222,7 +223,7 @@ Examples:
 Exit codes: 0 the result has no error; 1 errors are left (the mesh is written all the same, without --strict).
 What cannot be repaired surely is left, and said.)");
   const auto arguments = std::make_shared<RepairArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL; - is standard input")
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB, Draco; - is standard input")
       ->required()
       ->type_name("MESH");
   command->add_option("-o,--output", arguments->output, "The repaired mesh; - is standard output")->type_name("OUT");
@@ -234,10 +235,7 @@ What cannot be repaired surely is left, and said.)");
   };
   command->add_option_function<std::string>("--format", choose("--format", arguments->format), "Of OUT; default: by its ending")
       ->type_name("off|obj|ply|stl");
-  command
-      ->add_option_function<std::string>("--input-format", choose("--input-format", arguments->input_format),
-                                         "Of MESH; default: by its content")
-      ->type_name("off|obj|ply|stl");
+  add_input_format_option(*command, arguments->input_format);
   command->add_flag("--ascii", arguments->ascii, "PLY and STL as text");
   add_step_options(*command, arguments);
   command->add_option("--report", arguments->report, "Write the account as JSON to FILE")->type_name("FILE");

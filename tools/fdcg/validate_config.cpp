@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "../common/nearest.hpp"
+#include "../common/one_line.hpp"
 #include "command.hpp"
 
 namespace fdcg::tools {
@@ -21,7 +22,10 @@ const std::vector<std::string> kKeys{"$schema", "allow", "baseline", "fail-on", 
 using Complaint = std::string;
 
 Complaint must_be(const std::string& key, const std::string& what, const Json& value) {
-  return "'" + key + "' must be " + what + ", not " + value.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60);
+  // Printing a value within a hundred thousand others would take as many calls within each other.
+  const std::string found = value.is_structured() ? "an " + std::string(value.type_name())
+                                                  : value.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60);
+  return "'" + key + "' must be " + what + ", not " + found;
 }
 
 Complaint read_allow(const Json& value, ValidateSettings& settings) {
@@ -97,10 +101,6 @@ class DuplicateKeys {
   std::vector<std::set<std::string>> keys_;
 };
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
 }  // namespace
 
 bake::Result<ValidateConfig> read_config(const std::string& path) {
@@ -121,9 +121,9 @@ bake::Result<ValidateConfig> read_config(const std::string& path) {
         if (complaint.empty()) complaint = read_key(key, value, fs::path(path).parent_path(), config.settings);
       }
     }
-    if (!complaint.empty()) return bake::Failure{kUsage, path + ": " + complaint, {}};
+    if (!complaint.empty()) return bake::Failure{kUsage, one_line(path + ": " + complaint), {}};
   } catch (const Json::exception& error) {
-    return bake::Failure{kUsage, path + ": is no JSON: " + first_line(error.what()), {}};
+    return bake::Failure{kUsage, one_line(path + ": is no JSON: " + error.what()), {}};
   }
   return config;
 }
