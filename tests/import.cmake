@@ -8,8 +8,10 @@ if(FDCG_BUILD_TESTS)
   fdcg_test(text_scanner SOURCES unit/text_scanner_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import SOURCES unit/import_test.cpp unit/import_off_test.cpp unit/import_obj_test.cpp unit/import_ply_test.cpp
             unit/import_ply_binary_test.cpp unit/import_stl_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(guarded_child SOURCES unit/guarded_child_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import_drc SOURCES unit/import_drc_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers)
-  fdcg_test(import_gltf SOURCES unit/import_gltf_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers)
+  fdcg_test(import_gltf SOURCES unit/import_gltf_test.cpp unit/import_gltf_scene_test.cpp unit/import_gltf_refusal_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers
+            nlohmann_json::nlohmann_json)
   fdcg_test(import_corpus SOURCES unit/import_corpus_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import_allocation SOURCES unit/import_allocation_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
   fdcg_test(import_openmesh SOURCES unit/import_openmesh_test.cpp LIBRARIES fdcg_import fdcg_import_testing OpenMeshCore)
@@ -22,11 +24,12 @@ endif()
 
 if(FDCG_BUILD_FUZZERS)
   # One target a reader. Run: fdcg_fuzz_import_ply testdata/fuzz/import_ply
-  foreach(format off obj ply stl)
+  foreach(format off obj ply stl gltf glb drc)
     add_executable(fdcg_fuzz_import_${format} fuzz/fuzz_import_${format}.cpp)
     target_link_libraries(fdcg_fuzz_import_${format} PRIVATE fdcg_import fdcg_flags)
     target_link_options(fdcg_fuzz_import_${format} PRIVATE -fsanitize=fuzzer)
   endforeach()
+  target_include_directories(fdcg_fuzz_import_drc PRIVATE ${PROJECT_SOURCE_DIR}/lib/src)
 endif()
 
 if(FDCG_BUILD_BENCHMARKS)

@@ -216,7 +216,7 @@ DracoMeshes decode_draco(std::span<const DracoInput> inputs, const ChildLimits& 
 ChildLimits draco_limits(std::size_t draco_bytes) {
   constexpr std::size_t kMebibyte = std::size_t{1} << 20;
   ChildLimits limits;
-  limits.memory_bytes = 256 * kMebibyte + 256 * draco_bytes;
+  limits.memory_bytes = 256 * kMebibyte + 512 * draco_bytes;
   limits.answer_bytes = limits.memory_bytes;
   limits.cpu_seconds = static_cast<unsigned>(10 + 4 * (draco_bytes / kMebibyte));
   return limits;

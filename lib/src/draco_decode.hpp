@@ -64,8 +64,8 @@ class DracoMeshes {
 // Decodes all of them in one child process.
 DracoMeshes decode_draco(std::span<const DracoInput> inputs, const ChildLimits& limits);
 
-// 256 MiB and 256 bytes for each byte of Draco data; 10 s and 4 s for each MiB. Meshes take 1 to 2 bytes a face, and libdraco
-// some 150 bytes and a microsecond for each.
+// 256 MiB and 512 bytes for each byte of Draco data; 10 s and 4 s for each MiB. Meshes take 0.3 to 2 bytes a face, and libdraco
+// some 100 bytes and a microsecond for each.
 ChildLimits draco_limits(std::size_t draco_bytes);
 
 }  // namespace fdcg::bake

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <mutex>
 #include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "parallel.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -63,18 +66,25 @@ void number_fans(std::vector<std::pair<VertexId, std::uint32_t>>& ends, FanCorne
 
 }  // namespace
 
-std::vector<OddEdge> odd_edges(const Mesh& mesh, const Topology& topology) {
+std::vector<OddEdge> odd_edges(const Mesh& mesh, const Topology& topology, unsigned jobs) {
   struct Entry {
     std::uint32_t low, high, slot;
     auto operator<=>(const Entry&) const = default;
   };
-  std::vector<Entry> entries;
-  for (std::uint32_t h = 0; h < topology.twin.size(); ++h) {
-    if (topology.twin[h] != Topology::kSameWay && topology.twin[h] != Topology::kNonManifold) continue;
-    const std::uint32_t u = +mesh.corners[h];
-    const std::uint32_t v = +mesh.corners[+next(mesh, topology.face(HalfedgeId{h}), HalfedgeId{h})];
-    entries.push_back({std::min(u, v), std::max(u, v), h});
-  }
+  std::vector<Entry> entries;  // in no particular order at first
+  std::mutex lock;
+  constexpr std::size_t kAtOnce = 65'536;
+  parallel_for(jobs, topology.twin.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<Entry> found;
+    for (auto h = static_cast<std::uint32_t>(begin); h < end; ++h) {
+      if (topology.twin[h] != Topology::kSameWay && topology.twin[h] != Topology::kNonManifold) continue;
+      const std::uint32_t u = +mesh.corners[h];
+      const std::uint32_t v = +mesh.corners[+next(mesh, topology.face(HalfedgeId{h}), HalfedgeId{h})];
+      found.push_back({std::min(u, v), std::max(u, v), h});
+    }
+    const std::scoped_lock guard(lock);
+    entries.insert(entries.end(), found.begin(), found.end());
+  });
   std::sort(entries.begin(), entries.end());
   std::vector<OddEdge> edges;
   for (std::size_t i = 0; i < entries.size(); ++i) {

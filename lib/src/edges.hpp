@@ -16,7 +16,7 @@ struct OddEdge {
 };
 
 // All odd edges, ordered by their first half-edge. Linear where there are none, else k log k in their half-edges.
-[[nodiscard]] std::vector<OddEdge> odd_edges(const Mesh& mesh, const Topology& topology);
+[[nodiscard]] std::vector<OddEdge> odd_edges(const Mesh& mesh, const Topology& topology, unsigned jobs = 1);
 
 // Vertices whose sound faces form more than one fan, ascending. Faces belong to one fan when an edge at the vertex, or a chain
 // of such edges, joins them, however many faces the edge has. Linear; a vertex with odd edges costs k log k.

@@ -6,6 +6,7 @@
 #include "exact.hpp"
 #include "filtered_sum.hpp"
 #include "outline.hpp"
+#include "parallel.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -17,7 +18,8 @@ bool finite(const Vec3& p) {
 
 }  // namespace
 
-FaceGeometry::FaceGeometry(const Mesh& mesh, const std::vector<FaceState>& states) : mesh_(mesh), bits_(mesh.face_count(), 0) {
+FaceGeometry::FaceGeometry(const Mesh& mesh, const std::vector<FaceState>& states, unsigned jobs)
+    : mesh_(mesh), bits_(mesh.face_count(), 0) {
   const bool has_polygons = mesh.corners.size() != std::size_t{3} * mesh.face_count() ||
                             std::adjacent_find(mesh.face_first.begin(), mesh.face_first.end(),
                                                [](auto a, auto b) { return b != a + 3; }) != mesh.face_first.end();
@@ -25,23 +27,29 @@ FaceGeometry::FaceGeometry(const Mesh& mesh, const std::vector<FaceState>& state
     frames_.resize(mesh.face_count());
     flat_.resize(mesh.face_count(), Flat::unknown);
   }
-  for (std::uint32_t i = 0; i < mesh.face_count(); ++i) {
-    const FaceId f{i};
-    if (states[i] == FaceState::repeated_corner) bits_[i] |= kDegenerate;
-    if (states[i] == FaceState::invalid_corner) {
-      bits_[i] |= kNotFinite;
-      continue;
-    }
-    for (std::uint32_t h = first(f); h < first(f) + size(f); ++h) {
-      if (!finite(point(h))) bits_[i] |= kNotFinite;
-    }
-    if (bits_[i] != 0) continue;
-    bits_[i] = certain_signs(f);
-    if (bits_[i] != 0 && !has_polygons) continue;  // a certain sign: the triangle has an area
-    std::array<std::uint32_t, 3> found{};
-    if (!find_frame(f, found)) bits_[i] = kDegenerate;
-    if (has_polygons) frames_[i] = found;
+  constexpr std::size_t kFacesAtOnce = 16'384;
+  parallel_for(jobs, mesh.face_count(), kFacesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f)
+      look_at(FaceId{static_cast<std::uint32_t>(f)}, states[f]);
+  });
+}
+
+void FaceGeometry::look_at(FaceId f, FaceState state) {
+  std::uint8_t& bits = bits_[+f];
+  if (state == FaceState::repeated_corner) bits |= kDegenerate;
+  if (state == FaceState::invalid_corner) {
+    bits |= kNotFinite;
+    return;
   }
+  for (std::uint32_t h = first(f); h < first(f) + size(f); ++h) {
+    if (!finite(point(h))) bits |= kNotFinite;
+  }
+  if (bits != 0) return;
+  bits = certain_signs(f);
+  if (bits != 0 && frames_.empty()) return;  // a certain sign: the triangle has an area
+  std::array<std::uint32_t, 3> found{};
+  if (!find_frame(f, found)) bits = kDegenerate;
+  if (!frames_.empty()) frames_[+f] = found;
 }
 
 std::uint8_t FaceGeometry::certain_signs(FaceId f) const {

@@ -15,7 +15,7 @@ namespace fdcg::bake {
 class FaceGeometry {
  public:
   // One linear pass: a floating-point filter with a proven bound, exact predicates where it cannot tell.
-  FaceGeometry(const Mesh& mesh, const std::vector<FaceState>& states);
+  FaceGeometry(const Mesh& mesh, const std::vector<FaceState>& states, unsigned jobs = 1);
 
   // Every face has three corners, and face f the slots 3 f to 3 f + 2.
   [[nodiscard]] bool has_triangles_only() const { return frames_.empty(); }
@@ -37,6 +37,7 @@ class FaceGeometry {
   [[nodiscard]] const Vec3& point(std::uint32_t slot) const { return mesh_.points[+mesh_.corners[slot]]; }
   [[nodiscard]] std::uint32_t first(FaceId f) const { return mesh_.face_first[+f]; }
   [[nodiscard]] std::uint32_t size(FaceId f) const { return mesh_.face_first[+f + 1] - mesh_.face_first[+f]; }
+  void look_at(FaceId f, FaceState state);
   [[nodiscard]] std::uint8_t certain_signs(FaceId f) const;
   // The slots of the first corner, the first after it elsewhere, and the first after that off their line; false if there are
   // none.

@@ -121,7 +121,7 @@ std::string_view Buffers::fetch(Index index) {
   }
   if (!uri->starts_with("data:")) return fetch_file(index, *uri);
   std::optional<std::string> bytes = decode_data_uri(*uri);
-  if (!bytes) throw Refusal{place_of(index) + ".uri: its base64 text is damaged; fetch or export the file again"};
+  if (!bytes) throw Refusal{place_of(index) + ".uri: its data is damaged; fetch or export the file again"};
   return decoded_[index] = std::move(*bytes);
 }
 
@@ -147,6 +147,7 @@ std::string_view Buffers::fetch_file(Index index, const std::string& uri) {
   Result<FileBytes> file = FileBytes::open(path);
   if (!file) throw Refusal{place + file.error().message};
   outside_bytes_ += file->bytes().size();
+  outside_files_.push_back(path.string());
   return files_.emplace(uri, std::move(*file)).first->second.bytes();
 }
 

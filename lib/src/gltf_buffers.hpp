@@ -25,7 +25,8 @@ class Buffers {
   // The bytes of bufferViews[index].
   std::string_view view(Index index);
 
-  // Bytes that were read from other files so far.
+  // The other files that were read so far, and the bytes in them.
+  [[nodiscard]] const std::vector<std::string>& outside_files() const { return outside_files_; }
   [[nodiscard]] std::size_t outside_bytes() const { return outside_bytes_; }
 
  private:
@@ -39,6 +40,7 @@ class Buffers {
   std::vector<std::optional<std::string_view>> fetched_;
   std::map<Index, std::string> decoded_;    // data URIs
   std::map<std::string, FileBytes> files_;  // by URI
+  std::vector<std::string> outside_files_;
   std::size_t outside_bytes_ = 0;
 };
 

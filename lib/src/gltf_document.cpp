@@ -111,11 +111,11 @@ class Parser {
     primitive.has_targets = item.find("targets").has_value();
     if (const std::optional<Value> positions = attributes.find("POSITION")) {
       primitive.positions = use_accessor(*positions);
-      check_positions(*positions, document_.accessors[*primitive.positions]);
+      check_positions(*positions, *primitive.positions);
     }
     if (const std::optional<Value> indices = item.find("indices")) {
       primitive.indices = use_accessor(*indices);
-      check_indices(*indices, document_.accessors[*primitive.indices]);
+      check_indices(*indices, *primitive.indices);
     }
     if (const std::optional<Value> extensions = item.find("extensions")) read_draco(*extensions, primitive);
     return primitive;
@@ -136,15 +136,18 @@ class Parser {
     primitive.draco_view = use_view(draco->at("bufferView"));
   }
 
-  static void check_positions(const Value& place, const Accessor& accessor) {
+  void check_positions(const Value& place, Index index) const {
+    const Accessor& accessor = document_.accessors[index];
     if (accessor.components == 3 && accessor.type != Component::u32) return;
-    place.fail("the accessor is not of VEC3 of floats, nor of 8- or 16-bit integers (KHR_mesh_quantization)");
+    place.fail("accessors[" + std::to_string(index) +
+               "] is not of VEC3 of floats, nor of 8- or 16-bit integers (KHR_mesh_quantization)");
   }
-  static void check_indices(const Value& place, const Accessor& accessor) {
+  void check_indices(const Value& place, Index index) const {
+    const Accessor& accessor = document_.accessors[index];
     const bool is_unsigned =
         accessor.type == Component::u8 || accessor.type == Component::u16 || accessor.type == Component::u32;
-    if (accessor.components != 1 || !is_unsigned)
-      place.fail("the accessor is not of SCALAR of unsigned 8-, 16- or 32-bit integers");
+    if (accessor.components == 1 && is_unsigned) return;
+    place.fail("accessors[" + std::to_string(index) + "] is not of SCALAR of unsigned 8-, 16- or 32-bit integers");
   }
 
   // ---- accessors, views and buffers: each is read when something refers to it

@@ -83,15 +83,34 @@ std::uint64_t Value::whole_or(std::string_view key, std::uint64_t fallback) cons
   return value ? value->whole() : fallback;
 }
 
+namespace {
+
+// Ahead of the parser, which would take some 80 bytes of memory for each level (and which, asked to call back at each value,
+// takes quadratic time). In a text that is JSON up to some byte, the count is right up to there.
+void check_depth(std::string_view text) {
+  constexpr int kMaxDepth = 128;  // glTF needs some ten levels, extras may have a few more
+  int depth = 0;
+  bool is_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (is_string && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      is_string = !is_string;
+    } else if (!is_string && (c == '[' || c == '{')) {
+      if (++depth > kMaxDepth) throw Refusal{"the JSON is nested deeper than 128 levels; the file is damaged or forged"};
+    } else if (!is_string && (c == ']' || c == '}')) {
+      --depth;
+    }
+  }
+}
+
+}  // namespace
+
 nlohmann::json parse_json(std::string_view text) {
-  // A level takes a byte of the file and some 80 of memory; glTF needs eight levels, extras some more.
-  constexpr int kMaxDepth = 128;
-  const auto check_depth = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kMaxDepth) throw Refusal{"the JSON is nested deeper than 128 levels; the file is damaged or forged"};
-    return true;
-  };
+  check_depth(text);
   try {
-    return Json::parse(text.begin(), text.end(), check_depth);
+    return Json::parse(text.begin(), text.end());
   } catch (const Json::parse_error& error) {
     const std::size_t at = std::min(error.byte, text.size());  // of the last byte read, counted from 1
     const std::string_view before = text.substr(0, at);

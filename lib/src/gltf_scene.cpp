@@ -13,33 +13,13 @@
 
 #include "draco_decode.hpp"
 #include "gltf_accessor.hpp"
-#include "quantised.hpp"
+#include "gltf_placing.hpp"
 
 namespace fdcg::bake::gltf {
 namespace {
 
 constexpr std::uint64_t kPrimitiveCost = 64;  // elements: what a primitive takes beside its points and corners
 constexpr std::size_t kMaxNameBytes = 128;    // of a node or a mesh, in the name of a part
-
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix result{};
-  for (std::size_t column = 0; column < 4; ++column) {
-    for (std::size_t row = 0; row < 4; ++row) {
-      for (std::size_t k = 0; k < 4; ++k)
-        result[4 * column + row] += a[4 * k + row] * b[4 * column + k];
-    }
-  }
-  return result;
-}
-
-Vec3 applied(const Matrix& m, const Vec3& p) {
-  return {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12], m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
-          m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
-}
-
-bool is_mirrored(const Matrix& m) {
-  return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]) < 0;
-}
 
 // At most kMaxNameBytes, and no half character of UTF-8 at the end.
 std::string cut(const std::string& name) {
@@ -52,64 +32,6 @@ std::string cut(const std::string& name) {
 std::string name_or(const std::string& name, const char* list, Index index) {
   return name.empty() ? std::string(list) + "[" + std::to_string(index) + "]" : cut(name);
 }
-
-// How finely positions are known in their own frame.
-struct Grain {
-  double relative = 0x1p-53;  // of each coordinate
-  double half_step = 0;       // of each coordinate; 0: they are no steps of a grid
-};
-
-Grain grain_of(const Positions& positions) {
-  if (positions.type() == Component::f32) return {0x1p-24, 0};
-  const bool is_byte = size_of(positions.type()) == 1;
-  // 256 steps are too few for a scan: bytes that are not normalised are the grid of a drawing, and exact.
-  if (!positions.is_normalized()) return {0x1p-53, is_byte ? 0 : 0.5};
-  switch (positions.type()) {
-    case Component::i8:
-      return {0x1p-53, 0.5 / 127};
-    case Component::u8:
-      return {0x1p-53, 0.5 / 255};
-    case Component::i16:
-      return {0x1p-53, 0.5 / 32767};
-    default:
-      return {0x1p-53, 0.5 / 65535};
-  }
-}
-
-// What rounding did to the points once they are in place. The transforms are the same for all points of a node, and so neither
-// bend nor break a flat face; what counts is how far they carry the rounding of the points themselves, and that of the sums.
-class Rounding {
- public:
-  // Points of a primitive whose coordinates are at most `largest`; `world` null: they stay where they are.
-  void note(const Grain& grain, const std::array<double, 3>& largest, const Matrix* world) {
-    constexpr double kSum = 0x1p-51;  // of three products and three sums
-    if (world == nullptr) half_step_ = std::max(half_step_, grain.half_step);
-    is_moved_ = is_moved_ || world != nullptr;
-    const Matrix& m = world != nullptr ? *world : kIdentity;
-    for (std::size_t row = 0; row < 3; ++row) {
-      double off = 0, size = std::fabs(m[12 + row]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double factor = std::fabs(m[4 * k + row]);
-        off += factor * std::max(grain.relative * largest[k], grain.half_step);
-        size += factor * largest[k];
-      }
-      bound_ = std::max(bound_, off + (world != nullptr ? kSum * size : 0));
-    }
-  }
-
-  // Where every point stays where it is, the coordinates say by themselves whether they are floats. Else they are doubles, and
-  // one bound holds for all: a relative one would grow with the distance that a node was moved.
-  void finish(PolygonSoup& soup) const {
-    if (is_moved_) soup.relative_quantum = 0x1p-53;
-    const double bound = is_moved_ ? bound_ : half_step_;
-    if (bound > 0) soup.absolute_quantum = at_most_a_share(bound, soup.points);
-  }
-
- private:
-  bool is_moved_ = false;
-  double half_step_ = 0;  // of points that stay where they are
-  double bound_ = 0;
-};
 
 class SceneBuilder {
  public:
@@ -324,7 +246,8 @@ class SceneBuilder {
       return;
     }
     if (corners < 3) {
-      count("corners left over after the last triangle") += corners;
+      if (corners > 0)
+        ++count(mode == Mode::triangle_fan ? "fans of fewer than three vertices" : "strips of fewer than three vertices");
       return;
     }
     charge(corners_, 3 * (corners - 2));
@@ -341,8 +264,9 @@ class SceneBuilder {
 
   // Strips are joined into one by repeating vertices: what has a vertex twice is no triangle but such a joint.
   void add_strip_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool is_flipped) {
-    const auto is_same = [](std::uint32_t p, std::uint32_t q) { return p == q && p != PolygonSoup::kInvalidVertex; };
-    if (is_same(a, b) || is_same(b, c) || is_same(c, a)) {
+    constexpr std::uint32_t kInvalid = PolygonSoup::kInvalidVertex;
+    const bool is_known = a != kInvalid && b != kInvalid && c != kInvalid;
+    if (is_known && (a == b || b == c || c == a)) {
       ++count("strip joints");
     } else {
       add_face(a, b, c, is_flipped);

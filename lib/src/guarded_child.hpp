@@ -12,7 +12,7 @@
 namespace fdcg::bake {
 
 struct ChildLimits {
-  std::size_t memory_bytes = 0;  // that the child may take beyond what this process has; not enforced under sanitizers
+  std::size_t memory_bytes = 0;  // that the child may take beyond what this process has; four times that under sanitizers
   std::size_t answer_bytes = 0;  // that it may answer; only what it writes of them takes memory
   unsigned cpu_seconds = 0;      // of processor time, at least 1; of time on the clock twenty times that, plus a minute
 };
@@ -57,7 +57,7 @@ class ChildResult {
 // held, nor write to streams, nor start threads. Memory (new, malloc) and exceptions are free to it; what it throws is trouble.
 ChildResult run_guarded(const ChildLimits& limits, const std::function<void(ChildAnswer&)>& work);
 
-// False where the memory limit has no effect: in builds with sanitizers, which take terabytes of addresses for themselves.
-bool guards_memory();
+// False in builds with sanitizers: their allocators end the child where others throw, so that trouble() is only that it ended.
+bool tells_of_memory();
 
 }  // namespace fdcg::bake

@@ -143,10 +143,10 @@ void apply(const ChildLimits& limits, pid_t parent) {
   set_limit(RLIMIT_CORE, 0, 0);
   set_limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1);
   ::alarm(limits.cpu_seconds * kClockPerCpu + kClockSeconds);
-  if (FDCG_SANITIZED) return;
-  silence();
+  if (!FDCG_SANITIZED) silence();
 #ifdef __linux__
-  const rlim_t most = private_bytes() + limits.memory_bytes;
+  constexpr std::size_t kOverhead = FDCG_SANITIZED ? 4 : 1;  // red zones, and freed memory held back
+  const rlim_t most = private_bytes() + kOverhead * limits.memory_bytes;
   set_limit(RLIMIT_DATA, most, most);
 #endif
 }
@@ -252,7 +252,7 @@ ChildResult run_guarded(const ChildLimits& limits, const std::function<void(Chil
   return result;
 }
 
-bool guards_memory() {
+bool tells_of_memory() {
   return !FDCG_SANITIZED;
 }
 

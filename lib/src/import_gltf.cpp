@@ -92,6 +92,7 @@ Result<PolygonSoup> read_gltf(const MeshText& input) {
     const gltf::Document document = gltf::parse_document(container.json);
     gltf::Buffers buffers(document, container.binary, input.file);
     gltf::build_scene(document, buffers, input, soup);
+    soup.other_files = buffers.outside_files();
   } catch (const Refusal& refusal) {
     return refuse(input.name, refusal.what, refusal.rule);
   }

@@ -52,9 +52,11 @@ const std::vector<Rule>& rules() {
        "Delete one of the two faces, or give the part a thickness.", false},
       {"boundary-edge", warning, "edges with one face",
        "The surface ends there: the hand can pass around the edge to the back, where nothing is felt.",
-       "Close the hole if the object is meant to be solid.", true},
+       "Close the hole if the object is meant to be solid; where rounding alone keeps two rims apart, `--weld DISTANCE` joins "
+       "them.",
+       true},
       {"self-intersection", warning, "pairs of faces that meet other than in a shared vertex or edge",
-       "Inside the overlap the god-object follows one sheet and ignores the other.",
+       "Inside the overlap the god-object follows one sheet and ignores the other; where faces only touch it may slip between.",
        "Unite the overlapping parts in the modelling program.", true},
       {"non-planar-face", warning, "polygons with corners off their plane by more than the rounding of the file explains",
        "A node of the graph is one plane: compile cuts such a polygon into triangles, and the cut can be felt.",

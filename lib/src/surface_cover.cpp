@@ -114,48 +114,55 @@ bool SurfaceCover::is_near_one(const std::array<Vec3, 3>& triangle, std::vector<
   return false;
 }
 
-bool SurfaceCover::is_below_a_sheet(const std::array<Vec3, 3>& triangle, std::vector<std::uint32_t>& used) {
-  const Vec3& origin = triangle[0];
-  const Vec3 u = triangle[1] - origin, w = triangle[2] - origin;
+// The frame: the triangle's plane, and in it the triangle with its edges moved inwards so little that no point of it is farther
+// than the slack from what remains. False where it is too thin for one.
+bool SurfaceCover::set_frame(const std::array<Vec3, 3>& triangle) {
+  const Vec3 u = triangle[1] - triangle[0], w = triangle[2] - triangle[0];
   const Vec3 n = cross(u, w);
-  const double width = length(u), area = length(n);
+  const double a = length(triangle[2] - triangle[1]), b = length(w), c = length(u), area = length(n);
   constexpr double kThinnest = 1e-4;  // of a thinner triangle rounding leaves no frame that is square enough
-  if (!(width > 0 && area > kThinnest * width * length(w))) return false;
-  const Vec3 normal = (1 / area) * n, x = (1 / width) * u, y = cross(normal, x);
-  const auto flat = [&](const Vec3& p) { return Point2{dot(p - origin, x), dot(p - origin, y)}; };
+  if (!(c > 0 && area > kThinnest * b * c)) return false;
+  Frame& frame = frame_;
+  frame.origin = triangle[0];
+  frame.normal = (1 / area) * n;
+  frame.x = (1 / c) * u;
+  frame.y = cross(frame.normal, frame.x);
+  frame.reach = reach_ - slack_ - std::abs(dot(w, frame.normal));
 
-  const double reach = reach_ - slack_ - std::abs(dot(w, normal));
-
-  // The triangle, with its edges moved inwards so little that no point of it is farther than the slack from what remains: a
-  // corner of half angle h moves by inset / sin h.
-  Triangle2 t{flat(triangle[0]), flat(triangle[1]), flat(triangle[2])};
-  const double perimeter = width + length(w) + length(triangle[2] - triangle[1]);
-  const double inradius = area / perimeter, longest = std::max({width, length(w), length(triangle[2] - triangle[1])});
-  // The incentre lies inradius / sin h from the corner, and less than the longest edge: sin h > inradius / longest.
-  const double inset = slack_ * inradius / longest;
-  if (!(inradius > 4 * inset) || !(inset > longest * 0x1p-48)) return false;
-  const double a = length(triangle[2] - triangle[1]), b = length(w), c = width;
+  Triangle2& t = frame.triangle;
+  t = {frame.flat(triangle[0]), frame.flat(triangle[1]), frame.flat(triangle[2])};
+  const double perimeter = a + b + c, inradius = area / perimeter;
+  frame.longest = std::max({a, b, c});
+  // A corner of half angle h moves by inset / sin h. The incentre lies inradius / sin h from it, and less than the longest
+  // edge: sin h > inradius / longest.
+  const double inset = slack_ * inradius / frame.longest;
+  if (!(inradius > 4 * inset) || !(inset > frame.longest * 0x1p-48)) return false;
   const Point2 centre{(a * t[0][0] + b * t[1][0] + c * t[2][0]) / perimeter,
                       (a * t[0][1] + b * t[1][1] + c * t[2][1]) / perimeter};
   const double scale = 1 - inset / inradius;
   for (Point2& p : t)
     p = {centre[0] + scale * (p[0] - centre[0]), centre[1] + scale * (p[1] - centre[1])};
+  return true;
+}
 
-  Point2 low{std::min({t[0][0], t[1][0], t[2][0]}), std::min({t[0][1], t[1][1], t[2][1]})};
-  Point2 high{std::max({t[0][0], t[1][0], t[2][0]}), std::max({t[0][1], t[1][1], t[2][1]})};
+// The candidates that lie within reach of the plane and may overlap the triangle there, and their edges in order.
+void SurfaceCover::gather_sheet() {
   sheet_.clear();
   edges_.clear();
+  const auto overlaps = [](const Triangle2& p, const Triangle2& q, std::size_t axis) {
+    const auto [p_low, p_high] = std::minmax({p[0][axis], p[1][axis], p[2][axis]});
+    const auto [q_low, q_high] = std::minmax({q[0][axis], q[1][axis], q[2][axis]});
+    return p_low <= q_high && q_low <= p_high;
+  };
   for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
     Projected projected{{}, i};
     bool is_in_reach = true;
     for (std::size_t k = 0; k < 3 && is_in_reach; ++k) {
       const Vec3& p = candidates_[i].point[k];
-      is_in_reach = std::abs(dot(p - origin, normal)) <= reach;
-      projected.point[k] = flat(p);
+      is_in_reach = std::abs(dot(p - frame_.origin, frame_.normal)) <= frame_.reach;
+      projected.point[k] = frame_.flat(p);
     }
-    const auto& q = projected.point;
-    if (!is_in_reach || std::max({q[0][0], q[1][0], q[2][0]}) < low[0] || std::min({q[0][0], q[1][0], q[2][0]}) > high[0] ||
-        std::max({q[0][1], q[1][1], q[2][1]}) < low[1] || std::min({q[0][1], q[1][1], q[2][1]}) > high[1])
+    if (!is_in_reach || !overlaps(projected.point, frame_.triangle, 0) || !overlaps(projected.point, frame_.triangle, 1))
       continue;
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t from = candidates_[i].name[k], to = candidates_[i].name[(k + 1) % 3];
@@ -163,30 +170,39 @@ bool SurfaceCover::is_below_a_sheet(const std::array<Vec3, 3>& triangle, std::ve
     }
     sheet_.push_back(projected);
   }
-  if (sheet_.empty()) return false;
   std::sort(edges_.begin(), edges_.end());
+}
+
+// An edge of the sheet that has not two of its triangles enters the triangle.
+bool SurfaceCover::has_border_inside() const {
   for (std::size_t i = 0; i < edges_.size();) {
     std::size_t end = i + 1;
     while (end < edges_.size() && edges_[end][0] == edges_[i][0] && edges_[end][1] == edges_[i][1])
       ++end;
-    if (end - i != 2) {  // of one candidate alone; or of three, which no sheet has
-      for (std::size_t e = i; e < end; ++e) {
-        const auto& q = sheet_[edges_[e][2]].point;
-        if (!is_apart(q[edges_[e][3]], q[(edges_[e][3] + 1) % 3], t)) return false;
-      }
+    for (std::size_t e = i; e < end && end - i != 2; ++e) {
+      const Triangle2& q = sheet_[edges_[e][2]].point;
+      if (!is_apart(q[edges_[e][3]], q[(edges_[e][3] + 1) % 3], frame_.triangle)) return true;
     }
     i = end;
   }
+  return false;
+}
 
+bool SurfaceCover::is_below_a_sheet(const std::array<Vec3, 3>& triangle, std::vector<std::uint32_t>& used) {
+  if (!set_frame(triangle)) return false;
+  gather_sheet();
+  if (sheet_.empty() || has_border_inside()) return false;
   // Any point inside will do; some lie on an edge by chance.
   constexpr std::array<std::array<double, 3>, 3> kInside{{{0.31, 0.36, 0.33}, {0.57, 0.19, 0.24}, {0.17, 0.22, 0.61}}};
+  const double tolerance = frame_.longest * frame_.longest * 0x1p-44;
   for (const auto& share : kInside) {
+    const Triangle2& t = frame_.triangle;
     const Point2 p{share[0] * t[0][0] + share[1] * t[1][0] + share[2] * t[2][0],
                    share[0] * t[0][1] + share[1] * t[1][1] + share[2] * t[2][1]};
     bool is_sure = true;
     int sum = 0;
     for (const Projected& projected : sheet_)
-      sum += winding(projected.point, p, longest * longest * 0x1p-44, is_sure);
+      sum += winding(projected.point, p, tolerance, is_sure);
     if (!is_sure) continue;
     if (sum == 0) return false;
     for (const Projected& projected : sheet_)

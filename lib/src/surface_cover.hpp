@@ -49,8 +49,24 @@ class SurfaceCover {
   bool is_near_one(const std::array<Vec3, 3>& triangle, std::vector<std::uint32_t>& used, bool& is_far);
   bool is_below_a_sheet(const std::array<Vec3, 3>& triangle, std::vector<std::uint32_t>& used);
 
+  bool set_frame(const std::array<Vec3, 3>& triangle);
+  void gather_sheet();
+  [[nodiscard]] bool has_border_inside() const;
+
+  using Triangle2 = std::array<std::array<double, 2>, 3>;
+  struct Frame {
+    Vec3 origin, x, y, normal;
+    double reach = 0;      // how far from the plane a candidate may be
+    double longest = 0;    // edge of the triangle
+    Triangle2 triangle{};  // a little smaller
+
+    [[nodiscard]] std::array<double, 2> flat(const Vec3& p) const {
+      const Vec3 d{p.x - origin.x, p.y - origin.y, p.z - origin.z};
+      return {d.x * x.x + d.y * x.y + d.z * x.z, d.x * y.x + d.y * y.y + d.z * y.z};
+    }
+  };
   struct Projected {
-    std::array<std::array<double, 2>, 3> point;
+    Triangle2 point;
     std::uint32_t candidate;
   };
 
@@ -59,6 +75,7 @@ class SurfaceCover {
   bool is_usable_;
   int parts_left_ = 0;
   std::span<const NamedTriangle> candidates_;
+  Frame frame_;
   std::vector<Projected> sheet_;
   std::vector<std::array<std::uint32_t, 4>> edges_;  // two names, candidate in the sheet, corner
 };

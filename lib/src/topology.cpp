@@ -5,8 +5,14 @@
 #include <cstddef>
 #include <limits>
 
+#include "parallel.hpp"
+
 namespace fdcg::bake {
 namespace {
+
+constexpr std::size_t kFacesAtOnce = 16'384;
+constexpr std::size_t kWorthThreads = 100'000;  // corners, some milliseconds; a thread costs a tenth of one
+constexpr std::size_t kMostPasses = 4;          // more threads would read more than they save
 
 bool all_triangles(const Mesh& mesh) {
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -69,30 +75,30 @@ void pair_bucket(const Mesh& mesh, const std::uint64_t* begin, const std::uint64
 
 }  // namespace
 
-std::vector<FaceState> face_states(const Mesh& mesh) {
+std::vector<FaceState> face_states(const Mesh& mesh, unsigned jobs) {
   std::vector<FaceState> states(mesh.face_count(), FaceState::sound);
-  std::vector<std::uint32_t> seen_in;  // of each vertex: the last face that named it; only polygons need it
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    const VertexId* corner = mesh.corners.data() + mesh.face_first[f];
-    const std::uint32_t count = mesh.face_first[f + 1] - mesh.face_first[f];
-    if (std::find(corner, corner + count, VertexId{kNone}) != corner + count) {
-      states[f] = FaceState::invalid_corner;
-    } else if (count < 3) {
-      states[f] = FaceState::repeated_corner;
-    } else if (count == 3) {
-      if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) states[f] = FaceState::repeated_corner;
-    } else {
-      if (seen_in.empty()) seen_in.assign(mesh.points.size(), kNone);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (seen_in[+corner[i]] == f) states[f] = FaceState::repeated_corner;
-        seen_in[+corner[i]] = f;
+  parallel_for(jobs, mesh.face_count(), kFacesAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<VertexId> sorted;  // only polygons need it
+    for (std::size_t f = begin; f < end; ++f) {
+      const VertexId* corner = mesh.corners.data() + mesh.face_first[f];
+      const std::uint32_t count = mesh.face_first[f + 1] - mesh.face_first[f];
+      if (std::find(corner, corner + count, VertexId{kNone}) != corner + count) {
+        states[f] = FaceState::invalid_corner;
+      } else if (count < 3) {
+        states[f] = FaceState::repeated_corner;
+      } else if (count == 3) {
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) states[f] = FaceState::repeated_corner;
+      } else {
+        sorted.assign(corner, corner + count);
+        std::sort(sorted.begin(), sorted.end());
+        if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) states[f] = FaceState::repeated_corner;
       }
     }
-  }
+  });
   return states;
 }
 
-Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states) {
+Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, unsigned jobs) {
   Topology topology;
   topology.twin.assign(mesh.corners.size(), Topology::kSkipped);
   if (!all_triangles(mesh)) {
@@ -102,9 +108,24 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states) 
     }
   }
 
-  // A counting sort by the smaller vertex: afterwards first[v] is where the bucket of v ends and that of v + 1 starts.
-  std::vector<std::uint32_t> first(mesh.points.size() + 1, 0);
-  for_each_halfedge(mesh, states, [&](std::uint32_t, std::uint32_t u, std::uint32_t v) { ++first[std::min(u, v)]; });
+  // A counting sort by the smaller vertex. Each thread has a range of vertices to itself and passes over all the faces: reading
+  // in order costs little beside writing wherever the vertices are.
+  const std::size_t vertices = mesh.points.size();
+  const bool is_small = mesh.corners.size() < kWorthThreads;
+  const std::size_t ranges = is_small ? 1 : std::min<std::size_t>(jobs, kMostPasses), width = vertices / ranges + 1;
+  std::vector<std::uint32_t> first(vertices + 1, 0);  // where the bucket of each vertex starts; later where it ends
+  const auto for_each_range = [&](auto work) {
+    parallel_for(jobs, ranges, 1, [&](std::size_t range, std::size_t) {
+      work(static_cast<std::uint32_t>(std::min(vertices, range * width)),
+           static_cast<std::uint32_t>(std::min(vertices, (range + 1) * width)));
+    });
+  };
+  for_each_range([&](std::uint32_t low, std::uint32_t high) {
+    for_each_halfedge(mesh, states, [&](std::uint32_t, std::uint32_t u, std::uint32_t v) {
+      const std::uint32_t least = std::min(u, v);
+      if (least - low < high - low) ++first[least];
+    });
+  });
   std::uint32_t sum = 0;
   for (std::uint32_t& entry : first) {
     const std::uint32_t count = entry;
@@ -112,16 +133,18 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states) 
     sum += count;
   }
   std::vector<std::uint64_t> keys(sum);
-  for_each_halfedge(mesh, states, [&](std::uint32_t slot, std::uint32_t u, std::uint32_t v) {
-    keys[first[std::min(u, v)]++] = std::uint64_t{std::max(u, v)} << 32 | slot;
+  for_each_range([&](std::uint32_t low, std::uint32_t high) {
+    std::uint32_t begin = first[low];
+    for_each_halfedge(mesh, states, [&](std::uint32_t slot, std::uint32_t u, std::uint32_t v) {
+      const std::uint32_t least = std::min(u, v);
+      if (least - low < high - low) keys[first[least]++] = std::uint64_t{std::max(u, v)} << 32 | slot;
+    });
+    for (std::uint32_t v = low; v < high; ++v) {
+      sort_bucket(keys.data() + begin, keys.data() + first[v]);
+      pair_bucket(mesh, keys.data() + begin, keys.data() + first[v], topology.twin);
+      begin = first[v];
+    }
   });
-
-  std::uint32_t begin = 0;
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    sort_bucket(keys.data() + begin, keys.data() + first[v]);
-    pair_bucket(mesh, keys.data() + begin, keys.data() + first[v], topology.twin);
-    begin = first[v];
-  }
   return topology;
 }
 

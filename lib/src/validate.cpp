@@ -102,7 +102,7 @@ void Checker::run_group(Group group) {
 }
 
 std::vector<Issue> Checker::run() {
-  subject_.odd = odd_edges(subject_.mesh, subject_.topology);
+  subject_.odd = odd_edges(subject_.mesh, subject_.topology, options_.jobs);
   constexpr Group kGroups[] = {Group::patches, Group::polygons, Group::duplicates};  // these take longest and so come first
   std::vector<std::size_t> single;
   for (std::size_t row = 0; row < std::size(kRows); ++row) {
@@ -134,7 +134,7 @@ std::uint64_t count_kept(const Subject& subject) {
 
 Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology, const std::vector<FaceState>& states,
              const CheckOptions& options) {
-  FaceGeometry geometry(mesh, states);
+  FaceGeometry geometry(mesh, states, options.jobs);
   Subject subject{soup, mesh, topology, states, options.precision, options.jobs, options.progress, geometry};
   std::vector<Issue> issues = Checker(subject, options).run();
   Report report;
@@ -160,8 +160,8 @@ Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology
 Prepared prepare(const PolygonSoup& soup, const Weld& weld, Precision precision, bool orient, unsigned jobs) {
   Prepared ready;
   ready.mesh = weld_points(soup, weld, precision, jobs);
-  ready.states = face_states(ready.mesh);
-  ready.topology = pair_halfedges(ready.mesh, ready.states);
+  ready.states = face_states(ready.mesh, jobs);
+  ready.topology = pair_halfedges(ready.mesh, ready.states, jobs);
   if (orient) ready.flipped_faces = bake::orient(ready.mesh, ready.topology, ready.states).size();
   return ready;
 }

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "parallel.hpp"
+
 namespace fdcg::bake {
 namespace {
 
@@ -68,6 +70,9 @@ struct LocalPoints {
   }
 };
 
+// Threads that share the exact weld; each passes over all the points, so that more would save little.
+constexpr std::size_t kMostParts = 4;
+
 std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
   a = (a ^ b) * 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio: odd, bits well spread
   return a ^ (a >> 29);
@@ -79,48 +84,49 @@ std::uint64_t hash_of(const Vec3& p) {
   return mix(h, 0);
 }
 
-// Open addressing over vertex numbers; the points themselves are the keys.
-class VertexTable {
+// Open addressing over the numbers of points, which are the keys themselves.
+class PointTable {
  public:
-  explicit VertexTable(std::size_t expected) { allocate(expected); }
+  PointTable(const LocalPoints& points, std::size_t expected) : points_(points) { allocate(expected); }
 
-  [[nodiscard]] std::size_t slot_of(std::uint64_t hash) const { return hash >> shift_; }
   void prefetch(std::uint64_t hash) const { __builtin_prefetch(&slots_[slot_of(hash)]); }
   [[nodiscard]] std::uint32_t peek(std::uint64_t hash) const { return slots_[slot_of(hash)]; }
 
-  // The vertex at `p`, or `fresh`, which is then entered; `points` holds the vertices so far.
-  std::uint32_t find_or_enter(const Vec3& p, std::uint64_t hash, std::uint32_t fresh, const std::vector<Vec3>& points) {
+  // The point entered that is equal to `p`, or `number`, which is then entered.
+  std::uint32_t find_or_enter(const Vec3& p, std::uint64_t hash, std::uint32_t number) {
     for (std::size_t slot = slot_of(hash);; slot = (slot + 1) & mask_) {
-      const std::uint32_t vertex = slots_[slot];
-      if (vertex == kNone) {
-        slots_[slot] = fresh;
-        if (++used_ > mask_ / 2) grow(points, p, fresh);
-        return fresh;
+      const std::uint32_t there = slots_[slot];
+      if (there == kNone) {
+        slots_[slot] = number;
+        if (++used_ > mask_ / 2) grow();
+        return number;
       }
-      if (points[vertex] == p) return vertex;
+      if (points_[there] == p) return there;
     }
   }
 
  private:
+  [[nodiscard]] std::size_t slot_of(std::uint64_t hash) const { return hash >> shift_; }
   void allocate(std::size_t expected) {
     const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(64, 2 * expected + 2));
     slots_.assign(capacity, kNone);
     mask_ = capacity - 1;
     shift_ = 64 - std::countr_zero(capacity);
   }
-  void grow(const std::vector<Vec3>& points, const Vec3& newest, std::uint32_t newest_vertex) {
+  void grow() {
     std::vector<std::uint32_t> old;
     old.swap(slots_);
     allocate(old.size() - 1);
-    for (const std::uint32_t vertex : old) {
-      if (vertex == kNone) continue;
-      std::size_t slot = slot_of(hash_of(vertex == newest_vertex ? newest : points[vertex]));
+    for (const std::uint32_t number : old) {
+      if (number == kNone) continue;
+      std::size_t slot = slot_of(hash_of(points_[number]));
       while (slots_[slot] != kNone)
         slot = (slot + 1) & mask_;
-      slots_[slot] = vertex;
+      slots_[slot] = number;
     }
   }
 
+  const LocalPoints& points_;
   std::vector<std::uint32_t> slots_;
   std::size_t mask_ = 0, used_ = 0;
   int shift_ = 0;
@@ -143,29 +149,48 @@ struct Welder {
   }
 };
 
-void weld_exact(const LocalPoints& local, std::size_t expected, Welder& out) {
+// Of the points whose hash falls to `part`: the first one equal to each. `first_equal` has room for all.
+void find_first_equal(const LocalPoints& local, std::size_t expected, std::size_t part, std::size_t parts,
+                      std::vector<std::uint32_t>& first_equal) {
   // Points are looked up in blocks, so that the misses to memory of a block overlap: first the slots, then the keys.
   constexpr std::size_t kBlock = 32;
-  VertexTable table(expected);
-  std::array<std::uint64_t, kBlock> hash{};
-  std::array<Vec3, kBlock> block{};
-  for (std::size_t first = 0; first < local.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, local.size() - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      block[i] = local[first + i];
-      hash[i] = hash_of(block[i]);
-      table.prefetch(hash[i]);
+  PointTable table(local, expected / parts);
+  struct Entry {
+    Vec3 point;
+    std::uint64_t hash;
+    std::uint32_t number;
+  };
+  std::array<Entry, kBlock> block{};
+  for (std::size_t next = 0; next < local.size();) {
+    std::size_t count = 0;
+    for (; next < local.size() && count < kBlock; ++next) {
+      Entry& entry = block[count];
+      entry = {local[next], 0, static_cast<std::uint32_t>(next)};
+      entry.hash = hash_of(entry.point);
+      if (entry.hash % kMostParts % parts != part) continue;
+      table.prefetch(entry.hash);
+      ++count;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t vertex = table.peek(hash[i]);
-      if (vertex != kNone) __builtin_prefetch(&out.mesh.points[vertex]);
+      const std::uint32_t there = table.peek(block[i].hash);
+      if (there != kNone) __builtin_prefetch(&local.source[there]);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3& p = block[i];
-      const std::uint32_t fresh = out.fresh();
-      const std::uint32_t vertex = is_finite(p) ? table.find_or_enter(p, hash[i], fresh, out.mesh.points) : fresh;
-      out.put(static_cast<std::uint32_t>(first + i), p, vertex);
+      const Entry& entry = block[i];
+      first_equal[entry.number] =
+          is_finite(entry.point) ? table.find_or_enter(entry.point, entry.hash, entry.number) : entry.number;
     }
+  }
+}
+
+void weld_exact(const LocalPoints& local, std::size_t expected, unsigned jobs, Welder& out) {
+  constexpr std::size_t kWorthThreads = 50'000;  // points, some milliseconds; a thread costs a tenth of one
+  const std::size_t parts = local.size() < kWorthThreads ? 1 : std::min<std::size_t>(jobs, kMostParts);
+  parallel_for(jobs, parts, 1,
+               [&](std::size_t part, std::size_t) { find_first_equal(local, expected, part, parts, out.vertex_of); });
+  for (std::uint32_t source = 0; source < local.size(); ++source) {
+    const std::uint32_t first = out.vertex_of[source];
+    out.put(source, local[source], first == source ? out.fresh() : out.vertex_of[first]);
   }
 }
 
@@ -228,7 +253,7 @@ void weld_none(const LocalPoints& local, Welder& out) {
 
 }  // namespace
 
-Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision, [[maybe_unused]] unsigned jobs) {
+Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision, unsigned jobs) {
   Mesh mesh;
   mesh.origin = choose_origin(soup.points);
   const LocalPoints local{soup.points, mesh.origin, precision};
@@ -243,14 +268,18 @@ Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision,
   } else if (weld.kind == Weld::Kind::distance && weld.distance > 0) {
     weld_distance(local, weld.distance, out);
   } else {
-    weld_exact(local, expected, out);
+    weld_exact(local, expected, jobs, out);
   }
 
   mesh.face_first = soup.face_first;
-  mesh.corners.reserve(soup.corners.size());
-  for (const std::uint32_t corner : soup.corners) {
-    mesh.corners.push_back(VertexId{corner < out.vertex_of.size() ? out.vertex_of[corner] : kNone});
-  }
+  mesh.corners.resize(soup.corners.size());
+  constexpr std::size_t kCornersAtOnce = 65'536;
+  parallel_for(jobs, soup.corners.size(), kCornersAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t h = begin; h < end; ++h) {
+      const std::uint32_t corner = soup.corners[h];
+      mesh.corners[h] = VertexId{corner < out.vertex_of.size() ? out.vertex_of[corner] : kNone};
+    }
+  });
   return mesh;
 }
 

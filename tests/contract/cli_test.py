@@ -62,7 +62,6 @@ class Usage(Case):
             ((*compile_, "--allow", "nonsense"), ("no rule",)),
             ((*compile_, "--jobs", "0"), ("--jobs",)),
             ((*compile_, "-q", "-v"), ()),
-            ((*compile_, "--self-intersections"), ()),
             (("compile", mesh, "-o", mesh), ("overwrite",)),
             (("compile", mesh, "-o", "-", "--depfile", self.path("d")), ("--depfile",)),
             (("repair", mesh, "-o", out), ("--orient",)),
@@ -174,6 +173,22 @@ class Compile(Case):
         self.fdcg("compile", mesh, "-o", out, "-q", "--depfile", self.path("out.d"))
         text = (self.folder / "out.d").read_text()
         self.assertEqual(text, f"{self.folder}/out\\ $$x.fdcg: {self.folder}/my\\ mesh\\#1.off\n")
+
+    def test_self_intersections_are_looked_for_on_request_and_do_not_hinder(self):
+        lines = CUBE.splitlines()
+        points = [[float(c) for c in line.split()] for line in lines[2:10]]
+        size = max(c for point in points for c in point) - min(c for point in points for c in point)
+        points += [[c + size / 2 + size / 8 * k for k, c in enumerate(point)] for point in points]
+        faces = [[int(v) for v in line.split()] for line in lines[10:]]
+        faces += [[4] + [v + 8 for v in face[1:]] for face in faces]
+        rows = [" ".join(map(str, row)) for row in points + faces]
+        mesh, out = self.write("two.off", "\n".join(["OFF", "16 12 0", *rows]) + "\n"), self.path("two.fdcg")
+        for options, expected in (((), []), (("--self-intersections",), ["self-intersection"])):
+            self.fdcg("compile", mesh, "-o", out, "-q", *options, "--report", self.path("report.json"))
+            report = json.loads((self.folder / "report.json").read_text())["files"][0]
+            self.assertEqual(expected, [issue["rule"] for issue in report["issues"]])
+        self.assertEqual(6, report["issues"][0]["total"])  # a corner of each in the other: three faces of each, two by two
+        self.assertIn("6 pairs of faces meet: 6 cross, 0 only touch", report["issues"][0]["message"])
 
     def test_orient_turns_what_looks_inwards(self):
         mesh, out = self.write("cube.off", inside_out(CUBE)), self.path("cube.fdcg")

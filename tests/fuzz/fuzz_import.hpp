@@ -79,13 +79,17 @@ inline void require_same(const PolygonSoup& a, const PolygonSoup& b) {
           "the same names twice");
 }
 
-inline int fuzz_import(Format format, const unsigned char* data, std::size_t size) {
-  // Triangle strips of one-byte numbers cost most: 16 bytes of soup for each, in arrays that double.
-  constexpr std::size_t kMultiple = 64, kMessages = std::size_t{1} << 16;
+// Triangle strips of one-byte numbers cost most: 16 bytes of soup for each, in arrays that double.
+inline constexpr std::size_t kMultiple = 64;
+// A scene may show a mesh many times: 16 points and 16 corners for each byte, in arrays that double.
+inline constexpr std::size_t kSceneMultiple = 1024;
+
+inline int fuzz_import(Format format, const unsigned char* data, std::size_t size, std::size_t multiple = kMultiple) {
+  constexpr std::size_t kMessages = std::size_t{1} << 16;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   HeapPeak::reset();
   const Result<PolygonSoup> soup = import_memory(bytes, "fuzz", {format, {}});
-  require(HeapPeak::bytes() <= static_cast<std::ptrdiff_t>(kMultiple * size + kMessages), "memory is a multiple of the file");
+  require(HeapPeak::bytes() <= static_cast<std::ptrdiff_t>(multiple * size + kMessages), "memory is a multiple of the file");
   if (soup) {
     require_sound(*soup);
   } else {

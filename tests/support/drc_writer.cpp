@@ -3,6 +3,8 @@
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <draco/point_cloud/point_cloud_builder.h>
 
 #include <array>
 #include <stdexcept>
@@ -32,6 +34,13 @@ void add_positions(draco::Mesh& mesh, const bake::PolygonSoup& soup, draco::Data
   }
 }
 
+std::string encoded(draco::Encoder& encoder, const draco::Mesh& mesh) {
+  draco::EncoderBuffer buffer;
+  const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
+  if (!status.ok()) throw std::runtime_error("write_drc: " + status.error_msg_string());
+  return {buffer.data(), buffer.size()};
+}
+
 }  // namespace
 
 std::string write_drc(const bake::PolygonSoup& soup, const DracoWriteOptions& options) {
@@ -55,9 +64,37 @@ std::string write_drc(const bake::PolygonSoup& soup, const DracoWriteOptions& op
   if (options.position_bits > 0) {
     encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, options.position_bits);
   }
+  return encoded(encoder, mesh);
+}
+
+std::string write_drc_with_seam() {
+  constexpr std::array<std::array<float, 3>, 4> kPlaces = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+  constexpr std::array<std::array<std::size_t, 3>, 2> kFaces = {{{0, 1, 2}, {0, 2, 3}}};
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(2);
+  const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int colours = builder.AddAttribute(draco::GeometryAttribute::COLOR, 1, draco::DT_UINT8);
+  for (std::uint32_t f = 0; f < 2; ++f) {
+    const auto& [a, b, c] = kFaces[f];
+    const auto colour = static_cast<std::uint8_t>(f);
+    builder.SetAttributeValuesForFace(positions, draco::FaceIndex(f), kPlaces[a].data(), kPlaces[b].data(), kPlaces[c].data());
+    builder.SetAttributeValuesForFace(colours, draco::FaceIndex(f), &colour, &colour, &colour);
+  }
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+  return encoded(encoder, *builder.Finalize());
+}
+
+std::string write_drc_cloud() {
+  constexpr std::array<float, 12> kPlaces = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  draco::PointCloudBuilder builder;
+  builder.Start(4);
+  const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  builder.SetAttributeValuesForAllPoints(positions, kPlaces.data(), 0);
+  draco::Encoder encoder;
   draco::EncoderBuffer buffer;
-  const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
-  if (!status.ok()) throw std::runtime_error("write_drc: " + status.error_msg_string());
+  const draco::Status status = encoder.EncodePointCloudToBuffer(*builder.Finalize(false), &buffer);
+  if (!status.ok()) throw std::runtime_error("write_drc_cloud: " + status.error_msg_string());
   return {buffer.data(), buffer.size()};
 }
 

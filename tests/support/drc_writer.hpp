@@ -20,4 +20,8 @@ struct DracoWriteOptions {
 // The soup has triangles alone, with corners in range.
 std::string write_drc(const bake::PolygonSoup& soup, const DracoWriteOptions& options = {});
 
+// Two triangles that meet in an edge, but differ in colour there: four places, six points, 0 1 2 and 3 4 5.
+std::string write_drc_with_seam();
+std::string write_drc_cloud();  // four points, no face
+
 }  // namespace fdcg::test

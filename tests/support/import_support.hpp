@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
@@ -115,7 +116,8 @@ inline std::vector<std::filesystem::path> real_meshes() {
     std::string ending = path.extension().string();
     for (char& c : ending)
       c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (ending == ".off" || ending == ".obj" || ending == ".ply" || ending == ".stl") meshes.push_back(path);
+    constexpr std::array kEndings = {".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc"};
+    if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end()) meshes.push_back(path);
   }
   return meshes;
 }

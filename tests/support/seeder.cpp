@@ -164,7 +164,10 @@ void Seeder::make_equal(Vertex v, Vertex w) {
 // ---- whole shells
 
 void Seeder::reverse_shell() {
-  const std::uint32_t s = random_.below(static_cast<std::uint32_t>(clean_.shells.size()));
+  reverse_shell(random_.below(static_cast<std::uint32_t>(clean_.shells.size())));
+}
+
+void Seeder::reverse_shell(std::uint32_t s) {
   for (Face f = clean_.shells[s].first_face; f < clean_.shells[s].end_face; ++f) {
     std::reverse(clean_loops_[f].begin(), clean_loops_[f].end());
     loops_[f] = clean_loops_[f];

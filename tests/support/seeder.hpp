@@ -50,8 +50,9 @@ class Seeder {
   bool plant(const std::string& kind);
   static std::vector<std::string> kinds();
 
-  // Turns over the whole of a shell drawn at random; before anything else.
+  // Turns over the whole of a shell, drawn at random where none is named; before anything else.
   void reverse_shell();
+  void reverse_shell(std::uint32_t shell);
   // Turns over, or deletes, each face of one untouched shell with a probability.
   bool flip_many(double probability);
   bool delete_many(double probability);

@@ -100,3 +100,65 @@ TEST_CASE("a mesh costs a small multiple of its file") {
     CHECK(used < 40 * file.size());  // of all allocations ever made, growing vectors included
   }
 }
+
+namespace {
+
+std::string gltf_with(const std::string& nodes, const std::string& accessor, const std::string& more = "") {
+  return R"({"asset":{"version":"2.0"},"nodes":[)" + nodes +
+         R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"componentType":5126,"type":"VEC3",)" +
+         accessor + R"(}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"data:;base64,)" +
+         std::string(48, 'A') + "\"}]" + more + "}";
+}
+
+}  // namespace
+
+TEST_CASE("counts of four billion in glTF and Draco ask for no memory") {
+  const std::string node = R"({"mesh":0})", huge = R"("count":4000000000)";
+  std::string draco("DRACO\x02\x02\x01\x01\0\0\0", 12);  // edgebreaker: vertices, faces, no attributes, symbols, no splits
+  for (const char* count : {"\x80\xC6\x86\x8F\x01", "\x80\xCA\xB5\xEE\x01", "\1", "\x80\xCA\xB5\xEE\x01", "\1"})
+    draco += count;
+  draco += std::string(15, '\1');
+  for (const std::string& file :
+       {gltf_with(node, huge), gltf_with(node, huge + R"(,"bufferView":0)"),
+        gltf_with(node, huge + R"(,"sparse":{"count":4000000000,"indices":{"bufferView":0,"componentType":5125},)"
+                               R"("values":{"bufferView":0}})"),
+        gltf_with(node, R"("count":3,"bufferView":0)").replace(9, 6, "[[[[[["), draco}) {
+    INFO(file.substr(0, 200));
+    requested = 0;
+    const Result<PolygonSoup> soup = import_memory(file, "mesh");
+    const std::size_t used = requested;
+    CHECK_FALSE(soup);
+    CHECK(used < 64 * 1024);
+  }
+}
+
+TEST_CASE("a scene that shows its mesh over and over stays below a multiple of its file") {
+  constexpr std::size_t kMultiple = 1500;  // 16 points, corners and their faces for each byte; their arrays grow by doubling
+  for (const std::size_t points : {3, 3000}) {
+    std::string nodes = R"({"mesh":0})";
+    for (int i = 0; i < 10'000; ++i)
+      nodes += R"(,{"mesh":0,"scale":[2,)" + std::to_string(i) + ",1]}";
+    const std::string file = gltf_with(nodes, R"("count":)" + std::to_string(points));
+    requested = 0;
+    const Result<PolygonSoup> soup = import_memory(file, "mesh");
+    const std::size_t used = requested;
+    CHECK(used < kMultiple * file.size());
+    REQUIRE(soup.has_value() == (points == 3));
+    if (!soup) CHECK(soup.error().message.find("the limit for a file of this size") != std::string::npos);
+    if (soup) CHECK(soup->face_count() == 10'001);
+  }
+}
+
+TEST_CASE("JSON that glTF has no use for costs a small multiple of its bytes") {
+  for (const std::string item : {"[]", "{}", "0", "\"\"", R"({"":[]})", "[[[[[[[[]]]]]]]]"}) {
+    std::string extras = ",\"extras\":[" + item;
+    for (int i = 0; i < 100'000; ++i)
+      extras += "," + item;
+    const std::string file = gltf_with(R"({"mesh":0})", R"("count":3,"bufferView":0)", extras + "]");
+    INFO(item);
+    requested = 0;
+    CHECK(import_memory(file, "mesh"));
+    const std::size_t used = requested;
+    CHECK(used < 100 * file.size());
+  }
+}

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <dirent.h>
-
-#include <set>
+#include <atomic>
+#include <chrono>
+#include <cmath>
 #include <thread>
 
+#include "guarded_child.hpp"
 #include "support/drc_writer.hpp"
 #include "support/import_support.hpp"
 #include "support/soups.hpp"
@@ -69,4 +70,58 @@ TEST_CASE("the quantum of a quantised Draco file is half a step") {
       }
     }
   }
+}
+
+TEST_CASE("points on seams of other attributes keep Draco's numbers and are joined by the weld alone") {
+  // Two triangles with a corner each of their own colour: four places, six points.
+  const std::string bytes = fdcg::test::write_drc_with_seam();
+  const PolygonSoup soup = import_text(bytes);
+  CHECK(soup.points.size() == 6);
+  CHECK(faces_of(soup) == std::vector<std::vector<std::uint32_t>>{{0, 1, 2}, {3, 4, 5}});
+  CHECK(soup.points[0] == soup.points[3]);
+}
+
+TEST_CASE("a Draco point cloud holds no face") {
+  const std::string message = refusal(fdcg::test::write_drc_cloud());
+  CHECK(message == "mesh: is a Draco point cloud and holds no face; compress a mesh");
+  CHECK(import_memory(fdcg::test::write_drc_cloud(), "mesh").error().rule == "empty-mesh");
+}
+
+TEST_CASE("forged counts end quickly, with the limit in the message") {
+  for (const char* name : {"unreadable-half-billion-faces.drc", "unreadable-half-billion-faces-valence.drc",
+                           "unreadable-billion-sequential-faces.drc"}) {
+    INFO(name);
+    const auto start = std::chrono::steady_clock::now();
+    const Result<PolygonSoup> soup = import_mesh(testdata() / "meshes" / "bad" / name);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    REQUIRE_FALSE(soup);
+    CHECK(soup.error().exit_code == 3);
+    CHECK(soup.error().rule == "unreadable");
+    CHECK(took.count() < 5);
+    if (!tells_of_memory() || std::string(name).find("half") == std::string::npos) continue;
+    CHECK(soup.error().message.ends_with(
+        ": decoding its Draco data took more than the 256 MiB of memory that a file of this size is given; the file is damaged "
+        "or forged: compress the mesh again"));
+  }
+}
+
+TEST_CASE("many threads may import Draco files at once") {
+  const PolygonSoup mesh = float_sphere(20, 30);
+  const std::string good = write_drc(mesh, {DracoMethod::edgebreaker, 11}), bad = good.substr(0, good.size() / 2);
+  const PolygonSoup alone = import_text(good);
+  constexpr int kThreads = 8, kRuns = 20;
+  std::atomic<int> right{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < kRuns; ++i) {
+        const Result<PolygonSoup> soup = import_memory(good, "good");
+        right += soup && soup->points == alone.points && soup->corners == alone.corners && soup->sha256 == alone.sha256;
+        right += !import_memory(bad, "bad");
+      }
+    });
+  }
+  for (std::thread& thread : threads)
+    thread.join();
+  CHECK(right == 2 * kThreads * kRuns);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -144,4 +145,28 @@ TEST_CASE("a vertex of a hundred thousand faces is paired like any other") {
 TEST_CASE("faces that are all unsound have no edges to pair") {
   const Mesh mesh = weld(make_soup({{0, 0, 0}, {1, 0, 0}}, {{0, 1, 7}, {0, 0, 1}, {}}));
   CHECK(pair_halfedges(mesh).twin == std::vector<HalfedgeId>(6, Topology::kSkipped));
+}
+
+TEST_CASE("weld, states and pairing are the same on one thread and on several") {
+  std::mt19937 rng(7);
+  PolygonSoup soup;
+  soup.face_first.push_back(0);
+  for (int i = 0; i < 150'000; ++i)
+    soup.points.push_back({static_cast<double>(rng() % 40), static_cast<double>(rng() % 40), i % 1000 == 0 ? NAN : rng() % 40});
+  for (int f = 0; f < 60'000; ++f) {
+    for (unsigned k = 0; k < 3 + rng() % 3; ++k)
+      soup.corners.push_back(rng() % 5000 == 0 ? PolygonSoup::kInvalidVertex : static_cast<std::uint32_t>(rng() % 150'000));
+    soup.face_first.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+  }
+  const Mesh mesh = weld_points(soup, {}, Precision::f64, 1);
+  const std::vector<FaceState> states = face_states(mesh);
+  const Topology topology = pair_halfedges(mesh, states);
+  for (const unsigned jobs : {2u, 3u, 9u}) {
+    const Mesh other = weld_points(soup, {}, Precision::f64, jobs);
+    CHECK((other.source_point == mesh.source_point));
+    CHECK((other.corners == mesh.corners));
+    CHECK(other.joined_vertices == mesh.joined_vertices);
+    CHECK((face_states(mesh, jobs) == states));
+    CHECK((pair_halfedges(mesh, states, jobs).twin == topology.twin));
+  }
 }

@@ -2,8 +2,8 @@
 #include "validate.hpp"
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <map>
 #include <random>
@@ -395,10 +395,10 @@ TEST_CASE("a polygon of 65,000 corners and a vertex of 100,000 faces take no mor
   }
   faces.push_back(floor);
   faces.push_back(roof);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   CHECK(totals(make_soup(points, faces)) == Totals{{"sliver-face", kSides}});  // the walls
   CHECK(totals(make_soup(points, {roof, std::vector<std::uint32_t>(roof.rbegin(), roof.rend())}))["folded-edge"] == kSides);
   CHECK(totals(bumpy_sphere(3, 100000, 0)) == Totals{{"sliver-face", 400000}});
   // Seconds where it takes a fraction of one: only a quadratic search fails this.
-  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
+  CHECK(std::clock() - start < 20 * CLOCKS_PER_SEC);
 }

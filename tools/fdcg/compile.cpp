@@ -103,13 +103,16 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 }
 
 // Everything is written before anything gets its name, so that a failure leaves nothing.
-int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report, const std::vector<std::byte>& buffer,
-                  AtomicFile& out) {
+int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report,
+                  const std::vector<std::string>& other_files, const std::vector<std::byte>& buffer, AtomicFile& out) {
   out.write(as_text(buffer));  // empty where the file was made in place
   std::optional<AtomicFile> depfile, report;
   if (!arguments.depfile.empty()) {
     depfile.emplace(arguments.depfile);
-    depfile->write(escaped_for_make(arguments.output) + ": " + escaped_for_make(arguments.mesh) + "\n");
+    std::string rule = escaped_for_make(arguments.output) + ": " + escaped_for_make(arguments.mesh);
+    for (const std::string& file : other_files)
+      rule += " " + escaped_for_make(file);
+    depfile->write(rule + "\n");
     if (!depfile->ok()) return fail(kFile, depfile->error());
   }
   if (!arguments.report.empty()) {
@@ -183,6 +186,10 @@ int compile_mesh(CompileArguments& arguments) {
   const auto soup = import_input(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
+  for (const std::string& file : soup->other_files) {
+    if (is_same_file(file, arguments.output))
+      return fail(kUsage, "'" + arguments.output + "' would overwrite a part of the mesh");
+  }
   out.expect(bake::likely_file_bytes(*soup, arguments.options));
   std::vector<std::byte> buffer;
   arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };
@@ -195,7 +202,7 @@ int compile_mesh(CompileArguments& arguments) {
   const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
   const std::string warning = deviation_warning(*compiled);
-  if (const int code = write_outputs(arguments, compiled->report, buffer, out); code != kClean) return code;
+  if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
   if (arguments.quiet) return kClean;
   std::FILE* const stream = is_streamed ? stderr : stdout;
   if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
@@ -295,7 +302,9 @@ Examples:
 A mesh with errors is refused with the report that 'fdcg validate' prints, and nothing is written.
 The same mesh and options give the same bytes.)");
   const auto arguments = std::make_shared<CompileArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file; - is standard input")->required()->type_name("MESH");
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco; - is standard input")
+      ->required()
+      ->type_name("MESH");
   command->add_option("-o,--output", arguments->output, "The file to write; - is standard output")
       ->required()
       ->type_name("FILE");
@@ -303,6 +312,8 @@ The same mesh and options give the same bytes.)");
   add_unit_options(*command, arguments);
   add_graph_options(*command, arguments);
   add_weld_option(*command, arguments->options.weld);
+  command->add_flag("--self-intersections", arguments->options.self_intersections,
+                    "Also look for faces that cross or touch others, and report them as warnings");
   command->add_flag("--orient", arguments->options.orient, "Make the winding consistent and outward, and say what was turned");
   add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
   command->add_option("--depfile", arguments->depfile, "Write the dependency for Make and Ninja")->type_name("FILE");

@@ -310,7 +310,10 @@ Examples:
 
 Settings may stand in a file .fdcg-validate.json in the mesh's folder or one above; the command line overrides it.)");
   const auto arguments = std::make_shared<ValidateArguments>();
-  command->add_option("mesh", arguments->meshes, "Mesh files, patterns, or folders to be searched; - is standard input")
+  command
+      ->add_option(
+          "mesh", arguments->meshes,
+          "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to be searched; - is standard input")
       ->required()
       ->type_name("MESH");
   add_report_options(*command, arguments);

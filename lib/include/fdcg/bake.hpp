@@ -100,6 +100,7 @@ struct PolygonSoup {
   std::string sha256;           // of the file's bytes, 64 lower-case hex digits
   std::vector<Part> parts;      // ascending first_face; empty where the file names none
   std::vector<Ignored> ignored;
+  std::vector<std::string> other_files;  // further files that the mesh is from: a glTF file's buffers
 
   [[nodiscard]] std::size_t face_count() const { return face_first.empty() ? 0 : face_first.size() - 1; }
 };
@@ -109,11 +110,13 @@ struct ImportOptions {
   Progress progress;
 };
 
-// Reads OFF (also COFF, NOFF, comments), OBJ, PLY (ascii, both binaries) and STL (ascii, binary). Never allocates more than a
-// small multiple of the file's size. Fails with exit code 3 on what cannot be read or holds no face.
+// Reads OFF (also COFF, NOFF, comments), OBJ, PLY (ascii, both binaries), STL (ascii, binary), glTF 2.0 (JSON, GLB; buffers in
+// files beside or beneath it) and Draco. Never allocates more than a small multiple of the file's size (glTF: of what its scene
+// may show, see gltf_scene.hpp). Fails with exit code 3 on what cannot be read or holds no face. Draco data is decoded in a child
+// process (guarded_child.hpp).
 Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
-// The same from memory; `name` is for messages.
+// The same from memory; `name` is for messages, and no other file is read.
 Result<PolygonSoup> import_memory(std::string_view bytes, std::string name, const ImportOptions& options = {});
 
 // ---- report --------------------------------------------------------------------------------------------------------------
