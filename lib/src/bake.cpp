@@ -17,7 +17,6 @@
 #include "info.hpp"
 #include "large_pages.hpp"
 #include "merge.hpp"
-#include "orient.hpp"
 #include "parallel.hpp"
 #include "quantum.hpp"
 #include "regions.hpp"
@@ -26,21 +25,26 @@
 #include "triangulate.hpp"
 #include "validate.hpp"
 #include "vec.hpp"
-#include "weld.hpp"
 
 namespace fdcg::bake {
 namespace {
+
+std::string said(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
 
 // Why the options make no sense; empty where they do.
 std::string contradiction_in(const CompileOptions& options) {
   constexpr double kLargestScale = 1e30;  // what the runtime takes
   if (!(options.metres_per_unit >= 1 / kLargestScale && options.metres_per_unit <= kLargestScale))
-    return "the scale is " + std::to_string(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
+    return "the scale is " + said(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
   if (options.coplanar.kind == Coplanar::Kind::angle &&
       !(options.coplanar.angle_rad >= 0 && options.coplanar.angle_rad < std::numbers::pi / 2))
-    return "the coplanar angle is " + std::to_string(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
+    return "the coplanar angle is " + said(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
   if (options.weld.kind == Weld::Kind::distance && !(options.weld.distance >= 0 && std::isfinite(options.weld.distance)))
-    return "the weld distance is " + std::to_string(options.weld.distance) + "; it must be at least 0 and finite";
+    return "the weld distance is " + said(options.weld.distance) + "; it must be at least 0 and finite";
   constexpr std::array<std::string_view, 3> kOptional{"hierarchy", "source-map", "info"};
   for (const std::string& section : options.without) {
     if (std::find(kOptional.begin(), kOptional.end(), section) == kOptional.end())
@@ -107,12 +111,6 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   input.with_source_map = !options.without.contains("source-map");
   input.jobs = jobs;
   return input;
-}
-
-std::string said(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
 }
 
 // Why no file can hold the object; empty where one can.
@@ -199,21 +197,19 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   };
   Compiled compiled;
   stage("weld", 0);
-  Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
-  const std::vector<FaceState> states = face_states(mesh, jobs);
-  Topology topology = pair_halfedges(mesh, states, jobs);
-  if (options.orient) compiled.flipped_faces = orient(mesh, topology, states).size();
+  Prepared ready = prepare(soup, options.weld, options.precision, options.orient, jobs);
+  compiled.flipped_faces = ready.flipped_faces;
   stage("check", 0.2);
   CheckOptions how;
   how.allow = options.allow;
+  if (!options.self_intersections) how.severities["self-intersection"] = std::nullopt;
   how.max_elements = options.max_elements;
   how.precision = options.precision;
   how.jobs = jobs;
-  if (!options.self_intersections) how.severities["self-intersection"] = std::nullopt;
-  compiled.report = check(soup, mesh, topology, states, how);
+  compiled.report = check(soup, ready.mesh, ready.topology, ready.states, how);
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
-  const auto file = build(soup, std::move(mesh), std::move(topology), options, jobs, compiled);
+  const auto file = build(soup, std::move(ready.mesh), std::move(ready.topology), options, jobs, compiled);
   if (!file) return file.error();
   if (options.allocate) compiled.placed = *file;
   stage("graph", 1);

@@ -65,6 +65,7 @@ Json options_json(const CompileOptions& options) {
   json["planes"] = options.store_voronoi_planes ? "stored" : "derived";
   json["without"] = options.without;
   json["allow"] = options.allow;
+  json["self_intersections"] = options.self_intersections;
   return json;
 }
 
@@ -78,12 +79,22 @@ std::string info_json(const PolygonSoup& soup, const CompileOptions& options, co
                     {"vertices", soup.points.size()},
                     {"faces", soup.face_count()}};
   json["options"] = options_json(options);
-  json["verdict"] = compiled.report.passes() ? "pass" : "fail";
-  json["checks"] = compiled.report.checks;
+  const Report& report = compiled.report;
+  json["verdict"] = report.passes() ? "pass" : "fail";
+  json["checks"] = report.checks;
+  json["allowed"] = report.allowed;
   Json issues = Json::object();
-  for (const Issue& issue : compiled.report.issues)
+  std::map<Severity, std::uint64_t> findings;
+  for (const Issue& issue : report.issues) {
     issues[issue.rule] = issue.total;
+    findings[issue.severity] += issue.total;
+  }
   json["issues"] = issues;
+  json["errors"] = findings[Severity::error];
+  json["warnings"] = findings[Severity::warning];
+  json["notes"] = findings[Severity::note];
+  json["components"] = report.components;
+  json["kept_faces"] = report.kept_faces;
   json["flipped_faces"] = compiled.flipped_faces;
   json["split_faces"] = compiled.split_faces;
   json["merged_faces"] = compiled.merged_faces;

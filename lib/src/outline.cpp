@@ -99,33 +99,36 @@ class OutlineSweep {
   std::vector<std::uint32_t> rank_, order_;
 };
 
-// Of a view beside the nearest to the mean normal: the polygon's area in it, as a share of the box around it as seen from its
-// broadest side. A flat polygon that is seen edge-on shows nothing but its rounding, and that may look simple.
-constexpr double kLeastShown = 1.0 / 16;
+// What a polygon shows of itself along an axis: the triangles of the fan from its first corner.
+struct Shown {
+  FilteredSum area;      // twice, as the windings add up
+  double triangles = 0;  // twice, all of them counted positive
 
-double largest_box_area(std::span<const Vec3> polygon) {
-  Vec3 low = polygon[0], high = polygon[0];
-  for (const Vec3& p : polygon) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  void add(double a, double b, double c, double d) {
+    area.add(a, b, c, d);
+    triangles += std::abs(a * d - b * c);
   }
-  const Vec3 extent = high - low;
-  return std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
-}
+  // More than rounding.
+  [[nodiscard]] bool has_triangles(double terms) const { return FilteredSum{triangles, area.magnitude}.is_certain(terms); }
+  [[nodiscard]] double size() const { return std::isfinite(area.value) ? std::abs(area.value) : 0; }
+};
 
-// Twice the area vector.
-std::array<FilteredSum, 3> filtered_area(std::span<const Vec3> polygon) {
-  std::array<FilteredSum, 3> area;
+std::array<Shown, 3> shown_by(std::span<const Vec3> polygon) {
+  std::array<Shown, 3> shown;
   Vec3 a = polygon[1] - polygon[0];
   for (const Vec3& corner : polygon.subspan(2)) {
     const Vec3 b = corner - polygon[0];
-    area[0].add(a.y, a.z, b.y, b.z);
-    area[1].add(a.z, a.x, b.z, b.x);
-    area[2].add(a.x, a.y, b.x, b.y);
+    shown[0].add(a.y, a.z, b.y, b.z);
+    shown[1].add(a.z, a.x, b.z, b.x);
+    shown[2].add(a.x, a.y, b.x, b.y);
     a = b;
   }
-  return area;
+  return shown;
 }
+
+// Of the most that an axis shows, as triangles. What shows less is flat and seen edge-on, perhaps with nothing to be seen but
+// its rounding, and that may look simple.
+constexpr double kLeastShown = 1.0 / 16;
 
 }  // namespace
 
@@ -164,17 +167,19 @@ bool is_simple(const Projection& view, std::span<const Vec3> polygon) {
 }
 
 std::optional<Projection> simple_view(std::span<const Vec3> polygon) {
-  const std::array<FilteredSum, 3> area = filtered_area(polygon);
+  const std::array<Shown, 3> shown = shown_by(polygon);
+  const double terms = static_cast<double>(polygon.size()) - 2;
+  double most = 0;  // stays 0 where the polygon is as thin as rounding: no view is better than another
+  for (const Shown& along : shown) {
+    if (along.has_triangles(terms)) most = std::max(most, along.triangles);
+  }
   std::array<int, 3> axes{0, 1, 2};
-  const auto size = [&](int k) { return std::isfinite(area[k].value) ? std::abs(area[k].value) : 0; };
-  std::stable_sort(axes.begin(), axes.end(), [&](int k, int l) { return size(k) > size(l); });
-  bool is_first = true;
+  std::stable_sort(axes.begin(), axes.end(), [&](int k, int l) { return shown[k].size() > shown[l].size(); });
   for (const int k : axes) {
-    if (!is_first && !(size(k) / 2 > kLeastShown * largest_box_area(polygon))) break;
-    const bool is_certain = area[k].is_certain(static_cast<double>(polygon.size()) - 2);
-    const int sign = is_certain ? (area[k].value > 0 ? 1 : -1) : area_sign(polygon, k);
+    if (shown[k].triangles < kLeastShown * most) continue;
+    const bool is_certain = shown[k].area.is_certain(terms);
+    const int sign = is_certain ? (shown[k].area.value > 0 ? 1 : -1) : area_sign(polygon, k);
     if (sign == 0) continue;
-    is_first = false;
     const Projection view(Vec3{k == 0 ? sign : 0.0, k == 1 ? sign : 0.0, k == 2 ? sign : 0.0});
     if (is_simple(view, polygon)) return view;
   }

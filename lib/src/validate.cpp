@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "check_rules.hpp"
+#include "orient.hpp"
 #include "parallel.hpp"
 #include "weld.hpp"
 
@@ -156,11 +157,18 @@ Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology
   return report;
 }
 
+Prepared prepare(const PolygonSoup& soup, const Weld& weld, Precision precision, bool orient, unsigned jobs) {
+  Prepared ready;
+  ready.mesh = weld_points(soup, weld, precision, jobs);
+  ready.states = face_states(ready.mesh, jobs);
+  ready.topology = pair_halfedges(ready.mesh, ready.states, jobs);
+  if (orient) ready.flipped_faces = bake::orient(ready.mesh, ready.topology, ready.states).size();
+  return ready;
+}
+
 Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
   const unsigned jobs = resolve_jobs(options.jobs);
-  const Mesh mesh = weld_points(soup, options.weld, options.precision, jobs);
-  const std::vector<FaceState> states = face_states(mesh, jobs);
-  const Topology topology = pair_halfedges(mesh, states, jobs);
+  const Prepared ready = prepare(soup, options.weld, options.precision, options.orient, jobs);
   CheckOptions how;
   how.allow = options.allow;
   how.severities = options.severities;
@@ -170,7 +178,7 @@ Report validate(const PolygonSoup& soup, const ValidateOptions& options) {
   how.jobs = jobs;
   how.progress = options.progress;
   how.each_element = options.each_element;
-  return check(soup, mesh, topology, states, how);
+  return check(soup, ready.mesh, ready.topology, ready.states, how);
 }
 
 }  // namespace fdcg::bake

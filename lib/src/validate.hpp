@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -25,6 +26,15 @@ struct CheckOptions {
   Progress progress;                           // called from one thread at a time
   EachElement each_element{};
 };
+
+// A soup made ready for the checks, by compile as by validate.
+struct Prepared {
+  Mesh mesh;
+  std::vector<FaceState> states;
+  Topology topology;
+  std::uint64_t flipped_faces = 0;  // by orient
+};
+[[nodiscard]] Prepared prepare(const PolygonSoup& soup, const Weld& weld, Precision precision, bool orient, unsigned jobs);
 
 // Runs the rules of the catalogue but unreadable (import's); Report::checks
 // names those that ran. `mesh` is weld_points(soup, ...), perhaps oriented; `states` and `topology` are those of face_states

@@ -548,15 +548,15 @@ class Replay(Case):
         self.assertEqual(["free", "face", "face", "face"], [row["state"] for row in rows])
         self.assertEqual(["0", "0", "0"], [rows[2][name] for name in ("fx", "fy", "fz")])
         self.assertGreater(float(rows[3]["fz"]), 0)
-        self.assertIn(b"1 ticks with a HIP that is NaN", done.stderr)
+        self.assertIn(b"\n1 tick with a HIP that is NaN", done.stderr)
 
     def test_wrong_usage_and_bad_files(self):
         graph, path = self.compiled_cube(), self.slide(10)
         for arguments, code, words in (
             ((), 2, ()), (("run", "scene.json"), 2, ()), (("replay", graph), 2, ("--trajectory",)),
-            (("replay", graph, "--trajectory", path, "--mu-s", "0.3"), 2, ("mu_static", "0.3", "0.4")),
-            (("replay", graph, "--trajectory", path, "--mu-d", "-1"), 2, ("mu_dynamic",)),
-            (("replay", graph, "--trajectory", path, "--stiffness", "nan"), 2, ("stiffness",)),
+            (("replay", graph, "--trajectory", path, "--mu-s", "0.3"), 2, ("--mu-s", "0.3", "0.4", "default")),
+            (("replay", graph, "--trajectory", path, "--mu-d", "-1"), 2, ("--mu-d", "'-1'")),
+            (("replay", graph, "--trajectory", path, "--stiffness", "nan"), 2, ("--stiffness", "'nan'")),
             (("replay", graph, "--trajectory", path, "--edge-friction", "glue"), 2, ("wedge, paper",)),
             (("replay", graph, "--trajectory", path, "-o", path), 2, ("overwrite",)),
             (("replay", self.path("missing.fdcg"), "--trajectory", path), 3, ("missing.fdcg",)),

@@ -165,21 +165,18 @@ class Counter {
     }
   }
 
-  // Seen along the axis of the largest component of the area vector, as exact comparisons give it, and along those that show a
-  // sixteenth of the box; where two are equal both views are of the same kind for flat polygons.
+  // Seen along each axis but those that show less than a sixteenth of what another shows, as the fan's triangles.
   [[nodiscard]] bool crosses_itself(const Loop& loop) const {
     const Exact::Vector_3 normal = area(loop);
-    const std::array<Exact::FT, 3> size = {CGAL::abs(normal.x()), CGAL::abs(normal.y()), CGAL::abs(normal.z())};
-    if (size[0] == 0 && size[1] == 0 && size[2] == 0) return true;
-    const auto largest = std::max_element(size.begin(), size.end()) - size.begin();
-    CGAL::Bbox_3 box = points_[loop[0]].bbox();
-    for (const std::uint32_t v : loop)
-      box += points_[v].bbox();
-    const std::array<Real, 3> extent = {box.x_span(), box.y_span(), box.z_span()};
-    const Real broadest = std::max({extent[0] * extent[1], extent[1] * extent[2], extent[2] * extent[0]});
-    if (!crosses_itself(loop, static_cast<int>(largest))) return false;
+    std::array<Exact::FT, 3> shown = {0, 0, 0};
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+      const Exact::Vector_3 c = CGAL::cross_product(exact(loop[i]) - exact(loop[0]), exact(loop[i + 1]) - exact(loop[0]));
+      for (int axis = 0; axis < 3; ++axis)
+        shown[axis] += CGAL::abs(c[axis]);
+    }
+    const Exact::FT most = *std::max_element(shown.begin(), shown.end());
     for (int axis = 0; axis < 3; ++axis) {
-      if (axis != largest && Real(CGAL::to_double(size[axis])) / 2 > broadest / 16 && !crosses_itself(loop, axis)) return false;
+      if (normal[axis] != 0 && 16 * shown[axis] >= most && !crosses_itself(loop, axis)) return false;
     }
     return true;
   }

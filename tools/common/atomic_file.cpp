@@ -72,6 +72,11 @@ void disarm_cleanup(int slot) {
   cleanup_slots[static_cast<std::size_t>(slot)].taken = false;
 }
 
+bool is_standard_output(const struct stat& status) {
+  struct stat standard {};
+  return fstat(kStandardOutput, &standard) == 0 && standard.st_dev == status.st_dev && standard.st_ino == status.st_ino;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
@@ -90,6 +95,10 @@ int AtomicFile::open_target() {
     return open_beside();
   }
   if (S_ISDIR(status.st_mode)) return EISDIR;
+  if (is_standard_output(status)) {  // replacing the file would part it from the stream
+    descriptor_ = kStandardOutput;
+    return 0;
+  }
   if (access(path_.c_str(), W_OK) != 0) return errno;
   if (!S_ISREG(status.st_mode)) {
     target_.clear();
@@ -222,6 +231,13 @@ void AtomicFile::discard() {
   beside_.clear();
   disarm_cleanup(cleanup_slot_);
   cleanup_slot_ = -1;
+}
+
+bool is_stream(const std::string& path) {
+  if (path == "-") return true;
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) return false;
+  return !S_ISREG(status.st_mode) || is_standard_output(status);
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

@@ -11,10 +11,10 @@
 
 namespace fdcg::tools {
 
-// An output named by the user. "-" is standard output; a device or a pipe is written straight; a symbolic link stays a link and
-// its target is replaced. Until commit() nothing is seen under the name, and what was there before stays as it was: the file
-// beside it is removed by the destructor, by a failure, and when a signal that can be caught ends the program.
-// Errors stick: after the first one write() does nothing and commit() returns false.
+// An output named by the user. "-" is standard output, and so is any name of the same file; a device or a pipe is written
+// straight; a symbolic link stays a link and its target is replaced. Until commit() nothing is seen under the name, and what
+// was there before stays as it was: the file beside it is removed by the destructor, by a failure, and when a signal that can
+// be caught ends the program. Errors stick: after the first one write() does nothing and commit() returns false.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);  // opens now, so that an unwritable target is known before the work is done
@@ -53,6 +53,10 @@ class AtomicFile {
   int descriptor_ = -1;
   int cleanup_slot_ = -1;
 };
+
+// What is written under this name comes out where another program reads it as it comes: "-", standard output under another
+// name, a pipe, a device. Nothing else may be printed there.
+bool is_stream(const std::string& path);
 
 // Both name one existing file, however they are spelt.
 bool is_same_file(const std::string& a, const std::string& b);

@@ -33,6 +33,7 @@ struct ReplayArguments {
   std::string trajectory;
   std::string log;
   fdcg_params params = fdcg_default_params();
+  bool has_mu_dynamic = false;
   bool quiet = false;
 };
 
@@ -193,7 +194,7 @@ std::string summary_text(const Summary& summary, const fdcg_contact& contact, st
   text += "largest force    " + short_number(summary.largest_force_n) + " N\n";
   text += "friction ratio   " + short_number(summary.largest_ratio) + " at most on faces (tangential over normal force)\n";
   const auto counted = [&text](std::uint64_t ticks, const char* what) {
-    if (ticks != 0) text += grouped(ticks) + " ticks " + what + "\n";
+    if (ticks != 0) text += grouped(ticks) + (ticks == 1 ? " tick " : " ticks ") + what + "\n";
   };
   counted(contact.non_finite_ticks, "with a HIP that is NaN or infinite: no force");
   counted(contact.transition_bound_ticks, "reached the bound on transitions and went on in the next tick");
@@ -201,8 +202,29 @@ std::string summary_text(const Summary& summary, const fdcg_contact& contact, st
   return text;
 }
 
+// A recorded fault is no error, but nobody should take its ticks for free ones: told even where no summary is.
+void warn_of_non_finite(const std::string& name, const std::vector<TrajectoryPoint>& points) {
+  const auto is_bad = [](const TrajectoryPoint& point) {
+    return std::any_of(point.hip_object_m.begin(), point.hip_object_m.end(), [](double x) { return !std::isfinite(x); });
+  };
+  const auto count = std::count_if(points.begin(), points.end(), is_bad);
+  if (count == 0) return;
+  const auto first = std::find_if(points.begin(), points.end(), is_bad);
+  std::fprintf(
+      stderr,
+      "fdcg-servo: warning: %s: %s of %s %s a HIP that is NaN or infinite, the first at t = %s s: no force is felt there\n",
+      name == "-" ? "standard input" : name.c_str(), grouped(static_cast<std::uint64_t>(count)).c_str(),
+      grouped(points.size()).c_str(), count == 1 ? "rows has" : "rows have", short_number(first->t_s).c_str());
+}
+
 int check_arguments(const ReplayArguments& arguments) {
   fdcg_error error{};
+  const fdcg_params& params = arguments.params;
+  if (params.mu_static < params.mu_dynamic) {
+    return fail(kUsage, "--mu-s " + short_number(params.mu_static) + " is below --mu-d " + short_number(params.mu_dynamic) +
+                            (arguments.has_mu_dynamic ? "" : " (the default)") +
+                            "; static friction is at least dynamic friction: give a smaller --mu-d");
+  }
   if (fdcg_check_params(&arguments.params, &error) != FDCG_OK) return fail(kUsage, error.message);
   for (const std::string* input : {&arguments.graph, &arguments.trajectory}) {
     if (tools::is_same_file(*input, arguments.log)) return fail(kUsage, "-o " + arguments.log + " would overwrite an input");
@@ -218,6 +240,7 @@ int run_replay(const ReplayArguments& arguments) {
   std::vector<TrajectoryPoint> points;
   std::string message;
   if (!read_trajectory(arguments.trajectory, points, message)) return fail(kFile, message);
+  warn_of_non_finite(arguments.trajectory, points);
   fdcg_graph graph{};
   fdcg_error error{};
   if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
@@ -228,8 +251,23 @@ int run_replay(const ReplayArguments& arguments) {
   const Summary summary = replay(graph, arguments.params, points, contact, clock_ns, log ? &*log : nullptr);
   fdcg_close(&graph);
   if (log && !log->commit()) return fail(kFile, log->error());
-  if (!arguments.quiet) std::fputs(summary_text(summary, contact, clock_ns).c_str(), arguments.log == "-" ? stderr : stdout);
+  if (!arguments.quiet)
+    std::fputs(summary_text(summary, contact, clock_ns).c_str(), tools::is_stream(arguments.log) ? stderr : stdout);
   return kClean;
+}
+
+// A number from 0 to the largest that the runtime takes.
+void add_number(CLI::App& command, const char* name, double& value, const std::string& unit, const char* help, const char* type,
+                bool* is_given = nullptr) {
+  constexpr double kLargest = 1e9;  // fdcg_check_params
+  const auto parse = [&value, is_given, name, unit](const std::string& text) {
+    const char* const end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc{} || stopped != end || !(value >= 0 && value <= kLargest))
+      throw CLI::ValidationError(name, "'" + text + "' is no number from 0 to 1e9" + unit);
+    if (is_given != nullptr) *is_given = true;
+  };
+  command.add_option_function<std::string>(name, parse, help)->type_name(type);
 }
 
 }  // namespace
@@ -247,12 +285,14 @@ same log, byte for byte. Without -o only the summary is printed.)");
   const auto arguments = std::make_shared<ReplayArguments>();
   fdcg_params& params = arguments->params;
   command->add_option("graph", arguments->graph, "FDCG file")->required()->type_name("GRAPH");
-  command->add_option("--trajectory", arguments->trajectory, "Recorded HIP: CSV")->required()->type_name("FILE");
+  command->add_option("--trajectory", arguments->trajectory, "Recorded HIP: CSV; - is standard input")
+      ->required()
+      ->type_name("FILE");
   command->add_option("-o,--output", arguments->log, "Write the log to FILE (CSV); - is standard output")->type_name("FILE");
-  command->add_option("--mu-s", params.mu_static, "Static friction coefficient, at least --mu-d; default: 0.6")
-      ->type_name("MU");
-  command->add_option("--mu-d", params.mu_dynamic, "Dynamic friction coefficient; default: 0.4")->type_name("MU");
-  command->add_option("--stiffness", params.stiffness_n_per_m, "N/m; default: 1000")->type_name("K");
+  add_number(*command, "--mu-s", params.mu_static, "", "Static friction coefficient, at least --mu-d; default: 0.6", "MU");
+  add_number(*command, "--mu-d", params.mu_dynamic, "", "Dynamic friction coefficient; default: 0.4", "MU",
+             &arguments->has_mu_dynamic);
+  add_number(*command, "--stiffness", params.stiffness_n_per_m, " N/m", "N/m; default: 1000", "K");
   const auto parse_edge_friction = [arguments](const std::string& name) {
     if (name != "wedge" && name != "paper")
       throw CLI::ValidationError("--edge-friction", "'" + name + "' is none of wedge, paper");

@@ -140,8 +140,13 @@ bool parse_trajectory(std::string_view text, const std::string& name, std::vecto
 }
 
 bool read_trajectory(const std::string& path, std::vector<TrajectoryPoint>& points, std::string& error) {
-  const auto close_file = [](std::FILE* file) { std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close_file)> file(std::fopen(path.c_str(), "rb"), close_file);
+  const bool is_standard_input = path == "-";
+  const std::string name = is_standard_input ? "standard input" : "'" + path + "'";
+  const auto close_file = [](std::FILE* file) {
+    if (file != stdin) std::fclose(file);
+  };
+  const std::unique_ptr<std::FILE, decltype(close_file)> file(is_standard_input ? stdin : std::fopen(path.c_str(), "rb"),
+                                                              close_file);
   std::string text;
   std::size_t got = 0;
   errno = file == nullptr ? errno : 0;
@@ -155,10 +160,10 @@ bool read_trajectory(const std::string& path, std::vector<TrajectoryPoint>& poin
     } while (got != 0);
   }
   if (file == nullptr || std::ferror(file.get()) != 0) {
-    error = "cannot read '" + path + "': " + std::strerror(errno);
+    error = "cannot read " + name + ": " + std::strerror(errno);
     return false;
   }
-  return parse_trajectory(text, path, points, error);
+  return parse_trajectory(text, is_standard_input ? name : path, points, error);
 }
 
 }  // namespace fdcg::servo

@@ -18,7 +18,7 @@ struct TrajectoryPoint {
 // is one line that names `name`, the line (1-based), the value and what is wrong with it.
 bool parse_trajectory(std::string_view text, const std::string& name, std::vector<TrajectoryPoint>& points, std::string& error);
 
-// The same for a file.
+// The same for a file or a pipe; - is standard input.
 bool read_trajectory(const std::string& path, std::vector<TrajectoryPoint>& points, std::string& error);
 
 }  // namespace fdcg::servo

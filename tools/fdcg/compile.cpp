@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg compile: a mesh in, an FDCG file out, or a report and nothing written.
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <numbers>
 
 #include "../common/atomic_file.hpp"
@@ -73,11 +75,27 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   changed(compiled.flipped_faces, "turned round by --orient");
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
+  text += "corners lie within " + number(header.max_deviation * scale) + " m of their nodes' planes\n";
   text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") +
           " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
           grouped(types[FDCG_COPLANAR]) + " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " +
           plural(header.corner_count, "corner") + ", " + plural(header.file_bytes, "byte") + "\n";
   return text;
+}
+
+// A large --coplanar ANGLE flattens what is not flat. Empty where that is no more than a hand may overlook: a step of a
+// thousandth of the object, 0.1 mm on one of 0.1 m, is 0.1 N at 1 N/mm, which is felt.
+std::string deviation_warning(const bake::Compiled& compiled) {
+  constexpr double kLargestShare = 1e-3;
+  fdcg_header header;
+  std::memcpy(&header, compiled.file().data(), sizeof header);
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  if (!(header.max_deviation > kLargestShare * size)) return {};
+  return "planes lie up to " + number(header.max_deviation * header.metres_per_unit) + " m off the corners of their faces, " +
+         number(100 * header.max_deviation / size) + " % of the object's size (warned of above " + number(100 * kLargestShare) +
+         " %); --coplanar with a smaller angle keeps the shape";
 }
 
 std::string_view as_text(const std::vector<std::byte>& bytes) {
@@ -127,6 +145,13 @@ int check_paths(const CompileArguments& arguments) {
   for (const std::string* path : {&arguments.output, &arguments.depfile, &arguments.report}) {
     if (is_same_file(arguments.mesh, *path)) return fail(kUsage, "'" + *path + "' would overwrite the mesh itself");
   }
+  for (const std::string* path : {&arguments.mesh, &arguments.output}) {
+    if (arguments.depfile.empty() || path->find_first_of("\r\n") == std::string::npos) continue;
+    std::string shown = *path;
+    std::replace_if(
+        shown.begin(), shown.end(), [](char c) { return c == '\r' || c == '\n'; }, '?');
+    return fail(kUsage, "--depfile: neither Make nor Ninja can name '" + shown + "', which has a line break; rename the file");
+  }
   if (arguments.mesh == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a mesh file, not -");
   if (arguments.output == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a file name after -o, not -");
   return kClean;
@@ -149,7 +174,7 @@ std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<
   return buffer;
 }
 
-int run_compile(CompileArguments& arguments) {
+int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
@@ -174,17 +199,29 @@ int run_compile(CompileArguments& arguments) {
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
   if (compiled->file().empty()) return refuse(arguments, compiled->report);
   if (const int code = check_loads(*compiled); code != kClean) return code;
+  const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
+  const std::string warning = deviation_warning(*compiled);
   if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
   if (arguments.quiet) return kClean;
-  const bool binary_on_stdout = arguments.output == "-" || arguments.report == "-";
-  std::FILE* const stream = binary_on_stdout ? stderr : stdout;
+  std::FILE* const stream = is_streamed ? stderr : stdout;
   if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
-    const bool colour = wants_colour(binary_on_stdout ? Stream::standard_error : Stream::standard_output);
+    const bool colour = wants_colour(is_streamed ? Stream::standard_error : Stream::standard_output);
     std::fputs(bake::report_text(compiled->report, colour).c_str(), stream);
   }
   std::fputs(what_was_written.c_str(), stream);
+  if (!warning.empty()) std::fprintf(stderr, "fdcg: warning: %s: %s\n", arguments.mesh.c_str(), warning.c_str());
   return kClean;
+}
+
+int run_compile(CompileArguments& arguments) {
+  try {
+    return compile_mesh(arguments);
+  } catch (const std::bad_alloc&) {
+    return fail(kFile, arguments.mesh +
+                           ": not enough memory to compile it; cut the mesh into parts, simplify it, or use a "
+                           "machine (or a limit) with more");
+  }
 }
 
 void add_unit_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
@@ -211,12 +248,7 @@ void add_unit_options(CLI::App& command, const std::shared_ptr<CompileArguments>
 }
 
 void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
-  const auto parse_precision = [arguments](const std::string& text) {
-    require_choice("--precision", text, {"f64", "f32"});
-    arguments->options.precision = text == "f32" ? bake::Precision::f32 : bake::Precision::f64;
-  };
-  command.add_option_function<std::string>("--precision", parse_precision, "Numbers in the file; default: f64")
-      ->type_name("f64|f32");
+  add_precision_option(command, arguments->options.precision, "Numbers in the file; default: f64");
   const auto parse_coplanar = [arguments](const std::string& text) {
     if (text == "exact" || text == "quantum") {
       arguments->options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};

@@ -72,6 +72,14 @@ const std::vector<std::string>& mesh_endings() {
   return kEndings;
 }
 
+void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help) {
+  const auto parse = [&precision](const std::string& text) {
+    require_choice("--precision", text, {"f64", "f32"});
+    precision = text == "f32" ? bake::Precision::f32 : bake::Precision::f64;
+  };
+  command.add_option_function<std::string>("--precision", parse, help)->type_name("f64|f32");
+}
+
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format) {
   const auto parse = [&format](const std::string& text) {
     require_choice("--input-format", text, {"off", "obj", "ply", "stl", "gltf", "glb", "drc"});

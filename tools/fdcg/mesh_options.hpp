@@ -18,6 +18,7 @@ bake::Weld parse_weld_value(const std::string& text);
 void add_weld_option(CLI::App& command, bake::Weld& weld);
 void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld);
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format);
+void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help);
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable);
 
 // Of the files that are meshes by their names, in lower case: ".off" and so on.

@@ -36,6 +36,8 @@ struct ValidateArguments {
   bool no_config = false;
   ValidateSettings settings;
   std::optional<bake::Format> input_format;
+  bake::Precision precision = bake::Precision::f64;
+  bool is_oriented = false;
   bool sarif_each = false;
   unsigned jobs = 0;
   bool quiet = false;
@@ -101,6 +103,8 @@ bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& argume
     task.problem = mesh.problem;
     task.config = config->path;
     task.options.weld = settings.weld.value_or(bake::Weld{});
+    task.options.precision = arguments.precision;
+    task.options.orient = arguments.is_oriented;
     task.options.allow = settings.allow;
     task.options.severities = settings.severities;
     if (settings.fail_on) task.options.fail_on = *settings.fail_on;
@@ -315,6 +319,8 @@ Settings may stand in a file .fdcg-validate.json in the mesh's folder or one abo
   add_report_options(*command, arguments);
   add_verdict_options(*command, arguments);
   add_weld_option(*command, arguments->settings.weld);
+  add_precision_option(*command, arguments->precision, "Judge the mesh as a graph of this precision stores it; default: f64");
+  command->add_flag("--orient", arguments->is_oriented, "Judge the mesh as 'compile --orient' leaves it");
   add_input_format_option(*command, arguments->input_format);
   command->add_option("--jobs", arguments->jobs, "Threads; default: one a core. The report does not depend on it")
       ->type_name("N")

@@ -280,10 +280,12 @@ struct ValidateOptions {
   std::map<std::string, std::optional<Severity>> severities{};  // in place of the catalogue's; none: the rule is not run
   std::optional<Severity> fail_on = Severity::error;
   Precision precision = Precision::f64;  // of the graph to be: coordinates are rounded to it before anything is judged
+  bool orient = false;                   // judge the mesh as compile's orient leaves it
   unsigned jobs = 0;                     // threads; 0: as many as there are cores. The report does not depend on it
   EachElement each_element{};
 };
 
+// compile() refuses a mesh exactly where this report does not pass, with the same options and fail_on error.
 Report validate(const PolygonSoup& soup, const ValidateOptions& options = {});
 
 // Gives memory for a file of so many bytes: zeroed, starting at a multiple of 64; empty where there is none to be had.
