@@ -319,7 +319,12 @@ class Settings(ValidateCase):
                 self.assert_only(CONFIG, "cube.off")
                 self.validate(mesh, "--no-config")
         self.write(CONFIG, "{}")
-        self.assert_one_line(self.validate(mesh, "--config", self.path("none.json"), code=3), "none.json")
+        self.assert_one_line(self.validate(mesh, "--config", self.path("none.json"), code=3), "none.json", "does not exist")
+        self.assert_one_line(self.validate(mesh, "--config", self.path("."), code=3), "is a directory")
+        os.unlink(self.path(CONFIG))
+        os.mkdir(self.path(CONFIG))
+        self.assert_one_line(self.validate(mesh, code=3), CONFIG, "is a directory")
+        self.validate(mesh, "--no-config")
 
     def test_severities_of_the_command_line_reach_every_format(self):
         mesh = self.write("open.off", MISSING_FACE)
