@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <future>
 #include <limits>
+#include <memory>
 
 #include "parallel.hpp"
 
@@ -100,7 +102,10 @@ std::vector<FaceState> face_states(const Mesh& mesh, unsigned jobs) {
 
 Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, unsigned jobs) {
   Topology topology;
-  topology.twin.assign(mesh.corners.size(), Topology::kSkipped);
+  const bool is_small = mesh.corners.size() < kWorthThreads;
+  const auto fill_twins = [&] { topology.twin.assign(mesh.corners.size(), Topology::kSkipped); };
+  const auto side = is_small || jobs < 2 ? std::launch::deferred : std::launch::async;
+  std::future<void> twins = std::async(side, fill_twins);  // the system's zeroing of new memory takes as long as the counting
   if (!all_triangles(mesh)) {
     topology.face_of.resize(mesh.corners.size());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -111,7 +116,6 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, 
   // A counting sort by the smaller vertex. Each thread has a range of vertices to itself and passes over all the faces: reading
   // in order costs little beside writing wherever the vertices are.
   const std::size_t vertices = mesh.points.size();
-  const bool is_small = mesh.corners.size() < kWorthThreads;
   const std::size_t ranges = is_small ? 1 : std::min<std::size_t>(jobs, kMostPasses), width = vertices / ranges + 1;
   std::vector<std::uint32_t> first(vertices + 1, 0);  // where the bucket of each vertex starts; later where it ends
   const auto for_each_range = [&](auto work) {
@@ -132,7 +136,8 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, 
     entry = sum;
     sum += count;
   }
-  std::vector<std::uint64_t> keys(sum);
+  const auto keys = std::make_unique_for_overwrite<std::uint64_t[]>(sum);  // each is written before it is read
+  twins.get();
   for_each_range([&](std::uint32_t low, std::uint32_t high) {
     std::uint32_t begin = first[low];
     for_each_halfedge(mesh, states, [&](std::uint32_t slot, std::uint32_t u, std::uint32_t v) {
@@ -140,8 +145,8 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, 
       if (least - low < high - low) keys[first[least]++] = std::uint64_t{std::max(u, v)} << 32 | slot;
     });
     for (std::uint32_t v = low; v < high; ++v) {
-      sort_bucket(keys.data() + begin, keys.data() + first[v]);
-      pair_bucket(mesh, keys.data() + begin, keys.data() + first[v], topology.twin);
+      sort_bucket(keys.get() + begin, keys.get() + first[v]);
+      pair_bucket(mesh, keys.get() + begin, keys.get() + first[v], topology.twin);
       begin = first[v];
     }
   });

@@ -21,6 +21,7 @@ enum class Group {
   patches,     // what find_patches() gives
   polygons,    // which polygons are flat: FaceGeometry keeps that
   duplicates,  // what duplicate_faces() gives
+  slivers,     // one rule, that measures every face: in the middle of the others the last thread would wait for it
   none,
   alone,  // has a use for all threads itself
 };
@@ -49,7 +50,7 @@ constexpr Row kRows[] = {
     {"self-intersection", Group::alone, checks::self_intersection},
     {"non-planar-face", Group::polygons, checks::non_planar_face},
     {"t-junction", Group::none, checks::t_junction},
-    {"sliver-face", Group::none, checks::sliver_face},
+    {"sliver-face", Group::slivers, checks::sliver_face},
     {"isolated-vertex", Group::none, checks::isolated_vertex},
     {"duplicate-vertex", Group::none, checks::duplicate_vertex},
 };
@@ -103,7 +104,7 @@ void Checker::run_group(Group group) {
 
 std::vector<Issue> Checker::run() {
   subject_.odd = odd_edges(subject_.mesh, subject_.topology, options_.jobs);
-  constexpr Group kGroups[] = {Group::patches, Group::polygons, Group::duplicates};  // these take longest and so come first
+  constexpr Group kGroups[] = {Group::patches, Group::polygons, Group::slivers, Group::duplicates};  // longest first
   std::vector<std::size_t> single;
   for (std::size_t row = 0; row < std::size(kRows); ++row) {
     if (kRows[row].group == Group::none) single.push_back(row);

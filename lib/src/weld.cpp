@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <future>
 #include <limits>
 
 #include "parallel.hpp"
@@ -258,6 +259,14 @@ Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision,
   mesh.origin = choose_origin(soup.points);
   const LocalPoints local{soup.points, mesh.origin, precision};
 
+  // The system zeroes new memory page by page: that is done beside the weld.
+  constexpr std::size_t kWorthThreads = 1'000'000;  // corners
+  const auto side = jobs < 2 || soup.corners.size() < kWorthThreads ? std::launch::deferred : std::launch::async;
+  std::future<void> faces = std::async(side, [&] {
+    mesh.face_first = soup.face_first;
+    mesh.corners.resize(soup.corners.size());
+  });
+
   // An STL file repeats each vertex about six times; elsewhere few are repeated.
   const std::size_t expected = soup.format == Format::stl ? local.size() / 5 : local.size();
   Welder out{mesh, std::vector<std::uint32_t>(local.size())};
@@ -271,8 +280,7 @@ Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision,
     weld_exact(local, expected, jobs, out);
   }
 
-  mesh.face_first = soup.face_first;
-  mesh.corners.resize(soup.corners.size());
+  faces.get();
   constexpr std::size_t kCornersAtOnce = 65'536;
   parallel_for(jobs, soup.corners.size(), kCornersAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t h = begin; h < end; ++h) {
