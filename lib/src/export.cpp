@@ -21,7 +21,8 @@ Result<std::string> export_as(const PolygonSoup& soup, const ExportOptions& opti
       write_ply(soup, options.is_text, bytes);
       return bytes;
     case Format::stl:
-      if (const std::string loss = stl_refusal(soup); !loss.empty()) return Failure{2, soup.name + ": " + loss, {}};
+      if (const std::string loss = stl_refusal(soup, options.is_text); !loss.empty())
+        return Failure{2, soup.name + ": " + loss, {}};
       write_stl(soup, options.is_text, bytes);
       return bytes;
     case Format::gltf:

@@ -26,9 +26,9 @@ void write_ply(const PolygonSoup& soup, bool is_text, std::string& out);
 // Triangles alone, each with points of its own; `soup` is one that stl_refusal() lets pass.
 void write_stl(const PolygonSoup& soup, bool is_text, std::string& out);
 
-// What STL would lose of this soup, and the remedy: the first face that is no triangle, else the first coordinate that is no
-// float, else the first vertex that no face has. Empty: nothing.
-std::string stl_refusal(const PolygonSoup& soup);
+// What STL would lose of this soup, and the remedy: the first face that is no triangle, else (binary) the first coordinate that
+// is no float, else the first vertex that no face has. Empty: nothing.
+std::string stl_refusal(const PolygonSoup& soup, bool is_text);
 
 // The coordinate is the same number as float: NaN and infinities count.
 inline bool is_float(double c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stereolithography, text or binary: triangles of floats, each with its normal.
+// Stereolithography: triangles, each with its normal; floats in binary, numbers of any length in text.
 #include <vector>
 
 #include "export.hpp"
@@ -87,7 +87,7 @@ std::string place(const char* kind, std::size_t index, const std::vector<std::ui
 
 }  // namespace
 
-std::string stl_refusal(const PolygonSoup& soup) {
+std::string stl_refusal(const PolygonSoup& soup, bool is_text) {
   constexpr const char* kRemedy = "; write OFF, OBJ or PLY in its place";
   std::vector<bool> is_used(soup.points.size(), false);
   for (std::size_t f = 0; f < soup.face_count(); ++f) {
@@ -103,12 +103,13 @@ std::string stl_refusal(const PolygonSoup& soup) {
       is_used[soup.corners[c]] = true;
     }
   }
-  for (std::size_t v = 0; v < soup.points.size(); ++v) {
+  for (std::size_t v = 0; v < soup.points.size() && !is_text; ++v) {
     if (is_float(soup.points[v])) continue;
     const Vec3& p = soup.points[v];
     std::string text = place("vertex", v, soup.point_line) + " has the coordinate ";
     put_number(text, !is_float(p.x) ? p.x : !is_float(p.y) ? p.y : p.z);
-    return text + ", which is no 32-bit float, and STL holds no other" + kRemedy;
+    return text +
+           ", which is no 32-bit float, and binary STL holds no other; write OFF, OBJ, PLY or text STL (--ascii) in its place";
   }
   for (std::size_t v = 0; v < soup.points.size(); ++v) {
     if (!is_used[v]) return place("vertex", v, soup.point_line) + " belongs to no face and STL holds faces only" + kRemedy;

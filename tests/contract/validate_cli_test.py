@@ -6,6 +6,7 @@ import os
 import pathlib
 import pty
 import random
+import resource
 import shutil
 import subprocess
 import unittest
@@ -319,7 +320,12 @@ class Settings(ValidateCase):
                 self.assert_only(CONFIG, "cube.off")
                 self.validate(mesh, "--no-config")
         self.write(CONFIG, "{}")
-        self.assert_one_line(self.validate(mesh, "--config", self.path("none.json"), code=3), "none.json")
+        self.assert_one_line(self.validate(mesh, "--config", self.path("none.json"), code=3), "none.json", "does not exist")
+        self.assert_one_line(self.validate(mesh, "--config", self.path("."), code=3), "is a directory")
+        os.unlink(self.path(CONFIG))
+        os.mkdir(self.path(CONFIG))
+        self.assert_one_line(self.validate(mesh, code=3), CONFIG, "is a directory")
+        self.validate(mesh, "--no-config")
 
     def test_severities_of_the_command_line_reach_every_format(self):
         mesh = self.write("open.off", MISSING_FACE)
@@ -329,6 +335,15 @@ class Settings(ValidateCase):
 
 
 class ManyFiles(ValidateCase):
+    def test_a_file_too_large_for_memory_leaves_the_others_their_reports(self):
+        limit = 160 << 20
+        done = subprocess.run((FDCG, "validate", "/dev/zero", self.write("cube.off", CUBE), "--format", "json", "--jobs", "1", "--no-config"),
+                              capture_output=True, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        self.assertEqual(3, done.returncode, done.stderr)
+        self.assert_one_line(done, "/dev/zero", "memory")
+        self.assertEqual(["fail", "pass"], [file["verdict"] for file in json.loads(done.stdout)["files"]])
+
     def test_files_come_in_a_stable_order_however_many_threads_there_are(self):
         (self.folder / "sub").mkdir()
         chooser = random.Random(5)

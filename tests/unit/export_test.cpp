@@ -113,9 +113,10 @@ TEST_CASE("a random soup written in any format reads back the same to the bit") 
     const bool is_stl = options.format == Format::stl;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
       Random random(seed);
-      const Numbers numbers = is_stl || random.chance(0.3) ? Numbers::floats
-                              : random.chance(0.5)         ? Numbers::doubles
-                                                           : Numbers::special;
+      const bool is_binary_stl = is_stl && !options.is_text;
+      const Numbers numbers = is_binary_stl || random.chance(0.3) ? Numbers::floats
+                              : random.chance(0.5)                ? Numbers::doubles
+                                                                  : Numbers::special;
       const PolygonSoup soup = random_soup(random, numbers, is_stl);
       INFO("seed " << seed << ", format " << static_cast<int>(options.format) << ", text " << options.is_text);
       const std::string bytes = bytes_of(soup, options);
@@ -169,17 +170,25 @@ TEST_CASE("STL refuses what it would lose, with the place and the remedy") {
   soup.face_line = {7, 8, 9};
   check_words(soup, {"face 1 (line 8) has 2 corners"});
   soup = square();
-  soup.points[2].y = 0.1;
-  check_words(soup, {"vertex 2 has the coordinate 0.1, which is no 32-bit float"});
-  soup.points[2].y = 4e38;
-  check_words(soup, {"vertex 2", "4e+38"});
-  soup = square();
   soup.points.push_back({5, 5, 5});
   soup.point_line = {1, 2, 3, 4, 5};
   check_words(soup, {"vertex 4 (line 5) belongs to no face"});
   soup = square();
   soup.corners[4] = kInvalid;
   check_words(soup, {"face 1 names a vertex that there is not"});
+}
+
+TEST_CASE("binary STL refuses what is no float, and text STL holds it") {
+  for (const double y : {0.1, 4e38, 1e-300}) {
+    PolygonSoup soup = square();
+    soup.points[2].y = y;
+    const std::string message = refusal_of(soup, {Format::stl, false});
+    INFO(message);
+    CHECK(message.find("vertex 2 has the coordinate ") != std::string::npos);
+    CHECK(message.find("is no 32-bit float") != std::string::npos);
+    CHECK(message.find("text STL (--ascii)") != std::string::npos);
+    check_same(cornerwise(soup), import_text(bytes_of(soup, {Format::stl, true})));
+  }
 }
 
 TEST_CASE("formats that are only read are refused by name") {

@@ -220,7 +220,8 @@ Examples:
   fdcg repair part.stl -o part.obj --weld exact --drop-degenerate --orient
   fdcg repair --all --dry-run --report account.json part.stl
 
-Exit codes: 0 the result has no error; 1 errors are left (the mesh is written all the same, without --strict).
+Exit codes: 0 the result has no error; 1 errors are left, or --simplify could not be done (the mesh is written all the same,
+without --strict).
 What cannot be repaired surely is left, and said.)");
   const auto arguments = std::make_shared<RepairArguments>();
   command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB, Draco; - is standard input")

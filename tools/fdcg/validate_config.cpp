@@ -104,10 +104,16 @@ class DuplicateKeys {
 }  // namespace
 
 bake::Result<ValidateConfig> read_config(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::error_code ignored;
+  const bool is_folder = fs::is_directory(path, ignored);  // which opens like a file, but throws when it is read
+  std::ifstream file;
+  if (!is_folder) file.open(path, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(file), {});
   if (!file.is_open() || file.bad()) {
-    return bake::Failure{kFile, path + ": cannot be read; check its permissions, or pass --no-config", {}};
+    const std::string why = is_folder                    ? "is a directory; name a file of settings"
+                            : !fs::exists(path, ignored) ? "does not exist; check the path"
+                                                         : "cannot be read; check its permissions";
+    return bake::Failure{kFile, one_line(path + ": " + why + ", or pass --no-config"), {}};
   }
   ValidateConfig config{path, {}};
   DuplicateKeys duplicates;

@@ -8,6 +8,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <utility>
 
@@ -62,8 +63,14 @@ bake::Report report_of_failure(const std::string& file, const bake::Failure& fai
   return report;
 }
 
-Validated validate_one(const ValidateTask& task, const ValidateRun& run, unsigned jobs, const bake::Progress& progress) {
-  const auto started = std::chrono::steady_clock::now();
+void refuse(Validated& result, const ValidateTask& task, const bake::Failure& failure) {
+  result.report = report_of_failure(task.mesh, failure);
+  result.exit_code = failure.exit_code;
+  result.error = failure.message;
+}
+
+// Throws where memory runs out.
+Validated judge(const ValidateTask& task, const ValidateRun& run, unsigned jobs, const bake::Progress& progress) {
   Validated result;
   const bake::ImportOptions import_options{run.input_format, progress};
   auto soup = task.problem.empty()
@@ -84,9 +91,18 @@ Validated validate_one(const ValidateTask& task, const ValidateRun& run, unsigne
     if (task.has_baseline) result.report.resolved = known.resolved(result.report.checks);
     result.exit_code = result.report.passes() ? kClean : kFindings;
   } else {
-    result.report = report_of_failure(task.mesh, soup.error());
-    result.exit_code = soup.error().exit_code;
-    result.error = soup.error().message;
+    refuse(result, task, soup.error());
+  }
+  return result;
+}
+
+Validated validate_one(const ValidateTask& task, const ValidateRun& run, unsigned jobs, const bake::Progress& progress) {
+  const auto started = std::chrono::steady_clock::now();
+  Validated result;
+  try {
+    result = judge(task, run, jobs, progress);
+  } catch (const std::bad_alloc&) {  // one mesh too large must not cost the report of the others
+    refuse(result, task, {kFile, task.mesh + ": needs more memory than there is; cut the mesh into parts", "unreadable"});
   }
   result.report.config = task.config;
   result.report.has_baseline = task.has_baseline;

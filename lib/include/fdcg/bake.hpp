@@ -377,7 +377,7 @@ struct ExportOptions {
 };
 
 // The bytes of a mesh file. Numbers read back as the same doubles: text with the shortest digits that do, PLY as float where
-// every coordinate is one and as double else. STL holds floats and triangles only: fails (2) where that would lose anything.
+// every coordinate is one and as double else. STL holds triangles only, binary STL floats only: fails (2) on what would be lost.
 Result<std::string> export_mesh(const PolygonSoup& soup, const ExportOptions& options);
 
 }  // namespace fdcg::bake
