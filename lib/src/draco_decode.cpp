@@ -199,6 +199,13 @@ bool DracoMeshes::read(std::size_t count) {
   return true;
 }
 
+std::string DracoMeshes::refusal() const {
+  const bool is_starved = trouble_.starts_with("cannot be started");  // the machine's fault, not the file's
+  return "decoding its Draco data " + trouble_ +
+         (is_starved ? "; free some memory or raise its limit, and run again"
+                     : "; the file is damaged or forged: compress the mesh again");
+}
+
 DracoMeshes decode_draco(std::span<const DracoInput> inputs, const ChildLimits& limits) {
   DracoMeshes result;
   result.result_ = run_guarded(limits, [inputs](ChildAnswer& answer) {

@@ -50,6 +50,7 @@ class DracoMeshes {
 
   // Why none could be decoded: what happened to the child, in words that follow "its Draco data"; else empty.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  [[nodiscard]] std::string refusal() const;                                 // the same as a message, with what to do about it
   [[nodiscard]] const std::vector<Mesh>& meshes() const { return meshes_; }  // one an input
 
  private:

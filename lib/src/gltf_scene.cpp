@@ -123,10 +123,7 @@ class SceneBuilder {
     if (inputs.empty()) return;
     bytes = std::min(bytes, file_bytes());  // views may overlap
     decoded_ = decode_draco(inputs, draco_limits(bytes));
-    if (!decoded_.trouble().empty()) {
-      throw Refusal{"decoding its Draco data " + decoded_.trouble() +
-                    "; the file is damaged or forged: compress the mesh again"};
-    }
+    if (!decoded_.trouble().empty()) throw Refusal{decoded_.refusal()};
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const DracoMeshes::Mesh& mesh = decoded_.meshes()[i];
       if (mesh.is_point_cloud) throw Refusal{places[i] + ": its Draco data is a point cloud; compress a mesh"};

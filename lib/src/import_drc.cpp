@@ -11,10 +11,7 @@ namespace fdcg::bake {
 Result<PolygonSoup> read_drc(const MeshText& input) {
   const DracoInput draco{input.bytes, std::nullopt};
   const DracoMeshes decoded = decode_draco({&draco, 1}, draco_limits(input.bytes.size()));
-  if (!decoded.trouble().empty()) {
-    return refuse(input.name,
-                  "decoding its Draco data " + decoded.trouble() + "; the file is damaged or forged: compress the mesh again");
-  }
+  if (!decoded.trouble().empty()) return refuse(input.name, decoded.refusal());
   const DracoMeshes::Mesh& mesh = decoded.meshes().front();
   if (!mesh.trouble.empty()) return refuse(input.name, mesh.trouble + "; fetch the file or compress the mesh again");
   if (mesh.is_point_cloud) return refuse(input.name, "is a Draco point cloud and holds no face; compress a mesh", "empty-mesh");

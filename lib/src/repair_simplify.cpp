@@ -20,8 +20,13 @@ struct Shape {
   std::uint64_t components = 0, boundary_loops = 0;
   std::int64_t euler_characteristic = 0;
   bool is_manifold = false;
+  std::uint64_t outward = 0, inward = 0;  // closed patches, by the sign of their volume
 
-  friend bool operator==(const Shape&, const Shape&) = default;
+  [[nodiscard]] bool has_topology_of(const Shape& other) const {
+    return components == other.components && boundary_loops == other.boundary_loops &&
+           euler_characteristic == other.euler_characteristic && is_manifold == other.is_manifold;
+  }
+  [[nodiscard]] bool has_sides_of(const Shape& other) const { return outward == other.outward && inward == other.inward; }
 };
 
 // Of a mesh whose vertices have one fan each: every vertex at the border has one edge of it that leaves.
@@ -43,7 +48,12 @@ std::uint64_t count_boundary_loops(const Mesh& mesh, const Topology& topology) {
 
 Shape shape_of(const Mesh& mesh, const Topology& topology, const std::vector<FaceState>& states) {
   Shape shape;
-  shape.components = find_patches(mesh, topology, states).components;
+  const Patches patches = find_patches(mesh, topology, states);
+  shape.components = patches.components;
+  for (const Patch& patch : patches.patches) {
+    shape.outward += patch.volume_sign > 0;
+    shape.inward += patch.volume_sign < 0;
+  }
   std::vector<bool> is_used(mesh.points.size(), false);
   for (const VertexId v : mesh.corners)
     is_used[+v] = true;
@@ -147,13 +157,20 @@ RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const 
   constexpr int kRounds = 8, kLocking = 3;
   double tried = error;
   std::uint64_t more = 0;
+  bool is_turned = false;
   for (int round = 0; round < kRounds; ++round) {
     simplified = simplify(mesh, tried, is_locked, progress);
     if (!simplified) return leave("its connectivity does not fit OpenMesh");
     std::vector<std::uint32_t> face_of;
     const Mesh result = reduced(mesh, *simplified, face_of);
     const std::vector<FaceState> states = face_states(result);
-    if (shape_of(result, pair_halfedges(result, states), states) != before) return leave("its topology would have changed");
+    const Shape after = shape_of(result, pair_halfedges(result, states), states);
+    if (!after.has_topology_of(before)) return leave("its topology would have changed");
+    is_turned = !after.has_sides_of(before);
+    if (is_turned) {  // an error near the size of a part lets its faces turn round little by little
+      tried /= 2;
+      continue;
+    }
     const SelfIntersections found = meetings(result, resolve_jobs(jobs));
     more = total(found) > meetings_before ? total(found) - meetings_before : 0;
     if (more == 0) break;
@@ -168,6 +185,7 @@ RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const 
       }
     }
   }
+  if (is_turned) return leave("a closed part of it would have turned inside out, or lost its volume");
   if (more != 0) return leave(counted(more, "pair", "pairs") + " of its faces would have met that do not meet now");
 
   Tally tally;

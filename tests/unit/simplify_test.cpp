@@ -235,3 +235,21 @@ TEST_CASE("real meshes keep every promise") {
                        << " faces");
   if (checked > 0) CHECK(faces_after < faces_before);
 }
+
+TEST_CASE("an error near the size of a body never turns it inside out") {
+  // Long and thin, as most parts that one simplifies too far.
+  for (const std::uint32_t rings : {6u, 9u, 14u, 20u}) {
+    PolygonSoup body = bumpy_sphere(rings, 11);
+    for (Vec3& p : body.points)
+      p = {p.x, 0.05 * p.y, 0.02 * p.z};
+    for (const double error : {0.03, 0.1, 0.3, 1.0, 3.0}) {
+      CAPTURE(rings, error);
+      RepairOptions options;
+      options.simplify_error = error;
+      const auto repaired = repair(body, options);
+      REQUIRE(repaired);
+      CHECK(repaired->after.passes());
+      CHECK(repaired->soup.face_count() < body.face_count());
+    }
+  }
+}
