@@ -29,7 +29,6 @@ class Positions {
   [[nodiscard]] std::uint64_t count() const { return base_.count; }
   [[nodiscard]] Component type() const { return base_.type; }
   [[nodiscard]] bool is_normalized() const { return base_.is_normalized; }
-  [[nodiscard]] bool has_bytes() const { return base_.first != nullptr; }
 
   // Hands over the points in order: use(point).
   template <class Use>
