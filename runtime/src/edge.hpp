@@ -64,11 +64,10 @@ inline Decision edge_rule(Walk<Real>& walk) {
   const EdgeLine<Real> line(walk.graph, connection);
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
-  const Real gap = absolute(ahead);
   const Real distance = norm(walk.hip - (line.start + line.direction * foot));
-  const Real allowed = friction_gap(walk, gap, edge_load(walk, connection, line, distance));
-  if (!(allowed < gap)) return rest();
-  const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + allowed : foot - allowed);
+  const Slip<Real> slip = friction(walk, square(ahead), edge_load(walk, connection, line, distance));
+  if (slip.is_rest) return rest();
+  const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + slip.gap : foot - slip.gap);
   return landed == walk.active ? rest() : go_to(landed);
 }
 

@@ -32,19 +32,19 @@ inline Crossing<Real> first_crossing(const GraphView<Real>& graph, const typenam
 
 // Cost: one plane, and, where the god-object slides, two per side of the node.
 template <class Real>
-inline Decision face_rule(Walk<Real>& walk) {
+[[gnu::always_inline]] inline Decision face_rule(Walk<Real>& walk) {
   const auto& node = walk.graph.nodes[walk.active.index];
   const Real side = walk.side(node);
   if (!(side < 0)) return go_to(walk.seat);  // the seat's rule decides; without a seat this is Free
   const Vec3<Real> normal = vec(node.plane.normal);
-  const Real depth = -side;
+  const Vec3<Real> reach = walk.god_object - walk.hip;
+  const Vec3<Real> offset = reach - normal * dot(normal, reach);  // its part in the plane: from the surface point
+  const Real gap2 = dot(offset, offset), depth = -side;
+  const Slip<Real> slip = friction(walk, gap2, depth);
+  if (slip.is_rest) return rest();
+  const Real shrink = slip.gap > 0 ? slip.gap / root(gap2) : Real(0);
   const Vec3<Real> surface_point = walk.hip + normal * depth;
-  Vec3<Real> offset = walk.god_object - surface_point;
-  offset = offset - normal * dot(normal, offset);
-  const Real gap = norm(offset);
-  const Real allowed = friction_gap(walk, gap, depth);
-  if (!(allowed < gap)) return rest();
-  const Vec3<Real> target = surface_point + offset * (allowed / gap);
+  const Vec3<Real> target = surface_point + offset * shrink;
   const Crossing<Real> crossing = first_crossing(walk.graph, node, walk.god_object, target);
   if (crossing.local_side == FDCG_NONE) {
     walk.place(target, kFree);

@@ -24,7 +24,7 @@ struct Friction {
 
 template <class Real>
 struct Walk {
-  const GraphView<Real>& graph;
+  GraphView<Real> graph;
   Friction<Real> friction;
   Vec3<Real> hip;
   Real hip_bound;  // plane_rounding_bound of hip
@@ -54,28 +54,39 @@ inline Decision go_to(Feature next) {
   return {false, next};
 }
 
+template <class Real>
+inline Real square(Real a) {
+  return a * a;
+}
+
 // How far apart two computations of the same gap may lie when the god-object was rounded to its place in between.
 template <class Real>
 inline Real gap_rounding(Vec3<Real> god_object, Real gap) {
   return RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
 }
 
-// Friction on a face or an edge: `gap` is the distance of the god-object from the surface point, `load` the depth that presses
-// it on. Returns the gap that friction allows: the same one where the god-object rests. Slipping starts beyond mu_static and
-// ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on the dynamic circle and rounding
-// must not toss a coin every tick (contact-model section 5; Melder 2004, figure 4); for the same reason it is not placed anew
-// for less than a rounding.
+// What friction makes of a gap: rest, or slip until it is `gap`.
 template <class Real>
-inline Real friction_gap(Walk<Real>& walk, Real gap, Real load) {
+struct Slip {
+  bool is_rest;
+  Real gap;
+};
+
+// Friction on a face or an edge: `gap2` is the squared distance of the god-object from the surface point, `load` the depth that
+// presses it on. Slipping starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping
+// god-object sits exactly on the dynamic circle and rounding must not toss a coin every tick (contact-model section 5; Melder
+// 2004, figure 4); for the same reason it is not placed anew for less than a rounding. Squares, so that rest costs no root.
+template <class Real>
+inline Slip<Real> friction(Walk<Real>& walk, Real gap2, Real load) {
   constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
   const Real dynamic_gap = walk.friction.mu_dynamic * load;
   if (walk.is_slipping) {
-    if (gap <= kStickAgain * dynamic_gap) walk.is_slipping = false;
-  } else if (gap > walk.friction.mu_static * load) {
+    if (gap2 <= square(kStickAgain * dynamic_gap)) walk.is_slipping = false;
+  } else if (gap2 > square(walk.friction.mu_static * load)) {
     walk.is_slipping = true;
   }
-  if (!walk.is_slipping || gap <= dynamic_gap + gap_rounding(walk.god_object, gap)) return gap;
-  return dynamic_gap;
+  const bool is_rest = !walk.is_slipping || gap2 <= square(dynamic_gap + gap_rounding(walk.god_object, dynamic_gap));
+  return {is_rest, dynamic_gap};
 }
 
 // A connection's line: v0 + u edge, 0 <= u <= length.
