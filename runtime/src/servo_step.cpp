@@ -78,7 +78,7 @@ uint32_t sweep_to_hip(Walk<Real>& walk, Feature left) {
   using Kind = typename SweepResult<Real>::Kind;
   const SweepResult<Real> found = Sweep<Real>(walk, left).run();
   if (found.kind == Kind::hit && found.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph, walk.graph.connections[found.feature.index]);
+    const EdgeLine<Real> line(walk.graph.edge(found.feature.index));
     walk.active = place_on_edge(walk, found.feature.index, line, line.parameter(found.point));
     return 0;
   }
