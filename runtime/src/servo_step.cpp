@@ -8,9 +8,12 @@
 //
 // Each rule moves the god-object nearer to the HIP or hands over to a neighbour that climbs further; the step ends where a rule
 // rests. Every loop is bounded: work left over is carried to the next tick with a valid god-object.
+#include "config.hpp"
 #include "corner.hpp"
 #include "edge.hpp"
 #include "face.hpp"
+#include "hooks.hpp"
+#include "struct_bytes.hpp"
 #include "sweep.hpp"
 
 namespace fdcg {
@@ -74,7 +77,7 @@ uint32_t sweep_to_hip(Walk<Real>& walk, Feature left) {
   using Kind = typename SweepResult<Real>::Kind;
   const SweepResult<Real> found = Sweep<Real>(walk, left).run();
   if (found.kind == Kind::hit && found.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph, walk.graph.connections[found.feature.index]);
+    const EdgeLine<Real> line(walk.graph.edge(found.feature.index));
     walk.active = place_on_edge(walk, found.feature.index, line, line.parameter(found.point));
     return 0;
   }
@@ -90,17 +93,18 @@ struct Progress {
 };
 
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
-// decided. `start_gap` is HIP to god-object before that.
+// decided. It stood on `start` then, `start_gap` away from the HIP.
 template <class Real>
-[[gnu::noinline]] Progress move_god_object(Walk<Real>& walk, Vec3<Real> start_gap, const Decision* decided) {
+Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided) {
   Progress progress = {0, 0};
   if (walk.active == kFree) {
     progress.flags = sweep_to_hip(walk, kFree);
     if (walk.active == kFree) return progress;
     ++progress.transitions;
+    start = walk.active;
     start_gap = walk.god_object - walk.hip;
   }
-  Trail<Real> trail(walk.active, start_gap);
+  Trail<Real> trail(start, start_gap);
   while (true) {
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
@@ -119,20 +123,6 @@ template <class Real>
       return progress;
     }
   }
-}
-
-// One step of a contact that has started. A god-object that stays on its face, at rest or sliding, is what a servo loop meets
-// most: that way the walk stays in registers, and nothing else is set up.
-template <class Real>
-inline Progress move_to_hip(Walk<Real>& walk) {
-  const Vec3<Real> start_gap = walk.god_object - walk.hip;
-  if (walk.active.state != FDCG_FACE) return move_god_object(walk, start_gap, nullptr);
-  const Decision decision = face_rule(walk);
-  if (decision.is_rest) return {0, 0};
-  Walk<Real> further = walk;
-  const Progress progress = move_god_object(further, start_gap, &decision);
-  walk = further;
-  return progress;
 }
 
 // A HIP further away than this is nowhere near any graph (load.cpp limits scale and origin), and its arithmetic might
@@ -155,9 +145,9 @@ inline bool to_local(const fdcg_header& header, const double hip_object_m[3], Ve
     return (absolute(p[0]) <= limit) & (absolute(p[1]) <= limit) & (absolute(p[2]) <= limit);
   };
   double local[3] = {hip_object_m[0], hip_object_m[1], hip_object_m[2]};
-  if (!is_within(local, kFarthestHip_m)) return false;
   const double unit_m = header.metres_per_unit;
   if (unit_m != 1) {  // a division takes as long as the rest of this function
+    if (!is_within(local, kFarthestHip_m)) return false;
     for (double& coordinate : local)
       coordinate /= unit_m;
   }
@@ -166,6 +156,12 @@ inline bool to_local(const fdcg_header& header, const double hip_object_m[3], Ve
   if (!is_within(local, RealLimits<Real>::kFar)) return false;
   round_to(local, hip);
   return true;
+}
+
+// Whether the graph has such a feature: asked by an assertion alone.
+[[maybe_unused]] bool is_of_graph(Feature feature, const fdcg_header& header) {
+  const uint32_t count[] = {0, header.node_count, header.connection_count, header.corner_count};
+  return feature == kFree || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
 }
 
 template <class Real>
@@ -196,55 +192,100 @@ inline void say_where(const fdcg_header& header, const fdcg_contact& contact, fd
   result->slipping = contact.slipping;
 }
 
+// First tick: free, with the god-object at the HIP.
+template <class Real>
+inline void start(Vec3<Real> hip, fdcg_contact* contact) {
+  store(hip, contact->hip);
+  store(hip, contact->god_object);
+  contact->started = 1;
+  contact->state = contact->seat_state = FDCG_FREE;
+  contact->feature = contact->seat_feature = FDCG_NONE;
+  contact->slipping = 0;
+}
+
+template <class Real>
+inline Friction<Real> friction_of(const fdcg_params& params, const fdcg_contact& contact) {
+  return {static_cast<Real>(params.mu_static), static_cast<Real>(params.mu_dynamic), params.edge_friction == FDCG_EDGE_WEDGE,
+          contact.slipping != 0};
+}
+
+// F = k (GO - HIP), damped along the same line (contact-model section 8). Call before the contact learns of the new HIP.
+template <class Real>
+inline void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, Vec3<Real> hip,
+                    Vec3<Real> god_object, fdcg_result* result) {
+  const Vec3<double> local_hip = widen(hip), spring = widen(god_object) - local_hip;
+  double newtons_per_metre = params.stiffness_n_per_m;
+  if (params.damping_n_s_per_m > 0) {
+    newtons_per_metre = damped(params, newtons_per_metre, spring, local_hip - vec(contact.hip));
+  }
+  store(spring * (newtons_per_metre * header.metres_per_unit), result->force_n);
+}
+
+// The long way: drives the rules from where the contact stands. `move` is null, or what its face has already made of it.
+template <class Real>
+[[gnu::noinline]] void walk_to_hip(Walk<Real> walk, const FaceMove<Real>* move, const fdcg_params& params,
+                                   fdcg_contact* contact, fdcg_result* result) {
+  const Vec3<Real> start_gap = walk.god_object - walk.hip;
+  const Feature start = walk.active;
+  Decision decided = rest();
+  if (move != nullptr) decided = carry_out(walk, *move);
+  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr);
+  FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
+  contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
+  contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
+  result->flags = progress.flags;
+  result->transitions = progress.transitions;
+  const bool is_free = walk.active == kFree;
+  if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
+  store(walk.god_object, contact->god_object);
+  contact->state = walk.active.state;
+  contact->feature = walk.active.index;
+  contact->seat_state = walk.seat.state;
+  contact->seat_feature = walk.seat.index;
+  contact->slipping = !is_free && walk.friction.is_slipping ? 1 : 0;
+}
+
+// A god-object that stays on its face, at rest or sliding, is what a servo loop meets most: nothing else is set up for it.
 template <class Real>
 void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
           fdcg_result* result) {
+  using Kind = typename FaceMove<Real>::Kind;
   const fdcg_header& header = *raw.header;
   Vec3<Real> hip;
   *result = {};
   if (!to_local(header, hip_object_m, &hip)) {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
-    say_where(header, *contact, result);
-    return;
-  }
-  const bool is_first = contact->started == 0;
-  const GraphView<Real> graph(raw);
-  Walk<Real> walk = {
-      graph,
-      {static_cast<Real>(params.mu_static), static_cast<Real>(params.mu_dynamic), params.edge_friction == FDCG_EDGE_WEDGE},
-      hip,
-      plane_rounding_bound(graph, hip),
-      is_first ? hip : narrow<Real>(contact->god_object),
-      is_first ? kFree : Feature{contact->state, contact->feature},
-      is_first ? kFree : Feature{contact->seat_state, contact->seat_feature},
-      contact->slipping != 0};
-  if (!is_first) {
-    const Progress progress = move_to_hip(walk);
-    if (progress.flags != 0) {
-      contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
-      contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
-      result->flags = progress.flags;
+  } else if (contact->started == 0) {
+    start(hip, contact);
+  } else {
+    const GraphView<Real> graph(raw);
+    const Real bound = plane_rounding_bound(graph, hip);
+    const Vec3<Real> god_object = narrow<Real>(contact->god_object);
+    const bool is_on_face = contact->state == FDCG_FACE;
+    Friction<Real> friction = friction_of<Real>(params, *contact);
+    FaceMove<Real> move;
+    if (is_on_face) {
+      const NodeRef<Real> node = graph.node(contact->feature);
+      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound), god_object);
     }
-    result->transitions = progress.transitions;
+    if (is_on_face && (move.kind == Kind::rests || move.kind == Kind::slides)) {
+      if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
+      contact->slipping = friction.is_slipping ? 1 : 0;
+      respond(header, params, *contact, hip, move.target, result);
+      store(move.target, contact->god_object);
+    } else {
+      walk_to_hip<Real>({graph,
+                         friction,
+                         hip,
+                         bound,
+                         god_object,
+                         {contact->state, contact->feature},
+                         {contact->seat_state, contact->seat_feature}},
+                        is_on_face ? &move : nullptr, params, contact, result);
+    }
+    store(hip, contact->hip);
   }
-  if (walk.active == kFree) {
-    walk.is_slipping = false;
-  } else {  // F = k (GO - HIP), damped along the same line (contact-model section 8)
-    const Vec3<double> local_hip = widen(hip), spring = widen(walk.god_object) - local_hip;
-    double newtons_per_metre = params.stiffness_n_per_m;
-    if (params.damping_n_s_per_m > 0)
-      newtons_per_metre = damped(params, newtons_per_metre, spring, local_hip - vec(contact->hip));
-    store(spring * (newtons_per_metre * header.metres_per_unit), result->force_n);
-  }
-  contact->started = 1;
-  store(hip, contact->hip);
-  store(walk.god_object, contact->god_object);
-  contact->state = walk.active.state;
-  contact->feature = walk.active.index;
-  contact->seat_state = walk.seat.state;
-  contact->seat_feature = walk.seat.index;
-  contact->slipping = walk.is_slipping ? 1 : 0;
   say_where(header, *contact, result);
 }
 
@@ -253,9 +294,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
 
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
-  if (graph->header->real_bytes == sizeof(double)) {
-    fdcg::step<double>(*graph, *params, contact, hip_object_m, result);
-  } else {
-    fdcg::step<float>(*graph, *params, contact, hip_object_m, result);
-  }
+  fdcg_params room;
+  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
+  fdcg::with_real_of(*graph->header,
+                     [&](auto real) { fdcg::step<decltype(real)>(*graph, all_params, contact, hip_object_m, result); });
 }

@@ -3,6 +3,7 @@
 // of contact-model sections 5, 6 and 7, sweep.hpp that of section 4; servo_step.cpp drives them.
 #pragma once
 
+#include "friction.hpp"
 #include "graph_view.hpp"
 
 namespace fdcg {
@@ -17,12 +18,6 @@ struct Feature {
 inline constexpr Feature kFree = {};
 
 template <class Real>
-struct Friction {
-  Real mu_static, mu_dynamic;
-  bool wedge;
-};
-
-template <class Real>
 struct Walk {
   GraphView<Real> graph;
   Friction<Real> friction;
@@ -31,9 +26,8 @@ struct Walk {
   Vec3<Real> god_object;
   Feature active;
   Feature seat;  // the edge or vertex on which the god-object was last placed and still is; kFree: none
-  bool is_slipping;
 
-  [[nodiscard]] Real side(const typename Records<Real>::Node& node) const { return side_of(graph, node, hip, hip_bound); }
+  [[nodiscard]] Real side(NodeRef<Real> node) const { return side_of(graph, node, hip, hip_bound); }
 
   // A move on a face's inside or along an edge.
   void place(Vec3<Real> point, Feature new_seat) {
@@ -54,65 +48,24 @@ inline Decision go_to(Feature next) {
   return {false, next};
 }
 
+// A connection's line, and how near to an end the vertex is meant (contact-model section 5).
 template <class Real>
-inline Real square(Real a) {
-  return a * a;
-}
+struct EdgeLine : Edge<Real> {
+  Real end_tolerance;
 
-// How far apart two computations of the same gap may lie when the god-object was rounded to its place in between.
-template <class Real>
-inline Real gap_rounding(Vec3<Real> god_object, Real gap) {
-  return RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
-}
+  explicit EdgeLine(const Edge<Real>& edge)
+      : Edge<Real>(edge), end_tolerance(8 * RealLimits<Real>::kEpsilon * (norm1(edge.start) + edge.length)) {}
 
-// What friction makes of a gap: rest, or slip until it is `gap`.
-template <class Real>
-struct Slip {
-  bool is_rest;
-  Real gap;
-};
-
-// Friction on a face or an edge: `gap2` is the squared distance of the god-object from the surface point, `load` the depth that
-// presses it on. Slipping starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping
-// god-object sits exactly on the dynamic circle and rounding must not toss a coin every tick (contact-model section 5; Melder
-// 2004, figure 4); for the same reason it is not placed anew for less than a rounding. Squares, so that rest costs no root.
-template <class Real>
-inline Slip<Real> friction(Walk<Real>& walk, Real gap2, Real load) {
-  constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
-  const Real dynamic_gap = walk.friction.mu_dynamic * load;
-  if (walk.is_slipping) {
-    if (gap2 <= square(kStickAgain * dynamic_gap)) walk.is_slipping = false;
-  } else if (gap2 > square(walk.friction.mu_static * load)) {
-    walk.is_slipping = true;
-  }
-  const bool is_rest = !walk.is_slipping || gap2 <= square(dynamic_gap + gap_rounding(walk.god_object, dynamic_gap));
-  return {is_rest, dynamic_gap};
-}
-
-// A connection's line: v0 + u edge, 0 <= u <= length.
-template <class Real>
-struct EdgeLine {
-  Vec3<Real> start, direction;
-  Real length;
-  Real end_tolerance;  // within it of an end, the vertex is meant (contact-model section 5)
-
-  EdgeLine(const GraphView<Real>& graph, const typename Records<Real>::Connection& connection)
-      : start(graph.corner_point(connection.corner[0])),
-        direction(vec(connection.edge)),
-        length(-(connection.end_offset[0] + connection.end_offset[1])),
-        end_tolerance(8 * RealLimits<Real>::kEpsilon * (norm1(start) + length)) {}
-
-  [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - start, direction); }
+  [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };
 
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
 template <class Real>
 inline Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
-  const auto& connection = walk.graph.connections[connection_index];
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
     if (!(from_end <= line.end_tolerance)) continue;
-    const Feature vertex = {FDCG_VERTEX, connection.corner[end]};
+    const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
     walk.place(walk.graph.corner_point(vertex.index), vertex);
     return vertex;
   }
