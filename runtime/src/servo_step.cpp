@@ -68,28 +68,12 @@ Decision apply_rule(Walk<Real>& walk) {
   }
 }
 
-// From free space, or from the surface that was just left: places the contact on what the way to the HIP meets.
-// Returns the flag of a bounded sweep, else 0.
-template <class Real>
-uint32_t sweep_to_hip(Walk<Real>& walk, Feature left) {
-  using Kind = typename SweepResult<Real>::Kind;
-  const SweepResult<Real> found = Sweep<Real>(walk, left).run();
-  if (found.kind == Kind::hit && found.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph, walk.graph.connections[found.feature.index]);
-    walk.active = place_on_edge(walk, found.feature.index, line, line.parameter(found.point));
-    return 0;
-  }
-  walk.active = found.feature;
-  walk.place(found.kind == Kind::clear ? walk.hip : found.point, kFree);
-  return found.kind == Kind::bounded ? uint32_t{FDCG_RESULT_SWEEP_BOUND} : 0;
-}
-
 // Drives the rules until one rests. Returns the changes of state; adds to *flags what was cut short.
 template <class Real>
-uint32_t move_god_object(Walk<Real>& walk, uint32_t* flags) {
-  uint32_t transitions = 0;
+uint32_t move_god_object(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* flags) {
+  uint32_t transitions = 0, work_left = kSweepWork;
   if (walk.active == kFree) {
-    *flags |= sweep_to_hip(walk, kFree);
+    *flags |= sweep_to_hip(walk, kFree, carried, &work_left);
     if (walk.active == kFree) return 0;
     ++transitions;
   }
@@ -102,7 +86,7 @@ uint32_t move_god_object(Walk<Real>& walk, uint32_t* flags) {
     walk.active = decision.next;
     ++transitions;
     if (walk.active == kFree) {
-      *flags |= sweep_to_hip(walk, at);
+      *flags |= sweep_to_hip(walk, at, carried, &work_left);
       if (walk.active == kFree) return transitions;
       ++transitions;
     }
@@ -187,15 +171,18 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
         {contact->state, contact->feature},
         {contact->seat_state, contact->seat_feature},
         contact->slipping != 0};
-    if (is_first) walk.active = walk.seat = kFree;
+    if (is_first) {
+      walk.active = walk.seat = kFree;
+      contact->sweep.is_carried = 0;
+    }
     double before[3];
     for (int k = 0; k < 3; ++k)
       before[k] = contact->hip[k];
     store(hip, contact->hip);
     if (is_first) store(hip, before);
     contact->started = 1;
-    if (!is_first) result->transitions = move_god_object(walk, &result->flags);
-    if (walk.active == kFree) walk.is_slipping = false;
+    if (!is_first) result->transitions = move_god_object(walk, &contact->sweep, &result->flags);
+    if (walk.active == kFree && contact->sweep.is_carried == 0) walk.is_slipping = false;
     store(walk.god_object, contact->god_object);
     contact->state = walk.active.state;
     contact->feature = walk.active.index;
