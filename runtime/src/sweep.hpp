@@ -171,11 +171,11 @@ class Sweep {
   // off its plane is a slab: a way that begins within it still begins in front.
   void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
-    const auto& node = graph_.nodes[n];
+    const NodeRef<Real> node = graph_.node(n);
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
-    const bool is_inexact = (node.flags & FDCG_NODE_INEXACT) != 0;
+    const bool is_inexact = node.is_inexact();
     if (start_side < (is_inexact ? -slab_ : Real(0))) return;
     const Real fraction = start_side > 0 ? start_side / (start_side - end_side) : Real(0);
     if (!is_before_best(fraction, n) || is_left_out(n, node)) return;
@@ -190,19 +190,20 @@ class Sweep {
     return fraction < best_.fraction || (fraction == best_.fraction && n < best_.node);
   }
 
-  [[nodiscard]] Real side(const typename Records<Real>::Node& node, Vec3<Real> x, Real bound) const {
-    if (absolute(graph_.face_plane(node).distance(x)) <= bound) spend(work_left_, kExactWork);
+  [[nodiscard]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
+    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kExactWork);
     return side_of(graph_, node, x, bound);
   }
 
-  [[nodiscard]] bool is_left_out(uint32_t n, const typename Records<Real>::Node& node) const {
+  [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
     if (left_.state == FDCG_FACE) return left_.index == n;
     if (left_.state == FDCG_EDGE) {
-      return graph_.connections[left_.index].node[0] == n || graph_.connections[left_.index].node[1] == n;
+      const ConnectionRef<Real> connection = graph_.connection(left_.index);
+      return connection.node(0) == n || connection.node(1) == n;
     }
     if (left_.state != FDCG_VERTEX) return false;
-    for (uint32_t k = 0; k < node.side_count; ++k) {
-      if (graph_.start_corner(node.first_side + k) == left_.index) return true;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (node.corner(k) == left_.index) return true;
     }
     return false;
   }
@@ -221,12 +222,10 @@ class Sweep {
     return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end));
   }
 
-  [[nodiscard]] Vec3<Real> start_point(uint32_t side) const { return graph_.corner_point(graph_.start_corner(side)); }
-
-  bool passes_inside(const typename Records<Real>::Node& node, bool* met_exactly) const {
-    Vec3<Real> start = start_point(node.first_side + node.side_count - 1);
-    for (uint32_t k = 0; k < node.side_count; ++k) {
-      const Vec3<Real> end = start_point(node.first_side + k);
+  bool passes_inside(NodeRef<Real> node, bool* met_exactly) const {
+    Vec3<Real> start = graph_.corner_point(node.corner(0));
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
       const int sign = orientation(start, end);
       if (sign > 0) return false;
       if (sign == 0) *met_exactly = true;
@@ -236,18 +235,16 @@ class Sweep {
   }
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it.
-  Feature on_rim(const typename Records<Real>::Node& node, Vec3<Real> point) const {
+  Feature on_rim(NodeRef<Real> node, Vec3<Real> point) const {
     Feature nearest = kFree;
     Real nearest_outside = 0;
-    for (uint32_t k = 0; k < node.side_count; ++k) {
-      const uint32_t side = node.first_side + k, index = graph_.sides[side] >> 1;
-      const uint32_t next = k + 1 < node.side_count ? side + 1 : node.first_side;
-      if (orientation(start_point(side), start_point(next)) != 0) continue;
-      const EdgeLine<Real> line(graph_, graph_.connections[index]);
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0) continue;
+      const EdgeLine<Real> line(graph_.edge(node, k));
       const Real u = line.parameter(point);
       const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));
       if (nearest == kFree || outside < nearest_outside) {
-        nearest = {FDCG_EDGE, index};
+        nearest = {FDCG_EDGE, node.connection(k)};
         nearest_outside = outside;
       }
     }
@@ -272,7 +269,7 @@ inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, co
   const Vec3<Real> point = sweep.point_at(first.fraction);
   walk.active = first.feature;
   if (first.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph, walk.graph.connections[first.feature.index]);
+    const EdgeLine<Real> line(walk.graph.edge(first.feature.index));
     walk.active = place_on_edge(walk, first.feature.index, line, line.parameter(point));
   } else {
     walk.place(first.feature == kFree ? to : point, kFree);
