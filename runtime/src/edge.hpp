@@ -18,13 +18,13 @@ struct EdgeSides {
 };
 
 template <class Real>
-inline EdgeSides<Real> edge_sides(const Walk<Real>& walk, const typename Records<Real>::Connection& connection) {
+inline EdgeSides<Real> edge_sides(const Walk<Real>& walk, ConnectionRef<Real> connection) {
   EdgeSides<Real> s = {};
-  const int faces = connection.type == FDCG_BOUNDARY ? 1 : 2;
+  const int faces = connection.type() == FDCG_BOUNDARY ? 1 : 2;
   for (int k = 0; k < faces; ++k) {
-    const auto& node = walk.graph.nodes[connection.node[k]];
+    const NodeRef<Real> node = walk.graph.node(connection.node(k));
     s.side[k] = walk.side(node);
-    s.voronoi[k] = walk.graph.voronoi_plane(node, connection.side[k]).distance(walk.hip);
+    s.voronoi[k] = node.voronoi_plane(connection.side(k)).distance(walk.hip);
   }
   return s;
 }
@@ -35,12 +35,9 @@ inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
 
 // The sum of the two normal loads of the groove, or the paper's distance of HIP from the edge.
 template <class Real>
-inline Real edge_load(const Walk<Real>& walk, const typename Records<Real>::Connection& connection, const EdgeLine<Real>& line,
-                      Real distance) {
-  if (!walk.friction.wedge || connection.type == FDCG_BOUNDARY) return distance;
-  const auto& a = walk.graph.nodes[connection.node[0]];
-  const auto& b = walk.graph.nodes[connection.node[1]];
-  const Vec3<Real> sum = vec(a.plane.normal) + vec(b.plane.normal);
+inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, const EdgeLine<Real>& line, Real distance) {
+  if (!walk.friction.wedge || connection.type() == FDCG_BOUNDARY) return distance;
+  const Vec3<Real> sum = walk.graph.node(connection.node(0)).normal() + walk.graph.node(connection.node(1)).normal();
   const Real most = Real(kMaxWedgeFactor) * distance;
   const Real sum2 = dot(sum, sum);
   const Real load = -2 * dot(sum, walk.hip - line.start);
@@ -52,16 +49,16 @@ inline Real edge_load(const Walk<Real>& walk, const typename Records<Real>::Conn
 template <class Real>
 inline Decision edge_rule(Walk<Real>& walk) {
   const uint32_t index = walk.active.index;
-  const auto& connection = walk.graph.connections[index];
+  const ConnectionRef<Real> connection = walk.graph.connection(index);
   const EdgeSides<Real> s = edge_sides(walk, connection);
   const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
-  if (connection.type == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node[0]} : kFree);
-  if (is_free_of_edge(connection.type, s.side[0] < 0, s.side[1] < 0)) return go_to(kFree);
+  if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
+  if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0)) return go_to(kFree);
   const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
-  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0])) return go_to({FDCG_FACE, connection.node[0]});
-  if (is_candidate_b) return go_to({FDCG_FACE, connection.node[1]});
+  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0])) return go_to({FDCG_FACE, connection.node(0)});
+  if (is_candidate_b) return go_to({FDCG_FACE, connection.node(1)});
 
-  const EdgeLine<Real> line(walk.graph, connection);
+  const EdgeLine<Real> line(walk.graph.edge(index));
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
   const Real gap = absolute(ahead);

@@ -15,11 +15,10 @@ struct Crossing {
 };
 
 template <class Real>
-inline Crossing<Real> first_crossing(const GraphView<Real>& graph, const typename Records<Real>::Node& node, Vec3<Real> from,
-                                     Vec3<Real> to) {
+inline Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
   Crossing<Real> first;
-  for (uint32_t k = 0; k < node.side_count; ++k) {
-    const Plane<Real> plane = graph.voronoi_plane(node, k);
+  for (uint32_t k = 0; k < node.side_count(); ++k) {
+    const Plane<Real> plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
     if (!(s1 >= 0)) continue;
     const Real s0 = plane.distance(from);
@@ -33,10 +32,10 @@ inline Crossing<Real> first_crossing(const GraphView<Real>& graph, const typenam
 // Cost: one plane, and, where the god-object slides, two per side of the node.
 template <class Real>
 inline Decision face_rule(Walk<Real>& walk) {
-  const auto& node = walk.graph.nodes[walk.active.index];
+  const NodeRef<Real> node = walk.graph.node(walk.active.index);
   const Real side = walk.side(node);
   if (!(side < 0)) return go_to(walk.seat);  // the seat's rule decides; without a seat this is Free
-  const Vec3<Real> normal = vec(node.plane.normal);
+  const Vec3<Real> normal = node.normal();
   const Real depth = -side;
   const Vec3<Real> surface_point = walk.hip + normal * depth;
   Vec3<Real> offset = walk.god_object - surface_point;
@@ -45,15 +44,14 @@ inline Decision face_rule(Walk<Real>& walk) {
   const Real allowed = friction_gap(walk, gap, depth);
   if (!(allowed < gap)) return rest();
   const Vec3<Real> target = surface_point + offset * (allowed / gap);
-  const Crossing<Real> crossing = first_crossing(walk.graph, node, walk.god_object, target);
+  const Crossing<Real> crossing = first_crossing(node, walk.god_object, target);
   if (crossing.local_side == FDCG_NONE) {
     walk.place(target, kFree);
     return rest();
   }
-  const uint32_t connection = walk.graph.sides[node.first_side + crossing.local_side] >> 1;
-  const EdgeLine<Real> line(walk.graph, walk.graph.connections[connection]);
+  const EdgeLine<Real> line(walk.graph.edge(node, crossing.local_side));
   const Vec3<Real> point = walk.god_object + (target - walk.god_object) * crossing.fraction;
-  return go_to(place_on_edge(walk, connection, line, line.parameter(point)));
+  return go_to(place_on_edge(walk, node.connection(crossing.local_side), line, line.parameter(point)));
 }
 
 }  // namespace fdcg

@@ -8,9 +8,12 @@
 //
 // Each rule moves the god-object nearer to the HIP or hands over to a neighbour that climbs further; the step ends where a rule
 // rests. Every loop is bounded: work left over is carried to the next tick with a valid god-object.
+#include "config.hpp"
 #include "corner.hpp"
 #include "edge.hpp"
 #include "face.hpp"
+#include "hooks.hpp"
+#include "struct_bytes.hpp"
 #include "sweep.hpp"
 
 namespace fdcg {
@@ -75,7 +78,7 @@ uint32_t sweep_to_hip(Walk<Real>& walk, Feature left) {
   using Kind = typename SweepResult<Real>::Kind;
   const SweepResult<Real> found = Sweep<Real>(walk, left).run();
   if (found.kind == Kind::hit && found.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph, walk.graph.connections[found.feature.index]);
+    const EdgeLine<Real> line(walk.graph.edge(found.feature.index));
     walk.active = place_on_edge(walk, found.feature.index, line, line.parameter(found.point));
     return 0;
   }
@@ -130,6 +133,12 @@ template <class Real>
   }
   *hip = {static_cast<Real>(local[0]), static_cast<Real>(local[1]), static_cast<Real>(local[2])};
   return is_usable(*hip);
+}
+
+// Whether the graph has such a feature: asked by an assertion alone.
+[[maybe_unused]] bool is_of_graph(Feature feature, const fdcg_header& header) {
+  const uint32_t count[] = {0, header.node_count, header.connection_count, header.corner_count};
+  return feature == kFree || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
 }
 
 template <class Real>
@@ -195,6 +204,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     if (is_first) store(hip, before);
     contact->started = 1;
     if (!is_first) result->transitions = move_god_object(walk, &result->flags);
+    FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *raw.header));
     if (walk.active == kFree) walk.is_slipping = false;
     store(walk.god_object, contact->god_object);
     contact->state = walk.active.state;
@@ -220,9 +230,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
 
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
-  if (graph->header->real_bytes == sizeof(double)) {
-    fdcg::step<double>(*graph, *params, contact, hip_object_m, result);
-  } else {
-    fdcg::step<float>(*graph, *params, contact, hip_object_m, result);
-  }
+  fdcg_params room;
+  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
+  fdcg::with_real_of(*graph->header,
+                     [&](auto real) { fdcg::step<decltype(real)>(*graph, all_params, contact, hip_object_m, result); });
 }

@@ -126,11 +126,11 @@ class Sweep {
   // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie
   // off its plane is a slab: a way that begins within it still begins in front.
   void try_node(uint32_t n) {
-    const auto& node = graph_.nodes[n];
+    const NodeRef<Real> node = graph_.node(n);
     const Real end_side = walk_.side(node);
     if (!(end_side < 0)) return;
     const Real start_side = side_of(graph_, node, from_, from_bound_);
-    const bool is_inexact = (node.flags & FDCG_NODE_INEXACT) != 0;
+    const bool is_inexact = node.is_inexact();
     if (start_side < (is_inexact ? -slab_ : Real(0))) return;
     const Real fraction = start_side > 0 ? start_side / (start_side - end_side) : Real(0);
     if (!(fraction < best_fraction_) || is_left_out(n, node)) return;
@@ -141,30 +141,32 @@ class Sweep {
     best_fraction_ = fraction;
   }
 
-  [[nodiscard]] bool is_left_out(uint32_t n, const typename Records<Real>::Node& node) const {
+  [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
     if (left_.state == FDCG_FACE) return left_.index == n;
     if (left_.state == FDCG_EDGE) {
-      return graph_.connections[left_.index].node[0] == n || graph_.connections[left_.index].node[1] == n;
+      const ConnectionRef<Real> connection = graph_.connection(left_.index);
+      return connection.node(0) == n || connection.node(1) == n;
     }
     if (left_.state != FDCG_VERTEX) return false;
-    for (uint32_t k = 0; k < node.side_count; ++k) {
-      if (graph_.start_corner(node.first_side + k) == left_.index) return true;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (node.corner(k) == left_.index) return true;
     }
     return false;
   }
 
   // The line meets a side's edge exactly where its orientation against the edge is 0.
-  [[nodiscard]] int orientation_to_side(uint32_t side) const {
-    const auto& connection = graph_.connections[graph_.sides[side] >> 1];
-    const Vec3<double> v0 = widen(graph_.corner_point(connection.corner[0]));
-    const Vec3<double> v1 = widen(graph_.corner_point(connection.corner[1]));
-    const int sign = orient3d_sign(widen(from_), widen(to_), v0, v1);
-    return (graph_.sides[side] & 1) == 0 ? sign : -sign;
+  [[nodiscard]] int orientation_to_side(NodeRef<Real> node, uint32_t k) const {
+    const Vec3<double> start = widen(graph_.corner_point(node.corner(k)));
+    const Vec3<double> end = widen(graph_.corner_point(node.corner(node.next(k))));
+    const bool is_forward = node.which(k) == 0;  // both neighbours ask the same question
+    const int sign =
+        is_forward ? orient3d_sign(widen(from_), widen(to_), start, end) : orient3d_sign(widen(from_), widen(to_), end, start);
+    return is_forward ? sign : -sign;
   }
 
-  bool passes_inside(const typename Records<Real>::Node& node, uint32_t* met_exactly) const {
-    for (uint32_t k = 0; k < node.side_count; ++k) {
-      const int sign = orientation_to_side(node.first_side + k);
+  bool passes_inside(NodeRef<Real> node, uint32_t* met_exactly) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const int sign = orientation_to_side(node, k);
       if (sign > 0) return false;
       if (sign == 0) ++*met_exactly;
     }
@@ -178,17 +180,16 @@ class Sweep {
   };
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it.
-  Target on_rim(const typename Records<Real>::Node& node, Vec3<Real> point) const {
+  Target on_rim(NodeRef<Real> node, Vec3<Real> point) const {
     Target nearest = {kFree, 0};
     Real nearest_outside = 0;
-    for (uint32_t k = 0; k < node.side_count; ++k) {
-      const uint32_t side = node.first_side + k, index = graph_.sides[side] >> 1;
-      if (orientation_to_side(side) != 0) continue;
-      const EdgeLine<Real> line(graph_, graph_.connections[index]);
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (orientation_to_side(node, k) != 0) continue;
+      const EdgeLine<Real> line(graph_.edge(node, k));
       const Real u = line.parameter(point);
       const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));
       if (nearest.feature == kFree || outside < nearest_outside) {
-        nearest = {{FDCG_EDGE, index}, u};
+        nearest = {{FDCG_EDGE, node.connection(k)}, u};
         nearest_outside = outside;
       }
     }

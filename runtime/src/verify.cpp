@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verify.hpp"
 
+#include "config.hpp"
 #include "graph_view.hpp"
 #include "implicit_tree.hpp"
 #include "message.hpp"
@@ -108,8 +109,9 @@ class Verifier {
         return refuse("side", side, "its connection does not lead back");
       const uint32_t next = node.first_side + (k + 1 < node.side_count ? k + 1 : 0);
       if (graph_.sides[next] >> 1 >= header_.connection_count) return refuse("side", next, "connection out of range");
-      if (connection.corner[1 - which] != graph_.start_corner(next)) return refuse("node", n, "its sides do not form a loop");
-      const Plane<Real> plane = graph_.voronoi_plane(node, k);  // stored, or as the step will derive it
+      if (connection.corner[1 - which] != graph_.connections[graph_.sides[next] >> 1].corner[graph_.sides[next] & 1])
+        return refuse("node", n, "its sides do not form a loop");
+      const Plane<Real> plane = graph_.node(n).voronoi_plane(k);  // stored, or as the step will derive it
       if (!is_unit(plane.normal) || !(absolute(plane.offset) <= 4 * header_.extent))
         return refuse("side", side, "Voronoi plane out of range");
     }
@@ -189,7 +191,7 @@ class Verifier {
       const fdcg_box& box = raw_.hierarchy[layout.first[0] + n / FDCG_LEAF_NODES];
       const auto& node = graph_.nodes[n];
       for (uint32_t k = 0; k < node.side_count; ++k) {
-        const auto& point = graph_.corners[graph_.start_corner(node.first_side + k)].point;
+        const auto& point = graph_.corners[graph_.node(n).corner(k)].point;
         for (int axis = 0; axis < 3; ++axis) {
           if (!(box.min[axis] <= point[axis] && point[axis] <= box.max[axis]))
             return refuse("node", n, "sticks out of its box");
@@ -247,7 +249,7 @@ fdcg_status verify_checksums(const void* data, const fdcg_header& header, fdcg_e
 }
 
 fdcg_status verify_graph(const fdcg_graph& graph, fdcg_error* error) {
-  return graph.header->real_bytes == 8 ? Verifier<double>(graph, error).run() : Verifier<float>(graph, error).run();
+  return with_real_of(*graph.header, [&](auto real) { return Verifier<decltype(real)>(graph, error).run(); });
 }
 
 }  // namespace fdcg

@@ -33,7 +33,7 @@ struct Walk {
   Feature seat;  // the edge or vertex on which the god-object was last placed and still is; kFree: none
   bool is_slipping;
 
-  [[nodiscard]] Real side(const typename Records<Real>::Node& node) const { return side_of(graph, node, hip, hip_bound); }
+  [[nodiscard]] Real side(NodeRef<Real> node) const { return side_of(graph, node, hip, hip_bound); }
 
   // A move on a face's inside or along an edge.
   void place(Vec3<Real> point, Feature new_seat) {
@@ -78,30 +78,24 @@ inline Real friction_gap(Walk<Real>& walk, Real gap, Real load) {
   return dynamic_gap;
 }
 
-// A connection's line: v0 + u edge, 0 <= u <= length.
+// A connection's line, and how near to an end the vertex is meant (contact-model section 5).
 template <class Real>
-struct EdgeLine {
-  Vec3<Real> start, direction;
-  Real length;
-  Real end_tolerance;  // within it of an end, the vertex is meant (contact-model section 5)
+struct EdgeLine : Edge<Real> {
+  Real end_tolerance;
 
-  EdgeLine(const GraphView<Real>& graph, const typename Records<Real>::Connection& connection)
-      : start(graph.corner_point(connection.corner[0])),
-        direction(vec(connection.edge)),
-        length(-(connection.end_offset[0] + connection.end_offset[1])),
-        end_tolerance(8 * RealLimits<Real>::kEpsilon * (norm1(start) + length)) {}
+  explicit EdgeLine(const Edge<Real>& edge)
+      : Edge<Real>(edge), end_tolerance(8 * RealLimits<Real>::kEpsilon * (norm1(edge.start) + edge.length)) {}
 
-  [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - start, direction); }
+  [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };
 
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
 template <class Real>
 inline Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
-  const auto& connection = walk.graph.connections[connection_index];
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
     if (!(from_end <= line.end_tolerance)) continue;
-    const Feature vertex = {FDCG_VERTEX, connection.corner[end]};
+    const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
     walk.place(walk.graph.corner_point(vertex.index), vertex);
     return vertex;
   }

@@ -53,7 +53,7 @@ MUTANTS = [
     ("steeper-face", "behind both faces: the nearer plane", "edge.hpp",
      "s.voronoi[1] < s.voronoi[0]", "false"),
     ("open-corner", "an apex with a boundary edge is free", "corner.hpp",
-     "if ((corner.flags & FDCG_CORNER_OPEN) != 0) return go_to(kFree);", ""),
+     "if (corner.is_open()) return go_to(kFree);", ""),
     ("steepest-at-vertex", "the longest way at a corner wins", "corner.hpp",
      "if (along > best.reach)", "if (best.feature == kFree && along > 0)"),
 ]
