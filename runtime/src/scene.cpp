@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene's memory, and what comes into it and goes. scene_step.cpp is its tick.
-#include <string.h>
-
 #include "message.hpp"
 #include "scene_memory.hpp"
+#include "struct_bytes.hpp"
 
 namespace fdcg {
 namespace {
@@ -31,14 +30,20 @@ bool is_within(double value, double low, double high) {
   return value >= low && value <= high;
 }
 
-fdcg_status check_config(const fdcg_scene_config* config, fdcg_error* error) {
-  if (config == nullptr) return refuse(error, "config: null pointer");
+// In range; *config is then whole.
+fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* config, fdcg_error* error) {
+  if (given == nullptr) return refuse(error, "config: null pointer");
+  if (const fdcg_status status = check_struct_bytes(given->struct_bytes, sizeof *given, "config",
+                                                    "; start from fdcg_default_scene_config()", error);
+      status != FDCG_OK) {
+    return status;
+  }
+  *config = in_full(*given, config, fdcg_init_scene_config);
   struct Range {
     const char* name;
     uint32_t value, low, high;
   };
   const Range ranges[] = {
-      {"config.struct_bytes (start from fdcg_default_scene_config)", config->struct_bytes, sizeof *config, sizeof *config},
       {"config.object_capacity", config->object_capacity, 1, kMostObjects},
       {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
       {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
@@ -162,18 +167,17 @@ extern "C" fdcg_pose fdcg_identity_pose(void) {
   return pose;
 }
 
-extern "C" fdcg_scene_config fdcg_default_scene_config(void) {
-  fdcg_scene_config config = {};
-  config.struct_bytes = sizeof(fdcg_scene_config);
-  config.object_capacity = 64;
-  config.finger_capacity = 8;
-  config.touches_per_finger = 4;
-  return config;
+extern "C" void fdcg_init_scene_config(fdcg_scene_config* config, uint32_t struct_bytes) {
+  fdcg_scene_config defaults = {};
+  defaults.object_capacity = 64;
+  defaults.finger_capacity = 8;
+  defaults.touches_per_finger = 4;
+  fill_defaults(config, defaults, struct_bytes);
 }
 
 extern "C" uint64_t fdcg_scene_bytes(const fdcg_scene_config* config) {
   fdcg_scene scene;
-  return check_config(config, nullptr) == FDCG_OK ? lay_out(*config, &scene) : 0;
+  return checked_config(config, &scene.config, nullptr) == FDCG_OK ? lay_out(scene.config, &scene) : 0;
 }
 
 extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdcg_scene_config* config, fdcg_scene** scene,
@@ -181,13 +185,12 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
   if (scene == nullptr) return refuse(error, "scene: null pointer");
   *scene = nullptr;
   if (memory == nullptr) return refuse(error, "memory: null pointer");
-  const fdcg_status status = check_config(config, error);
+  fdcg_scene layout = {};
+  const fdcg_status status = checked_config(config, &layout.config, error);
   if (status != FDCG_OK) return status;
   if (reinterpret_cast<uintptr_t>(memory) % kAlignment != 0)
     return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
-  fdcg_scene layout = {};
-  layout.bytes = lay_out(*config, &layout);
-  layout.config = *config;
+  layout.bytes = lay_out(layout.config, &layout);
   if (bytes < layout.bytes) {
     return Message(error, FDCG_E_ARGUMENT)
         .text("bytes is ")
@@ -213,7 +216,8 @@ extern "C" fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph
   Object* const added = unused(scene->objects(), scene->config.object_capacity, "config.object_capacity", error);
   if (added == nullptr) return FDCG_E_ARGUMENT;
   added->graph = graph;
-  added->params = *params;
+  fdcg_params room;
+  added->params = in_full(*params, &room, fdcg_init_params);
   added->bounds = Bounds(*graph->header);
   added->asked = checked;
   added->is_used = added->is_enabled = 1;
@@ -250,7 +254,8 @@ extern "C" fdcg_status fdcg_scene_set_params(fdcg_scene* scene, fdcg_object_id i
   Object* const object = find(scene, id, error);
   if (object == nullptr) return FDCG_E_ARGUMENT;
   const fdcg_status status = fdcg_check_params(params, error);
-  if (status == FDCG_OK) object->params = *params;
+  fdcg_params room;
+  if (status == FDCG_OK) object->params = in_full(*params, &room, fdcg_init_params);
   return status;
 }
 

@@ -293,7 +293,8 @@ bool step_slot(const Tick& tick, Slot& slot, bool missed, fdcg_result* result) {
   tick.finger.idle_steps = 0;
   slot.step = tick.finger.step + 1;
   step_contact(object, slot, object.now.to_object(tick.hip, may_skip), result);
-  slot.is_held = result->state != FDCG_FREE || (result->flags & FDCG_RESULT_SWEEP_BOUND) != 0;
+  const bool has_swept = norm1(vec(slot.contact.god_object) - vec(slot.contact.hip)) == 0;
+  slot.is_held = result->state != FDCG_FREE || (result->flags & FDCG_RESULT_SWEEP_BOUND) != 0 || !has_swept;
   return slot.is_held != 0;
 }
 

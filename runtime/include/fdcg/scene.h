@@ -54,11 +54,13 @@ typedef struct fdcg_finger_id {
   uint32_t index, generation;
 } fdcg_finger_id;
 
-/* world = rotation(scale * object) + translation. */
+/* world = R (scale * object) + translation, and back: object = (R^T (world - translation)) / scale, where R is the rotation
+ * matrix of the quaternion; the three products of a row are added from the first to the third. So a contact stepped by hand with
+ * fdcg_step gives the scene's bits. */
 typedef struct fdcg_pose {
-  double rotation_xyzw[4];  /* unit quaternion, real part last; within 1e-3 of unit length, made exactly unit by the scene */
-  double translation_m[3];  /* up to 1e12 */
-  double scale;             /* 1e-9 to 1e9 */
+  double rotation_xyzw[4]; /* unit quaternion, real part last; within 1e-3 of unit length, made exactly unit by the scene */
+  double translation_m[3]; /* up to 1e12 */
+  double scale;            /* 1e-9 to 1e9 */
 } fdcg_pose;
 
 /* No rotation, no translation, scale 1. */
@@ -76,7 +78,7 @@ typedef enum fdcg_scene_skip {
 } fdcg_scene_skip;
 
 typedef struct fdcg_scene_config {
-  uint32_t struct_bytes;       /* sizeof(fdcg_scene_config); fdcg_default_scene_config sets it */
+  uint32_t struct_bytes;       /* the caller's sizeof(fdcg_scene_config); fdcg_default_scene_config sets it */
   uint32_t object_capacity;    /* 1 to 1,000,000 */
   uint32_t finger_capacity;    /* 1 to 10,000,000 */
   uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
@@ -84,8 +86,13 @@ typedef struct fdcg_scene_config {
   uint32_t reserved;           /* 0 */
 } fdcg_scene_config;
 
-/* 64 objects, 8 fingers, 4 touches a finger, every skip on: some 64 KiB. */
-fdcg_scene_config fdcg_default_scene_config(void);
+/* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 50 KB. */
+void fdcg_init_scene_config(fdcg_scene_config* config, uint32_t struct_bytes);
+static inline fdcg_scene_config fdcg_default_scene_config(void) {
+  fdcg_scene_config config;
+  fdcg_init_scene_config(&config, (uint32_t)sizeof config);
+  return config;
+}
 
 /* What fdcg_scene_create needs; 0 if the config is out of range (fdcg_scene_create says why). */
 uint64_t fdcg_scene_bytes(const fdcg_scene_config* config);
