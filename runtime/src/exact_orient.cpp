@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#include "work.hpp"
+
 namespace fdcg {
 namespace {
 
@@ -72,9 +74,9 @@ Whole<kLimbs> whole_of(const Parts& parts, int unit) {
 }
 
 // |a| + |b|, with the sign of a.
-template <int A, int B>
-Whole<(A > B ? A : B) + 1> joined(const Whole<A>& a, const Whole<B>& b) {
-  Whole<(A > B ? A : B) + 1> r;
+template <int R, int A, int B>
+void join(const Whole<A>& a, const Whole<B>& b, Whole<R>& r) {
+  r.count = 0;
   r.is_negative = a.is_negative;
   TwoLimbs carry = 0;
   for (; r.count < a.count || r.count < b.count; ++r.count) {
@@ -84,7 +86,6 @@ Whole<(A > B ? A : B) + 1> joined(const Whole<A>& a, const Whole<B>& b) {
     carry >>= kLimbBits;
   }
   if (carry != 0) r.limb[r.count++] = static_cast<Limb>(carry);
-  return r;
 }
 
 // The sign of |a| - |b|.
@@ -99,8 +100,8 @@ int compare_sizes(const Whole<A>& a, const Whole<B>& b) {
 
 // |large| - |small| >= 0, with the sign given.
 template <int R, int A, int B>
-Whole<R> reduced(const Whole<A>& large, const Whole<B>& small, bool is_negative) {
-  Whole<R> r;
+void reduce(const Whole<A>& large, const Whole<B>& small, bool is_negative, Whole<R>& r) {
+  r.count = 0;
   r.is_negative = is_negative;
   Limb borrow = 0;
   for (; r.count < large.count; ++r.count) {
@@ -110,14 +111,18 @@ Whole<R> reduced(const Whole<A>& large, const Whole<B>& small, bool is_negative)
     borrow = from < take || less < borrow ? 1 : 0;
   }
   r.trim();
-  return r;
 }
 
-template <int A, int B>
-Whole<(A > B ? A : B) + 1> difference(const Whole<A>& a, const Whole<B>& b) {
-  constexpr int R = (A > B ? A : B) + 1;
-  if (a.is_negative != b.is_negative) return joined(a, b);
-  return compare_sizes(a, b) >= 0 ? reduced<R>(a, b, a.is_negative) : reduced<R>(b, a, !a.is_negative);
+template <int R, int A, int B>
+void subtract(const Whole<A>& a, const Whole<B>& b, Whole<R>& r) {
+  static_assert(R > A && R > B);
+  if (a.is_negative != b.is_negative) {
+    join(a, b, r);
+  } else if (compare_sizes(a, b) >= 0) {
+    reduce(a, b, a.is_negative, r);
+  } else {
+    reduce(b, a, !a.is_negative, r);
+  }
 }
 
 template <int A, int B>
@@ -140,10 +145,12 @@ Whole<A + B> product(const Whole<A>& a, const Whole<B>& b) {
   return r;
 }
 
-// a b - c d
+// (a b - c d) e
 template <int N>
-auto minor(const Whole<N>& a, const Whole<N>& b, const Whole<N>& c, const Whole<N>& d) {
-  return difference(product(a, b), product(c, d));
+Whole<3 * N + 1> minor_times(const Whole<N>& a, const Whole<N>& b, const Whole<N>& c, const Whole<N>& d, const Whole<N>& e) {
+  Whole<2 * N + 1> minor;
+  subtract(product(a, b), product(c, d), minor);
+  return product(minor, e);
 }
 
 // Four points in multiples of 2^unit.
@@ -208,31 +215,33 @@ int sign_in_words(const Multiples&) {
 #endif
 
 int sign_in_limbs(const Multiples& m) {
-  Whole<kLimbs + 1> edge[3][3];  // from the first point to each other
+  constexpr int N = kLimbs + 1;
+  Whole<N> edge[3][3];  // from the first point to each other
   for (int k = 0; k < 3; ++k) {
     const Whole<kLimbs> first = whole_of(m.part[0][k], m.unit);
     for (int p = 0; p < 3; ++p)
-      edge[p][k] = difference(whole_of(m.part[p + 1][k], m.unit), first);
+      subtract(whole_of(m.part[p + 1][k], m.unit), first, edge[p][k]);
   }
   const auto &u = edge[0], &v = edge[1], &w = edge[2];
-  const auto x = product(minor(u[1], v[2], u[2], v[1]), w[0]);
-  auto y = product(minor(u[2], v[0], u[0], v[2]), w[1]);
-  auto z = product(minor(u[0], v[1], u[1], v[0]), w[2]);
-  y.is_negative = !y.is_negative;
-  z.is_negative = !z.is_negative;
-  const auto sum = difference(difference(x, y), z);
+  Whole<3 * N + 2> less;
+  Whole<3 * N + 3> sum;
+  subtract(minor_times(u[1], v[2], u[2], v[1], w[0]), minor_times(u[0], v[2], u[2], v[0], w[1]), less);
+  subtract(less, minor_times(u[1], v[0], u[0], v[1], w[2]), sum);
   if (sum.count == 0) return 0;
   return sum.is_negative ? -1 : 1;
 }
 
-[[gnu::noinline]] int exact_sign(const Vec3<double> (&point)[4]) {
+[[gnu::noinline]] int exact_sign(const Vec3<double> (&point)[4], uint32_t* work_left) {
   const Multiples m = multiples_of(point);
-  return m.bits <= kWordBits ? sign_in_words(m) : sign_in_limbs(m);
+  const bool is_narrow = m.bits <= kWordBits;
+  if (work_left != nullptr) spend(work_left, is_narrow ? kExactWork : kLongExactWork);
+  return is_narrow ? sign_in_words(m) : sign_in_limbs(m);
 }
 
 }  // namespace
 
-int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, const Vec3<double>& d) {
+int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, const Vec3<double>& d,
+                  uint32_t* work_left) {
   const Vec3<double> u = b - a, v = c - a, w = d - a;
   const double yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
   const double det = (yz - zy) * w.x + (zx - xz) * w.y + (xy - yx) * w.z;
@@ -244,7 +253,7 @@ int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<doubl
   const double bound = kErrorBound * size + kUnderflow;
   if (det > bound) return 1;
   if (det < -bound) return -1;
-  return exact_sign({a, b, c, d});
+  return exact_sign({a, b, c, d}, work_left);
 }
 
 }  // namespace fdcg

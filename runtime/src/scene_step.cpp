@@ -7,8 +7,8 @@
 //   near             sphere and box say that the tick's way may have met it: fdcg_step, in the object's frame
 //   touched          fdcg_step
 //
-// Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so the
-// skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
+// Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
+// the skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
 // section 4), so it can be made anew whenever it is wanted.
 #include "reach.hpp"
 #include "scene_memory.hpp"
@@ -33,7 +33,8 @@ namespace {
 constexpr double kTicksAhead = 64;
 // After as many steps in which it reached none of the objects near by, the finger looks whether they still are.
 constexpr uint32_t kIdleSteps = 64;
-// What the rounding of distances in the world can amount to, as a share of the coordinates; and the same of the distance itself.
+// What the rounding of distances in the world can amount to, as a share of the coordinates; and the same of the distance
+// itself.
 constexpr double kPlaceRounding = 64 * RealLimits<double>::kEpsilon, kHoldBack = 1 - 0x1p-30;
 
 double larger(double a, double b) {
@@ -75,7 +76,8 @@ void settle_changing(fdcg_scene& scene) {
   scene.changing_count = still_changing;
 }
 
-// ---- which objects can have been met -----------------------------------------------------------------------------------------
+// ---- which objects can have been met
+// -----------------------------------------------------------------------------------------
 
 // One finger's tick.
 struct Tick {
@@ -264,7 +266,8 @@ inline bool is_out_of_reach(const fdcg_scene& scene, const Finger& finger, World
   return left > 0 && dot(way, way) < left * left * kHoldBack && finger.look == scene.look;
 }
 
-// ---- stepping ----------------------------------------------------------------------------------------------------------------
+// ---- stepping
+// ----------------------------------------------------------------------------------------------------------------
 
 void store(World from, double (&to)[3]) {
   to[0] = from.x;
