@@ -71,6 +71,7 @@ uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
   scene->changing_at = place(objects, sizeof(uint32_t));
   scene->fingers_at = place(fingers, sizeof(Finger));
   scene->slots_at = place(slots, sizeof(Slot));
+  scene->contacts_at = place(slots, sizeof(fdcg_contact));
   scene->touches_at = place(slots, sizeof(fdcg_touch));
   return end;
 }
@@ -198,7 +199,7 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
         .text(", this config needs ")
         .number(layout.bytes);
   }
-  // Fields of the records are set when one comes into use; until then generation and use are all that is read.
+  // Slots, contacts and touches are set when a finger comes into use.
   memset(memory, 0, layout.slots_at);
   memcpy(memory, &layout, sizeof layout);
   *scene = static_cast<fdcg_scene*>(memory);
