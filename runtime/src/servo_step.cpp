@@ -70,22 +70,6 @@ Decision apply_rule(Walk<Real>& walk) {
   }
 }
 
-// From free space, or from the surface that was just left: places the contact on what the way to the HIP meets.
-// Returns the flag of a bounded sweep, else 0.
-template <class Real>
-uint32_t sweep_to_hip(Walk<Real>& walk, Feature left) {
-  using Kind = typename SweepResult<Real>::Kind;
-  const SweepResult<Real> found = Sweep<Real>(walk, left).run();
-  if (found.kind == Kind::hit && found.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph.edge(found.feature.index));
-    walk.active = place_on_edge(walk, found.feature.index, line, line.parameter(found.point));
-    return 0;
-  }
-  walk.active = found.feature;
-  walk.place(found.kind == Kind::clear ? walk.hip : found.point, kFree);
-  return found.kind == Kind::bounded ? uint32_t{FDCG_RESULT_SWEEP_BOUND} : 0;
-}
-
 // What a step did besides moving the god-object.
 struct Progress {
   uint32_t transitions;  // changes of state
@@ -95,10 +79,12 @@ struct Progress {
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
 // decided. It stood on `start` then, `start_gap` away from the HIP.
 template <class Real>
-Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided) {
+Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided,
+                         fdcg_carried_sweep* carried) {
   Progress progress = {0, 0};
+  uint32_t work_left = kSweepWork;
   if (walk.active == kFree) {
-    progress.flags = sweep_to_hip(walk, kFree);
+    progress.flags = sweep_to_hip(walk, kFree, carried, &work_left);
     if (walk.active == kFree) return progress;
     ++progress.transitions;
     start = walk.active;
@@ -113,7 +99,7 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     walk.active = decision.next;
     ++progress.transitions;
     if (walk.active == kFree) {
-      progress.flags |= sweep_to_hip(walk, at);
+      progress.flags |= sweep_to_hip(walk, at, carried, &work_left);
       if (walk.active == kFree) return progress;
       ++progress.transitions;
     }
@@ -142,7 +128,8 @@ inline void round_to(const double (&from)[3], Vec3<double>* to) {
 template <class Real>
 inline bool to_local(const fdcg_header& header, const double hip_object_m[3], Vec3<Real>* hip) {
   const auto is_within = [](const double(&p)[3], double limit) {
-    return (absolute(p[0]) <= limit) & (absolute(p[1]) <= limit) & (absolute(p[2]) <= limit);
+    const int x = absolute(p[0]) <= limit, y = absolute(p[1]) <= limit, z = absolute(p[2]) <= limit;
+    return (x & y & z) != 0;  // one branch for three
   };
   double local[3] = {hip_object_m[0], hip_object_m[1], hip_object_m[2]};
   const double unit_m = header.metres_per_unit;
@@ -201,6 +188,7 @@ inline void start(Vec3<Real> hip, fdcg_contact* contact) {
   contact->state = contact->seat_state = FDCG_FREE;
   contact->feature = contact->seat_feature = FDCG_NONE;
   contact->slipping = 0;
+  contact->sweep.is_carried = 0;
 }
 
 template <class Real>
@@ -229,7 +217,7 @@ template <class Real>
   const Feature start = walk.active;
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
-  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr);
+  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &contact->sweep);
   FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
   contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
   contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
@@ -242,7 +230,8 @@ template <class Real>
   contact->feature = walk.active.index;
   contact->seat_state = walk.seat.state;
   contact->seat_feature = walk.seat.index;
-  contact->slipping = !is_free && walk.friction.is_slipping ? 1 : 0;
+  const bool is_undecided = contact->sweep.is_carried != 0;  // contact may be regained
+  contact->slipping = (!is_free || is_undecided) && walk.friction.is_slipping ? 1 : 0;
 }
 
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most: nothing else is set up for it.
