@@ -13,6 +13,8 @@ namespace fdcg {
 
 // Less than any reach, and finite, so that sums with it are.
 inline constexpr double kNoReach = -1e300;
+// The scan's arrays are looked at in runs of this many, a length that compilers make vectors of without being asked twice.
+inline constexpr uint32_t kRun = 16;
 
 struct Object {
   const fdcg_graph* graph;
@@ -79,8 +81,9 @@ struct fdcg_scene {
   const fdcg::Object* objects() const { return at<fdcg::Object>(objects_at); }
   // Centre x, y, z and reach of every object, array after array: what a look reads. The reach is the bounding sphere's radius
   // and its move in this tick; kNoReach where there is nothing to meet.
-  double* scan(int array) { return at<double>(scan_at) + array * uint64_t{config.object_capacity}; }
-  const double* scan(int array) const { return at<double>(scan_at) + array * uint64_t{config.object_capacity}; }
+  double* scan(uint32_t array) { return at<double>(scan_at) + array * scan_length(); }
+  const double* scan(uint32_t array) const { return at<double>(scan_at) + array * scan_length(); }
+  uint64_t scan_length() const { return (uint64_t{config.object_capacity} + fdcg::kRun - 1) / fdcg::kRun * fdcg::kRun; }
   uint32_t* changing() { return at<uint32_t>(changing_at); }
   fdcg::Finger* fingers() { return at<fdcg::Finger>(fingers_at); }
   const fdcg::Finger* fingers() const { return at<fdcg::Finger>(fingers_at); }
@@ -97,8 +100,9 @@ struct fdcg_scene {
 
 namespace fdcg {
 
-// scene_step.cpp: makes an object's place in the scan follow its pose; `moved` is how far its centre went in this tick.
-void place_in_scan(fdcg_scene& scene, uint32_t object, double moved);
+// scene_step.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a way,
+// the latest too.
+void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 
 // scene.cpp: null, with the reason in *error, unless the finger is in the scene.
 Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);

@@ -15,18 +15,6 @@
 
 namespace fdcg {
 
-void place_in_scan(fdcg_scene& scene, uint32_t index, double moved) {
-  const Object& object = scene.objects()[index];
-  const Pose& now = object.now;
-  const double radius = now.radius > object.last.radius ? now.radius : object.last.radius;
-  scene.scan(0)[index] = now.centre.x;
-  scene.scan(1)[index] = now.centre.y;
-  scene.scan(2)[index] = now.centre.z;
-  scene.scan(3)[index] = object.is_used != 0 && object.is_enabled != 0 ? radius + moved : kNoReach;
-  const double far = norm1(now.centre) + norm1(now.translation) + now.radius;
-  if (far > scene.farthest) scene.farthest = far;
-}
-
 namespace {
 
 // An object is near when a finger could reach it within this many ticks at the speeds of this tick (a look in so many), and is no
@@ -44,16 +32,6 @@ double smaller(double a, double b) {
   return a < b ? a : b;
 }
 
-void settle_object(fdcg_scene& scene, uint32_t index) {
-  Object& object = scene.objects()[index];
-  object.last = object.now;
-  object.now = Pose(object.asked, object.bounds);
-  const double moved = norm(object.now.centre - object.last.centre);
-  scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, object.now));
-  if (object.now.scale != object.last.scale) ++scene.look;
-  place_in_scan(scene, index, moved);
-}
-
 bool is_settled(const Pose& now, const Pose& last) {
   const World turned[3] = {now.row[0] - last.row[0], now.row[1] - last.row[1], now.row[2] - last.row[2]};
   return norm1(turned[0]) == 0 && norm1(turned[1]) == 0 && norm1(turned[2]) == 0 && now.scale == last.scale &&
@@ -66,7 +44,7 @@ void settle_changing(fdcg_scene& scene) {
   uint32_t still_changing = 0;
   for (uint32_t i = 0; i < scene.changing_count; ++i) {
     Object& object = scene.objects()[changing[i]];
-    if (object.is_used != 0) settle_object(scene, changing[i]);
+    if (object.is_used != 0) settle_object(scene, changing[i], true);
     if (object.is_used != 0 && !is_settled(object.now, object.last)) {
       changing[still_changing++] = changing[i];
     } else {
@@ -75,6 +53,27 @@ void settle_changing(fdcg_scene& scene) {
   }
   scene.changing_count = still_changing;
 }
+
+}  // namespace
+
+void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
+  Object& object = scene.objects()[index];
+  const Pose latest(object.asked, object.bounds);
+  if (latest.scale != object.now.scale) ++scene.look;
+  object.last = has_way ? object.now : latest;
+  object.now = latest;
+  scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
+  const double moved = norm(latest.centre - object.last.centre);
+  const double in_scan[4] = {latest.centre.x, latest.centre.y, latest.centre.z,
+                             object.is_used != 0 && object.is_enabled != 0
+                                 ? larger(latest.radius, object.last.radius) + moved
+                                 : kNoReach};
+  for (uint32_t array = 0; array < 4; ++array)
+    scene.scan(array)[index] = in_scan[array];
+  scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
+}
+
+namespace {
 
 // ---- which objects can have been met -----------------------------------------------------------------------------------------
 
@@ -162,7 +161,6 @@ struct Candidates {
 };
 
 // A run of bounding spheres against the finger's way in this tick.
-constexpr uint32_t kRun = 64;
 struct Run {
   double distance[kRun];  // a lower bound of the one between the two
   double beyond[kRun];    // by how much that exceeds `ahead`, or the sphere's radius if that is less
@@ -170,13 +168,13 @@ struct Run {
 
 // A loop without branches, so that compilers make vectors of it; each lane computes what a scalar would. The way's parameter is
 // clamped to 0 .. 1 by means of absolute values, which is exact but for rounding.
-void scan_run(const fdcg_scene& scene, World from, World way, double ahead, uint32_t first, uint32_t count, Run* run) {
+void scan_run(const fdcg_scene& scene, World from, World way, double ahead, uint32_t first, Run* __restrict run) {
   const double* const cx = scene.scan(0) + first;
   const double* const cy = scene.scan(1) + first;
   const double* const cz = scene.scan(2) + first;
   const double* const reach = scene.scan(3) + first;
   const double length2 = dot(way, way), half_per_length2 = length2 > 0 ? 0.5 / length2 : 0;
-  for (uint32_t i = 0; i < count; ++i) {
+  for (uint32_t i = 0; i < kRun; ++i) {
     const double x = cx[i] - from.x, y = cy[i] - from.y, z = cz[i] - from.z;
     const double half = (x * way.x + y * way.y + z * way.z) * half_per_length2;
     const double positive = half + fabs(half);
@@ -188,16 +186,13 @@ void scan_run(const fdcg_scene& scene, World from, World way, double ahead, uint
   }
 }
 
-double least_of(const double (&values)[kRun], uint32_t count) {
-  double least[4] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
-  uint32_t i = 0;
-  for (; i + 4 <= count; i += 4) {
-    for (uint32_t k = 0; k < 4; ++k)
-      least[k] = smaller(values[i + k], least[k]);
+double least_of(const double (&values)[kRun]) {
+  double even = values[0], odd = values[1];
+  for (uint32_t i = 2; i < kRun; i += 2) {
+    even = smaller(values[i], even);
+    odd = smaller(values[i + 1], odd);
   }
-  for (; i < count; ++i)
-    least[0] = smaller(values[i], least[0]);
-  return smaller(smaller(least[0], least[1]), smaller(least[2], least[3]));
+  return smaller(even, odd);
 }
 
 bool has_slot(const Tick& tick, uint32_t object) {
@@ -216,13 +211,12 @@ double find_candidates(const Tick& tick, double ahead, double rounding, Candidat
   double least = HUGE_VAL;
   Run run;
   for (uint32_t first = 0; first < scene.object_end; first += kRun) {
-    const uint32_t count = scene.object_end - first < kRun ? scene.object_end - first : kRun;
-    scan_run(scene, from, way, ahead, first, count, &run);
-    if (by_sphere && least_of(run.beyond, count) > rounding) {
-      least = smaller(least, least_of(run.distance, count));
+    scan_run(scene, from, way, ahead, first, &run);
+    if (by_sphere && least_of(run.beyond) > rounding) {
+      least = smaller(least, least_of(run.distance));
       continue;
     }
-    for (uint32_t i = 0; i < count; ++i) {
+    for (uint32_t i = 0; i < kRun; ++i) {
       if (by_sphere && run.beyond[i] > rounding) {
         least = smaller(least, run.distance[i]);
         continue;
@@ -384,7 +378,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
 }
 
 // Everything but the finger that is out of reach and has no slot in use.
-void step_near(fdcg_scene& scene, Finger& finger) {
+[[gnu::noinline]] void step_near(fdcg_scene& scene, Finger& finger) {
   const auto index = static_cast<uint32_t>(&finger - scene.fingers());
   const bool is_felt = is_place(finger.hip);
   finger.flags = is_felt ? 0 : uint32_t{FDCG_FINGER_NON_FINITE};
@@ -429,7 +423,7 @@ extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
   scene->tick_travel = 0;
   if (!scene->skips(FDCG_SKIP_STILL)) {
     for (uint32_t i = 0; i < scene->object_end; ++i) {
-      if (scene->objects()[i].is_used != 0) fdcg::settle_object(*scene, i);
+      if (scene->objects()[i].is_used != 0) fdcg::settle_object(*scene, i, true);
     }
   } else if (scene->changing_count > 0) {
     fdcg::settle_changing(*scene);
