@@ -33,8 +33,8 @@ bool is_within(double value, double low, double high) {
 // In range; *config is then whole.
 fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* config, fdcg_error* error) {
   if (given == nullptr) return refuse(error, "config: null pointer");
-  if (const fdcg_status status =
-          check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_default_scene_config()", error);
+  if (const fdcg_status status = check_struct_bytes(given->struct_bytes, sizeof *given, "config",
+                                                    "; start from fdcg_default_scene_config()", error);
       status != FDCG_OK) {
     return status;
   }
@@ -43,11 +43,12 @@ fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* co
     const char* name;
     uint32_t value, low, high;
   };
-  const Range ranges[] = {{"config.object_capacity", config->object_capacity, 1, kMostObjects},
-                          {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
-                          {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
-                          {"config.disabled_skips", config->disabled_skips, 0, FDCG_SKIP_ALL},
-                          {"config.reserved", config->reserved, 0, 0}};
+  const Range ranges[] = {
+      {"config.object_capacity", config->object_capacity, 1, kMostObjects},
+      {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
+      {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
+      {"config.disabled_skips", config->disabled_skips, 0, FDCG_SKIP_ALL},
+      {"config.reserved", config->reserved, 0, 0}};
   for (const Range& range : ranges) {
     if (range.value < range.low || range.value > range.high)
       return refuse(error, range.name, range.value, range.low, range.high);
@@ -63,14 +64,15 @@ uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
     end += (count * bytes + kAlignment - 1) / kAlignment * kAlignment;
     return begin;
   };
-  const uint64_t objects = config.object_capacity, fingers = config.finger_capacity,
-                 slots = fingers * config.touches_per_finger;
+  const uint64_t objects = config.object_capacity, fingers = config.finger_capacity, slots = fingers * config.touches_per_finger;
   place(1, sizeof(fdcg_scene));
   scene->objects_at = place(objects, sizeof(Object));
-  scene->scan_at = place(objects, 4 * sizeof(double));
+  scene->config = config;
+  scene->scan_at = place(4 * scene->scan_length(), sizeof(double));
   scene->changing_at = place(objects, sizeof(uint32_t));
   scene->fingers_at = place(fingers, sizeof(Finger));
   scene->slots_at = place(slots, sizeof(Slot));
+  scene->contacts_at = place(slots, sizeof(fdcg_contact));
   scene->touches_at = place(slots, sizeof(fdcg_touch));
   return end;
 }
@@ -126,14 +128,9 @@ Object* find(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {
   return find(scene->objects(), scene->object_end, id, "object: not in the scene, or removed", error);
 }
 
-uint32_t index_of(fdcg_scene* scene, const Object* object) {
-  return static_cast<uint32_t>(object - scene->objects());
-}
-
 // Takes the latest pose as it is, without a way there, and makes every finger look anew.
 void put_in_place(fdcg_scene* scene, Object* object) {
-  object->now = object->last = Pose(object->asked, object->bounds);
-  place_in_scan(*scene, index_of(scene, object), 0);
+  settle_object(*scene, static_cast<uint32_t>(object - scene->objects()), false);
   ++scene->look;
 }
 
@@ -192,12 +189,18 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
     return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
   layout.bytes = lay_out(layout.config, &layout);
   if (bytes < layout.bytes) {
-    return Message(error, FDCG_E_ARGUMENT).text("bytes is ").number(bytes).text(", this config needs ").number(layout.bytes);
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("bytes is ")
+        .number(bytes)
+        .text(", this config needs ")
+        .number(layout.bytes);
   }
-  // Fields of the records are set when one comes into use; until then generation and use are all that is read.
+  // Slots, contacts and touches are set when a finger comes into use.
   memset(memory, 0, layout.slots_at);
   memcpy(memory, &layout, sizeof layout);
   *scene = static_cast<fdcg_scene*>(memory);
+  for (uint64_t i = 0; i < layout.scan_length(); ++i)
+    (*scene)->scan(3)[i] = kNoReach;
   return FDCG_OK;
 }
 
@@ -218,7 +221,7 @@ extern "C" fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph
   added->asked = checked;
   added->is_used = added->is_enabled = 1;
   if (++added->generation == 0) added->generation = 1;
-  const uint32_t index = index_of(scene, added);
+  const uint32_t index = static_cast<uint32_t>(added - scene->objects());
   if (index >= scene->object_end) scene->object_end = index + 1;
   put_in_place(scene, added);
   *object = {index, added->generation};
