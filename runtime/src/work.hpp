@@ -8,9 +8,9 @@
 
 namespace fdcg {
 
-// Of one step, all its rules together: some 7,000 instructions.
+// Of one step, all its rules together: some 15,000 instructions, 60 changes of state.
 #ifndef FDCG_RULE_WORK
-#define FDCG_RULE_WORK 700
+#define FDCG_RULE_WORK 1500
 #endif
 inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 
