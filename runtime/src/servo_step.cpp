@@ -128,7 +128,8 @@ inline void round_to(const double (&from)[3], Vec3<double>* to) {
 template <class Real>
 inline bool to_local(const fdcg_header& header, const double hip_object_m[3], Vec3<Real>* hip) {
   const auto is_within = [](const double(&p)[3], double limit) {
-    return (absolute(p[0]) <= limit) & (absolute(p[1]) <= limit) & (absolute(p[2]) <= limit);
+    const int x = absolute(p[0]) <= limit, y = absolute(p[1]) <= limit, z = absolute(p[2]) <= limit;
+    return (x & y & z) != 0;  // one branch for three
   };
   double local[3] = {hip_object_m[0], hip_object_m[1], hip_object_m[2]};
   const double unit_m = header.metres_per_unit;
