@@ -90,10 +90,11 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   if (header.connection_count > kMaxConnections) return refuse("connection_count", header.connection_count);
   if (!has_precision(header.real_bytes)) {
     return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, real_bytes))
-        .text(FDCG_WITH_F32 ? "the file holds 64-bit numbers, this library was built for 32-bit ones alone; compile the mesh with "
-                              "--precision f32, or the library with FDCG_WITH_F64"
-                            : "the file holds 32-bit numbers, this library was built for 64-bit ones alone; compile the mesh "
-                              "with --precision f64, or the library with FDCG_WITH_F32");
+        .text(FDCG_WITH_F32
+                  ? "the file holds 64-bit numbers, this library was built for 32-bit ones alone; compile the mesh with "
+                    "--precision f32, or the library with FDCG_WITH_F64"
+                  : "the file holds 32-bit numbers, this library was built for 64-bit ones alone; compile the mesh "
+                    "with --precision f64, or the library with FDCG_WITH_F32");
   }
   const double largest = largest_extent(header);
   if (!in_range(header.extent, 1 / largest, largest)) {

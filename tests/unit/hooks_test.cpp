@@ -72,9 +72,9 @@ TEST_CASE("without a log handler nothing is told, and the step never tells") {
 TEST_CASE("a sound step finds no fault of the library's own") {
   const Handlers restore;
   std::string faults;
-  fdcg_set_assert_handler(
-      [](void* context, const char* condition, const char*, std::uint32_t) { *static_cast<std::string*>(context) += condition; },
-      &faults);
+  fdcg_set_assert_handler([](void* context, const char* condition, const char*,
+                             std::uint32_t) { *static_cast<std::string*>(context) += condition; },
+                          &faults);
   AlignedBytes file = compiled_cube();
   fdcg_graph graph;
   REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);

@@ -145,10 +145,26 @@ static inline fdcg_params fdcg_default_params(void) {
  * check: call this whenever the parameters change. */
 fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
 
+/* A sweep through free space that one tick could not finish. The way is frozen: from the god-object, which stays where it is,
+ * to `target`. Later ticks look at the nodes in index order, from `next_leaf` on, until all that the way may meet are done;
+ * then the contact is placed on what was met first, or at the target, and goes on from there to the newest HIP. */
+typedef struct fdcg_carried_sweep {
+  double target[3];    /* local */
+  double fraction;     /* of the way: where the first feature met so far is entered */
+  uint32_t state;      /* that feature: FDCG_FREE if nothing is met so far */
+  uint32_t feature;    /* ... node or connection */
+  uint32_t node;       /* ... the node through which it was met */
+  uint32_t left_state; /* the feature that the way starts on; FDCG_FREE: none */
+  uint32_t left_feature;
+  uint32_t next_leaf;  /* leaf of the hierarchy, or node where there is none */
+  uint32_t is_carried; /* 0: there is no such sweep */
+  uint32_t reserved;
+} fdcg_carried_sweep;
+
 /* One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Positions are local to
  * the graph (see format.h), so that nothing is lost far from the world's origin. */
 typedef struct fdcg_contact {
-  double god_object[3]; /* in Free: the HIP, or after a bounded sweep the last point swept */
+  double god_object[3]; /* in Free: the HIP, or while a sweep is carried over the point where it started */
   double hip[3];        /* of the last tick with a finite HIP */
   uint32_t started;     /* 0 before the first tick */
   uint32_t state;       /* fdcg_state */
@@ -158,7 +174,8 @@ typedef struct fdcg_contact {
   uint32_t slipping; /* 1: dynamic friction holds */
   uint64_t non_finite_ticks;
   uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_MAX_TRANSITIONS */
-  uint64_t sweep_bound_ticks;      /* ... because of FDCG_MAX_SWEEP_VISITS */
+  uint64_t sweep_bound_ticks;      /* ... because of FDCG_SWEEP_WORK */
+  fdcg_carried_sweep sweep;
 } fdcg_contact;
 
 typedef enum fdcg_result_flag {
@@ -185,5 +202,7 @@ void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact*
 #ifdef __cplusplus
 }
 #endif
+
+#include "fdcg/scene.h" /* objects with poses, fingers */
 
 #endif /* FDCG_FDCG_H */
