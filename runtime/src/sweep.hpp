@@ -191,8 +191,7 @@ class Sweep {
   }
 
   [[nodiscard]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
-    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kExactWork);
-    return side_of(graph_, node, x, bound);
+    return side_of(graph_, node, x, bound, work_left_);
   }
 
   [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
@@ -218,8 +217,7 @@ class Sweep {
     const Real bound = 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way_)) + RealLimits<Real>::kTiny;
     if (det > bound) return 1;
     if (det < -bound) return -1;
-    spend(work_left_, kExactWork);
-    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end));
+    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
 
   bool passes_inside(NodeRef<Real> node, bool* met_exactly) const {
