@@ -146,7 +146,7 @@ struct GraphView {
   const Corner* corners;
   const uint32_t* fans;
   const FanBox* fan_boxes;
-  const fdcg_box* hierarchy;
+  const fdcg_box8* hierarchy;
 
   explicit GraphView(const fdcg_graph& graph)
       : header(graph.header),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the boxes of an implicit tree stand (format.h: the hierarchy, a busy corner's tree): level 0 has one box for every
+// Where the boxes of an implicit tree stand (format.h: a busy corner's tree): level 0 has one box for every
 // `per_leaf` items, each level above one for two below; stored root first.
 #pragma once
 

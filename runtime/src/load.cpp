@@ -2,10 +2,10 @@
 // Opening: header and section table are checked always, the rest by verify.cpp where the caller does not trust the file.
 #include <string.h>
 
+#include "box_tree.hpp"
 #include "config.hpp"
 #include "fdcg/fdcg.h"
 #include "hooks.hpp"
-#include "implicit_tree.hpp"
 #include "map_file.hpp"
 #include "message.hpp"
 #include "verify.hpp"
@@ -132,7 +132,7 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection_f64), sizeof(fdcg_connection_f32), true},
     {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), true},
     {FDCG_SECTION_FANS, 4, 4, true},
-    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box), sizeof(fdcg_box), false},
+    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), false},
     {FDCG_SECTION_SOURCE_MAP, 4, 4, false},
     {FDCG_SECTION_INFO, 1, 1, false},
     {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), false},
@@ -152,7 +152,7 @@ uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found
     case FDCG_SECTION_FANS:
       return header.fan_count;
     case FDCG_SECTION_HIERARCHY:
-      return ImplicitTree(header.node_count, FDCG_LEAF_NODES).boxes;
+      return BoxTree(header.node_count).records;
     case FDCG_SECTION_SOURCE_MAP:
       return header.source_face_count;
     case FDCG_SECTION_FAN_BOXES:
@@ -234,7 +234,7 @@ fdcg_graph view(const void* data, const fdcg_header& header) {
   graph.corners = section(FDCG_SECTION_CORNERS);
   graph.fans = static_cast<const uint32_t*>(section(FDCG_SECTION_FANS));
   graph.fan_boxes = section(FDCG_SECTION_FAN_BOXES);
-  graph.hierarchy = static_cast<const fdcg_box*>(section(FDCG_SECTION_HIERARCHY));
+  graph.hierarchy = static_cast<const fdcg_box8*>(section(FDCG_SECTION_HIERARCHY));
   graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
   graph.info = static_cast<const char*>(find_section(data, header, FDCG_SECTION_INFO, &graph.info_bytes));
   return graph;

@@ -116,7 +116,7 @@ constexpr double kLeastShare = 0x1p-70;
 
 // Doubles rounded to floats. Never inlined: GCC 12's basic-block vectoriser (-O2) drops the rounding of a double to float and
 // back where it sees both.
-[[gnu::noinline]] void round_to(const double (&from)[3], Vec3<float>* to) {
+[[gnu::noinline, maybe_unused]] void round_to(const double (&from)[3], Vec3<float>* to) {
   *to = {static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2])};
 }
 inline void round_to(const double (&from)[3], Vec3<double>* to) {

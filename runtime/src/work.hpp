@@ -20,7 +20,7 @@ inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 #endif
 inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 
-inline constexpr uint32_t kBoxWork = 3;          // one box tested
+inline constexpr uint32_t kBoxWork = 20;         // eight boxes tested, and put in order
 inline constexpr uint32_t kNodeWork = 2;         // one node fetched, one end of the way against its plane
 inline constexpr uint32_t kOrientationWork = 4;  // one side's edge against the way, where rounding cannot matter
 inline constexpr uint32_t kExactWork = 100;      // ... and where it does

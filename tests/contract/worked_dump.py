@@ -28,7 +28,7 @@ RECORDS = {
                        ("flatness", "B"), ("reserved", "H"))),
     5: ("corner", (("point", "3d"), ("first_fan", "I"), ("fan_count", "I"), ("normal", "3f"), ("flags", "I"))),
     6: ("fan entry", (("", "I"),)),
-    7: ("box", (("min", "3f"), ("max", "3f"))),
+    7: ("box record", (("origin", "3f"), ("exponent", "3B"), ("reserved", "B"), ("low", "24B"), ("high", "24B"))),
     8: ("source face", (("", "I"),)),
 }
 SECTION_NAMES = ("", "NODES", "SIDES", "VORONOI", "CONNECTIONS", "CORNERS", "FANS", "HIERARCHY", "SOURCE_MAP", "INFO", "FAN_BOXES")

@@ -4,6 +4,7 @@
 // has at most two faces, every vertex one fan.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -28,8 +29,11 @@ class PlainGraph {
   fdcg_header header_{};
   std::vector<std::uint64_t> nodes_, connections_, corners_, voronoi_;  // raw storage, aligned for every record
   std::vector<std::uint32_t> sides_, fans_;
-  std::vector<fdcg_box> boxes_;       // root first
-  std::vector<fdcg_box> node_boxes_;  // of single nodes
+  struct NodeBox {
+    std::array<double, 3> low{}, high{};
+  };
+  std::vector<fdcg_box8> boxes_;     // root first
+  std::vector<NodeBox> node_boxes_;  // of single nodes
   fdcg_graph view_{};
 };
 

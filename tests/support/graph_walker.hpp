@@ -21,7 +21,7 @@ struct WalkedGraph {
   std::vector<fdcg_connection_f64> connections;
   std::vector<fdcg_corner_f64> corners;
   std::vector<std::uint32_t> fans;
-  std::vector<fdcg_box> boxes;
+  std::vector<fdcg_box8> boxes;
   std::vector<std::uint32_t> source_map;
   std::string info;
 

@@ -94,7 +94,7 @@ typedef struct fdcg_graph {
   const void* corners;
   const uint32_t* fans;
   const void* fan_boxes;      /* NULL: no busy corner */
-  const fdcg_box* hierarchy;  /* NULL: the free-space sweep looks at every node */
+  const fdcg_box8* hierarchy; /* NULL: the free-space sweep looks at every node */
   const uint32_t* source_map; /* NULL: not in the file; else header->source_face_count entries */
   const char* info;           /* JSON, not zero-terminated; NULL: not in the file */
   uint64_t info_bytes;
