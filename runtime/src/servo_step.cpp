@@ -116,34 +116,37 @@ constexpr double kLeastShare = 0x1p-70;
 
 // Doubles rounded to floats. Never inlined: GCC 12's basic-block vectoriser (-O2) drops the rounding of a double to float and
 // back where it sees both.
-[[gnu::noinline, maybe_unused]] void round_to(const double (&from)[3], Vec3<float>* to) {
-  *to = {static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2])};
+[[gnu::noinline, maybe_unused]] void round_to(Vec3<double> from, Vec3<float>* to) {
+  *to = {static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)};
 }
-inline void round_to(const double (&from)[3], Vec3<double>* to) {
-  *to = {from[0], from[1], from[2]};
+inline void round_to(Vec3<double> from, Vec3<double>* to) {
+  *to = from;
 }
 
-// The HIP in the graph's frame. False, without an overflow on the way, where it is not usable.
+// All three at most `limit` in size; false for NaN. One branch.
+inline bool is_within(Vec3<double> p, double limit) {
+  const int x = absolute(p.x) <= limit, y = absolute(p.y) <= limit, z = absolute(p.z) <= limit;
+  return (x & y & z) != 0;
+}
+
+inline double zero_below(double least, double x) {
+  return absolute(x) < least ? 0 : x;
+}
+
+// The HIP in the graph's frame. False, without an overflow on the way, where it is not usable. Coordinate by coordinate: in an
+// array the compiler would store them one by one and load two at once, which waits for the stores.
 template <class Real>
 inline bool to_local(const fdcg_header& header, const double hip_object_m[3], Vec3<Real>* hip) {
-  const auto is_within = [](const double(&p)[3], double limit) {
-    const int x = absolute(p[0]) <= limit, y = absolute(p[1]) <= limit, z = absolute(p[2]) <= limit;
-    return (x & y & z) != 0;  // one branch for three
-  };
-  double local[3] = {hip_object_m[0], hip_object_m[1], hip_object_m[2]};
+  Vec3<double> local = {hip_object_m[0], hip_object_m[1], hip_object_m[2]};
   const double unit_m = header.metres_per_unit;
   if (unit_m != 1) {  // a division takes as long as the rest of this function
     if (!is_within(local, kFarthestHip_m)) return false;
-    for (double& coordinate : local)
-      coordinate /= unit_m;
+    local = {local.x / unit_m, local.y / unit_m, local.z / unit_m};
   }
-  const double least = kLeastShare * header.extent;
-  for (int k = 0; k < 3; ++k) {
-    const double from_origin = local[k] - header.origin[k];
-    local[k] = absolute(from_origin) < least ? 0 : from_origin;
-  }
+  local = local - vec(header.origin);
   if (!is_within(local, RealLimits<Real>::kFar)) return false;
-  round_to(local, hip);
+  const double least = kLeastShare * header.extent;
+  round_to({zero_below(least, local.x), zero_below(least, local.y), zero_below(least, local.z)}, hip);
   return true;
 }
 
@@ -174,8 +177,7 @@ inline double damped(const fdcg_params& params, double stiffness, Vec3<double> s
 }
 
 inline void say_where(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
-  for (int k = 0; k < 3; ++k)
-    result->god_object_m[k] = (contact.god_object[k] + header.origin[k]) * header.metres_per_unit;
+  store((vec(contact.god_object) + vec(header.origin)) * header.metres_per_unit, result->god_object_m);
   result->state = contact.state;
   result->feature = contact.state == FDCG_FREE ? FDCG_NONE : contact.feature;  // a contact of zeros is free, and on nothing
   result->slipping = contact.slipping;
