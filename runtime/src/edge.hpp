@@ -36,7 +36,7 @@ inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
 // The sum of the two normal loads of the groove, or the paper's distance of HIP from the edge.
 template <class Real>
 inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, const EdgeLine<Real>& line, Real distance) {
-  if (!walk.friction.wedge || connection.type() == FDCG_BOUNDARY) return distance;
+  if (!walk.friction.has_wedge || connection.type() == FDCG_BOUNDARY) return distance;
   const Vec3<Real> sum = walk.graph.node(connection.node(0)).normal() + walk.graph.node(connection.node(1)).normal();
   const Real most = Real(kMaxWedgeFactor) * distance;
   const Real sum2 = dot(sum, sum);
@@ -61,11 +61,10 @@ inline Decision edge_rule(Walk<Real>& walk) {
   const EdgeLine<Real> line(walk.graph.edge(index));
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
-  const Real gap = absolute(ahead);
   const Real distance = norm(walk.hip - (line.start + line.direction * foot));
-  const Real allowed = friction_gap(walk, gap, edge_load(walk, connection, line, distance));
-  if (!(allowed < gap)) return rest();
-  const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + allowed : foot - allowed);
+  const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, line, distance));
+  if (slip.is_rest) return rest();
+  const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + slip.gap : foot - slip.gap);
   return landed == walk.active ? rest() : go_to(landed);
 }
 

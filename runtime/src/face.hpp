@@ -15,7 +15,7 @@ struct Crossing {
 };
 
 template <class Real>
-inline Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+[[gnu::always_inline]] inline Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
   Crossing<Real> first;
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
@@ -29,29 +29,57 @@ inline Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<R
   return first;
 }
 
-// Cost: one plane, and, where the god-object slides, two per side of the node.
+// What becomes of a god-object on a face.
+template <class Real>
+struct FaceMove {
+  enum class Kind {
+    leaves,   // the HIP is not behind the face
+    rests,    // friction holds it
+    slides,   // to `target`, on the same face
+    crosses,  // on its way there it meets a side
+  } kind;
+  Vec3<Real> target;
+  Crossing<Real> crossing;
+};
+
+// Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
+// Changes nothing but friction.is_slipping.
+template <class Real>
+[[gnu::always_inline]] inline FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip,
+                                                          Real side, Vec3<Real> god_object) {
+  using Kind = typename FaceMove<Real>::Kind;
+  if (!(side < 0)) return {Kind::leaves, god_object, {}};
+  const Vec3<Real> normal = node.normal();
+  const Vec3<Real> reach = god_object - hip;
+  const Vec3<Real> offset = reach - normal * dot(normal, reach);  // its part in the plane: from the surface point
+  const Real gap2 = dot(offset, offset), depth = -side;
+  const Slip<Real> slip = friction.slip(god_object, gap2, depth);
+  if (slip.is_rest) return {Kind::rests, god_object, {}};
+  const Real shrink = slip.gap > 0 ? slip.gap / root(gap2) : Real(0);
+  const Vec3<Real> surface_point = hip + normal * depth;
+  const Vec3<Real> target = surface_point + offset * shrink;
+  const Crossing<Real> crossing = first_crossing(node, god_object, target);
+  return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
+}
+
+// Places the god-object where the move says. Returns what comes next.
+template <class Real>
+inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
+  using Kind = typename FaceMove<Real>::Kind;
+  if (move.kind == Kind::leaves) return go_to(walk.seat);  // the seat's rule decides; without a seat this is Free
+  if (move.kind == Kind::slides) walk.place(move.target, kFree);
+  if (move.kind != Kind::crosses) return rest();
+  const NodeRef<Real> node = walk.graph.node(walk.active.index);
+  const uint32_t side = move.crossing.local_side;
+  const EdgeLine<Real> line(walk.graph.edge(node, side));
+  const Vec3<Real> point = walk.god_object + (move.target - walk.god_object) * move.crossing.fraction;
+  return go_to(place_on_edge(walk, node.connection(side), line, line.parameter(point)));
+}
+
 template <class Real>
 inline Decision face_rule(Walk<Real>& walk) {
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
-  const Real side = walk.side(node);
-  if (!(side < 0)) return go_to(walk.seat);  // the seat's rule decides; without a seat this is Free
-  const Vec3<Real> normal = node.normal();
-  const Real depth = -side;
-  const Vec3<Real> surface_point = walk.hip + normal * depth;
-  Vec3<Real> offset = walk.god_object - surface_point;
-  offset = offset - normal * dot(normal, offset);
-  const Real gap = norm(offset);
-  const Real allowed = friction_gap(walk, gap, depth);
-  if (!(allowed < gap)) return rest();
-  const Vec3<Real> target = surface_point + offset * (allowed / gap);
-  const Crossing<Real> crossing = first_crossing(node, walk.god_object, target);
-  if (crossing.local_side == FDCG_NONE) {
-    walk.place(target, kFree);
-    return rest();
-  }
-  const EdgeLine<Real> line(walk.graph.edge(node, crossing.local_side));
-  const Vec3<Real> point = walk.god_object + (target - walk.god_object) * crossing.fraction;
-  return go_to(place_on_edge(walk, node.connection(crossing.local_side), line, line.parameter(point)));
+  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.side(node), walk.god_object));
 }
 
 }  // namespace fdcg

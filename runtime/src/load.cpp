@@ -2,8 +2,10 @@
 // Opening: header and section table are checked always, the rest by verify.cpp where the caller does not trust the file.
 #include <string.h>
 
+#include "config.hpp"
 #include "fdcg/fdcg.h"
 #include "graph_view.hpp"
+#include "hooks.hpp"
 #include "implicit_tree.hpp"
 #include "map_file.hpp"
 #include "message.hpp"
@@ -102,6 +104,14 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   if ((header.flags & ~FDCG_STORED_PLANES) != 0) return refuse("flags", header.flags);
   if (!is_node_size(header)) return refuse("node_bytes", header.node_bytes);
   if (header.connection_count > kMaxConnections) return refuse("connection_count", header.connection_count);
+  if (!has_precision(header.real_bytes)) {
+    return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, real_bytes))
+        .text(FDCG_WITH_F32
+                  ? "the file holds 64-bit numbers, this library was built for 32-bit ones alone; compile the mesh with "
+                    "--precision f32, or the library with FDCG_WITH_F64"
+                  : "the file holds 32-bit numbers, this library was built for 64-bit ones alone; compile the mesh "
+                    "with --precision f64, or the library with FDCG_WITH_F32");
+  }
   const double largest = largest_extent(header);
   if (!in_range(header.extent, 1 / largest, largest)) {
     return Message(error, FDCG_E_LAYOUT, offsetof(fdcg_header, extent))
@@ -299,6 +309,18 @@ fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, f
   return status;
 }
 
+// Tells the log handler how an opening went, and hands the status on.
+fdcg_status told(fdcg_status status, const fdcg_graph& graph, const fdcg_error& error) {
+  if (status != FDCG_OK) {
+    log(FDCG_LOG_ERROR, error.message);
+    return status;
+  }
+  fdcg_error line;
+  Message(&line, FDCG_OK).text("opened a graph of ").number(graph.header->node_count).text(" nodes");
+  log(FDCG_LOG_INFO, line.message);
+  return status;
+}
+
 }  // namespace
 }  // namespace fdcg
 
@@ -306,7 +328,9 @@ extern "C" fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_v
                                         fdcg_error* error) {
   if (graph == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("graph: null pointer");
   *graph = {};
-  return fdcg::open_checked(data, bytes, verify, graph, error);
+  fdcg_error why = {};
+  if (error == nullptr) error = &why;
+  return fdcg::told(fdcg::open_checked(data, bytes, verify, graph, error), *graph, *error);
 }
 
 extern "C" fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
@@ -314,7 +338,8 @@ extern "C" fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg
   *graph = {};
   if (path == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("path: null pointer");
   fdcg::MappedFile file;
-  fdcg_error why = {};
+  fdcg_error why = {}, with_path = {};
+  if (error == nullptr) error = &with_path;
   fdcg_status status = fdcg::map_file(path, &file, &why);
   if (status == FDCG_OK) {
     status = fdcg::open_checked(file.data, file.bytes, verify, graph, &why);
@@ -322,11 +347,12 @@ extern "C" fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg
   }
   if (status != FDCG_OK) {
     constexpr int kPathShown = 100;
-    return fdcg::Message(error, status, why.offset).quoted(path, kPathShown).text(": ").text(why.message);
+    fdcg::Message(error, status, why.offset).quoted(path, kPathShown).text(": ").text(why.message);
+  } else {
+    graph->mapping = file.data;
+    graph->mapping_bytes = file.bytes;
   }
-  graph->mapping = file.data;
-  graph->mapping_bytes = file.bytes;
-  return FDCG_OK;
+  return fdcg::told(status, *graph, *error);
 }
 
 extern "C" void fdcg_close(fdcg_graph* graph) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "config.hpp"
+#if FDCG_WITH_FILES
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
@@ -44,3 +46,5 @@ void unmap_file(const MappedFile& file) {
 }
 
 }  // namespace fdcg
+
+#endif  // FDCG_WITH_FILES

@@ -1,31 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fdcg/fdcg.h"
 #include "message.hpp"
+#include "struct_bytes.hpp"
 
-extern "C" fdcg_params fdcg_default_params(void) {
-  fdcg_params params = {};
-  params.struct_bytes = sizeof(fdcg_params);
-  params.edge_friction = FDCG_EDGE_WEDGE;
-  params.mu_static = 0.6;
-  params.mu_dynamic = 0.4;
-  params.stiffness_n_per_m = 1000;
-  params.damping_n_s_per_m = 0;
-  params.tick_s = 0.001;
-  return params;
+extern "C" void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes) {
+  fdcg_params defaults = {};
+  defaults.edge_friction = FDCG_EDGE_WEDGE;
+  defaults.mu_static = 0.6;
+  defaults.mu_dynamic = 0.4;
+  defaults.stiffness_n_per_m = 1000;
+  defaults.damping_n_s_per_m = 0;
+  defaults.tick_s = 0.001;
+  fdcg::fill_defaults(params, defaults, struct_bytes);
 }
 
 extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error) {
   using fdcg::Message;
   constexpr double kLargest = 1e9;  // far beyond any device; keeps products finite
   if (params == nullptr) return Message(error, FDCG_E_ARGUMENT).text("params: null pointer");
-  if (params->struct_bytes != sizeof(fdcg_params)) {
-    return Message(error, FDCG_E_ARGUMENT)
-        .text("params.struct_bytes is ")
-        .number(params->struct_bytes)
-        .text(", this library's is ")
-        .number(sizeof(fdcg_params))
-        .text("; start from fdcg_default_params()");
+  fdcg_params room;
+  if (const fdcg_status status = fdcg::check_struct_bytes(params->struct_bytes, sizeof(fdcg_params), "params",
+                                                          "; start from fdcg_default_params()", error);
+      status != FDCG_OK) {
+    return status;
   }
+  params = &fdcg::in_full(*params, &room, fdcg_init_params);
   struct Range {
     const char* name;
     double value, low, high;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A graph's records for those who look at it, widened to double, derived where the file leaves them out.
+#include "config.hpp"
 #include "graph_view.hpp"
 
 namespace fdcg {
@@ -75,36 +76,31 @@ uint32_t fan(const GraphView<Real>& graph, uint32_t index, uint32_t* entries, ui
   return count;
 }
 
-bool is_f64(const fdcg_graph* graph) {
-  return graph->header->real_bytes == sizeof(double);
+// Calls `read` with the graph's typed view.
+template <class Read>
+auto with_view(const fdcg_graph* graph, Read read) {
+  return with_real_of(*graph->header, [&](auto real) { return read(GraphView<decltype(real)>(*graph)); });
 }
 
 }  // namespace
 }  // namespace fdcg
 
-using fdcg::GraphView;
-
 extern "C" fdcg_node_info fdcg_get_node(const fdcg_graph* graph, uint32_t node) {
-  return fdcg::is_f64(graph) ? fdcg::node_info(GraphView<double>(*graph), node)
-                             : fdcg::node_info(GraphView<float>(*graph), node);
+  return fdcg::with_view(graph, [&](const auto& view) { return fdcg::node_info(view, node); });
 }
 
 extern "C" fdcg_side_info fdcg_get_side(const fdcg_graph* graph, uint32_t node, uint32_t side) {
-  return fdcg::is_f64(graph) ? fdcg::side_info(GraphView<double>(*graph), node, side)
-                             : fdcg::side_info(GraphView<float>(*graph), node, side);
+  return fdcg::with_view(graph, [&](const auto& view) { return fdcg::side_info(view, node, side); });
 }
 
 extern "C" fdcg_connection_info fdcg_get_connection(const fdcg_graph* graph, uint32_t connection) {
-  return fdcg::is_f64(graph) ? fdcg::connection_info(GraphView<double>(*graph), connection)
-                             : fdcg::connection_info(GraphView<float>(*graph), connection);
+  return fdcg::with_view(graph, [&](const auto& view) { return fdcg::connection_info(view, connection); });
 }
 
 extern "C" fdcg_corner_info fdcg_get_corner(const fdcg_graph* graph, uint32_t corner) {
-  return fdcg::is_f64(graph) ? fdcg::corner_info(GraphView<double>(*graph), corner)
-                             : fdcg::corner_info(GraphView<float>(*graph), corner);
+  return fdcg::with_view(graph, [&](const auto& view) { return fdcg::corner_info(view, corner); });
 }
 
 extern "C" uint32_t fdcg_get_fan(const fdcg_graph* graph, uint32_t corner, uint32_t* entries, uint32_t capacity) {
-  return fdcg::is_f64(graph) ? fdcg::fan(GraphView<double>(*graph), corner, entries, capacity)
-                             : fdcg::fan(GraphView<float>(*graph), corner, entries, capacity);
+  return fdcg::with_view(graph, [&](const auto& view) { return fdcg::fan(view, corner, entries, capacity); });
 }

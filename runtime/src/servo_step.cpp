@@ -8,9 +8,12 @@
 //
 // Each rule moves the god-object nearer to the HIP or hands over to a neighbour that climbs further; the step ends where a rule
 // rests. Every loop is bounded: work left over is carried to the next tick with a valid god-object.
+#include "config.hpp"
 #include "corner.hpp"
 #include "edge.hpp"
 #include "face.hpp"
+#include "hooks.hpp"
+#include "struct_bytes.hpp"
 #include "sweep.hpp"
 
 namespace fdcg {
@@ -27,33 +30,32 @@ constexpr uint32_t kMaxTransitions = FDCG_MAX_TRANSITIONS;
 template <class Real>
 class Trail {
  public:
-  explicit Trail(const Walk<Real>& walk) : nearest2_(distance2(walk)) {}
+  Trail(Feature start, Vec3<Real> start_gap) : nearest2_(dot(start_gap, start_gap)), count_(1) { visited_[0] = key(start); }
 
   bool has_met_again(const Walk<Real>& walk) {
-    const Real now2 = distance2(walk);
+    const Vec3<Real> gap = walk.god_object - walk.hip;
+    const Real now2 = dot(gap, gap);
     if (now2 < nearest2_) {
       nearest2_ = now2;
       count_ = 0;
     }
+    const uint64_t here = key(walk.active);
     for (int i = 0; i < count_; ++i) {
-      if (visited_[i] == walk.active) return true;
+      if (visited_[i] == here) return true;
     }
     if (count_ == kCapacity) return true;
-    visited_[count_++] = walk.active;
+    visited_[count_++] = here;
     return false;
   }
 
  private:
   static constexpr int kCapacity = 32;  // without a move, a step climbs: vertex, edge, face are three
 
-  static Real distance2(const Walk<Real>& walk) {
-    const Vec3<Real> gap = walk.hip - walk.god_object;
-    return dot(gap, gap);
-  }
+  static uint64_t key(Feature feature) { return uint64_t{feature.state} << 32 | feature.index; }
 
   Real nearest2_;
-  Feature visited_[kCapacity];
-  int count_ = 0;
+  int count_;
+  uint64_t visited_[kCapacity];  // the first count_ are set
 };
 
 template <class Real>
@@ -68,48 +70,43 @@ Decision apply_rule(Walk<Real>& walk) {
   }
 }
 
-// From free space, or from the surface that was just left: places the contact on what the way to the HIP meets.
-// Returns the flag of a bounded sweep, else 0.
-template <class Real>
-uint32_t sweep_to_hip(Walk<Real>& walk, Feature left) {
-  using Kind = typename SweepResult<Real>::Kind;
-  const SweepResult<Real> found = Sweep<Real>(walk, left).run();
-  if (found.kind == Kind::hit && found.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph.edge(found.feature.index));
-    walk.active = place_on_edge(walk, found.feature.index, line, line.parameter(found.point));
-    return 0;
-  }
-  walk.active = found.feature;
-  walk.place(found.kind == Kind::clear ? walk.hip : found.point, kFree);
-  return found.kind == Kind::bounded ? uint32_t{FDCG_RESULT_SWEEP_BOUND} : 0;
-}
+// What a step did besides moving the god-object.
+struct Progress {
+  uint32_t transitions;  // changes of state
+  uint32_t flags;        // fdcg_result_flag: what was cut short
+};
 
-// Drives the rules until one rests. Returns the changes of state; adds to *flags what was cut short.
+// Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
+// decided. It stood on `start` then, `start_gap` away from the HIP.
 template <class Real>
-uint32_t move_god_object(Walk<Real>& walk, uint32_t* flags) {
-  uint32_t transitions = 0;
+Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided,
+                         fdcg_carried_sweep* carried) {
+  Progress progress = {0, 0};
+  uint32_t work_left = kSweepWork;
   if (walk.active == kFree) {
-    *flags |= sweep_to_hip(walk, kFree);
-    if (walk.active == kFree) return 0;
-    ++transitions;
+    progress.flags = sweep_to_hip(walk, kFree, carried, &work_left);
+    if (walk.active == kFree) return progress;
+    ++progress.transitions;
+    start = walk.active;
+    start_gap = walk.god_object - walk.hip;
   }
-  Trail<Real> trail(walk);
-  trail.has_met_again(walk);
+  Trail<Real> trail(start, start_gap);
   while (true) {
     const Feature at = walk.active;
-    const Decision decision = apply_rule(walk);
-    if (decision.is_rest) return transitions;
+    const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
+    decided = nullptr;
+    if (decision.is_rest) return progress;
     walk.active = decision.next;
-    ++transitions;
+    ++progress.transitions;
     if (walk.active == kFree) {
-      *flags |= sweep_to_hip(walk, at);
-      if (walk.active == kFree) return transitions;
-      ++transitions;
+      progress.flags |= sweep_to_hip(walk, at, carried, &work_left);
+      if (walk.active == kFree) return progress;
+      ++progress.transitions;
     }
-    if (trail.has_met_again(walk)) return transitions;
-    if (transitions >= kMaxTransitions) {
-      *flags |= FDCG_RESULT_TRANSITION_BOUND;
-      return transitions;
+    if (trail.has_met_again(walk)) return progress;
+    if (progress.transitions >= kMaxTransitions) {
+      progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      return progress;
     }
   }
 }
@@ -118,101 +115,166 @@ uint32_t move_god_object(Walk<Real>& walk, uint32_t* flags) {
 // overflow before it is found out.
 constexpr double kFarthestHip_m = 1e110;
 
+// Doubles rounded to floats. Never inlined: GCC 12's basic-block vectoriser (-O2) drops the rounding of a double to float and
+// back where it sees both.
+[[gnu::noinline]] void round_to(const double (&from)[3], Vec3<float>* to) {
+  *to = {static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2])};
+}
+inline void round_to(const double (&from)[3], Vec3<double>* to) {
+  *to = {from[0], from[1], from[2]};
+}
+
 // The HIP in the graph's frame. False, without an overflow on the way, where it is not usable.
-// Never inlined: GCC 12's basic-block vectoriser (-O2) drops the rounding of a double to float and back where it sees both.
 template <class Real>
-[[gnu::noinline]] bool to_local(const fdcg_header& header, const double hip_object_m[3], Vec3<Real>* hip) {
-  double local[3];
-  for (int k = 0; k < 3; ++k) {
-    if (!(absolute(hip_object_m[k]) <= kFarthestHip_m)) return false;
-    local[k] = hip_object_m[k] / header.metres_per_unit - header.origin[k];
-    if (!(absolute(local[k]) <= RealLimits<Real>::kFar)) return false;
+inline bool to_local(const fdcg_header& header, const double hip_object_m[3], Vec3<Real>* hip) {
+  const auto is_within = [](const double(&p)[3], double limit) {
+    return (absolute(p[0]) <= limit) & (absolute(p[1]) <= limit) & (absolute(p[2]) <= limit);
+  };
+  double local[3] = {hip_object_m[0], hip_object_m[1], hip_object_m[2]};
+  const double unit_m = header.metres_per_unit;
+  if (unit_m != 1) {  // a division takes as long as the rest of this function
+    if (!is_within(local, kFarthestHip_m)) return false;
+    for (double& coordinate : local)
+      coordinate /= unit_m;
   }
-  *hip = {static_cast<Real>(local[0]), static_cast<Real>(local[1]), static_cast<Real>(local[2])};
-  return is_usable(*hip);
+  for (int k = 0; k < 3; ++k)
+    local[k] -= header.origin[k];
+  if (!is_within(local, RealLimits<Real>::kFar)) return false;
+  round_to(local, hip);
+  return true;
+}
+
+// Whether the graph has such a feature: asked by an assertion alone.
+[[maybe_unused]] bool is_of_graph(Feature feature, const fdcg_header& header) {
+  const uint32_t count[] = {0, header.node_count, header.connection_count, header.corner_count};
+  return feature == kFree || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
 }
 
 template <class Real>
-Vec3<Real> narrow(const double (&a)[3]) {
+inline Vec3<Real> narrow(const double (&a)[3]) {
   return {static_cast<Real>(a[0]), static_cast<Real>(a[1]), static_cast<Real>(a[2])};
 }
 
 template <class Real>
-void store(Vec3<Real> from, double (&to)[3]) {
+inline void store(Vec3<Real> from, double (&to)[3]) {
   to[0] = from.x;
   to[1] = from.y;
   to[2] = from.z;
 }
 
-// F = k (GO - HIP), with damping along the same line; never a pull (contact-model section 8). Newtons, from local positions.
-void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, const double (&before)[3],
-             fdcg_result* result) {
-  const double scale = header.metres_per_unit;
-  double spring[3], moved_along = 0, length2 = 0;
-  for (int k = 0; k < 3; ++k) {
-    spring[k] = contact.god_object[k] - contact.hip[k];
-    moved_along += (contact.hip[k] - before[k]) * spring[k];
-    length2 += spring[k] * spring[k];
-    result->god_object_m[k] = (contact.god_object[k] + header.origin[k]) * scale;
-  }
-  double newtons_per_unit = params.stiffness_n_per_m * scale;
-  if (params.damping_n_s_per_m > 0 && length2 > 0) {
-    newtons_per_unit -= params.damping_n_s_per_m * scale * (moved_along / length2) / params.tick_s;
-    if (!(newtons_per_unit > 0)) newtons_per_unit = 0;
-  }
+// Where damping takes from the spring: the speed along it, times the coefficient. Newtons per metre, >= 0 in all.
+inline double damped(const fdcg_params& params, double stiffness, Vec3<double> spring, Vec3<double> moved) {
+  const double length2 = dot(spring, spring);
+  if (!(length2 > 0)) return stiffness;
+  const double left = stiffness - params.damping_n_s_per_m * (dot(moved, spring) / length2) / params.tick_s;
+  return left > 0 ? left : 0;  // never a pull
+}
+
+inline void say_where(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
   for (int k = 0; k < 3; ++k)
-    result->force_n[k] = newtons_per_unit * spring[k];
+    result->god_object_m[k] = (contact.god_object[k] + header.origin[k]) * header.metres_per_unit;
+  result->state = contact.state;
+  result->feature = contact.state == FDCG_FREE ? FDCG_NONE : contact.feature;  // a contact of zeros is free, and on nothing
+  result->slipping = contact.slipping;
+}
+
+// First tick: free, with the god-object at the HIP.
+template <class Real>
+inline void start(Vec3<Real> hip, fdcg_contact* contact) {
+  store(hip, contact->hip);
+  store(hip, contact->god_object);
+  contact->started = 1;
+  contact->state = contact->seat_state = FDCG_FREE;
+  contact->feature = contact->seat_feature = FDCG_NONE;
+  contact->slipping = 0;
+  contact->sweep.is_carried = 0;
 }
 
 template <class Real>
+inline Friction<Real> friction_of(const fdcg_params& params, const fdcg_contact& contact) {
+  return {static_cast<Real>(params.mu_static), static_cast<Real>(params.mu_dynamic), params.edge_friction == FDCG_EDGE_WEDGE,
+          contact.slipping != 0};
+}
+
+// F = k (GO - HIP), damped along the same line (contact-model section 8). Call before the contact learns of the new HIP.
+template <class Real>
+inline void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, Vec3<Real> hip,
+                    Vec3<Real> god_object, fdcg_result* result) {
+  const Vec3<double> local_hip = widen(hip), spring = widen(god_object) - local_hip;
+  double newtons_per_metre = params.stiffness_n_per_m;
+  if (params.damping_n_s_per_m > 0) {
+    newtons_per_metre = damped(params, newtons_per_metre, spring, local_hip - vec(contact.hip));
+  }
+  store(spring * (newtons_per_metre * header.metres_per_unit), result->force_n);
+}
+
+// The long way: drives the rules from where the contact stands. `move` is null, or what its face has already made of it.
+template <class Real>
+[[gnu::noinline]] void walk_to_hip(Walk<Real> walk, const FaceMove<Real>* move, const fdcg_params& params,
+                                   fdcg_contact* contact, fdcg_result* result) {
+  const Vec3<Real> start_gap = walk.god_object - walk.hip;
+  const Feature start = walk.active;
+  Decision decided = rest();
+  if (move != nullptr) decided = carry_out(walk, *move);
+  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &contact->sweep);
+  FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
+  contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
+  contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
+  result->flags = progress.flags;
+  result->transitions = progress.transitions;
+  const bool is_free = walk.active == kFree;
+  if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
+  store(walk.god_object, contact->god_object);
+  contact->state = walk.active.state;
+  contact->feature = walk.active.index;
+  contact->seat_state = walk.seat.state;
+  contact->seat_feature = walk.seat.index;
+  const bool is_undecided = contact->sweep.is_carried != 0;  // contact may be regained
+  contact->slipping = (!is_free || is_undecided) && walk.friction.is_slipping ? 1 : 0;
+}
+
+// A god-object that stays on its face, at rest or sliding, is what a servo loop meets most: nothing else is set up for it.
+template <class Real>
 void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
           fdcg_result* result) {
-  const GraphView<Real> graph(raw);
+  using Kind = typename FaceMove<Real>::Kind;
+  const fdcg_header& header = *raw.header;
   Vec3<Real> hip;
   *result = {};
-  if (!to_local(*raw.header, hip_object_m, &hip)) {
+  if (!to_local(header, hip_object_m, &hip)) {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
-    for (int k = 0; k < 3; ++k) {
-      result->god_object_m[k] = (contact->god_object[k] + raw.header->origin[k]) * raw.header->metres_per_unit;
-    }
+  } else if (contact->started == 0) {
+    start(hip, contact);
   } else {
-    const bool is_first = contact->started == 0;
-    Walk<Real> walk = {
-        graph,
-        {static_cast<Real>(params.mu_static), static_cast<Real>(params.mu_dynamic), params.edge_friction == FDCG_EDGE_WEDGE},
-        hip,
-        plane_rounding_bound(graph, hip),
-        is_first ? hip : narrow<Real>(contact->god_object),
-        {contact->state, contact->feature},
-        {contact->seat_state, contact->seat_feature},
-        contact->slipping != 0};
-    if (is_first) walk.active = walk.seat = kFree;
-    double before[3];
-    for (int k = 0; k < 3; ++k)
-      before[k] = contact->hip[k];
-    store(hip, contact->hip);
-    if (is_first) store(hip, before);
-    contact->started = 1;
-    if (!is_first) result->transitions = move_god_object(walk, &result->flags);
-    if (walk.active == kFree) walk.is_slipping = false;
-    store(walk.god_object, contact->god_object);
-    contact->state = walk.active.state;
-    contact->feature = walk.active.index;
-    contact->seat_state = walk.seat.state;
-    contact->seat_feature = walk.seat.index;
-    contact->slipping = walk.is_slipping ? 1 : 0;
-    contact->transition_bound_ticks += (result->flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
-    contact->sweep_bound_ticks += (result->flags & FDCG_RESULT_SWEEP_BOUND) != 0;
-    respond(*raw.header, params, *contact, before, result);
-    if (walk.active == kFree) {
-      for (int k = 0; k < 3; ++k)
-        result->force_n[k] = 0;
+    const GraphView<Real> graph(raw);
+    const Real bound = plane_rounding_bound(graph, hip);
+    const Vec3<Real> god_object = narrow<Real>(contact->god_object);
+    const bool is_on_face = contact->state == FDCG_FACE;
+    Friction<Real> friction = friction_of<Real>(params, *contact);
+    FaceMove<Real> move;
+    if (is_on_face) {
+      const NodeRef<Real> node = graph.node(contact->feature);
+      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound), god_object);
     }
+    if (is_on_face && (move.kind == Kind::rests || move.kind == Kind::slides)) {
+      if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
+      contact->slipping = friction.is_slipping ? 1 : 0;
+      respond(header, params, *contact, hip, move.target, result);
+      store(move.target, contact->god_object);
+    } else {
+      walk_to_hip<Real>({graph,
+                         friction,
+                         hip,
+                         bound,
+                         god_object,
+                         {contact->state, contact->feature},
+                         {contact->seat_state, contact->seat_feature}},
+                        is_on_face ? &move : nullptr, params, contact, result);
+    }
+    store(hip, contact->hip);
   }
-  result->state = contact->state;
-  result->feature = contact->state == FDCG_FREE ? FDCG_NONE : contact->feature;  // a contact of zeros is free, and on nothing
-  result->slipping = contact->slipping;
+  say_where(header, *contact, result);
 }
 
 }  // namespace
@@ -220,9 +282,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
 
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
-  if (graph->header->real_bytes == sizeof(double)) {
-    fdcg::step<double>(*graph, *params, contact, hip_object_m, result);
-  } else {
-    fdcg::step<float>(*graph, *params, contact, hip_object_m, result);
-  }
+  fdcg_params room;
+  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
+  fdcg::with_real_of(*graph->header,
+                     [&](auto real) { fdcg::step<decltype(real)>(*graph, all_params, contact, hip_object_m, result); });
 }

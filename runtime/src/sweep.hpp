@@ -1,71 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 // The free-space sweep (contact-model section 4): what a straight move from one point to another meets first.
+//
+// A sweep looks at the nearest boxes first. Where its work runs out (work.hpp) it is carried over to later ticks, which look at
+// the leaves in index order instead: one number then says how far they have come, and each tick gets on by at least one box. A
+// carried sweep takes at most 1 + (boxes and nodes that the way touches) / (work of a tick) ticks.
 #pragma once
 
 #include "implicit_tree.hpp"
 #include "walk.hpp"
+#include "work.hpp"
 
 namespace fdcg {
 
-// Boxes that one sweep may open before it stops and leaves the rest of the way to the next tick. A way across a whole scan
-// opens some hundreds; only where thousands of faces meet in one corner, and so all their boxes, come more together.
-#ifndef FDCG_MAX_SWEEP_VISITS
-#define FDCG_MAX_SWEEP_VISITS 16384
-#endif
-inline constexpr int kMaxSweepVisits = FDCG_MAX_SWEEP_VISITS;
-
+// What a way met first. The result does not depend on the order in which nodes are looked at: of two met at one fraction the
+// lower one counts.
 template <class Real>
-struct SweepResult {
-  enum class Kind { clear, hit, bounded } kind = Kind::clear;
-  Feature feature = kFree;  // hit: a node, or the connection or corner that the move meets exactly
-  Vec3<Real> point = {};    // hit: on that feature; bounded: how far the way is known to be free
+struct FirstHit {
+  Real fraction = Real(1.5);  // of the way; after its end: nothing met
+  uint32_t node = FDCG_NONE;
+  Feature feature = kFree;  // the node, or the connection that the way meets exactly
 };
 
-// Sweeps walk.god_object -> walk.hip, leaving out the faces that meet at `left`, on which the move starts.
+// Sweeps from -> to, leaving out the faces that meet at `left`, on which the way starts.
 // Watertight: a node is entered where the line passes its edges on the inner side, by exact signs that two neighbours share.
 template <class Real>
 class Sweep {
  public:
-  Sweep(const Walk<Real>& walk, Feature left)
-      : walk_(walk),
-        graph_(walk.graph),
-        from_(walk.god_object),
-        to_(walk.hip),
+  Sweep(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to, Feature left, uint32_t* work_left)
+      : graph_(graph),
+        from_(from),
+        to_(to),
         way_(to_ - from_),
         from_bound_(plane_rounding_bound(graph_, from_)),
-        left_(left) {
+        to_bound_(plane_rounding_bound(graph_, to_)),
+        left_(left),
+        work_left_(work_left) {
     const double extent = graph_.header->extent;
     pad_ = 8 * RealLimits<Real>::kEpsilon * (Real(extent) + norm1(from_) + norm1(to_));
-    const Real from[3] = {from_.x, from_.y, from_.z}, way[3] = {way_.x, way_.y, way_.z};
+    const Real at[3] = {from_.x, from_.y, from_.z}, way[3] = {way_.x, way_.y, way_.z};
     for (int k = 0; k < 3; ++k) {
-      axes_[k] = {from[k] + pad_, from[k] - pad_, absolute(way[k]) <= pad_ ? Real(0) : 1 / way[k]};
+      axes_[k] = {at[k] + pad_, at[k] - pad_, absolute(way[k]) <= pad_ ? Real(0) : 1 / way[k]};
     }
     slab_ = Real(graph_.header->max_deviation) * (1 + 4 * RealLimits<Real>::kEpsilon) + from_bound_;
   }
 
-  SweepResult<Real> run() {
-    if (from_.x == to_.x && from_.y == to_.y && from_.z == to_.z) return result();  // no way, no direction
-    if (graph_.hierarchy == nullptr) {
-      for (uint32_t n = 0; n < graph_.header->node_count; ++n)
-        try_node(n);
-      return result();
-    }
-    const ImplicitTree layout(graph_.header->node_count, FDCG_LEAF_NODES);
-    const int root = layout.levels - 1;
-    const Real entry = box_entry(graph_.hierarchy[0]);
-    if (entry <= best_fraction_) push({entry, 0, root});
-    for (int visits = 0; waiting_ > 0; ++visits) {
-      if (visits == kMaxSweepVisits) return bounded();
-      const Waiting next = stack_[--waiting_];
-      if (next.entry > best_fraction_) continue;
-      if (next.level == 0) {
-        try_leaf(next.box);
-      } else {
-        push_children(layout, next);
-      }
-    }
-    return result();
+  // Nearest boxes first. False: the work ran out; what was met so far stands.
+  bool run(FirstHit<Real>* first) {
+    best_ = *first;
+    const bool is_done = graph_.hierarchy == nullptr ? false : search();
+    *first = best_;
+    return is_done;
   }
+
+  // In index order from *next_leaf on (a leaf of the hierarchy, or a node where there is none), which moves on by at least one.
+  // False: the work ran out.
+  bool run_in_order(FirstHit<Real>* first, uint32_t* next_leaf) {
+    best_ = *first;
+    const bool is_done = graph_.hierarchy == nullptr ? try_all_nodes(next_leaf) : search_in_order(next_leaf);
+    *first = best_;
+    return is_done;
+  }
+
+  [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
  private:
   // A box still to be looked at, and the fraction of the way at which it begins.
@@ -80,6 +76,53 @@ class Sweep {
   };
   static constexpr Real kBeyond = 2;  // a fraction after the end of the way
 
+  bool try_all_nodes(uint32_t* next_node) {
+    for (; *next_node < graph_.header->node_count; ++*next_node) {
+      if (*work_left_ == 0) return false;
+      try_node(*next_node);
+    }
+    return true;
+  }
+
+  bool search() {
+    const ImplicitTree layout(graph_.header->node_count, FDCG_LEAF_NODES);
+    const int root = layout.levels - 1;
+    const Real entry = box_entry(graph_.hierarchy[0]);
+    if (entry <= best_.fraction) push({entry, 0, root});
+    while (waiting_ > 0) {
+      if (*work_left_ == 0) return false;
+      const Waiting next = stack_[--waiting_];
+      if (next.entry > best_.fraction) continue;
+      if (next.level == 0) {
+        try_leaf(next.box);
+      } else {
+        push_children(layout, next);
+      }
+    }
+    return true;
+  }
+
+  // Box by box: into a box that the way touches, past one that it does not; up again where a box's last descendant is done.
+  bool search_in_order(uint32_t* next_leaf) {
+    const ImplicitTree layout(graph_.header->node_count, FDCG_LEAF_NODES);
+    const uint64_t leaves = layout.size[0];
+    uint64_t leaf = *next_leaf;
+    while (leaf < leaves) {
+      int level = 0;
+      while (level + 1 < layout.levels && (leaf >> level & 1) == 0)
+        ++level;
+      while (level > 0 && box_entry(graph_.hierarchy[layout.first[level] + (leaf >> level)]) <= best_.fraction)
+        --level;
+      if (level == 0 && box_entry(graph_.hierarchy[layout.first[0] + leaf]) <= best_.fraction) {
+        try_leaf(static_cast<uint32_t>(leaf));
+      }
+      leaf += uint64_t{1} << level;
+      *next_leaf = static_cast<uint32_t>(leaf);
+      if (*work_left_ == 0) return leaf >= leaves;
+    }
+    return true;
+  }
+
   void push(const Waiting& waiting) { stack_[waiting_++] = waiting; }
 
   // Nearer child on top; one level more on the stack costs at most one entry.
@@ -92,13 +135,14 @@ class Sweep {
     const Real entry1 = has_two ? box_entry(boxes[1]) : kBeyond;
     const bool swap = entry1 < entry0;
     const Real far_entry = swap ? entry0 : entry1, near_entry = swap ? entry1 : entry0;
-    if (far_entry <= best_fraction_) push({far_entry, swap ? first : first + 1, level});
-    if (near_entry <= best_fraction_) push({near_entry, swap ? first + 1 : first, level});
+    if (far_entry <= best_.fraction) push({far_entry, swap ? first : first + 1, level});
+    if (near_entry <= best_.fraction) push({near_entry, swap ? first + 1 : first, level});
   }
 
   // Where the way enters a box, as a fraction, never too late; kBeyond if it misses it. The box is grown by more than the
   // rounding of this test.
   [[nodiscard]] Real box_entry(const fdcg_box& box) const {
+    spend(work_left_, kBoxWork);
     Real entry = 0, exit = 1;
     for (int k = 0; k < 3; ++k) {
       const Axis& axis = axes_[k];
@@ -126,19 +170,29 @@ class Sweep {
   // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie
   // off its plane is a slab: a way that begins within it still begins in front.
   void try_node(uint32_t n) {
+    spend(work_left_, kNodeWork);
     const NodeRef<Real> node = graph_.node(n);
-    const Real end_side = walk_.side(node);
+    const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
-    const Real start_side = side_of(graph_, node, from_, from_bound_);
+    const Real start_side = side(node, from_, from_bound_);
     const bool is_inexact = node.is_inexact();
     if (start_side < (is_inexact ? -slab_ : Real(0))) return;
     const Real fraction = start_side > 0 ? start_side / (start_side - end_side) : Real(0);
-    if (!(fraction < best_fraction_) || is_left_out(n, node)) return;
-    uint32_t met_exactly = 0;
+    if (!is_before_best(fraction, n) || is_left_out(n, node)) return;
+    bool met_exactly = false;
     if (!passes_inside(node, &met_exactly)) return;
-    const Vec3<Real> point = from_ + way_ * fraction;
-    best_ = met_exactly > 0 ? on_rim(node, point) : Target{{FDCG_FACE, n}, 0};
-    best_fraction_ = fraction;
+    best_.fraction = fraction;
+    best_.node = n;
+    best_.feature = met_exactly ? on_rim(node, point_at(fraction)) : Feature{FDCG_FACE, n};
+  }
+
+  [[nodiscard]] bool is_before_best(Real fraction, uint32_t n) const {
+    return fraction < best_.fraction || (fraction == best_.fraction && n < best_.node);
+  }
+
+  [[nodiscard]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
+    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kExactWork);
+    return side_of(graph_, node, x, bound);
   }
 
   [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
@@ -154,81 +208,123 @@ class Sweep {
     return false;
   }
 
-  // The line meets a side's edge exactly where its orientation against the edge is 0.
-  [[nodiscard]] int orientation_to_side(NodeRef<Real> node, uint32_t k) const {
-    const Vec3<double> start = widen(graph_.corner_point(node.corner(k)));
-    const Vec3<double> end = widen(graph_.corner_point(node.corner(node.next(k))));
-    const bool is_forward = node.which(k) == 0;  // both neighbours ask the same question
-    const int sign =
-        is_forward ? orient3d_sign(widen(from_), widen(to_), start, end) : orient3d_sign(widen(from_), widen(to_), end, start);
-    return is_forward ? sign : -sign;
+  // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
+  // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
+  [[nodiscard]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
+    spend(work_left_, kOrientationWork);
+    const Vec3<Real> v = start - from_, w = end - from_;
+    const Real det = dot(cross(v, w), way_);
+    // Of each of the six products of three differences: three differences, two products and the sums, half an epsilon each.
+    const Real bound = 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way_)) + RealLimits<Real>::kTiny;
+    if (det > bound) return 1;
+    if (det < -bound) return -1;
+    spend(work_left_, kExactWork);
+    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end));
   }
 
-  bool passes_inside(NodeRef<Real> node, uint32_t* met_exactly) const {
+  bool passes_inside(NodeRef<Real> node, bool* met_exactly) const {
+    Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const int sign = orientation_to_side(node, k);
+      const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
+      const int sign = orientation(start, end);
       if (sign > 0) return false;
-      if (sign == 0) ++*met_exactly;
+      if (sign == 0) *met_exactly = true;
+      start = end;
     }
     return true;
   }
 
-  // What the line met: a feature, and for a connection how far along it.
-  struct Target {
-    Feature feature;
-    Real parameter;
-  };
-
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it.
-  Target on_rim(NodeRef<Real> node, Vec3<Real> point) const {
-    Target nearest = {kFree, 0};
+  Feature on_rim(NodeRef<Real> node, Vec3<Real> point) const {
+    Feature nearest = kFree;
     Real nearest_outside = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (orientation_to_side(node, k) != 0) continue;
+      if (orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0) continue;
       const EdgeLine<Real> line(graph_.edge(node, k));
       const Real u = line.parameter(point);
       const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));
-      if (nearest.feature == kFree || outside < nearest_outside) {
-        nearest = {{FDCG_EDGE, node.connection(k)}, u};
+      if (nearest == kFree || outside < nearest_outside) {
+        nearest = {FDCG_EDGE, node.connection(k)};
         nearest_outside = outside;
       }
     }
     return nearest;
   }
 
-  [[nodiscard]] SweepResult<Real> result() const {
-    SweepResult<Real> r;
-    if (best_.feature == kFree) return r;
-    r.kind = SweepResult<Real>::Kind::hit;
-    r.feature = best_.feature;
-    r.point = from_ + way_ * best_fraction_;
-    return r;
-  }
-
-  // Everything that begins before the nearest waiting box has been looked at; a little is held back, more than rounding needs.
-  [[nodiscard]] SweepResult<Real> bounded() const {
-    constexpr Real kHoldBack = Real(1) - Real(1) / Real(1 << 20);
-    Real known = best_fraction_;
-    for (int i = 0; i < waiting_; ++i) {
-      if (stack_[i].entry < known) known = stack_[i].entry;
-    }
-    SweepResult<Real> r;
-    r.kind = SweepResult<Real>::Kind::bounded;
-    r.point = from_ + way_ * (known * kHoldBack);
-    return r;
-  }
-
-  const Walk<Real>& walk_;
   const GraphView<Real>& graph_;
   Vec3<Real> from_, to_, way_;
-  Real from_bound_;
+  Real from_bound_, to_bound_;
   Feature left_;
+  uint32_t* work_left_;
   Real pad_, slab_;
   Axis axes_[3];
-  Real best_fraction_ = Real(1.5);  // later than any point of the way
-  Target best_ = {kFree, 0};
+  FirstHit<Real> best_;
   Waiting stack_[kMaxLevels + 2];
   int waiting_ = 0;
 };
+
+// Puts the contact where the way met something first, or at its end.
+template <class Real>
+inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
+  const Vec3<Real> point = sweep.point_at(first.fraction);
+  walk.active = first.feature;
+  if (first.feature.state == FDCG_EDGE) {
+    const EdgeLine<Real> line(walk.graph.edge(first.feature.index));
+    walk.active = place_on_edge(walk, first.feature.index, line, line.parameter(point));
+  } else {
+    walk.place(first.feature == kFree ? to : point, kFree);
+  }
+}
+
+// Goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has not moved.
+template <class Real>
+inline bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
+  const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
+  FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
+  Sweep<Real> sweep(walk.graph, walk.god_object, to, {carried->left_state, carried->left_feature}, work_left);
+  const bool is_done = sweep.run_in_order(&first, &carried->next_leaf);
+  carried->fraction = first.fraction;
+  carried->node = first.node;
+  carried->state = first.feature.state;
+  carried->feature = first.feature.index;
+  if (!is_done) return false;
+  carried->is_carried = 0;
+  arrive(walk, sweep, to, first);
+  return true;
+}
+
+// From free space, or from the surface that was just left: places the contact on what the way to the HIP meets, or at the HIP.
+// A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work ran out, else 0.
+template <class Real>
+inline uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, fdcg_carried_sweep* carried, uint32_t* work_left) {
+  if (carried->is_carried != 0) {
+    if (!finish_carried_sweep(walk, carried, work_left)) return FDCG_RESULT_SWEEP_BOUND;
+    if (!(walk.active == kFree)) return 0;
+  }
+  const Vec3<Real> from = walk.god_object, to = walk.hip;
+  if (from.x == to.x && from.y == to.y && from.z == to.z) {  // no way, no direction
+    walk.place(to, kFree);
+    return 0;
+  }
+  Sweep<Real> sweep(walk.graph, from, to, left, work_left);
+  FirstHit<Real> first;
+  if (sweep.run(&first)) {
+    arrive(walk, sweep, to, first);
+    return 0;
+  }
+  *carried = {{to.x, to.y, to.z},
+              first.fraction,
+              first.feature.state,
+              first.feature.index,
+              first.node,
+              left.state,
+              left.index,
+              0,
+              1,
+              0};
+  walk.active = walk.seat = kFree;
+  if (*work_left == 0 || !finish_carried_sweep(walk, carried, work_left)) return FDCG_RESULT_SWEEP_BOUND;
+  return 0;
+}
 
 }  // namespace fdcg

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verify.hpp"
 
+#include "config.hpp"
 #include "graph_view.hpp"
 #include "implicit_tree.hpp"
 #include "message.hpp"
@@ -311,7 +312,7 @@ fdcg_status verify_checksums(const void* data, const fdcg_header& header, fdcg_e
 }
 
 fdcg_status verify_graph(const fdcg_graph& graph, fdcg_error* error) {
-  return graph.header->real_bytes == 8 ? Verifier<double>(graph, error).run() : Verifier<float>(graph, error).run();
+  return with_real_of(*graph.header, [&](auto real) { return Verifier<decltype(real)>(graph, error).run(); });
 }
 
 }  // namespace fdcg

@@ -3,6 +3,7 @@
 // of contact-model sections 5, 6 and 7, sweep.hpp that of section 4; servo_step.cpp drives them.
 #pragma once
 
+#include "friction.hpp"
 #include "graph_view.hpp"
 
 namespace fdcg {
@@ -17,21 +18,14 @@ struct Feature {
 inline constexpr Feature kFree = {};
 
 template <class Real>
-struct Friction {
-  Real mu_static, mu_dynamic;
-  bool wedge;
-};
-
-template <class Real>
 struct Walk {
-  const GraphView<Real>& graph;
+  GraphView<Real> graph;
   Friction<Real> friction;
   Vec3<Real> hip;
   Real hip_bound;  // plane_rounding_bound of hip
   Vec3<Real> god_object;
   Feature active;
   Feature seat;  // the edge or vertex on which the god-object was last placed and still is; kFree: none
-  bool is_slipping;
 
   [[nodiscard]] Real side(NodeRef<Real> node) const { return side_of(graph, node, hip, hip_bound); }
 
@@ -52,30 +46,6 @@ inline Decision rest() {
 }
 inline Decision go_to(Feature next) {
   return {false, next};
-}
-
-// How far apart two computations of the same gap may lie when the god-object was rounded to its place in between.
-template <class Real>
-inline Real gap_rounding(Vec3<Real> god_object, Real gap) {
-  return RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
-}
-
-// Friction on a face or an edge: `gap` is the distance of the god-object from the surface point, `load` the depth that presses
-// it on. Returns the gap that friction allows: the same one where the god-object rests. Slipping starts beyond mu_static and
-// ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on the dynamic circle and rounding
-// must not toss a coin every tick (contact-model section 5; Melder 2004, figure 4); for the same reason it is not placed anew
-// for less than a rounding.
-template <class Real>
-inline Real friction_gap(Walk<Real>& walk, Real gap, Real load) {
-  constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
-  const Real dynamic_gap = walk.friction.mu_dynamic * load;
-  if (walk.is_slipping) {
-    if (gap <= kStickAgain * dynamic_gap) walk.is_slipping = false;
-  } else if (gap > walk.friction.mu_static * load) {
-    walk.is_slipping = true;
-  }
-  if (!walk.is_slipping || gap <= dynamic_gap + gap_rounding(walk.god_object, gap)) return gap;
-  return dynamic_gap;
 }
 
 // A connection's line, and how near to an end the vertex is meant (contact-model section 5).

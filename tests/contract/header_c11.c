@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   fdcg_graph graph;
   fdcg_error error;
   fdcg_params params = fdcg_default_params();
-  fdcg_contact contact = {{0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  fdcg_contact contact = {0};
   fdcg_result result;
   const double outside[3] = {0.5, 0.5, 1.5}, inside[3] = {0.5, 0.5, 0.75};
   if (argc != 2 || fdcg_check_params(&params, &error) != FDCG_OK) return 2;

@@ -310,6 +310,52 @@ PolygonSoup ico_sphere(int level) {
   return make_soup("ico-sphere", std::move(points), faces);
 }
 
+PolygonSoup geodesic_sphere(int parts) {
+  const PolygonSoup base = ico_sphere(0);
+  const auto n = static_cast<std::uint32_t>(parts);
+  PolygonSoup soup = make_soup("geodesic-sphere", base.points, {});
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_of_edge;  // n - 1 points from the lesser end on
+  std::vector<std::uint32_t> number((n + 1) * (n + 2) / 2);                        // row i has i + 1 places
+  const auto at = [&](std::uint32_t i, std::uint32_t j) -> std::uint32_t& { return number[i * (i + 1) / 2 + j]; };
+  for (std::size_t f = 0; f < base.face_count(); ++f) {
+    const Polygon corner = face_corners(base, f);  // places (0, 0), (n, 0), (n, n)
+    const auto add = [&](std::uint32_t i, std::uint32_t j) {
+      const Vec3 p = base.points[corner[0]] * (n - i) + base.points[corner[1]] * (i - j) + base.points[corner[2]] * j;
+      soup.points.push_back(unit(p));
+    };
+    const auto along = [&](std::uint32_t a, std::uint32_t b, auto place) {
+      const auto [it, is_new] = first_of_edge.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(soup.points.size()));
+      for (std::uint32_t k = 1; k < n; ++k) {
+        const auto [i, j] = place(a < b ? k : n - k);
+        at(i, j) = it->second + k - 1;
+        if (is_new) add(i, j);
+      }
+    };
+    using Place = std::pair<std::uint32_t, std::uint32_t>;
+    at(0, 0) = corner[0], at(n, 0) = corner[1], at(n, n) = corner[2];
+    along(corner[0], corner[1], [&](std::uint32_t k) { return Place(k, 0); });
+    along(corner[0], corner[2], [&](std::uint32_t k) { return Place(k, k); });
+    along(corner[1], corner[2], [&](std::uint32_t k) { return Place(n, k); });
+    for (std::uint32_t i = 2; i < n; ++i) {
+      for (std::uint32_t j = 1; j < i; ++j) {
+        at(i, j) = static_cast<std::uint32_t>(soup.points.size());
+        add(i, j);
+      }
+    }
+    const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      soup.corners.insert(soup.corners.end(), {a, b, c});
+      soup.face_first.push_back(static_cast<std::uint32_t>(soup.corners.size()));
+    };
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t j = 0; j <= i; ++j) {
+        triangle(at(i, j), at(i + 1, j), at(i + 1, j + 1));
+        if (j < i) triangle(at(i, j), at(i + 1, j + 1), at(i, j + 1));
+      }
+    }
+  }
+  return soup;
+}
+
 PolygonSoup uv_sphere(int slices, int stacks) {
   const auto n = static_cast<std::uint32_t>(slices), rings = static_cast<std::uint32_t>(stacks - 1);
   std::vector<Vec3> points;

@@ -48,6 +48,7 @@ PolygonSoup prism(int n);     // n-gon, radius 1, from z = -1 to z = 1
 // ---- rounded bodies --------------------------------------------------------------------------------------------------------
 
 PolygonSoup ico_sphere(int level);              // 20 * 4^level triangles, radius 1
+PolygonSoup geodesic_sphere(int parts);         // 20 * parts^2 triangles, radius 1: each edge of an icosahedron cut into parts
 PolygonSoup uv_sphere(int slices, int stacks);  // with two corners of `slices` faces
 PolygonSoup torus(int around, int across, double tube_radius = 0.4);
 // Radius 1 + amplitude * (waves + bumps hashed from the seed): star-shaped, full of saddles.

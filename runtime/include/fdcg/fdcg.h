@@ -29,6 +29,12 @@ extern "C" {
 #define FDCG_VERSION_MINOR 1
 #define FDCG_VERSION_PATCH 0
 #define FDCG_VERSION_STRING "0.1.0"
+#define FDCG_VERSION (FDCG_VERSION_MAJOR * 10000 + FDCG_VERSION_MINOR * 100 + FDCG_VERSION_PATCH)
+
+/* FDCG_VERSION of the library that is linked. Structs that begin with struct_bytes may grow at their end in any version, and a
+ * program built against a smaller one goes on working: what it does not know takes its default. The other structs keep their
+ * layout while FDCG_VERSION_MAJOR (before 1.0: also FDCG_VERSION_MINOR) stays. */
+uint32_t fdcg_version(void);
 
 /* ---- errors ------------------------------------------------------------------------------------------------------------ */
 
@@ -39,7 +45,7 @@ typedef enum fdcg_status {
   FDCG_E_ALIGNMENT, /* the memory does not start at a multiple of 8 */
   FDCG_E_TRUNCATED, /* fewer bytes than the header promises, or more */
   FDCG_E_MAGIC,     /* not an FDCG file */
-  FDCG_E_VERSION,   /* a format version that this library does not know */
+  FDCG_E_VERSION,   /* a format version or precision that this library was not built for */
   FDCG_E_LAYOUT,    /* header or section table contradict themselves */
   FDCG_E_CHECKSUM,  /* bytes have changed since the file was written */
   FDCG_E_GRAPH      /* an index or a number inside a section is out of range */
@@ -51,6 +57,25 @@ typedef struct fdcg_error {
   uint64_t offset;   /* byte in the file that the message speaks of; 0 where there is none */
   char message[240]; /* one line, ends in '\0' */
 } fdcg_error;
+
+/* What a status means, without the case at hand: static text, one line, never NULL. */
+const char* fdcg_status_text(fdcg_status status);
+
+/* ---- set-up ------------------------------------------------------------------------------------------------------------ */
+
+/* Both handlers are global. Set them before the first graph is opened and not again while other threads use the library; NULL
+ * takes a handler away. They get `context` back. */
+
+typedef enum fdcg_log_level { FDCG_LOG_INFO = 0, FDCG_LOG_ERROR = 1 } fdcg_log_level;
+
+/* One line of text, valid during the call. Told of each graph that is opened or refused; never called in the step. */
+typedef void (*fdcg_log_handler)(void* context, fdcg_log_level level, const char* text);
+void fdcg_set_log_handler(fdcg_log_handler handler, void* context);
+
+/* Told when the library finds a fault of its own (debug builds look for them, FDCG_WITH_ASSERTS; in others it is never
+ * called). May be called in the step. Where it returns the library goes on as best it can; without a handler it traps. */
+typedef void (*fdcg_assert_handler)(void* context, const char* condition, const char* file, uint32_t line);
+void fdcg_set_assert_handler(fdcg_assert_handler handler, void* context);
 
 /* ---- graph ------------------------------------------------------------------------------------------------------------- */
 
@@ -82,7 +107,7 @@ typedef struct fdcg_graph {
  * Cost: FULL reads every byte once or twice; TRUSTED touches the header and the section table only. `error` may be NULL. */
 fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
 
-/* The same for a file, mapped read-only. Undo with fdcg_close. */
+/* The same for a file, mapped read-only. Undo with fdcg_close. FDCG_E_IO in a library built without files (FDCG_WITH_FILES). */
 fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
 
 /* Unmaps what fdcg_open_file mapped and zeroes the view. Harmless on a zeroed or memory graph. */
@@ -141,7 +166,7 @@ typedef enum fdcg_state { FDCG_FREE = 0, FDCG_FACE = 1, FDCG_EDGE = 2, FDCG_VERT
 typedef enum fdcg_edge_friction { FDCG_EDGE_WEDGE = 0, FDCG_EDGE_PAPER = 1 } fdcg_edge_friction;
 
 typedef struct fdcg_params {
-  uint32_t struct_bytes;    /* sizeof(fdcg_params); fdcg_default_params sets it */
+  uint32_t struct_bytes;    /* the caller's sizeof(fdcg_params); fdcg_default_params sets it */
   uint32_t edge_friction;   /* fdcg_edge_friction */
   double mu_static;         /* >= mu_dynamic */
   double mu_dynamic;        /* >= 0 */
@@ -150,17 +175,38 @@ typedef struct fdcg_params {
   double tick_s;            /* time between ticks; read only where damping is on */
 } fdcg_params;
 
-/* mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge. */
-fdcg_params fdcg_default_params(void);
+/* Sets the first `struct_bytes` bytes of *params: mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge. */
+void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes);
+static inline fdcg_params fdcg_default_params(void) {
+  fdcg_params params;
+  fdcg_init_params(&params, (uint32_t)sizeof params);
+  return params;
+}
 
 /* FDCG_E_ARGUMENT, with the field, its value and its limit in the message, unless every field is in range. The step does not
  * check: call this whenever the parameters change. */
 fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
 
+/* A sweep through free space that one tick could not finish. The way is frozen: from the god-object, which stays where it is,
+ * to `target`. Later ticks look at the nodes in index order, from `next_leaf` on, until all that the way may meet are done;
+ * then the contact is placed on what was met first, or at the target, and goes on from there to the newest HIP. */
+typedef struct fdcg_carried_sweep {
+  double target[3];    /* local */
+  double fraction;     /* of the way: where the first feature met so far is entered */
+  uint32_t state;      /* that feature: FDCG_FREE if nothing is met so far */
+  uint32_t feature;    /* ... node or connection */
+  uint32_t node;       /* ... the node through which it was met */
+  uint32_t left_state; /* the feature that the way starts on; FDCG_FREE: none */
+  uint32_t left_feature;
+  uint32_t next_leaf;  /* leaf of the hierarchy, or node where there is none */
+  uint32_t is_carried; /* 0: there is no such sweep */
+  uint32_t reserved;
+} fdcg_carried_sweep;
+
 /* One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Positions are local to
  * the graph (see format.h), so that nothing is lost far from the world's origin. */
 typedef struct fdcg_contact {
-  double god_object[3]; /* in Free: the HIP, or after a bounded sweep the last point swept */
+  double god_object[3]; /* in Free: the HIP, or while a sweep is carried over the point where it started */
   double hip[3];        /* of the last tick with a finite HIP */
   uint32_t started;     /* 0 before the first tick */
   uint32_t state;       /* fdcg_state */
@@ -170,7 +216,8 @@ typedef struct fdcg_contact {
   uint32_t slipping; /* 1: dynamic friction holds */
   uint64_t non_finite_ticks;
   uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_MAX_TRANSITIONS */
-  uint64_t sweep_bound_ticks;      /* ... because of FDCG_MAX_SWEEP_VISITS */
+  uint64_t sweep_bound_ticks;      /* ... because of FDCG_SWEEP_WORK */
+  fdcg_carried_sweep sweep;
 } fdcg_contact;
 
 typedef enum fdcg_result_flag {
@@ -197,5 +244,7 @@ void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact*
 #ifdef __cplusplus
 }
 #endif
+
+#include "fdcg/scene.h" /* objects with poses, fingers */
 
 #endif /* FDCG_FDCG_H */

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "fdcg/fdcg.h"
@@ -65,6 +66,77 @@ class Contact {
 
  private:
   fdcg_contact contact_ = {};
+};
+
+// A scene in memory of the caller's (scene.h has the story): a view, copied freely; there is nothing to release. Where a
+// function returns false the scene is as it was, and *why, which may be null, says why.
+class Scene {
+ public:
+  // The bytes that a scene of this config takes; 0 if the config is out of range.
+  [[nodiscard]] static std::size_t bytes(const fdcg_scene_config& config) {
+    return static_cast<std::size_t>(fdcg_scene_bytes(&config));
+  }
+
+  Scene() = default;
+  [[nodiscard]] bool create(std::span<std::byte> memory, const fdcg_scene_config& config, fdcg_error* why) {
+    return fdcg_scene_create(memory.data(), memory.size(), &config, &scene_, why) == FDCG_OK;
+  }
+
+  [[nodiscard]] bool add_object(const Graph& graph, const fdcg_params& params, const fdcg_pose& pose, fdcg_object_id* object,
+                                fdcg_error* why) {
+    return fdcg_scene_add_object(scene_, &graph.c_graph(), &params, &pose, object, why) == FDCG_OK;
+  }
+  [[nodiscard]] bool remove(fdcg_object_id object, fdcg_error* why = nullptr) {
+    return fdcg_scene_remove_object(scene_, object, why) == FDCG_OK;
+  }
+  [[nodiscard]] bool set_pose(fdcg_object_id object, const fdcg_pose& pose, fdcg_error* why) {
+    return fdcg_scene_set_pose(scene_, object, &pose, why) == FDCG_OK;
+  }
+  [[nodiscard]] bool set_params(fdcg_object_id object, const fdcg_params& params, fdcg_error* why) {
+    return fdcg_scene_set_params(scene_, object, &params, why) == FDCG_OK;
+  }
+  [[nodiscard]] bool enable(fdcg_object_id object, bool is_enabled, fdcg_error* why = nullptr) {
+    return fdcg_scene_enable_object(scene_, object, is_enabled ? 1 : 0, why) == FDCG_OK;
+  }
+
+  [[nodiscard]] bool add_finger(std::span<const double, 3> hip_world_m, fdcg_finger_id* finger, fdcg_error* why) {
+    return fdcg_scene_add_finger(scene_, hip_world_m.data(), finger, why) == FDCG_OK;
+  }
+  [[nodiscard]] bool remove(fdcg_finger_id finger, fdcg_error* why = nullptr) {
+    return fdcg_scene_remove_finger(scene_, finger, why) == FDCG_OK;
+  }
+  bool move(fdcg_finger_id finger, std::span<const double, 3> hip_world_m, fdcg_error* why = nullptr) noexcept {
+    return fdcg_scene_move_finger(scene_, finger, hip_world_m.data(), why) == FDCG_OK;
+  }
+  bool reset(fdcg_finger_id finger, std::span<const double, 3> hip_world_m, fdcg_error* why = nullptr) noexcept {
+    return fdcg_scene_reset_finger(scene_, finger, hip_world_m.data(), why) == FDCG_OK;
+  }
+
+  void step() noexcept { fdcg_scene_step(scene_); }
+  void advance() noexcept { fdcg_scene_advance(scene_); }
+  bool step(fdcg_finger_id finger, fdcg_error* why = nullptr) noexcept {
+    return fdcg_scene_step_finger(scene_, finger, why) == FDCG_OK;
+  }
+
+  // All zero for a finger that is not in the scene.
+  [[nodiscard]] fdcg_finger_result result(fdcg_finger_id finger) const noexcept {
+    fdcg_finger_result result = {};
+    fdcg_scene_result(scene_, finger, &result, nullptr);
+    return result;
+  }
+  [[nodiscard]] std::span<const fdcg_touch> touches(fdcg_finger_id finger) const noexcept {
+    const fdcg_finger_result felt = result(finger);
+    return {felt.touches, felt.touch_count};
+  }
+  // By object index; see fdcg_scene_reactions.
+  void reactions(std::span<fdcg_reaction> sums) const noexcept {
+    fdcg_scene_reactions(scene_, sums.data(), static_cast<std::uint32_t>(sums.size()));
+  }
+
+  [[nodiscard]] fdcg_scene* c_scene() const noexcept { return scene_; }
+
+ private:
+  fdcg_scene* scene_ = nullptr;
 };
 
 }  // namespace fdcg

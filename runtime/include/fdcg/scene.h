@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * A scene: objects with poses, and fingers that feel all of them. In one screen:
+ *
+ *   fdcg_scene_config config = fdcg_default_scene_config();               how many objects and fingers at most
+ *   void* memory = malloc(fdcg_scene_bytes(&config));                     or a static array: the scene never asks for more
+ *   fdcg_scene_create(memory, bytes, &config, &scene, &error);
+ *   fdcg_scene_add_object(scene, &graph, &params, &pose, &object, &error);
+ *   fdcg_scene_add_finger(scene, hip_world_m, &finger, &error);
+ *   each tick:  fdcg_scene_set_pose(scene, object, &pose, &error);        where something moves it
+ *               fdcg_scene_move_finger(scene, finger, hip_world_m, &error);
+ *               fdcg_scene_step(scene);
+ *               fdcg_scene_result(scene, finger, &result, &error);        ->  result.force_n, in the world
+ *
+ * An object is a graph (any number of objects may share one), parameters, and a pose: rotation, translation, uniform scale. A
+ * finger is one contact point; it has a contact (fdcg_contact) with each object that it touches, in that object's frame, so a
+ * moving and turning object carries its god-objects. What is swept each tick is the relative motion: from where the HIP was in
+ * the object's frame at the last tick, with the object's pose of that tick, straight to where it is now. An object that moves
+ * onto a still finger is met as surely as the other way round. In a turn of w radians a tick the straight way cuts the arc by a
+ * share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An object whose bounding sphere the finger
+ * does not reach, measured from the moving centre of the sphere, is not met, however fast it spins.
+ *
+ * Lengths of the world in metres, forces in newtons. At a scale of s the god-object's distance in the world is s times the one
+ * in the object, and stiffness and damping act on the distance in the world; friction does not depend on scale.
+ *
+ * Cost: a free finger out of reach of every object costs a comparison (about 10 ns), however many objects there are. Now and
+ * then it looks at all of them (about 2 ns each: 2 us for 1,000), when its own way and the objects' largest together have used
+ * up the distance that it last saw. A touched object costs its fdcg_step and two changes of frame. Nothing allocates, locks,
+ * recurses or reads a clock; every loop is bounded by the capacities in the config.
+ *
+ * Threads: the scene holds no lock. fdcg_scene_step is fdcg_scene_advance, then fdcg_scene_step_finger for every finger. After
+ * an advance, different fingers may be stepped, moved and asked for results by different threads at once, and at the same time
+ * one thread may set poses, which the next advance takes in; for everything else one thread at a time is in the scene. Results
+ * do not depend on the order of fingers or on threads.
+ */
+#ifndef FDCG_SCENE_H
+#define FDCG_SCENE_H
+
+#include "fdcg/fdcg.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Lives in memory of the caller's. Holds no pointer into itself: copied as a whole, to another multiple of 8, it is a snapshot
+ * that goes its own way. It does point to the graphs, which must outlive it. There is nothing to destroy. */
+typedef struct fdcg_scene fdcg_scene;
+
+/* Names by value; one of all zeros names nothing. What was removed is not found again under its old name. */
+typedef struct fdcg_object_id {
+  uint32_t index, generation;
+} fdcg_object_id;
+typedef struct fdcg_finger_id {
+  uint32_t index, generation;
+} fdcg_finger_id;
+
+/* world = R (scale * object) + translation, and back: object = (R^T (world - translation)) / scale, where R is the rotation
+ * matrix of the quaternion; the three products of a row are added from the first to the third. So a contact stepped by hand with
+ * fdcg_step gives the scene's bits. */
+typedef struct fdcg_pose {
+  double rotation_xyzw[4]; /* unit quaternion, real part last; within 1e-3 of unit length, made exactly unit by the scene */
+  double translation_m[3]; /* up to 1e12 */
+  double scale;            /* 1e-9 to 1e9 */
+} fdcg_pose;
+
+/* No rotation, no translation, scale 1. */
+fdcg_pose fdcg_identity_pose(void);
+
+/* What a scene leaves undone where it cannot matter. Each can be switched off in the config: every force stays the same, bit
+ * for bit, and the difference in time is what it saves. */
+typedef enum fdcg_scene_skip {
+  FDCG_SKIP_OUT_OF_REACH = 1, /* no look at any object until one could be reached */
+  FDCG_SKIP_FAR_OBJECTS = 2,  /* between looks only the objects near by are asked, and a look asks the others by sphere only */
+  FDCG_SKIP_STILL = 4,        /* an object that was not moved: no new rotation matrix, centre, inverse */
+  FDCG_SKIP_ROTATION = 8,     /* an object that is not turned or scaled: no rotation, no division */
+  FDCG_SKIP_RENEWAL = 16,     /* a near object's free contact is kept from tick to tick, not made anew */
+  FDCG_SKIP_ALL = 31
+} fdcg_scene_skip;
+
+typedef struct fdcg_scene_config {
+  uint32_t struct_bytes;       /* the caller's sizeof(fdcg_scene_config); fdcg_default_scene_config sets it */
+  uint32_t object_capacity;    /* 1 to 1,000,000 */
+  uint32_t finger_capacity;    /* 1 to 10,000,000 */
+  uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
+  uint32_t disabled_skips;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
+  uint32_t reserved;           /* 0 */
+} fdcg_scene_config;
+
+/* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 50 KB. */
+void fdcg_init_scene_config(fdcg_scene_config* config, uint32_t struct_bytes);
+static inline fdcg_scene_config fdcg_default_scene_config(void) {
+  fdcg_scene_config config;
+  fdcg_init_scene_config(&config, (uint32_t)sizeof config);
+  return config;
+}
+
+/* What fdcg_scene_create needs; 0 if the config is out of range (fdcg_scene_create says why). */
+uint64_t fdcg_scene_bytes(const fdcg_scene_config* config);
+
+/* An empty scene at `memory`, a multiple of 8. `error` may be NULL, here and below. */
+fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdcg_scene_config* config, fdcg_scene** scene,
+                              fdcg_error* error);
+
+/* ---- objects ----------------------------------------------------------------------------------------------------------- */
+
+/* A finger that is inside the object when it is added passes out of it freely. Cost: the graph's header. */
+fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph* graph, const fdcg_params* params, const fdcg_pose* pose,
+                                  fdcg_object_id* object, fdcg_error* error);
+fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_id object, fdcg_error* error);
+
+/* From the next advance on: the tick between sweeps from the old pose to the new one. FDCG_E_ARGUMENT, and the old pose stays,
+ * unless every number is in range. */
+fdcg_status fdcg_scene_set_pose(fdcg_scene* scene, fdcg_object_id object, const fdcg_pose* pose, fdcg_error* error);
+fdcg_status fdcg_scene_set_params(fdcg_scene* scene, fdcg_object_id object, const fdcg_params* params, fdcg_error* error);
+
+/* A disabled object is felt by nobody; enabled again it is as if just added, where its pose is. */
+fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_id object, int is_enabled, fdcg_error* error);
+
+/* ---- fingers ----------------------------------------------------------------------------------------------------------- */
+
+fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip_world_m[3], fdcg_finger_id* finger, fdcg_error* error);
+fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
+
+/* Where the HIP is in the next step. Not moved, it stays. Any number is taken: one that is not finite or beyond 1e100 is found
+ * by the step, which then leaves the HIP where it was, gives no force and counts it. */
+fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
+
+/* Lets go of everything and starts anew at a place: nothing on the way there is met. */
+fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
+
+/* ---- step -------------------------------------------------------------------------------------------------------------- */
+
+/* Takes in the poses that were set, steps every finger. */
+void fdcg_scene_step(fdcg_scene* scene);
+
+/* The two halves, for fingers on threads of their own. An advance begins a tick; a finger may be stepped several times in it (a
+ * device faster than the objects) but should be at least once: of a tick that it missed it does not see the objects' motion,
+ * where it did not touch them, and FDCG_FINGER_MISSED_TICK is set. */
+void fdcg_scene_advance(fdcg_scene* scene);
+fdcg_status fdcg_scene_step_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
+
+typedef enum fdcg_finger_flag {
+  FDCG_FINGER_NON_FINITE = 1, /* the HIP was no usable number: it stood still, no force */
+  FDCG_FINGER_CROWDED = 2,    /* more objects in reach than touches_per_finger: the touched ones and the nearest were felt */
+  FDCG_FINGER_MISSED_TICK = 4,
+  FDCG_FINGER_BOUNDED = 8 /* some contact carries work over to the next tick: see fdcg_touch.flags */
+} fdcg_finger_flag;
+
+/* One object that a finger touches. */
+typedef struct fdcg_touch {
+  fdcg_object_id object;
+  double force_n[3];      /* world, on the finger */
+  double god_object_m[3]; /* world */
+  uint32_t state;         /* fdcg_state; FDCG_FREE only while a sweep is carried over */
+  uint32_t feature;
+  uint32_t slipping;
+  uint32_t transitions;
+  uint32_t flags; /* fdcg_result_flag */
+  uint32_t reserved;
+} fdcg_touch;
+
+typedef struct fdcg_finger_result {
+  double force_n[3]; /* world, on the user's hand: the touches' sum in their order */
+  uint32_t flags;    /* fdcg_finger_flag, of the last step */
+  uint32_t touch_count;
+  const fdcg_touch* touches; /* ascending object index; in the scene's memory, good until the finger's next step */
+  uint64_t non_finite_steps; /* since the finger was added */
+  uint64_t crowded_steps;
+  uint64_t missed_ticks;
+  uint64_t looks; /* at all objects: what FDCG_SKIP_OUT_OF_REACH keeps few */
+} fdcg_finger_result;
+
+fdcg_status fdcg_scene_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result, fdcg_error* error);
+
+/* What the fingers do to the objects: force and torque in the world, the torque about the origin of the object's frame. Zeroes
+ * `reactions` and adds the fingers' last results up, in ascending order. On request only: costs a look at every finger.
+ * `count` entries by object index; objects beyond are left out. */
+typedef struct fdcg_reaction {
+  double force_n[3];
+  double torque_n_m[3];
+} fdcg_reaction;
+void fdcg_scene_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* FDCG_SCENE_H */

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of the runtime is built. Each is 0 or 1 and may be set on the compiler's command line; CMake has options of these names.
+#pragma once
+
+#include "fdcg/fdcg.h"
+
+// Graphs of either precision. A library without one refuses its files (FDCG_E_VERSION) and is some 40 % smaller.
+#ifndef FDCG_WITH_F64
+#define FDCG_WITH_F64 1
+#endif
+#ifndef FDCG_WITH_F32
+#define FDCG_WITH_F32 1
+#endif
+#if !FDCG_WITH_F64 && !FDCG_WITH_F32
+#error "a library needs FDCG_WITH_F64, FDCG_WITH_F32 or both"
+#endif
+
+// fdcg_open_file: needs a system that maps files. Without it the function says so; fdcg_open_memory is always there.
+#ifndef FDCG_WITH_FILES
+#if defined(__unix__) || defined(__APPLE__)
+#define FDCG_WITH_FILES 1
+#else
+#define FDCG_WITH_FILES 0
+#endif
+#endif
+
+// FDCG_ASSERT: our own faults are looked for, in the step too. CMake sets it in debug builds.
+#ifndef FDCG_WITH_ASSERTS
+#define FDCG_WITH_ASSERTS 0
+#endif
+
+namespace fdcg {
+
+inline bool has_precision(uint32_t real_bytes) {
+  return (FDCG_WITH_F64 && real_bytes == sizeof(double)) || (FDCG_WITH_F32 && real_bytes == sizeof(float));
+}
+
+// Calls `work` with a value of the graph's real type, which the library has: fdcg_open_memory saw to it.
+template <class Work>
+auto with_real_of(const fdcg_header& header, Work work) {
+  if constexpr (!FDCG_WITH_F32) {
+    return work(double{});
+  } else if constexpr (!FDCG_WITH_F64) {
+    return work(float{});
+  } else {
+    return header.real_bytes == sizeof(double) ? work(double{}) : work(float{});
+  }
+}
+
+}  // namespace fdcg

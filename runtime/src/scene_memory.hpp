@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene's memory holds:
+//
+//   fdcg_scene | Object[objects] | ScanSphere's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
+//   | fdcg_touch[fingers][touches]
+//
+// Found by offsets from the start, so that a copy of the whole is a scene again.
+#pragma once
+
+#include "pose.hpp"
+
+namespace fdcg {
+
+struct Object {
+  const fdcg_graph* graph;
+  fdcg_params params;
+  Bounds bounds;
+  fdcg_pose asked;  // the latest set
+  Pose now, last;   // of this tick and of the one before
+  uint32_t generation;
+  uint32_t is_used, is_enabled;
+  uint32_t is_changing;  // listed in `changing`: its pose was set, or its last pose differs from the present one
+};
+
+// One of a finger's places for an object: one that it touches, or one near by.
+struct Slot {
+  fdcg_contact contact;
+  uint32_t object;   // FDCG_NONE: empty
+  uint32_t is_held;  // touched, or a sweep carried over: the contact is more than the last HIP, and must be kept
+  uint32_t step;     // of the finger, when the contact was last stepped
+  uint32_t reserved;
+};
+
+// The first 112 bytes are all that a step reads of a finger out of reach.
+struct Finger {
+  World hip;      // asked for
+  World last;     // of the last step
+  World anchor;   // where it last looked at all objects
+  double limit;   // what then lay between it and the nearest object without a slot, plus fdcg_scene.travel of then
+  uint32_t look;  // fdcg_scene.look of then; another one now: the limit holds no more
+  uint32_t tick;  // of the last step
+  uint32_t busy;  // slots in use
+  uint32_t is_started;
+  uint32_t generation, is_used;
+  uint32_t step;  // counts steps
+  uint32_t flags;
+  uint32_t touch_count;
+  uint32_t idle_steps;  // in a row, in which no slot's object was in reach
+  World force;
+  uint64_t non_finite_steps, crowded_steps, missed_ticks, looks;
+};
+
+}  // namespace fdcg
+
+struct fdcg_scene {
+  uint64_t bytes;
+  fdcg_scene_config config;
+  uint64_t objects_at, scan_at, changing_at, fingers_at, slots_at, touches_at;  // offsets
+  uint32_t object_end, finger_end;  // indices in use lie below
+  uint32_t changing_count;
+  uint32_t tick;
+  uint32_t look;          // changes when objects come, go or change their size: then every finger looks anew
+  uint32_t reserved;
+  double tick_travel;  // the largest move of any object in this tick
+  double travel;       // the sum of those, rounded up
+  double farthest;     // the largest |x| + |y| + |z| of any object's place: scales rounding
+
+  template <class T>
+  T* at(uint64_t offset) {
+    return reinterpret_cast<T*>(reinterpret_cast<char*>(this) + offset);
+  }
+  template <class T>
+  const T* at(uint64_t offset) const {
+    return reinterpret_cast<const T*>(reinterpret_cast<const char*>(this) + offset);
+  }
+  fdcg::Object* objects() { return at<fdcg::Object>(objects_at); }
+  const fdcg::Object* objects() const { return at<fdcg::Object>(objects_at); }
+  // Centre x, y, z and reach of every object, array after array: what a look reads. The reach is the bounding sphere's radius
+  // and its move in this tick; -infinity where there is nothing to meet.
+  double* scan(int array) { return at<double>(scan_at) + array * uint64_t{config.object_capacity}; }
+  const double* scan(int array) const { return at<double>(scan_at) + array * uint64_t{config.object_capacity}; }
+  uint32_t* changing() { return at<uint32_t>(changing_at); }
+  fdcg::Finger* fingers() { return at<fdcg::Finger>(fingers_at); }
+  const fdcg::Finger* fingers() const { return at<fdcg::Finger>(fingers_at); }
+  fdcg::Slot* slots(uint32_t finger) { return at<fdcg::Slot>(slots_at) + finger * uint64_t{config.touches_per_finger}; }
+  fdcg_touch* touches(uint32_t finger) { return at<fdcg_touch>(touches_at) + finger * uint64_t{config.touches_per_finger}; }
+  const fdcg_touch* touches(uint32_t finger) const {
+    return at<fdcg_touch>(touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
+  bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
+};
+
+namespace fdcg {
+
+// scene_step.cpp: makes an object's place in the scan follow its pose; `moved` is how far its centre went in this tick.
+void place_in_scan(fdcg_scene& scene, uint32_t object, double moved);
+
+// scene.cpp: null, with the reason in *error, unless the finger is in the scene.
+Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);
+
+// A HIP further away is no place: the squares of distances in the step stay finite below it.
+inline constexpr double kFarthestPlace_m = 1e100;
+inline bool is_place(World x) {
+  return norm1(x) <= kFarthestPlace_m;
+}
+
+}  // namespace fdcg

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Builds the runtime and small programs with whatever compiler, and runs them where they belong. What is missing on this
+machine skips the test that needs it, by name."""
+import concurrent.futures
+import os
+import pathlib
+import shutil
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "contract"))
+from support import ROOT, Case  # noqa: E402
+
+RUNTIME = ROOT / "runtime"
+FIRMWARE = RUNTIME / "examples" / "firmware"
+TOOLCHAINS = ROOT / "cmake" / "toolchains"
+EXACT = ["-ffp-contract=off", "-fno-math-errno"]  # what the bits of the step rest on
+CXX = ["-std=c++20", "-nostdinc++", "-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Wpedantic", "-Werror", *EXACT]
+C = ["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", *EXACT]
+
+# board in QEMU, its processor in GCC's words
+BOARDS = {"cortex-m7": "mps2-an500", "cortex-m4": "mps2-an386"}
+
+
+def qemu(processor, *options):
+    return ["qemu-system-arm", "-M", BOARDS[processor], "-display", "none", "-monitor", "none", "-serial", "none",
+            "-chardev", "stdio,id=out", "-semihosting-config", "enable=on,chardev=out", *options, "-kernel"]
+
+
+class AnywhereCase(Case):
+    def need(self, *programs):
+        """Skips where a program is missing: tools/packages, group test, has the package."""
+        for program in programs:
+            if shutil.which(program) is None:
+                self.skipTest(f"{program} is missing; tools/check installs it (group test of tools/packages)")
+
+    def compile_all(self, jobs):
+        """jobs: (command without -o, object); as many at once as there are cores. Returns the objects."""
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(lambda job: self.run_program(*job[0], "-o", job[1]), jobs))
+        return [job[1] for job in jobs]
+
+    def runtime_objects(self, name, compiler, flags):
+        """The runtime as one who has no build system would compile it."""
+        extra = ["-fno-tree-slp-vectorize"] if "clang" not in compiler else []
+        return self.compile_all([([compiler, *CXX, *extra, *flags, "-I", str(RUNTIME / "include"), "-c", str(source)],
+                                  self.path(f"{name}-{source.name}.o")) for source in sorted((RUNTIME / "src").glob("*.cpp"))])
+
+    def cross_runtime(self, toolchain, *options):
+        """Configures and builds the runtime alone by a toolchain file; returns the library."""
+        folder = self.path("runtime-" + toolchain)
+        self.run_program("cmake", "-S", str(ROOT), "-B", folder, "-G", "Ninja", "-DFDCG_RUNTIME_ONLY=ON", "-DFDCG_BUILD_TESTS=OFF",
+                         f"--toolchain={TOOLCHAINS / (toolchain + '.cmake')}", *options)
+        self.run_program("cmake", "--build", folder)
+        return os.path.join(folder, "runtime", "libfdcg_runtime.a")
+
+    def firmware(self, processor, library, *sources, flags=()):
+        """A program for the board: the example's start-up code and linker script, no standard library but newlib's C."""
+        target = ["-mcpu=" + processor, "-mthumb", "-mfloat-abi=hard"]
+        includes = ["-I", str(RUNTIME / "include"), "-I", str(FIRMWARE), "-I", str(pathlib.Path(__file__).parent)]
+        objects = self.compile_all([(["arm-none-eabi-gcc", *target, "-Os", "-ffunction-sections", *C, *includes, *flags, "-c", source],
+                                     self.path(f"{processor}-{pathlib.Path(source).name}.o"))
+                                    for source in (*sources, str(FIRMWARE / "startup.c"))])
+        program = self.path(processor + ".elf")
+        self.run_program("arm-none-eabi-gcc", *target, "-nostartfiles", "-Wl,--gc-sections", "-T", str(FIRMWARE / "mps2.ld"),
+                         *objects, library, "-lm", "-o", program)
+        return program

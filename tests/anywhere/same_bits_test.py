@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One trajectory hash a precision, from every compiler, optimisation level and processor: that of the library as it was built."""
+import os
+import shutil
+import unittest
+
+from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
+
+STEP_HASH = os.environ["FDCG_STEP_HASH"]  # linked with the library that ships
+GRAPHS = os.environ["FDCG_HASH_GRAPHS"]  # folder of graphs.h and graphs.c
+SOURCE = str(ROOT / "tests" / "anywhere" / "step_hash.c")
+
+
+class HashCase(AnywhereCase):
+    def setUp(self):
+        super().setUp()
+        self.expected = self.run_program(STEP_HASH).stdout.decode()
+
+    def hashed_by(self, name, cc, cxx, flags, link=(), run=()):
+        include = ["-I", str(RUNTIME / "include"), "-I", GRAPHS]
+        objects = self.runtime_objects(name, cxx, flags)
+        objects += self.compile_all([([cc, *C, *flags, *include, "-c", source], self.path(f"{name}-{os.path.basename(source)}.o"))
+                                     for source in (SOURCE, os.path.join(GRAPHS, "graphs.c"))])
+        program = self.path(name)
+        self.run_program(cc, *flags, *link, *objects, "-lm", "-o", program)
+        return self.run_program(*run, program).stdout.decode()
+
+    def assert_same_bits(self, found, what):
+        self.assertEqual(self.expected, found, what)
+        print(f"{what}: {' '.join(line.split()[1] for line in found.splitlines())}")
+
+
+class Reference(HashCase):
+    def test_both_precisions_and_all_four_states_are_in_the_hash(self):
+        lines = [line.split() for line in self.expected.splitlines()]
+        self.assertEqual(["f32", "f64"], [line[0] for line in lines])
+        for line in lines:
+            for ticks in line[-4:]:
+                self.assertGreater(int(ticks), 200, line)
+        self.assertNotEqual(lines[0][1], lines[1][1])
+
+
+class Gcc(HashCase):
+    def test_every_level(self):
+        self.need("gcc", "g++")
+        for flags in (["-O0"], ["-O2"], ["-O3", "-march=native"]):
+            self.assert_same_bits(self.hashed_by("gcc" + flags[0], "gcc", "g++", flags), "gcc " + " ".join(flags))
+
+
+class Clang(HashCase):
+    def test_every_level(self):
+        self.need("clang", "clang++")
+        for flags in (["-O0"], ["-O2"], ["-O3", "-march=native"]):
+            self.assert_same_bits(self.hashed_by("clang" + flags[0], "clang", "clang++", flags), "clang " + " ".join(flags))
+
+
+class Aarch64(HashCase):
+    """Its compilers contract a * b + c into one rounding unless they are told not to."""
+
+    def test_clang(self):
+        self.need("clang", "clang++", "aarch64-linux-gnu-ld", "qemu-aarch64")
+        flags = ["--target=aarch64-linux-gnu", "-O2"]
+        self.assert_same_bits(self.hashed_by("clang", "clang", "clang++", flags, ["-static"], ["qemu-aarch64"]), "aarch64 clang -O2")
+
+    def test_gcc(self):
+        if shutil.which("aarch64-linux-gnu-g++") is None:
+            return  # one compiler there is enough; this one is looked at where it is installed anyway
+        self.need("qemu-aarch64")
+        found = self.hashed_by("gcc", "aarch64-linux-gnu-gcc", "aarch64-linux-gnu-g++", ["-O3"], ["-static"], ["qemu-aarch64"])
+        self.assert_same_bits(found, "aarch64 gcc -O3")
+
+
+class CortexM(HashCase):
+    """Bare metal: no operating system, the graphs in flash, -Os, the runtime by its own build and a toolchain file."""
+
+    def hashed_on(self, processor, toolchain, *options):
+        self.need("arm-none-eabi-gcc", "arm-none-eabi-g++", "qemu-system-arm", "ninja")
+        library = self.cross_runtime(toolchain, *options)
+        program = self.firmware(processor, library, SOURCE, os.path.join(GRAPHS, "graphs.c"), flags=["-DFDCG_ON_BOARD", "-I", GRAPHS])
+        return self.run_program(*qemu(processor), program).stdout.decode()
+
+    def test_cortex_m7_has_the_bits_of_both_precisions(self):
+        self.assert_same_bits(self.hashed_on("cortex-m7", "cortex-m7"), "cortex-m7 -Os")
+
+    def test_cortex_m4f_has_the_bits_of_f32_and_a_library_of_one_precision_leaves_the_other_alone(self):
+        self.expected = self.expected.splitlines(keepends=True)[0]
+        self.assert_same_bits(self.hashed_on("cortex-m4", "cortex-m4f", "-DFDCG_WITH_F64=OFF"), "cortex-m4f -Os")
+
+
+if __name__ == "__main__":
+    unittest.main()
