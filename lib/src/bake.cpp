@@ -182,7 +182,7 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
   const std::size_t plane = !options.store_planes ? 0 : is_f32 ? sizeof(fdcg_plane_f32) : sizeof(fdcg_plane_f64);
   const std::size_t edge = !options.store_planes ? 0 : is_f32 ? sizeof(fdcg_edge_f32) : sizeof(fdcg_edge_f64);
   const std::size_t corner = is_f32 ? sizeof(fdcg_corner_f32) : sizeof(fdcg_corner_f64);
-  const std::size_t hierarchy = 2 * sizeof(fdcg_box) / FDCG_LEAF_NODES;
+  const std::size_t hierarchy = sizeof(fdcg_box8) / (FDCG_LEAF_NODES * (FDCG_TREE_WAYS - 1)) + 1;
   const std::size_t per_face = node + hierarchy + sizeof(std::uint32_t);
   const std::size_t per_side = sizeof(fdcg_side) + plane + (sizeof(fdcg_connection) + edge) / 2 + corner / 6;
   constexpr std::size_t kHeaderAndInfo = 4096;

@@ -2,6 +2,7 @@
 #include "hierarchy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,68 +12,136 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 12;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kGrain = 1u << 9;
+constexpr int kExponentBias = 127;
+// The smallest cell of a grid: the step's rounding, some 2^-19, stays far below the 255 cells by which an unused box is inside
+// out.
+constexpr int kLeastCell = -24;
+constexpr double kFarthest = 8;  // tree units: no box reaches further
 
-float round_down(double x) {
-  const auto f = static_cast<float>(x);
-  return f > x ? std::nextafter(f, -kInfinity) : f;
-}
+struct Box {
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  std::array<double, 3> low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
 
-float round_up(double x) {
-  const auto f = static_cast<float>(x);
-  return f < x ? std::nextafter(f, kInfinity) : f;
-}
-
-fdcg_box leaf_box(const Graph& graph, std::uint32_t begin, std::uint32_t end, double max_deviation) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vec3 low{kFar, kFar, kFar}, high = -low;
-  for (std::uint32_t n = begin; n < end; ++n) {
-    const std::uint32_t region = graph.region_of(n);
-    const double margin = region == kNone || graph.regions[region].is_exact ? 0 : max_deviation;
-    for (std::uint32_t side = graph.first_side[n]; side < graph.first_side[n + 1]; ++side) {
-      const Vec3& p = graph.points[graph.corner[side]];
-      low = {std::min(low.x, p.x - margin), std::min(low.y, p.y - margin), std::min(low.z, p.z - margin)};
-      high = {std::max(high.x, p.x + margin), std::max(high.y, p.y + margin), std::max(high.z, p.z + margin)};
+  void add(const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], other.low[k]);
+      high[k] = std::max(high[k], other.high[k]);
     }
   }
-  return {{round_down(low.x), round_down(low.y), round_down(low.z)}, {round_up(high.x), round_up(high.y), round_up(high.z)}};
+};
+
+using Boxes = std::array<Box, FDCG_TREE_WAYS>;
+
+float float_below(double x) {
+  const auto f = static_cast<float>(x);
+  return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
 
-fdcg_box join(const fdcg_box& a, const fdcg_box& b) {
-  fdcg_box box;
-  for (int k = 0; k < 3; ++k) {
-    box.min[k] = std::min(a.min[k], b.min[k]);
-    box.max[k] = std::max(a.max[k], b.max[k]);
+// The grid of one axis: the finest whose 255 cells hold the boxes. Then each bound to the next cell outwards; origin + cell *
+// number is exact in double, so that the comparison is with what a reader gets.
+void put_on_grid(const Boxes& boxes, std::size_t count, std::size_t axis, const Box& around, fdcg_box8& record) {
+  constexpr int kCells = 255;
+  record.origin[axis] = float_below(around.low[axis]);
+  const double origin = record.origin[axis];
+  int exponent = std::max(kLeastCell, std::ilogb(std::max((around.high[axis] - origin) / kCells, std::ldexp(1.0, kLeastCell))));
+  while (origin + kCells * std::ldexp(1.0, exponent) < around.high[axis])
+    ++exponent;
+  record.exponent[axis] = static_cast<std::uint8_t>(exponent + kExponentBias);
+  const double cell = std::ldexp(1.0, exponent);
+  for (std::size_t j = 0; j < FDCG_TREE_WAYS; ++j) {
+    int low = kCells, high = 0;  // inside out: no box
+    if (j < count) {
+      low = std::clamp(static_cast<int>((boxes[j].low[axis] - origin) / cell), 0, kCells);
+      while (origin + low * cell > boxes[j].low[axis])
+        --low;
+      high = std::clamp(static_cast<int>((boxes[j].high[axis] - origin) / cell), 0, kCells);
+      while (origin + high * cell < boxes[j].high[axis])
+        ++high;
+    }
+    record.low[axis][j] = static_cast<std::uint8_t>(low);
+    record.high[axis][j] = static_cast<std::uint8_t>(high);
   }
-  return box;
 }
+
+// Writes the record of `count` boxes; returns the box around all of them as a reader will see them.
+Box write_record(const Boxes& boxes, std::size_t count, fdcg_box8& record) {
+  Box around;
+  for (std::size_t j = 0; j < count; ++j)
+    around.add(boxes[j]);
+  record = {};
+  Box seen;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    put_on_grid(boxes, count, axis, around, record);
+    const double origin = record.origin[axis], cell = std::ldexp(1.0, record.exponent[axis] - kExponentBias);
+    seen.low[axis] = origin + cell * *std::min_element(record.low[axis], record.low[axis] + count);
+    seen.high[axis] = origin + cell * *std::max_element(record.high[axis], record.high[axis] + count);
+  }
+  return seen;
+}
+
+class Builder {
+ public:
+  Builder(const Graph& graph, const HierarchyScale& scale)
+      : graph_(graph), per_unit_(std::ldexp(1.0, -std::ilogb(scale.extent))), max_deviation_(scale.max_deviation) {}
+
+  [[nodiscard]] Box leaf(std::uint32_t leaf) const {
+    Box box;
+    const std::uint32_t first = leaf * FDCG_LEAF_NODES, end = std::min(first + FDCG_LEAF_NODES, graph_.node_count());
+    for (std::uint32_t n = first; n < end; ++n) {
+      const std::uint32_t region = graph_.region_of(n);
+      const double margin = region == kNone || graph_.regions[region].is_exact ? 0 : max_deviation_;
+      for (std::uint32_t side = graph_.first_side[n]; side < graph_.first_side[n + 1]; ++side) {
+        const Vec3& p = graph_.points[graph_.corner[side]];
+        for (int k = 0; k < 3; ++k) {
+          const auto axis = static_cast<std::size_t>(k);
+          box.low[axis] = std::min(box.low[axis], std::max(-kFarthest, (component(p, k) - margin) * per_unit_));
+          box.high[axis] = std::max(box.high[axis], std::min(kFarthest, (component(p, k) + margin) * per_unit_));
+        }
+      }
+    }
+    return box;
+  }
+
+ private:
+  const Graph& graph_;
+  double per_unit_;  // a power of two: nothing is rounded
+  double max_deviation_;
+};
 
 }  // namespace
 
 std::vector<std::uint32_t> hierarchy_levels(std::uint32_t node_count) {
-  std::vector<std::uint32_t> levels{(node_count + FDCG_LEAF_NODES - 1) / FDCG_LEAF_NODES};
-  while (levels.back() > 1)
-    levels.push_back((levels.back() + 1) / 2);
+  std::uint32_t below = (node_count + FDCG_LEAF_NODES - 1) / FDCG_LEAF_NODES;
+  std::vector<std::uint32_t> levels;
+  do {
+    below = (below + FDCG_TREE_WAYS - 1) / FDCG_TREE_WAYS;
+    levels.push_back(below);
+  } while (below > 1);
   std::reverse(levels.begin(), levels.end());
   return levels;
 }
 
-void build_hierarchy(const Graph& graph, double max_deviation, std::span<fdcg_box> boxes, unsigned jobs) {
+void build_hierarchy(const Graph& graph, const HierarchyScale& scale, std::span<fdcg_box8> records, unsigned jobs) {
+  const Builder builder(graph, scale);
   const std::vector<std::uint32_t> levels = hierarchy_levels(graph.node_count());
-  std::span<fdcg_box> below = boxes.last(levels.back());
-  parallel_for(jobs, below.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-      const std::uint32_t first = i * FDCG_LEAF_NODES;
-      below[i] = leaf_box(graph, first, std::min(first + FDCG_LEAF_NODES, graph.node_count()), max_deviation);
-    }
-  });
-  for (std::size_t level = levels.size() - 1; level-- > 0;) {
-    boxes = boxes.first(boxes.size() - below.size());
-    const std::span<fdcg_box> here = boxes.last(levels[level]);
-    for (std::size_t i = 0; i < here.size(); ++i)
-      here[i] = 2 * i + 1 < below.size() ? join(below[2 * i], below[2 * i + 1]) : below[2 * i];
-    below = here;
+  std::uint32_t items = (graph.node_count() + FDCG_LEAF_NODES - 1) / FDCG_LEAF_NODES;
+  std::vector<Box> below;  // around each record of the level below; none below the leaves' records
+  for (std::size_t level = levels.size(); level-- > 0;) {
+    const std::span<fdcg_box8> here = records.last(levels[level]);
+    records = records.first(records.size() - here.size());
+    std::vector<Box> around(here.size());
+    parallel_for(jobs, here.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Boxes boxes;
+        const std::size_t first = i * FDCG_TREE_WAYS, count = std::min<std::size_t>(FDCG_TREE_WAYS, items - first);
+        for (std::size_t j = 0; j < count; ++j)
+          boxes[j] = below.empty() ? builder.leaf(static_cast<std::uint32_t>(first + j)) : below[first + j];
+        around[i] = write_record(boxes, count, here[i]);
+      }
+    });
+    below = std::move(around);
+    items = levels[level];
   }
 }
 

@@ -168,7 +168,8 @@ class Writer {
     write_busy_corners();
     write_node_offsets();
     if (input_.with_hierarchy) {
-      build_hierarchy(graph_, header_.max_deviation, layout_.records<fdcg_box>(file_, FDCG_SECTION_HIERARCHY), input_.jobs);
+      build_hierarchy(graph_, {header_.extent, header_.max_deviation},
+                      layout_.records<fdcg_box8>(file_, FDCG_SECTION_HIERARCHY), input_.jobs);
     }
     write_source_map();
     std::copy(input_.info.begin(), input_.info.end(), layout_.records<char>(file_, FDCG_SECTION_INFO).begin());
@@ -191,7 +192,7 @@ class Writer {
     if (!busy_corners_.empty()) layout_.add(FDCG_SECTION_FANS, sizeof(std::uint32_t), fan_entries_);
     if (input_.with_hierarchy) {
       const std::vector<std::uint32_t> levels = hierarchy_levels(graph_.node_count());
-      layout_.add(FDCG_SECTION_HIERARCHY, sizeof(fdcg_box), std::accumulate(levels.begin(), levels.end(), std::uint64_t{0}));
+      layout_.add(FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), std::accumulate(levels.begin(), levels.end(), std::uint64_t{0}));
     }
     if (input_.with_source_map) layout_.add(FDCG_SECTION_SOURCE_MAP, sizeof(std::uint32_t), input_.source_face_count);
     if (!input_.info.empty()) layout_.add(FDCG_SECTION_INFO, 1, input_.info.size());

@@ -2,11 +2,11 @@
 // Opening: header and section table are checked always, the rest by verify.cpp where the caller does not trust the file.
 #include <string.h>
 
+#include "box_tree.hpp"
 #include "config.hpp"
 #include "fdcg/fdcg.h"
 #include "graph_view.hpp"
 #include "hooks.hpp"
-#include "implicit_tree.hpp"
 #include "map_file.hpp"
 #include "message.hpp"
 #include "sections.hpp"
@@ -150,7 +150,7 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required},
     {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required},
     {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners},
-    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box), sizeof(fdcg_box), Presence::optional},
+    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), Presence::optional},
     {FDCG_SECTION_SOURCE_MAP, 4, 4, Presence::optional},
     {FDCG_SECTION_INFO, 1, 1, Presence::optional},
     {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners},
@@ -176,7 +176,7 @@ uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found
     case FDCG_SECTION_FANS:
       return header.fan_count;
     case FDCG_SECTION_HIERARCHY:
-      return ImplicitTree(header.node_count, FDCG_LEAF_NODES).boxes;
+      return BoxTree(header.node_count).records;
     case FDCG_SECTION_SOURCE_MAP:
       return header.source_face_count;
     case FDCG_SECTION_FAN_BOXES:
@@ -253,7 +253,7 @@ fdcg_graph view(const void* data, const fdcg_header& header) {
   graph.busy_corners = static_cast<const fdcg_busy_corner*>(section(FDCG_SECTION_BUSY_CORNERS));
   graph.fans = static_cast<const uint32_t*>(section(FDCG_SECTION_FANS));
   graph.fan_boxes = section(FDCG_SECTION_FAN_BOXES);
-  graph.hierarchy = static_cast<const fdcg_box*>(section(FDCG_SECTION_HIERARCHY));
+  graph.hierarchy = static_cast<const fdcg_box8*>(section(FDCG_SECTION_HIERARCHY));
   graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
   graph.info = static_cast<const char*>(section(FDCG_SECTION_INFO));
   if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;

@@ -67,10 +67,12 @@ uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
   const uint64_t objects = config.object_capacity, fingers = config.finger_capacity, slots = fingers * config.touches_per_finger;
   place(1, sizeof(fdcg_scene));
   scene->objects_at = place(objects, sizeof(Object));
-  scene->scan_at = place(objects, 4 * sizeof(double));
+  scene->config = config;
+  scene->scan_at = place(4 * scene->scan_length(), sizeof(double));
   scene->changing_at = place(objects, sizeof(uint32_t));
   scene->fingers_at = place(fingers, sizeof(Finger));
   scene->slots_at = place(slots, sizeof(Slot));
+  scene->contacts_at = place(slots, sizeof(fdcg_contact));
   scene->touches_at = place(slots, sizeof(fdcg_touch));
   return end;
 }
@@ -126,14 +128,9 @@ Object* find(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {
   return find(scene->objects(), scene->object_end, id, "object: not in the scene, or removed", error);
 }
 
-uint32_t index_of(fdcg_scene* scene, const Object* object) {
-  return static_cast<uint32_t>(object - scene->objects());
-}
-
 // Takes the latest pose as it is, without a way there, and makes every finger look anew.
 void put_in_place(fdcg_scene* scene, Object* object) {
-  object->now = object->last = Pose(object->asked, object->bounds);
-  place_in_scan(*scene, index_of(scene, object), 0);
+  settle_object(*scene, static_cast<uint32_t>(object - scene->objects()), false);
   ++scene->look;
 }
 
@@ -198,10 +195,12 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
         .text(", this config needs ")
         .number(layout.bytes);
   }
-  // Fields of the records are set when one comes into use; until then generation and use are all that is read.
+  // Slots, contacts and touches are set when a finger comes into use.
   memset(memory, 0, layout.slots_at);
   memcpy(memory, &layout, sizeof layout);
   *scene = static_cast<fdcg_scene*>(memory);
+  for (uint64_t i = 0; i < layout.scan_length(); ++i)
+    (*scene)->scan(3)[i] = kNoReach;
   return FDCG_OK;
 }
 
@@ -222,7 +221,7 @@ extern "C" fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph
   added->asked = checked;
   added->is_used = added->is_enabled = 1;
   if (++added->generation == 0) added->generation = 1;
-  const uint32_t index = index_of(scene, added);
+  const uint32_t index = static_cast<uint32_t>(added - scene->objects());
   if (index >= scene->object_end) scene->object_end = index + 1;
   put_in_place(scene, added);
   *object = {index, added->generation};

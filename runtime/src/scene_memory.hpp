@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene's memory holds:
 //
-//   fdcg_scene | Object[objects] | ScanSphere's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
-//   | fdcg_touch[fingers][touches]
+//   fdcg_scene | Object[objects] | the scan's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
+//   | fdcg_contact[fingers][touches] | fdcg_touch[fingers][touches]
 //
 // Found by offsets from the start, so that a copy of the whole is a scene again.
 #pragma once
@@ -10,6 +10,11 @@
 #include "pose.hpp"
 
 namespace fdcg {
+
+// Less than any reach, and finite, so that sums with it are.
+inline constexpr double kNoReach = -1e300;
+// The scan's arrays are looked at in runs of this many, a length that compilers make vectors of without being asked twice.
+inline constexpr uint32_t kRun = 16;
 
 struct Object {
   const fdcg_graph* graph;
@@ -23,12 +28,11 @@ struct Object {
 };
 
 // One of a finger's places for an object: one that it touches, or one near by.
+// Apart from the contacts, so that a finger's slots lie together.
 struct Slot {
-  fdcg_contact contact;
   uint32_t object;   // FDCG_NONE: empty
   uint32_t is_held;  // touched, or a sweep carried over: the contact is more than the last HIP, and must be kept
   uint32_t step;     // of the finger, when the contact was last stepped
-  uint32_t reserved;
 };
 
 // The first 112 bytes are all that a step reads of a finger out of reach.
@@ -55,7 +59,7 @@ struct Finger {
 struct fdcg_scene {
   uint64_t bytes;
   fdcg_scene_config config;
-  uint64_t objects_at, scan_at, changing_at, fingers_at, slots_at, touches_at;  // offsets
+  uint64_t objects_at, scan_at, changing_at, fingers_at, slots_at, contacts_at, touches_at;  // offsets
   uint32_t object_end, finger_end;  // indices in use lie below
   uint32_t changing_count;
   uint32_t tick;
@@ -76,13 +80,17 @@ struct fdcg_scene {
   fdcg::Object* objects() { return at<fdcg::Object>(objects_at); }
   const fdcg::Object* objects() const { return at<fdcg::Object>(objects_at); }
   // Centre x, y, z and reach of every object, array after array: what a look reads. The reach is the bounding sphere's radius
-  // and its move in this tick; -infinity where there is nothing to meet.
-  double* scan(int array) { return at<double>(scan_at) + array * uint64_t{config.object_capacity}; }
-  const double* scan(int array) const { return at<double>(scan_at) + array * uint64_t{config.object_capacity}; }
+  // and its move in this tick; kNoReach where there is nothing to meet.
+  double* scan(uint32_t array) { return at<double>(scan_at) + array * scan_length(); }
+  const double* scan(uint32_t array) const { return at<double>(scan_at) + array * scan_length(); }
+  uint64_t scan_length() const { return (uint64_t{config.object_capacity} + fdcg::kRun - 1) / fdcg::kRun * fdcg::kRun; }
   uint32_t* changing() { return at<uint32_t>(changing_at); }
   fdcg::Finger* fingers() { return at<fdcg::Finger>(fingers_at); }
   const fdcg::Finger* fingers() const { return at<fdcg::Finger>(fingers_at); }
   fdcg::Slot* slots(uint32_t finger) { return at<fdcg::Slot>(slots_at) + finger * uint64_t{config.touches_per_finger}; }
+  fdcg_contact* contacts(uint32_t finger) {
+    return at<fdcg_contact>(contacts_at) + finger * uint64_t{config.touches_per_finger};
+  }
   fdcg_touch* touches(uint32_t finger) { return at<fdcg_touch>(touches_at) + finger * uint64_t{config.touches_per_finger}; }
   const fdcg_touch* touches(uint32_t finger) const {
     return at<fdcg_touch>(touches_at) + finger * uint64_t{config.touches_per_finger};
@@ -92,8 +100,9 @@ struct fdcg_scene {
 
 namespace fdcg {
 
-// scene_step.cpp: makes an object's place in the scan follow its pose; `moved` is how far its centre went in this tick.
-void place_in_scan(fdcg_scene& scene, uint32_t object, double moved);
+// scene_step.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a way,
+// the latest too.
+void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 
 // scene.cpp: null, with the reason in *error, unless the finger is in the scene.
 Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);

@@ -15,21 +15,10 @@
 
 namespace fdcg {
 
-void place_in_scan(fdcg_scene& scene, uint32_t index, double moved) {
-  const Object& object = scene.objects()[index];
-  const Pose& now = object.now;
-  const double radius = now.radius > object.last.radius ? now.radius : object.last.radius;
-  scene.scan(0)[index] = now.centre.x;
-  scene.scan(1)[index] = now.centre.y;
-  scene.scan(2)[index] = now.centre.z;
-  scene.scan(3)[index] = object.is_used != 0 && object.is_enabled != 0 ? radius + moved : -HUGE_VAL;
-  const double far = norm1(now.centre) + norm1(now.translation) + now.radius;
-  if (far > scene.farthest) scene.farthest = far;
-}
-
 namespace {
 
-// An object is near when a finger could reach it within this many ticks at the speeds of this tick: a look in so many.
+// An object is near when a finger could reach it within this many ticks at the speeds of this tick (a look in so many), and is no
+// further from its bounding sphere than the sphere's radius (where a finger jumps, not everything is near).
 constexpr double kTicksAhead = 64;
 // After as many steps in which it reached none of the objects near by, the finger looks whether they still are.
 constexpr uint32_t kIdleSteps = 64;
@@ -41,16 +30,6 @@ double larger(double a, double b) {
 }
 double smaller(double a, double b) {
   return a < b ? a : b;
-}
-
-void settle_object(fdcg_scene& scene, uint32_t index) {
-  Object& object = scene.objects()[index];
-  object.last = object.now;
-  object.now = Pose(object.asked, object.bounds);
-  const double moved = norm(object.now.centre - object.last.centre);
-  scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, object.now));
-  if (object.now.scale != object.last.scale) ++scene.look;
-  place_in_scan(scene, index, moved);
 }
 
 bool is_settled(const Pose& now, const Pose& last) {
@@ -65,7 +44,7 @@ void settle_changing(fdcg_scene& scene) {
   uint32_t still_changing = 0;
   for (uint32_t i = 0; i < scene.changing_count; ++i) {
     Object& object = scene.objects()[changing[i]];
-    if (object.is_used != 0) settle_object(scene, changing[i]);
+    if (object.is_used != 0) settle_object(scene, changing[i], true);
     if (object.is_used != 0 && !is_settled(object.now, object.last)) {
       changing[still_changing++] = changing[i];
     } else {
@@ -74,6 +53,27 @@ void settle_changing(fdcg_scene& scene) {
   }
   scene.changing_count = still_changing;
 }
+
+}  // namespace
+
+void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
+  Object& object = scene.objects()[index];
+  const Pose latest(object.asked, object.bounds);
+  if (latest.scale != object.now.scale) ++scene.look;
+  object.last = has_way ? object.now : latest;
+  object.now = latest;
+  scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
+  const double moved = norm(latest.centre - object.last.centre);
+  const double in_scan[4] = {latest.centre.x, latest.centre.y, latest.centre.z,
+                             object.is_used != 0 && object.is_enabled != 0
+                                 ? larger(latest.radius, object.last.radius) + moved
+                                 : kNoReach};
+  for (uint32_t array = 0; array < 4; ++array)
+    scene.scan(array)[index] = in_scan[array];
+  scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
+}
+
+namespace {
 
 // ---- which objects can have been met -----------------------------------------------------------------------------------------
 
@@ -88,6 +88,21 @@ struct Tick {
   [[nodiscard]] const Pose& pose_before(const Object& object) const { return is_second ? object.now : object.last; }
 };
 
+// The HIP's way in this tick in the object's frame.
+struct LocalWay {
+  World from, to;
+};
+
+// Whether the finger can have met the object in this tick; *way is set where the sphere says so.
+bool can_have_met(const Tick& tick, const Object& object, LocalWay* way) {
+  const Pose &now = object.now, &before = tick.pose_before(object);
+  const double radius = larger(now.radius, before.radius);
+  if (!(way_distance2(tick.finger.last - before.centre, tick.hip - now.centre) <= radius * radius)) return false;
+  const bool may_skip = tick.scene.skips(FDCG_SKIP_ROTATION);
+  *way = {before.to_object(tick.finger.last, may_skip), now.to_object(tick.hip, may_skip)};
+  return way_meets_box(way->from - object.bounds.centre, way->to - object.bounds.centre, object.bounds.half);
+}
+
 struct Approach {
   bool is_in_reach;
   double depth;  // of the HIP within the bounding sphere, negative outside: the least is felt last where slots are short
@@ -95,22 +110,15 @@ struct Approach {
 };
 
 Approach approach(const Tick& tick, const Object& object) {
-  const bool may_skip = tick.scene.skips(FDCG_SKIP_ROTATION);
-  const Pose &now = object.now, &before = tick.pose_before(object);
-  const World from = tick.finger.last - before.centre, to = tick.hip - now.centre;
-  const double radius = larger(now.radius, before.radius), outside = norm(to) - now.radius;
-  Approach result = {way_distance2(from, to) <= radius * radius, -outside, outside};
+  const Pose& now = object.now;
+  const double outside = norm(tick.hip - now.centre) - now.radius;
+  LocalWay way;
+  Approach result = {can_have_met(tick, object, &way), -outside, outside};
   // Where the box alone keeps them apart, the HIP is within two radii of the centre, and within three until the gap is used up:
   // largest_move counts on it.
-  if (outside < now.radius) {
-    const World local = now.to_object(tick.hip, may_skip) - object.bounds.centre;
-    const double box_gap = box_distance(local, object.bounds.half) * now.scale;
-    result.gap = larger(outside, smaller(box_gap, now.radius));
-  }
-  if (result.is_in_reach) {
-    const World local_from = before.to_object(tick.finger.last, may_skip) - object.bounds.centre;
-    const World local_to = now.to_object(tick.hip, may_skip) - object.bounds.centre;
-    result.is_in_reach = way_meets_box(local_from, local_to, object.bounds.half);
+  if (!result.is_in_reach && outside < now.radius) {
+    const World local = now.to_object(tick.hip, tick.scene.skips(FDCG_SKIP_ROTATION)) - object.bounds.centre;
+    result.gap = larger(outside, smaller(box_distance(local, object.bounds.half) * now.scale, now.radius));
   }
   return result;
 }
@@ -152,26 +160,39 @@ struct Candidates {
   }
 };
 
-// Lower bounds of the distances between the finger's way in this tick and a run of bounding spheres. A loop of its own, without
-// branches, so that compilers make vectors of it: each lane computes what a scalar would.
-constexpr uint32_t kRun = 64;
+// A run of bounding spheres against the finger's way in this tick.
+struct Run {
+  double distance[kRun];  // a lower bound of the one between the two
+  double beyond[kRun];    // by how much that exceeds `ahead`, or the sphere's radius if that is less
+};
 
-void scan_run(const Tick& tick, uint32_t first, uint32_t count, double (&distance)[kRun]) {
-  const fdcg_scene& scene = tick.scene;
+// A loop without branches, so that compilers make vectors of it; each lane computes what a scalar would. The way's parameter is
+// clamped to 0 .. 1 by means of absolute values, which is exact but for rounding.
+void scan_run(const fdcg_scene& scene, World from, World way, double ahead, uint32_t first, Run* __restrict run) {
   const double* const cx = scene.scan(0) + first;
   const double* const cy = scene.scan(1) + first;
   const double* const cz = scene.scan(2) + first;
   const double* const reach = scene.scan(3) + first;
-  const World from = tick.finger.last, way = tick.hip - from;
-  const double length2 = dot(way, way), per_length2 = length2 > 0 ? 1 / length2 : 0;
-  for (uint32_t i = 0; i < count; ++i) {
+  const double length2 = dot(way, way), half_per_length2 = length2 > 0 ? 0.5 / length2 : 0;
+  for (uint32_t i = 0; i < kRun; ++i) {
     const double x = cx[i] - from.x, y = cy[i] - from.y, z = cz[i] - from.z;
-    double t = (x * way.x + y * way.y + z * way.z) * per_length2;
-    t = t > 0 ? t : 0;
-    t = t < 1 ? t : 1;
+    const double half = (x * way.x + y * way.y + z * way.z) * half_per_length2;
+    const double positive = half + fabs(half);
+    const double t = 0.5 * (positive + 1 - fabs(positive - 1));
     const double dx = x - t * way.x, dy = y - t * way.y, dz = z - t * way.z;
-    distance[i] = sqrt(dx * dx + dy * dy + dz * dz) - reach[i];
+    const double distance = sqrt(dx * dx + dy * dy + dz * dz) - reach[i];
+    run->distance[i] = distance;
+    run->beyond[i] = distance - 0.5 * (ahead + reach[i] - fabs(ahead - reach[i]));
   }
+}
+
+double least_of(const double (&values)[kRun]) {
+  double even = values[0], odd = values[1];
+  for (uint32_t i = 2; i < kRun; i += 2) {
+    even = smaller(values[i], even);
+    odd = smaller(values[i + 1], odd);
+  }
+  return smaller(even, odd);
 }
 
 bool has_slot(const Tick& tick, uint32_t object) {
@@ -181,22 +202,28 @@ bool has_slot(const Tick& tick, uint32_t object) {
   return false;
 }
 
-// Every object: the near ones become candidates, the others' least distance is returned.
-double find_candidates(const Tick& tick, double near, Candidates* found) {
+// Every object: the near ones become candidates, the others' least distance is returned. An object no more than `rounding` away
+// is always near.
+double find_candidates(const Tick& tick, double ahead, double rounding, Candidates* found) {
   const fdcg_scene& scene = tick.scene;
   const bool by_sphere = scene.skips(FDCG_SKIP_FAR_OBJECTS);
-  double least = HUGE_VAL, distance[kRun];
+  const World from = tick.finger.last, way = tick.hip - from;
+  double least = HUGE_VAL;
+  Run run;
   for (uint32_t first = 0; first < scene.object_end; first += kRun) {
-    const uint32_t count = scene.object_end - first < kRun ? scene.object_end - first : kRun;
-    scan_run(tick, first, count, distance);
-    for (uint32_t i = 0; i < count; ++i) {
-      if (by_sphere && distance[i] > near) {
-        least = smaller(least, distance[i]);
+    scan_run(scene, from, way, ahead, first, &run);
+    if (by_sphere && least_of(run.beyond) > rounding) {
+      least = smaller(least, least_of(run.distance));
+      continue;
+    }
+    for (uint32_t i = 0; i < kRun; ++i) {
+      if (by_sphere && run.beyond[i] > rounding) {
+        least = smaller(least, run.distance[i]);
         continue;
       }
       if (scene.scan(3)[first + i] < 0 || has_slot(tick, first + i)) continue;
       const Approach how = approach(tick, scene.objects()[first + i]);
-      if (how.gap > near && !how.is_in_reach) {
+      if (how.gap > rounding + smaller(ahead, scene.scan(3)[first + i]) && !how.is_in_reach) {
         least = smaller(least, how.gap);
       } else {
         found->add({first + i, how});
@@ -242,7 +269,7 @@ void look(const Tick& tick) {
   const double step_length = norm(tick.hip - finger.last);
   const double rounding = kPlaceRounding * (norm1(tick.hip) + step_length + scene.farthest);
   Candidates found(scene.config.touches_per_finger - held);
-  double clear = find_candidates(tick, kTicksAhead * (step_length + scene.tick_travel) + rounding, &found);
+  double clear = find_candidates(tick, kTicksAhead * (step_length + scene.tick_travel), rounding, &found);
   clear = smaller(clear, found.nearest_gap_left_out);
   if (!scene.skips(FDCG_SKIP_FAR_OBJECTS) && (found.count > 0 || held > 0)) clear = -HUGE_VAL;  // look every tick
   assign_slots(tick, found);
@@ -272,28 +299,30 @@ void store(World from, double (&to)[3]) {
   to[2] = from.z;
 }
 
-void step_contact(const Object& object, Slot& slot, World at, fdcg_result* result) {
+void step_contact(const Object& object, fdcg_contact* contact, World at, fdcg_result* result) {
   double local[3];
   store(at, local);
-  fdcg_step(object.graph, &object.params, &slot.contact, local, result);
+  fdcg_step(object.graph, &object.params, contact, local, result);
 }
 
 // The slot's contact in this tick. Returns whether there is anything to feel or to carry over.
-bool step_slot(const Tick& tick, Slot& slot, bool missed, fdcg_result* result) {
-  fdcg_scene& scene = tick.scene;
+bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed, fdcg_result* result) {
+  const fdcg_scene& scene = tick.scene;
   const Object& object = scene.objects()[slot.object];
-  const bool may_skip = scene.skips(FDCG_SKIP_ROTATION);
-  if (slot.is_held == 0) {
-    if (!approach(tick, object).is_in_reach) return false;
+  LocalWay way;
+  if (slot.is_held != 0) {
+    way.to = object.now.to_object(tick.hip, scene.skips(FDCG_SKIP_ROTATION));
+  } else {
+    if (!can_have_met(tick, object, &way)) return false;
     if (slot.step != tick.finger.step || missed || !scene.skips(FDCG_SKIP_RENEWAL)) {
-      slot.contact = {};
-      step_contact(object, slot, tick.pose_before(object).to_object(tick.finger.last, may_skip), result);
+      *contact = {};
+      step_contact(object, contact, way.from, result);
     }
   }
   tick.finger.idle_steps = 0;
   slot.step = tick.finger.step + 1;
-  step_contact(object, slot, object.now.to_object(tick.hip, may_skip), result);
-  const bool has_swept = norm1(vec(slot.contact.god_object) - vec(slot.contact.hip)) == 0;
+  step_contact(object, contact, way.to, result);
+  const bool has_swept = norm1(vec(contact->god_object) - vec(contact->hip)) == 0;
   slot.is_held = result->state != FDCG_FREE || (result->flags & FDCG_RESULT_SWEEP_BOUND) != 0 || !has_swept;
   return slot.is_held != 0;
 }
@@ -327,12 +356,14 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
   fdcg_scene& scene = tick.scene;
   Finger& finger = tick.finger;
   if (++finger.idle_steps == kIdleSteps) finger.limit = -HUGE_VAL;
-  fdcg_touch* const touches = scene.touches(static_cast<uint32_t>(&finger - scene.fingers()));
+  const auto index = static_cast<uint32_t>(&finger - scene.fingers());
+  fdcg_contact* const contacts = scene.contacts(index);
+  fdcg_touch* const touches = scene.touches(index);
   constexpr uint32_t kCarriedOver = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;
   for (uint32_t s = 0; s < scene.config.touches_per_finger; ++s) {
     Slot& slot = tick.slots[s];
     fdcg_result result;
-    if (slot.object == FDCG_NONE || !step_slot(tick, slot, missed, &result)) continue;
+    if (slot.object == FDCG_NONE || !step_slot(tick, slot, contacts + s, missed, &result)) continue;
     if (!is_felt) store({0, 0, 0}, result.force_n);
     if ((result.flags & kCarriedOver) != 0) finger.flags |= FDCG_FINGER_BOUNDED;
     uint32_t place = finger.touch_count++;
@@ -347,7 +378,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
 }
 
 // Everything but the finger that is out of reach and has no slot in use.
-void step_near(fdcg_scene& scene, Finger& finger) {
+[[gnu::noinline]] void step_near(fdcg_scene& scene, Finger& finger) {
   const auto index = static_cast<uint32_t>(&finger - scene.fingers());
   const bool is_felt = is_place(finger.hip);
   finger.flags = is_felt ? 0 : uint32_t{FDCG_FINGER_NON_FINITE};
@@ -392,7 +423,7 @@ extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
   scene->tick_travel = 0;
   if (!scene->skips(FDCG_SKIP_STILL)) {
     for (uint32_t i = 0; i < scene->object_end; ++i) {
-      if (scene->objects()[i].is_used != 0) fdcg::settle_object(*scene, i);
+      if (scene->objects()[i].is_used != 0) fdcg::settle_object(*scene, i, true);
     }
   } else if (scene->changing_count > 0) {
     fdcg::settle_changing(*scene);

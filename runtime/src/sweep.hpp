@@ -6,7 +6,7 @@
 // carried sweep takes at most 1 + (boxes and nodes that the way touches) / (work of a tick) ticks.
 #pragma once
 
-#include "implicit_tree.hpp"
+#include "box_tree.hpp"
 #include "walk.hpp"
 #include "work.hpp"
 
@@ -35,19 +35,13 @@ class Sweep {
         to_bound_(plane_rounding_bound(graph_, to_)),
         left_(left),
         work_left_(work_left) {
-    const double extent = graph_.header->extent;
-    pad_ = 8 * RealLimits<Real>::kEpsilon * (Real(extent) + norm1(from_) + norm1(to_));
-    const Real at[3] = {from_.x, from_.y, from_.z}, way[3] = {way_.x, way_.y, way_.z};
-    for (int k = 0; k < 3; ++k) {
-      axes_[k] = {at[k] + pad_, at[k] - pad_, absolute(way[k]) <= pad_ ? Real(0) : 1 / way[k]};
-    }
     slab_ = Real(graph_.header->max_deviation) * (1 + 4 * RealLimits<Real>::kEpsilon) + from_bound_;
   }
 
   // Nearest boxes first. False: the work ran out; what was met so far stands.
   bool run(FirstHit<Real>* first) {
     best_ = *first;
-    const bool is_done = graph_.hierarchy == nullptr ? false : search();
+    const bool is_done = graph_.hierarchy != nullptr && search();
     *first = best_;
     return is_done;
   }
@@ -64,17 +58,9 @@ class Sweep {
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
  private:
-  // A box still to be looked at, and the fraction of the way at which it begins.
-  struct Waiting {
-    Real entry;
-    uint32_t box;  // within its level
-    int level;
-  };
-  // One coordinate of the way: where it begins, moved apart so that boxes grow, and 1 / its length, or 0 if that is too short.
-  struct Axis {
-    Real low_from, high_from, per_way;
-  };
-  static constexpr Real kBeyond = 2;  // a fraction after the end of the way
+  // Of the coordinates in tree units: the rounding to float of the way's ends and of the sums and products in touched_boxes
+  // come to 5/8 of it at most.
+  static constexpr Real kFloatPad = Real(1) / Real(1 << 21);
 
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
@@ -85,78 +71,114 @@ class Sweep {
   }
 
   bool search() {
-    const ImplicitTree layout(graph_.header->node_count, FDCG_LEAF_NODES);
-    const int root = layout.levels - 1;
-    const Real entry = box_entry(graph_.hierarchy[0]);
-    if (entry <= best_.fraction) push({entry, 0, root});
-    while (waiting_ > 0) {
+    if (!enter_tree()) return true;
+    const BoxTree tree(graph_.header->node_count);
+    WaitingBoxes waiting(tree);
+    while (!waiting.is_empty()) {
       if (*work_left_ == 0) return false;
-      const Waiting next = stack_[--waiting_];
-      if (next.entry > best_.fraction) continue;
-      if (next.level == 0) {
-        try_leaf(next.box);
-      } else {
-        push_children(layout, next);
-      }
-    }
-    return true;
-  }
-
-  // Box by box: into a box that the way touches, past one that it does not; up again where a box's last descendant is done.
-  bool search_in_order(uint32_t* next_leaf) {
-    const ImplicitTree layout(graph_.header->node_count, FDCG_LEAF_NODES);
-    const uint64_t leaves = layout.size[0];
-    uint64_t leaf = *next_leaf;
-    while (leaf < leaves) {
-      int level = 0;
-      while (level + 1 < layout.levels && (leaf >> level & 1) == 0)
-        ++level;
-      while (level > 0 && box_entry(graph_.hierarchy[layout.first[level] + (leaf >> level)]) <= best_.fraction)
-        --level;
-      if (level == 0 && box_entry(graph_.hierarchy[layout.first[0] + leaf]) <= best_.fraction) {
-        try_leaf(static_cast<uint32_t>(leaf));
-      }
-      leaf += uint64_t{1} << level;
-      *next_leaf = static_cast<uint32_t>(leaf);
-      if (*work_left_ == 0) return leaf >= leaves;
-    }
-    return true;
-  }
-
-  void push(const Waiting& waiting) { stack_[waiting_++] = waiting; }
-
-  // Nearer child on top; one level more on the stack costs at most one entry.
-  void push_children(const ImplicitTree& layout, const Waiting& parent) {
-    const int level = parent.level - 1;
-    const uint32_t first = parent.box * 2;
-    const bool has_two = first + 1 < layout.size[level];
-    const fdcg_box* boxes = graph_.hierarchy + layout.first[level] + first;
-    const Real entry0 = box_entry(boxes[0]);
-    const Real entry1 = has_two ? box_entry(boxes[1]) : kBeyond;
-    const bool swap = entry1 < entry0;
-    const Real far_entry = swap ? entry0 : entry1, near_entry = swap ? entry1 : entry0;
-    if (far_entry <= best_.fraction) push({far_entry, swap ? first : first + 1, level});
-    if (near_entry <= best_.fraction) push({near_entry, swap ? first + 1 : first, level});
-  }
-
-  // Where the way enters a box, as a fraction, never too late; kBeyond if it misses it. The box is grown by more than the
-  // rounding of this test.
-  [[nodiscard]] Real box_entry(const fdcg_box& box) const {
-    spend(work_left_, kBoxWork);
-    Real entry = 0, exit = 1;
-    for (int k = 0; k < 3; ++k) {
-      const Axis& axis = axes_[k];
-      const Real low = Real(box.min[k]) - axis.low_from, high = Real(box.max[k]) - axis.high_from;
-      if (axis.per_way == 0) {  // too short a way along this axis to be trusted with a quotient
-        if (low > pad_ || high < -pad_) return kBeyond;
+      const WaitingBoxes::Item next = waiting.pop();
+      if (next.key > tree_fraction(best_.fraction)) continue;
+      if (next.level < 0) {
+        try_leaf(next.index);
         continue;
       }
-      const Real to_low = low * axis.per_way, to_high = high * axis.per_way;
-      const Real first = to_low < to_high ? to_low : to_high, last = to_low < to_high ? to_high : to_low;
-      if (first > entry) entry = first;
-      if (last < exit) exit = last;
+      float entry[FDCG_TREE_WAYS];
+      const uint32_t touched = touch(tree, next.level, next.index, entry);
+      waiting.push(next, touched, entry);
     }
-    return entry <= exit ? entry : kBeyond;
+    return true;
+  }
+
+  // Box by box: into one that the way touches, past one that it does not; up again after the last below a record. A record that
+  // is at hand is not asked twice.
+  bool search_in_order(uint32_t* next_leaf) {
+    if (!enter_tree()) return true;
+    const BoxTree tree(graph_.header->node_count);
+    uint32_t record[kMostTreeLevels], touched[kMostTreeLevels];
+    for (uint32_t& r : record)
+      r = FDCG_NONE;
+    uint64_t leaf = *next_leaf;
+    while (leaf < tree.leaves) {
+      int level = 0;  // of the record whose box is asked, the largest that begins with this leaf
+      while (level + 1 < tree.levels && (leaf >> (3 * level) & 7) == 0)
+        ++level;
+      for (;; --level) {
+        const auto box = static_cast<uint32_t>(leaf >> (3 * level)), r = box / FDCG_TREE_WAYS;
+        if (record[level] != r) {
+          float entry[FDCG_TREE_WAYS];
+          touched[level] = touch(tree, level, r, entry);
+          record[level] = r;
+        }
+        if ((touched[level] >> box % FDCG_TREE_WAYS & 1) == 0) break;
+        if (level > 0) continue;
+        try_leaf(box);
+        break;
+      }
+      leaf += uint64_t{1} << (3 * level);
+      *next_leaf = static_cast<uint32_t>(leaf);
+      if (*work_left_ == 0) return leaf >= tree.leaves;
+    }
+    return true;
+  }
+
+  uint32_t touch(const BoxTree& tree, int level, uint32_t record, float (&entry)[FDCG_TREE_WAYS]) const {
+    spend(work_left_, kBoxWork);
+    const fdcg_box8& boxes = graph_.hierarchy[tree.first[level] + record];
+    return touched_boxes(boxes, in_tree_, tree_fraction(best_.fraction), entry) & tree.lanes(level, record);
+  }
+
+  // A fraction of the whole way as one of the part of it that is near the tree.
+  [[nodiscard]] float tree_fraction(Real fraction) const {
+    const Real part = (fraction - part_begin_) * per_part_;
+    return part < 1 ? static_cast<float>(part) : 1.0F;
+  }
+
+  // Puts the way into tree units. A way from far away is cut to the part near the tree, lest floats lose it. False: it passes
+  // by.
+  [[gnu::noinline]] bool enter_tree() {
+    constexpr Real kNear = 16, kEpsilon = RealLimits<Real>::kEpsilon;
+    const Real per_unit = static_cast<Real>(1 / tree_unit(graph_.header->extent));
+    const Vec3<Real> from = from_ * per_unit, way = way_ * per_unit;
+    const Real size = norm1(from) + norm1(to_ * per_unit);
+    if (size * kEpsilon > Real(1) / 16) {  // so far away that its coordinates say nothing of a box
+      in_tree_ = {{0, 0, 0}, {0, 0, 0}, {1, 1, 1}};
+      return true;
+    }
+    Real begin = 0, end = 1;
+    if (size > kNear && !cut(from, way, &begin, &end)) return false;
+    part_begin_ = begin;
+    per_part_ = 1 / (end - begin);
+    const Vec3<Real> start = from + way * begin, part = way * (end - begin);
+    const float at[3] = {static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(start.z)};
+    const float along[3] = {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)};
+    const Real near_size = norm1(start) + norm1(start + part);
+    const float pad = static_cast<float>(kFloatPad * (4 + near_size) + 8 * kEpsilon * (2 + size));
+    for (int k = 0; k < 3; ++k) {
+      // Less way than the pad along an axis is taken for as much: the box is grown by that too.
+      const float length = absolute(along[k]) < pad ? pad : absolute(along[k]);
+      const float per_length = 1 / length;
+      in_tree_.from[k] = at[k];
+      in_tree_.per_way[k] = along[k] < 0 ? -per_length : per_length;
+      in_tree_.grow[k] = 2 * pad * per_length;
+    }
+    return true;
+  }
+
+  // The part of the way within some distance of the tree, whose boxes reach to 8 units at most. False: there is none.
+  static bool cut(Vec3<Real> from, Vec3<Real> way, Real* begin, Real* end) {
+    constexpr Real kAround = 16;
+    const Real at[3] = {from.x, from.y, from.z}, along[3] = {way.x, way.y, way.z};
+    for (int k = 0; k < 3; ++k) {
+      if (along[k] == 0) {
+        if (absolute(at[k]) > kAround) return false;
+        continue;
+      }
+      const Real low = (-kAround - at[k]) / along[k], high = (kAround - at[k]) / along[k];
+      const Real in = low < high ? low : high, out = low < high ? high : low;
+      if (in > *begin) *begin = in;
+      if (out < *end) *end = out;
+    }
+    return *begin < *end;
   }
 
   void try_leaf(uint32_t leaf) {
@@ -169,7 +191,7 @@ class Sweep {
 
   // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie
   // off its plane is a slab: a way that begins within it still begins in front.
-  void try_node(uint32_t n) {
+  [[gnu::noinline]] void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
     const NodeRef<Real> node = graph_.node(n);
     const Real end_side = side(node, to_, to_bound_);
@@ -191,8 +213,7 @@ class Sweep {
   }
 
   [[nodiscard]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
-    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kExactWork);
-    return side_of(graph_, node, x, bound);
+    return side_of(graph_, node, x, bound, work_left_);
   }
 
   [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
@@ -218,11 +239,10 @@ class Sweep {
     const Real bound = 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way_)) + RealLimits<Real>::kTiny;
     if (det > bound) return 1;
     if (det < -bound) return -1;
-    spend(work_left_, kExactWork);
-    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end));
+    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
 
-  bool passes_inside(NodeRef<Real> node, bool* met_exactly) const {
+  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, bool* met_exactly) const {
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
@@ -256,11 +276,10 @@ class Sweep {
   Real from_bound_, to_bound_;
   Feature left_;
   uint32_t* work_left_;
-  Real pad_, slab_;
-  Axis axes_[3];
+  Real slab_;
+  TreeWay in_tree_;
+  Real part_begin_ = 0, per_part_ = 1;  // of the way: what in_tree_ covers
   FirstHit<Real> best_;
-  Waiting stack_[kMaxLevels + 2];
-  int waiting_ = 0;
 };
 
 // Puts the contact where the way met something first, or at its end.
@@ -278,7 +297,7 @@ inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, co
 
 // Goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has not moved.
 template <class Real>
-inline bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
+[[gnu::noinline]] bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
   const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
   Sweep<Real> sweep(walk.graph, walk.god_object, to, {carried->left_state, carried->left_feature}, work_left);
@@ -296,7 +315,7 @@ inline bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, 
 // From free space, or from the surface that was just left: places the contact on what the way to the HIP meets, or at the HIP.
 // A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work ran out, else 0.
 template <class Real>
-inline uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, fdcg_carried_sweep* carried, uint32_t* work_left) {
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, fdcg_carried_sweep* carried, uint32_t* work_left) {
   if (carried->is_carried != 0) {
     if (!finish_carried_sweep(walk, carried, work_left)) return FDCG_RESULT_SWEEP_BOUND;
     if (!(walk.active == kFree)) return 0;

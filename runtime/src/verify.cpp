@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verify.hpp"
 
+#include "box_tree.hpp"
 #include "config.hpp"
 #include "graph_view.hpp"
 #include "implicit_tree.hpp"
@@ -30,6 +31,11 @@ bool is_across(Vec3<Real> along, Vec3<Real> normal) {
   const Real squared = dot(along, along);
   return squared >= TinyEdge<Real>::kSquare && dot(out, out) >= kLeastSquaredSine * squared;
 }
+
+// Of a box record. The sweep's rounding is bounded for boxes this near to the object; cells no smaller keep the box of a lane
+// that is not used inside out.
+constexpr float kFarthestBox = 8;
+constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
 
 template <class Real>
 class Verifier {
@@ -246,32 +252,63 @@ class Verifier {
     return FDCG_OK;
   }
 
-  // Leaf boxes hold their nodes' corners, every box its two below.
+  // One coordinate of a box, in tree units; no rounding: a float of at most 24 bits and eight bits of cells.
+  static double low_of(const fdcg_box8& boxes, int axis, uint32_t j) {
+    return double{boxes.origin[axis]} + double{tree_cell(boxes.exponent[axis])} * boxes.low[axis][j];
+  }
+  static double high_of(const fdcg_box8& boxes, int axis, uint32_t j) {
+    return double{boxes.origin[axis]} + double{tree_cell(boxes.exponent[axis])} * boxes.high[axis][j];
+  }
+
+  // Records in range, leaf boxes hold their nodes' corners, every box those of the record below.
   fdcg_status hierarchy() {
-    const ImplicitTree layout(header_.node_count, FDCG_LEAF_NODES);
-    for (uint32_t n = 0; n < header_.node_count; ++n) {
-      const fdcg_box& box = raw_.hierarchy[layout.first[0] + n / FDCG_LEAF_NODES];
-      const NodeRef<Real> node = graph_.node(n);
-      for (uint32_t k = 0; k < node.side_count(); ++k) {
-        const auto& point = graph_.corners[node.corner(k)].point;
-        for (int axis = 0; axis < 3; ++axis) {
-          if (!(box.min[axis] <= point[axis] && point[axis] <= box.max[axis]))
-            return refuse("node", n, "sticks out of its box");
-        }
+    const BoxTree tree(header_.node_count);
+    for (uint32_t i = 0; i < tree.records; ++i) {
+      const fdcg_box8& boxes = raw_.hierarchy[i];
+      bool is_in_range = boxes.reserved == 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        is_in_range = is_in_range && absolute(boxes.origin[axis]) <= kFarthestBox &&
+                      boxes.exponent[axis] >= kLeastCellExponent && boxes.exponent[axis] <= kLargestCellExponent;
       }
+      if (!is_in_range) return refuse("box record", i, "origin, exponent or reserved byte out of range");
     }
-    for (int level = 1; level < layout.levels; ++level) {
-      for (uint64_t i = 0; i < layout.size[level - 1]; ++i) {
-        const fdcg_box& below = raw_.hierarchy[layout.first[level - 1] + i];
-        const fdcg_box& above = raw_.hierarchy[layout.first[level] + i / 2];
-        for (int axis = 0; axis < 3; ++axis) {
-          if (!(above.min[axis] <= below.min[axis] && below.max[axis] <= above.max[axis])) {
-            return refuse("box", layout.first[level - 1] + i, "sticks out of the one above");
-          }
-        }
+    const double per_unit = 1 / tree_unit(header_.extent);
+    for (uint32_t n = 0; n < header_.node_count; ++n) {
+      const uint32_t leaf = n / FDCG_LEAF_NODES;
+      const fdcg_box8& boxes = raw_.hierarchy[tree.first[0] + leaf / FDCG_TREE_WAYS];
+      if (!holds_node(boxes, leaf % FDCG_TREE_WAYS, n, per_unit)) return refuse("node", n, "sticks out of its box");
+    }
+    for (int level = 1; level < tree.levels; ++level) {
+      for (uint32_t i = 0; i < tree.size[level - 1]; ++i) {
+        const fdcg_box8& above = raw_.hierarchy[tree.first[level] + i / FDCG_TREE_WAYS];
+        const fdcg_box8& below = raw_.hierarchy[tree.first[level - 1] + i];
+        if (!holds_boxes(above, i % FDCG_TREE_WAYS, below, tree.lanes(level - 1, i)))
+          return refuse("box record", tree.first[level - 1] + i, "sticks out of the box above");
       }
     }
     return FDCG_OK;
+  }
+
+  bool holds_node(const fdcg_box8& boxes, uint32_t j, uint32_t n, double per_unit) const {
+    const NodeRef<Real> node = graph_.node(n);
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const Vec3<double> point = widen(graph_.corner_point(node.corner(k))) * per_unit;
+      const double at[3] = {point.x, point.y, point.z};
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!(low_of(boxes, axis, j) <= at[axis] && at[axis] <= high_of(boxes, axis, j))) return false;
+      }
+    }
+    return true;
+  }
+
+  static bool holds_boxes(const fdcg_box8& above, uint32_t j, const fdcg_box8& below, uint32_t lanes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = low_of(above, axis, j), high = high_of(above, axis, j);
+      for (uint32_t i = 0; lanes >> i != 0; ++i) {
+        if (!(low <= low_of(below, axis, i) && high_of(below, axis, i) <= high)) return false;
+      }
+    }
+    return true;
   }
 
   fdcg_status source_map() {

@@ -7,6 +7,7 @@ import unittest
 from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
 
 STEP_HASH = os.environ["FDCG_STEP_HASH"]  # linked with the library that ships
+ARRAYS = os.environ["FDCG_HASH_ARRAYS"]  # graphs.c, compiled for this machine
 GRAPHS = os.environ["FDCG_HASH_GRAPHS"]  # folder of graphs.h and graphs.c
 SOURCE = str(ROOT / "tests" / "anywhere" / "step_hash.c")
 
@@ -16,11 +17,13 @@ class HashCase(AnywhereCase):
         super().setUp()
         self.expected = self.run_program(STEP_HASH).stdout.decode()
 
-    def hashed_by(self, name, cc, cxx, flags, link=(), run=()):
+    def hashed_by(self, name, cc, cxx, flags, arrays=None, link=(), run=()):
         include = ["-I", str(RUNTIME / "include"), "-I", GRAPHS]
         objects = self.runtime_objects(name, cxx, flags)
+        sources = [SOURCE] if arrays else [SOURCE, os.path.join(GRAPHS, "graphs.c")]
         objects += self.compile_all([([cc, *C, *flags, *include, "-c", source], self.path(f"{name}-{os.path.basename(source)}.o"))
-                                     for source in (SOURCE, os.path.join(GRAPHS, "graphs.c"))])
+                                     for source in sources])
+        objects += [arrays] if arrays else []
         program = self.path(name)
         self.run_program(cc, *flags, *link, *objects, "-lm", "-o", program)
         return self.run_program(*run, program).stdout.decode()
@@ -44,14 +47,14 @@ class Gcc(HashCase):
     def test_every_level(self):
         self.need("gcc", "g++")
         for flags in (["-O0"], ["-O2"], ["-O3", "-march=native"]):
-            self.assert_same_bits(self.hashed_by("gcc" + flags[0], "gcc", "g++", flags), "gcc " + " ".join(flags))
+            self.assert_same_bits(self.hashed_by("gcc" + flags[0], "gcc", "g++", flags, ARRAYS), "gcc " + " ".join(flags))
 
 
 class Clang(HashCase):
     def test_every_level(self):
         self.need("clang", "clang++")
         for flags in (["-O0"], ["-O2"], ["-O3", "-march=native"]):
-            self.assert_same_bits(self.hashed_by("clang" + flags[0], "clang", "clang++", flags), "clang " + " ".join(flags))
+            self.assert_same_bits(self.hashed_by("clang" + flags[0], "clang", "clang++", flags, ARRAYS), "clang " + " ".join(flags))
 
 
 class Aarch64(HashCase):
@@ -60,13 +63,13 @@ class Aarch64(HashCase):
     def test_clang(self):
         self.need("clang", "clang++", "aarch64-linux-gnu-ld", "qemu-aarch64")
         flags = ["--target=aarch64-linux-gnu", "-O2"]
-        self.assert_same_bits(self.hashed_by("clang", "clang", "clang++", flags, ["-static"], ["qemu-aarch64"]), "aarch64 clang -O2")
+        self.assert_same_bits(self.hashed_by("clang", "clang", "clang++", flags, None, ["-static"], ["qemu-aarch64"]), "aarch64 clang -O2")
 
     def test_gcc(self):
         if shutil.which("aarch64-linux-gnu-g++") is None:
             return  # one compiler there is enough; this one is looked at where it is installed anyway
         self.need("qemu-aarch64")
-        found = self.hashed_by("gcc", "aarch64-linux-gnu-gcc", "aarch64-linux-gnu-g++", ["-O3"], ["-static"], ["qemu-aarch64"])
+        found = self.hashed_by("gcc", "aarch64-linux-gnu-gcc", "aarch64-linux-gnu-g++", ["-O3"], None, ["-static"], ["qemu-aarch64"])
         self.assert_same_bits(found, "aarch64 gcc -O3")
 
 

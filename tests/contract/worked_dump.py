@@ -35,7 +35,7 @@ RECORDS = {  # the tetrahedron's: every node is a triangle
     3: ("edge", (("direction", "3d"), ("length", "d"))),
     4: ("connection", (("node", "I"), ("side", "2B"), ("type", "B"), ("flatness", "B"))),
     5: ("corner", (("point", "3d"), ("first", "I"), ("normal", "3h"), ("side", "B"), ("fan", "B"), ("reserved", "I"))),
-    7: ("box", (("min", "3f"), ("max", "3f"))),
+    7: ("box record", (("origin", "3f"), ("exponent", "3B"), ("reserved", "B"), ("low", "24B"), ("high", "24B"))),
     8: ("source face", (("", "I"),)),
 }
 SECTION_NAMES = ("", "NODES", "NODE_OFFSETS", "EDGES", "CONNECTIONS", "CORNERS", "FANS", "HIERARCHY", "SOURCE_MAP", "INFO",

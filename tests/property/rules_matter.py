@@ -13,7 +13,8 @@ import shutil
 import subprocess
 import sys
 
-FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fno-exceptions", "-fno-rtti"]
+FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fno-exceptions", "-fno-rtti",
+         "-DFDCG_RULE_WORK=1000000000", "-DFDCG_SWEEP_WORK=1000000000"]
 
 # (tag of the test, what is taken out, file, the text as it stands, what replaces it)
 MUTANTS = [

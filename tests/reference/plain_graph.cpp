@@ -174,14 +174,14 @@ void PlainGraph::build(const bake::PolygonSoup& soup) {
     node(f).side_count = static_cast<std::uint16_t>(n);
     node(f).flags = is_planar ? 0 : FDCG_NODE_INEXACT;
     directions.push_back(sum);
-    fdcg_box box{};
-    for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = std::numeric_limits<float>::infinity();
-      box.max[axis] = -box.min[axis];
+    NodeBox box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::numeric_limits<double>::infinity();
+      box.high[axis] = -box.low[axis];
       for (std::uint32_t k = 0; k < n; ++k) {
         const double c = corners[soup.corners[first + k]].point[axis];
-        box.min[axis] = std::min(box.min[axis], std::nextafter(static_cast<float>(c), -INFINITY));
-        box.max[axis] = std::max(box.max[axis], std::nextafter(static_cast<float>(c), INFINITY));
+        box.low[axis] = std::min(box.low[axis], c);
+        box.high[axis] = std::max(box.high[axis], c);
       }
     }
     node_boxes_.push_back(box);
@@ -269,26 +269,42 @@ void PlainGraph::build(const bake::PolygonSoup& soup) {
   header_.fan_count = static_cast<std::uint32_t>(fans_.size());
 }
 
+// Each record's grid is as coarse as the whole object's: simple, and sound.
 void PlainGraph::build_hierarchy() {
-  const auto joined = [](const std::vector<fdcg_box>& below, std::size_t group) {
-    std::vector<fdcg_box> level;
+  const auto joined = [](const std::vector<NodeBox>& below, std::size_t group) {
+    std::vector<NodeBox> level;
     for (std::size_t i = 0; i < below.size(); ++i) {
       if (i % group == 0) {
         level.push_back(below[i]);
         continue;
       }
-      for (int axis = 0; axis < 3; ++axis) {
-        level.back().min[axis] = std::min(level.back().min[axis], below[i].min[axis]);
-        level.back().max[axis] = std::max(level.back().max[axis], below[i].max[axis]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        level.back().low[axis] = std::min(level.back().low[axis], below[i].low[axis]);
+        level.back().high[axis] = std::max(level.back().high[axis], below[i].high[axis]);
       }
     }
     return level;
   };
-  std::vector<std::vector<fdcg_box>> levels = {joined(node_boxes_, FDCG_LEAF_NODES)};
-  while (levels.back().size() > 1)
-    levels.push_back(joined(levels.back(), 2));
-  for (auto level = levels.rbegin(); level != levels.rend(); ++level)
-    boxes_.insert(boxes_.end(), level->begin(), level->end());
+  constexpr int kCellExponent = -5;  // 255 cells from -2.5 reach to 5.4, corners to 2
+  const double cell = std::ldexp(1.0, kCellExponent), unit = std::ldexp(1.0, std::ilogb(header_.extent));
+  std::vector<std::vector<NodeBox>> levels = {joined(node_boxes_, FDCG_LEAF_NODES)};
+  do {
+    levels.push_back(joined(levels.back(), FDCG_TREE_WAYS));
+  } while (levels.back().size() > 1);
+  levels.pop_back();  // the whole object's: no record holds it
+  for (auto level = levels.rbegin(); level != levels.rend(); ++level) {
+    for (std::size_t i = 0; i < level->size(); i += FDCG_TREE_WAYS) {
+      fdcg_box8 record{{-2.5F, -2.5F, -2.5F}, {127 + kCellExponent, 127 + kCellExponent, 127 + kCellExponent}, 0, {}, {}};
+      for (std::size_t j = 0; j < FDCG_TREE_WAYS; ++j) {
+        const bool is_used = i + j < level->size();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          record.low[axis][j] = is_used ? static_cast<std::uint8_t>(((*level)[i + j].low[axis] / unit + 2.5) / cell) : 255;
+          record.high[axis][j] = is_used ? static_cast<std::uint8_t>(((*level)[i + j].high[axis] / unit + 2.5) / cell + 1) : 0;
+        }
+      }
+      boxes_.push_back(record);
+    }
+  }
 }
 
 }  // namespace fdcg::test

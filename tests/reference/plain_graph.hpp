@@ -4,6 +4,7 @@
 // rounding) and consistently wound; every edge has at most two faces, every vertex one fan.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,8 +31,11 @@ class PlainGraph {
   std::vector<fdcg_connection> connections_;
   std::vector<fdcg_busy_corner> busy_corners_;
   std::vector<std::uint32_t> node_offsets_, fans_, face_of_piece_;
-  std::vector<fdcg_box> boxes_;       // root first
-  std::vector<fdcg_box> node_boxes_;  // of single nodes
+  struct NodeBox {
+    std::array<double, 3> low{}, high{};
+  };
+  std::vector<fdcg_box8> boxes_;     // root first
+  std::vector<NodeBox> node_boxes_;  // of single nodes
   fdcg_graph view_{};
 };
 

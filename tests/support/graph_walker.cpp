@@ -396,39 +396,58 @@ class Walker {
 
   void boxes() {
     if (g_.boxes.empty()) return;
-    std::vector<std::size_t> levels{(g_.nodes.size() + FDCG_LEAF_NODES - 1) / FDCG_LEAF_NODES};
-    while (levels.back() > 1)
-      levels.push_back((levels.back() + 1) / 2);
-    std::size_t total = 0;
-    for (const std::size_t level : levels)
-      total += level;
-    check(total == g_.boxes.size(), "box count", g_.boxes.size());
-    if (total != g_.boxes.size()) return;
-    std::size_t below = total;
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-      const std::size_t first = below - levels[l];
-      for (std::size_t i = 0; i < levels[l]; ++i)
-        l == 0 ? leaf(g_.boxes[first + i], i) : parent(g_.boxes[first + i], below, i, levels[l - 1]);
-      below = first;
+    std::vector<std::size_t> items{(g_.nodes.size() + FDCG_LEAF_NODES - 1) / FDCG_LEAF_NODES};
+    while (items.size() == 1 || items.back() > 1)
+      items.push_back((items.back() + 7) / 8);
+    std::size_t first = g_.boxes.size();
+    for (std::size_t level = 0; level + 1 < items.size(); ++level) {
+      check(items[level + 1] <= first, "record count of the hierarchy", g_.boxes.size());
+      if (items[level + 1] > first) return;
+      const std::size_t below = first;
+      first -= items[level + 1];
+      for (std::size_t i = 0; i < items[level + 1]; ++i)
+        record(g_.boxes[first + i], level, i, items[level], below);
+    }
+    check(first == 0, "record count of the hierarchy", g_.boxes.size());
+  }
+
+  void record(const fdcg_box8& boxes, std::size_t level, std::size_t i, std::size_t items, std::size_t below) {
+    check(boxes.reserved == 0, "reserved byte of a box record", i);
+    for (std::size_t j = 0; j < 8; ++j) {
+      const std::size_t item = 8 * i + j;
+      for (int k = 0; k < 3 && item >= items; ++k)
+        check(boxes.low[k][j] == 255 && boxes.high[k][j] == 0, "a box that is not used is inside out", i);
+      if (item >= items) continue;
+      level == 0 ? leaf(boxes, j, item) : parent(boxes, j, g_.boxes[below + item]);
     }
   }
 
-  void leaf(const fdcg_box& box, std::size_t i) {
+  // One bound, in the file's units.
+  [[nodiscard]] double bound(const fdcg_box8& boxes, int k, std::uint8_t cells) const {
+    const double unit = std::exp2(std::floor(std::log2(g_.header.extent)));
+    return (boxes.origin[k] + std::exp2(boxes.exponent[k] - 127) * cells) * unit;
+  }
+
+  void leaf(const fdcg_box8& boxes, std::size_t j, std::size_t i) {
     for (std::size_t n = i * FDCG_LEAF_NODES; n < std::min(g_.nodes.size(), (i + 1) * FDCG_LEAF_NODES); ++n) {
       const double margin = (g_.nodes[n].flags & FDCG_NODE_INEXACT) != 0 ? g_.header.max_deviation : 0;
       for (std::uint32_t s = 0; s < g_.nodes[n].side_count; ++s) {
         const double* p = point(g_.corner_of_side(g_.nodes[n].first_side + s));
-        for (int k = 0; k < 3; ++k)
-          check(box.min[k] <= p[k] - margin && box.max[k] >= p[k] + margin, "a leaf's box holds its nodes", n);
+        for (int k = 0; k < 3; ++k) {
+          check(bound(boxes, k, boxes.low[k][j]) <= p[k] - margin && bound(boxes, k, boxes.high[k][j]) >= p[k] + margin,
+                "a leaf's box holds its nodes", n);
+        }
       }
     }
   }
 
-  void parent(const fdcg_box& box, std::size_t level_below, std::size_t i, std::size_t count_below) {
-    for (std::size_t child = 2 * i; child < std::min(count_below, 2 * i + 2); ++child) {
-      const fdcg_box& inner = g_.boxes[level_below + child];
-      for (int k = 0; k < 3; ++k)
-        check(box.min[k] <= inner.min[k] && box.max[k] >= inner.max[k], "a box holds the boxes below it", child);
+  void parent(const fdcg_box8& boxes, std::size_t j, const fdcg_box8& inner) {
+    for (int k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 8 && inner.low[k][i] <= inner.high[k][i]; ++i) {
+        check(bound(boxes, k, boxes.low[k][j]) <= bound(inner, k, inner.low[k][i]) &&
+                  bound(boxes, k, boxes.high[k][j]) >= bound(inner, k, inner.high[k][i]),
+              "a box holds the boxes below it", i);
+      }
     }
   }
 
@@ -468,7 +487,7 @@ WalkedGraph read_graph(const std::vector<std::byte>& bytes) {
   }
   const auto number = [](std::uint32_t x) { return x; };
   g.source_map = records<std::uint32_t, std::uint32_t>(bytes, FDCG_SECTION_SOURCE_MAP, number);
-  g.boxes = records<fdcg_box, fdcg_box>(bytes, FDCG_SECTION_HIERARCHY, [](const fdcg_box& b) { return b; });
+  g.boxes = records<fdcg_box8, fdcg_box8>(bytes, FDCG_SECTION_HIERARCHY, [](const fdcg_box8& b) { return b; });
   const auto text = records<char, char>(bytes, FDCG_SECTION_INFO, [](char c) { return c; });
   g.info.assign(text.begin(), text.end());
   return g;

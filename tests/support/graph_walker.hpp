@@ -44,7 +44,7 @@ struct WalkedGraph {
   std::vector<fdcg_busy_corner> busy_corners;
   std::vector<std::uint32_t> stored_fans;  // of the busy ones
   std::uint64_t node_bytes = 0;            // of the section, without padding
-  std::vector<fdcg_box> boxes;
+  std::vector<fdcg_box8> boxes;
   std::vector<std::uint32_t> source_map;
   std::string info;
   std::vector<std::string> layout_faults;  // met while reading

@@ -138,7 +138,7 @@ TEST_CASE("optional sections are left out when asked, and only then") {
   CompileOptions options;
   const WalkedGraph whole = compile_sound(triangulated(cube()), options);
   CHECK(whole.voronoi.size() == whole.sides.size());
-  CHECK(whole.boxes.size() == 3);
+  CHECK(whole.boxes.size() == 1);
   CHECK(whole.source_map.size() == 12);
   CHECK(!whole.info.empty());
   options.without = {"hierarchy", "source-map", "info"};

@@ -12,26 +12,62 @@
 using namespace fdcg::bake;
 using namespace fdcg::test;
 
-TEST_CASE("levels halve from one box for four nodes up to one root") {
-  CHECK(hierarchy_levels(1) == std::vector<std::uint32_t>{1});
-  CHECK(hierarchy_levels(4) == std::vector<std::uint32_t>{1});
-  CHECK(hierarchy_levels(5) == std::vector<std::uint32_t>{1, 2});
-  CHECK(hierarchy_levels(9) == std::vector<std::uint32_t>{1, 2, 3});
-  CHECK(hierarchy_levels(1000000) == std::vector<std::uint32_t>{1, 2, 4, 8, 16, 31, 62, 123, 245, 489, 977, 1954, 3907, 7813,
-                                                                15625, 31250, 62500, 125000, 250000});
+namespace {
+
+struct Bounds {
+  double low[3], high[3];
+};
+
+// Box j of a record, in the file's units.
+Bounds bounds_of(const WalkedGraph& graph, const fdcg_box8& boxes, std::size_t j) {
+  const double unit = std::exp2(std::floor(std::log2(graph.header.extent)));
+  Bounds bounds{};
+  for (int k = 0; k < 3; ++k) {
+    const double cell = std::exp2(boxes.exponent[k] - 127);
+    bounds.low[k] = (boxes.origin[k] + cell * boxes.low[k][j]) * unit;
+    bounds.high[k] = (boxes.origin[k] + cell * boxes.high[k][j]) * unit;
+  }
+  return bounds;
 }
 
-TEST_CASE("boxes hold their nodes at any scale and are no larger than rounding needs") {
+}  // namespace
+
+TEST_CASE("levels shrink eightfold from one box for four nodes up to one record") {
+  CHECK(hierarchy_levels(1) == std::vector<std::uint32_t>{1});
+  CHECK(hierarchy_levels(32) == std::vector<std::uint32_t>{1});
+  CHECK(hierarchy_levels(33) == std::vector<std::uint32_t>{1, 2});
+  CHECK(hierarchy_levels(257) == std::vector<std::uint32_t>{1, 2, 9});
+  CHECK(hierarchy_levels(1000000) == std::vector<std::uint32_t>{1, 8, 62, 489, 3907, 31250});
+}
+
+TEST_CASE("boxes hold their nodes at any scale and precision and are little larger than they must") {
   for (const double scale : {1e-6, 1.0, 1e6}) {
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
-      const PolygonSoup soup = transformed(star_sphere(3, 0.3, seed), random_rotation(seed), scale);
-      const WalkedGraph graph = compile_sound(soup);
-      REQUIRE(!graph.boxes.empty());
-      for (int k = 0; k < 3; ++k) {
-        CHECK(std::fabs(graph.boxes[0].min[k] - graph.header.bounds_min[k]) <= 2e-7 * graph.header.extent);
-        CHECK(std::fabs(graph.boxes[0].max[k] - graph.header.bounds_max[k]) <= 2e-7 * graph.header.extent);
+      for (const Precision precision : {Precision::f64, Precision::f32}) {
+        const PolygonSoup soup = transformed(star_sphere(3, 0.3, seed), random_rotation(seed), scale);
+        CompileOptions options;
+        options.precision = precision;
+        const WalkedGraph graph = compile_sound(soup, options);
+        REQUIRE(!graph.boxes.empty());
+        for (int k = 0; k < 3; ++k) {
+          const double size = graph.header.bounds_max[k] - graph.header.bounds_min[k];
+          double low = 1e300, high = -1e300;
+          for (std::size_t j = 0; j < 8 && graph.boxes[0].low[k][j] <= graph.boxes[0].high[k][j]; ++j) {
+            low = std::min(low, bounds_of(graph, graph.boxes[0], j).low[k]);
+            high = std::max(high, bounds_of(graph, graph.boxes[0], j).high[k]);
+          }
+          CHECK(graph.header.bounds_min[k] - low <= size / 20);
+          CHECK(high - graph.header.bounds_max[k] <= size / 20);
+        }
       }
     }
+  }
+}
+
+TEST_CASE("flat, needle-like, far and huge meshes have sound boxes") {
+  for (const PolygonSoup& soup : {plane_grid(9, 7), thin_plate(1e-9, 5), moved(needle_strip(100, 0.3, 2), {1e6, -1e6, 0}),
+                                  scaled(torus(20, 12), 1e30), scaled(torus(20, 12), 1e-30), cone(500)}) {
+    CHECK(!compile_sound(soup).boxes.empty());
   }
 }
 

@@ -95,7 +95,7 @@ typedef struct fdcg_graph {
   const fdcg_busy_corner* busy_corners; /* NULL, and so are the next two: no corner is busy */
   const uint32_t* fans;
   const void* fan_boxes;
-  const fdcg_box* hierarchy;  /* NULL: the free-space sweep looks at every node */
+  const fdcg_box8* hierarchy;  /* NULL: the free-space sweep looks at every node */
   const uint32_t* source_map; /* NULL: not in the file; else header->source_face_count entries */
   const char* info;           /* JSON, not zero-terminated; NULL: not in the file */
   uint64_t info_bytes;
@@ -215,7 +215,7 @@ typedef struct fdcg_contact {
   uint32_t seat_feature;
   uint32_t slipping; /* 1: dynamic friction holds */
   uint64_t non_finite_ticks;
-  uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_MAX_TRANSITIONS */
+  uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_RULE_WORK */
   uint64_t sweep_bound_ticks;      /* ... because of FDCG_SWEEP_WORK */
   fdcg_carried_sweep sweep;
 } fdcg_contact;

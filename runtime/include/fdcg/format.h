@@ -38,6 +38,7 @@
 #define FDCG_ALIGNMENT 64u
 #define FDCG_NONE 0xFFFFFFFFu        /* "no node here": the far side of an open edge; a dropped source face */
 #define FDCG_LEAF_NODES 4u           /* nodes in one leaf of the hierarchy */
+#define FDCG_TREE_WAYS 8u            /* boxes in one record of the hierarchy */
 #define FDCG_MAX_SIDES 255u          /* sides of one node; fdcg compile cuts larger faces into nodes of at most 64 */
 #define FDCG_LEAF_FAN 8u             /* fan entries in one leaf of a corner's tree */
 #define FDCG_BUSY_FAN 32u            /* a corner with more fan entries is busy: it has its fan stored, and a tree */
@@ -57,7 +58,7 @@ enum fdcg_section_id {
   FDCG_SECTION_CONNECTIONS = 4,  /* fdcg_connection, connection_count of them, by first use */
   FDCG_SECTION_CORNERS = 5,      /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
   FDCG_SECTION_FANS = 6,         /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
-  FDCG_SECTION_HIERARCHY = 7,    /* fdcg_box: the implicit bounding-volume tree. Optional: without it no free-space sweep */
+  FDCG_SECTION_HIERARCHY = 7,    /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
   FDCG_SECTION_SOURCE_MAP = 8,   /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
   FDCG_SECTION_INFO = 9,         /* UTF-8 JSON: source, options, verdict. Optional */
   FDCG_SECTION_FAN_BOXES = 10,   /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
@@ -204,7 +205,7 @@ typedef struct fdcg_busy_corner {
 } fdcg_busy_corner;
 
 /* A busy corner's tree: which directions along the surface the corner offers, so that the steepest is found without looking at
- * every edge. An implicit binary tree as the hierarchy's: level 0 has one box for every FDCG_LEAF_FAN consecutive fan entries.
+ * every edge. An implicit binary tree, root first: level 0 has one box for every FDCG_LEAF_FAN consecutive fan entries.
  * The unit directions of these edges and of the faces to their left all lie in centre + sum of s_k axis[k], |s_k| <= 1. */
 typedef struct fdcg_fan_box_f64 {
   double centre[3];
@@ -215,12 +216,18 @@ typedef struct fdcg_fan_box_f32 {
   float axis[3][3];
 } fdcg_fan_box_f32;
 
-/* The hierarchy is an implicit binary tree: level 0 has one box for every FDCG_LEAF_NODES consecutive nodes, each level above
- * it one for every two boxes below, up to a single root. Stored root first, then level after level down to level 0. Bounds are
- * local and rounded outwards. */
-typedef struct fdcg_box {
-  float min[3], max[3];
-} fdcg_box;
+/* Eight boxes of the hierarchy, on a grid of their own: box j reaches from origin + cell * low[.][j] to origin + cell *
+ * high[.][j] along each axis, with cell = 2^(exponent - 127), in tree units: the power of two at or below header.extent. Bounds
+ * only ever grow outwards. The hierarchy is an implicit tree: level 0 has one record for every eight leaves, a leaf being
+ * FDCG_LEAF_NODES consecutive nodes; each level above has one for every eight records below, up to a single root. Stored root
+ * first, then level after level down to level 0. Boxes beyond a level's last item have low 255 and high 0. */
+typedef struct fdcg_box8 {
+  float origin[3];
+  uint8_t exponent[3];
+  uint8_t reserved; /* zero */
+  uint8_t low[3][FDCG_TREE_WAYS];
+  uint8_t high[3][FDCG_TREE_WAYS];
+} fdcg_box8;
 
 #ifdef __cplusplus
 }
@@ -245,7 +252,7 @@ FDCG_STATIC_ASSERT(sizeof(fdcg_corner_f64) == 40 && sizeof(fdcg_corner_f32) == 2
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f64, first) == 24 && offsetof(fdcg_corner_f64, fan) == 35, "corner_f64");
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corner_f32, fan) == 23, "corner_f32");
 FDCG_STATIC_ASSERT(sizeof(fdcg_busy_corner) == 16, "busy corner: 16 bytes");
-FDCG_STATIC_ASSERT(sizeof(fdcg_box) == 24, "box: 24 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_box8) == 64, "eight boxes: 64 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_fan_box_f64) == 96 && sizeof(fdcg_fan_box_f32) == 48, "fan box: 96 or 48 bytes");
 
 #endif /* FDCG_FORMAT_H */

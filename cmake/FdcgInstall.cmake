@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake --install: headers, libraries, the two programs where they are built, a CMake package and a pkg-config file. Components
+# of find_package(fdcg): runtime, always; tools (fdcg::fdcg, fdcg::fdcg-servo) and bake (fdcg::bake) unless FDCG_RUNTIME_ONLY.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fdcg)
+
+function(fdcg_install_component name)
+  install(TARGETS ${ARGN} EXPORT fdcg-${name}
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT fdcg-${name} NAMESPACE fdcg:: DESTINATION ${package_folder})
+endfunction()
+
+fdcg_install_component(runtime fdcg_runtime)
+install(DIRECTORY runtime/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(NOT FDCG_RUNTIME_ONLY)
+  fdcg_install_component(tools fdcg fdcg-servo)
+  fdcg_install_component(bake fdcg_bake)
+  install(DIRECTORY lib/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endif()
+install(FILES LICENSE README.md CHANGELOG.md schemas/fdcg-v1.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/fdcg-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES cmake/fdcg-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/fdcg-config-version.cmake cmake/FdcgAddGraph.cmake
+              cmake/FdcgEmbed.cmake DESTINATION ${package_folder})
+
+# relative to the .pc file, so that the installed tree may be moved
+file(RELATIVE_PATH fdcg_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(cmake/fdcg.pc.in ${CMAKE_CURRENT_BINARY_DIR}/fdcg.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fdcg.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

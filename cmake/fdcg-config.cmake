@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# find_package(fdcg [COMPONENTS runtime tools bake]): fdcg::runtime and fdcg_add_graph always; the programs fdcg::fdcg and
+# fdcg::fdcg-servo where they are installed; fdcg::bake on request, since it looks for what it links.
+include(CMakeFindDependencyMacro)
+set(${CMAKE_FIND_PACKAGE_NAME}_FOUND TRUE)
+set(fdcg_wanted ${${CMAKE_FIND_PACKAGE_NAME}_FIND_COMPONENTS})
+
+foreach(component IN LISTS fdcg_wanted)
+  if(component MATCHES "^(runtime|tools|bake)$" AND EXISTS "${CMAKE_CURRENT_LIST_DIR}/fdcg-${component}.cmake")
+    set(${CMAKE_FIND_PACKAGE_NAME}_${component}_FOUND TRUE)
+  elseif(${CMAKE_FIND_PACKAGE_NAME}_FIND_REQUIRED_${component})
+    set(${CMAKE_FIND_PACKAGE_NAME}_FOUND FALSE)
+    set(${CMAKE_FIND_PACKAGE_NAME}_NOT_FOUND_MESSAGE
+        "this installation of fdcg has no component '${component}' (built with FDCG_RUNTIME_ONLY?)")
+    return()
+  endif()
+endforeach()
+
+include("${CMAKE_CURRENT_LIST_DIR}/fdcg-runtime.cmake")
+# It needs nothing of C++ but the compiler: programs in C link it as C.
+get_target_property(fdcg_configurations fdcg::runtime IMPORTED_CONFIGURATIONS)
+foreach(configuration IN LISTS fdcg_configurations)
+  set_target_properties(fdcg::runtime PROPERTIES IMPORTED_LINK_INTERFACE_LANGUAGES_${configuration} C)
+endforeach()
+if(EXISTS "${CMAKE_CURRENT_LIST_DIR}/fdcg-tools.cmake" AND NOT CMAKE_CROSSCOMPILING)
+  include("${CMAKE_CURRENT_LIST_DIR}/fdcg-tools.cmake")
+endif()
+if("bake" IN_LIST fdcg_wanted)
+  find_dependency(Threads)
+  find_dependency(OpenSSL COMPONENTS Crypto)
+  find_dependency(draco)
+  find_dependency(OpenMesh CONFIG)
+  include("${CMAKE_CURRENT_LIST_DIR}/fdcg-bake.cmake")
+endif()
+include("${CMAKE_CURRENT_LIST_DIR}/FdcgAddGraph.cmake")

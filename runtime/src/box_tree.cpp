@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "box_tree.hpp"
+
+#include "lanes.hpp"
+
+namespace fdcg {
+
+BoxTree::BoxTree(uint32_t nodes)
+    : leaves(nodes / FDCG_LEAF_NODES + (nodes % FDCG_LEAF_NODES != 0 ? 1 : 0)), levels(0), records(0) {
+  uint32_t count = leaves;
+  do {
+    count = count / FDCG_TREE_WAYS + (count % FDCG_TREE_WAYS != 0 ? 1 : 0);
+    size[levels++] = count;
+  } while (count > 1);
+  for (int level = levels - 1; level >= 0; --level) {
+    first[level] = records;
+    records += size[level];
+  }
+}
+
+uint32_t touched_boxes(const fdcg_box8& boxes, const TreeWay& way, float limit, float (&entry)[FDCG_TREE_WAYS]) {
+  Lanes first = Lanes::all(0), last = Lanes::all(limit);
+  for (int k = 0; k < 3; ++k) {
+    const bool is_backwards = way.per_way[k] < 0;
+    const float start = (boxes.origin[k] - way.from[k]) * way.per_way[k];
+    const Lanes cell = Lanes::all(tree_cell(boxes.exponent[k]) * way.per_way[k]);
+    const Lanes near_cells = Lanes::of(is_backwards ? boxes.high[k] : boxes.low[k]);
+    const Lanes far_cells = Lanes::of(is_backwards ? boxes.low[k] : boxes.high[k]);
+    first = greater(Lanes::all(start - way.grow[k]) + cell * near_cells, first);
+    last = lesser(Lanes::all(start + way.grow[k]) + cell * far_cells, last);
+  }
+  first.store(entry);
+  return where_at_most(first, last);
+}
+
+void squared_distances(const fdcg_box8& boxes, const float (&point)[3], float (&distance2)[FDCG_TREE_WAYS]) {
+  const Lanes none = Lanes::all(0);
+  Lanes sum = none;
+  for (int k = 0; k < 3; ++k) {
+    const Lanes cell = Lanes::all(tree_cell(boxes.exponent[k])), start = Lanes::all(boxes.origin[k] - point[k]);
+    const Lanes below = start + cell * Lanes::of(boxes.low[k]), above = -(start + cell * Lanes::of(boxes.high[k]));
+    const Lanes gap = greater(greater(below, above), none);
+    sum = sum + gap * gap;
+  }
+  sum.store(distance2);
+}
+
+void WaitingBoxes::push(const Item& parent, uint32_t lanes, const float (&keys)[FDCG_TREE_WAYS]) {
+  const int first = count_;
+  for (uint32_t j = 0; lanes >> j != 0; ++j) {
+    if ((lanes >> j & 1) == 0) continue;
+    int at = count_++;
+    for (; at > first && items_[at - 1].key < keys[j]; --at)
+      items_[at] = items_[at - 1];
+    items_[at] = {keys[j], parent.index * FDCG_TREE_WAYS + j, parent.level - 1};
+  }
+}
+
+}  // namespace fdcg

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eight floats at once: two vectors of four where the processor has them, else one after another. Every operation is the IEEE
+// one on each lane, so that the bits do not depend on which.
+#pragma once
+
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector) && __has_builtin(__builtin_convertvector) && \
+    (defined(__SSE2__) || defined(__ARM_NEON)) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+#define FDCG_HAS_VECTORS 1
+#endif
+#endif
+#ifndef FDCG_HAS_VECTORS
+#define FDCG_HAS_VECTORS 0
+#endif
+
+namespace fdcg {
+
+inline constexpr uint32_t kLanes = 8;
+
+#if FDCG_HAS_VECTORS
+
+struct Lanes {
+  using Floats = float __attribute__((vector_size(16)));
+  using Words = int32_t __attribute__((vector_size(16)));
+  using Halves = uint16_t __attribute__((vector_size(16)));
+  using Bytes = uint8_t __attribute__((vector_size(16)));
+
+  Floats low, high;
+
+  static Lanes all(float x) { return {Floats{x, x, x, x}, Floats{x, x, x, x}}; }
+  static Lanes of(const uint8_t (&numbers)[kLanes]) {
+    Bytes bytes = {};
+    memcpy(&bytes, numbers, sizeof numbers);
+    const Bytes none = {};
+    const Halves halves =
+        reinterpret_cast<Halves>(__builtin_shufflevector(bytes, none, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
+    const Halves no_halves = {};
+    const Halves first = __builtin_shufflevector(halves, no_halves, 0, 8, 1, 9, 2, 10, 3, 11);
+    const Halves last = __builtin_shufflevector(halves, no_halves, 4, 12, 5, 13, 6, 14, 7, 15);
+    return {__builtin_convertvector(reinterpret_cast<Words>(first), Floats),
+            __builtin_convertvector(reinterpret_cast<Words>(last), Floats)};
+  }
+  void store(float (&to)[kLanes]) const { memcpy(to, this, sizeof to); }
+
+  friend Lanes operator+(Lanes a, Lanes b) { return {a.low + b.low, a.high + b.high}; }
+  friend Lanes operator*(Lanes a, Lanes b) { return {a.low * b.low, a.high * b.high}; }
+  friend Lanes operator-(Lanes a) { return {-a.low, -a.high}; }
+#if defined(__SSE2__)  // these instructions give b too where the two compare equal
+  friend Lanes greater(Lanes a, Lanes b) {
+    return {__builtin_ia32_maxps(a.low, b.low), __builtin_ia32_maxps(a.high, b.high)};
+  }
+  friend Lanes lesser(Lanes a, Lanes b) {
+    return {__builtin_ia32_minps(a.low, b.low), __builtin_ia32_minps(a.high, b.high)};
+  }
+#else
+  friend Lanes greater(Lanes a, Lanes b) {
+    return {a.low > b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
+  }
+  friend Lanes lesser(Lanes a, Lanes b) {
+    return {a.low < b.low ? a.low : b.low, a.high < b.high ? a.high : b.high};
+  }
+#endif
+  // A bit for each lane in which a <= b.
+  friend uint32_t where_at_most(Lanes a, Lanes b) {
+    const Words low = a.low <= b.low, high = a.high <= b.high;
+#if defined(__SSE2__)
+    return static_cast<uint32_t>(__builtin_ia32_movmskps(reinterpret_cast<Floats>(low)) |
+                                 __builtin_ia32_movmskps(reinterpret_cast<Floats>(high)) << 4);
+#else
+    const Words bits = (low & Words{1, 2, 4, 8}) | (high & Words{16, 32, 64, 128});
+    return static_cast<uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
+#endif
+  }
+};
+
+#else
+
+struct Lanes {
+  float lane[kLanes];
+
+  template <class Operation>
+  static Lanes each(Operation operation) {
+    Lanes r;
+    for (uint32_t j = 0; j < kLanes; ++j)
+      r.lane[j] = operation(j);
+    return r;
+  }
+  static Lanes all(float x) {
+    return each([x](uint32_t) { return x; });
+  }
+  static Lanes of(const uint8_t (&numbers)[kLanes]) {
+    return each([&numbers](uint32_t j) { return static_cast<float>(numbers[j]); });
+  }
+  void store(float (&to)[kLanes]) const { memcpy(to, lane, sizeof to); }
+
+  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return each([&](uint32_t j) { return a.lane[j] + b.lane[j]; });
+  }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) {
+    return each([&](uint32_t j) { return a.lane[j] * b.lane[j]; });
+  }
+  friend Lanes operator-(const Lanes& a) {
+    return each([&](uint32_t j) { return -a.lane[j]; });
+  }
+  friend Lanes greater(const Lanes& a, const Lanes& b) {
+    return each([&](uint32_t j) { return a.lane[j] > b.lane[j] ? a.lane[j] : b.lane[j]; });
+  }
+  friend Lanes lesser(const Lanes& a, const Lanes& b) {
+    return each([&](uint32_t j) { return a.lane[j] < b.lane[j] ? a.lane[j] : b.lane[j]; });
+  }
+  friend uint32_t where_at_most(const Lanes& a, const Lanes& b) {
+    uint32_t bits = 0;
+    for (uint32_t j = 0; j < kLanes; ++j)
+      bits |= uint32_t{a.lane[j] <= b.lane[j]} << j;
+    return bits;
+  }
+};
+
+#endif
+
+}  // namespace fdcg
