@@ -7,8 +7,8 @@
 //   near             sphere and box say that the tick's way may have met it: fdcg_step, in the object's frame
 //   touched          fdcg_step
 //
-// Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so the
-// skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
+// Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
+// the skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
 // section 4), so it can be made anew whenever it is wanted.
 #include "reach.hpp"
 #include "scene_memory.hpp"
@@ -17,12 +17,13 @@ namespace fdcg {
 
 namespace {
 
-// An object is near when a finger could reach it within this many ticks at the speeds of this tick (a look in so many), and is no
-// further from its bounding sphere than the sphere's radius (where a finger jumps, not everything is near).
+// An object is near when a finger could reach it within this many ticks at the speeds of this tick (a look in so many), and is
+// no further from its bounding sphere than the sphere's radius (where a finger jumps, not everything is near).
 constexpr double kTicksAhead = 64;
 // After as many steps in which it reached none of the objects near by, the finger looks whether they still are.
 constexpr uint32_t kIdleSteps = 64;
-// What the rounding of distances in the world can amount to, as a share of the coordinates; and the same of the distance itself.
+// What the rounding of distances in the world can amount to, as a share of the coordinates; and the same of the distance
+// itself.
 constexpr double kPlaceRounding = 64 * RealLimits<double>::kEpsilon, kHoldBack = 1 - 0x1p-30;
 
 double larger(double a, double b) {
@@ -64,10 +65,9 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
   object.now = latest;
   scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
   const double moved = norm(latest.centre - object.last.centre);
-  const double in_scan[4] = {latest.centre.x, latest.centre.y, latest.centre.z,
-                             object.is_used != 0 && object.is_enabled != 0
-                                 ? larger(latest.radius, object.last.radius) + moved
-                                 : kNoReach};
+  const double in_scan[4] = {
+      latest.centre.x, latest.centre.y, latest.centre.z,
+      object.is_used != 0 && object.is_enabled != 0 ? larger(latest.radius, object.last.radius) + moved : kNoReach};
   for (uint32_t array = 0; array < 4; ++array)
     scene.scan(array)[index] = in_scan[array];
   scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
@@ -75,7 +75,8 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
 
 namespace {
 
-// ---- which objects can have been met -----------------------------------------------------------------------------------------
+// ---- which objects can have been met
+// -----------------------------------------------------------------------------------------
 
 // One finger's tick.
 struct Tick {
@@ -291,7 +292,8 @@ inline bool is_out_of_reach(const fdcg_scene& scene, const Finger& finger, World
   return left > 0 && dot(way, way) < left * left * kHoldBack && finger.look == scene.look;
 }
 
-// ---- stepping ----------------------------------------------------------------------------------------------------------------
+// ---- stepping
+// ----------------------------------------------------------------------------------------------------------------
 
 void store(World from, double (&to)[3]) {
   to[0] = from.x;
