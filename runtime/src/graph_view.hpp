@@ -77,13 +77,17 @@ class NodeRef {
       const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
       return {vec(stored.normal), stored.offset};
     }
-    const Edge<Real> edge = graph_->edge(*this, k);
-    return derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
+    return derived_plane(k);
   }
 
   [[nodiscard]] const unsigned char* block() const { return block_; }
 
  private:
+  // Out of line: every rule asks for planes, and each would hold a copy.
+  [[nodiscard, gnu::noinline]] Plane<Real> derived_plane(uint32_t k) const {
+    const Edge<Real> edge = graph_->edge(*this, k);
+    return derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
+  }
   [[nodiscard]] const Record& record() const { return *reinterpret_cast<const Record*>(block_); }
 
   const GraphView<Real>* graph_;
