@@ -32,20 +32,41 @@ inline void consider_fan_entry(const GraphView<Real>& graph, const FanEntry& ent
 
 // Looks at every edge of the corner.
 template <class Real>
-inline Steepest<Real> steepest_of_all(const GraphView<Real>& graph, CornerRef<Real> corner, Vec3<Real> t) {
+inline Steepest<Real> steepest_of_all(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
+  const GraphView<Real>& graph = walk.graph;
+  walk.spend(kFanWork * corner.fan_count());
   Steepest<Real> best;
   graph.for_each_in_fan(corner, [&](const FanEntry& entry) { consider_fan_entry(graph, entry, t, best); });
   return best;
 }
 
-// Boxes of a busy corner's tree that one search may open; what it has found by then is taken. Some 20 suffice on a cone of
-// 10,000 sides; only fans made to defeat the boxes come near.
-inline constexpr int kMaxFanVisits = 256;
+// What one search of a busy corner's tree may spend; what it has found by then is taken. Cones, crowns and needles of 10,000
+// sides take 100 to 300.
+inline constexpr uint32_t kFanSearchWork = 600;
+
+// The most that t.u can be for a unit vector u of the box, or more: the lesser of what the box alone allows, and, since u is no
+// longer than 1, of sup over the box of t.u - (|t|/2) (|u|^2 - 1), which is tight where u can point along t but for a little.
+template <class Real, class FanBox>
+inline Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
+  const Vec3<Real> centre = vec(box.centre);
+  const Real along_centre = dot(t, centre), weight = length / 2;
+  Real in_box = along_centre, in_ball = along_centre + weight * (1 - dot(centre, centre));
+  for (const auto& stored : box.axis) {  // u = centre + s axis, |s| <= 1
+    const Vec3<Real> axis = vec(stored);
+    const Real along = dot(t, axis), off = dot(centre, axis), size2 = dot(axis, axis);
+    in_box += absolute(along);
+    const Real top = along - length * off, limit = length * size2;  // of the parabola in s: at top / limit
+    const Real s = top >= limit ? Real(1) : top <= -limit ? Real(-1) : top / limit;
+    in_ball += s * (top - weight * size2 * s);
+  }
+  return in_ball < in_box ? in_ball : in_box;
+}
 
 // Branch and bound over a busy corner's tree: a box whose best direction reaches no further than what is found, but for
-// rounding, is left out.
+// rounding, is left out. So one of several directions that tie is taken: at the apex of a regular fan they all do.
 template <class Real>
-inline Steepest<Real> steepest_by_tree(const GraphView<Real>& graph, CornerRef<Real> corner, Vec3<Real> t) {
+inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
+  const GraphView<Real>& graph = walk.graph;
   struct Waiting {
     Real bound;
     uint32_t box;  // within its level
@@ -53,19 +74,15 @@ inline Steepest<Real> steepest_by_tree(const GraphView<Real>& graph, CornerRef<R
   };
   const ImplicitTree layout(corner.fan_count(), FDCG_LEAF_FAN);
   const auto* boxes = graph.fan_boxes + corner.first_fan_box();
-  const Real rounding = 16 * RealLimits<Real>::kEpsilon * norm1(t);
-  const auto bound_of = [&](int level, uint32_t i) {
-    const auto& box = boxes[layout.first[level] + i];
-    Real bound = dot(vec(box.centre), t) - rounding;
-    for (const auto& axis : box.axis)
-      bound += absolute(dot(vec(axis), t));
-    return bound;
-  };
+  const Real tie = 64 * RealLimits<Real>::kEpsilon * norm1(t);  // the rounding of boxes and directions is under half of it
+  const Real length = norm(t);
+  const auto bound_of = [&](int level, uint32_t i) { return most_along(boxes[layout.first[level] + i], t, length) - tie; };
   Steepest<Real> best;
   Waiting stack[kMaxLevels + 2];
   int waiting = 0;
   stack[waiting++] = {bound_of(layout.levels - 1, 0), 0, layout.levels - 1};
-  for (int visits = 0; waiting > 0 && visits < kMaxFanVisits; ++visits) {
+  uint32_t work = 0;
+  while (waiting > 0 && work < kFanSearchWork) {
     const Waiting next = stack[--waiting];
     if (!(next.bound > best.reach)) continue;
     if (next.level == 0) {
@@ -73,8 +90,10 @@ inline Steepest<Real> steepest_by_tree(const GraphView<Real>& graph, CornerRef<R
       const uint32_t count = corner.fan_count() - first < FDCG_LEAF_FAN ? corner.fan_count() - first : FDCG_LEAF_FAN;
       for (uint32_t i = first; i < first + count; ++i)
         consider_fan_entry(graph, graph.fan_entry(corner, i), t, best);
+      work += kFanWork * count;
       continue;
     }
+    work += 2 * kFanBoxWork;
     const int level = next.level - 1;
     const uint32_t child = next.box * 2;
     const bool has_two = child + 1 < layout.size[level];
@@ -89,6 +108,7 @@ inline Steepest<Real> steepest_by_tree(const GraphView<Real>& graph, CornerRef<R
       stack[waiting++] = first;
     }
   }
+  walk.spend(work);
   return best;
 }
 
@@ -98,8 +118,7 @@ template <class Real>
 inline Decision corner_rule(Walk<Real>& walk) {
   const CornerRef<Real> corner = walk.graph.corner(walk.active.index);
   const Vec3<Real> t = walk.hip - corner.point();
-  const Steepest<Real> best =
-      corner.is_busy() ? steepest_by_tree(walk.graph, corner, t) : steepest_of_all(walk.graph, corner, t);
+  const Steepest<Real> best = corner.is_busy() ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
   if (best.feature.state == FDCG_FACE) {
     return go_to(walk.side(walk.graph.node(best.feature.index)) < 0 ? best.feature : kFree);
   }

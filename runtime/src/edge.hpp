@@ -18,7 +18,8 @@ struct EdgeSides {
 };
 
 template <class Real>
-inline EdgeSides<Real> edge_sides(const Walk<Real>& walk, ConnectionRef<Real> connection) {
+inline EdgeSides<Real> edge_sides(Walk<Real>& walk, ConnectionRef<Real> connection) {
+  walk.spend(kEdgeWork);
   EdgeSides<Real> s = {};
   const int faces = connection.type() == FDCG_BOUNDARY ? 1 : 2;
   for (int k = 0; k < faces; ++k) {

@@ -79,6 +79,7 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
 template <class Real>
 inline Decision face_rule(Walk<Real>& walk) {
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
+  walk.spend(kSideWork * node.side_count());
   return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.side(node), walk.god_object));
 }
 

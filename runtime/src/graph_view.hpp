@@ -194,20 +194,22 @@ inline Real plane_rounding_bound(const GraphView<Real>& graph, Vec3<Real> x) {
 
 // The sign of x against the plane through the first three corners of an exactly planar node.
 template <class Real>
-[[gnu::noinline]] int exact_side_sign(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x) {
+[[gnu::noinline]] int exact_side_sign(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, uint32_t* work_left) {
   Vec3<double> corner[3];
   for (uint32_t k = 0; k < 3; ++k)
     corner[k] = widen(graph.corner_point(node.corner(k)));
-  return orient3d_sign(corner[0], corner[1], corner[2], widen(x));
+  return orient3d_sign(corner[0], corner[1], corner[2], widen(x), work_left);
 }
 
 // side(x) of the contact model: the distance of x from the face's plane, with its exact sign where the face is exactly planar.
-// `bound` is plane_rounding_bound of x. One expression wherever it is asked, so that no two rules disagree.
+// `bound` is plane_rounding_bound of x. One expression wherever it is asked, so that no two rules disagree. An exact sign
+// spends from *work_left; null: not counted.
 template <class Real>
-[[gnu::always_inline]] inline Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, Real bound) {
+[[gnu::always_inline]] inline Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, Real bound,
+                                           uint32_t* work_left) {
   const Real distance = node.plane().distance(x);
   if (absolute(distance) > bound || node.is_inexact()) return distance;
-  const int sign = exact_side_sign(graph, node, x);
+  const int sign = exact_side_sign(graph, node, x, work_left);
   if (sign == 0) return 0;
   if (sign > 0) return distance > 0 ? distance : RealLimits<Real>::kTiny;
   return distance < 0 ? distance : -RealLimits<Real>::kTiny;

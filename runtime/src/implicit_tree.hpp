@@ -14,10 +14,11 @@ constexpr int kMaxLevels = 32;
 struct ImplicitTree {
   int levels = 0;
   uint64_t boxes = 0;
-  uint64_t first[kMaxLevels] = {};  // box index of each level's first box
-  uint64_t size[kMaxLevels] = {};   // boxes of each level
+  uint64_t first[kMaxLevels];  // box index of each level's first box
+  uint64_t size[kMaxLevels];   // boxes of each level
 
   ImplicitTree(uint32_t items, uint32_t per_leaf) {
+    first[0] = size[0] = 0;
     if (items == 0) return;
     uint64_t count = (uint64_t{items} + per_leaf - 1) / per_leaf;
     for (;; count = (count + 1) / 2) {

@@ -3,6 +3,8 @@
 
 namespace fdcg {
 
+#if FDCG_WITH_MESSAGES
+
 Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : error_(error), status_(status) {
   if (error_ == nullptr) return;
   error_->status = status;
@@ -70,5 +72,20 @@ Message& Message::real(double value) {
   }
   return *this;
 }
+
+#else
+
+Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : status_(status) {
+  if (error == nullptr) return;
+  error->status = status;
+  error->offset = offset;
+  const char* words = fdcg_status_text(status);
+  uint32_t length = 0;
+  for (; words[length] != '\0' && length + 1 < sizeof error->message; ++length)
+    error->message[length] = words[length];
+  error->message[length] = '\0';
+}
+
+#endif
 
 }  // namespace fdcg

@@ -19,12 +19,6 @@
 namespace fdcg {
 namespace {
 
-// Changes of state that one step may make. A jump across a strip of needles needs some 1,500, a hand's motion a handful.
-#ifndef FDCG_MAX_TRANSITIONS
-#define FDCG_MAX_TRANSITIONS 2048
-#endif
-constexpr uint32_t kMaxTransitions = FDCG_MAX_TRANSITIONS;
-
 // The features visited since the god-object last came nearer to the HIP. To meet one of them again is to go round in a circle
 // that only rounding can make: the step rests there (contact-model section 1).
 template <class Real>
@@ -102,7 +96,8 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
       ++progress.transitions;
     }
     if (trail.has_met_again(walk)) return progress;
-    if (progress.transitions >= kMaxTransitions) {
+    walk.spend(kTransitionWork);
+    if (walk.work_left == 0) {
       progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
       return progress;
     }
@@ -113,9 +108,13 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
 // overflow before it is found out.
 constexpr double kFarthestHip_m = 1e110;
 
+// A coordinate smaller than this share of the extent is zero: no hand can tell, and exact signs need not look at bits that
+// stand further apart than a few machine words hold.
+constexpr double kLeastShare = 0x1p-70;
+
 // Doubles rounded to floats. Never inlined: GCC 12's basic-block vectoriser (-O2) drops the rounding of a double to float and
 // back where it sees both.
-[[gnu::noinline]] void round_to(const double (&from)[3], Vec3<float>* to) {
+[[gnu::noinline, maybe_unused]] void round_to(const double (&from)[3], Vec3<float>* to) {
   *to = {static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2])};
 }
 inline void round_to(const double (&from)[3], Vec3<double>* to) {
@@ -136,8 +135,11 @@ inline bool to_local(const fdcg_header& header, const double hip_object_m[3], Ve
     for (double& coordinate : local)
       coordinate /= unit_m;
   }
-  for (int k = 0; k < 3; ++k)
-    local[k] -= header.origin[k];
+  const double least = kLeastShare * header.extent;
+  for (int k = 0; k < 3; ++k) {
+    const double from_origin = local[k] - header.origin[k];
+    local[k] = absolute(from_origin) < least ? 0 : from_origin;
+  }
   if (!is_within(local, RealLimits<Real>::kFar)) return false;
   round_to(local, hip);
   return true;
@@ -261,7 +263,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     FaceMove<Real> move;
     if (is_on_face) {
       const NodeRef<Real> node = graph.node(contact->feature);
-      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound), god_object);
+      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound, nullptr), god_object);
     }
     if (is_on_face && (move.kind == Kind::rests || move.kind == Kind::slides)) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
@@ -275,7 +277,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
                          bound,
                          god_object,
                          {contact->state, contact->feature},
-                         {contact->seat_state, contact->seat_feature}},
+                         {contact->seat_state, contact->seat_feature},
+                         kRuleWork},
                         is_on_face ? &move : nullptr, params, contact, result);
     }
     store(hip, contact->hip);

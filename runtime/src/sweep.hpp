@@ -59,6 +59,8 @@ class Sweep {
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
  private:
+  static constexpr uint32_t kLastBit = 63;
+
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
       if (*work_left_ == 0) return false;
@@ -172,11 +174,11 @@ class Sweep {
     if (start_side < (is_inexact ? -slab_ : Real(0))) return;
     const Real fraction = start_side > 0 ? start_side / (start_side - end_side) : Real(0);
     if (!is_before_best(fraction, n) || is_left_out(n, node)) return;
-    bool met_exactly = false;
+    uint64_t met_exactly = 0;
     if (!passes_inside(node, &met_exactly)) return;
     best_.fraction = fraction;
     best_.node = n;
-    best_.feature = met_exactly ? on_rim(node, point_at(fraction)) : Feature{FDCG_FACE, n};
+    best_.feature = met_exactly ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
   }
 
   [[nodiscard]] bool is_before_best(Real fraction, uint32_t n) const {
@@ -184,8 +186,7 @@ class Sweep {
   }
 
   [[nodiscard]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
-    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kExactWork);
-    return side_of(graph_, node, x, bound);
+    return side_of(graph_, node, x, bound, work_left_);
   }
 
   [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
@@ -211,28 +212,33 @@ class Sweep {
     const Real bound = 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way_)) + RealLimits<Real>::kTiny;
     if (det > bound) return 1;
     if (det < -bound) return -1;
-    spend(work_left_, kExactWork);
-    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end));
+    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
 
-  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, bool* met_exactly) const {
+  // A bit for a side; the last one for all beyond.
+  static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
+
+  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, uint64_t* met_exactly) const {
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
       const int sign = orientation(start, end);
       if (sign > 0) return false;
-      if (sign == 0) *met_exactly = true;
+      if (sign == 0) *met_exactly |= bit_of(k);
       start = end;
     }
     return true;
   }
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it.
-  Feature on_rim(NodeRef<Real> node, Vec3<Real> point) const {
+  Feature on_rim(NodeRef<Real> node, uint64_t met_exactly, Vec3<Real> point) const {
     Feature nearest = kFree;
     Real nearest_outside = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0) continue;
+      if ((met_exactly & bit_of(k)) == 0) continue;
+      if (k >= kLastBit &&
+          orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0)
+        continue;
       const EdgeLine<Real> line(graph_.edge(node, k));
       const Real u = line.parameter(point);
       const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));

@@ -5,6 +5,7 @@
 
 #include "friction.hpp"
 #include "graph_view.hpp"
+#include "work.hpp"
 
 namespace fdcg {
 
@@ -25,9 +26,11 @@ struct Walk {
   Real hip_bound;  // plane_rounding_bound of hip
   Vec3<Real> god_object;
   Feature active;
-  Feature seat;  // the edge or vertex on which the god-object was last placed and still is; kFree: none
+  Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
+  uint32_t work_left;  // for the rules, see work.hpp
 
-  [[nodiscard]] Real side(NodeRef<Real> node) const { return side_of(graph, node, hip, hip_bound); }
+  [[nodiscard]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
+  void spend(uint32_t units) { fdcg::spend(&work_left, units); }
 
   // A move on a face's inside or along an edge.
   void place(Vec3<Real> point, Feature new_seat) {

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the free-space sweep counts, so that it ends in bounded time whatever the mesh: units of some 10 instructions.
+// What a step counts, so that it ends in bounded time whatever the mesh: units of some 10 instructions. The rules that move the
+// god-object over the surface have one budget, the sweeps through free space another; the step goes on until one is spent, and
+// then a little further, to the end of the piece of work at hand.
 #pragma once
 
 #include <stdint.h>
 
 namespace fdcg {
 
-// Of one step, all its sweeps together: some 15,000 instructions, 3 microseconds at 2.8 GHz.
+// Of one step, all its rules together: some 15,000 instructions, 60 changes of state.
+#ifndef FDCG_RULE_WORK
+#define FDCG_RULE_WORK 1500
+#endif
+inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
+
+// Of one step, all its sweeps together: some 15,000 instructions.
 #ifndef FDCG_SWEEP_WORK
 #define FDCG_SWEEP_WORK 1500
 #endif
@@ -15,7 +23,13 @@ inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 inline constexpr uint32_t kBoxWork = 20;         // eight boxes tested, and put in order
 inline constexpr uint32_t kNodeWork = 2;         // one node fetched, one end of the way against its plane
 inline constexpr uint32_t kOrientationWork = 4;  // one side's edge against the way, where rounding cannot matter
-inline constexpr uint32_t kExactWork = 8;        // ... and where it does
+inline constexpr uint32_t kExactWork = 100;      // ... and where it does
+inline constexpr uint32_t kLongExactWork = 350;  // ... with coordinates of very different sizes
+inline constexpr uint32_t kTransitionWork = 10;  // one change of state
+inline constexpr uint32_t kSideWork = 4;         // one side of a face that the god-object slides on
+inline constexpr uint32_t kEdgeWork = 15;        // the rule of an edge
+inline constexpr uint32_t kFanWork = 8;          // one edge of a corner and the face beside it
+inline constexpr uint32_t kFanBoxWork = 5;       // one box of a busy corner's tree
 
 // Takes `units` off what is left; at nothing left stays there.
 inline void spend(uint32_t* work_left, uint32_t units) {

@@ -126,22 +126,22 @@ TEST_CASE("no face reaches into a clear ball") {
 TEST_CASE("copied and reset contacts go their own way with their ball") {
   const CompiledMesh mesh(ico_sphere(3));
   Contact contact(mesh.view(), with_skips(0));
-  contact.step(0, 0, 1.5);
-  contact.step(0, 0, 1.499);
+  contact.step(0.01, 0.02, 1.5);
+  contact.step(0.01, 0.02, 1.499);
   REQUIRE(contact.state.clear_ball.radius2 > 0);
   Contact copy = contact;
-  copy.step(0, 0, 0.9);
+  copy.step(0.01, 0.02, 0.9);
   CHECK(copy.result.state != FDCG_FREE);
-  contact.step(0, 0, 1.49);
+  contact.step(0.01, 0.02, 1.49);
   CHECK(contact.result.state == FDCG_FREE);
   CHECK(contact.state.clear_ball.radius2 > 0);
   contact.step(NAN, 0, 0);
   CHECK(contact.result.flags == FDCG_RESULT_NON_FINITE);
   contact.state.started = 0;
-  contact.step(0, 0, 0.5);  // starts inside
+  contact.step(0.01, 0.02, 0.5);  // starts inside
   CHECK(contact.state.clear_ball.radius2 == 0);
-  contact.step(0, 0, 1.5);
-  contact.step(0, 0, 0.9);
+  contact.step(0.01, 0.02, 1.5);
+  contact.step(0.01, 0.02, 0.9);
   CHECK(contact.result.state != FDCG_FREE);
 }
 

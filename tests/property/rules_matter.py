@@ -13,12 +13,13 @@ import shutil
 import subprocess
 import sys
 
-FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fno-exceptions", "-fno-rtti"]
+FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fno-exceptions", "-fno-rtti",
+         "-DFDCG_RULE_WORK=1000000000", "-DFDCG_SWEEP_WORK=1000000000"]
 
 # (tag of the test, what is taken out, file, the text as it stands, what replaces it)
 MUTANTS = [
     ("met-again", "a feature met again is a rest", "servo_step.cpp",
-     "if (trail.has_met_again(walk)) return transitions;", ""),
+     "if (trail.has_met_again(walk)) return progress;", ""),
     ("crossing", "crossed means on or beyond, and further out than before: the paper's change of sign instead", "face.hpp",
      "if (!(s1 > s0)) continue;", "if (!(s1 * s0 < 0)) continue;"),
     ("crossing", "... or from not beyond to beyond instead", "face.hpp",
@@ -33,22 +34,23 @@ MUTANTS = [
     ("exact-feature", "an edge met exactly becomes active, not one of its faces", "sweep.hpp",
      "best_.feature = met_exactly ? on_rim(", "best_.feature = false ? on_rim("),
     ("watertight", "exact orientations", "exact_orient.cpp",
-     "return exact_sign(a, b, c, d);", "return det > 0 ? 1 : (det < 0 ? -1 : 0);"),
+     "return exact_sign({a, b, c, d}, work_left);", "return det > 0 ? 1 : (det < 0 ? -1 : 0);"),
     ("leave-out", "the faces at the feature just left are left out", "sweep.hpp",
      "|| is_left_out(n, node)) return;", ") return;"),
     ("no-distance-tolerance", "no distance tolerance where contact was lost", "sweep.hpp",
      "|| is_left_out(n, node)) return;", "|| is_left_out(n, node) || (left_.state != FDCG_FREE && fraction < Real(1e-4))) return;"),
-    ("slip-at-once", "dynamic friction holds in the tick in which slip begins", "walk.hpp",
-     "walk.is_slipping = true;", "walk.is_slipping = true; return walk.friction.mu_static * load;"),
-    ("stick-factor", "sticking again only below the circle by a factor", "walk.hpp",
-     "if (gap <= kStickAgain * dynamic_gap)", "if (gap <= dynamic_gap + gap_rounding(walk.god_object, gap))"),
+    ("slip-at-once", "dynamic friction holds in the tick in which slip begins", "friction.hpp",
+     "is_slipping = true;", "is_slipping = true; return {false, mu_static * load};"),
+    ("stick-factor", "sticking again only below the circle by a factor", "friction.hpp",
+     "if (gap2 <= square(kStickAgain * gap))",
+     "if (gap2 <= square(gap + RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap)))"),
     ("slip-flag", "the slip flag survives a change of feature", "walk.hpp",
      "const Feature edge = {FDCG_EDGE, connection_index};",
-     "walk.is_slipping = false; const Feature edge = {FDCG_EDGE, connection_index};"),
+     "walk.friction.is_slipping = false; const Feature edge = {FDCG_EDGE, connection_index};"),
     ("slip-flag", "a tick that ends free resets the slip flag", "servo_step.cpp",
      "(!is_free || is_undecided) && walk.friction.is_slipping", "walk.friction.is_slipping"),
-    ("rest-untouched", "at rest the god-object is not placed anew", "face.hpp",
-     "if (!(allowed < gap)) return rest();", "if (!(allowed <= gap)) return rest();"),
+    ("rest-untouched", "at rest the god-object is not placed anew", "friction.hpp",
+     "return {!is_slipping || gap2 <= square(gap + rounding), gap};", "return {false, is_slipping ? gap : root(gap2)};"),
     ("lands-on-vertex", "a god-object that lands on an edge's end is on the vertex", "walk.hpp",
      "if (!(from_end <= line.end_tolerance)) continue;", "if (!(from_end < 0)) continue;"),
     ("steeper-face", "behind both faces: the nearer plane", "edge.hpp",

@@ -74,3 +74,32 @@ TEST_CASE("orientation of points on one line or in one plane is zero") {
   REQUIRE(fdcg::orient3d_sign({0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0.3, 0.4, 1}) == 0);
   REQUIRE(fdcg::orient3d_sign({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5e-300}) == 1);
 }
+
+TEST_CASE("orientation is exact for coordinates of every size a double has, up to 1e70") {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  int decided[3] = {};
+  for (const int spread : {4, 40, 100, 300, 1050}) {
+    std::uniform_int_distribution<int> exponent(-spread, 0);
+    const auto coordinate = [&] { return std::ldexp(uniform(random), exponent(random)); };
+    const auto point = [&] { return Point{coordinate(), coordinate(), coordinate()}; };
+    for (const double size : {1.0, 1e70}) {
+      for (int i = 0; i < 400; ++i) {
+        Point a = point(), b = point(), c = point(), d = point();
+        if (i % 4 == 1) d = {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
+        if (i % 4 == 2) c = {a.x + b.x, a.y + b.y, a.z + b.z}, d = {a.x - b.x, a.y - b.y, a.z - b.z};
+        if (i % 4 == 3) a.z = b.z = c.z = d.z = coordinate();
+        for (Point* p : {&a, &b, &c, &d})
+          *p = {size * p->x, size * p->y, size * p->z};
+        const int expected = rational_sign(a, b, c, d);
+        INFO("spread " << spread << ", size " << size << ", case " << i);
+        REQUIRE(fdcg::orient3d_sign(a, b, c, d) == expected);
+        REQUIRE(fdcg::orient3d_sign(a, c, b, d) == -expected);
+        ++decided[expected + 1];
+      }
+    }
+  }
+  CHECK(decided[0] > 100);
+  CHECK(decided[1] > 100);
+  CHECK(decided[2] > 100);
+}

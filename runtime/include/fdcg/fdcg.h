@@ -189,7 +189,7 @@ typedef struct fdcg_contact {
   uint32_t seat_feature;
   uint32_t slipping; /* 1: dynamic friction holds */
   uint64_t non_finite_ticks;
-  uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_MAX_TRANSITIONS */
+  uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_RULE_WORK */
   uint64_t sweep_bound_ticks;      /* ... because of FDCG_SWEEP_WORK */
   fdcg_carried_sweep sweep;
   fdcg_clear_ball clear_ball;

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How large the runtime is, and what it asks of the machine. Sizes are code and constants (.text, .rodata) of the library's
+objects. The core is what opens, sweeps, steps and moves scenes; full verification and the words of messages are counted apart."""
+import os
+import re
+import subprocess
+import unittest
+
+from anywhere import ROOT, RUNTIME, AnywhereCase
+
+SUPPORT = {"hooks", "map_file_none", "map_file_posix", "message", "params", "verify", "version"}
+
+# Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
+# does not hold yet.
+KB = 1024
+X86_BOTH = {"bar": 48 * KB, "limit": 96 * KB}
+X86_F64 = {"bar": 48 * KB, "limit": 60 * KB}
+M7_F32 = {"bar": 20 * KB, "limit": 28 * KB}
+
+COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
+# the C library's square root, and what GCC calls for what the processor has no instruction for (64-bit integers, doubles)
+ARM_CALLS = {"sqrt", "sqrtf"}
+
+
+class WeightCase(AnywhereCase):
+    def sections(self, tool, library):
+        """Code and constants by object."""
+        sizes, name = {}, None
+        for line in subprocess.run([tool, "-A", library], capture_output=True, check=True, text=True).stdout.splitlines():
+            if match := re.match(r"(\S+?)\.cpp\.o\S*\s", line):
+                name = match.group(1)
+                sizes[name] = 0
+            elif re.match(r"\.(text|rodata)", line):
+                sizes[name] += int(line.split()[1])
+        return sizes
+
+    def weigh(self, what, tool, library, bar, limit):
+        sizes = self.sections(tool, library)
+        core = sum(size for name, size in sizes.items() if name not in SUPPORT)
+        print(f"{what}: core {core} bytes (bar {bar}: {'holds' if core <= bar else 'does not hold'}), all {sum(sizes.values())}: "
+              + ", ".join(f"{name} {size}" for name, size in sorted(sizes.items(), key=lambda entry: -entry[1]) if size > 0))
+        self.assertGreater(sizes["servo_step"], 1000)
+        self.assertLessEqual(core, limit, f"{what}: {sizes}")
+
+    def library(self, name, *options):
+        folder = self.path(name)
+        self.run_program("cmake", "-S", str(ROOT), "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                         "-DFDCG_RUNTIME_ONLY=ON", "-DFDCG_BUILD_TESTS=OFF", *options)
+        self.run_program("cmake", "--build", folder)
+        return os.path.join(folder, "runtime", "libfdcg_runtime.a")
+
+
+class TextSize(WeightCase):
+    def test_x86_64_release(self):
+        self.weigh("x86-64, f64 and f32", "size", self.library("both"), **X86_BOTH)
+        self.weigh("x86-64, f64", "size", self.library("f64", "-DFDCG_WITH_F32=OFF", "-DFDCG_WITH_MESSAGES=OFF"), **X86_F64)
+
+    def test_cortex_m7_f32_built_for_size(self):
+        self.need("arm-none-eabi-g++", "arm-none-eabi-size")
+        library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_MESSAGES=OFF")
+        self.weigh("cortex-m7 -Os, f32", "arm-none-eabi-size", library, **M7_F32)
+
+
+class Symbols(WeightCase):
+    def lacking(self, tool, library):
+        """Names that the library uses and does not define."""
+        defined, used = set(), set()
+        for line in subprocess.run([tool, library], capture_output=True, check=True, text=True).stdout.splitlines():
+            if line.strip() and not line.endswith(":"):
+                kind, symbol = line.split()[-2:]
+                (used if kind == "U" else defined).add(symbol)
+        return used - defined
+
+    def test_on_a_board_only_the_compilers_own_calls_are_left(self):
+        self.need("arm-none-eabi-g++", "arm-none-eabi-nm")
+        for toolchain in ("cortex-m7", "cortex-m4f"):
+            lacking = self.lacking("arm-none-eabi-nm", self.cross_runtime(toolchain))
+            self.assertEqual(set(), {name for name in lacking - COMPILER_CALLS - ARM_CALLS if not name.startswith("__aeabi_")})
+
+    def test_without_files_the_library_asks_nothing_of_the_system(self):
+        lacking = self.lacking("nm", self.library("plain", "-DFDCG_WITH_FILES=OFF"))
+        self.assertEqual(set(), lacking - COMPILER_CALLS - {"_GLOBAL_OFFSET_TABLE_"})
+
+
+class Options(WeightCase):
+    """A library that leaves something out says so where it is asked for it."""
+
+    PROGRAM = """
+#include <stdio.h>
+#include "fdcg/fdcg.h"
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    fdcg_graph graph;
+    fdcg_error error;
+    const fdcg_status status = fdcg_open_file(argv[i], FDCG_VERIFY_FULL, &graph, &error);
+    printf("%d %s\\n", (int)status, status == FDCG_OK ? "opened" : error.message);
+    fdcg_close(&graph);
+  }
+  return 0;
+}
+"""
+
+    def said(self, name, *options):
+        library = self.library(name, *options)
+        program = self.path(name + "-program")
+        self.run_program("cc", "-std=c11", "-I", str(RUNTIME / "include"), self.write("open.c", self.PROGRAM), library, "-lm",
+                         "-o", program)
+        graphs = [self.path("f64.fdcg"), self.path("f32.fdcg"), self.write("none.fdcg", "nothing")]
+        mesh = str(RUNTIME / "examples" / "cube.obj")
+        self.fdcg("compile", mesh, "-q", "-o", graphs[0])
+        self.fdcg("compile", mesh, "-q", "--precision", "f32", "-o", graphs[1])
+        return self.run_program(program, *graphs).stdout.decode().splitlines()
+
+    def test_one_precision(self):
+        lines = self.said("f32", "-DFDCG_WITH_F64=OFF")
+        self.assertEqual("0 opened", lines[1])
+        self.assertRegex(lines[0], "^6 .*64-bit numbers, this library was built for 32-bit ones alone.*--precision f32")
+        lines = self.said("f64", "-DFDCG_WITH_F32=OFF")
+        self.assertEqual("0 opened", lines[0])
+        self.assertRegex(lines[1], "^6 .*32-bit numbers, this library was built for 64-bit ones alone.*--precision f64")
+
+    def test_neither_precision_is_refused_by_the_build(self):
+        done = self.run_program("cmake", "-S", str(ROOT), "-B", self.path("none"), "-G", "Ninja", "-DFDCG_RUNTIME_ONLY=ON",
+                                "-DFDCG_BUILD_TESTS=OFF", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_F32=OFF", code=1)
+        self.assertIn(b"FDCG_WITH_F64, FDCG_WITH_F32 or both", done.stderr)
+
+    def test_no_files(self):
+        for line in self.said("no-files", "-DFDCG_WITH_FILES=OFF"):
+            self.assertRegex(line, "^2 .*built without files.*fdcg_open_memory")
+
+    def test_no_messages(self):
+        lines = self.said("no-messages", "-DFDCG_WITH_MESSAGES=OFF")
+        self.assertEqual(["0 opened", "0 opened"], lines[:2])
+        self.assertEqual("4 the file is longer or shorter than its header promises", lines[2])
+
+
+if __name__ == "__main__":
+    unittest.main()
