@@ -23,9 +23,9 @@ using fdcg::bake::Precision;
 
 namespace {
 
-constexpr int kBatch = 20'000;           // segments on one body
-constexpr int kMostSweepTicks = 10'000;  // for the rest of a way that the sweep's bound has cut
-constexpr double kDeep = 1e-6;           // of the size: no rounding
+constexpr int kBatch = 20'000;         // segments on one body
+constexpr int kMostSweepTicks = 1000;  // for the rest of a way that the sweep's bound has cut
+constexpr double kDeep = 1e-6;         // of the size: no rounding
 constexpr double kSizes[] = {1, 1e-6, 1e6, 0.1};
 constexpr double kOffsets[] = {0, 0, 1e3, 1e6};  // sizes
 
@@ -221,7 +221,7 @@ class Aim {
 
 struct Tally {
   std::uint64_t segments = 0, hits = 0, through = 0, inside = 0, touching = 0, bounded = 0;
-  std::uint64_t through_unseen = 0, from_thin_air = 0, lost_deep = 0, lost_shallow = 0;
+  std::uint64_t through_unseen = 0, from_thin_air = 0, lost_deep = 0, lost_shallow = 0, unfinished = 0;
   std::string first, first_lost;  // failures
 };
 
@@ -244,6 +244,8 @@ class Probe {
     }
     return transitions;
   }
+  // Held by the sweep's bound on and on.
+  [[nodiscard]] bool is_unfinished() const { return (contact_.result.flags & FDCG_RESULT_SWEEP_BOUND) != 0; }
   [[nodiscard]] bool is_free() const { return contact_.result.state == FDCG_FREE; }
   // As the step has rounded it.
   [[nodiscard]] Hip hip() const { return {contact_.state.hip[0], contact_.state.hip[1], contact_.state.hip[2]}; }
@@ -268,12 +270,17 @@ bool judge_step(const ExactSolid& solid, Probe& probe, const Hip& target, Tally&
   const Hip from = probe.hip();
   const std::uint32_t transitions = probe.step(target);
   const Hip to = probe.hip();
-  ++tally.segments;
-  tally.hits += was_free && transitions > 0;
   const auto report = [&](const char* what) {
     return batch + ": the HIP " + what + ", from " + (was_free ? "free " : "contact ") + hexadecimal(from) + " to " +
            hexadecimal(to) + " in the graph's frame; " + probe.describe();
   };
+  ++tally.segments;
+  if (probe.is_unfinished()) {
+    ++tally.unfinished;
+    if (tally.first_lost.empty()) tally.first_lost = report("is never reached by the sweep");
+    return false;
+  }
+  tally.hits += was_free && transitions > 0;
   const char* wrong = nullptr;
   if (was_free) {
     const ExactSolid::Crossing way = solid.crossing(from, to);
@@ -330,9 +337,11 @@ const Tally& tally_of_all() {
     std::printf(
         "batches %llu to %llu: %llu segments, %llu stopped, %llu surely through the surface, %llu touching an edge or "
         "corner, %llu ends in contact, %llu ticks of bounded sweeps\n"
-        "through unseen %llu, stopped by nothing %llu, free inside %llu deep and %llu within %g of the size\n",
+        "through unseen %llu, stopped by nothing %llu, free inside %llu deep and %llu within %g of the size, "
+        "never reached %llu\n",
         n(first), n(batch - 1), n(tally.segments), n(tally.hits), n(tally.through), n(tally.touching), n(tally.inside),
-        n(tally.bounded), n(tally.through_unseen), n(tally.from_thin_air), n(tally.lost_deep), n(tally.lost_shallow), kDeep);
+        n(tally.bounded), n(tally.through_unseen), n(tally.from_thin_air), n(tally.lost_deep), n(tally.lost_shallow), kDeep,
+        n(tally.unfinished));
     return tally;
   }();
   return whole;
@@ -352,6 +361,7 @@ TEST_CASE("no segment aimed at the edges, corners and faces of a closed body pas
 TEST_CASE("a HIP that came from outside and is strictly inside is in contact, whatever it was aimed at", "[!mayfail]") {
   const Tally& tally = tally_of_all();
   INFO(tally.first_lost);
+  CHECK(tally.unfinished == 0);
   CHECK(tally.lost_deep == 0);
   CHECK(tally.lost_shallow == 0);
 }
