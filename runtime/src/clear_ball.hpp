@@ -47,7 +47,9 @@ template <class Real>
   const Real size = norm1(p);
   if (size > kFar) return (size / 3 - kTreeReach) * kKept * unit;
   const Real margin = 5 * tree_rounding<Real>(2 * size, 2 * size * RealLimits<Real>::kEpsilon);
-  const Real length = way * per_unit, reach = kWaysAhead * length > kLeastReach ? kWaysAhead * length : kLeastReach;
+  const Real length = way * per_unit;
+  if (length > kFar) return 0;  // a jump
+  const Real reach = kWaysAhead * length > kLeastReach ? kWaysAhead * length : kLeastReach;
   const float point[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
   const float least = static_cast<float>(length + margin), too_near2 = least * least;
   constexpr float kOpened = 0.25F;  // what is not nearer than half the nearest node so far is not opened but taken as it is
