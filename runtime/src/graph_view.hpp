@@ -73,7 +73,7 @@ class NodeRef {
 
   // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model section 2).
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
-    if (graph_->has_planes) {
+    if (__builtin_expect(graph_->has_planes, true)) {
       const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
       return {vec(stored.normal), stored.offset};
     }
