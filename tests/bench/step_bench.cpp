@@ -263,7 +263,7 @@ int main(int argc, char** argv) {
       for (const bool is_stored : {true, false}) {
         fdcg::bake::CompileOptions compile;
         compile.precision = precision;
-        compile.store_voronoi_planes = is_stored;
+        compile.store_planes = is_stored;
         compile.merge = body.body != Body::cube;
         compile.without = {"source-map", "info"};
         const BenchGraph graph(soup, compile);
