@@ -2,6 +2,7 @@
 #include "box_tree.hpp"
 
 #include "lanes.hpp"
+#include "tree_rounding.hpp"
 
 namespace fdcg {
 
@@ -16,6 +17,48 @@ BoxTree::BoxTree(uint32_t nodes)
     first[level] = records;
     records += size[level];
   }
+}
+
+TreeWay tree_way(Vec3<float> from, Vec3<float> along, float pad) {
+  TreeWay way = {{from.x, from.y, from.z}, {along.x, along.y, along.z}, {}};
+  for (int k = 0; k < 3; ++k) {
+    // Less way than the pad along an axis is taken for as much: the boxes are grown by that too.
+    const bool is_backwards = way.per_way[k] < 0;
+    const float length = absolute(way.per_way[k]) < pad ? pad : absolute(way.per_way[k]), per_length = 1 / length;
+    way.per_way[k] = is_backwards ? -per_length : per_length;
+    way.grow[k] = 2 * pad * per_length;
+  }
+  return way;
+}
+
+bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begin, double* end) {
+  constexpr double kAround = 16;  // no box reaches further than 8
+  const Vec3<double> whole = to - from;
+  const double size = norm1(from) + norm1(to);
+  *begin = 0;
+  *end = 1;
+  if (size * DBL_EPSILON > 1.0 / 16) {
+    *way = {{0, 0, 0}, {0, 0, 0}, {1, 1, 1}};
+    return true;
+  }
+  const double at[3] = {from.x, from.y, from.z}, along[3] = {whole.x, whole.y, whole.z};
+  for (int k = 0; k < 3; ++k) {
+    if (absolute(along[k]) <= size * DBL_EPSILON) {  // too short to divide by: it stays where it is, but for rounding
+      if (absolute(at[k]) > kAround) return false;
+      continue;
+    }
+    const double low = (-kAround - at[k]) / along[k], high = (kAround - at[k]) / along[k];
+    const double in = low < high ? low : high, out = low < high ? high : low;
+    if (in > *begin) *begin = in;
+    if (out < *end) *end = out;
+  }
+  if (!(*begin < *end)) return false;
+  const Vec3<double> start = from + whole * *begin, part = whole * (*end - *begin);
+  const double near_size = norm1(start) + norm1(start + part);
+  *way = tree_way({static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(start.z)},
+                  {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)},
+                  static_cast<float>(tree_rounding(near_size, size * DBL_EPSILON)));
+  return true;
 }
 
 uint32_t touched_boxes(const fdcg_box8& boxes, const TreeWay& way, float limit, float (&entry)[FDCG_TREE_WAYS]) {

@@ -59,6 +59,13 @@ struct TreeWay {
   float grow[3];     // fractions of the way
 };
 
+// A way near the tree. `pad`: tree_rounding.
+TreeWay tree_way(Vec3<float> from, Vec3<float> along, float pad);
+
+// The part of a way that is near the tree, from fraction *begin to *end. False: the way passes by. One from so far away that
+// its coordinates say nothing of a box touches all.
+bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begin, double* end);
+
 // Which of a record's boxes the way enters at a fraction of at most `limit`, a bit each; entry[j]: at which, never too late.
 uint32_t touched_boxes(const fdcg_box8& boxes, const TreeWay& way, float limit, float (&entry)[FDCG_TREE_WAYS]);
 

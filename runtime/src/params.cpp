@@ -47,6 +47,13 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
         .real(range.high)
         .text(range.low == params->mu_dynamic && range.low > 0 ? " (at least mu_dynamic)" : "");
   }
+  if (params->disabled_skips > FDCG_STEP_SKIP_ALL) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.disabled_skips is ")
+        .number(params->disabled_skips)
+        .text(", allowed are sums of fdcg_step_skip: 0 to ")
+        .number(FDCG_STEP_SKIP_ALL);
+  }
   if (params->edge_friction > FDCG_EDGE_PAPER) {
     return Message(error, FDCG_E_ARGUMENT)
         .text("params.edge_friction is ")

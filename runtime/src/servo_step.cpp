@@ -73,12 +73,10 @@ struct Progress {
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
 // decided. It stood on `start` then, `start_gap` away from the HIP.
 template <class Real>
-Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided,
-                         fdcg_carried_sweep* carried) {
+Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided, FreeSpace* space) {
   Progress progress = {0, 0};
-  uint32_t sweep_work_left = kSweepWork;
   if (walk.active == kFree) {
-    progress.flags = sweep_to_hip(walk, kFree, carried, &sweep_work_left);
+    progress.flags = sweep_to_hip(walk, kFree, space);
     if (walk.active == kFree) return progress;
     ++progress.transitions;
     start = walk.active;
@@ -94,7 +92,7 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     ++progress.transitions;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
-      progress.flags |= sweep_to_hip(walk, at, carried, &sweep_work_left);
+      progress.flags |= sweep_to_hip(walk, at, space);
       if (walk.active == kFree) return progress;
       ++progress.transitions;
     }
@@ -192,6 +190,8 @@ inline void start(Vec3<Real> hip, fdcg_contact* contact) {
   contact->feature = contact->seat_feature = FDCG_NONE;
   contact->slipping = 0;
   contact->sweep.is_carried = 0;
+  contact->clear_ball.radius2 = 0;
+  contact->clear_ball.wait = contact->clear_ball.next_wait = 0;
 }
 
 template <class Real>
@@ -220,7 +220,9 @@ template <class Real>
   const Feature start = walk.active;
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
-  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &contact->sweep);
+  FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_skips & FDCG_STEP_SKIP_CLEAR_BALL) == 0,
+                     kSweepWork};
+  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &space);
   FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
   contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
   contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
@@ -250,6 +252,9 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     result->flags = FDCG_RESULT_NON_FINITE;
   } else if (contact->started == 0) {
     start(hip, contact);
+  } else if (is_in_clear_ball(contact->clear_ball, hip) && (params.disabled_skips & FDCG_STEP_SKIP_CLEAR_BALL) == 0) {
+    store(hip, contact->god_object);  // free: a contact that is not has no such ball
+    store(hip, contact->hip);
   } else {
     const GraphView<Real> graph(raw);
     const Real bound = plane_rounding_bound(graph, hip);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "box_tree.hpp"
+#include "clear_ball.hpp"
 #include "walk.hpp"
 #include "work.hpp"
 
@@ -58,9 +59,7 @@ class Sweep {
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
  private:
-  // Of the coordinates in tree units: the rounding to float of the way's ends and of the sums and products in touched_boxes
-  // come to 5/8 of it at most.
-  static constexpr Real kFloatPad = Real(1) / Real(1 << 21);
+  static constexpr uint32_t kLastBit = 63;
 
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
@@ -135,50 +134,24 @@ class Sweep {
 
   // Puts the way into tree units. A way from far away is cut to the part near the tree, lest floats lose it. False: it passes
   // by.
-  [[gnu::noinline]] bool enter_tree() {
+  bool enter_tree() {
     constexpr Real kNear = 16, kEpsilon = RealLimits<Real>::kEpsilon;
     const Real per_unit = static_cast<Real>(1 / tree_unit(graph_.header->extent));
-    const Vec3<Real> from = from_ * per_unit, way = way_ * per_unit;
-    const Real size = norm1(from) + norm1(to_ * per_unit);
-    if (size * kEpsilon > Real(1) / 16) {  // so far away that its coordinates say nothing of a box
-      in_tree_ = {{0, 0, 0}, {0, 0, 0}, {1, 1, 1}};
+    const Vec3<Real> from = from_ * per_unit, to = to_ * per_unit;
+    const Real size = norm1(from) + norm1(to);
+    if (!(size > kNear)) {
+      in_tree_ = tree_way(narrowed(from), narrowed(to - from), static_cast<float>(tree_rounding(size, size * kEpsilon)));
       return true;
     }
-    Real begin = 0, end = 1;
-    if (size > kNear && !cut(from, way, &begin, &end)) return false;
-    part_begin_ = begin;
-    per_part_ = 1 / (end - begin);
-    const Vec3<Real> start = from + way * begin, part = way * (end - begin);
-    const float at[3] = {static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(start.z)};
-    const float along[3] = {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)};
-    const Real near_size = norm1(start) + norm1(start + part);
-    const float pad = static_cast<float>(kFloatPad * (4 + near_size) + 8 * kEpsilon * (2 + size));
-    for (int k = 0; k < 3; ++k) {
-      // Less way than the pad along an axis is taken for as much: the box is grown by that too.
-      const float length = absolute(along[k]) < pad ? pad : absolute(along[k]);
-      const float per_length = 1 / length;
-      in_tree_.from[k] = at[k];
-      in_tree_.per_way[k] = along[k] < 0 ? -per_length : per_length;
-      in_tree_.grow[k] = 2 * pad * per_length;
-    }
+    double begin, end;
+    if (!cut_tree_way(widen(from), widen(to), &in_tree_, &begin, &end)) return false;
+    part_begin_ = static_cast<Real>(begin);
+    per_part_ = static_cast<Real>(1 / (end - begin));
     return true;
   }
 
-  // The part of the way within some distance of the tree, whose boxes reach to 8 units at most. False: there is none.
-  static bool cut(Vec3<Real> from, Vec3<Real> way, Real* begin, Real* end) {
-    constexpr Real kAround = 16;
-    const Real at[3] = {from.x, from.y, from.z}, along[3] = {way.x, way.y, way.z};
-    for (int k = 0; k < 3; ++k) {
-      if (along[k] == 0) {
-        if (absolute(at[k]) > kAround) return false;
-        continue;
-      }
-      const Real low = (-kAround - at[k]) / along[k], high = (kAround - at[k]) / along[k];
-      const Real in = low < high ? low : high, out = low < high ? high : low;
-      if (in > *begin) *begin = in;
-      if (out < *end) *end = out;
-    }
-    return *begin < *end;
+  static Vec3<float> narrowed(Vec3<Real> a) {
+    return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
   }
 
   void try_leaf(uint32_t leaf) {
@@ -201,11 +174,11 @@ class Sweep {
     if (start_side < (is_inexact ? -slab_ : Real(0))) return;
     const Real fraction = start_side > 0 ? start_side / (start_side - end_side) : Real(0);
     if (!is_before_best(fraction, n) || is_left_out(n, node)) return;
-    bool met_exactly = false;
+    uint64_t met_exactly = 0;
     if (!passes_inside(node, &met_exactly)) return;
     best_.fraction = fraction;
     best_.node = n;
-    best_.feature = met_exactly ? on_rim(node, point_at(fraction)) : Feature{FDCG_FACE, n};
+    best_.feature = met_exactly ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
   }
 
   [[nodiscard]] bool is_before_best(Real fraction, uint32_t n) const {
@@ -242,24 +215,30 @@ class Sweep {
     return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
 
-  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, bool* met_exactly) const {
+  // A bit for a side; the last one for all beyond.
+  static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
+
+  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, uint64_t* met_exactly) const {
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
       const int sign = orientation(start, end);
       if (sign > 0) return false;
-      if (sign == 0) *met_exactly = true;
+      if (sign == 0) *met_exactly |= bit_of(k);
       start = end;
     }
     return true;
   }
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it.
-  Feature on_rim(NodeRef<Real> node, Vec3<Real> point) const {
+  Feature on_rim(NodeRef<Real> node, uint64_t met_exactly, Vec3<Real> point) const {
     Feature nearest = kFree;
     Real nearest_outside = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0) continue;
+      if ((met_exactly & bit_of(k)) == 0) continue;
+      if (k >= kLastBit &&
+          orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0)
+        continue;
       const EdgeLine<Real> line(graph_.edge(node, k));
       const Real u = line.parameter(point);
       const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));
@@ -312,20 +291,51 @@ template <class Real>
   return true;
 }
 
+// What free space costs and leaves for later ticks. It belongs to the contact but for the work.
+struct FreeSpace {
+  fdcg_carried_sweep* carried;
+  fdcg_clear_ball* ball;
+  bool looks_for_balls;
+  uint32_t work_left;
+};
+
+// Whether a ball that no face touches holds the whole way; it is kept. Where there was none, the next looks wait for longer and
+// longer: near the surface a sweep is cheaper.
+template <class Real>
+inline bool is_in_new_ball(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to, fdcg_clear_ball* ball) {
+  constexpr uint32_t kLongestWait = 15;
+  if (ball->wait > 0) {
+    --ball->wait;
+    return false;
+  }
+  const Real way = norm(to - from), radius = clear_radius(graph, to, way);
+  if (!(radius > way)) {
+    ball->wait = ball->next_wait;
+    ball->next_wait = ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait;
+    return false;
+  }
+  *ball = {{to.x, to.y, to.z}, radius * radius, 0, 0};
+  return true;
+}
+
 // From free space, or from the surface that was just left: places the contact on what the way to the HIP meets, or at the HIP.
 // A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work ran out, else 0.
 template <class Real>
-[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, fdcg_carried_sweep* carried, uint32_t* work_left) {
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, FreeSpace* space) {
+  fdcg_carried_sweep* carried = space->carried;
+  space->ball->radius2 = 0;
   if (carried->is_carried != 0) {
-    if (!finish_carried_sweep(walk, carried, work_left)) return FDCG_RESULT_SWEEP_BOUND;
+    if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
     if (!(walk.active == kFree)) return 0;
   }
   const Vec3<Real> from = walk.god_object, to = walk.hip;
-  if (from.x == to.x && from.y == to.y && from.z == to.z) {  // no way, no direction
+  const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
+  const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy != nullptr;
+  if (is_still || (may_look && is_in_new_ball(walk.graph, from, to, space->ball))) {
     walk.place(to, kFree);
     return 0;
   }
-  Sweep<Real> sweep(walk.graph, from, to, left, work_left);
+  Sweep<Real> sweep(walk.graph, from, to, left, &space->work_left);
   FirstHit<Real> first;
   if (sweep.run(&first)) {
     arrive(walk, sweep, to, first);
@@ -342,7 +352,7 @@ template <class Real>
               1,
               0};
   walk.active = walk.seat = kFree;
-  if (*work_left == 0 || !finish_carried_sweep(walk, carried, work_left)) return FDCG_RESULT_SWEEP_BOUND;
+  if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
   return 0;
 }
 

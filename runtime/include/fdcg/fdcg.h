@@ -173,6 +173,12 @@ typedef enum fdcg_state { FDCG_FREE = 0, FDCG_FACE = 1, FDCG_EDGE = 2, FDCG_VERT
  * 1,024 times the paper's), or the distance from the edge as the paper has it. */
 typedef enum fdcg_edge_friction { FDCG_EDGE_WEDGE = 0, FDCG_EDGE_PAPER = 1 } fdcg_edge_friction;
 
+/* What the step may skip. Forces and god-objects are the same bit for bit without. */
+typedef enum fdcg_step_skip {
+  FDCG_STEP_SKIP_CLEAR_BALL = 1, /* in free space: no look at the hierarchy in a ball that no face touches */
+  FDCG_STEP_SKIP_ALL = 1
+} fdcg_step_skip;
+
 typedef struct fdcg_params {
   uint32_t struct_bytes;    /* the caller's sizeof(fdcg_params); fdcg_default_params sets it */
   uint32_t edge_friction;   /* fdcg_edge_friction */
@@ -181,6 +187,8 @@ typedef struct fdcg_params {
   double stiffness_n_per_m; /* >= 0 */
   double damping_n_s_per_m; /* >= 0; acts along the spring's direction and never pulls. 0: off */
   double tick_s;            /* time between ticks; read only where damping is on */
+  uint32_t disabled_skips;  /* fdcg_step_skip: those not to be made. 0: none */
+  uint32_t reserved;        /* 0 */
 } fdcg_params;
 
 /* Sets the first `struct_bytes` bytes of *params: mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge. */
@@ -211,6 +219,14 @@ typedef struct fdcg_carried_sweep {
   uint32_t reserved;
 } fdcg_carried_sweep;
 
+/* A ball in free space that no face touches. The last HIP is in it where there is one. */
+typedef struct fdcg_clear_ball {
+  double centre[3];   /* local */
+  double radius2;     /* squared; 0: there is none */
+  uint32_t wait;      /* ticks to the next look for one */
+  uint32_t next_wait; /* how long to wait where that look finds none */
+} fdcg_clear_ball;
+
 /* One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Positions are local to
  * the graph (see format.h), so that nothing is lost far from the world's origin. */
 typedef struct fdcg_contact {
@@ -226,6 +242,7 @@ typedef struct fdcg_contact {
   uint64_t transition_bound_ticks; /* ticks that carried work over because of FDCG_RULE_WORK */
   uint64_t sweep_bound_ticks;      /* ... because of FDCG_SWEEP_WORK */
   fdcg_carried_sweep sweep;
+  fdcg_clear_ball clear_ball;
 } fdcg_contact;
 
 typedef enum fdcg_result_flag {

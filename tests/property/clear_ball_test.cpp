@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// The clear ball of free space: what a step feels is the same bit for bit with and without it, and there is no face in it.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "contact_rig.hpp"
+#include "meshes.hpp"
+#include "random.hpp"
+
+using namespace fdcg::test;
+using fdcg::bake::CompileOptions;
+using fdcg::bake::Precision;
+
+namespace {
+
+int ticks() {
+  const char* set = std::getenv("FDCG_STEPS");
+  return set != nullptr ? std::atoi(set) : 4000;
+}
+
+fdcg_params with_skips(std::uint32_t disabled) {
+  fdcg_params params = contact_params(0.4, 0.3);
+  params.disabled_skips = disabled;
+  return params;
+}
+
+// Drifts towards and along the surface at changing speed, with a jump now and then.
+class Drift {
+ public:
+  Drift(double size, std::uint64_t seed) : size_(size), random_(seed) {}
+
+  Hip next(const Hip& near) {
+    if (random_.chance(0.003)) speed_ = std::pow(10.0, random_.uniform(-5, -0.7));
+    if (random_.chance(0.02)) {
+      const auto d = random_.direction();
+      direction_ = {d.x, d.y, d.z};
+    }
+    if (random_.chance(0.002)) at_ = near;  // onto the surface, exactly
+    for (std::size_t k = 0; k < 3; ++k) {
+      at_[k] += direction_[k] * speed_ * size_;
+      if (std::abs(at_[k]) > 1.7 * size_) direction_[k] = -std::copysign(direction_[k], at_[k]);
+    }
+    if (random_.chance(0.001)) at_ = {3 * size_, random_.uniform(-1, 1) * size_, 0};
+    return at_;
+  }
+
+ private:
+  double size_;
+  Random random_;
+  Hip at_{1.5, 1.4, 1.3}, direction_{0, 0, -1};
+  double speed_ = 1e-3;
+};
+
+struct Tally {
+  long free = 0, touching = 0, in_ball = 0;
+};
+
+Tally compare(const PolygonSoup& soup, Precision precision, std::uint64_t seed) {
+  CompileOptions options;
+  options.precision = precision;
+  const CompiledMesh mesh(soup, options);
+  Contact with(mesh.view(), with_skips(0)), without(mesh.view(), with_skips(FDCG_STEP_SKIP_CLEAR_BALL));
+  Drift drift(extent(soup), seed);
+  Hip surface = point_of(soup.points[0]);
+  Tally tally;
+  for (int i = 0; i < ticks(); ++i) {
+    const Hip hip = drift.next(surface);
+    const bool was_in_ball = with.state.clear_ball.radius2 > 0;
+    with.step(hip);
+    without.step(hip);
+    INFO(soup.name << ", seed " << seed << ", tick " << i << ": " << with.describe() << "; without: " << without.describe());
+    REQUIRE(std::memcmp(&with.result, &without.result, sizeof with.result) == 0);
+    REQUIRE(without.state.clear_ball.radius2 == 0);
+    const bool is_free = with.result.state == FDCG_FREE;
+    if (!is_free) REQUIRE(with.state.clear_ball.radius2 == 0);
+    if (!is_free) surface = with.god_object();
+    tally.free += is_free;
+    tally.touching += !is_free;
+    tally.in_ball += was_in_ball && with.state.clear_ball.radius2 > 0;
+  }
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE("forces and god-objects are the same bit for bit with and without the clear ball") {
+  Tally sum;
+  std::uint64_t seed = 0;
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    for (const PolygonSoup& soup :
+         {ico_sphere(4), star_sphere(3, 0.3, 1), corner_pit(), thin_plate(1e-3, 6), torus(40, 20), needle_strip(200, 0.3, 2),
+          scaled(spiky_sphere(3, 0.5, 2), 1e-6), scaled(star_sphere(2, 0.3, 4), 1e6), cone(300),
+          rounded_to_float(transformed(grid_box(5, 5, 5, {1, 1, 1}), random_rotation(3)))}) {
+      const Tally tally = compare(soup, precision, ++seed);
+      sum.free += tally.free;
+      sum.touching += tally.touching;
+      sum.in_ball += tally.in_ball;
+    }
+  }
+  CHECK(sum.touching > sum.free / 100);
+  CHECK(sum.in_ball > sum.free / 3);  // else the ball was hardly tried
+}
+
+TEST_CASE("no face reaches into a clear ball") {
+  const PolygonSoup soup = star_sphere(2, 0.4, 2);
+  const CompiledMesh mesh(soup);
+  Random random(4);
+  int balls = 0;
+  for (int i = 0; i < 400; ++i) {
+    const auto d = random.direction();
+    const double radius = random.uniform(1, 2.5), step = std::pow(10.0, random.uniform(-6, -1));
+    Contact contact(mesh.view(), with_skips(0));
+    contact.step(radius * d.x, radius * d.y, radius * d.z);
+    const Hip hip = {radius * d.x + step, radius * d.y, radius * d.z};
+    contact.step(hip);
+    if (!(contact.state.clear_ball.radius2 > 0)) continue;
+    ++balls;
+    REQUIRE(contact.result.state == FDCG_FREE);
+    REQUIRE(std::sqrt(contact.state.clear_ball.radius2) < distance(closest_point(soup, hip), hip));
+  }
+  CHECK(balls > 200);
+}
+
+TEST_CASE("copied and reset contacts go their own way with their ball") {
+  const CompiledMesh mesh(ico_sphere(3));
+  Contact contact(mesh.view(), with_skips(0));
+  contact.step(0.01, 0.02, 1.5);
+  contact.step(0.01, 0.02, 1.499);
+  REQUIRE(contact.state.clear_ball.radius2 > 0);
+  Contact copy = contact;
+  copy.step(0.01, 0.02, 0.9);
+  CHECK(copy.result.state != FDCG_FREE);
+  contact.step(0.01, 0.02, 1.49);
+  CHECK(contact.result.state == FDCG_FREE);
+  CHECK(contact.state.clear_ball.radius2 > 0);
+  contact.step(NAN, 0, 0);
+  CHECK(contact.result.flags == FDCG_RESULT_NON_FINITE);
+  contact.state.started = 0;
+  contact.step(0.01, 0.02, 0.5);  // starts inside
+  CHECK(contact.state.clear_ball.radius2 == 0);
+  contact.step(0.01, 0.02, 1.5);
+  contact.step(0.01, 0.02, 0.9);
+  CHECK(contact.result.state != FDCG_FREE);
+}
+
+TEST_CASE("a skip that there is not is refused") {
+  fdcg_params params = fdcg_default_params();
+  CHECK(params.disabled_skips == 0);
+  params.disabled_skips = FDCG_STEP_SKIP_ALL;
+  CHECK(fdcg_check_params(&params, nullptr) == FDCG_OK);
+  params.disabled_skips = FDCG_STEP_SKIP_ALL + 1;
+  CHECK(fdcg_check_params(&params, nullptr) == FDCG_E_ARGUMENT);
+}
