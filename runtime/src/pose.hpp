@@ -42,7 +42,8 @@ struct Pose {
 
   Pose() = default;
   // Cost: some 50 multiplications. `asked` is in range, its quaternion unit.
-  [[gnu::noinline]] Pose(const fdcg_pose& asked, const Bounds& bounds) : translation(vec(asked.translation_m)), scale(asked.scale) {
+  [[gnu::noinline]] Pose(const fdcg_pose& asked, const Bounds& bounds)
+      : translation(vec(asked.translation_m)), scale(asked.scale) {
     const double x = asked.rotation_xyzw[0], y = asked.rotation_xyzw[1], z = asked.rotation_xyzw[2], w = asked.rotation_xyzw[3];
     row[0] = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)};
     row[1] = {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)};

@@ -33,8 +33,8 @@ bool is_within(double value, double low, double high) {
 // In range; *config is then whole.
 fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* config, fdcg_error* error) {
   if (given == nullptr) return refuse(error, "config: null pointer");
-  if (const fdcg_status status = check_struct_bytes(given->struct_bytes, sizeof *given, "config",
-                                                    "; start from fdcg_default_scene_config()", error);
+  if (const fdcg_status status =
+          check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_default_scene_config()", error);
       status != FDCG_OK) {
     return status;
   }
@@ -43,12 +43,11 @@ fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* co
     const char* name;
     uint32_t value, low, high;
   };
-  const Range ranges[] = {
-      {"config.object_capacity", config->object_capacity, 1, kMostObjects},
-      {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
-      {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
-      {"config.disabled_skips", config->disabled_skips, 0, FDCG_SKIP_ALL},
-      {"config.reserved", config->reserved, 0, 0}};
+  const Range ranges[] = {{"config.object_capacity", config->object_capacity, 1, kMostObjects},
+                          {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
+                          {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
+                          {"config.disabled_skips", config->disabled_skips, 0, FDCG_SKIP_ALL},
+                          {"config.reserved", config->reserved, 0, 0}};
   for (const Range& range : ranges) {
     if (range.value < range.low || range.value > range.high)
       return refuse(error, range.name, range.value, range.low, range.high);
@@ -64,7 +63,8 @@ uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
     end += (count * bytes + kAlignment - 1) / kAlignment * kAlignment;
     return begin;
   };
-  const uint64_t objects = config.object_capacity, fingers = config.finger_capacity, slots = fingers * config.touches_per_finger;
+  const uint64_t objects = config.object_capacity, fingers = config.finger_capacity,
+                 slots = fingers * config.touches_per_finger;
   place(1, sizeof(fdcg_scene));
   scene->objects_at = place(objects, sizeof(Object));
   scene->config = config;
@@ -189,11 +189,7 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
     return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
   layout.bytes = lay_out(layout.config, &layout);
   if (bytes < layout.bytes) {
-    return Message(error, FDCG_E_ARGUMENT)
-        .text("bytes is ")
-        .number(bytes)
-        .text(", this config needs ")
-        .number(layout.bytes);
+    return Message(error, FDCG_E_ARGUMENT).text("bytes is ").number(bytes).text(", this config needs ").number(layout.bytes);
   }
   // Slots, contacts and touches are set when a finger comes into use.
   memset(memory, 0, layout.slots_at);

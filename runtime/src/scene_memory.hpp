@@ -60,10 +60,10 @@ struct fdcg_scene {
   uint64_t bytes;
   fdcg_scene_config config;
   uint64_t objects_at, scan_at, changing_at, fingers_at, slots_at, contacts_at, touches_at;  // offsets
-  uint32_t object_end, finger_end;  // indices in use lie below
+  uint32_t object_end, finger_end;                                                           // indices in use lie below
   uint32_t changing_count;
   uint32_t tick;
-  uint32_t look;          // changes when objects come, go or change their size: then every finger looks anew
+  uint32_t look;  // changes when objects come, go or change their size: then every finger looks anew
   uint32_t reserved;
   double tick_travel;  // the largest move of any object in this tick
   double travel;       // the sum of those, rounded up

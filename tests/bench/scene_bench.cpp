@@ -26,7 +26,8 @@ namespace {
 constexpr std::size_t kMostWithoutHierarchy = 4096;  // nodes (schemas/fdcg-v1.md)
 constexpr double kTick_s = 0.001, kTurn = 2 * std::numbers::pi;
 
-// ---- scenes ------------------------------------------------------------------------------------------------------------------
+// ---- scenes
+// ------------------------------------------------------------------------------------------------------------------
 
 struct Actor {
   Place home;
@@ -66,8 +67,8 @@ Script one_finger() {
 // A hundred instruments of 20 cm on a tray, two of them in use; three fingers go from one to the next.
 Script tray() {
   Script script = {"tray",
-                   {stretched(scaled(star_sphere(3, 0.1, 3), 0.05), 2, 0.15, 0.1), stretched(make_body(Body::sphere, 10), 1.5, 0.2, 0.2),
-                    stretched(make_body(Body::cube, 1), 2, 0.1, 0.05)},
+                   {stretched(scaled(star_sphere(3, 0.1, 3), 0.05), 2, 0.15, 0.1),
+                    stretched(make_body(Body::sphere, 10), 1.5, 0.2, 0.2), stretched(make_body(Body::cube, 1), 2, 0.1, 0.05)},
                    {},
                    {},
                    {},
@@ -80,7 +81,8 @@ Script tray() {
     script.fingers.push_back({{0.1 * i, 0.1 * i, 0}, 1.3 * i, 0});
   script.pose = [](const Actor& object, int tick, fdcg_pose* pose) {
     const double swing = object.kind == 1 ? 0.2 * std::sin(0.005 * tick) : 0;
-    *pose = posed({object.home[0], object.home[1], object.home[2] + 0.1 * swing}, {0, 0, 1}, 0.1 * std::sin(object.phase) + swing);
+    *pose =
+        posed({object.home[0], object.home[1], object.home[2] + 0.1 * swing}, {0, 0, 1}, 0.1 * std::sin(object.phase) + swing);
     return object.kind == 1;
   };
   script.hip = [](const Actor& finger, int tick) {
@@ -115,7 +117,8 @@ Script crowd(int fingers) {
   return script;
 }
 
-// ---- a run -------------------------------------------------------------------------------------------------------------------
+// ---- a run
+// -------------------------------------------------------------------------------------------------------------------
 
 struct Switches {
   std::uint32_t scene = 0;  // fdcg_scene_skip bits that are off
@@ -126,13 +129,15 @@ struct Switches {
 
 struct Outcome {
   double mean_ns = 0, median_ns = 0, largest_ns = 0;  // a tick of one finger
-  double touching = 0;                                 // share of the fingers
+  double touching = 0;                                // share of the fingers
   std::uint64_t hash = 0xCBF29CE484222325u, file_bytes = 0, scene_bytes = 0, heap_calls = 0;
 };
 
 // fdcg_params.disabled_skips, in libraries that have it.
 template <class Params>
-concept HasStepSkips = requires(Params params) { params.disabled_skips; };
+concept HasStepSkips = requires(Params params) {
+  params.disabled_skips;
+};
 
 template <class Params>
 void disable_step_skips([[maybe_unused]] Params& params, [[maybe_unused]] std::uint32_t skips) {
@@ -209,7 +214,8 @@ Outcome run(const Script& script, const Switches& switches, int replays, const S
   return outcome;
 }
 
-// ---- the table ---------------------------------------------------------------------------------------------------------------
+// ---- the table
+// ---------------------------------------------------------------------------------------------------------------
 
 struct Row {
   const char* name;
@@ -248,9 +254,10 @@ std::vector<Row> rows() {
 
 bool print_table(const std::vector<Script>& scripts, int replays, const Stopwatch& watch) {
   bool holds = true;
-  std::printf("\nWithout each skip: ns a finger and tick (mean of each tick's least of %d), times all skips on, bytes more.\n", replays);
-  std::printf("%-8s %-26s %9s %9s %9s %7s %12s %s\n", "scene", "not skipped / left out", "mean", "median", "largest", "ratio", "bytes",
-              "forces");
+  std::printf("\nWithout each skip: ns a finger and tick (mean of each tick's least of %d), times all skips on, bytes more.\n",
+              replays);
+  std::printf("%-8s %-26s %9s %9s %9s %7s %12s %s\n", "scene", "not skipped / left out", "mean", "median", "largest", "ratio",
+              "bytes", "forces");
   for (const Script& script : scripts) {
     Outcome all;
     for (const Row& row : rows()) {
@@ -261,22 +268,27 @@ bool print_table(const std::vector<Script>& scripts, int replays, const Stopwatc
       const Outcome one = run(script, row.switches, replays, watch);
       if (std::string_view(row.name) == "everything skipped") all = one;
       const bool is_same = one.hash == all.hash, is_right = is_same || !row.is_same_physics;
-      const auto bytes = static_cast<long long>(one.file_bytes + one.scene_bytes) -
-                         static_cast<long long>(all.file_bytes + all.scene_bytes);
+      const auto bytes =
+          static_cast<long long>(one.file_bytes + one.scene_bytes) - static_cast<long long>(all.file_bytes + all.scene_bytes);
       std::printf("%-8s %-26s %9.1f %9.1f %9.1f %7.2f %12lld %s\n", script.name, row.name, one.mean_ns, one.median_ns,
                   one.largest_ns, one.mean_ns / all.mean_ns, bytes,
-                  !row.is_same_physics ? "other physics" : is_same ? "same bits" : "DIFFER");
+                  !row.is_same_physics ? "other physics"
+                  : is_same            ? "same bits"
+                                       : "DIFFER");
       std::fflush(stdout);
       holds = holds && is_right && (one.heap_calls == 0 || !can_count_heap_calls());
     }
-    std::printf("%-8s scene %llu bytes, files %llu bytes, %.1f %% of the steps touch; one contact for every finger and object: %zu bytes\n",
-                script.name, static_cast<unsigned long long>(all.scene_bytes), static_cast<unsigned long long>(all.file_bytes),
-                100 * all.touching, script.objects.size() * script.fingers.size() * sizeof(fdcg_contact));
+    std::printf(
+        "%-8s scene %llu bytes, files %llu bytes, %.1f %% of the steps touch; one contact for every finger and object: %zu "
+        "bytes\n",
+        script.name, static_cast<unsigned long long>(all.scene_bytes), static_cast<unsigned long long>(all.file_bytes),
+        100 * all.touching, script.objects.size() * script.fingers.size() * sizeof(fdcg_contact));
   }
   return holds;
 }
 
-// ---- bars --------------------------------------------------------------------------------------------------------------------
+// ---- bars
+// --------------------------------------------------------------------------------------------------------------------
 
 bool print_bar(const char* what, double measured, double bar, const char* unit) {
   std::printf("%-64s %10.1f %s, bar %.1f%s\n", what, measured, unit, bar, measured <= bar ? "" : "  MISSED");

@@ -16,7 +16,9 @@ from anywhere import C, FIRMWARE, ROOT, RUNTIME, TOOLCHAINS, AnywhereCase, qemu 
 BUILD = os.environ["FDCG_BUILD"]
 CONSUMER = ROOT / "tests" / "consumer"
 EXAMPLES = RUNTIME / "examples"
-PROMISED = re.search(r"It prints\n\n```\n(.*?)```", (ROOT / "README.md").read_text(), re.S).group(1)
+README = (ROOT / "README.md").read_text()
+PROMISED = re.search(r"It prints\n\n```\n(.*?)```", README, re.S).group(1)
+PROMISED_OF_SCENES = re.search(r"The turntable prints\n\n```\n(.*?)```", README, re.S).group(1)
 PLAIN_PATH = {**os.environ, "PATH": "/usr/bin:/bin"}  # where no fdcg is
 
 
@@ -55,9 +57,10 @@ class Package(ConsumerCase):
         folder = self.path("build")
         self.configure(EXAMPLES, folder)
         self.build(folder)
-        for program in ("press_and_slide_c", "press_and_slide_cpp"):
-            done = self.run_program(os.path.join(folder, program), cwd=folder)
-            self.assertEqual(PROMISED, done.stdout.decode(), program)
+        for example, promised in (("press_and_slide", PROMISED), ("turntable", PROMISED_OF_SCENES)):
+            for program in (example + "_c", example + "_cpp"):
+                done = self.run_program(os.path.join(folder, program), cwd=folder)
+                self.assertEqual(promised, done.stdout.decode(), program)
 
     def test_the_examples_stay_short(self):
         for pattern in ("*.c", "*.cpp", "firmware/*"):

@@ -21,7 +21,8 @@ int ticks_of_a_run(int usual) {
   return asked != nullptr ? std::atoi(asked) : usual;
 }
 
-// ---- by hand -----------------------------------------------------------------------------------------------------------------
+// ---- by hand
+// -----------------------------------------------------------------------------------------------------------------
 
 // The same contact without a scene: the formulas of scene.h, fdcg_step in every tick.
 struct ByHand {
@@ -30,8 +31,9 @@ struct ByHand {
   double force[3] = {}, god_object[3] = {};
 
   void step(const fdcg_graph& graph, const fdcg_params& params, const fdcg_pose& pose, const Place& hip) {
-    const double length = std::sqrt(pose.rotation_xyzw[0] * pose.rotation_xyzw[0] + pose.rotation_xyzw[1] * pose.rotation_xyzw[1] +
-                                    pose.rotation_xyzw[2] * pose.rotation_xyzw[2] + pose.rotation_xyzw[3] * pose.rotation_xyzw[3]);
+    const double length =
+        std::sqrt(pose.rotation_xyzw[0] * pose.rotation_xyzw[0] + pose.rotation_xyzw[1] * pose.rotation_xyzw[1] +
+                  pose.rotation_xyzw[2] * pose.rotation_xyzw[2] + pose.rotation_xyzw[3] * pose.rotation_xyzw[3]);
     const double x = pose.rotation_xyzw[0] / length, y = pose.rotation_xyzw[1] / length, z = pose.rotation_xyzw[2] / length,
                  w = pose.rotation_xyzw[3] / length;
     const double r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
@@ -51,25 +53,30 @@ struct ByHand {
   }
 };
 
-// ---- how things move ---------------------------------------------------------------------------------------------------------
+// ---- how things move
+// ---------------------------------------------------------------------------------------------------------
 
 // Speeds in sizes a tick, the size being the bounding sphere's diameter.
 struct Motion {
   const char* name;
-  double speed;           // of the object's middle
-  double acceleration;    // of the same, a tick
-  double turn_rad;        // a tick
-  double growth;          // of the scale, a tick, as a share
-  double hand;            // speed of the HIP
+  double speed;         // of the object's middle
+  double acceleration;  // of the same, a tick
+  double turn_rad;      // a tick
+  double growth;        // of the scale, a tick, as a share
+  double hand;          // speed of the HIP
 };
 
-constexpr Motion kMotions[] = {
-    {"object still, hand slow", 0, 0, 0, 0, 0.01},        {"object slow, hand still", 0.01, 0, 0, 0, 0},
-    {"object one size a tick, hand still", 1, 0, 0, 0, 0}, {"object turns, hand still", 0, 0, 0.05, 0, 0},
-    {"object turns fast, hand still", 0, 0, 1, 0, 0},      {"object moves and turns, hand still", 0.3, 0, 0.2, 0, 0},
-    {"object accelerates", 0.001, 0.02, 0.02, 0, 0},       {"object and hand move", 0.1, 0, 0.1, 0, 0.1},
-    {"both fast", 1, 0, 0.5, 0, 1},                        {"object breathes", 0, 0, 0.01, 0.05, 0},
-    {"everything", 0.1, 0.01, 0.1, 0.05, 0.1}};
+constexpr Motion kMotions[] = {{"object still, hand slow", 0, 0, 0, 0, 0.01},
+                               {"object slow, hand still", 0.01, 0, 0, 0, 0},
+                               {"object one size a tick, hand still", 1, 0, 0, 0, 0},
+                               {"object turns, hand still", 0, 0, 0.05, 0, 0},
+                               {"object turns fast, hand still", 0, 0, 1, 0, 0},
+                               {"object moves and turns, hand still", 0.3, 0, 0.2, 0, 0},
+                               {"object accelerates", 0.001, 0.02, 0.02, 0, 0},
+                               {"object and hand move", 0.1, 0, 0.1, 0, 0.1},
+                               {"both fast", 1, 0, 0.5, 0, 1},
+                               {"object breathes", 0, 0, 0.01, 0.05, 0},
+                               {"everything", 0.1, 0.01, 0.1, 0.05, 0.1}};
 
 // An object that wanders about a place and a hand that wanders about the same place: they meet again and again.
 class Encounter {
@@ -122,8 +129,7 @@ class Encounter {
 };
 
 std::vector<fdcg::bake::PolygonSoup> bodies() {
-  return {cube(),  thin_plate(0.001), ico_sphere(2), l_prism(), torus(24, 12), star_sphere(2, 0.3, 5),
-          cone(30)};
+  return {cube(), thin_plate(0.001), ico_sphere(2), l_prism(), torus(24, 12), star_sphere(2, 0.3, 5), cone(30)};
 }
 
 double size_of(const fdcg_graph& graph) {

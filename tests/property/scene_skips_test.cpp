@@ -47,12 +47,12 @@ class Log {
 
 struct Play {
   std::uint32_t objects, fingers, touches_per_finger;
-  double room;      // half the side of the cube in which all this happens; objects have size 1 to 3
-  double speed;     // of what moves
-  double moving;    // share of the objects that move
-  Place offset;     // of the whole world
-  bool grow;        // scales change now and then
-  bool come_and_go; // objects and fingers are removed, added, disabled, reset; HIPs are not finite
+  double room;       // half the side of the cube in which all this happens; objects have size 1 to 3
+  double speed;      // of what moves
+  double moving;     // share of the objects that move
+  Place offset;      // of the whole world
+  bool grow;         // scales change now and then
+  bool come_and_go;  // objects and fingers are removed, added, disabled, reset; HIPs are not finite
 };
 
 struct Outcome {
@@ -165,7 +165,7 @@ class Performance {
   void move(Hand& hand) {
     hand.course.go_on(random_, play_.room, play_.speed);
     if (random_.chance(0.002)) hand.course.at = anywhere();  // across everything in one tick
-    if (random_.chance(0.1)) {  // towards some object, and there to and fro
+    if (random_.chance(0.1)) {                               // towards some object, and there to and fro
       const Place& aim = bodies_[hand.course.speed > 0.1 ? random_.below(play_.objects) : 0].course.at;
       const Place way = {aim[0] - hand.course.at[0], aim[1] - hand.course.at[1], aim[2] - hand.course.at[2]};
       const double length = std::hypot(way[0], way[1], way[2]) + 1e-9;
@@ -220,13 +220,13 @@ class Performance {
 TEST_CASE("every combination of skips gives the same forces") {
   const Place here = {0, 0, 0};
   const Play plays[] = {
-      {1, 1, 4, 3, 0.2, 0, here, false, false},                       // one finger, one still object
-      {1, 2, 1, 4, 0.3, 1, here, true, false},                         // fast
-      {40, 3, 4, 6, 0.02, 0.2, here, false, false},                    // a tray
-      {40, 3, 2, 2, 0.1, 0.5, here, true, true},                       // crowded
-      {150, 8, 8, 9, 0.3, 1, here, true, true},                        // more than one run of the scan
-      {20, 2, 4, 4, 0.1, 0.5, {1e6, -2e6, 3e5}, false, true},          // far from the world's origin
-      {20, 2, 4, 4, 0.1, 0.5, {1e11, 1e11, 1e11}, false, false}};      // ... where rounding is 1e-5 of the objects
+      {1, 1, 4, 3, 0.2, 0, here, false, false},                    // one finger, one still object
+      {1, 2, 1, 4, 0.3, 1, here, true, false},                     // fast
+      {40, 3, 4, 6, 0.02, 0.2, here, false, false},                // a tray
+      {40, 3, 2, 2, 0.1, 0.5, here, true, true},                   // crowded
+      {150, 8, 8, 9, 0.3, 1, here, true, true},                    // more than one run of the scan
+      {20, 2, 4, 4, 0.1, 0.5, {1e6, -2e6, 3e5}, false, true},      // far from the world's origin
+      {20, 2, 4, 4, 0.1, 0.5, {1e11, 1e11, 1e11}, false, false}};  // ... where rounding is 1e-5 of the objects
   std::vector<std::unique_ptr<CompiledMesh>> meshes;
   std::vector<const fdcg_graph*> graphs;
   for (const auto& soup : {cube(), thin_plate(0.01), ico_sphere(2), l_prism(), torus(24, 12)}) {
@@ -243,8 +243,8 @@ TEST_CASE("every combination of skips gives the same forces") {
     const std::size_t ticks = ticks_of_a_run(play.objects > 100 ? 300 : 1500);
     const std::uint64_t seed = 41 + static_cast<std::uint64_t>(number);
     const Outcome all = Performance(play, graphs, 0, seed).run(ticks);
-    INFO("play " << number++ << ", seed " << seed << ": " << all.touches << " touches, " << all.crowded << " crowded, " << all.looks
-                 << " looks in " << all.steps << " steps");
+    INFO("play " << number++ << ", seed " << seed << ": " << all.touches << " touches, " << all.crowded << " crowded, "
+                 << all.looks << " looks in " << all.steps << " steps");
     CHECK(all.touches > all.steps / 100);
     CHECK(all.looks < all.steps);
     crowded += all.crowded;

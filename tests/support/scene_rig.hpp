@@ -26,8 +26,8 @@ inline fdcg_pose posed(const Place& translation, const Place& axis = {0, 0, 1}, 
 // The pose turned on about an axis of the world through its own origin.
 inline fdcg_pose turned(fdcg_pose pose, const Place& axis, double angle_rad) {
   const fdcg_pose turn = posed({0, 0, 0}, axis, angle_rad);
-  const double *a = turn.rotation_xyzw, b[4] = {pose.rotation_xyzw[0], pose.rotation_xyzw[1], pose.rotation_xyzw[2],
-                                                pose.rotation_xyzw[3]};
+  const double *a = turn.rotation_xyzw,
+               b[4] = {pose.rotation_xyzw[0], pose.rotation_xyzw[1], pose.rotation_xyzw[2], pose.rotation_xyzw[3]};
   pose.rotation_xyzw[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
   pose.rotation_xyzw[1] = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
   pose.rotation_xyzw[2] = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];

@@ -7,6 +7,7 @@
 
 #include "contact_rig.hpp"
 #include "fdcg/fdcg.hpp"
+#include "heap_count.hpp"
 #include "meshes.hpp"
 #include "scene_rig.hpp"
 
@@ -458,6 +459,52 @@ TEST_CASE("out of reach nobody looks, however many objects there are") {
     rig.scene.step();
   }
   CHECK(rig.scene.result(finger).looks < 10);
+}
+
+TEST_CASE("after a scene's memory is there the heap is never called") {
+  if (!can_count_heap_calls()) return;
+  const fdcg_scene_config config = fdcg_default_scene_config();
+  const CompiledMesh mesh(star_sphere(2, 0.3, 5));
+  std::vector<std::uint64_t> memory(fdcg_scene_bytes(&config) / 8 + 1);
+  const std::uint64_t before = heap_calls();
+  fdcg_scene* scene = nullptr;
+  fdcg_error error;
+  fdcg_object_id objects[3];
+  fdcg_finger_id fingers[2];
+  fdcg_reaction reactions[3];
+  fdcg_finger_result felt;
+  const fdcg_params params = fdcg_default_params();
+  std::uint32_t touches = 0;
+  fdcg_status status = fdcg_scene_create(memory.data(), memory.size() * 8, &config, &scene, &error);
+  for (fdcg_object_id& object : objects) {
+    const fdcg_pose pose = fdcg_identity_pose();
+    if (status == FDCG_OK) status = fdcg_scene_add_object(scene, &mesh.view(), &params, &pose, &object, &error);
+  }
+  const double far[3] = {5, 0, 0};
+  for (fdcg_finger_id& finger : fingers) {
+    if (status == FDCG_OK) status = fdcg_scene_add_finger(scene, far, &finger, &error);
+  }
+  for (int tick = 0; tick < 2000 && status == FDCG_OK; ++tick) {
+    const double swing = 0.02 * tick;
+    for (int i = 0; i < 3; ++i) {
+      const fdcg_pose pose = posed({i * 1.5, 0.5 * std::sin(swing), 0}, {0, 0, 1}, 0.1 * swing);
+      fdcg_scene_set_pose(scene, objects[i], &pose, &error);
+    }
+    for (int i = 0; i < 2; ++i) {
+      const double hip[3] = {tick % 500 == 7 ? kNaN : 1.5 + 3 * std::cos(0.7 * swing + i), 0.2 * std::sin(swing), 0.1};
+      fdcg_scene_move_finger(scene, fingers[i], hip, &error);
+    }
+    fdcg_scene_step(scene);
+    for (const fdcg_finger_id finger : fingers) {
+      if (fdcg_scene_result(scene, finger, &felt, &error) == FDCG_OK) touches += felt.touch_count;
+    }
+    fdcg_scene_reactions(scene, reactions, 3);
+    if (tick == 1000) status = fdcg_scene_remove_object(scene, objects[2], &error);
+  }
+  const std::uint64_t calls = heap_calls() - before;
+  CHECK(status == FDCG_OK);
+  CHECK(touches > 100);
+  CHECK(calls == 0);
 }
 
 TEST_CASE("the C++ scene does what the C functions do") {

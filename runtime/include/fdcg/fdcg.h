@@ -9,6 +9,14 @@
  *   each tick:  fdcg_step(&graph, &params, &contact, hip_object_m, &result);   ->  result.force_n
  *   fdcg_close(&graph);
  *
+ * Objects that move, and several fingers (scene.h), in memory of yours of fdcg_scene_bytes(&config) bytes:
+ *
+ *   fdcg_scene_create(memory, bytes, &config, &scene, &error);
+ *   fdcg_scene_add_object(scene, &graph, &params, &pose, &object, &error);      a pose: rotation, translation, scale
+ *   fdcg_scene_add_finger(scene, hip_world_m, &finger, &error);
+ *   each tick:  fdcg_scene_set_pose(scene, object, &pose, &error);  fdcg_scene_move_finger(scene, finger, hip_world_m, &error);
+ *               fdcg_scene_step(scene);  fdcg_scene_result(scene, finger, &felt, &error);           ->  felt.force_n
+ *
  * fdcg_step is the friction-cone god-object algorithm of Melder and Harwin (2004) with its gaps closed. It never allocates,
  * locks, logs, throws, recurses or reads a clock, and every loop in it is bounded. Several contacts may step on one graph at
  * once: the graph is only read.

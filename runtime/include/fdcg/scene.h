@@ -17,8 +17,8 @@
  * moving and turning object carries its god-objects. What is swept each tick is the relative motion: from where the HIP was in
  * the object's frame at the last tick, with the object's pose of that tick, straight to where it is now. An object that moves
  * onto a still finger is met as surely as the other way round. In a turn of w radians a tick the straight way cuts the arc by a
- * share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An object whose bounding sphere the finger
- * does not reach, measured from the moving centre of the sphere, is not met, however fast it spins.
+ * share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An object whose bounding sphere the
+ * finger does not reach, measured from the moving centre of the sphere, is not met, however fast it spins.
  *
  * Lengths of the world in metres, forces in newtons. At a scale of s the god-object's distance in the world is s times the one
  * in the object, and stiffness and damping act on the distance in the world; friction does not depend on scale.
@@ -55,8 +55,8 @@ typedef struct fdcg_finger_id {
 } fdcg_finger_id;
 
 /* world = R (scale * object) + translation, and back: object = (R^T (world - translation)) / scale, where R is the rotation
- * matrix of the quaternion; the three products of a row are added from the first to the third. So a contact stepped by hand with
- * fdcg_step gives the scene's bits. */
+ * matrix of the quaternion; the three products of a row are added from the first to the third. So a contact stepped by hand
+ * with fdcg_step gives the scene's bits. */
 typedef struct fdcg_pose {
   double rotation_xyzw[4]; /* unit quaternion, real part last; within 1e-3 of unit length, made exactly unit by the scene */
   double translation_m[3]; /* up to 1e12 */
