@@ -41,24 +41,17 @@ Vec unit(const Vec& a) {
   return (1 / length(a)) * a;
 }
 
-// The demo compiles its mesh with --precision f64 (the default).
 struct Graph {
   fdcg_graph view{};
-  const fdcg_node_f64* nodes = nullptr;
-  const fdcg_connection_f64* connections = nullptr;
-  const fdcg_corner_f64* corners = nullptr;
   Vec centre{};
   double size = 0;  // the bounding box's diagonal, metres
 
   explicit Graph(const char* path) {
     fdcg_error error{};
-    if (fdcg_open_file(path, FDCG_VERIFY_FULL, &view, &error) != FDCG_OK || view.header->real_bytes != 8) {
-      std::fprintf(stderr, "fdcg_demo_data: %s: %s\n", path, error.message[0] != '\0' ? error.message : "not an f64 file");
+    if (fdcg_open_file(path, FDCG_VERIFY_FULL, &view, &error) != FDCG_OK) {
+      std::fprintf(stderr, "fdcg_demo_data: %s: %s\n", path, error.message);
       std::exit(3);
     }
-    nodes = static_cast<const fdcg_node_f64*>(view.nodes);
-    connections = static_cast<const fdcg_connection_f64*>(view.connections);
-    corners = static_cast<const fdcg_corner_f64*>(view.corners);
     const Vec low = in_metres(view.header->bounds_min), high = in_metres(view.header->bounds_max);
     centre = 0.5 * (low + high);
     size = length(high - low);
@@ -70,9 +63,6 @@ struct Graph {
   [[nodiscard]] Vec in_metres(const double (&local)[3]) const {
     const fdcg_header& h = *view.header;
     return h.metres_per_unit * Vec{local[0] + h.origin[0], local[1] + h.origin[1], local[2] + h.origin[2]};
-  }
-  [[nodiscard]] std::uint32_t start_corner(std::uint32_t side) const {
-    return connections[view.sides[side] >> 1].corner[view.sides[side] & 1];
   }
 };
 
@@ -170,11 +160,12 @@ class Image {
 
   void draw(const Graph& graph) {
     for (std::uint32_t n = 0; n < graph.view.header->node_count; ++n) {
-      const fdcg_node_f64& node = graph.nodes[n];
-      const Vec normal{node.plane.normal[0], node.plane.normal[1], node.plane.normal[2]};
+      const fdcg_node_info node = fdcg_get_node(&graph.view, n);
+      const Vec normal{node.normal[0], node.normal[1], node.normal[2]};
       if (dot(normal, camera_.toward) <= 0) continue;
       for (std::uint32_t k = 1; k + 1 < node.side_count; ++k) {
-        const std::uint32_t loop[3] = {node.first_side, node.first_side + k, node.first_side + k + 1};
+        const std::uint32_t loop[3] = {fdcg_get_side(&graph.view, n, 0).corner, fdcg_get_side(&graph.view, n, k).corner,
+                                       fdcg_get_side(&graph.view, n, k + 1).corner};
         const bool real[3] = {k == 1, true, k + 2 == node.side_count};  // a side of the node, not a cut of the fan
         draw_triangle(graph, loop, real, normal);
       }
@@ -210,7 +201,7 @@ class Image {
   void draw_triangle(const Graph& graph, const std::uint32_t (&loop)[3], const bool (&real)[3], const Vec& face_normal) {
     Vec p[3], normals[3];
     for (int i = 0; i < 3; ++i) {
-      const fdcg_corner_f64& corner = graph.corners[graph.start_corner(loop[i])];
+      const fdcg_corner_info corner = fdcg_get_corner(&graph.view, loop[i]);
       p[i] = sample_point(graph.in_metres(corner.point));
       normals[i] = window_.wire ? face_normal : Vec{corner.normal[0], corner.normal[1], corner.normal[2]};
     }
@@ -290,8 +281,8 @@ std::vector<LogRow> read_log(const char* path) {
 // |Ft| / |Fn| on a face, "nan" elsewhere.
 double friction_ratio(const Graph& graph, const LogRow& row) {
   if (row.state != "face") return std::numeric_limits<double>::quiet_NaN();
-  const auto& stored = graph.nodes[row.feature].plane.normal;
-  const Vec normal{stored[0], stored[1], stored[2]};
+  const fdcg_node_info face = fdcg_get_node(&graph.view, row.feature);
+  const Vec normal{face.normal[0], face.normal[1], face.normal[2]};
   const double pressing = dot(row.force, normal);
   return length(row.force - pressing * normal) / pressing;
 }
@@ -312,7 +303,7 @@ void write_path_data(const Graph& graph, const Camera& camera, const std::vector
 std::array<Window, 2> windows_of(const Graph& graph, const Camera& camera, const std::vector<LogRow>& rows) {
   Vec low{1e300, 1e300, 0}, high{-1e300, -1e300, 0};
   for (std::uint32_t v = 0; v < graph.view.header->corner_count; ++v) {
-    const Vec p = camera.project(graph.in_metres(graph.corners[v].point));
+    const Vec p = camera.project(graph.in_metres(fdcg_get_corner(&graph.view, v).point));
     for (std::size_t axis = 0; axis < 2; ++axis) {
       low[axis] = std::min(low[axis], p[axis]);
       high[axis] = std::max(high[axis], p[axis]);

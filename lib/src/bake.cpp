@@ -106,7 +106,7 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   input.source_vertex_count = static_cast<std::uint32_t>(soup.points.size());
   input.source_face_count = static_cast<std::uint32_t>(soup.face_count());
   input.precision = options.precision;
-  input.with_voronoi_planes = options.store_voronoi_planes;
+  input.with_planes = options.store_planes;
   input.with_hierarchy = !options.without.contains("hierarchy");
   input.with_source_map = !options.without.contains("source-map");
   input.jobs = jobs;
@@ -178,14 +178,13 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
 // A closed mesh has half as many connections as sides, and some six fan entries to a corner.
 std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& options) {
   const bool is_f32 = options.precision == Precision::f32;
-  const std::size_t node = is_f32 ? sizeof(fdcg_node_f32) : sizeof(fdcg_node_f64);
-  const std::size_t plane = !options.store_voronoi_planes ? 0 : is_f32 ? sizeof(fdcg_plane_f32) : sizeof(fdcg_plane_f64);
-  const std::size_t connection = is_f32 ? sizeof(fdcg_connection_f32) : sizeof(fdcg_connection_f64);
+  const std::size_t node = is_f32 ? offsetof(fdcg_node_f32, sides) : offsetof(fdcg_node_f64, sides);
+  const std::size_t plane = !options.store_planes ? 0 : is_f32 ? sizeof(fdcg_plane_f32) : sizeof(fdcg_plane_f64);
+  const std::size_t edge = !options.store_planes ? 0 : is_f32 ? sizeof(fdcg_edge_f32) : sizeof(fdcg_edge_f64);
   const std::size_t corner = is_f32 ? sizeof(fdcg_corner_f32) : sizeof(fdcg_corner_f64);
-  const std::size_t side_and_fan = 2 * sizeof(std::uint32_t),
-                    hierarchy = sizeof(fdcg_box8) / (FDCG_LEAF_NODES * (FDCG_TREE_WAYS - 1)) + 1;
+  const std::size_t hierarchy = sizeof(fdcg_box8) / (FDCG_LEAF_NODES * (FDCG_TREE_WAYS - 1)) + 1;
   const std::size_t per_face = node + hierarchy + sizeof(std::uint32_t);
-  const std::size_t per_side = side_and_fan + plane + connection / 2 + corner / 6;
+  const std::size_t per_side = sizeof(fdcg_side) + plane + (sizeof(fdcg_connection) + edge) / 2 + corner / 6;
   constexpr std::size_t kHeaderAndInfo = 4096;
   return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side;
 }

@@ -62,7 +62,7 @@ Json options_json(const CompileOptions& options) {
   json["weld"] = name_of(options.weld.kind);
   if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
   json["orient"] = options.orient;
-  json["planes"] = options.store_voronoi_planes ? "stored" : "derived";
+  json["planes"] = options.store_planes ? "stored" : "derived";
   json["without"] = options.without;
   json["allow"] = options.allow;
   json["self_intersections"] = options.self_intersections;

@@ -42,33 +42,6 @@ struct Plane {
 // that normal and rounded.
 [[nodiscard]] Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision precision);
 
-// A vector in the file's own precision.
-template <class Real>
-struct Stored3 {
-  Real x, y, z;
-
-  explicit Stored3(const Vec3& v) : x(static_cast<Real>(v.x)), y(static_cast<Real>(v.y)), z(static_cast<Real>(v.z)) {}
-};
-
-template <class Real>
-struct StoredPlane {
-  Real normal[3], offset;
-};
-
-// The plane through the edge, facing out of the face: `along` is the edge's direction in the face's own winding and m is
-// unit(along x normal); `v0` is the end of the edge that the connection calls corner 0. From the stored numbers by the
-// expression that the runtime uses where planes are not stored (graph_view.hpp), so that both ways give the same bits.
-template <class Real>
-[[nodiscard]] StoredPlane<Real> voronoi_plane(const Stored3<Real>& along, const Stored3<Real>& normal,
-                                              const Stored3<Real>& v0) {
-  const Real out_x = along.y * normal.z - along.z * normal.y;
-  const Real out_y = along.z * normal.x - along.x * normal.z;
-  const Real out_z = along.x * normal.y - along.y * normal.x;
-  const Real length = std::sqrt(out_x * out_x + out_y * out_y + out_z * out_z);
-  const Real x = out_x / length, y = out_y / length, z = out_z / length;
-  return {{x, y, z}, -(x * v0.x + y * v0.y + z * v0.z)};
-}
-
 // The step from a to b runs along the plane rather than off it: within 45 degrees. An edge that does not has no Voronoi plane
 // to speak of; noise makes such edges where they are as short as the quantum.
 [[nodiscard]] inline bool runs_along(const Vec3& normal, const Vec3& a, const Vec3& b) {

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <span>
 
+#include "../../runtime/src/derive.hpp"  // stored bits are those that the runtime derives
 #include "fan_tree.hpp"
 #include "fdcg/fdcg.h"
 #include "fdcg/format.h"
@@ -27,7 +28,7 @@ struct Records64 {
   using Real = double;
   using Plane = fdcg_plane_f64;
   using Node = fdcg_node_f64;
-  using Connection = fdcg_connection_f64;
+  using Edge = fdcg_edge_f64;
   using Corner = fdcg_corner_f64;
   using FanBox = fdcg_fan_box_f64;
 };
@@ -35,7 +36,7 @@ struct Records32 {
   using Real = float;
   using Plane = fdcg_plane_f32;
   using Node = fdcg_node_f32;
-  using Connection = fdcg_connection_f32;
+  using Edge = fdcg_edge_f32;
   using Corner = fdcg_corner_f32;
   using FanBox = fdcg_fan_box_f32;
 };
@@ -79,6 +80,52 @@ class Layout {
   std::uint64_t bytes_ = 0;
 };
 
+// Where the nodes' blocks lie: one after another, of one size where all nodes have as many sides.
+class Blocks {
+ public:
+  // The sizes depend on the sides: `node` bytes up to the sides, `real` bytes a number, `plane` bytes a stored plane or 0.
+  Blocks(const Graph& graph, std::size_t node, std::size_t real, std::size_t plane)
+      : graph_(graph), node_(node), real_(real), plane_(plane) {
+    const std::uint32_t nodes = graph.node_count();
+    const bool is_uniform =
+        graph.side_count() == nodes * std::uint64_t{sides(0)} && (graph.node_of_side.empty() || has_one_size());
+    if (is_uniform) {
+      uniform_ = size(sides(0));
+      bytes_ = nodes * std::uint64_t{uniform_};
+      return;
+    }
+    offsets_.reserve(nodes);
+    for (std::uint32_t n = 0; n < nodes; ++n) {
+      offsets_.push_back(bytes_);
+      bytes_ += size(sides(n));
+    }
+  }
+  [[nodiscard]] std::uint32_t uniform_bytes() const { return uniform_; }  // 0: they differ
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  [[nodiscard]] std::uint64_t at(std::uint32_t n) const { return uniform_ != 0 ? n * std::uint64_t{uniform_} : offsets_[n]; }
+  [[nodiscard]] std::uint32_t planes_at(std::uint32_t sides) const {
+    return static_cast<std::uint32_t>((node_ + sides * sizeof(fdcg_side) + real_ - 1) / real_ * real_);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t sides(std::uint32_t n) const { return graph_.first_side[n + 1] - graph_.first_side[n]; }
+  [[nodiscard]] std::uint32_t size(std::uint32_t sides) const {
+    return planes_at(sides) + static_cast<std::uint32_t>(sides * plane_);
+  }
+  [[nodiscard]] bool has_one_size() const {
+    for (std::uint32_t n = 1; n < graph_.node_count(); ++n) {
+      if (sides(n) != sides(0)) return false;
+    }
+    return true;
+  }
+
+  const Graph& graph_;
+  std::size_t node_, real_, plane_;
+  std::uint32_t uniform_ = 0;
+  std::uint64_t bytes_ = 0;
+  std::vector<std::uint64_t> offsets_;
+};
+
 // What one range of nodes adds to the header.
 struct NodeTally {
   std::array<std::uint32_t, 4> types{};
@@ -88,18 +135,28 @@ struct NodeTally {
 template <class Records>
 class Writer {
   using Real = typename Records::Real;
+  using Node = typename Records::Node;
+  using StoredPlane = typename Records::Plane;
 
  public:
-  Writer(const Graph& graph, const SerialiseInput& input) : graph_(graph), input_(input) {}
+  Writer(const Graph& graph, const SerialiseInput& input)
+      : graph_(graph),
+        input_(input),
+        blocks_(graph, offsetof(Node, sides), sizeof(Real), input.with_planes ? sizeof(StoredPlane) : 0) {}
 
   Result<std::span<std::byte>> run(const Allocate& allocate) {
+    constexpr std::uint64_t kMostBlocks = sizeof(Real) << 32;  // offsets have 32 bits
+    if (blocks_.uniform_bytes() == 0 && blocks_.bytes() > kMostBlocks)
+      return Failure{
+          3,
+          "the nodes take " + std::to_string(blocks_.bytes()) + " bytes, the format holds 2^32 numbers: derive the planes",
+          {}};
     plan();
     file_ = allocate(layout_.bytes());
     if (file_.empty()) return Failure{3, "no memory for a file of " + std::to_string(layout_.bytes()) + " bytes", {}};
-    nodes_ = layout_.records<typename Records::Node>(file_, FDCG_SECTION_NODES);
-    sides_ = layout_.records<std::uint32_t>(file_, FDCG_SECTION_SIDES);
-    voronoi_ = layout_.records<typename Records::Plane>(file_, FDCG_SECTION_VORONOI);
-    connections_ = layout_.records<typename Records::Connection>(file_, FDCG_SECTION_CONNECTIONS);
+    node_blocks_ = layout_.records<std::byte>(file_, FDCG_SECTION_NODES);
+    edges_ = layout_.records<typename Records::Edge>(file_, FDCG_SECTION_EDGES);
+    connections_ = layout_.records<fdcg_connection>(file_, FDCG_SECTION_CONNECTIONS);
     corners_ = layout_.records<typename Records::Corner>(file_, FDCG_SECTION_CORNERS);
     fans_ = layout_.records<std::uint32_t>(file_, FDCG_SECTION_FANS);
     find_bounds();
@@ -108,7 +165,8 @@ class Writer {
       for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
         write_corner(c);
     });
-    write_fan_trees();
+    write_busy_corners();
+    write_node_offsets();
     if (input_.with_hierarchy) {
       build_hierarchy(graph_, {header_.extent, header_.max_deviation},
                       layout_.records<fdcg_box8>(file_, FDCG_SECTION_HIERARCHY), input_.jobs);
@@ -121,28 +179,36 @@ class Writer {
 
  private:
   void plan() {
-    layout_.add(FDCG_SECTION_NODES, sizeof(typename Records::Node), graph_.node_count());
-    layout_.add(FDCG_SECTION_SIDES, sizeof(std::uint32_t), graph_.side_count());
-    if (input_.with_voronoi_planes) layout_.add(FDCG_SECTION_VORONOI, sizeof(typename Records::Plane), graph_.side_count());
-    layout_.add(FDCG_SECTION_CONNECTIONS, sizeof(typename Records::Connection), graph_.connection_count);
+    if (blocks_.uniform_bytes() != 0) {
+      layout_.add(FDCG_SECTION_NODES, blocks_.uniform_bytes(), graph_.node_count());
+    } else {
+      layout_.add(FDCG_SECTION_NODES, sizeof(Real), blocks_.bytes() / sizeof(Real));
+      layout_.add(FDCG_SECTION_NODE_OFFSETS, sizeof(std::uint32_t), graph_.node_count());
+    }
+    if (input_.with_planes) layout_.add(FDCG_SECTION_EDGES, sizeof(typename Records::Edge), graph_.connection_count);
+    layout_.add(FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), graph_.connection_count);
     layout_.add(FDCG_SECTION_CORNERS, sizeof(typename Records::Corner), graph_.corner_count());
-    layout_.add(FDCG_SECTION_FANS, sizeof(std::uint32_t), graph_.first_fan.back());
+    find_busy_corners();
+    if (!busy_corners_.empty()) layout_.add(FDCG_SECTION_FANS, sizeof(std::uint32_t), fan_entries_);
     if (input_.with_hierarchy) {
       const std::vector<std::uint32_t> levels = hierarchy_levels(graph_.node_count());
       layout_.add(FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), std::accumulate(levels.begin(), levels.end(), std::uint64_t{0}));
     }
     if (input_.with_source_map) layout_.add(FDCG_SECTION_SOURCE_MAP, sizeof(std::uint32_t), input_.source_face_count);
     if (!input_.info.empty()) layout_.add(FDCG_SECTION_INFO, 1, input_.info.size());
-    find_busy_corners();
-    if (fan_boxes_ > 0) layout_.add(FDCG_SECTION_FAN_BOXES, sizeof(typename Records::FanBox), fan_boxes_);
+    if (!busy_corners_.empty()) {
+      layout_.add(FDCG_SECTION_FAN_BOXES, sizeof(typename Records::FanBox), fan_boxes_);
+      layout_.add(FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), busy_corners_.size());
+    }
     layout_.place();
   }
 
   void find_busy_corners() {
     for (std::uint32_t c = 0; c < graph_.corner_count(); ++c) {
-      const std::uint32_t boxes = fan_box_count(graph_.first_fan[c + 1] - graph_.first_fan[c]);
+      const std::uint32_t entries = graph_.first_fan[c + 1] - graph_.first_fan[c], boxes = fan_box_count(entries);
       if (boxes == 0) continue;
-      busy_corners_.push_back({c, fan_boxes_});
+      busy_corners_.push_back({c, fan_entries_, entries, fan_boxes_});
+      fan_entries_ += entries;
       fan_boxes_ += boxes;
     }
   }
@@ -161,10 +227,16 @@ class Writer {
     header_.extent = std::max(largest_component(low), largest_component(high));
   }
 
-  static typename Records::Plane stored(const Plane& p) {
+  static StoredPlane stored(const Plane& p) {
     return {{static_cast<Real>(p.normal.x), static_cast<Real>(p.normal.y), static_cast<Real>(p.normal.z)},
             static_cast<Real>(p.offset)};
   }
+
+  static fdcg::Vec3<Real> rounded(const Vec3& v) {
+    return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+  }
+
+  [[nodiscard]] Node& node(std::uint32_t n) const { return *reinterpret_cast<Node*>(node_blocks_.data() + blocks_.at(n)); }
 
   [[nodiscard]] const Vec3& start(std::uint32_t side) const { return graph_.points[graph_.corner[side]]; }
 
@@ -196,24 +268,31 @@ class Writer {
     const std::uint32_t region = graph_.region_of(n);
     const bool is_exact = region == kNone || graph_.regions[region].is_exact;
     const Plane plane = plane_of(n);
-    nodes_[n].plane = stored(plane);
-    nodes_[n].first_side = first;
-    nodes_[n].side_count = static_cast<std::uint16_t>(end - first);
-    nodes_[n].flags = is_exact ? 0 : FDCG_NODE_INEXACT;
+    Node& record = node(n);
+    record.plane = stored(plane);
+    record.side_count = static_cast<std::uint16_t>(end - first);
+    record.flags = is_exact ? 0 : FDCG_NODE_INEXACT;
+    auto* const block = reinterpret_cast<std::byte*>(&record);
+    auto* const sides = reinterpret_cast<fdcg_side*>(block + offsetof(Node, sides));
+    auto* const planes = reinterpret_cast<StoredPlane*>(block + blocks_.planes_at(end - first));
     for (std::uint32_t side = first; side < end; ++side) {
-      const Vec3& from = start(side);
-      const Vec3& to = start(side + 1 < end ? side + 1 : first);
-      const Vec3 along = edge_direction(from, to);
-      const std::uint32_t entry = graph_.connection[side];
-      sides_[side] = entry;
-      if (!voronoi_.empty()) {
-        const StoredPlane<Real> m =
-            voronoi_plane(Stored3<Real>(along), Stored3<Real>(plane.normal), Stored3<Real>((entry & 1u) == 0 ? from : to));
-        voronoi_[side] = {{m.normal[0], m.normal[1], m.normal[2]}, m.offset};
+      const std::uint32_t link = graph_.connection[side], twin = graph_.twin[side];
+      sides[side - first] = {link, graph_.corner[side], twin == kNone ? FDCG_NONE : graph_.node(twin)};
+      if (input_.with_planes) {
+        const Edge<Real> edge = edge_of(side);
+        const fdcg::Plane<Real> m = derive_voronoi_plane(edge.start, edge.direction, rounded(plane.normal), link & 1u);
+        planes[side - first] = {{m.normal.x, m.normal.y, m.normal.z}, m.offset};
+        if ((link & 1u) == 0) edges_[link >> 1] = {{edge.direction.x, edge.direction.y, edge.direction.z}, edge.length};
       }
-      if ((entry & 1u) == 0) ++tally.types[write_connection(entry >> 1, side, n, along, from, to)];
-      if (!is_exact) tally.max_deviation = std::max(tally.max_deviation, deviation(plane, from));
+      if ((link & 1u) == 0) ++tally.types[write_connection(link >> 1, side, n)];
+      if (!is_exact) tally.max_deviation = std::max(tally.max_deviation, deviation(plane, start(side)));
     }
+  }
+
+  // The connection's edge, from its corner 0 to its corner 1.
+  [[nodiscard]] Edge<Real> edge_of(std::uint32_t side) const {
+    const fdcg::Vec3<Real> from = rounded(start(side)), to = rounded(start(graph_.next(side)));
+    return (graph_.connection[side] & 1u) == 0 ? derive_edge(from, to) : derive_edge(to, from);
   }
 
   // An upper bound, whatever the three products and sums lost.
@@ -222,26 +301,14 @@ class Writer {
     return std::fabs(dot(plane.normal, point) + plane.offset) + kRounding * (header_.extent + std::fabs(plane.offset));
   }
 
-  fdcg_connection_type write_connection(std::uint32_t id, std::uint32_t side, std::uint32_t n, const Vec3& along,
-                                        const Vec3& from, const Vec3& to) {
-    typename Records::Connection& connection = connections_[id];
-    connection.edge[0] = static_cast<Real>(along.x);
-    connection.edge[1] = static_cast<Real>(along.y);
-    connection.edge[2] = static_cast<Real>(along.z);
-    connection.end_offset[0] = static_cast<Real>(dot(along, from));
-    connection.end_offset[1] = static_cast<Real>(-dot(along, to));
-    connection.corner[0] = graph_.corner[side];
-    connection.corner[1] = graph_.corner[graph_.next(side)];
-    connection.node[0] = n;
-    connection.side[0] = static_cast<std::uint16_t>(side - graph_.first_side[n]);
-    const std::uint32_t twin = graph_.twin[side];
-    const std::uint32_t other = twin == kNone ? FDCG_NONE : graph_.node(twin);
-    connection.node[1] = other;
-    connection.side[1] = twin == kNone ? std::uint16_t{0} : static_cast<std::uint16_t>(twin - graph_.first_side[other]);
+  fdcg_connection_type write_connection(std::uint32_t id, std::uint32_t side, std::uint32_t n) {
+    const std::uint32_t twin = graph_.twin[side], other = twin == kNone ? FDCG_NONE : graph_.node(twin);
     const auto [type, flatness] = type_of(side, n, other);
-    connection.type = static_cast<std::uint8_t>(type);
-    connection.flatness = static_cast<std::uint8_t>(flatness);
-    connection.reserved = 0;
+    const auto side_there = static_cast<std::uint8_t>(twin == kNone ? 0 : twin - graph_.first_side[other]);
+    connections_[id] = {n,
+                        {static_cast<std::uint8_t>(side - graph_.first_side[n]), side_there},
+                        static_cast<std::uint8_t>(type),
+                        static_cast<std::uint8_t>(flatness)};
     return type;
   }
 
@@ -263,41 +330,50 @@ class Writer {
     corner.point[0] = static_cast<Real>(point.x);
     corner.point[1] = static_cast<Real>(point.y);
     corner.point[2] = static_cast<Real>(point.z);
-    corner.first_fan = graph_.first_fan[c];
-    corner.fan_count = graph_.first_fan[c + 1] - graph_.first_fan[c];
-    std::uint32_t side = graph_.fan_start[c];
-    const bool is_open = graph_.twin[side] == kNone;
-    corner.flags = is_open ? FDCG_CORNER_OPEN : 0;
-    std::uint32_t* entry = fans_.data() + corner.first_fan;
+    const std::uint32_t entries = graph_.first_fan[c + 1] - graph_.first_fan[c], first = graph_.fan_start[c];
+    const bool is_open = graph_.twin[first] == kNone, is_busy = entries > FDCG_BUSY_FAN;
+    corner.first = graph_.node(first);
+    corner.side = static_cast<std::uint8_t>(is_busy ? 0 : first - graph_.first_side[corner.first]);
+    corner.fan = static_cast<std::uint8_t>((is_busy ? 0 : entries) | (is_open ? FDCG_CORNER_OPEN : 0));
     Vec3 sum;
-    const std::uint32_t faces = corner.fan_count - (is_open ? 1 : 0);
-    for (std::uint32_t i = 0; i < faces; ++i) {
+    std::uint32_t side = first;
+    for (std::uint32_t faces = entries - (is_open ? 1 : 0); faces > 0; --faces) {
       const std::uint32_t incoming = graph_.previous(side);
-      *entry++ = graph_.connection[side];
-      const double angle = angle_between(leaving(graph_.connection[side]), leaving(graph_.connection[incoming] ^ 1u));
+      const double angle = angle_between(leaving(side), -leaving(incoming));
       sum = sum + angle * normal_of(graph_.node(side));
-      if (i + 1 == faces && is_open) *entry = graph_.connection[incoming] ^ 1u;
       side = graph_.twin[incoming];
     }
     const Vec3 normal = unit(sum);
-    corner.normal[0] = static_cast<float>(normal.x);
-    corner.normal[1] = static_cast<float>(normal.y);
-    corner.normal[2] = static_cast<float>(normal.z);
+    for (int k = 0; k < 3; ++k)
+      corner.normal[k] = static_cast<std::int16_t>(std::floor(FDCG_NORMAL_SCALE * component(normal, k) + 0.5));
   }
 
-  void write_fan_trees() {
+  // The fan as the file stores it, and the directions that it offers.
+  std::vector<FanDirection> write_fan(std::uint32_t c, std::span<std::uint32_t> entries) const {
+    std::vector<FanDirection> fan(entries.size());
+    std::uint32_t side = graph_.fan_start[c];
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      entries[i] = graph_.connection[side];
+      fan[i] = {leaving(side), normal_of(graph_.node(side))};
+      const std::uint32_t incoming = graph_.previous(side);
+      side = graph_.twin[incoming];
+      if (side != kNone) continue;
+      entries[i + 1] = graph_.connection[incoming] ^ 1u;
+      fan[i + 1] = {-leaving(incoming), {}};
+      break;
+    }
+    return fan;
+  }
+
+  void write_busy_corners() {
     const auto boxes = layout_.records<typename Records::FanBox>(file_, FDCG_SECTION_FAN_BOXES);
+    std::copy(busy_corners_.begin(), busy_corners_.end(),
+              layout_.records<fdcg_busy_corner>(file_, FDCG_SECTION_BUSY_CORNERS).begin());
     parallel_for(input_.jobs, busy_corners_.size(), 1, [&](std::size_t i, std::size_t) {
-      typename Records::Corner& corner = corners_[busy_corners_[i].corner];
-      corner.flags |= (1 + busy_corners_[i].first_box) << FDCG_CORNER_TREE_SHIFT;
-      std::vector<FanDirection> fan(corner.fan_count);
-      for (std::uint32_t k = 0; k < corner.fan_count; ++k) {
-        const std::uint32_t entry = fans_[corner.first_fan + k];
-        fan[k].edge = leaving(entry);
-        const std::uint32_t node = connections_[entry >> 1].node[entry & 1u];
-        if (node != FDCG_NONE) fan[k].face_normal = normal_of(node);
-      }
-      std::uint32_t at = busy_corners_[i].first_box;
+      const fdcg_busy_corner& busy = busy_corners_[i];
+      corners_[busy.corner].first = static_cast<std::uint32_t>(i);
+      const std::vector<FanDirection> fan = write_fan(busy.corner, fans_.subspan(busy.first_fan, busy.fan_count));
+      std::uint32_t at = busy.first_box;
       for (const FanBox& box : build_fan_tree(fan, std::numeric_limits<Real>::epsilon())) {
         for (int k = 0; k < 3; ++k) {
           boxes[at].centre[k] = static_cast<Real>(component(box.centre, k));
@@ -309,16 +385,22 @@ class Writer {
     });
   }
 
-  [[nodiscard]] Vec3 normal_of(std::uint32_t node) const {
-    const auto& normal = nodes_[node].plane.normal;
+  [[nodiscard]] Vec3 normal_of(std::uint32_t n) const {
+    const auto& normal = node(n).plane.normal;
     return {normal[0], normal[1], normal[2]};
   }
 
-  // The direction in which the connection leaves the corner that the fan entry belongs to.
-  [[nodiscard]] Vec3 leaving(std::uint32_t entry) const {
-    const auto& edge = connections_[entry >> 1].edge;
-    const Vec3 along{edge[0], edge[1], edge[2]};
-    return (entry & 1u) == 0 ? along : -along;
+  // The direction in which a side leaves its corner.
+  [[nodiscard]] Vec3 leaving(std::uint32_t side) const {
+    const fdcg::Vec3<Real> e = edge_of(side).direction;
+    const Vec3 along{e.x, e.y, e.z};
+    return (graph_.connection[side] & 1u) == 0 ? along : -along;
+  }
+
+  void write_node_offsets() {
+    const auto offsets = layout_.records<std::uint32_t>(file_, FDCG_SECTION_NODE_OFFSETS);
+    for (std::uint32_t n = 0; n < offsets.size(); ++n)
+      offsets[n] = static_cast<std::uint32_t>(blocks_.at(n) / sizeof(Real));
   }
 
   void write_source_map() {
@@ -346,7 +428,10 @@ class Writer {
     header_.side_count = graph_.side_count();
     header_.connection_count = graph_.connection_count;
     header_.corner_count = graph_.corner_count();
-    header_.fan_count = graph_.first_fan.back();
+    header_.fan_count = fan_entries_;
+    header_.busy_count = static_cast<std::uint32_t>(busy_corners_.size());
+    header_.node_bytes = blocks_.uniform_bytes();
+    header_.flags = input_.with_planes ? FDCG_STORED_PLANES : 0;
     header_.largest_fan = graph_.largest_fan;
     for (int k = 0; k < 3; ++k)
       header_.origin[k] = component(input_.origin, k);
@@ -364,16 +449,14 @@ class Writer {
   const SerialiseInput& input_;
   Layout layout_;
   fdcg_header header_{};
-  struct BusyCorner {
-    std::uint32_t corner, first_box;
-  };
-  std::vector<BusyCorner> busy_corners_;
+  const Blocks blocks_;
+  std::vector<fdcg_busy_corner> busy_corners_;
   std::uint32_t fan_boxes_ = 0;
+  std::uint32_t fan_entries_ = 0;  // of the busy corners
   std::span<std::byte> file_;
-  std::span<typename Records::Node> nodes_;
-  std::span<std::uint32_t> sides_;
-  std::span<typename Records::Plane> voronoi_;
-  std::span<typename Records::Connection> connections_;
+  std::span<std::byte> node_blocks_;  // the section's records, of whatever size, as bytes: only its start is used
+  std::span<typename Records::Edge> edges_;
+  std::span<fdcg_connection> connections_;
   std::span<typename Records::Corner> corners_;
   std::span<std::uint32_t> fans_;
 };

@@ -22,7 +22,7 @@ struct SerialiseInput {
   std::vector<std::uint32_t> face_of_source;  // of each source face: the face the graph was made of, or kNone; empty: itself
   std::string info;                           // JSON; empty: no section
   Precision precision = Precision::f64;
-  bool with_voronoi_planes = true;
+  bool with_planes = true;
   bool with_hierarchy = true;
   bool with_source_map = true;
   unsigned jobs = 1;

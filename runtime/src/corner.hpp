@@ -73,7 +73,7 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
     int level;
   };
   const ImplicitTree layout(corner.fan_count(), FDCG_LEAF_FAN);
-  const auto* boxes = graph.fan_boxes + corner.first_fan_box();
+  const auto* boxes = graph.fan_boxes + corner.busy().first_box;
   const Real tie = 64 * RealLimits<Real>::kEpsilon * norm1(t);  // the rounding of boxes and directions is under half of it
   const Real length = norm(t);
   const auto bound_of = [&](int level, uint32_t i) { return most_along(boxes[layout.first[level] + i], t, length) - tie; };
@@ -118,7 +118,8 @@ template <class Real>
 inline Decision corner_rule(Walk<Real>& walk) {
   const CornerRef<Real> corner = walk.graph.corner(walk.active.index);
   const Vec3<Real> t = walk.hip - corner.point();
-  const Steepest<Real> best = corner.is_busy() ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
+  const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
+  const Steepest<Real> best = has_tree ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
   if (best.feature.state == FDCG_FACE) {
     return go_to(walk.side(walk.graph.node(best.feature.index)) < 0 ? best.feature : kFree);
   }

@@ -178,11 +178,11 @@ Multiples multiples_of(const Vec3<double> (&point)[4]) {
   return m;
 }
 
-#ifdef __SIZEOF_INT128__
 // With 60 bits a coordinate has, differences have 61, two-by-two minors 123, and the determinant 186: a sum of high and low
-// halves, of at most 126 bits each.
+// halves, of at most 126 bits each. Work is counted by it on every processor, so that all reach a step's bound at one place.
 constexpr int kWordBits = 60;
 
+#ifdef __SIZEOF_INT128__
 int sign_in_words(const Multiples& m) {
   __extension__ using Wide = __int128;
   int64_t edge[3][3];
@@ -207,11 +207,6 @@ int sign_in_words(const Multiples& m) {
   if (high != 0) return high < 0 ? -1 : 1;
   return static_cast<uint64_t>(low) != 0 ? 1 : 0;
 }
-#else
-constexpr int kWordBits = -1;
-int sign_in_words(const Multiples&) {
-  return 0;
-}
 #endif
 
 int sign_in_limbs(const Multiples& m) {
@@ -235,7 +230,10 @@ int sign_in_limbs(const Multiples& m) {
   const Multiples m = multiples_of(point);
   const bool is_narrow = m.bits <= kWordBits;
   if (work_left != nullptr) spend(work_left, is_narrow ? kExactWork : kLongExactWork);
-  return is_narrow ? sign_in_words(m) : sign_in_limbs(m);
+#ifdef __SIZEOF_INT128__
+  if (is_narrow) return sign_in_words(m);
+#endif
+  return sign_in_limbs(m);
 }
 
 }  // namespace

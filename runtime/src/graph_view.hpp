@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A graph with its records typed: what the step reads, and the few expressions that every rule shares.
+// A graph with its records typed: what the step reads, and the few expressions that every rule shares. Rules see nodes,
+// connections, edges and corners; where their numbers lie in the file, and which of them are derived, is known here alone.
 #pragma once
 
+#include "derive.hpp"
 #include "exact_orient.hpp"
 #include "fdcg/fdcg.h"
 #include "vec.hpp"
@@ -14,7 +16,7 @@ template <>
 struct Records<double> {
   using Plane = fdcg_plane_f64;
   using Node = fdcg_node_f64;
-  using Connection = fdcg_connection_f64;
+  using Edge = fdcg_edge_f64;
   using Corner = fdcg_corner_f64;
   using FanBox = fdcg_fan_box_f64;
 };
@@ -22,86 +24,91 @@ template <>
 struct Records<float> {
   using Plane = fdcg_plane_f32;
   using Node = fdcg_node_f32;
-  using Connection = fdcg_connection_f32;
+  using Edge = fdcg_edge_f32;
   using Corner = fdcg_corner_f32;
   using FanBox = fdcg_fan_box_f32;
 };
 
-// normal.x + offset: positive outside.
+// Where a node's Voronoi planes start in its block, and where the block ends: after its sides, zeros up to a multiple of Real.
 template <class Real>
-struct Plane {
-  Vec3<Real> normal;
-  Real offset;
-
-  [[nodiscard]] Real distance(Vec3<Real> x) const { return dot(normal, x) + offset; }
-};
+constexpr uint32_t planes_at(uint32_t side_count) {
+  constexpr uint32_t kSidesAt = offsetof(typename Records<Real>::Node, sides);
+  return (kSidesAt + side_count * uint32_t{sizeof(fdcg_side)} + sizeof(Real) - 1) / sizeof(Real) * sizeof(Real);
+}
+template <class Real>
+constexpr uint32_t node_bytes(uint32_t side_count, bool has_planes) {
+  return planes_at<Real>(side_count) + (has_planes ? side_count * uint32_t{sizeof(typename Records<Real>::Plane)} : 0u);
+}
 
 template <class Real>
 struct GraphView;
 
-// One node, by value: a few pointers. `k` counts its sides from 0, in winding order.
+// One node, by value: two pointers. `k` counts its sides from 0, in winding order.
 template <class Real>
 class NodeRef {
+  using Record = typename Records<Real>::Node;
+
  public:
-  NodeRef(const GraphView<Real>& graph, uint32_t index) : graph_(&graph), record_(&graph.nodes[index]) {}
+  NodeRef(const GraphView<Real>& graph, const unsigned char* block) : graph_(&graph), block_(block) {}
 
-  [[nodiscard]] uint32_t side_count() const { return record_->side_count; }
+  [[nodiscard]] uint32_t side_count() const { return record().side_count; }
   // Its corners lie off its plane, by up to header.max_deviation.
-  [[nodiscard]] bool is_inexact() const { return (record_->flags & FDCG_NODE_INEXACT) != 0; }
-  [[nodiscard]] Vec3<Real> normal() const { return vec(record_->plane.normal); }
-  [[nodiscard]] Plane<Real> plane() const { return {normal(), record_->plane.offset}; }
+  [[nodiscard]] bool is_inexact() const { return (record().flags & FDCG_NODE_INEXACT) != 0; }
+  [[nodiscard]] uint16_t flags() const { return record().flags; }
+  [[nodiscard]] Vec3<Real> normal() const { return vec(record().plane.normal); }
+  [[nodiscard]] Plane<Real> plane() const { return {normal(), record().plane.offset}; }
 
-  [[nodiscard]] uint32_t connection(uint32_t k) const { return link(k) >> 1; }
+  [[nodiscard]] const fdcg_side& side(uint32_t k) const {
+    return reinterpret_cast<const fdcg_side*>(block_ + offsetof(Record, sides))[k];
+  }
+  [[nodiscard]] uint32_t connection(uint32_t k) const { return side(k).link >> 1; }
   // Which of the connection's nodes this one is: 0 or 1.
-  [[nodiscard]] uint32_t which(uint32_t k) const { return link(k) & 1; }
+  [[nodiscard]] uint32_t which(uint32_t k) const { return side(k).link & 1; }
   // The corner at which side k starts.
-  [[nodiscard]] uint32_t corner(uint32_t k) const { return graph_->connections[connection(k)].corner[which(k)]; }
+  [[nodiscard]] uint32_t corner(uint32_t k) const { return side(k).corner; }
   // The node beyond side k, or FDCG_NONE.
-  [[nodiscard]] uint32_t across(uint32_t k) const { return graph_->connections[connection(k)].node[1 - which(k)]; }
+  [[nodiscard]] uint32_t across(uint32_t k) const { return side(k).across; }
   [[nodiscard]] uint32_t previous(uint32_t k) const { return (k == 0 ? side_count() : k) - 1; }
   [[nodiscard]] uint32_t next(uint32_t k) const { return k + 1 < side_count() ? k + 1 : 0; }
 
   // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model section 2).
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
-    if (graph_->voronoi_planes != nullptr) {
-      const auto& stored = graph_->voronoi_planes[record_->first_side + k];
+    if (graph_->has_planes) {
+      const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
       return {vec(stored.normal), stored.offset};
     }
-    const auto& connection_record = graph_->connections[connection(k)];
-    const Vec3<Real> e = vec(connection_record.edge);
-    const Vec3<Real> out = which(k) == 0 ? cross(e, normal()) : cross(normal(), e);
-    const Real length = norm(out);
-    const Vec3<Real> m = {out.x / length, out.y / length, out.z / length};
-    return {m, -dot(m, graph_->corner_point(connection_record.corner[0]))};
+    const Edge<Real> edge = graph_->edge(*this, k);
+    return derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
   }
 
+  [[nodiscard]] const unsigned char* block() const { return block_; }
+
  private:
-  [[nodiscard]] uint32_t link(uint32_t k) const { return graph_->sides[record_->first_side + k]; }
+  [[nodiscard]] const Record& record() const { return *reinterpret_cast<const Record*>(block_); }
 
   const GraphView<Real>* graph_;
-  const typename Records<Real>::Node* record_;
+  const unsigned char* block_;
 };
 
 // One connection, by value.
 template <class Real>
 class ConnectionRef {
  public:
-  ConnectionRef(const GraphView<Real>& graph, uint32_t index) : record_(&graph.connections[index]) {}
+  ConnectionRef(const GraphView<Real>& graph, uint32_t index) : graph_(&graph), record_(&graph.connections[index]) {}
 
-  [[nodiscard]] uint8_t type() const { return record_->type; }                // fdcg_connection_type
-  [[nodiscard]] uint32_t node(uint32_t k) const { return record_->node[k]; }  // k = 1: FDCG_NONE on a boundary
+  [[nodiscard]] uint8_t type() const { return record_->type; }  // fdcg_connection_type
+  // k = 1: FDCG_NONE on a boundary.
+  [[nodiscard]] uint32_t node(uint32_t k) const { return k == 0 ? record_->node : first().across(record_->side[0]); }
   [[nodiscard]] uint32_t side(uint32_t k) const { return record_->side[k]; }  // which side of node(k) this is
-  [[nodiscard]] uint32_t corner(uint32_t end) const { return record_->corner[end]; }
+  [[nodiscard]] uint32_t corner(uint32_t end) const {
+    return first().corner(end == 0 ? record_->side[0] : first().next(record_->side[0]));
+  }
 
  private:
-  const typename Records<Real>::Connection* record_;
-};
+  [[nodiscard]] NodeRef<Real> first() const { return graph_->node(record_->node); }
 
-// A connection's line: start + u direction, 0 <= u <= length, from corner 0 to corner 1.
-template <class Real>
-struct Edge {
-  Vec3<Real> start, direction;
-  Real length;
+  const GraphView<Real>* graph_;
+  const fdcg_connection* record_;
 };
 
 // One entry of a corner's fan: a connection that leaves the corner from its end `end`, and the node to its left (FDCG_NONE
@@ -113,75 +120,111 @@ struct FanEntry {
 template <class Real>
 class CornerRef {
  public:
-  CornerRef(const GraphView<Real>& graph, uint32_t index) : record_(&graph.corners[index]) {}
+  CornerRef(const GraphView<Real>& graph, uint32_t index) : graph_(&graph), record_(&graph.corners[index]) {}
 
   [[nodiscard]] Vec3<Real> point() const { return vec(record_->point); }
-  [[nodiscard]] bool is_open() const { return (record_->flags & FDCG_CORNER_OPEN) != 0; }
-  [[nodiscard]] uint32_t fan_count() const { return record_->fan_count; }
-  // Of positive length: the side on which a point is, not how far, may be asked of it.
+  [[nodiscard]] bool is_open() const { return (record_->fan & FDCG_CORNER_OPEN) != 0; }
+  [[nodiscard]] uint32_t fan_count() const { return is_busy() ? busy().fan_count : walked_count(); }
+  // About of unit length: the side on which a point is, not how far, may be asked of it.
   [[nodiscard]] Vec3<Real> normal() const {
-    return {Real(record_->normal[0]), Real(record_->normal[1]), Real(record_->normal[2])};
+    constexpr Real kUnit = Real(1) / FDCG_NORMAL_SCALE;
+    return Vec3<Real>{Real(record_->normal[0]), Real(record_->normal[1]), Real(record_->normal[2])} * kUnit;
   }
-  // More than FDCG_BUSY_FAN entries: it has a tree.
-  [[nodiscard]] bool is_busy() const { return record_->flags >> FDCG_CORNER_TREE_SHIFT != 0; }
-  [[nodiscard]] uint32_t first_fan_entry() const { return record_->first_fan; }
-  [[nodiscard]] uint32_t first_fan_box() const { return (record_->flags >> FDCG_CORNER_TREE_SHIFT) - 1; }
+  // Its fan is stored: more than FDCG_BUSY_FAN entries.
+  [[nodiscard]] bool is_busy() const { return walked_count() == 0; }
+  // Of a busy corner. Without a tree, which no file has, first_box is FDCG_NONE.
+  [[nodiscard]] const fdcg_busy_corner& busy() const { return graph_->busy_corners[record_->first]; }
+  // Of an ordinary corner: the node and its side with which the fan starts, and how many entries it has.
+  [[nodiscard]] uint32_t first_node() const { return record_->first; }
+  [[nodiscard]] uint32_t first_side() const { return record_->side; }
+  [[nodiscard]] uint32_t walked_count() const { return record_->fan & ~FDCG_CORNER_OPEN; }
 
  private:
+  const GraphView<Real>* graph_;
   const typename Records<Real>::Corner* record_;
 };
 
 template <class Real>
 struct GraphView {
   using Node = typename Records<Real>::Node;
-  using Connection = typename Records<Real>::Connection;
   using Corner = typename Records<Real>::Corner;
   using FanBox = typename Records<Real>::FanBox;
 
   const fdcg_header* header;
-  const Node* nodes;
-  const uint32_t* sides;
-  const typename Records<Real>::Plane* voronoi_planes;  // null: derived
-  const Connection* connections;
+  const unsigned char* nodes;
+  const uint32_t* node_offsets;  // null: each block has node_bytes
+  uint64_t block_bytes;
+  bool has_planes;
+  const fdcg_connection* connections;
+  const typename Records<Real>::Edge* edges;  // null: derived
   const Corner* corners;
+  const fdcg_busy_corner* busy_corners;
   const uint32_t* fans;
   const FanBox* fan_boxes;
   const fdcg_box8* hierarchy;
 
   explicit GraphView(const fdcg_graph& graph)
       : header(graph.header),
-        nodes(static_cast<const Node*>(graph.nodes)),
-        sides(graph.sides),
-        voronoi_planes(static_cast<const typename Records<Real>::Plane*>(graph.voronoi_planes)),
-        connections(static_cast<const Connection*>(graph.connections)),
+        nodes(static_cast<const unsigned char*>(graph.nodes)),
+        node_offsets(graph.node_offsets),
+        block_bytes(graph.header->node_bytes),
+        has_planes((graph.header->flags & FDCG_STORED_PLANES) != 0),
+        connections(graph.connections),
+        edges(static_cast<const typename Records<Real>::Edge*>(graph.edges)),
         corners(static_cast<const Corner*>(graph.corners)),
+        busy_corners(graph.busy_corners),
         fans(graph.fans),
         fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
         hierarchy(graph.hierarchy) {}
 
-  [[nodiscard]] NodeRef<Real> node(uint32_t index) const { return {*this, index}; }
+  [[nodiscard]] NodeRef<Real> node(uint32_t index) const {
+    const uint64_t at = node_offsets == nullptr ? index * block_bytes : node_offsets[index] * uint64_t{sizeof(Real)};
+    return {*this, nodes + at};
+  }
   [[nodiscard]] ConnectionRef<Real> connection(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] CornerRef<Real> corner(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return vec(corners[index].point); }
 
-  [[nodiscard]] Edge<Real> edge(uint32_t connection_index) const {
-    const auto& record = connections[connection_index];
-    return {corner_point(record.corner[0]), vec(record.edge), -(record.end_offset[0] + record.end_offset[1])};
+  // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs.
+  [[nodiscard]] Edge<Real> edge(NodeRef<Real> node, uint32_t k) const {
+    const uint32_t end[2] = {node.corner(k), node.corner(node.next(k))};
+    const Vec3<Real> start = corner_point(end[node.which(k)]);
+    if (edges == nullptr) return derive_edge(start, corner_point(end[1 - node.which(k)]));
+    const auto& stored = edges[node.connection(k)];
+    return {start, vec(stored.direction), stored.length};
   }
-  // The same, where a node that the connection belongs to is at hand.
-  [[nodiscard]] Edge<Real> edge(NodeRef<Real> node, uint32_t k) const { return edge(node.connection(k)); }
+  [[nodiscard]] Edge<Real> edge(uint32_t connection_index) const {
+    const fdcg_connection& record = connections[connection_index];
+    return edge(node(record.node), record.side[0]);
+  }
 
-  // Calls visit(FanEntry) for each entry of an ordinary corner's fan, counter-clockwise seen from outside.
+  // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.
   template <class Visit>
   void for_each_in_fan(CornerRef<Real> corner, Visit&& visit) const {
-    for (uint32_t i = 0; i < corner.fan_count(); ++i)
-      visit(fan_entry(corner, i));
+    if (corner.is_busy()) {
+      for (uint32_t i = 0; i < corner.fan_count(); ++i)
+        visit(fan_entry(corner, i));
+      return;
+    }
+    const uint32_t count = corner.walked_count();
+    uint32_t n = corner.first_node(), k = corner.first_side();
+    for (uint32_t i = 0; i < count; ++i) {
+      const NodeRef<Real> here = node(n);
+      visit(FanEntry{here.connection(k), here.which(k), n, k});
+      const uint32_t incoming = here.previous(k);
+      n = here.across(incoming);
+      if (n == FDCG_NONE) {
+        visit(FanEntry{here.connection(incoming), 1 - here.which(incoming), FDCG_NONE, 0});
+        return;
+      }
+      k = connections[here.connection(incoming)].side[1 - here.which(incoming)];
+    }
   }
   // Entry i of a busy corner.
   [[nodiscard]] FanEntry fan_entry(CornerRef<Real> corner, uint32_t i) const {
-    const uint32_t link = fans[corner.first_fan_entry() + i], end = link & 1;
-    const auto& record = connections[link >> 1];
-    return {link >> 1, end, record.node[end], record.side[end]};
+    const uint32_t link = fans[corner.busy().first_fan + i], end = link & 1;
+    const ConnectionRef<Real> entry = connection(link >> 1);
+    return {link >> 1, end, entry.node(end), entry.side(end)};
   }
 };
 

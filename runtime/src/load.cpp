@@ -5,9 +5,11 @@
 #include "box_tree.hpp"
 #include "config.hpp"
 #include "fdcg/fdcg.h"
+#include "graph_view.hpp"
 #include "hooks.hpp"
 #include "map_file.hpp"
 #include "message.hpp"
+#include "sections.hpp"
 #include "verify.hpp"
 
 namespace fdcg {
@@ -74,6 +76,18 @@ fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
   return FDCG_OK;
 }
 
+// Whether every node's block can have the size that the header gives: 0, or that of a node of so many sides.
+bool is_node_size(const fdcg_header& header) {
+  if (header.node_bytes == 0) return true;
+  const bool has_planes = (header.flags & FDCG_STORED_PLANES) != 0;
+  for (uint32_t sides = 3; sides <= FDCG_MAX_SIDES; ++sides) {
+    const uint32_t bytes =
+        header.real_bytes == 8 ? node_bytes<double>(sides, has_planes) : node_bytes<float>(sides, has_planes);
+    if (bytes == header.node_bytes) return header.side_count == header.node_count * uint64_t{sides};
+  }
+  return false;
+}
+
 fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   const auto refuse = [&](const char* field, uint64_t value) -> fdcg_status {
     return Message(error, FDCG_E_LAYOUT)
@@ -87,6 +101,8 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   if (header.real_bytes != 4 && header.real_bytes != 8) return refuse("real_bytes", header.real_bytes);
   if (header.section_count > kMaxSections) return refuse("section_count", header.section_count);
   if (header.node_count == 0) return refuse("node_count", header.node_count);
+  if ((header.flags & ~FDCG_STORED_PLANES) != 0) return refuse("flags", header.flags);
+  if (!is_node_size(header)) return refuse("node_bytes", header.node_bytes);
   if (header.connection_count > kMaxConnections) return refuse("connection_count", header.connection_count);
   if (!has_precision(header.real_bytes)) {
     return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, real_bytes))
@@ -120,31 +136,39 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   return FDCG_OK;
 }
 
+enum class Presence { required, optional, of_mixed_nodes, of_busy_corners };
+
 struct SectionRule {
   uint32_t id;
-  uint32_t record_f64, record_f32;
-  bool is_required;
+  uint32_t record_f64, record_f32;  // bytes; 0: see record_bytes
+  Presence presence;
 };
 constexpr SectionRule kSectionRules[] = {
-    {FDCG_SECTION_NODES, sizeof(fdcg_node_f64), sizeof(fdcg_node_f32), true},
-    {FDCG_SECTION_SIDES, 4, 4, true},
-    {FDCG_SECTION_VORONOI, sizeof(fdcg_plane_f64), sizeof(fdcg_plane_f32), false},
-    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection_f64), sizeof(fdcg_connection_f32), true},
-    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), true},
-    {FDCG_SECTION_FANS, 4, 4, true},
-    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), false},
-    {FDCG_SECTION_SOURCE_MAP, 4, 4, false},
-    {FDCG_SECTION_INFO, 1, 1, false},
-    {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), false},
+    {FDCG_SECTION_NODES, 0, 0, Presence::required},
+    {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes},
+    {FDCG_SECTION_EDGES, sizeof(fdcg_edge_f64), sizeof(fdcg_edge_f32), Presence::optional},
+    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required},
+    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required},
+    {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners},
+    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), Presence::optional},
+    {FDCG_SECTION_SOURCE_MAP, 4, 4, Presence::optional},
+    {FDCG_SECTION_INFO, 1, 1, Presence::optional},
+    {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners},
+    {FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), sizeof(fdcg_busy_corner), Presence::of_busy_corners},
 };
+
+uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
+  if (rule.id == FDCG_SECTION_NODES) return header.node_bytes != 0 ? header.node_bytes : header.real_bytes;
+  return header.real_bytes == 8 ? rule.record_f64 : rule.record_f32;
+}
 
 uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found) {
   switch (id) {
     case FDCG_SECTION_NODES:
+      return header.node_bytes != 0 ? header.node_count : found;
+    case FDCG_SECTION_NODE_OFFSETS:
       return header.node_count;
-    case FDCG_SECTION_SIDES:
-    case FDCG_SECTION_VORONOI:
-      return header.side_count;
+    case FDCG_SECTION_EDGES:
     case FDCG_SECTION_CONNECTIONS:
       return header.connection_count;
     case FDCG_SECTION_CORNERS:
@@ -157,6 +181,8 @@ uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found
       return header.source_face_count;
     case FDCG_SECTION_FAN_BOXES:
       return header.fan_box_count;
+    case FDCG_SECTION_BUSY_CORNERS:
+      return header.busy_count;
     default:
       return found;
   }
@@ -184,8 +210,8 @@ fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& head
     if (at > header.file_bytes) return refuse("reaches beyond the end of the file");
     for (const SectionRule& rule : kSectionRules) {
       if (rule.id != section.id) continue;
-      if (section.record_bytes != (header.real_bytes == 8 ? rule.record_f64 : rule.record_f32))
-        return refuse("has records of a wrong size");
+      if (section.record_bytes != record_bytes(rule, header))
+        return refuse("has records of a wrong size, as early drafts of the format had; compile the mesh again");
       if (section.record_count != expected_records(section.id, header, section.record_count))
         return refuse("has a wrong number of records");
     }
@@ -212,41 +238,47 @@ fdcg_status check_table(const void* data, const fdcg_header& header, fdcg_error*
   return check_sections(reinterpret_cast<const fdcg_section*>(table), header, error);
 }
 
-const void* find_section(const void* data, const fdcg_header& header, uint32_t id, uint64_t* records = nullptr) {
-  const auto* bytes = static_cast<const unsigned char*>(data);
-  const auto* sections = reinterpret_cast<const fdcg_section*>(bytes + sizeof(fdcg_header));
-  for (uint32_t i = 0; i < header.section_count; ++i) {
-    if (sections[i].id != id) continue;
-    if (records != nullptr) *records = sections[i].record_count;
-    return bytes + sections[i].offset;
-  }
-  return nullptr;
-}
-
 fdcg_graph view(const void* data, const fdcg_header& header) {
   fdcg_graph graph = {};
-  const auto section = [&](uint32_t id) { return find_section(data, header, id); };
+  const auto section = [&](uint32_t id) -> const void* {
+    const fdcg_section* found = find_section(header, id);
+    return found == nullptr ? nullptr : static_cast<const unsigned char*>(data) + found->offset;
+  };
   graph.header = &header;
   graph.nodes = section(FDCG_SECTION_NODES);
-  graph.sides = static_cast<const uint32_t*>(section(FDCG_SECTION_SIDES));
-  graph.voronoi_planes = section(FDCG_SECTION_VORONOI);
-  graph.connections = section(FDCG_SECTION_CONNECTIONS);
+  graph.node_offsets = static_cast<const uint32_t*>(section(FDCG_SECTION_NODE_OFFSETS));
+  graph.connections = static_cast<const fdcg_connection*>(section(FDCG_SECTION_CONNECTIONS));
+  graph.edges = section(FDCG_SECTION_EDGES);
   graph.corners = section(FDCG_SECTION_CORNERS);
+  graph.busy_corners = static_cast<const fdcg_busy_corner*>(section(FDCG_SECTION_BUSY_CORNERS));
   graph.fans = static_cast<const uint32_t*>(section(FDCG_SECTION_FANS));
   graph.fan_boxes = section(FDCG_SECTION_FAN_BOXES);
   graph.hierarchy = static_cast<const fdcg_box8*>(section(FDCG_SECTION_HIERARCHY));
   graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
-  graph.info = static_cast<const char*>(find_section(data, header, FDCG_SECTION_INFO, &graph.info_bytes));
+  graph.info = static_cast<const char*>(section(FDCG_SECTION_INFO));
+  if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;
   return graph;
 }
 
-fdcg_status check_presence(const void* data, const fdcg_header& header, fdcg_error* error) {
+bool is_needed(Presence presence, const fdcg_header& header) {
+  return presence == Presence::required || (presence == Presence::of_mixed_nodes && header.node_bytes == 0) ||
+         (presence == Presence::of_busy_corners && header.busy_count != 0);
+}
+
+fdcg_status check_presence(const fdcg_header& header, fdcg_error* error) {
   for (const SectionRule& rule : kSectionRules) {
-    if (rule.is_required && find_section(data, header, rule.id) == nullptr) {
-      return Message(error, FDCG_E_LAYOUT).text("section ").number(rule.id).text(" is missing, and a graph needs it");
+    const bool is_present = find_section(header, rule.id) != nullptr;
+    if (!is_present && is_needed(rule.presence, header)) {
+      return Message(error, FDCG_E_LAYOUT).text("section ").number(rule.id).text(" is missing, and this graph needs it");
+    }
+    if (is_present && rule.presence != Presence::optional && !is_needed(rule.presence, header)) {
+      return Message(error, FDCG_E_LAYOUT)
+          .text("section ")
+          .number(rule.id)
+          .text(" contradicts the header, which has no use for it");
     }
   }
-  if (header.node_count > kMaxNodesWithoutHierarchy && find_section(data, header, FDCG_SECTION_HIERARCHY) == nullptr) {
+  if (header.node_count > kMaxNodesWithoutHierarchy && find_section(header, FDCG_SECTION_HIERARCHY) == nullptr) {
     return Message(error, FDCG_E_LAYOUT)
         .text("no hierarchy: only graphs of up to ")
         .number(kMaxNodesWithoutHierarchy)
@@ -268,7 +300,7 @@ fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, f
   const auto& header = *static_cast<const fdcg_header*>(data);
   status = check_header_values(header, error);
   if (status == FDCG_OK) status = check_table(data, header, error);
-  if (status == FDCG_OK) status = check_presence(data, header, error);
+  if (status == FDCG_OK) status = check_presence(header, error);
   if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_checksums(data, header, error);
   if (status != FDCG_OK) return status;
   const fdcg_graph candidate = view(data, header);

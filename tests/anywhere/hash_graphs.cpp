@@ -23,7 +23,7 @@ struct Choice {
 // are not exactly planar, far from the origin, tiny, planes stored and derived, with and without a hierarchy.
 std::vector<Choice> choices() {
   bake::CompileOptions stored, derived, bare, millimetres;
-  derived.store_voronoi_planes = false;
+  derived.store_planes = false;
   bare.without = {"hierarchy", "source-map"};
   millimetres.metres_per_unit = 0.001;
   const auto turned = [](const PolygonSoup& soup, double scale, double far) {

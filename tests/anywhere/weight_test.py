@@ -6,7 +6,7 @@ import re
 import subprocess
 import unittest
 
-from anywhere import ROOT, RUNTIME, AnywhereCase
+from anywhere import ROOT, RUNTIME, AnywhereCase, qemu
 
 SUPPORT = {"hooks", "map_file_none", "map_file_posix", "message", "params", "verify", "version"}
 
@@ -59,6 +59,28 @@ class TextSize(WeightCase):
         self.need("arm-none-eabi-g++", "arm-none-eabi-size")
         library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_MESSAGES=OFF")
         self.weigh("cortex-m7 -Os, f32", "arm-none-eabi-size", library, **M7_F32)
+
+
+class StepCost(WeightCase):
+    """Instructions a step in contact, in QEMU: the same on every run and machine."""
+
+    def test_cortex_m7_f32_at_a_hands_speed(self):
+        self.need("arm-none-eabi-g++", "qemu-system-arm")
+        library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG")
+        graphs = os.environ["FDCG_HASH_GRAPHS"]
+        program = self.firmware("cortex-m7", library, str(ROOT / "tests" / "anywhere" / "step_cost.c"), graphs + "/graphs.c",
+                                flags=["-DFDCG_ON_BOARD", "-I", graphs])
+        said = self.run_program(*qemu("cortex-m7", "-icount", "shift=6"), program).stdout.decode()
+        bodies = 0
+        for line in said.splitlines():
+            name, contacts, *ticks = line.split()
+            # an instruction every 64 ns, SysTick at 25 MHz
+            median, p99, most = (int(tick) * 40 // 64 for tick in ticks)
+            print(f"cortex-m7 -O2, f32: {name}: {contacts} steps in contact, instructions median {median}, p99 {p99}, most {most}")
+            bodies += int(contacts) > 500
+            self.assertLess(median, 3000)
+            self.assertLess(most, 100000)
+        self.assertGreaterEqual(bodies, 4, said)
 
 
 class Symbols(WeightCase):

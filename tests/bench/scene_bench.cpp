@@ -242,7 +242,7 @@ std::vector<Row> rows() {
   all.push_back({"file: hierarchy", {}});
   all.back().switches.file.without = {"hierarchy"};
   all.push_back({"file: stored planes", {}});
-  all.back().switches.file.store_voronoi_planes = false;
+  all.back().switches.file.store_planes = false;
   all.push_back({"file: source map, info", {}});
   all.back().switches.file.without = {"source-map", "info"};
   all.push_back({"friction (mu 0)", {}, false});

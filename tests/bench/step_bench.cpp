@@ -279,7 +279,7 @@ int main(int argc, char** argv) {
         if (!options.planes.empty() && options.planes != (is_stored ? "stored" : "derived")) continue;
         fdcg::bake::CompileOptions compile;
         compile.precision = precision;
-        compile.store_voronoi_planes = is_stored;
+        compile.store_planes = is_stored;
         compile.merge = body.body != Body::cube;
         compile.without = {"source-map", "info"};
         const BenchGraph graph(soup, compile);

@@ -149,7 +149,9 @@ class Compile(Case):
 
         everything = sections()
         self.assertEqual("f32", about("--precision", "f32")["precision"])
-        self.assertEqual({"voronoi"}, everything - sections("--planes", "derived"))
+        self.assertEqual({"edges"}, everything - sections("--planes", "derived"))
+        node_bytes = {planes: about("--planes", planes)["sections"][0]["bytes"] for planes in ("stored", "derived")}
+        self.assertLess(node_bytes["derived"], node_bytes["stored"] / 2)
         for name in ("hierarchy", "source-map", "info"):
             self.assertEqual({name}, everything - sections("--without", name))
         self.assertEqual({"hierarchy", "info"}, everything - sections("--without", "info", "--without", "hierarchy"))
@@ -335,8 +337,8 @@ class Inspect(Case):
             graph.write_bytes(data)
 
         for section_id, at, code, value, types, invariant in (
-                (4, 60, "<B", 1, (11, 1, 0, 0), "types agree"), (1, 24, "<d", -0.25, None, "corners lie"),
-                (3, 24, "<d", 0.5, None, "Voronoi planes"), (4, 24, "<d", 0.5, None, "end planes"),
+                (4, 6, "<B", 1, (11, 1, 0, 0), "types agree"), (1, 24, "<d", -0.25, None, "corners lie"),
+                (1, 112, "<d", 0.5, None, "Voronoi planes"), (3, 24, "<d", 0.5, None, "edges lead"),
                 (5, 0, "<d", 0.5, None, "corners lie")):
             with self.subTest(invariant=invariant, section=section_id):
                 forged(section_id, at, code, value, types)

@@ -17,27 +17,35 @@ HEADER = (("magic", "8s"), ("format_version", "I"), ("header_bytes", "I"), ("fil
           ("section_count", "I"), ("node_count", "I"), ("side_count", "I"), ("connection_count", "I"), ("corner_count", "I"),
           ("fan_count", "I"), ("largest_fan", "I"), ("origin", "3d"), ("metres_per_unit", "d"), ("bounds_min", "3d"),
           ("bounds_max", "3d"), ("extent", "d"), ("max_deviation", "d"), ("quantum", "d"), ("connection_type_count", "4I"),
-          ("source_vertex_count", "I"), ("source_face_count", "I"), ("fan_box_count", "I"), ("reserved", "52s"),
+          ("source_vertex_count", "I"), ("source_face_count", "I"), ("fan_box_count", "I"), ("busy_count", "I"),
+          ("node_bytes", "I"), ("flags", "I"), ("reserved", "40s"),
           ("table_checksum", "Q"), ("header_checksum", "Q"))
 SECTION = (("id", "I"), ("record_bytes", "I"), ("offset", "Q"), ("record_count", "Q"), ("checksum", "Q"), ("reserved", "Q"))
-RECORDS = {
-    1: ("node", (("plane.normal", "3d"), ("plane.offset", "d"), ("first_side", "I"), ("side_count", "H"), ("flags", "H"))),
-    2: ("side", (("", "I"),)),
-    3: ("Voronoi plane", (("normal", "3d"), ("offset", "d"))),
-    4: ("connection", (("edge", "3d"), ("end_offset", "2d"), ("corner", "2I"), ("node", "2I"), ("side", "2H"), ("type", "B"),
-                       ("flatness", "B"), ("reserved", "H"))),
-    5: ("corner", (("point", "3d"), ("first_fan", "I"), ("fan_count", "I"), ("normal", "3f"), ("flags", "I"))),
-    6: ("fan entry", (("", "I"),)),
+SIDE = (("link", "I"), ("corner", "I"), ("across", "I"))
+PLANE = (("normal", "3d"), ("offset", "d"))
+
+
+def nested(prefix, layout):
+    return tuple((f"{prefix}.{name}", code) for name, code in layout)
+
+
+RECORDS = {  # the tetrahedron's: every node is a triangle
+    1: ("node", nested("plane", PLANE) + (("side_count", "H"), ("flags", "H")) +
+        sum((nested(f"sides[{k}]", SIDE) for k in range(3)), ()) + sum((nested(f"voronoi[{k}]", PLANE) for k in range(3)), ())),
+    3: ("edge", (("direction", "3d"), ("length", "d"))),
+    4: ("connection", (("node", "I"), ("side", "2B"), ("type", "B"), ("flatness", "B"))),
+    5: ("corner", (("point", "3d"), ("first", "I"), ("normal", "3h"), ("side", "B"), ("fan", "B"), ("reserved", "I"))),
     7: ("box record", (("origin", "3f"), ("exponent", "3B"), ("reserved", "B"), ("low", "24B"), ("high", "24B"))),
     8: ("source face", (("", "I"),)),
 }
-SECTION_NAMES = ("", "NODES", "SIDES", "VORONOI", "CONNECTIONS", "CORNERS", "FANS", "HIERARCHY", "SOURCE_MAP", "INFO", "FAN_BOXES")
+SECTION_NAMES = ("", "NODES", "NODE_OFFSETS", "EDGES", "CONNECTIONS", "CORNERS", "FANS", "HIERARCHY", "SOURCE_MAP", "INFO",
+                 "FAN_BOXES", "BUSY_CORNERS")
 
 
 def shown(name, values):
     value = values[0]
     if isinstance(value, bytes):
-        return "52 zeros" if name == "reserved" and not any(value) else "89 'FDCG' 0d 0a 1a"
+        return f"{len(value)} zeros" if name == "reserved" and not any(value) else "89 'FDCG' 0d 0a 1a"
     if "checksum" in name:
         return f"{value:#018x}"
     words = [f"{v:.9g}" if isinstance(v, float) else str(v) for v in values]
@@ -75,9 +83,6 @@ def dump(data):
             lines += table(data, offset, layout)
         for k in range(1 if len(layout) > 1 else 0, records):
             values = "  ".join((f"{name} " if name else "") + value for _, name, value in fields(data, offset + size * k, layout))
-            if section_id in (2, 6):
-                entry = struct.unpack_from("<I", data, offset + size * k)[0]
-                values += f" = connection {entry >> 1}, {'node' if section_id == 2 else 'corner'}[{entry & 1}]"
             lines.append(f"{offset + size * k:5}  {noun} {k}: {values}")
     return "\n".join(lines) + "\n"
 

@@ -114,7 +114,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   compile_options.weld = options.weld;
   compile_options.precision = options.precision;
   compile_options.merge = (how & 2) != 0;
-  compile_options.store_voronoi_planes = (how & 4) != 0;
+  compile_options.store_planes = (how & 4) != 0;
   compile_options.self_intersections = (how & 8) != 0;
   compile_options.jobs = 1;
   if ((how & 16) != 0) options.allow = compile_options.allow = {"inside-out", "boundary-edge"};

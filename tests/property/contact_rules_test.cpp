@@ -19,12 +19,11 @@ const double kEps = std::numeric_limits<double>::epsilon();
 
 // The face of a plain graph (numbered as in the soup) whose outward normal is nearest to a direction.
 std::uint32_t face_towards(const PlainGraph& graph, const Hip& direction) {
-  const auto* nodes = static_cast<const fdcg_node_f64*>(graph.view().nodes);
   std::uint32_t best = 0;
   double best_dot = -2;
   for (std::uint32_t f = 0; f < graph.view().header->node_count; ++f) {
-    const double* n = nodes[f].plane.normal;
-    const double d = dot({n[0], n[1], n[2]}, direction);
+    const fdcg_node_info node = fdcg_get_node(&graph.view(), f);
+    const double d = dot({node.normal[0], node.normal[1], node.normal[2]}, direction);
     if (d > best_dot) {
       best_dot = d;
       best = f;
@@ -34,9 +33,9 @@ std::uint32_t face_towards(const PlainGraph& graph, const Hip& direction) {
 }
 
 std::uint32_t corner_at(const PlainGraph& graph, const Hip& place) {
-  const auto* corners = static_cast<const fdcg_corner_f64*>(graph.view().corners);
   for (std::uint32_t v = 0; v < graph.view().header->corner_count; ++v) {
-    if (distance({corners[v].point[0], corners[v].point[1], corners[v].point[2]}, place) < 1e-9) return v;
+    const fdcg_corner_info corner = fdcg_get_corner(&graph.view(), v);
+    if (distance({corner.point[0], corner.point[1], corner.point[2]}, place) < 1e-9) return v;
   }
   FAIL("no corner there");
   return 0;
@@ -141,10 +140,10 @@ TEST_CASE("on a plane is outside", "[on-plane]") {
       CHECK(contact.result.state == FDCG_FACE);
     }
     SECTION("of one face at a convex edge, mu " + std::to_string(mu)) {
-      const auto* connections = static_cast<const fdcg_connection_f64*>(graph.view().connections);
       const std::uint32_t top = face_towards(graph, {0, 0, 1}), right = face_towards(graph, {1, 0, 0});
       for (std::uint32_t c = 0; c < graph.view().header->connection_count; ++c) {
-        const auto* n = connections[c].node;
+        const fdcg_connection_info connection = fdcg_get_connection(&graph.view(), c);
+        const std::uint32_t* const n = connection.node;
         if (!((n[0] == top && n[1] == right) || (n[0] == right && n[1] == top))) continue;
         contact.state = placed(FDCG_EDGE, c, {0.5, 0.1, 0.5}, {0.45, 0.1, 0.45});
         contact.step(0.5, 0.1, 0.3);
@@ -467,10 +466,11 @@ TEST_CASE("a move that lands on an edge's end activates the corner", "[lands-on-
 
 TEST_CASE("behind both faces of a convex edge the steeper descent is taken", "[steeper-face]") {
   const PlainGraph graph(wedge(2.0), Precision::f64);  // obtuse knife along x at y = z = 0
-  const auto* connections = static_cast<const fdcg_connection_f64*>(graph.view().connections);
-  const auto* corners = static_cast<const fdcg_corner_f64*>(graph.view().corners);
   for (std::uint32_t c = 0; c < graph.view().header->connection_count; ++c) {
-    const double *v0 = corners[connections[c].corner[0]].point, *v1 = corners[connections[c].corner[1]].point;
+    const fdcg_connection_info connection = fdcg_get_connection(&graph.view(), c);
+    const fdcg_corner_info from = fdcg_get_corner(&graph.view(), connection.corner[0]);
+    const fdcg_corner_info to = fdcg_get_corner(&graph.view(), connection.corner[1]);
+    const double *v0 = from.point, *v1 = to.point;
     if (std::abs(v0[1]) + std::abs(v0[2]) + std::abs(v1[1]) + std::abs(v1[2]) > 0) continue;
     for (const double z : {0.02, -0.02}) {
       Contact contact(graph.view(), contact_params(0, 0));

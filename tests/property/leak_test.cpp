@@ -90,7 +90,7 @@ Body make_body(PolygonSoup shape, Random& random) {
   soup = moved(scaled(soup, size), {offset * d.x, offset * d.y, offset * d.z});
   body.options.precision = random.chance(0.5) ? Precision::f64 : Precision::f32;
   body.options.coplanar.kind = fdcg::bake::Coplanar::Kind::exact;
-  body.options.store_voronoi_planes = random.chance(0.5);
+  body.options.store_planes = random.chance(0.5);
   body.options.metres_per_unit = random.chance(0.5) ? 1 : 1e-3;
   body.options.jobs = 1;
   body.soup = std::move(soup);

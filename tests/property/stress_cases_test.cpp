@@ -152,9 +152,8 @@ TEST_CASE("a corner of 10,000 faces is a corner like any other") {
   const PolygonSoup tip = fan_block(10000, 0.6, -0.2, -0.2);
   const PlainGraph tip_graph(tip, Precision::f64);
   // From the apex downwards inside: the nearest of 10,000 faces is found, whichever it is.
-  const auto* corners = static_cast<const fdcg_corner_f64*>(tip_graph.view().corners);
   const std::uint32_t apex = 20000;
-  REQUIRE(corners[apex].point[2] == 0.6);
+  REQUIRE(fdcg_get_corner(&tip_graph.view(), apex).point[2] == 0.6);
   for (int i = 0; i < 64; ++i) {
     const double a = 0.0981 * i + 0.01;
     Contact on_tip(tip_graph.view(), contact_params(0, 0));

@@ -15,14 +15,14 @@ namespace {
 struct TraitsF64 {
   using Number = double;
   using Node = fdcg_node_f64;
-  using Connection = fdcg_connection_f64;
+  using Edge = fdcg_edge_f64;
   using Corner = fdcg_corner_f64;
   using Plane = fdcg_plane_f64;
 };
 struct TraitsF32 {
   using Number = float;
   using Node = fdcg_node_f32;
-  using Connection = fdcg_connection_f32;
+  using Edge = fdcg_edge_f32;
   using Corner = fdcg_corner_f32;
   using Plane = fdcg_plane_f32;
 };
@@ -61,9 +61,30 @@ Halfedges pair_up(const bake::PolygonSoup& soup) {
   return halfedges;
 }
 
+// Faces of more sides than a node may have, as fans of pieces from their first corner.
+bake::PolygonSoup with_great_faces_cut(const bake::PolygonSoup& soup, std::vector<std::uint32_t>& face_of_piece) {
+  constexpr std::uint32_t kMostSides = 64;
+  bake::PolygonSoup cut = soup;
+  cut.corners.clear();
+  cut.face_first = {0};
+  for (std::uint32_t f = 0; f < soup.face_count(); ++f) {
+    const std::uint32_t first = soup.face_first[f], n = soup.face_first[f + 1] - first;
+    const std::uint32_t step = n <= FDCG_MAX_SIDES ? n : kMostSides - 2;
+    for (std::uint32_t from = 1; from + 1 < n; from += step) {
+      cut.corners.push_back(soup.corners[first]);
+      for (std::uint32_t k = from; k <= std::min(from + step, n - 1); ++k)
+        cut.corners.push_back(soup.corners[first + k]);
+      cut.face_first.push_back(static_cast<std::uint32_t>(cut.corners.size()));
+      face_of_piece.push_back(f);
+    }
+  }
+  return cut;
+}
+
 }  // namespace
 
-PlainGraph::PlainGraph(const bake::PolygonSoup& soup, bake::Precision precision, bool with_hierarchy) {
+PlainGraph::PlainGraph(const bake::PolygonSoup& whole, bake::Precision precision, bool with_hierarchy) {
+  const bake::PolygonSoup soup = with_great_faces_cut(whole, face_of_piece_);
   header_.real_bytes = precision == bake::Precision::f64 ? 8 : 4;
   header_.metres_per_unit = 1;
   if (precision == bake::Precision::f64) {
@@ -74,10 +95,11 @@ PlainGraph::PlainGraph(const bake::PolygonSoup& soup, bake::Precision precision,
   if (with_hierarchy) build_hierarchy();
   view_.header = &header_;
   view_.nodes = nodes_.data();
-  view_.sides = sides_.data();
-  view_.voronoi_planes = voronoi_.data();
+  view_.node_offsets = node_offsets_.data();
   view_.connections = connections_.data();
+  view_.edges = edges_.data();
   view_.corners = corners_.data();
+  view_.busy_corners = busy_corners_.data();
   view_.fans = fans_.data();
   view_.hierarchy = with_hierarchy ? boxes_.data() : nullptr;
 }
@@ -89,9 +111,28 @@ void PlainGraph::build(const bake::PolygonSoup& soup) {
   const Halfedges halfedges = pair_up(soup);
   const auto node_count = static_cast<std::uint32_t>(soup.face_count()),
              corner_count = static_cast<std::uint32_t>(soup.points.size());
-  auto* nodes = records<typename Traits::Node>(nodes_, node_count);
+  using Node = typename Traits::Node;
+  using Plane = typename Traits::Plane;
+  // Blocks as format.h has them: plane, counts, sides, zeros up to a multiple of the number's size, planes.
+  const auto planes_at = [](std::size_t n) {
+    return (offsetof(Node, sides) + n * sizeof(fdcg_side) + sizeof(Number) - 1) / sizeof(Number) * sizeof(Number);
+  };
+  std::size_t block_bytes = 0;
+  for (std::uint32_t f = 0; f < node_count; ++f) {
+    const std::size_t n = soup.face_first[f + 1] - soup.face_first[f];
+    node_offsets_.push_back(static_cast<std::uint32_t>(block_bytes / sizeof(Number)));
+    block_bytes += planes_at(n) + n * sizeof(Plane);
+  }
+  auto* const blocks = reinterpret_cast<std::byte*>(records<Number>(nodes_, block_bytes / sizeof(Number)));
+  const auto block = [&](std::uint32_t f) { return blocks + node_offsets_[f] * sizeof(Number); };
+  const auto node = [&](std::uint32_t f) -> Node& { return *reinterpret_cast<Node*>(block(f)); };
+  const auto side = [&](std::uint32_t f, std::uint32_t k) -> fdcg_side& {
+    return reinterpret_cast<fdcg_side*>(block(f) + offsetof(Node, sides))[k];
+  };
+  const auto voronoi = [&](std::uint32_t f, std::uint32_t k) -> Plane& {
+    return reinterpret_cast<Plane*>(block(f) + planes_at(soup.face_first[f + 1] - soup.face_first[f]))[k];
+  };
   auto* corners = records<typename Traits::Corner>(corners_, corner_count);
-  auto* planes = records<typename Traits::Plane>(voronoi_, soup.corners.size());
 
   std::vector<Point> points;
   for (int axis = 0; axis < 3; ++axis) {
@@ -129,10 +170,9 @@ void PlainGraph::build(const bake::PolygonSoup& soup) {
       Point& normal = corner_normals[soup.corners[first + k]];
       normal = normal + sum * Wide(angle / length(sum));
     }
-    nodes[f].plane = rounded_plane<typename Traits::Plane>(sum, is_planar ? at(0) : centre);
-    nodes[f].first_side = first;
-    nodes[f].side_count = static_cast<std::uint16_t>(n);
-    nodes[f].flags = is_planar ? 0 : FDCG_NODE_INEXACT;
+    node(f).plane = rounded_plane<Plane>(sum, is_planar ? at(0) : centre);
+    node(f).side_count = static_cast<std::uint16_t>(n);
+    node(f).flags = is_planar ? 0 : FDCG_NODE_INEXACT;
     directions.push_back(sum);
     NodeBox box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -147,36 +187,34 @@ void PlainGraph::build(const bake::PolygonSoup& soup) {
     node_boxes_.push_back(box);
   }
 
-  sides_.assign(soup.corners.size(), 0);
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> connection_of;  // both ways
-  auto* connections = records<typename Traits::Connection>(connections_, soup.corners.size());
+  connections_.resize(soup.corners.size());
+  auto* edges = records<typename Traits::Edge>(edges_, soup.corners.size());
   for (std::uint32_t f = 0; f < node_count; ++f) {
     const std::uint32_t first = soup.face_first[f], n = soup.face_first[f + 1] - first;
     for (std::uint32_t k = 0; k < n; ++k) {
       const std::uint32_t v = soup.corners[first + k], w = soup.corners[first + (k + 1) % n];
       const auto [it, is_new] = connection_of.try_emplace({v, w}, header_.connection_count);
       const std::size_t which = is_new ? 0 : 1;
-      auto& connection = connections[it->second];
-      sides_[first + k] = it->second << 1 | static_cast<std::uint32_t>(which);
-      connection.node[which] = f;
-      connection.side[which] = static_cast<std::uint16_t>(k);
-      planes[first + k] = rounded_plane<typename Traits::Plane>(cross(points[w] - points[v], directions[f]), points[v]);
+      const auto twin = halfedges.find({w, v});
+      fdcg_connection& connection = connections_[it->second];
+      connection.side[which] = static_cast<std::uint8_t>(k);
+      side(f, k) = {it->second << 1 | static_cast<std::uint32_t>(which), v,
+                    twin == halfedges.end() ? FDCG_NONE : twin->second.face};
+      voronoi(f, k) = rounded_plane<Plane>(cross(points[w] - points[v], directions[f]), points[v]);
       if (!is_new) continue;
       ++header_.connection_count;
       connection_of[{w, v}] = it->second;
       const Point span = points[w] - points[v], e = span * Wide(1 / length(span));
       const Number direction[3] = {static_cast<Number>(e.x), static_cast<Number>(e.y), static_cast<Number>(e.z)};
-      std::copy_n(direction, 3, connection.edge);
-      connection.end_offset[0] = static_cast<Number>(dot(e, points[v]));
-      connection.end_offset[1] = static_cast<Number>(-dot(e, points[w]));
-      connection.corner[0] = v;
-      connection.corner[1] = w;
-      const auto twin = halfedges.find({w, v});
-      connection.node[1] = FDCG_NONE;
+      std::copy_n(direction, 3, edges[it->second].direction);
+      edges[it->second].length = static_cast<Number>(length(span));
+      connection.node = f;
       connection.type = FDCG_BOUNDARY;
       if (twin != halfedges.end()) {
         const Wide s = dot(cross(directions[f], directions[twin->second.face]), span);
-        connection.type = s > 0 ? FDCG_CONVEX : s < 0 ? FDCG_CONCAVE : FDCG_COPLANAR;
+        const bool is_cut = face_of_piece_[f] == face_of_piece_[twin->second.face];
+        connection.type = is_cut || s == 0 ? FDCG_COPLANAR : s > 0 ? FDCG_CONVEX : FDCG_CONCAVE;
       }
       ++header_.connection_type_count[connection.type];
     }
@@ -185,39 +223,49 @@ void PlainGraph::build(const bake::PolygonSoup& soup) {
   for (std::uint32_t v = 0; v < corner_count; ++v) {
     auto& corner = corners[v];
     const Point normal = corner_normals[v] * Wide(1 / length(corner_normals[v]));
-    const float rounded[3] = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)};
-    std::copy_n(rounded, 3, corner.normal);
-    corner.first_fan = static_cast<std::uint32_t>(fans_.size());
+    const double unit[3] = {static_cast<double>(normal.x), static_cast<double>(normal.y), static_cast<double>(normal.z)};
+    for (int k = 0; k < 3; ++k)
+      corner.normal[k] = static_cast<std::int16_t>(std::lround(FDCG_NORMAL_SCALE * unit[k]));
+    const auto first_fan = static_cast<std::uint32_t>(fans_.size());
     // Start anywhere, or at the half-edge without a twin; then from face to face, to the left.
     auto start = halfedges.end();
     for (auto it = halfedges.lower_bound({v, 0}); it != halfedges.end() && it->first.first == v; ++it) {
       if (start == halfedges.end()) start = it;
       if (!halfedges.contains({it->first.second, v})) {
         start = it;
-        corner.flags = FDCG_CORNER_OPEN;
+        corner.fan = FDCG_CORNER_OPEN;
       }
     }
     for (auto it = start;;) {
-      const std::uint32_t c = connection_of.at(it->first), end = connections[c].corner[0] == v ? 0 : 1;
-      fans_.push_back(c << 1 | end);
+      fans_.push_back(side(it->second.face, it->second.side).link);
       const auto [f, k] = it->second;
       const std::uint32_t first = soup.face_first[f], n = soup.face_first[f + 1] - first;
       const std::uint32_t previous = soup.corners[first + (k + n - 1) % n];
       it = halfedges.find({v, previous});
       if (it == start) break;
       if (it == halfedges.end()) {
-        const std::uint32_t last = connection_of.at({v, previous});
-        fans_.push_back(last << 1 | (connections[last].corner[0] == v ? 0u : 1u));
+        fans_.push_back(side(f, (k + n - 1) % n).link ^ 1u);
         break;
       }
     }
-    corner.fan_count = static_cast<std::uint32_t>(fans_.size()) - corner.first_fan;
-    header_.largest_fan = std::max(header_.largest_fan, corner.fan_count);
+    const std::uint32_t fan_count = static_cast<std::uint32_t>(fans_.size()) - first_fan;
+    header_.largest_fan = std::max(header_.largest_fan, fan_count);
+    if (fan_count > FDCG_BUSY_FAN) {  // stored, without a tree: the step looks at all of it
+      corner.first = static_cast<std::uint32_t>(busy_corners_.size());
+      busy_corners_.push_back({v, first_fan, fan_count, FDCG_NONE});
+    } else {
+      corner.first = start->second.face;
+      corner.side = static_cast<std::uint8_t>(start->second.side);
+      corner.fan = static_cast<std::uint8_t>(corner.fan | fan_count);
+      fans_.resize(first_fan);
+    }
   }
   header_.format_version = FDCG_FORMAT_VERSION;
   header_.node_count = node_count;
   header_.corner_count = corner_count;
-  header_.side_count = static_cast<std::uint32_t>(sides_.size());
+  header_.side_count = static_cast<std::uint32_t>(soup.corners.size());
+  header_.busy_count = static_cast<std::uint32_t>(busy_corners_.size());
+  header_.flags = FDCG_STORED_PLANES;
   header_.fan_count = static_cast<std::uint32_t>(fans_.size());
 }
 

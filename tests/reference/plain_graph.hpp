@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A graph made the plain way, one node a polygon, nothing merged, split or reordered: a second maker beside the compiler, so
-// that the runtime can be tested without it. Its faces must be convex, planar (to rounding) and consistently wound; every edge
-// has at most two faces, every vertex one fan.
+// A graph made the plain way, one node a polygon (of more sides than a node may have: several), nothing merged or reordered: a
+// second maker beside the compiler, so that the runtime can be tested without it. Its faces must be convex, planar (to
+// rounding) and consistently wound; every edge has at most two faces, every vertex one fan.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace fdcg::test {
 
 class PlainGraph {
  public:
-  PlainGraph(const bake::PolygonSoup& soup, bake::Precision precision, bool with_hierarchy = true);
+  PlainGraph(const bake::PolygonSoup& whole, bake::Precision precision, bool with_hierarchy = true);
   PlainGraph(const PlainGraph&) = delete;
   PlainGraph& operator=(const PlainGraph&) = delete;
 
@@ -27,8 +27,10 @@ class PlainGraph {
   void build_hierarchy();
 
   fdcg_header header_{};
-  std::vector<std::uint64_t> nodes_, connections_, corners_, voronoi_;  // raw storage, aligned for every record
-  std::vector<std::uint32_t> sides_, fans_;
+  std::vector<std::uint64_t> nodes_, edges_, corners_;  // raw storage, aligned for every record
+  std::vector<fdcg_connection> connections_;
+  std::vector<fdcg_busy_corner> busy_corners_;
+  std::vector<std::uint32_t> node_offsets_, fans_, face_of_piece_;
   struct NodeBox {
     std::array<double, 3> low{}, high{};
   };

@@ -22,11 +22,7 @@ ReferenceSurface<Real>::ReferenceSurface(const fdcg_graph& graph) {
   epsilon = is_f32 ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon();
   metres_per_unit = header.metres_per_unit;
   std::copy_n(header.origin, 3, origin.begin());
-  if (is_f32) {
-    read<fdcg_node_f32, fdcg_connection_f32, fdcg_corner_f32>(graph);
-  } else {
-    read<fdcg_node_f64, fdcg_connection_f64, fdcg_corner_f64>(graph);
-  }
+  read(graph);
   for (Face& face : faces) {
     if (face.is_exact) derive_plane(face);
   }
@@ -37,43 +33,41 @@ ReferenceSurface<Real>::ReferenceSurface(const fdcg_graph& graph) {
 }
 
 template <class Real>
-template <class NodeRecord, class ConnectionRecord, class CornerRecord>
 void ReferenceSurface<Real>::read(const fdcg_graph& graph) {
-  const auto* node_records = static_cast<const NodeRecord*>(graph.nodes);
-  const auto* connection_records = static_cast<const ConnectionRecord*>(graph.connections);
-  const auto* corner_records = static_cast<const CornerRecord*>(graph.corners);
   for (std::uint32_t c = 0; c < graph.header->connection_count; ++c) {
-    const ConnectionRecord& record = connection_records[c];
+    const fdcg_connection_info record = fdcg_get_connection(&graph, c);
     Edge edge;
     for (std::size_t k = 0; k < 2; ++k) {
       edge.corner[k] = record.corner[k];
       edge.face[k] = record.node[k];
     }
-    edge.type = record.type;
+    edge.type = static_cast<std::uint8_t>(record.type);
     edges.push_back(edge);
   }
+  std::vector<std::uint32_t> fan(graph.header->largest_fan);
   for (std::uint32_t v = 0; v < graph.header->corner_count; ++v) {
-    const CornerRecord& record = corner_records[v];
+    const fdcg_corner_info record = fdcg_get_corner(&graph, v);
     Corner corner;
     corner.point = to_vector<Real>(record.point);
-    corner.is_open = (record.flags & FDCG_CORNER_OPEN) != 0;
-    for (std::uint32_t k = 0; k < record.fan_count; ++k)
-      corner.connections.push_back(graph.fans[record.first_fan + k] >> 1);
+    corner.is_open = record.is_open != 0;
+    const std::uint32_t count = fdcg_get_fan(&graph, v, fan.data(), static_cast<std::uint32_t>(fan.size()));
+    for (std::uint32_t k = 0; k < count; ++k)
+      corner.connections.push_back(fan[k] >> 1);
     corners.push_back(corner);
   }
   for (std::uint32_t f = 0; f < graph.header->node_count; ++f) {
-    const NodeRecord& record = node_records[f];
+    const fdcg_node_info record = fdcg_get_node(&graph, f);
     Face face;
     for (std::uint32_t k = 0; k < record.side_count; ++k) {
-      const std::uint32_t side = graph.sides[record.first_side + k];
-      face.connections.push_back(side >> 1);
-      face.corners.push_back(edges[side >> 1].corner[side & 1]);
-      corners[face.corners.back()].faces.push_back(f);
+      const fdcg_side_info side = fdcg_get_side(&graph, f, k);
+      face.connections.push_back(side.connection);
+      face.corners.push_back(side.corner);
+      corners[side.corner].faces.push_back(f);
     }
     face.is_exact = (record.flags & FDCG_NODE_INEXACT) == 0;
     if (!face.is_exact) {
-      const Vector<Real> n = to_vector<Real>(record.plane.normal);
-      face.plane = {n, n * Real(-Real(record.plane.offset) / dot(n, n)), length(n)};
+      const Vector<Real> n = to_vector<Real>(record.normal);
+      face.plane = {n, n * Real(-Real(record.offset) / dot(n, n)), length(n)};
       face.normal = face.plane.normal();
     }
     faces.push_back(face);

@@ -71,7 +71,6 @@ class ReferenceSurface {
   [[nodiscard]] std::vector<std::uint32_t> wrong_types() const;
 
  private:
-  template <class NodeRecord, class ConnectionRecord, class CornerRecord>
   void read(const fdcg_graph& graph);
   void derive_plane(Face& face);
   void derive_edge(Edge& edge);

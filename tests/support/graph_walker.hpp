@@ -12,25 +12,45 @@
 
 namespace fdcg::test {
 
-// A file in double precision, whatever it stores. Planes, corners and boxes as they stand there.
+// Records in double precision, whatever the file stores, with what it says in two places said in one. Sides are counted over
+// all nodes.
+struct WalkedNode {
+  fdcg_plane_f64 plane;
+  std::uint32_t first_side, side_count;
+  std::uint16_t flags;
+};
+struct WalkedConnection {
+  double edge[3], length;  // 0 where the file has no edges
+  std::uint32_t corner[2], node[2], side[2];
+  std::uint8_t type, flatness;
+};
+struct WalkedCorner {
+  double point[3], normal[3];
+  std::uint32_t first_fan, fan_count;
+  bool is_open, is_busy;
+};
+
+// A file as it stands. Fans are walked where they are not stored.
 struct WalkedGraph {
   fdcg_header header{};
-  std::vector<fdcg_node_f64> nodes;
-  std::vector<std::uint32_t> sides;
-  std::vector<fdcg_plane_f64> voronoi;  // empty: not in the file
-  std::vector<fdcg_connection_f64> connections;
-  std::vector<fdcg_corner_f64> corners;
-  std::vector<std::uint32_t> fans;
+  std::vector<WalkedNode> nodes;
+  std::vector<std::uint32_t> sides;        // connection << 1 | which
+  std::vector<std::uint32_t> side_corner;  // at which each starts
+  std::vector<std::uint32_t> side_across;  // the node beyond it, or FDCG_NONE
+  std::vector<fdcg_plane_f64> voronoi;     // empty: not in the file
+  std::vector<WalkedConnection> connections;
+  std::vector<WalkedCorner> corners;
+  std::vector<std::uint32_t> fans;  // of all corners, connection << 1 | end
+  std::vector<fdcg_busy_corner> busy_corners;
+  std::vector<std::uint32_t> stored_fans;  // of the busy ones
+  std::uint64_t node_bytes = 0;            // of the section, without padding
   std::vector<fdcg_box8> boxes;
   std::vector<std::uint32_t> source_map;
   std::string info;
+  std::vector<std::string> layout_faults;  // met while reading
 
-  [[nodiscard]] std::uint32_t corner_of_side(std::uint32_t side) const {
-    return connections[sides[side] >> 1].corner[sides[side] & 1u];
-  }
-  [[nodiscard]] std::uint32_t across(std::uint32_t side) const {
-    return connections[sides[side] >> 1].node[1u - (sides[side] & 1u)];
-  }
+  [[nodiscard]] std::uint32_t corner_of_side(std::uint32_t side) const { return side_corner[side]; }
+  [[nodiscard]] std::uint32_t across(std::uint32_t side) const { return side_across[side]; }
   [[nodiscard]] long euler_characteristic() const {
     return static_cast<long>(corners.size()) - static_cast<long>(connections.size()) + static_cast<long>(nodes.size());
   }

@@ -123,7 +123,7 @@ TEST_CASE("every generated mesh gives a file that breaks no rule, with every opt
       CompileOptions options;
       options.merge = choice % 2 == 0;
       options.precision = choice / 2 % 2 == 0 ? Precision::f64 : Precision::f32;
-      options.store_voronoi_planes = choice % 5 != 0;
+      options.store_planes = choice % 5 != 0;
       if (choice / 4 % 3 == 1) options.coplanar.kind = Coplanar::Kind::exact;
       if (choice / 4 % 3 == 2) options.coplanar = {Coplanar::Kind::angle, 0.05};
       if (choice % 7 == 0) options.without = {"hierarchy", "source-map", "info"};
@@ -142,7 +142,7 @@ TEST_CASE("optional sections are left out when asked, and only then") {
   CHECK(whole.source_map.size() == 12);
   CHECK(!whole.info.empty());
   options.without = {"hierarchy", "source-map", "info"};
-  options.store_voronoi_planes = false;
+  options.store_planes = false;
   const WalkedGraph lean = compile_sound(triangulated(cube()), options);
   CHECK(lean.voronoi.empty());
   CHECK(lean.boxes.empty());
@@ -256,7 +256,7 @@ TEST_CASE("the source map names a node that a face's centre lies on") {
         const double n = static_cast<double>(corners.size());
         centre = {centre.x + p.x / n, centre.y + p.y / n, centre.z + p.z / n};
       }
-      const fdcg_node_f64& node = graph.nodes[graph.source_map[f]];
+      const WalkedNode& node = graph.nodes[graph.source_map[f]];
       const double local[3] = {centre.x - graph.header.origin[0], centre.y - graph.header.origin[1],
                                centre.z - graph.header.origin[2]};
       const auto distance = [&](const fdcg_plane_f64& p) {

@@ -92,7 +92,7 @@ TEST_CASE("the Hilbert curve visits every cell once, neighbour after neighbour")
 
 TEST_CASE("consecutive nodes lie near each other") {
   const WalkedGraph graph = compile_sound(ico_sphere(5));
-  const auto centre = [&](const fdcg_node_f64& n) {
+  const auto centre = [&](const WalkedNode& n) {
     std::array<double, 3> c{};
     for (std::uint32_t s = 0; s < n.side_count; ++s) {
       for (int k = 0; k < 3; ++k)

@@ -55,7 +55,7 @@ std::vector<AlignedBytes> varied_files() {
   bake::CompileOptions stored, derived;
   stored.without = {"info"};
   derived.without = {"info", "hierarchy"};
-  derived.store_voronoi_planes = false;
+  derived.store_planes = false;
   std::vector<AlignedBytes> files;
   for (const auto precision : {bake::Precision::f64, bake::Precision::f32}) {
     stored.precision = derived.precision = precision;
@@ -224,13 +224,27 @@ TEST_CASE("a busy corner without its tree is refused: the step would look at eve
   AlignedBytes file = compiled(cone(40), small_f32());
   fdcg_graph graph;
   REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);
-  auto* corners = const_cast<fdcg_corner_f32*>(static_cast<const fdcg_corner_f32*>(graph.corners));
-  for (std::uint32_t v = 0; v < graph.header->corner_count; ++v)
-    corners[v].flags &= FDCG_CORNER_OPEN;
+  REQUIRE(graph.header->busy_count == 1);
+  const_cast<fdcg_busy_corner*>(graph.busy_corners)->first_box = FDCG_NONE;
   seal(file);
   fdcg_error error;
   CHECK(open(file, file.size(), error) == FDCG_E_GRAPH);
   CHECK(std::string(error.message).find("no tree") != std::string::npos);
+}
+
+TEST_CASE("a file of an early draft, with other records, is refused and not misread") {
+  AlignedBytes file = compiled(cube(), small_f32());
+  auto& header = *reinterpret_cast<fdcg_header*>(file.data());
+  auto* const section = reinterpret_cast<fdcg_section*>(&header + 1);
+  header.node_bytes = 0;  // the draft had zeros here, and nodes of 24 bytes
+  header.flags = 0;
+  REQUIRE(section->id == FDCG_SECTION_NODES);
+  section->record_count = section->record_count * section->record_bytes / 24;
+  section->record_bytes = 24;
+  seal(file);
+  fdcg_error error;
+  CHECK(open(file, file.size(), error) == FDCG_E_LAYOUT);
+  CHECK(std::string(error.message).find("compile the mesh again") != std::string::npos);
 }
 
 TEST_CASE("objects too large or too small for the step's arithmetic are refused") {
@@ -248,13 +262,14 @@ TEST_CASE("objects too large or too small for the step's arithmetic are refused"
 
 TEST_CASE("a Voronoi plane that cannot be derived is refused") {
   bake::CompileOptions options = small_f32();
-  options.store_voronoi_planes = false;
+  options.store_planes = false;
   AlignedBytes file = compiled(cube(), options);
   fdcg_graph graph;
   REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);
-  auto* connections = const_cast<fdcg_connection_f32*>(static_cast<const fdcg_connection_f32*>(graph.connections));
-  const float* normal = static_cast<const fdcg_node_f32*>(graph.nodes)[connections[0].node[0]].plane.normal;
-  std::copy_n(normal, 3, connections[0].edge);  // parallel: their cross product has no direction
+  auto* node = const_cast<fdcg_node_f32*>(static_cast<const fdcg_node_f32*>(graph.nodes));
+  const fdcg_connection_info edge = fdcg_get_connection(&graph, fdcg_get_side(&graph, 0, 0).connection);
+  for (int k = 0; k < 3; ++k)
+    node->plane.normal[k] = static_cast<float>(edge.direction[k]);  // parallel: their cross product has no direction
   seal(file);
   fdcg_error error;
   CHECK(open(file, file.size(), error) == FDCG_E_GRAPH);
@@ -264,14 +279,16 @@ TEST_CASE("a Voronoi plane that cannot be derived is refused") {
 TEST_CASE("optional sections may be absent, and the step feels the same") {
   bake::CompileOptions bare;
   bare.without = {"hierarchy", "source-map", "info"};
-  bare.store_voronoi_planes = false;
+  bare.store_planes = false;
   AlignedBytes whole = compiled(star_sphere(2, 0.3, 5)), lean = compiled(star_sphere(2, 0.3, 5), bare);
   REQUIRE(lean.size() < whole.size() * 3 / 4);
   fdcg_graph a, b;
   REQUIRE(fdcg_open_memory(whole.data(), whole.size(), FDCG_VERIFY_FULL, &a, nullptr) == FDCG_OK);
   REQUIRE(fdcg_open_memory(lean.data(), lean.size(), FDCG_VERIFY_FULL, &b, nullptr) == FDCG_OK);
   CHECK(b.hierarchy == nullptr);
-  CHECK(b.voronoi_planes == nullptr);
+  CHECK(b.edges == nullptr);
+  CHECK((a.header->flags & FDCG_STORED_PLANES) != 0);
+  CHECK((b.header->flags & FDCG_STORED_PLANES) == 0);
   const fdcg_params params = fdcg_default_params();
   fdcg_contact contact_a = {}, contact_b = {};
   std::uint32_t touching = 0;

@@ -18,7 +18,7 @@ using Place = std::tuple<double, double, double>;
 
 std::set<Place> corner_places(const WalkedGraph& graph) {
   std::set<Place> places;
-  for (const fdcg_corner_f64& c : graph.corners)
+  for (const WalkedCorner& c : graph.corners)
     places.insert(
         {c.point[0] + graph.header.origin[0], c.point[1] + graph.header.origin[1], c.point[2] + graph.header.origin[2]});
   return places;
@@ -104,7 +104,7 @@ TEST_CASE("float noise on a turned, finely cut plate does not survive") {
 TEST_CASE("no merged node has more sides than the bound, however many the region has") {
   for (const std::uint32_t sides : {64u, 65u, 500u, 10000u}) {
     const WalkedGraph graph = compile_sound(disc(sides));
-    for (const fdcg_node_f64& n : graph.nodes)
+    for (const WalkedNode& n : graph.nodes)
       CHECK(n.side_count <= kMaxMergedSides);
     CHECK(graph.nodes.size() <= 2 * (sides / (kMaxMergedSides - 2) + 1));
     CHECK(graph.euler_characteristic() == 1);
@@ -137,7 +137,7 @@ TEST_CASE("without merging, faces stay what they were and still share their regi
       compile_sound(rounded_to_float(transformed(grid_box(3, 3, 3, {1, 1, 1}), random_rotation(1))), unmerged());
   CHECK(noisy.nodes.size() == 54);
   std::set<std::tuple<double, double, double, double>> planes;
-  for (const fdcg_node_f64& n : noisy.nodes)
+  for (const WalkedNode& n : noisy.nodes)
     planes.insert({n.plane.normal[0], n.plane.normal[1], n.plane.normal[2], n.plane.offset});
   CHECK(planes.size() == 6);
 }

@@ -114,18 +114,3 @@ TEST_CASE("angles between unit vectors agree with the arc cosine") {
   CHECK(angle_between({1, 0, 0}, {1, 0, 0}) == 0);
   CHECK(angle_between({1, 0, 0}, {-1, 0, 0}) == Approx(std::acos(-1.0)));
 }
-
-TEST_CASE("a Voronoi plane faces out of its face and holds the edge") {
-  Random random(6);
-  for (int i = 0; i < 1000; ++i) {
-    const Vec3 a = random.direction(), b = random.direction(), c = random.direction();
-    const Vec3 n = unit_normal(a, b, c), e = edge_direction(a, b);
-    const auto stored = voronoi_plane(Stored3<double>(e), Stored3<double>(n), Stored3<double>(a));
-    const Plane m{{stored.normal[0], stored.normal[1], stored.normal[2]}, stored.offset};
-    const double inside = dot(m.normal, c) + m.offset;
-    CHECK(inside < 0);
-    CHECK(std::fabs(dot(m.normal, a) + m.offset) < 1e-15);
-    CHECK(std::fabs(dot(m.normal, b) + m.offset) < 1e-15);
-    CHECK(std::fabs(dot(m.normal, n)) < 1e-15);
-  }
-}

@@ -79,7 +79,7 @@ TEST_CASE("corner normals weigh faces by their angle, so that a cut does not tur
     CompileOptions options;
     options.merge = false;
     const WalkedGraph graph = compile_sound(soup, options);
-    for (const fdcg_corner_f64& c : graph.corners) {
+    for (const WalkedCorner& c : graph.corners) {
       if (c.point[0] == x && c.point[1] == y && c.point[2] == z) return Vec3{c.normal[0], c.normal[1], c.normal[2]};
     }
     return Vec3{};
@@ -96,13 +96,44 @@ TEST_CASE("corners of many faces carry a tree") {
     const std::vector<std::byte> bytes = compile_whole(cone(sides)).bytes;
     const WalkedGraph graph = read_graph(bytes);
     std::uint32_t busy = 0, boxes = 0;
-    for (const fdcg_corner_f64& c : graph.corners) {
-      const bool has_tree = c.flags >> FDCG_CORNER_TREE_SHIFT != 0;
-      CHECK(has_tree == (c.fan_count > FDCG_BUSY_FAN));
-      busy += has_tree;
+    for (const WalkedCorner& c : graph.corners) {
+      CHECK(c.is_busy == (c.fan_count > FDCG_BUSY_FAN));
+      busy += c.is_busy;
       boxes += fan_box_count(c.fan_count);
     }
     CHECK(busy >= 1);
     CHECK(graph.header.fan_box_count == boxes);
+  }
+}
+
+TEST_CASE("what is stored and what is derived have the same bits") {
+  const PolygonSoup tiny = scaled(star_sphere(2, 0.3, 5), 1e-8);
+  for (const auto precision : {Precision::f64, Precision::f32}) {
+    for (const PolygonSoup& soup : {star_sphere(3, 0.3, 1), transformed(grid_box(5, 4, 3, {1, 2, 3}), random_rotation(1)),
+                                    cone(40), plane_grid(3, 2), tiny}) {
+      CompileOptions options;
+      options.precision = precision;
+      const std::vector<std::byte> stored = compile_whole(soup, options).bytes;
+      options.store_planes = false;
+      const std::vector<std::byte> derived = compile_whole(soup, options).bytes;
+      CHECK(derived.size() < stored.size());
+      fdcg_graph a, b;
+      REQUIRE(fdcg_open_memory(stored.data(), stored.size(), FDCG_VERIFY_FULL, &a, nullptr) == FDCG_OK);
+      REQUIRE(fdcg_open_memory(derived.data(), derived.size(), FDCG_VERIFY_FULL, &b, nullptr) == FDCG_OK);
+      REQUIRE(a.edges != nullptr);
+      REQUIRE(b.edges == nullptr);
+      std::size_t different = 0;
+      for (std::uint32_t n = 0; n < a.header->node_count; ++n) {
+        for (std::uint32_t k = 0; k < fdcg_get_node(&a, n).side_count; ++k) {
+          const fdcg_side_info p = fdcg_get_side(&a, n, k), q = fdcg_get_side(&b, n, k);
+          different += std::memcmp(&p, &q, sizeof p) != 0;
+        }
+      }
+      for (std::uint32_t c = 0; c < a.header->connection_count; ++c) {
+        const fdcg_connection_info p = fdcg_get_connection(&a, c), q = fdcg_get_connection(&b, c);
+        different += std::memcmp(&p, &q, sizeof p) != 0;
+      }
+      CHECK(different == 0);
+    }
   }
 }

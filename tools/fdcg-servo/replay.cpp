@@ -80,13 +80,11 @@ void measure_force(const fdcg_graph& graph, const fdcg_result& result, Summary& 
   const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   summary.largest_force_n = std::max(summary.largest_force_n, std::sqrt(square));
   if (result.state != FDCG_FACE) return;
-  double n[3], normal_part = 0, tangential_square = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    n[axis] = graph.header->real_bytes == 8
-                  ? static_cast<const fdcg_node_f64*>(graph.nodes)[result.feature].plane.normal[axis]
-                  : static_cast<double>(static_cast<const fdcg_node_f32*>(graph.nodes)[result.feature].plane.normal[axis]);
+  const fdcg_node_info face = fdcg_get_node(&graph, result.feature);
+  const double* const n = face.normal;
+  double normal_part = 0, tangential_square = 0;
+  for (int axis = 0; axis < 3; ++axis)
     normal_part += f[axis] * n[axis];
-  }
   for (int axis = 0; axis < 3; ++axis) {
     const double along = f[axis] - normal_part * n[axis];
     tangential_square += along * along;

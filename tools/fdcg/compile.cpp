@@ -270,11 +270,12 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
   command.add_flag("--merge,!--no-merge", arguments->options.merge, "Merge coplanar faces into convex polygons; default: yes");
   const auto parse_planes = [arguments](const std::string& text) {
     require_choice("--planes", text, {"stored", "derived"});
-    arguments->options.store_voronoi_planes = text == "stored";
+    arguments->options.store_planes = text == "stored";
   };
   command
       .add_option_function<std::string>(
-          "--planes", parse_planes, "Voronoi planes in the file (stored, the default), or computed in the step: a smaller file")
+          "--planes", parse_planes,
+          "edge vectors, end and Voronoi planes in the file (stored, the default), or computed in the step: a smaller file")
       ->type_name("stored|derived");
   const auto parse_without = [arguments](const std::vector<std::string>& names) {
     for (const std::string& name : names) {

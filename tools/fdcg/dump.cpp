@@ -3,8 +3,9 @@
 
 #include <charconv>
 #include <string>
+#include <vector>
 
-#include "typed_graph.hpp"
+#include "fdcg/fdcg.h"
 
 namespace fdcg::tools {
 namespace {
@@ -46,50 +47,50 @@ class DumpText {
   std::string text_;
 };
 
-template <class Records>
-void dump_nodes(const TypedGraph<Records>& graph, DumpText& text) {
-  for (std::uint32_t n = 0; n < graph.header.node_count; ++n) {
-    const auto& node = graph.nodes[n];
-    text << "node " << n << ": normal " << node.plane.normal << " offset " << node.plane.offset << ", "
-         << std::uint32_t{node.side_count} << " sides" << ((node.flags & FDCG_NODE_INEXACT) != 0 ? ", inexact" : "");
+void dump_node_number(std::uint32_t node, DumpText& text) {
+  if (node == FDCG_NONE) {
+    text << "none";
+  } else {
+    text << node;
+  }
+}
+
+void dump_nodes(const fdcg_graph& graph, DumpText& text) {
+  for (std::uint32_t n = 0; n < graph.header->node_count; ++n) {
+    const fdcg_node_info node = fdcg_get_node(&graph, n);
+    text << "node " << n << ": normal " << node.normal << " offset " << node.offset << ", " << node.side_count << " sides"
+         << ((node.flags & FDCG_NODE_INEXACT) != 0 ? ", inexact" : "");
     text.end_line();
-    for (std::uint32_t side = node.first_side; side < node.first_side + node.side_count; ++side) {
-      text << "  side " << side << ": connection " << graph.connection_of(side) << " from corner " << graph.start_corner(side);
-      if (graph.voronoi_planes != nullptr) {
-        const auto& plane = graph.voronoi_planes[side];
-        text << ", Voronoi plane " << plane.normal << " " << plane.offset;
-      }
+    for (std::uint32_t k = 0; k < node.side_count; ++k) {
+      const fdcg_side_info side = fdcg_get_side(&graph, n, k);
+      text << "  side " << k << ": connection " << side.connection << " from corner " << side.corner << " to node ";
+      dump_node_number(side.across, text);
+      text << ", Voronoi plane " << side.voronoi_normal << " " << side.voronoi_offset;
       text.end_line();
     }
   }
 }
 
-template <class Records>
-void dump_connections(const TypedGraph<Records>& graph, DumpText& text) {
-  for (std::uint32_t c = 0; c < graph.header.connection_count; ++c) {
-    const auto& connection = graph.connections[c];
+void dump_connections(const fdcg_graph& graph, DumpText& text) {
+  for (std::uint32_t c = 0; c < graph.header->connection_count; ++c) {
+    const fdcg_connection_info connection = fdcg_get_connection(&graph, c);
     text << "connection " << c << ": " << kTypes[connection.type] << " (" << kFlatness[connection.flatness] << "), corners "
          << connection.corner[0] << " " << connection.corner[1] << ", nodes " << connection.node[0] << " ";
-    if (connection.node[1] == FDCG_NONE) {
-      text << "none";
-    } else {
-      text << connection.node[1];
-    }
-    text << ", edge " << connection.edge << ", end planes " << connection.end_offset[0] << " " << connection.end_offset[1];
+    dump_node_number(connection.node[1], text);
+    text << ", edge " << connection.direction << " length " << connection.length;
     text.end_line();
   }
 }
 
-template <class Records>
-void dump_corners(const TypedGraph<Records>& graph, DumpText& text) {
-  for (std::uint32_t v = 0; v < graph.header.corner_count; ++v) {
-    const auto& corner = graph.corners[v];
-    text << "corner " << v << ": " << corner.point << ", normal " << corner.normal
-         << ((corner.flags & FDCG_CORNER_OPEN) != 0 ? ", open" : "") << ", fan";
-    if (const std::uint32_t tree = corner.flags >> FDCG_CORNER_TREE_SHIFT; tree != 0)
-      text << " with its tree at box " << tree - 1 << ":";
-    for (std::uint32_t i = corner.first_fan; i < corner.first_fan + corner.fan_count; ++i)
-      text << " " << (graph.fans[i] >> 1);
+void dump_corners(const fdcg_graph& graph, DumpText& text) {
+  std::vector<std::uint32_t> fan(graph.header->largest_fan);
+  for (std::uint32_t v = 0; v < graph.header->corner_count; ++v) {
+    const fdcg_corner_info corner = fdcg_get_corner(&graph, v);
+    text << "corner " << v << ": " << corner.point << ", normal " << corner.normal << (corner.is_open != 0 ? ", open" : "")
+         << ", fan" << (corner.fan_count > FDCG_BUSY_FAN ? " with a tree:" : "");
+    const std::uint32_t count = fdcg_get_fan(&graph, v, fan.data(), static_cast<std::uint32_t>(fan.size()));
+    for (std::uint32_t i = 0; i < count; ++i)
+      text << " " << (fan[i] >> 1);
     text.end_line();
   }
 }
@@ -100,11 +101,9 @@ void dump_records(const fdcg_graph& graph, AtomicFile& out) {
   DumpText text(out);
   text << "origin " << graph.header->origin << ", metres per unit " << graph.header->metres_per_unit;
   text.end_line();
-  visit_typed(graph, [&text](const auto& typed) {
-    dump_nodes(typed, text);
-    dump_connections(typed, text);
-    dump_corners(typed, text);
-  });
+  dump_nodes(graph, text);
+  dump_connections(graph, text);
+  dump_corners(graph, text);
 }
 
 }  // namespace fdcg::tools

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "typed_graph.hpp"
+#include "triples.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -20,102 +20,95 @@ void measure(Invariant& invariant, std::uint64_t record, double deviation) {
   if (invariant.first < 0) invariant.first = static_cast<std::int64_t>(record);
 }
 
-template <class Records>
 class Checker {
  public:
-  explicit Checker(const TypedGraph<Records>& graph)
+  explicit Checker(const fdcg_graph& graph)
       : graph_(graph),
-        epsilon_(kRoundings * static_cast<double>(std::numeric_limits<typename Records::Real>::epsilon())),
-        length_(epsilon_ * graph.header.extent) {}
+        header_(*graph.header),
+        epsilon_(kRoundings * (header_.real_bytes == 8 ? std::numeric_limits<double>::epsilon()
+                                                       : static_cast<double>(std::numeric_limits<float>::epsilon()))),
+        length_(epsilon_ * header_.extent) {}
 
   std::vector<Invariant> run() {
-    return {corners_on_planes(), nodes_convex(), unit_vectors(), voronoi_planes(), end_planes(), types()};
+    return {corners_on_planes(), nodes_convex(), unit_vectors(), voronoi_planes(), edges(), types()};
   }
 
  private:
   [[nodiscard]] Invariant named(const char* name, double limit) const { return {name, 0, 0, 0, limit, -1}; }
 
-  [[nodiscard]] Triple point(std::uint32_t corner) const { return triple(graph_.corners[corner].point); }
-
-  template <class Plane>
-  static double distance(const Plane& plane, const Triple& x) {
-    return dot(triple(plane.normal), x) + static_cast<double>(plane.offset);
-  }
+  [[nodiscard]] Triple point(std::uint32_t corner) const { return triple(fdcg_get_corner(&graph_, corner).point); }
+  [[nodiscard]] Triple start(std::uint32_t n, std::uint32_t k) const { return point(fdcg_get_side(&graph_, n, k).corner); }
 
   // A node without INEXACT has its corners on its plane but for the plane's own rounding; others stay within max_deviation.
   Invariant corners_on_planes() {
-    Invariant invariant = named("corners lie on their nodes' planes", length_ + graph_.header.max_deviation);
-    for (std::uint32_t n = 0; n < graph_.header.node_count; ++n) {
-      const auto& node = graph_.nodes[n];
-      for (std::uint32_t k = 0; k < node.side_count; ++k) {
-        measure(invariant, n, std::abs(distance(node.plane, point(graph_.start_corner(node.first_side + k)))));
-      }
+    Invariant invariant = named("corners lie on their nodes' planes", length_ + header_.max_deviation);
+    for (std::uint32_t n = 0; n < header_.node_count; ++n) {
+      const fdcg_node_info node = fdcg_get_node(&graph_, n);
+      for (std::uint32_t k = 0; k < node.side_count; ++k)
+        measure(invariant, n, std::abs(dot(triple(node.normal), start(n, k)) + node.offset));
     }
     return invariant;
   }
 
   // Each side's end lies behind the Voronoi plane of the side before: the loop never turns right.
   Invariant nodes_convex() {
-    Invariant invariant = named("nodes are convex", length_ + graph_.header.max_deviation);
-    for (std::uint32_t n = 0; n < graph_.header.node_count; ++n) {
-      const auto& node = graph_.nodes[n];
+    Invariant invariant = named("nodes are convex", length_ + header_.max_deviation);
+    for (std::uint32_t n = 0; n < header_.node_count; ++n) {
+      const fdcg_node_info node = fdcg_get_node(&graph_, n);
       for (std::uint32_t k = 0; k < node.side_count; ++k) {
-        const std::uint32_t side = node.first_side + k;
-        const Triple out = cross(direction(side), triple(node.plane.normal));
-        const std::uint32_t beyond = node.first_side + (k + 2) % node.side_count;
-        measure(invariant, n,
-                std::max(0.0, dot(out, minus(point(graph_.start_corner(beyond)), point(graph_.start_corner(side))))));
+        const Triple out = cross(direction(fdcg_get_side(&graph_, n, k)), triple(node.normal));
+        measure(invariant, n, std::max(0.0, dot(out, minus(start(n, (k + 2) % node.side_count), start(n, k)))));
       }
     }
     return invariant;
   }
 
   // The connection's edge vector, along the winding of the side's node.
-  [[nodiscard]] Triple direction(std::uint32_t side) const {
-    const Triple e = triple(graph_.connections[graph_.connection_of(side)].edge);
-    return (graph_.sides[side] & 1) == 0 ? e : Triple{-e[0], -e[1], -e[2]};
+  [[nodiscard]] Triple direction(const fdcg_side_info& side) const {
+    const Triple e = triple(fdcg_get_connection(&graph_, side.connection).direction);
+    return side.which == 0 ? e : Triple{-e[0], -e[1], -e[2]};
   }
 
   Invariant unit_vectors() {
     Invariant invariant = named("normals and edge vectors have length 1", epsilon_);
-    for (std::uint32_t n = 0; n < graph_.header.node_count; ++n) {
-      measure(invariant, n, std::abs(length(triple(graph_.nodes[n].plane.normal)) - 1));
+    for (std::uint32_t n = 0; n < header_.node_count; ++n) {
+      measure(invariant, n, std::abs(length(triple(fdcg_get_node(&graph_, n).normal)) - 1));
     }
-    for (std::uint32_t c = 0; c < graph_.header.connection_count; ++c) {
-      measure(invariant, c, std::abs(length(triple(graph_.connections[c].edge)) - 1));
+    for (std::uint32_t c = 0; c < header_.connection_count; ++c) {
+      measure(invariant, c, std::abs(length(triple(fdcg_get_connection(&graph_, c).direction)) - 1));
     }
     return invariant;
   }
 
-  [[nodiscard]] bool is_exact(std::uint32_t node) const { return (graph_.nodes[node].flags & FDCG_NODE_INEXACT) == 0; }
+  [[nodiscard]] bool is_exact(std::uint32_t node) const {
+    return (fdcg_get_node(&graph_, node).flags & FDCG_NODE_INEXACT) == 0;
+  }
 
   // They hold their edge, and on an exactly planar face stand upright, pointing away from it.
   Invariant voronoi_planes() {
     Invariant invariant =
-        named("Voronoi planes hold their edges and point out of their faces", length_ + graph_.header.max_deviation);
-    if (graph_.voronoi_planes == nullptr) return invariant;
-    for (std::uint32_t n = 0; n < graph_.header.node_count; ++n) {
-      const auto& node = graph_.nodes[n];
-      for (std::uint32_t side = node.first_side; side < node.first_side + node.side_count; ++side) {
-        const auto& plane = graph_.voronoi_planes[side];
-        const Triple out = cross(direction(side), triple(node.plane.normal));
-        const double turned = is_exact(n) ? length(minus(triple(plane.normal), out)) * graph_.header.extent : 0;
-        const auto& connection = graph_.connections[graph_.connection_of(side)];
-        const double off_edge = std::max(std::abs(distance(plane, point(connection.corner[0]))),
-                                         std::abs(distance(plane, point(connection.corner[1]))));
+        named("Voronoi planes hold their edges and point out of their faces", length_ + header_.max_deviation);
+    for (std::uint32_t n = 0; n < header_.node_count; ++n) {
+      const fdcg_node_info node = fdcg_get_node(&graph_, n);
+      for (std::uint32_t k = 0; k < node.side_count; ++k) {
+        const fdcg_side_info side = fdcg_get_side(&graph_, n, k);
+        const Triple m = triple(side.voronoi_normal), out = cross(direction(side), triple(node.normal));
+        const double turned = is_exact(n) ? length(minus(m, out)) * header_.extent : 0;
+        const double off_edge = std::max(std::abs(dot(m, start(n, k)) + side.voronoi_offset),
+                                         std::abs(dot(m, start(n, (k + 1) % node.side_count)) + side.voronoi_offset));
         measure(invariant, n, std::max(turned, off_edge));
       }
     }
     return invariant;
   }
 
-  Invariant end_planes() {
-    Invariant invariant = named("end planes pass through their corners", length_);
-    for (std::uint32_t c = 0; c < graph_.header.connection_count; ++c) {
-      const auto& connection = graph_.connections[c];
-      const Triple e = triple(connection.edge);
-      measure(invariant, c, std::abs(static_cast<double>(connection.end_offset[0]) - dot(e, point(connection.corner[0]))));
-      measure(invariant, c, std::abs(static_cast<double>(connection.end_offset[1]) + dot(e, point(connection.corner[1]))));
+  Invariant edges() {
+    Invariant invariant = named("edges lead from corner to corner", length_);
+    for (std::uint32_t c = 0; c < header_.connection_count; ++c) {
+      const fdcg_connection_info connection = fdcg_get_connection(&graph_, c);
+      const Triple from = point(connection.corner[0]), to = point(connection.corner[1]), e = triple(connection.direction);
+      const Triple along{connection.length * e[0], connection.length * e[1], connection.length * e[2]};
+      measure(invariant, c, length(minus(minus(to, from), along)));
     }
     return invariant;
   }
@@ -125,19 +118,20 @@ class Checker {
   // faces at the edge decide.
   Invariant types() {
     Invariant invariant = named("types agree with the bend between exactly planar faces", epsilon_);
-    for (std::uint32_t c = 0; c < graph_.header.connection_count; ++c) {
-      const auto& connection = graph_.connections[c];
+    for (std::uint32_t c = 0; c < header_.connection_count; ++c) {
+      const fdcg_connection_info connection = fdcg_get_connection(&graph_, c);
       if (connection.type == FDCG_BOUNDARY || !is_exact(connection.node[0]) || !is_exact(connection.node[1])) continue;
-      const Triple a = triple(graph_.nodes[connection.node[0]].plane.normal);
-      const Triple b = triple(graph_.nodes[connection.node[1]].plane.normal);
-      const double bend = dot(cross(a, b), triple(connection.edge));
+      const Triple a = triple(fdcg_get_node(&graph_, connection.node[0]).normal);
+      const Triple b = triple(fdcg_get_node(&graph_, connection.node[1]).normal);
+      const double bend = dot(cross(a, b), triple(connection.direction));
       const double against = connection.type == FDCG_CONVEX ? -bend : connection.type == FDCG_CONCAVE ? bend : std::abs(bend);
       measure(invariant, c, std::max(0.0, against));
     }
     return invariant;
   }
 
-  const TypedGraph<Records>& graph_;
+  const fdcg_graph& graph_;
+  const fdcg_header& header_;
   double epsilon_;  // of a direction
   double length_;   // of a position, local units
 };
@@ -145,7 +139,7 @@ class Checker {
 }  // namespace
 
 std::vector<Invariant> check_invariants(const fdcg_graph& graph) {
-  return visit_typed(graph, []<class Records>(const TypedGraph<Records>& typed) { return Checker<Records>(typed).run(); });
+  return Checker(graph).run();
 }
 
 }  // namespace fdcg::tools

@@ -298,7 +298,7 @@ struct CompileOptions {
   bool merge = true;
   Weld weld;
   bool orient = false;
-  bool store_voronoi_planes = true;
+  bool store_planes = true;
   std::set<std::string> without;  // optional sections left out: hierarchy, source-map, info
   std::set<std::string> allow;
   bool self_intersections = false;  // run that rule too

@@ -95,14 +95,15 @@ typedef enum fdcg_verify {
 /* A read-only view; the bytes that it points into must outlive it. Read its fields, do not write them. */
 typedef struct fdcg_graph {
   const fdcg_header* header;
-  const void* nodes; /* fdcg_node_f64 or _f32, by header->real_bytes */
-  const uint32_t* sides;
-  const void* voronoi_planes; /* NULL: derived in the step */
-  const void* connections;
+  const void* nodes;            /* blocks of fdcg_node_f64 or _f32, by header->real_bytes */
+  const uint32_t* node_offsets; /* NULL: every block has header->node_bytes */
+  const fdcg_connection* connections;
+  const void* edges; /* NULL: derived in the step */
   const void* corners;
+  const fdcg_busy_corner* busy_corners; /* NULL, and so are the next two: no corner is busy */
   const uint32_t* fans;
-  const void* fan_boxes;      /* NULL: no busy corner */
-  const fdcg_box8* hierarchy; /* NULL: the free-space sweep looks at every node */
+  const void* fan_boxes;
+  const fdcg_box8* hierarchy;  /* NULL: the free-space sweep looks at every node */
   const uint32_t* source_map; /* NULL: not in the file; else header->source_face_count entries */
   const char* info;           /* JSON, not zero-terminated; NULL: not in the file */
   uint64_t info_bytes;
@@ -119,6 +120,47 @@ fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* gra
 
 /* Unmaps what fdcg_open_file mapped and zeroes the view. Harmless on a zeroed or memory graph. */
 void fdcg_close(fdcg_graph* graph);
+
+/* ---- a graph's records, in double precision whatever the file's: for looking at a graph, the step does not use them -------- */
+
+/* Indices must be below the header's counts, `side` below side_count; nothing is checked. What the file leaves out is derived. */
+typedef struct fdcg_node_info {
+  double normal[3], offset; /* distance(x) = normal.x + offset, positive outside, local frame (format.h) */
+  uint32_t side_count;
+  uint32_t flags; /* FDCG_NODE_INEXACT */
+} fdcg_node_info;
+fdcg_node_info fdcg_get_node(const fdcg_graph* graph, uint32_t node);
+
+typedef struct fdcg_side_info {
+  double voronoi_normal[3], voronoi_offset; /* the plane through the side's edge, pointing out of the face */
+  uint32_t connection;
+  uint32_t which;  /* 0: the connection runs along the side, 1: against it */
+  uint32_t corner; /* at which the side starts */
+  uint32_t across; /* node, or FDCG_NONE */
+} fdcg_side_info;
+fdcg_side_info fdcg_get_side(const fdcg_graph* graph, uint32_t node, uint32_t side);
+
+typedef struct fdcg_connection_info {
+  double direction[3], length; /* from corner[0] to corner[1] */
+  uint32_t corner[2];
+  uint32_t node[2]; /* node[1] is FDCG_NONE on a boundary */
+  uint32_t side[2]; /* of each node */
+  uint32_t type;     /* fdcg_connection_type */
+  uint32_t flatness; /* fdcg_flatness */
+} fdcg_connection_info;
+fdcg_connection_info fdcg_get_connection(const fdcg_graph* graph, uint32_t connection);
+
+typedef struct fdcg_corner_info {
+  double point[3];  /* local frame */
+  double normal[3]; /* about of unit length */
+  uint32_t fan_count;
+  uint32_t is_open; /* a boundary connection ends here */
+} fdcg_corner_info;
+fdcg_corner_info fdcg_get_corner(const fdcg_graph* graph, uint32_t corner);
+
+/* The corner's connections, counter-clockwise seen from outside, each as connection << 1 | end (end 0: its corner[0] is this
+ * corner). Writes at most `capacity` of them and returns their number. Cost: linear in it. */
+uint32_t fdcg_get_fan(const fdcg_graph* graph, uint32_t corner, uint32_t* entries, uint32_t capacity);
 
 /* The checksum of the format: `bytes` bytes at `data`. Any change of one byte changes it (schemas/fdcg-v1.md). */
 uint64_t fdcg_checksum(const void* data, uint64_t bytes);

@@ -12,8 +12,12 @@
  *   +--------------------+  file_bytes
  *
  * The paper's nouns: a node is one planar convex face, a connection one edge, a corner one vertex. A side is a node's end of a
- * connection: node n owns the sides first_side .. first_side + side_count - 1 in winding order (counter-clockwise seen from
- * outside).
+ * connection; a node has its sides in winding order (counter-clockwise seen from outside), side k from its corner to that of
+ * side k + 1.
+ *
+ * What a step reads together lies together. All that the rule of a face asks for is in the node's own block: its plane, its
+ * sides, the planes through them, and where to go from there. So a god-object that arrives on a face can call its neighbours'
+ * blocks, edges and corners into the cache at once, each known from this block alone.
  *
  * One plane convention: distance(x) = normal.x + offset, positive outside, normal of unit length.
  * Frames: every coordinate in the file is local, in the units of the source file:
@@ -35,9 +39,9 @@
 #define FDCG_NONE 0xFFFFFFFFu        /* "no node here": the far side of an open edge; a dropped source face */
 #define FDCG_LEAF_NODES 4u           /* nodes in one leaf of the hierarchy */
 #define FDCG_TREE_WAYS 8u            /* boxes in one record of the hierarchy */
-#define FDCG_MAX_SIDES 65535u        /* sides of one node */
+#define FDCG_MAX_SIDES 255u          /* sides of one node; fdcg compile cuts larger faces into nodes of at most 64 */
 #define FDCG_LEAF_FAN 8u             /* fan entries in one leaf of a corner's tree */
-#define FDCG_BUSY_FAN 32u            /* a corner with more fan entries has a tree */
+#define FDCG_BUSY_FAN 32u            /* a corner with more fan entries is busy: it has its fan stored, and a tree */
 #define FDCG_LARGEST_EXTENT_F64 1e60 /* of an object; its inverse is the smallest */
 #define FDCG_LARGEST_EXTENT_F32 1e9
 
@@ -47,16 +51,18 @@ extern "C" {
 
 /* What a section holds. A reader skips ids that it does not know; a writer never reuses one. */
 enum fdcg_section_id {
-  FDCG_SECTION_NODES = 1,       /* fdcg_node_f64 or _f32, node_count of them, in Hilbert order of their centres */
-  FDCG_SECTION_SIDES = 2,       /* uint32_t: connection << 1 | which, side_count of them; which 0: the node is node[0] */
-  FDCG_SECTION_VORONOI = 3,     /* fdcg_plane_f64 or _f32, one a side. Optional: derived from edge vector and normal */
-  FDCG_SECTION_CONNECTIONS = 4, /* fdcg_connection_f64 or _f32, connection_count of them */
-  FDCG_SECTION_CORNERS = 5,     /* fdcg_corner_f64 or _f32, corner_count of them */
-  FDCG_SECTION_FANS = 6,        /* uint32_t: connection << 1 | end, fan_count of them; end 0: the corner is corner[0] */
-  FDCG_SECTION_HIERARCHY = 7,   /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
-  FDCG_SECTION_SOURCE_MAP = 8,  /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
-  FDCG_SECTION_INFO = 9,        /* UTF-8 JSON: source, options, verdict. Optional */
-  FDCG_SECTION_FAN_BOXES = 10   /* fdcg_fan_box_f64 or _f32: the busy corners' trees. Optional where no corner is busy */
+  FDCG_SECTION_NODES = 1,        /* node blocks, node_count of them, in Hilbert order of their centres */
+  FDCG_SECTION_NODE_OFFSETS = 2, /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
+                                    are of one size, header.node_bytes */
+  FDCG_SECTION_EDGES = 3,        /* fdcg_edge_f64 or _f32, one a connection. Optional: derived from the corners */
+  FDCG_SECTION_CONNECTIONS = 4,  /* fdcg_connection, connection_count of them, by first use */
+  FDCG_SECTION_CORNERS = 5,      /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
+  FDCG_SECTION_FANS = 6,         /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
+  FDCG_SECTION_HIERARCHY = 7,    /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
+  FDCG_SECTION_SOURCE_MAP = 8,   /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
+  FDCG_SECTION_INFO = 9,         /* UTF-8 JSON: source, options, verdict. Optional */
+  FDCG_SECTION_FAN_BOXES = 10,   /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
+  FDCG_SECTION_BUSY_CORNERS = 11 /* fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
 };
 
 enum fdcg_connection_type { FDCG_CONVEX = 0, FDCG_CONCAVE = 1, FDCG_COPLANAR = 2, FDCG_BOUNDARY = 3 };
@@ -65,14 +71,16 @@ enum fdcg_connection_type { FDCG_CONVEX = 0, FDCG_CONCAVE = 1, FDCG_COPLANAR = 2
  * angle that the user gave. Only nodes of one region, which share one plane bit for bit, are joined by the latter two. */
 enum fdcg_flatness { FDCG_FLAT_EXACT = 0, FDCG_FLAT_QUANTUM = 1, FDCG_FLAT_ANGLE = 2 };
 
+/* header.flags. Set: every node's block holds the Voronoi planes of its sides; clear: they are derived in the step. */
+#define FDCG_STORED_PLANES 1u
 /* fdcg_node.flags. Set when the corners lie off the node's plane by up to header.max_deviation; clear when they are exactly
  * coplanar, and then the first three corners of the loop span the plane. */
 #define FDCG_NODE_INEXACT 1u
-/* fdcg_corner.flags. Set when a boundary connection ends here; then the fan is open and starts at the boundary connection
- * whose face lies to its left. */
-#define FDCG_CORNER_OPEN 1u
-/* The other bits of fdcg_corner.flags: 0, or 1 + the index of the root box of the corner's tree in section FAN_BOXES. */
-#define FDCG_CORNER_TREE_SHIFT 1u
+/* fdcg_corner.fan. Set when a boundary connection ends here; then the fan is open and starts at the boundary connection whose
+ * face lies to its left. The other bits: how many entries the fan has, or 0 at a busy corner. */
+#define FDCG_CORNER_OPEN 0x80u
+/* fdcg_corner.normal is this many times the unit vector. */
+#define FDCG_NORMAL_SCALE 32767
 
 typedef struct fdcg_header {
   uint8_t magic[8];
@@ -85,7 +93,7 @@ typedef struct fdcg_header {
   uint32_t side_count;
   uint32_t connection_count;
   uint32_t corner_count;
-  uint32_t fan_count;
+  uint32_t fan_count;                /* in section FANS */
   uint32_t largest_fan;              /* connections at the busiest corner */
   double origin[3];                  /* of the local frame, source units */
   double metres_per_unit;            /* > 0 */
@@ -98,7 +106,10 @@ typedef struct fdcg_header {
   uint32_t source_vertex_count;
   uint32_t source_face_count;
   uint32_t fan_box_count;   /* in section FAN_BOXES */
-  uint8_t reserved[52];     /* zero */
+  uint32_t busy_count;      /* in section BUSY_CORNERS */
+  uint32_t node_bytes;      /* size of every node's block; 0: they differ, see NODE_OFFSETS */
+  uint32_t flags;           /* FDCG_STORED_PLANES */
+  uint8_t reserved[40];     /* zero */
   uint64_t table_checksum;  /* of the section table with its padding */
   uint64_t header_checksum; /* of the bytes before this field */
 } fdcg_header;
@@ -119,62 +130,79 @@ typedef struct fdcg_plane_f32 {
   float normal[3], offset;
 } fdcg_plane_f32;
 
-/* FacePlane and Connections of the paper. */
+/* One side of a node. */
+typedef struct fdcg_side {
+  uint32_t link;   /* connection << 1 | which; which 0: the connection runs along this side, 1: against it */
+  uint32_t corner; /* at which the side starts */
+  uint32_t across; /* the node beyond it, or FDCG_NONE */
+} fdcg_side;
+
+/* FacePlane and Connections of the paper, with their VoronoiPlanes. A node's block: plane, side_count, flags; its sides, three
+ * or more; zeros up to a multiple of real_bytes; and, where planes are stored, one Voronoi plane for each side, through its
+ * edge and pointing out of the face: m_0 = unit(e x n) for which 0, m_1 = unit(n x e) for which 1, offset -m.v0, where e is the
+ * connection's edge vector, v0 its corner 0; evaluated in the file's precision on the stored numbers, so that deriving gives
+ * the bits that storing does. */
 typedef struct fdcg_node_f64 {
   fdcg_plane_f64 plane;
-  uint32_t first_side;
   uint16_t side_count;
   uint16_t flags;
+  fdcg_side sides[3]; /* the first three */
 } fdcg_node_f64;
 typedef struct fdcg_node_f32 {
   fdcg_plane_f32 plane;
-  uint32_t first_side;
   uint16_t side_count;
   uint16_t flags;
+  fdcg_side sides[3];
 } fdcg_node_f32;
 
-/* SharedVertex, Nodes, EdgeVector, ConType and EndPlane of the paper; its VoronoiPlane[k] is the plane of side
- * nodes[node[k]].first_side + side[k] in section VORONOI: m_0 = unit(e x n_0), m_1 = unit(n_1 x e),
- * offset -m.corner[0], evaluated in the file's precision on the stored numbers, so that deriving gives the bits that storing
- * does. edge = unit(corner[1] - corner[0]). node[0]'s loop runs corner[0] -> corner[1], node[1]'s the other way; node[1] is
- * FDCG_NONE on a boundary. End plane 0 has the normal -edge and passes through corner[0], end plane 1 +edge and corner[1]. */
-typedef struct fdcg_connection_f64 {
-  double edge[3];
-  double end_offset[2];
-  uint32_t corner[2];
-  uint32_t node[2];
-  uint16_t side[2]; /* which side of node[k] this is, counted from its first_side */
+/* Nodes and ConType of the paper; its SharedVertex and second node are in the block of the first: corner 0 is that of
+ * sides[side[0]], corner 1 that of the side after it, node 1 lies across (FDCG_NONE on a boundary). node 0's loop runs from
+ * corner 0 to corner 1, node 1's the other way. */
+typedef struct fdcg_connection {
+  uint32_t node;    /* node 0 */
+  uint8_t side[2];  /* which side of node k this is; side[1] is 0 on a boundary */
   uint8_t type;     /* fdcg_connection_type */
   uint8_t flatness; /* fdcg_flatness */
-  uint16_t reserved;
-} fdcg_connection_f64;
-typedef struct fdcg_connection_f32 {
-  float edge[3];
-  float end_offset[2];
-  uint32_t corner[2];
-  uint32_t node[2];
-  uint16_t side[2];
-  uint8_t type;
-  uint8_t flatness;
-  uint16_t reserved;
-} fdcg_connection_f32;
+} fdcg_connection;
 
-/* Vertex and Connections of the paper. The fan runs counter-clockwise seen from outside: the node between fan entries i and
- * i + 1 is the one whose loop leaves the corner along entry i and comes in along entry i + 1: node[end] of entry i. */
+/* EdgeVector and EndPlanes of the paper: d = corner 1 - corner 0, length = sqrt(d.d), direction = d / length, each operation
+ * rounded once in the file's precision (where d.d is below FDCG_TINY_SQUARE, d is scaled first: schemas/fdcg-v1.md). The end
+ * planes have the normals -direction at corner 0 and +direction at corner 1, `length` apart. */
+typedef struct fdcg_edge_f64 {
+  double direction[3], length;
+} fdcg_edge_f64;
+typedef struct fdcg_edge_f32 {
+  float direction[3], length;
+} fdcg_edge_f32;
+#define FDCG_TINY_SQUARE_F64 1e-280 /* d is multiplied by 2^700 */
+#define FDCG_TINY_SQUARE_F32 1e-30  /* d is multiplied by 2^100 */
+
+/* Vertex and Connections of the paper. The fan holds the corner's connections counter-clockwise seen from outside: the node
+ * between entries i and i + 1 is the one whose loop leaves the corner along entry i and comes in along entry i + 1. An ordinary
+ * corner's fan is walked: from the side that leaves, to the one before it in its node's loop, to the node across that. */
 typedef struct fdcg_corner_f64 {
   double point[3];
-  uint32_t first_fan;
-  uint32_t fan_count;
-  float normal[3]; /* angle-weighted sum of the nodes' normals, scaled to unit length: only the sign of t.normal is used */
-  uint32_t flags;  /* FDCG_CORNER_OPEN and the tree */
+  uint32_t first;    /* the node whose side starts the fan; at a busy corner its record in section BUSY_CORNERS */
+  int16_t normal[3]; /* angle-weighted sum of the nodes' normals, scaled to unit length: only the sign of t.normal is used */
+  uint8_t side;      /* which side of that node; 0 at a busy corner */
+  uint8_t fan;       /* entries, at most FDCG_BUSY_FAN, or 0: busy; and FDCG_CORNER_OPEN */
+  uint32_t reserved; /* zero */
 } fdcg_corner_f64;
 typedef struct fdcg_corner_f32 {
   float point[3];
-  uint32_t first_fan;
-  uint32_t fan_count;
-  float normal[3];
-  uint32_t flags;
+  uint32_t first;
+  int16_t normal[3];
+  uint8_t side;
+  uint8_t fan;
 } fdcg_corner_f32;
+
+/* A corner with more than FDCG_BUSY_FAN fan entries. */
+typedef struct fdcg_busy_corner {
+  uint32_t corner;
+  uint32_t first_fan; /* its entries in section FANS: end 0 where the connection's corner 0 is this corner */
+  uint32_t fan_count;
+  uint32_t first_box; /* the root of its tree in section FAN_BOXES */
+} fdcg_busy_corner;
 
 /* A busy corner's tree: which directions along the surface the corner offers, so that the steepest is found without looking at
  * every edge. An implicit binary tree, root first: level 0 has one box for every FDCG_LEAF_FAN consecutive fan entries.
@@ -211,15 +239,19 @@ typedef struct fdcg_box8 {
 FDCG_STATIC_ASSERT(sizeof(fdcg_header) == 256, "header: 256 bytes");
 FDCG_STATIC_ASSERT(offsetof(fdcg_header, origin) == 56, "header.origin at 56");
 FDCG_STATIC_ASSERT(offsetof(fdcg_header, connection_type_count) == 160, "header.connection_type_count at 160");
+FDCG_STATIC_ASSERT(offsetof(fdcg_header, flags) == 196, "header.flags at 196");
 FDCG_STATIC_ASSERT(offsetof(fdcg_header, table_checksum) == 240, "header.table_checksum at 240");
 FDCG_STATIC_ASSERT(offsetof(fdcg_header, header_checksum) == 248, "header.header_checksum at 248");
 FDCG_STATIC_ASSERT(sizeof(fdcg_section) == 40, "section entry: 40 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_plane_f64) == 32 && sizeof(fdcg_plane_f32) == 16, "plane: 32 or 16 bytes");
-FDCG_STATIC_ASSERT(sizeof(fdcg_node_f64) == 40 && sizeof(fdcg_node_f32) == 24, "node: 40 or 24 bytes");
-FDCG_STATIC_ASSERT(sizeof(fdcg_connection_f64) == 64 && sizeof(fdcg_connection_f32) == 44, "connection: 64 or 44 bytes");
-FDCG_STATIC_ASSERT(offsetof(fdcg_connection_f64, corner) == 40 && offsetof(fdcg_connection_f64, type) == 60, "connection_f64");
-FDCG_STATIC_ASSERT(offsetof(fdcg_connection_f32, corner) == 20 && offsetof(fdcg_connection_f32, type) == 40, "connection_f32");
-FDCG_STATIC_ASSERT(sizeof(fdcg_corner_f64) == 48 && sizeof(fdcg_corner_f32) == 36, "corner: 48 or 36 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_side) == 12 && sizeof(fdcg_connection) == 8, "side: 12 bytes, connection: 8");
+FDCG_STATIC_ASSERT(sizeof(fdcg_node_f64) == 72 && sizeof(fdcg_node_f32) == 56, "node of three sides: 72 or 56 bytes");
+FDCG_STATIC_ASSERT(offsetof(fdcg_node_f64, sides) == 36 && offsetof(fdcg_node_f32, sides) == 20, "node.sides at 36 or 20");
+FDCG_STATIC_ASSERT(sizeof(fdcg_edge_f64) == 32 && sizeof(fdcg_edge_f32) == 16, "edge: 32 or 16 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_corner_f64) == 40 && sizeof(fdcg_corner_f32) == 24, "corner: 40 or 24 bytes");
+FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f64, first) == 24 && offsetof(fdcg_corner_f64, fan) == 35, "corner_f64");
+FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corner_f32, fan) == 23, "corner_f32");
+FDCG_STATIC_ASSERT(sizeof(fdcg_busy_corner) == 16, "busy corner: 16 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_box8) == 64, "eight boxes: 64 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_fan_box_f64) == 96 && sizeof(fdcg_fan_box_f32) == 48, "fan box: 96 or 48 bytes");
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a section of an opened file stands in its table.
+#pragma once
+
+#include "fdcg/format.h"
+
+namespace fdcg {
+
+inline const fdcg_section* section_table(const fdcg_header& header) {
+  return reinterpret_cast<const fdcg_section*>(&header + 1);
+}
+
+// Null where the file has no such section.
+inline const fdcg_section* find_section(const fdcg_header& header, uint32_t id) {
+  const fdcg_section* const sections = section_table(header);
+  for (uint32_t i = 0; i < header.section_count; ++i) {
+    if (sections[i].id == id) return &sections[i];
+  }
+  return nullptr;
+}
+
+}  // namespace fdcg
