@@ -70,8 +70,8 @@ struct Pose {
 };
 
 // An upper bound of how far any point within three radii of the bounding sphere's centre moves against the sphere's centre, and
-// of how far the centre moves, between two poses of one scale. (The Frobenius norm of the change bounds its effect on a unit
-// vector.)
+// of how far the centre moves, between two poses of one scale. (A change of
+// rotation moves a unit vector by no more than its Frobenius norm over the square root of 2.)
 inline double largest_move(const Pose& from, const Pose& to) {
   constexpr double kRadii = 3, kRoundUp = 1 + 0x1p-20;
   double turned2 = 0;
@@ -79,7 +79,7 @@ inline double largest_move(const Pose& from, const Pose& to) {
     const World change = to.row[k] - from.row[k];
     turned2 += dot(change, change);
   }
-  return (norm(to.centre - from.centre) + kRadii * to.radius * root(turned2)) * kRoundUp;
+  return (norm(to.centre - from.centre) + kRadii * to.radius * root(0.5 * turned2)) * kRoundUp;
 }
 
 }  // namespace fdcg

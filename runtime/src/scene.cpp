@@ -240,7 +240,7 @@ extern "C" fdcg_status fdcg_scene_set_pose(fdcg_scene* scene, fdcg_object_id id,
   if (status != FDCG_OK || is_same(checked, object->asked)) return status;
   object->asked = checked;
   if (object->is_changing == 0) scene->changing()[scene->changing_count++] = id.index;
-  object->is_changing = 1;
+  object->is_changing = 2;
   return FDCG_OK;
 }
 

@@ -24,7 +24,7 @@ struct Object {
   Pose now, last;   // of this tick and of the one before
   uint32_t generation;
   uint32_t is_used, is_enabled;
-  uint32_t is_changing;  // listed in `changing`: its pose was set, or its last pose differs from the present one
+  uint32_t is_changing;  // not 0: listed in `changing`. 2: its pose was set since the last advance; 1: before that one
 };
 
 // One of a finger's places for an object: one that it touches, or one near by.

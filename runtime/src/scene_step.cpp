@@ -19,24 +19,14 @@ namespace {
 // After as many steps in which it reached none of the objects near by, the finger looks whether they still are.
 constexpr uint32_t kIdleSteps = 64;
 
-bool is_settled(const Pose& now, const Pose& last) {
-  const World turned[3] = {now.row[0] - last.row[0], now.row[1] - last.row[1], now.row[2] - last.row[2]};
-  return norm1(turned[0]) == 0 && norm1(turned[1]) == 0 && norm1(turned[2]) == 0 && now.scale == last.scale &&
-         norm1(now.translation - last.translation) == 0;
-}
-
 // The objects whose pose was set; and, once more, those that have come to rest.
 void settle_changing(fdcg_scene& scene) {
   uint32_t* const changing = scene.changing();
   uint32_t still_changing = 0;
   for (uint32_t i = 0; i < scene.changing_count; ++i) {
     Object& object = scene.objects()[changing[i]];
-    if (object.is_used != 0) settle_object(scene, changing[i], true);
-    if (object.is_used != 0 && !is_settled(object.now, object.last)) {
-      changing[still_changing++] = changing[i];
-    } else {
-      object.is_changing = 0;
-    }
+    settle_object(scene, changing[i], true);
+    if (--object.is_changing != 0) changing[still_changing++] = changing[i];
   }
   scene.changing_count = still_changing;
 }

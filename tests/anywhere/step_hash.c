@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Steps contacts over every graph that is linked in and prints, for each precision, one hash of all that they felt: the same on
- * every machine, from every compiler, at every optimisation level. C11 without stdio and heap, so that a microcontroller runs
- * the same program. The graphs are constant arrays (graphs.h, made by the build) and are used where they lie. */
+/* Steps contacts over every graph that is linked in, alone and as objects of a scene, and prints, for each precision, one hash
+ * of all that they felt: the same on every machine, from every compiler, at every optimisation level. C11 without stdio and
+ * heap, so that a microcontroller runs the same program. The graphs are constant arrays (graphs.h, made by the build) and are
+ * used where they lie. */
 #include "graphs.h" /* `static const struct { const char* name; const unsigned char* bytes; uint64_t size; } graphs[]` */
 
 #include <stdint.h>
@@ -126,10 +127,13 @@ static void step_through(const fdcg_graph* graph, hash_t* hash, uint32_t ticks_i
   }
 }
 
+#include "scene_walk.h"
+
 /* Both precisions, where the library has them: a library of one refuses the other's graphs, and only those. */
 int main(void) {
   static const char* const names[2] = {"f32", "f64"};
   for (uint32_t p = 0; p < 2; ++p) {
+    static fdcg_graph of_scene[kSceneObjects];
     hash_t hash = {0xCBF29CE484222325u};
     uint32_t ticks_in_state[4] = {0, 0, 0, 0}, opened = 0, refused = 0;
     for (uint32_t i = 0; i < sizeof graphs / sizeof graphs[0]; ++i) {
@@ -147,10 +151,13 @@ int main(void) {
       /* by pointer, never copied */
       if ((const unsigned char*)graph.header != graphs[i].bytes) return 2;
       step_through(&graph, &hash, ticks_in_state);
+      if (opened < kSceneObjects) of_scene[opened] = graph;
       ++opened;
     }
     if (opened == 0 && refused > 0) continue; /* the library leaves this precision out */
     if (opened == 0 || refused > 0) return 3;
+    const int failed = step_through_scene(of_scene, opened < kSceneObjects ? opened : kSceneObjects, &hash);
+    if (failed != 0) return failed;
     say(names[p]), say(" "), say_hex(hash.value), say(" graphs "), say_number(opened), say(" free,face,edge,vertex");
     for (int k = 0; k < 4; ++k)
       say(" "), say_number(ticks_in_state[k]);

@@ -129,6 +129,7 @@ struct Switches {
 
 struct Outcome {
   double mean_ns = 0, median_ns = 0, largest_ns = 0;  // a tick of one finger
+  double largest_later_ns = 0;                        // the same without the ticks in which all fingers start
   double touching = 0;                                // share of the fingers
   std::uint64_t hash = 0xCBF29CE484222325u, file_bytes = 0, scene_bytes = 0, heap_calls = 0;
 };
@@ -206,8 +207,11 @@ Outcome run(const Script& script, const Switches& switches, int replays, const S
     outcome.heap_calls += heap_calls() - heap_before;
   }
   outcome.touching /= static_cast<double>(script.fingers.size()) * script.ticks;
-  for (const float ns : least)
-    outcome.mean_ns += ns / script.ticks;
+  constexpr std::size_t kStart = 5;  // ticks
+  for (std::size_t tick = 0; tick < least.size(); ++tick) {
+    outcome.mean_ns += least[tick] / script.ticks;
+    if (tick >= kStart) outcome.largest_later_ns = std::max(outcome.largest_later_ns, double{least[tick]});
+  }
   const Percentiles percentiles(std::move(least));
   outcome.median_ns = percentiles.at(0.5);
   outcome.largest_ns = percentiles.at(1);
@@ -347,7 +351,7 @@ int main(int argc, char** argv) {
     if (is_quick) many.ticks = 60;
     const Outcome out = run(many, {}, 3, watch);
     holds = print_bar("10,000 fingers over 100 moving objects: median tick", out.median_ns * 10000 / 1000, 1000, "us") && holds;
-    holds = print_bar("  largest tick", out.largest_ns * 10000 / 1000, 1000, "us") && holds;
+    holds = print_bar("  largest tick after the first five", out.largest_later_ns * 10000 / 1000, 1000, "us") && holds;
   }
   if (part == "all" || part == "table") {
     std::vector<Script> scripts = {one_finger(), tray(), crowd(is_quick ? 1000 : 10000)};
