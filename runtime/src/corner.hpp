@@ -9,25 +9,34 @@
 namespace fdcg {
 
 // The steepest descent from a corner: the face, edge or (where neither climbs) apex along which t = HIP - v reaches furthest.
+// That is the one nearest to the HIP, |t|^2 = reach^2 + distance^2, and distances are what is compared: near a feature they
+// tell apart what reaches, which differ by the square, cannot.
 template <class Real>
 struct Steepest {
   Feature feature = kFree;  // kFree stands for the apex
-  Real reach = 0;
+  Real distance2;           // of the HIP from it
 };
 
-// One entry of the fan: its edge, and the face to the left of it.
+// One entry of the fan: its edge, and the face to the left of it. Whether it is the nearest so far.
 template <class Real>
-inline void consider_fan_entry(const GraphView<Real>& graph, const FanEntry& entry, Vec3<Real> t, Steepest<Real>& best) {
-  const Real forward = dot(t, graph.edge(entry.connection).direction);
-  const Real along = entry.end == 0 ? forward : -forward;
-  if (along > best.reach) best = {{FDCG_EDGE, entry.connection}, along};
-  if (entry.node == FDCG_NONE) return;
+inline bool consider_fan_entry(const GraphView<Real>& graph, const FanEntry& entry, Vec3<Real> t, Steepest<Real>& best) {
+  const auto take = [&](Feature feature, Real distance2) {
+    if (!(distance2 < best.distance2)) return false;
+    best = {feature, distance2};
+    return true;
+  };
+  bool is_nearest = false;
+  const Vec3<Real> direction = graph.edge(entry.connection).direction;
+  const Real forward = dot(t, direction);
+  if (entry.end == 0 ? forward > 0 : forward < 0) {
+    const Vec3<Real> off = t - direction * forward;
+    is_nearest = take({FDCG_EDGE, entry.connection}, dot(off, off));
+  }
+  if (entry.node == FDCG_NONE) return is_nearest;
   const NodeRef<Real> node = graph.node(entry.node);
-  if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return;
-  if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return;
-  const Vec3<Real> normal = node.normal();
-  const Real reach = norm(t - normal * dot(normal, t));
-  if (reach > best.reach) best = {{FDCG_FACE, entry.node}, reach};
+  if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return is_nearest;
+  if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return is_nearest;
+  return take({FDCG_FACE, entry.node}, square(dot(node.normal(), t))) || is_nearest;
 }
 
 // Looks at every edge of the corner.
@@ -35,7 +44,7 @@ template <class Real>
 inline Steepest<Real> steepest_of_all(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
   const GraphView<Real>& graph = walk.graph;
   walk.spend(kFanWork * corner.fan_count());
-  Steepest<Real> best;
+  Steepest<Real> best = {kFree, dot(t, t)};
   graph.for_each_in_fan(corner, [&](const FanEntry& entry) { consider_fan_entry(graph, entry, t, best); });
   return best;
 }
@@ -77,19 +86,28 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
   const Real tie = 64 * RealLimits<Real>::kEpsilon * norm1(t);  // the rounding of boxes and directions is under half of it
   const Real length = norm(t);
   const auto bound_of = [&](int level, uint32_t i) { return most_along(boxes[layout.first[level] + i], t, length) - tie; };
-  Steepest<Real> best;
+  const Real t2 = dot(t, t);
+  Steepest<Real> best = {kFree, t2};
+  Real reach = 0;
+  uint32_t best_entry = 0;
+  const auto consider = [&](uint32_t i) {
+    if (!consider_fan_entry(graph, graph.fan_entry(corner, i), t, best)) return false;
+    best_entry = i;
+    return true;
+  };
   Waiting stack[kMaxLevels + 2];
   int waiting = 0;
   stack[waiting++] = {bound_of(layout.levels - 1, 0), 0, layout.levels - 1};
   uint32_t work = 0;
   while (waiting > 0 && work < kFanSearchWork) {
     const Waiting next = stack[--waiting];
-    if (!(next.bound > best.reach)) continue;
+    if (!(next.bound > reach)) continue;
     if (next.level == 0) {
       const uint32_t first = next.box * FDCG_LEAF_FAN;
       const uint32_t count = corner.fan_count() - first < FDCG_LEAF_FAN ? corner.fan_count() - first : FDCG_LEAF_FAN;
       for (uint32_t i = first; i < first + count; ++i)
-        consider_fan_entry(graph, graph.fan_entry(corner, i), t, best);
+        consider(i);
+      reach = best.distance2 < t2 ? root(t2 - best.distance2) : Real(0);
       work += kFanWork * count;
       continue;
     }
@@ -107,6 +125,13 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
       if (has_two) stack[waiting++] = second;
       stack[waiting++] = first;
     }
+  }
+  // Boxes cannot tell apart what reaches as far but for rounding; the neighbours of the one found may yet be nearer.
+  const uint32_t entries = corner.fan_count();
+  for (bool goes_on = best.feature.state != FDCG_FREE; goes_on && work < kFanSearchWork; work += 2 * kFanWork) {
+    const uint32_t here = best_entry;
+    const bool is_before = consider(here > 0 ? here - 1 : entries - 1);
+    goes_on = consider(here + 1 < entries ? here + 1 : 0) || is_before;
   }
   walk.spend(work);
   return best;
@@ -147,8 +172,7 @@ inline Decision corner_rule(Walk<Real>& walk) {
     if (connection.type() == FDCG_BOUNDARY) {
       return go_to(s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree);
     }
-    const bool is_held = connection.type() == FDCG_CONCAVE ? s.side[0] < 0 || s.side[1] < 0 : s.side[0] + s.side[1] < 0;
-    return go_to(is_held ? best.feature : kFree);
+    return go_to(is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0) ? kFree : best.feature);
   }
   if (corner.is_open()) return go_to(kFree);
   return dot(t, corner.normal()) < 0 ? rest() : go_to(kFree);
