@@ -71,6 +71,7 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   if (move.kind != Kind::crosses) return rest();
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   const uint32_t side = move.crossing.local_side;
+  walk.graph.prefetch_crossing(node, side);
   const EdgeLine<Real> line(walk.graph.edge(node, side));
   const Vec3<Real> point = walk.god_object + (move.target - walk.god_object) * move.crossing.fraction;
   return go_to(place_on_edge(walk, node.connection(side), line, line.parameter(point)));

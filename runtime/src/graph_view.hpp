@@ -73,7 +73,7 @@ class NodeRef {
 
   // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model section 2).
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
-    if (graph_->has_planes) {
+    if (__builtin_expect(graph_->has_planes, true)) {
       const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
       return {vec(stored.normal), stored.offset};
     }
@@ -163,6 +163,9 @@ struct GraphView {
   const FanBox* fan_boxes;
   const fdcg_box8* hierarchy;
 
+  static constexpr uint32_t kLineBytes = 64;  // of most machines' caches; a wrong size costs prefetches, nothing else
+  static constexpr uint32_t kPrefetchedSides = 3;
+
   explicit GraphView(const fdcg_graph& graph)
       : header(graph.header),
         nodes(static_cast<const unsigned char*>(graph.nodes)),
@@ -196,6 +199,24 @@ struct GraphView {
   [[nodiscard]] Edge<Real> edge(uint32_t connection_index) const {
     const fdcg_connection& record = connections[connection_index];
     return edge(node(record.node), record.side[0]);
+  }
+
+  // Calls what lies at and beyond side k into the cache: all that a god-object that crosses it will ask for. The addresses
+  // stand in this node's block, so that the misses of one crossing overlap; nothing waits for them.
+  void prefetch_crossing(NodeRef<Real> here, uint32_t k) const {
+    __builtin_prefetch(&connections[here.connection(k)]);
+    __builtin_prefetch(&corners[here.corner(k)]);
+    if (edges != nullptr) __builtin_prefetch(&edges[here.connection(k)]);
+    if (here.across(k) == FDCG_NONE) return;
+    const unsigned char* const block = node(here.across(k)).block();
+    const uint32_t bytes = node_bytes<Real>(kPrefetchedSides, has_planes);
+    for (uint32_t at = 0; at < bytes; at += kLineBytes)
+      __builtin_prefetch(block + at);
+  }
+  // The same for every side of a triangle; of a larger face it is anyone's guess by which side it will be left.
+  void prefetch_around(NodeRef<Real> here) const {
+    for (uint32_t k = 0; k < kPrefetchedSides; ++k)
+      prefetch_crossing(here, k);
   }
 
   // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.

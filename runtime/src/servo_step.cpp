@@ -90,6 +90,7 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     if (decision.is_rest) return progress;
     walk.active = decision.next;
     ++progress.transitions;
+    if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
       progress.flags |= sweep_to_hip(walk, at, space);
       if (walk.active == kFree) return progress;

@@ -155,6 +155,7 @@ class Sweep {
   }
 
   void try_leaf(uint32_t leaf) {
+    spend(work_left_, kLeafWork);
     const uint32_t first = leaf * FDCG_LEAF_NODES;
     const uint32_t left_in_graph = graph_.header->node_count - first;
     const uint32_t count = left_in_graph < FDCG_LEAF_NODES ? left_in_graph : FDCG_LEAF_NODES;
@@ -186,6 +187,7 @@ class Sweep {
   }
 
   [[nodiscard]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
+    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kNearPlaneWork);
     return side_of(graph_, node, x, bound, work_left_);
   }
 

@@ -37,14 +37,14 @@ bool is_across(Vec3<Real> along, Vec3<Real> normal) {
 constexpr float kFarthestBox = 8;
 constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
 
+// Its passes are functions of their own: inlined into one, they take a third longer for want of registers.
 template <class Real>
 class Verifier {
  public:
   Verifier(const fdcg_graph& graph, fdcg_error* error) : graph_(graph), header_(*graph.header), raw_(graph), error_(error) {}
 
   fdcg_status run() {
-    fdcg_status status = blocks();
-    if (status == FDCG_OK) status = nodes();
+    fdcg_status status = nodes();
     if (status == FDCG_OK && graph_.edges != nullptr) status = edges();
     if (status == FDCG_OK) status = corners();
     if (status == FDCG_OK && raw_.hierarchy != nullptr) status = hierarchy();
@@ -63,53 +63,38 @@ class Verifier {
         .text("; compile the mesh again");
   }
 
-  // The blocks follow one another and fill their section; so that from here on any node below the count can be read.
-  fdcg_status blocks() {
+  // Blocks follow one another and fill their section. Each side and its twin name each other and the same two corners: asked of
+  // the later of the two, when the earlier node has just been read and found sound. Where first sides are as many as
+  // connections, and second ones as many as connections with two nodes, no side and no connection is left over.
+  [[gnu::noinline]] fdcg_status nodes() {
     const fdcg_section& section = *find_section(header_, FDCG_SECTION_NODES);
     const uint64_t bytes = section.record_bytes * section.record_count;
-    uint64_t at = 0, sides = 0;
-    for (uint32_t n = 0; n < header_.node_count; ++n) {
-      if (raw_.node_offsets != nullptr && raw_.node_offsets[n] * uint64_t{sizeof(Real)} != at)
-        return refuse("node", n, "its block does not start where the one before it ends");
-      if (bytes - at < sizeof(typename Records<Real>::Node)) return refuse("node", n, "its block is out of range");
-      const uint32_t count = graph_.node(n).side_count();
-      if (count < 3 || count > FDCG_MAX_SIDES) return refuse("node", n, "has too few sides or too many");
-      const uint32_t size = node_bytes<Real>(count, graph_.has_planes);
-      if (size > bytes - at || (header_.node_bytes != 0 && size != header_.node_bytes))
-        return refuse("node", n, "its block is out of range");
-      at += size;
-      sides += count;
-    }
-    if (at != bytes) return refuse("header.node_count", header_.node_count, "not the number of blocks");
-    return sides == header_.side_count ? FDCG_OK : refuse("header.side_count", header_.side_count, "not the sum of the nodes'");
-  }
-
-  // Each side and its twin name each other and the same two corners. It is enough to ask the connections' first sides: where
-  // these are as many as connections and the others as many as there are twins, no side and no connection is left over.
-  fdcg_status nodes() {
     uint32_t types[4] = {};
-    uint64_t first_sides = 0;
+    uint64_t at = 0, first_sides = 0, sides = 0;
     for (uint32_t n = 0; n < header_.node_count; ++n) {
+      if (const char* what = block(n, &at, bytes)) return refuse("node", n, what);
       const NodeRef<Real> node = graph_.node(n);
       const uint32_t count = node.side_count();
+      sides += count;
       if ((node.flags() & ~FDCG_NODE_INEXACT) != 0) return refuse("node", n, "unknown flags");
       if (!is_unit(node.normal())) return refuse("node", n, "normal is not of unit length");
       if (!(absolute(node.plane().offset) <= 4 * header_.extent)) return refuse("node", n, "plane lies outside the object");
       for (uint32_t k = 0; k < count; ++k) {
-        if (node.connection(k) >= header_.connection_count) return refuse("node", n, "connection out of range");
-        if (node.corner(k) >= header_.corner_count) return refuse("node", n, "corner out of range");
-        if (node.across(k) >= header_.node_count && node.across(k) != FDCG_NONE)
-          return refuse("node", n, "neighbour out of range");
-        if (node.which(k) == 0) {
-          if (const char* what = first_side(n, node, k)) return refuse("connection", node.connection(k), what);
-          ++types[graph_.connections[node.connection(k)].type];
-          ++first_sides;
-        }
+        const fdcg_side& side = node.side(k);
+        if (side.link >> 1 >= header_.connection_count) return refuse("node", n, "connection out of range");
+        if (side.corner >= header_.corner_count) return refuse("node", n, "corner out of range");
+        if (side.across >= header_.node_count && side.across != FDCG_NONE) return refuse("node", n, "neighbour out of range");
+        const bool is_first = (side.link & 1) == 0;
+        if (const char* what = is_first ? first_side(n, node, k) : second_side(n, node, k))
+          return refuse("connection", side.link >> 1, what);
+        types[graph_.connections[side.link >> 1].type] += is_first ? 1u : 0u;
+        first_sides += is_first ? 1u : 0u;
       }
       if (const char* what = voronoi_planes(node)) return refuse("node", n, what);
     }
-    const uint64_t twins = first_sides - types[FDCG_BOUNDARY];
-    if (first_sides != header_.connection_count || first_sides + twins != header_.side_count)
+    if (at != bytes) return refuse("header.node_count", header_.node_count, "not the number of blocks");
+    if (sides != header_.side_count) return refuse("header.side_count", header_.side_count, "not the sum of the nodes'");
+    if (first_sides != header_.connection_count || 2 * first_sides - types[FDCG_BOUNDARY] != sides)
       return refuse("header.connection_count", header_.connection_count, "not the number of pairs of sides");
     for (uint32_t type = 0; type < 4; ++type) {
       if (types[type] != header_.connection_type_count[type]) return refuse("header.connection_type_count", type, "wrong");
@@ -117,25 +102,46 @@ class Verifier {
     return FDCG_OK;
   }
 
-  // What is wrong with side k, along which its connection runs, and with its twin; null: nothing.
-  const char* first_side(uint32_t n, NodeRef<Real> node, uint32_t k) const {
+  // Node n's block starts where the one before it ended, and does not reach beyond the section; null: so it is.
+  [[gnu::noinline]] const char* block(uint32_t n, uint64_t* at, uint64_t bytes) const {
+    if (raw_.node_offsets != nullptr && raw_.node_offsets[n] * uint64_t{sizeof(Real)} != *at)
+      return "its block does not start where the one before it ends";
+    if (bytes - *at < sizeof(typename Records<Real>::Node)) return "its block is out of range";
+    const uint32_t count = graph_.node(n).side_count();
+    if (count < 3 || count > FDCG_MAX_SIDES) return "has too few sides or too many";
+    const uint32_t size = node_bytes<Real>(count, graph_.has_planes);
+    if (size > bytes - *at || (header_.node_bytes != 0 && size != header_.node_bytes)) return "its block is out of range";
+    *at += size;
+    return nullptr;
+  }
+
+  // What is wrong with side k, along which its connection runs; null: nothing.
+  [[gnu::noinline]] const char* first_side(uint32_t n, NodeRef<Real> node, uint32_t k) const {
     const fdcg_connection& connection = graph_.connections[node.connection(k)];
     if (connection.node != n || connection.side[0] != k) return "its node does not own it";
     if (connection.type > FDCG_BOUNDARY || connection.flatness > FDCG_FLAT_ANGLE) return "unknown type or flatness";
-    const uint32_t start = node.corner(k), end = node.corner(node.next(k));
-    if (start == end) return "both its corners are one";
+    if (node.corner(k) == node.corner(node.next(k))) return "both its corners are one";
     const bool is_open = node.across(k) == FDCG_NONE;
     if (is_open != (connection.type == FDCG_BOUNDARY)) return "type does not fit its nodes";
-    if (is_open) return connection.side[1] == 0 ? nullptr : "side of a missing node";
-    const NodeRef<Real> other = graph_.node(node.across(k));
-    const uint32_t j = connection.side[1];
-    if (j >= other.side_count() || other.side(j).link != (node.side(k).link | 1u) || other.across(j) != n)
+    return is_open && connection.side[1] != 0 ? "side of a missing node" : nullptr;
+  }
+
+  // What is wrong with side k, against which its connection runs, beside that connection's first side. Connections come by
+  // first use, so the first side's node stands before this one.
+  [[gnu::noinline]] const char* second_side(uint32_t n, NodeRef<Real> node, uint32_t k) const {
+    const fdcg_connection& connection = graph_.connections[node.connection(k)];
+    if (connection.node >= n || connection.node != node.across(k) || connection.side[1] != k)
       return "its second node does not own it";
-    return other.corner(j) == end && other.corner(other.next(j)) == start ? nullptr : "its nodes disagree about its corners";
+    const NodeRef<Real> other = graph_.node(connection.node);
+    const uint32_t j = connection.side[0];
+    if (j >= other.side_count() || other.side(j).link != (node.side(k).link ^ 1u) || other.across(j) != n)
+      return "its second node does not own it";
+    const bool agree = other.corner(j) == node.corner(node.next(k)) && other.corner(other.next(j)) == node.corner(k);
+    return agree ? nullptr : "its nodes disagree about its corners";
   }
 
   // Stored, or as the step will derive them. Corners must be in range, and those of damaged files may be anything.
-  const char* voronoi_planes(NodeRef<Real> node) const {
+  [[gnu::noinline]] const char* voronoi_planes(NodeRef<Real> node) const {
     constexpr const char* kWrong = "Voronoi plane out of range";
     const Vec3<Real> normal = node.normal();
     for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -153,7 +159,7 @@ class Verifier {
     return nullptr;
   }
 
-  fdcg_status edges() {
+  [[gnu::noinline]] fdcg_status edges() {
     for (uint32_t c = 0; c < header_.connection_count; ++c) {
       const auto& edge = graph_.edges[c];
       if (!is_unit(vec(edge.direction))) return refuse("edge", c, "direction is not of unit length");
@@ -163,20 +169,32 @@ class Verifier {
     return FDCG_OK;
   }
 
-  fdcg_status corners() {
+  [[gnu::noinline]] fdcg_status corners() {
     uint64_t sides = 0;
-    busy_seen_ = 0, fan_seen_ = 0, boxes_seen_ = 0;
-    for (uint32_t v = 0; v < header_.corner_count; ++v) {
-      const auto& corner = graph_.corners[v];
-      for (int k = 0; k < 3; ++k) {
-        const double x = corner.point[k];
-        if (!(absolute(x) <= header_.extent) || x < header_.bounds_min[k] || x > header_.bounds_max[k])
-          return refuse("corner", v, "outside the bounds");
+    for (uint32_t begin = 0; begin < header_.corner_count; begin += kWalks) {
+      FanWalk walks[kWalks];
+      uint32_t count = 0;
+      for (uint32_t v = begin; v < header_.corner_count && v < begin + kWalks; ++v) {
+        const auto& corner = graph_.corners[v];
+        for (int k = 0; k < 3; ++k) {
+          const double x = corner.point[k];
+          if (!(absolute(x) <= header_.extent) || x < header_.bounds_min[k] || x > header_.bounds_max[k])
+            return refuse("corner", v, "outside the bounds");
+        }
+        uint32_t faces = 0;
+        const bool is_busy = graph_.corner(v).is_busy();
+        if (const char* what = is_busy ? busy_fan(v, &faces) : start_walk(v, &walks[count])) return refuse("corner", v, what);
+        sides += faces;
+        count += is_busy ? 0u : 1u;
       }
-      const bool is_busy = graph_.corner(v).is_busy();
-      uint32_t faces = 0;
-      if (const char* what = is_busy ? busy_fan(v, &faces) : walked_fan(v, &faces)) return refuse("corner", v, what);
-      sides += faces;
+      walk_all(walks, count);
+      for (uint32_t i = 0; i < count; ++i) {
+        const CornerRef<Real> corner = graph_.corner(walks[i].corner);
+        const bool is_right = walks[i].is_done && walks[i].is_open == corner.is_open() &&
+                              walks[i].faces + (walks[i].is_open ? 1u : 0u) == corner.walked_count();
+        if (!is_right) return refuse("corner", walks[i].corner, "fan does not lead around it in as many steps as it says");
+        sides += walks[i].faces;
+      }
     }
     if (sides != header_.side_count) return refuse("header.side_count", header_.side_count, "not the sum of the corners' fans");
     if (busy_seen_ != header_.busy_count)
@@ -185,31 +203,46 @@ class Verifier {
     return trees();
   }
 
-  // From side to side around the corner, as the step will: back to the start, or from border to border.
-  const char* walked_fan(uint32_t v, uint32_t* faces) const {
+  // Around an ordinary corner, as the step will go.
+  struct FanWalk {
+    uint32_t corner, first_node, first_side;
+    uint32_t node, side, faces;
+    bool is_open, is_done;
+  };
+  static constexpr uint32_t kWalks = 8;  // at once, so that their cache misses overlap
+
+  [[gnu::noinline]] const char* start_walk(uint32_t v, FanWalk* walk) const {
     const CornerRef<Real> corner = graph_.corner(v);
-    const uint32_t count = corner.walked_count(), first_node = corner.first_node(), first_side = corner.first_side();
+    const uint32_t count = corner.walked_count(), n = corner.first_node(), k = corner.first_side();
     if (count < 2 || count > FDCG_BUSY_FAN || count > header_.largest_fan) return "fan out of range";
-    if (first_node >= header_.node_count || first_side >= graph_.node(first_node).side_count() ||
-        graph_.node(first_node).corner(first_side) != v)
+    if (n >= header_.node_count || k >= graph_.node(n).side_count() || graph_.node(n).corner(k) != v)
       return "fan does not start here";
-    if (corner.is_open() != (graph_.node(first_node).across(first_side) == FDCG_NONE)) return "fan is open at the wrong place";
-    uint32_t n = first_node, k = first_side;
-    for (*faces = 1;; ++*faces) {
-      const NodeRef<Real> node = graph_.node(n);
-      const uint32_t incoming = node.previous(k);
-      n = node.across(incoming);
-      if (n == FDCG_NONE) break;
-      k = graph_.connections[node.connection(incoming)].side[1 - node.which(incoming)];
-      if (n == first_node && k == first_side) break;
-      if (*faces == count) return "fan is longer than it says";
+    if (corner.is_open() != (graph_.node(n).across(k) == FDCG_NONE)) return "fan is open at the wrong place";
+    *walk = {v, n, k, n, k, 1, false, false};
+    return nullptr;
+  }
+
+  // From side to side: back to the start, or to the border.
+  [[gnu::noinline]] void walk_all(FanWalk* walks, uint32_t count) const {
+    uint32_t walking = count;
+    for (uint32_t step = 0; walking > 0 && step < FDCG_BUSY_FAN; ++step) {
+      for (uint32_t i = 0; i < count; ++i) {
+        FanWalk& walk = walks[i];
+        if (walk.is_done) continue;
+        const NodeRef<Real> node = graph_.node(walk.node);
+        const uint32_t incoming = node.previous(walk.side);
+        walk.node = node.across(incoming);
+        walk.is_open = walk.node == FDCG_NONE;
+        if (!walk.is_open) walk.side = graph_.connections[node.connection(incoming)].side[1 - node.which(incoming)];
+        walk.is_done = walk.is_open || (walk.node == walk.first_node && walk.side == walk.first_side);
+        walking -= walk.is_done ? 1u : 0u;
+        walk.faces += walk.is_done ? 0u : 1u;
+      }
     }
-    if ((n == FDCG_NONE) != corner.is_open()) return "fan is open at the wrong place";
-    return *faces + (corner.is_open() ? 1u : 0u) == count ? nullptr : "fan is shorter than it says";
   }
 
   // Each entry starts at this corner; the node to its left comes in along the next entry.
-  const char* busy_fan(uint32_t v, uint32_t* faces) {
+  [[gnu::noinline]] const char* busy_fan(uint32_t v, uint32_t* faces) {
     const auto& record = graph_.corners[v];
     const bool is_open = (record.fan & FDCG_CORNER_OPEN) != 0;
     if (record.first != busy_seen_ || busy_seen_ >= header_.busy_count || record.side != 0)
@@ -239,7 +272,7 @@ class Verifier {
     return nullptr;
   }
 
-  fdcg_status trees() {
+  [[gnu::noinline]] fdcg_status trees() {
     if (boxes_seen_ != header_.fan_box_count)
       return refuse("header.fan_box_count", header_.fan_box_count, "not the sum of the corners'");
     for (uint32_t i = 0; i < header_.fan_box_count; ++i) {
@@ -261,7 +294,7 @@ class Verifier {
   }
 
   // Records in range, leaf boxes hold their nodes' corners, every box those of the record below.
-  fdcg_status hierarchy() {
+  [[gnu::noinline]] fdcg_status hierarchy() {
     const BoxTree tree(header_.node_count);
     for (uint32_t i = 0; i < tree.records; ++i) {
       const fdcg_box8& boxes = raw_.hierarchy[i];
@@ -311,7 +344,7 @@ class Verifier {
     return true;
   }
 
-  fdcg_status source_map() {
+  [[gnu::noinline]] fdcg_status source_map() {
     for (uint32_t f = 0; f < header_.source_face_count; ++f) {
       if (raw_.source_map[f] >= header_.node_count && raw_.source_map[f] != FDCG_NONE)
         return refuse("source face", f, "node out of range");

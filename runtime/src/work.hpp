@@ -14,15 +14,17 @@ namespace fdcg {
 #endif
 inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 
-// Of one step, all its sweeps together: some 15,000 instructions.
+// Of one step, all its sweeps together: some 3 microseconds at 2.8 GHz.
 #ifndef FDCG_SWEEP_WORK
-#define FDCG_SWEEP_WORK 1500
+#define FDCG_SWEEP_WORK 1200
 #endif
 inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 
-inline constexpr uint32_t kBoxWork = 20;         // eight boxes tested, and put in order
-inline constexpr uint32_t kNodeWork = 2;         // one node fetched, one end of the way against its plane
-inline constexpr uint32_t kOrientationWork = 4;  // one side's edge against the way, where rounding cannot matter
+inline constexpr uint32_t kBoxWork = 30;         // eight boxes tested, and put in order
+inline constexpr uint32_t kLeafWork = 4;         // a leaf taken up, besides its nodes
+inline constexpr uint32_t kNodeWork = 5;         // one node fetched, both ends of the way against its plane
+inline constexpr uint32_t kNearPlaneWork = 18;   // ... one end so near that its side is asked of the corners
+inline constexpr uint32_t kOrientationWork = 9;  // one side's edge against the way, where rounding cannot matter
 inline constexpr uint32_t kExactWork = 100;      // ... and where it does
 inline constexpr uint32_t kLongExactWork = 350;  // ... with coordinates of very different sizes
 inline constexpr uint32_t kTransitionWork = 10;  // one change of state

@@ -3,7 +3,7 @@
 //
 // Each tick is timed alone, twice over:
 //   tick  as the path meets it: the data of new faces are not in the cache yet. The machine's other work is in it too.
-//   own   the same tick again from a copy of the contact, the least of kReplays: the step's own work, everything in cache.
+//   own   the same tick again from a copy of the contact, the least of seven replays: the step's own work, everything in cache.
 // `batch` is the whole path timed at once over its ticks: a mean without the clock in it, to check the others against.
 // Bars: a way at a hand's speed, 45 ns and 180 ns a face crossed; a way that crosses as many faces a tick as on the small body
 // (`times`), 1.3 times that body's; no step over 5 microseconds of own work. See README.md beside this file.
@@ -25,7 +25,6 @@ using fdcg::bake::Precision;
 
 namespace {
 
-constexpr int kReplays = 7;
 constexpr double kDepth_m = 1e-3;
 constexpr double kHandWay_m = 1e-4;  // a tick: 0.1 m/s at 1 kHz
 constexpr double kWorstOwn_ns = 5000;
@@ -33,7 +32,9 @@ constexpr double kFlat = 1.3;  // a large body over a small one, at as many face
 
 struct Options {
   int ticks = 100'000;
+  int replays = 7;  // 0: each tick once, and no batch: for counting what a step does
   bool large = false, csv = false, quick = false;
+  std::string body, way, precision, planes;  // empty: all
 };
 
 struct Measured {
@@ -49,7 +50,7 @@ fdcg_contact first_contact(const fdcg_graph& graph, const fdcg_params& params, c
   return contact;
 }
 
-Measured measure(const fdcg_graph& graph, const Path& path, const Stopwatch& watch) {
+Measured measure(const fdcg_graph& graph, const Path& path, const Stopwatch& watch, int replays) {
   const fdcg_params params = fdcg_default_params();
   const std::size_t ticks = path.size() - 1;
   std::vector<float> tick(ticks), own(ticks), held;
@@ -69,7 +70,7 @@ Measured measure(const fdcg_graph& graph, const Path& path, const Stopwatch& wat
     if (before.state != FDCG_FREE && result.state != FDCG_FREE) held.push_back(tick[i]);
     m.bounded += result.flags != 0;
     float least = tick[i];
-    for (int replay = 0; replay < kReplays; ++replay) {
+    for (int replay = 0; replay < replays; ++replay) {
       fdcg_contact again = before;
       const std::uint64_t start = Stopwatch::now();
       fdcg_step(&graph, &params, &again, hip, &result);
@@ -77,9 +78,9 @@ Measured measure(const fdcg_graph& graph, const Path& path, const Stopwatch& wat
     }
     own[i] = least;
   }
-  contact = first_contact(graph, params, path[0]);
+  if (replays > 0) contact = first_contact(graph, params, path[0]);
   const std::uint64_t begin = Stopwatch::now();
-  for (std::size_t i = 0; i < ticks; ++i)
+  for (std::size_t i = 0; replays > 0 && i < ticks; ++i)
     fdcg_step(&graph, &params, &contact, path[i + 1].data(), &result);
   const auto count = static_cast<double>(ticks);
   m.batch_ns = watch.nanoseconds(begin, Stopwatch::now()) / count;
@@ -122,16 +123,19 @@ struct Way {
 // One after the other, since each path takes memory.
 void for_each_way(const Surface& surface, bool is_box, const Options& options, const std::function<void(const Way&)>& visit) {
   const double face = surface.face_way_m(), edge = surface.edge_m();
+  const auto visit_if_asked = [&](const std::string& name, double rate, auto make_path) {
+    if (options.way.empty() || options.way == name) visit({name, rate, make_path()});
+  };
   for (const double rate : kRates) {
     if (is_box && rate > kFewFacesATick) continue;
     char name[32];
     std::snprintf(name, sizeof name, "%g a tick", rate);
-    visit({name, rate, slide(surface, rate * face, kDepth_m, options.ticks)});
+    visit_if_asked(name, rate, [&] { return slide(surface, rate * face, kDepth_m, options.ticks); });
   }
-  visit({"hand", kHandWay_m / face, slide(surface, kHandWay_m, kDepth_m, options.ticks)});
-  visit({"near", 0, hover(surface, kHandWay_m, 2 * std::min(edge, 1e-3), options.ticks)});
-  visit({"far", 0, far_away(kHandWay_m, options.ticks)});
-  visit({"teleport", 0, teleports(options.ticks / 10, 1)});
+  visit_if_asked("hand", kHandWay_m / face, [&] { return slide(surface, kHandWay_m, kDepth_m, options.ticks); });
+  visit_if_asked("near", 0, [&] { return hover(surface, kHandWay_m, 2 * std::min(edge, 1e-3), options.ticks); });
+  visit_if_asked("far", 0, [&] { return far_away(kHandWay_m, options.ticks); });
+  visit_if_asked("teleport", 0, [&] { return teleports(options.ticks / 10, 1); });
 }
 
 // ---- bars ------------------------------------------------------------------------------------------------------------------
@@ -234,13 +238,22 @@ Options parse(int argc, char** argv) {
       options.csv = true;
     } else if (arg == "--quick") {
       options.quick = true;
+    } else if ((arg == "--body" || arg == "--way" || arg == "--precision" || arg == "--planes") && i + 1 < argc) {
+      (arg == "--body"     ? options.body
+       : arg == "--way"    ? options.way
+       : arg == "--planes" ? options.planes
+                           : options.precision) = argv[++i];
+    } else if (arg == "--replays" && i + 1 < argc) {
+      options.replays = std::max(0, std::atoi(argv[++i]));
     } else if (arg == "--ticks" && i + 1 < argc) {
       options.ticks = std::max(1000, std::atoi(argv[++i]));
     } else {
       std::printf(
-          "usage: %s [--large] [--quick] [--csv] [--ticks N]\n"
+          "usage: %s [--large] [--quick] [--csv] [--ticks N] [--replays N]\n"
+          "          [--body NAME] [--way NAME] [--precision f64,f32] [--planes stored,derived]\n"
           "  --large   10 M faces too: some 5 GB and a minute\n"
-          "  --quick   no more than 70 k faces\n",
+          "  --quick   no more than 70 k faces\n"
+          "  --body, --way, --precision, --planes: only these rows, named as in the table\n",
           argv[0]);
       std::exit(arg == "--help" ? 0 : 2);
     }
@@ -257,10 +270,13 @@ int main(int argc, char** argv) {
   print_head(options);
   Bars bars;
   for (const BodyCase& body : bodies(options)) {
+    if (!options.body.empty() && options.body != body.name) continue;
     const fdcg::bake::PolygonSoup soup = make_body(body.body, body.parts);
     const Surface surface(body.body, body.parts);
     for (const Precision precision : {Precision::f64, Precision::f32}) {
+      if (!options.precision.empty() && options.precision != (precision == Precision::f64 ? "f64" : "f32")) continue;
       for (const bool is_stored : {true, false}) {
+        if (!options.planes.empty() && options.planes != (is_stored ? "stored" : "derived")) continue;
         fdcg::bake::CompileOptions compile;
         compile.precision = precision;
         compile.store_planes = is_stored;
@@ -274,7 +290,7 @@ int main(int argc, char** argv) {
                      way.name,
                      faces_of(body.body, body.parts),
                      way.faces_a_tick,
-                     measure(graph.view(), way.path, watch)};
+                     measure(graph.view(), way.path, watch, options.replays)};
           bars.remember(row);
           print(row, graph.bytes_per_face(), bars.judge(row), options);
         });

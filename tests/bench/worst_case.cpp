@@ -3,9 +3,10 @@
 // that jump, graze and stand exactly on features, and friction. A case is a body and a few HIPs; its cost is its dearest tick,
 // the least of several replays from a copy of the contact. What is found goes into a file that later runs begin with.
 //
-//   fdcg_bench_worst_case [--seconds N] [--seed S] [--cases FILE] [--write] [--body NAME]
+//   fdcg_bench_worst_case [--seconds N] [--seed S] [--cases FILE] [--write] [--no-count] [--body NAME]
 //
-// --seconds for each body and precision (0: only the file's cases), --write puts the worst case of each back into the file.
+// --seconds for each body and precision (0: only the file's cases), --write puts the worst case of each back into the file;
+// --no-count: for runs under valgrind, which cannot be single-stepped.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -358,7 +359,7 @@ struct Options {
   double seconds = 3;
   std::uint64_t seed = 1;
   std::string cases = FDCG_SOURCE_DIR "/tests/bench/worst_cases.txt", body;
-  bool write = false;
+  bool write = false, count = true;
 };
 
 Options parse(int argc, char** argv) {
@@ -377,10 +378,12 @@ Options parse(int argc, char** argv) {
       options.cases = value();
     } else if (arg == "--body") {
       options.body = value();
+    } else if (arg == "--no-count") {
+      options.count = false;
     } else if (arg == "--write") {
       options.write = true;
     } else {
-      std::printf("usage: %s [--seconds N] [--seed S] [--cases FILE] [--write] [--body NAME]\n", argv[0]);
+      std::printf("usage: %s [--seconds N] [--seed S] [--cases FILE] [--write] [--no-count] [--body NAME]\n", argv[0]);
       std::exit(arg == "--help" ? 0 : 2);
     }
   }
@@ -426,7 +429,7 @@ int main(int argc, char** argv) {
       failures += found.cost.own_ns > kBar_ns;
       std::printf("%-20s %-4s %10llu %10.0f %12llu %7u %5u  %s -> %s%s\n", kind.name, precision_name.c_str(),
                   static_cast<unsigned long long>(tried), found.cost.own_ns,
-                  static_cast<unsigned long long>(instructions_at(graph.view(), found.c, found.cost.tick)),
+                  static_cast<unsigned long long>(options.count ? instructions_at(graph.view(), found.c, found.cost.tick) : 0),
                   found.cost.transitions, found.cost.flags, state_name(found.cost.before), state_name(found.cost.after),
                   found.cost.own_ns > kBar_ns ? "  FAIL" : "");
       std::fflush(stdout);

@@ -54,6 +54,8 @@ class Embedding(Case):
     def test_the_readme_example_runs(self):
         readme = (ROOT / "README.md").read_text()
         example = re.search(r"```c\n(.*?)```", readme, re.S).group(1)
+        file = (ROOT / "runtime" / "examples" / "press_and_slide.c").read_text()
+        self.assertTrue(file.endswith(example), "the README shows the example as it is")
         self.compiled_cube("--units", "cm")
         program = self.compiled_by_c(self.write("example.c", example))
         done = self.run_program(program, cwd=self.folder)
@@ -75,18 +77,35 @@ class Embedding(Case):
 
 
 class RuntimeOnly(Case):
-    def test_the_preset_configures_and_builds_where_the_compiler_library_is_not(self):
-        tree = self.path("tree")
-        for name in ("CMakeLists.txt", "CMakePresets.json", "runtime", "cmake"):
+    """Where nothing is installed but a compiler and CMake: neither packages nor the other folders of the project."""
+
+    def setUp(self):
+        super().setUp()
+        self.tree = self.path("tree")
+        os.makedirs(self.tree)
+        for name in ("CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "CHANGELOG.md", "runtime", "cmake", "schemas"):
             source = ROOT / name
-            if source.is_dir():
-                shutil.copytree(source, os.path.join(tree, name))
-            elif source.exists():
-                os.makedirs(tree, exist_ok=True)
-                shutil.copy(source, tree)
-        self.run_program("cmake", "--preset", "runtime-only", "-DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON", cwd=tree)
-        self.run_program("cmake", "--build", "--preset", "runtime-only", cwd=tree)
-        self.assertTrue(list(pathlib.Path(tree).glob("build/runtime-only/runtime/libfdcg_runtime.a")))
+            (shutil.copytree if source.is_dir() else shutil.copy)(source, os.path.join(self.tree, name))
+
+    def test_the_preset_configures_builds_and_installs(self):
+        hidden = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in
+                  ("CGAL", "OpenMesh", "draco", "nlohmann_json", "OpenSSL", "CLI11", "Threads", "Catch2", "benchmark")]
+        hidden += [f"-DCMAKE_FIND_USE_{where}=OFF" for where in
+                   ("CMAKE_ENVIRONMENT_PATH", "CMAKE_SYSTEM_PACKAGE_REGISTRY", "PACKAGE_REGISTRY", "PACKAGE_ROOT_PATH")]
+        self.run_program("cmake", "--preset", "runtime-only", *hidden, cwd=self.tree)
+        self.run_program("cmake", "--build", "--preset", "runtime-only", cwd=self.tree)
+        self.run_program("cmake", "--install", "build/runtime-only", "--prefix", self.path("prefix"), cwd=self.tree)
+        self.assertTrue(list(pathlib.Path(self.path("prefix")).glob("**/libfdcg_runtime.a")))
+
+    def test_the_readmes_commands_run(self):
+        for program in ("arm-none-eabi-gcc", "qemu-system-arm"):
+            if shutil.which(program) is None:
+                self.skipTest(f"{program} is missing; tools/check installs it (group test of tools/packages)")
+        section = (ROOT / "README.md").read_text().split("## Embed it")[1].split("\n## ")[0]
+        commands = "\n".join(re.findall(r"```sh\n(.*?)```", section, re.S))
+        environment = {**os.environ, "HOME": self.path("home"), "PATH": os.path.dirname(os.environ["FDCG"]) + ":" + os.environ["PATH"]}
+        done = self.run_program("bash", "-e", "-c", commands, cwd=self.tree, env=environment)
+        self.assertIn(b"tick 5: state 1, slip 1, force -400 0 1000 mN", done.stdout + done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
+#include "hooks.hpp"
 #include "meshes.hpp"
 #include "sealed_bytes.hpp"
 
@@ -80,4 +85,34 @@ TEST_CASE("a sound step finds no fault of the library's own") {
   REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);
   touch_everywhere(graph, 2000);
   CHECK(faults == "");
+}
+
+TEST_CASE("a fault of the library's own reaches the handler with its place, and traps where there is none") {
+  const Handlers restore;
+  struct Seen {
+    std::string condition, file;
+    std::uint32_t line = 0;
+  } seen;
+  fdcg_set_assert_handler(
+      [](void* context, const char* condition, const char* file, std::uint32_t line) {
+        *static_cast<Seen*>(context) = {condition, file, line};
+      },
+      &seen);
+  fdcg::assert_failed("a < b", "here.cpp", 12);
+  CHECK(seen.condition == "a < b");
+  CHECK(seen.file == "here.cpp");
+  CHECK(seen.line == 12);
+
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    for (const int signal : {SIGILL, SIGTRAP, SIGSEGV, SIGABRT})
+      std::signal(signal, SIG_DFL);  // Catch reports them otherwise
+    fdcg_set_assert_handler(nullptr, nullptr);
+    fdcg::assert_failed("a < b", "here.cpp", 12);
+    _exit(0);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(WIFSIGNALED(status));
 }

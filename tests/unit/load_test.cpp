@@ -280,7 +280,7 @@ TEST_CASE("optional sections may be absent, and the step feels the same") {
   bake::CompileOptions bare;
   bare.without = {"hierarchy", "source-map", "info"};
   bare.store_planes = false;
-  AlignedBytes whole = compiled(star_sphere(2, 0.3, 5)), lean = compiled(star_sphere(2, 0.3, 5), bare);
+  AlignedBytes whole = compiled(star_sphere(1, 0.3, 5)), lean = compiled(star_sphere(1, 0.3, 5), bare);
   REQUIRE(lean.size() < whole.size() * 3 / 4);
   fdcg_graph a, b;
   REQUIRE(fdcg_open_memory(whole.data(), whole.size(), FDCG_VERIFY_FULL, &a, nullptr) == FDCG_OK);
