@@ -112,6 +112,23 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
   return best;
 }
 
+// HIP is in front of the face along which it reaches furthest: free, but for rounding. Where it stands on a concave edge of
+// that face at the corner and behind the face across, edge and faces reach as far as one another, and any of them may have been
+// found: then it is the edge's to say.
+template <class Real>
+inline Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner) {
+  for (uint32_t k = 0; k < node.side_count(); ++k) {
+    if (node.corner(k) != corner && node.corner(node.next(k)) != corner) continue;
+    const ConnectionRef<Real> connection = walk.graph.connection(node.connection(k));
+    if (connection.type() != FDCG_CONCAVE || node.voronoi_plane(k).distance(walk.hip) < -walk.hip_bound) continue;
+    walk.spend(kEdgeWork);
+    for (uint32_t end = 0; end < 2; ++end) {
+      if (walk.side(walk.graph.node(connection.node(end))) < 0) return {FDCG_EDGE, node.connection(k)};
+    }
+  }
+  return kFree;
+}
+
 // Cost: one connection, one node and two Voronoi planes for each edge of the corner; at a busy corner for some eight of them,
 // and the logarithm of their number in boxes.
 template <class Real>
@@ -121,7 +138,8 @@ inline Decision corner_rule(Walk<Real>& walk) {
   const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
   const Steepest<Real> best = has_tree ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
   if (best.feature.state == FDCG_FACE) {
-    return go_to(walk.side(walk.graph.node(best.feature.index)) < 0 ? best.feature : kFree);
+    const NodeRef<Real> node = walk.graph.node(best.feature.index);
+    return go_to(walk.side(node) < 0 ? best.feature : edge_that_holds(walk, node, walk.active.index));
   }
   if (best.feature.state == FDCG_EDGE) {
     const ConnectionRef<Real> connection = walk.graph.connection(best.feature.index);
@@ -129,7 +147,8 @@ inline Decision corner_rule(Walk<Real>& walk) {
     if (connection.type() == FDCG_BOUNDARY) {
       return go_to(s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree);
     }
-    return go_to(s.side[0] + s.side[1] < 0 ? best.feature : kFree);
+    const bool is_held = connection.type() == FDCG_CONCAVE ? s.side[0] < 0 || s.side[1] < 0 : s.side[0] + s.side[1] < 0;
+    return go_to(is_held ? best.feature : kFree);
   }
   if (corner.is_open()) return go_to(kFree);
   return dot(t, corner.normal()) < 0 ? rest() : go_to(kFree);

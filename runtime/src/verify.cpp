@@ -44,10 +44,10 @@ class Verifier {
   Verifier(const fdcg_graph& graph, fdcg_error* error) : graph_(graph), header_(*graph.header), raw_(graph), error_(error) {}
 
   fdcg_status run() {
-    fdcg_status status = nodes();
+    fdcg_status status = raw_.hierarchy != nullptr ? hierarchy() : FDCG_OK;
+    if (status == FDCG_OK) status = nodes();
     if (status == FDCG_OK && graph_.edges != nullptr) status = edges();
     if (status == FDCG_OK) status = corners();
-    if (status == FDCG_OK && raw_.hierarchy != nullptr) status = hierarchy();
     if (status == FDCG_OK && raw_.source_map != nullptr) status = source_map();
     return status;
   }
@@ -71,6 +71,8 @@ class Verifier {
     const uint64_t bytes = section.record_bytes * section.record_count;
     uint32_t types[4] = {};
     uint64_t at = 0, first_sides = 0, sides = 0;
+    const uint32_t first_leaf_record = BoxTree(header_.node_count).first[0];
+    const double per_unit = 1 / tree_unit(header_.extent);
     for (uint32_t n = 0; n < header_.node_count; ++n) {
       if (const char* what = block(n, &at, bytes)) return refuse("node", n, what);
       const NodeRef<Real> node = graph_.node(n);
@@ -91,6 +93,8 @@ class Verifier {
         first_sides += is_first ? 1u : 0u;
       }
       if (const char* what = voronoi_planes(node)) return refuse("node", n, what);
+      if (raw_.hierarchy != nullptr && !is_in_its_box(n, node, first_leaf_record, per_unit))
+        return refuse("node", n, "sticks out of its box");
     }
     if (at != bytes) return refuse("header.node_count", header_.node_count, "not the number of blocks");
     if (sides != header_.side_count) return refuse("header.side_count", header_.side_count, "not the sum of the nodes'");
@@ -293,7 +297,7 @@ class Verifier {
     return double{boxes.origin[axis]} + double{tree_cell(boxes.exponent[axis])} * boxes.high[axis][j];
   }
 
-  // Records in range, leaf boxes hold their nodes' corners, every box those of the record below.
+  // Records in range, every box holds those of the record below. The pass over the nodes looks at the leaves.
   [[gnu::noinline]] fdcg_status hierarchy() {
     const BoxTree tree(header_.node_count);
     for (uint32_t i = 0; i < tree.records; ++i) {
@@ -304,12 +308,6 @@ class Verifier {
                       boxes.exponent[axis] >= kLeastCellExponent && boxes.exponent[axis] <= kLargestCellExponent;
       }
       if (!is_in_range) return refuse("box record", i, "origin, exponent or reserved byte out of range");
-    }
-    const double per_unit = 1 / tree_unit(header_.extent);
-    for (uint32_t n = 0; n < header_.node_count; ++n) {
-      const uint32_t leaf = n / FDCG_LEAF_NODES;
-      const fdcg_box8& boxes = raw_.hierarchy[tree.first[0] + leaf / FDCG_TREE_WAYS];
-      if (!holds_node(boxes, leaf % FDCG_TREE_WAYS, n, per_unit)) return refuse("node", n, "sticks out of its box");
     }
     for (int level = 1; level < tree.levels; ++level) {
       for (uint32_t i = 0; i < tree.size[level - 1]; ++i) {
@@ -322,16 +320,22 @@ class Verifier {
     return FDCG_OK;
   }
 
-  bool holds_node(const fdcg_box8& boxes, uint32_t j, uint32_t n, double per_unit) const {
-    const NodeRef<Real> node = graph_.node(n);
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Vec3<double> point = widen(graph_.corner_point(node.corner(k))) * per_unit;
-      const double at[3] = {point.x, point.y, point.z};
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!(low_of(boxes, axis, j) <= at[axis] && at[axis] <= high_of(boxes, axis, j))) return false;
-      }
+  // Whether the leaf's box holds the node's corners.
+  bool is_in_its_box(uint32_t n, NodeRef<Real> node, uint32_t first_leaf_record, double per_unit) const {
+    const uint32_t leaf = n / FDCG_LEAF_NODES, lane = leaf % FDCG_TREE_WAYS;
+    const fdcg_box8& boxes = raw_.hierarchy[first_leaf_record + leaf / FDCG_TREE_WAYS];
+    double low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = low_of(boxes, axis, lane);
+      high[axis] = high_of(boxes, axis, lane);
     }
-    return true;
+    bool is_inside = true;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const Vec3<double> p = widen(graph_.corner_point(node.corner(k))) * per_unit;
+      is_inside =
+          is_inside && low[0] <= p.x && p.x <= high[0] && low[1] <= p.y && p.y <= high[1] && low[2] <= p.z && p.z <= high[2];
+    }
+    return is_inside;
   }
 
   static bool holds_boxes(const fdcg_box8& above, uint32_t j, const fdcg_box8& below, uint32_t lanes) {

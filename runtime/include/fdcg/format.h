@@ -159,7 +159,7 @@ typedef struct fdcg_node_f32 {
  * sides[side[0]], corner 1 that of the side after it, node 1 lies across (FDCG_NONE on a boundary). node 0's loop runs from
  * corner 0 to corner 1, node 1's the other way. */
 typedef struct fdcg_connection {
-  uint32_t node;    /* node 0 */
+  uint32_t node;    /* node 0; node 1 has a higher number */
   uint8_t side[2];  /* which side of node k this is; side[1] is 0 on a boundary */
   uint8_t type;     /* fdcg_connection_type */
   uint8_t flatness; /* fdcg_flatness */
