@@ -198,7 +198,8 @@ void look(const Tick& tick) {
     ++finger.crowded_steps;
   }
   finger.anchor = tick.hip;
-  finger.limit = clear * kHoldBack - rounding + scene.travel;
+  // up to a quarter of the distance early
+  finger.limit = clear * (kHoldBack - own_bits(scene, finger) * 0x1p-18) - rounding + scene.travel;
   finger.look = scene.look;
   finger.idle_steps = 0;
   ++finger.looks;

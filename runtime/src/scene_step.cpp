@@ -123,7 +123,7 @@ void drop_gone(const Tick& tick) {
 void step_slots(const Tick& tick, bool missed, bool is_felt) {
   fdcg_scene& scene = tick.scene;
   Finger& finger = tick.finger;
-  if (++finger.idle_steps == kIdleSteps) finger.limit = -HUGE_VAL;
+  if (++finger.idle_steps >= kIdleSteps + (own_bits(scene, finger) & (kIdleSteps - 1))) finger.limit = -HUGE_VAL;
   const auto index = static_cast<uint32_t>(&finger - scene.fingers());
   fdcg_contact* const contacts = scene.contacts(index);
   fdcg_touch* const touches = scene.touches(index);

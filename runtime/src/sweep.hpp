@@ -289,7 +289,10 @@ template <class Real>
   carried->feature = first.feature.index;
   if (!is_done) return false;
   carried->is_carried = 0;
+  const Vec3<Real> from = walk.god_object;
   arrive(walk, sweep, to, first);
+  const bool is_where_it_was = first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
+  carried->in_place = is_where_it_was ? carried->in_place + 1 : 0;
   return true;
 }
 
@@ -330,6 +333,14 @@ template <class Real>
     if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
     if (!(walk.active == kFree)) return 0;
   }
+  // Two features at one point may hand the contact to one another by way of free space. Within a tick the trail sees that; here
+  // each turn has taken a tick, and the contact rests where it is.
+  constexpr uint32_t kMostInPlace = 4;
+  if (!(left == kFree) && carried->in_place >= kMostInPlace) {
+    carried->in_place = 0;
+    walk.active = left;
+    return 0;
+  }
   const Vec3<Real> from = walk.god_object, to = walk.hip;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
   const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy != nullptr;
@@ -343,16 +354,9 @@ template <class Real>
     arrive(walk, sweep, to, first);
     return 0;
   }
-  *carried = {{to.x, to.y, to.z},
-              first.fraction,
-              first.feature.state,
-              first.feature.index,
-              first.node,
-              left.state,
-              left.index,
-              0,
-              1,
-              0};
+  *carried = {
+      {to.x, to.y, to.z}, first.fraction, first.feature.state, first.feature.index, first.node, left.state, left.index, 0, 1,
+      carried->in_place};
   walk.active = walk.seat = kFree;
   if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
   return 0;

@@ -216,7 +216,7 @@ typedef struct fdcg_carried_sweep {
   uint32_t left_feature;
   uint32_t next_leaf;  /* leaf of the hierarchy, or node where there is none */
   uint32_t is_carried; /* 0: there is no such sweep */
-  uint32_t reserved;
+  uint32_t in_place;   /* sweeps in a row, each over several ticks, that have ended where they began */
 } fdcg_carried_sweep;
 
 /* A ball in free space that no face touches. The last HIP is in it where there is one. */
