@@ -8,35 +8,39 @@
 
 namespace fdcg {
 
-// The steepest descent from a corner: the face, edge or (where neither climbs) apex along which t = HIP - v reaches furthest.
-// That is the one nearest to the HIP, |t|^2 = reach^2 + distance^2, and distances are what is compared: near a feature they
-// tell apart what reaches, which differ by the square, cannot.
+// The steepest descent from a corner: the face, edge or (where neither climbs) apex along which t = HIP - v reaches furthest,
+// which is the one nearest to the HIP: |t|^2 = reach^2 + distance^2.
 template <class Real>
 struct Steepest {
   Feature feature = kFree;  // kFree stands for the apex
-  Real distance2;           // of the HIP from it
+  Real reach2 = 0;
+  Real distance2 = 0;  // of the HIP from it
+
+  // Of the two squares the smaller tells best: near a groove all reaches are one number, far from it all distances are.
+  void take_steeper(const Steepest& other, Real half_t2) {
+    const bool are_near = distance2 < half_t2 && other.distance2 < half_t2;
+    if (are_near ? other.distance2 < distance2 : other.reach2 > reach2) *this = other;
+  }
 };
 
-// One entry of the fan: its edge, and the face to the left of it. Whether it is the nearest so far.
+// One entry of the fan: its edge, and the face to the left of it.
 template <class Real>
-inline bool consider_fan_entry(const GraphView<Real>& graph, const FanEntry& entry, Vec3<Real> t, Steepest<Real>& best) {
-  const auto take = [&](Feature feature, Real distance2) {
-    if (!(distance2 < best.distance2)) return false;
-    best = {feature, distance2};
-    return true;
-  };
-  bool is_nearest = false;
+[[gnu::noinline]] void consider_fan_entry(const GraphView<Real>& graph, const FanEntry& entry, Vec3<Real> t, Real half_t2,
+                                          Steepest<Real>& best) {
   const Vec3<Real> direction = graph.edge(entry.connection).direction;
   const Real forward = dot(t, direction);
   if (entry.end == 0 ? forward > 0 : forward < 0) {
     const Vec3<Real> off = t - direction * forward;
-    is_nearest = take({FDCG_EDGE, entry.connection}, dot(off, off));
+    best.take_steeper({{FDCG_EDGE, entry.connection}, square(forward), dot(off, off)}, half_t2);
   }
-  if (entry.node == FDCG_NONE) return is_nearest;
+  if (entry.node == FDCG_NONE) return;
   const NodeRef<Real> node = graph.node(entry.node);
-  if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return is_nearest;
-  if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return is_nearest;
-  return take({FDCG_FACE, entry.node}, square(dot(node.normal(), t))) || is_nearest;
+  if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return;
+  if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return;
+  const Vec3<Real> normal = node.normal();
+  const Real height = dot(normal, t);
+  const Vec3<Real> in_plane = t - normal * height;
+  best.take_steeper({{FDCG_FACE, entry.node}, dot(in_plane, in_plane), square(height)}, half_t2);
 }
 
 // Looks at every edge of the corner.
@@ -44,8 +48,9 @@ template <class Real>
 inline Steepest<Real> steepest_of_all(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
   const GraphView<Real>& graph = walk.graph;
   walk.spend(kFanWork * corner.fan_count());
-  Steepest<Real> best = {kFree, dot(t, t)};
-  graph.for_each_in_fan(corner, [&](const FanEntry& entry) { consider_fan_entry(graph, entry, t, best); });
+  const Real t2 = dot(t, t);
+  Steepest<Real> best = {kFree, 0, t2};
+  graph.for_each_in_fan(corner, [&](const FanEntry& entry) { consider_fan_entry(graph, entry, t, t2 / 2, best); });
   return best;
 }
 
@@ -87,11 +92,13 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
   const Real length = norm(t);
   const auto bound_of = [&](int level, uint32_t i) { return most_along(boxes[layout.first[level] + i], t, length) - tie; };
   const Real t2 = dot(t, t);
-  Steepest<Real> best = {kFree, t2};
+  Steepest<Real> best = {kFree, 0, t2};
   Real reach = 0;
   uint32_t best_entry = 0;
   const auto consider = [&](uint32_t i) {
-    if (!consider_fan_entry(graph, graph.fan_entry(corner, i), t, best)) return false;
+    const Feature before = best.feature;
+    consider_fan_entry(graph, graph.fan_entry(corner, i), t, t2 / 2, best);
+    if (best.feature == before) return false;
     best_entry = i;
     return true;
   };
@@ -107,7 +114,7 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
       const uint32_t count = corner.fan_count() - first < FDCG_LEAF_FAN ? corner.fan_count() - first : FDCG_LEAF_FAN;
       for (uint32_t i = first; i < first + count; ++i)
         consider(i);
-      reach = best.distance2 < t2 ? root(t2 - best.distance2) : Real(0);
+      reach = root(best.reach2);
       work += kFanWork * count;
       continue;
     }

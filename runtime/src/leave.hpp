@@ -12,7 +12,7 @@ namespace fdcg {
 
 // `point`, moved along `outward` by as few roundings as put it in front of the node's plane.
 template <class Real>
-inline Vec3<Real> in_front_of(Walk<Real>& walk, NodeRef<Real> node, Vec3<Real> point, Vec3<Real> outward) {
+[[gnu::noinline]] Vec3<Real> in_front_of(Walk<Real>& walk, NodeRef<Real> node, Vec3<Real> point, Vec3<Real> outward) {
   constexpr int kMostMoves = 16;  // each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, point);
   Real step = RealLimits<Real>::kEpsilon * Real(walk.graph.header->extent);
@@ -25,7 +25,7 @@ inline Vec3<Real> in_front_of(Walk<Real>& walk, NodeRef<Real> node, Vec3<Real> p
 
 // Call before the sweep that leaves `left`, whose rule has found the HIP outside.
 template <class Real>
-inline void step_clear_of(Walk<Real>& walk, Feature left) {
+[[gnu::noinline]] void step_clear_of(Walk<Real>& walk, Feature left) {
   if (left.state == FDCG_FACE) {
     const NodeRef<Real> node = walk.graph.node(left.index);
     walk.god_object = in_front_of(walk, node, walk.god_object, node.normal());

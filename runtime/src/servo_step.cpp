@@ -76,9 +76,6 @@ struct Progress {
 template <class Real>
 Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided, FreeSpace* space) {
   Progress progress = {0, 0};
-  const Feature carried_from = {space->carried->left_state, space->carried->left_feature};
-  const Vec3<Real> carried_at = walk.god_object;
-  const bool was_carried = space->carried->is_carried != 0 && !(carried_from == kFree);
   if (walk.active == kFree) {
     progress.flags = sweep_to_hip(walk, kFree, space);
     if (walk.active == kFree) return progress;
@@ -97,10 +94,6 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
       step_clear_of(walk, at);
-      if (was_carried && at == carried_from && walk.god_object == carried_at) {  // round in a circle, over several ticks
-        walk.active = at;
-        return progress;
-      }
       progress.flags |= sweep_to_hip(walk, at, space);
       if (walk.active == kFree) return progress;
       ++progress.transitions;

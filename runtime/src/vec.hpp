@@ -27,10 +27,6 @@ inline Vec3<Real> operator-(Vec3<Real> a, Vec3<Real> b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class Real>
-inline bool operator==(Vec3<Real> a, Vec3<Real> b) {
-  return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-template <class Real>
 inline Vec3<Real> operator*(Vec3<Real> a, Real s) {
   return {a.x * s, a.y * s, a.z * s};
 }

@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kBatch = 20'000;         // segments on one body
 constexpr int kMostSweepTicks = 1000;  // for the rest of a way that the sweep's bound has cut
-constexpr double kDeep = 1e-6;         // of the size: no rounding
+constexpr double kRounding = 4;        // eps of the size: a HIP so near to the surface may be taken for outside
 constexpr double kSizes[] = {1, 1e-6, 1e6, 0.1};
 constexpr double kOffsets[] = {0, 0, 1e3, 1e6};  // sizes
 
@@ -249,6 +249,7 @@ class Probe {
   [[nodiscard]] bool is_free() const { return contact_.result.state == FDCG_FREE; }
   // As the step has rounded it.
   [[nodiscard]] Hip hip() const { return {contact_.state.hip[0], contact_.state.hip[1], contact_.state.hip[2]}; }
+  [[nodiscard]] double epsilon() const { return graph_.header->real_bytes == 8 ? 0x1p-52 : 0x1p-23; }
   [[nodiscard]] std::uint64_t bounded() const { return bounded_; }
   [[nodiscard]] std::string describe() const { return contact_.describe(); }
 
@@ -297,7 +298,7 @@ bool judge_step(const ExactSolid& solid, Probe& probe, const Hip& target, Tally&
   }
   tally.inside += !probe.is_free();
   if (!probe.is_free() || solid.where(to) != ExactSolid::Where::inside) return true;
-  const bool is_deep = solid.distance_to_surface(to) > kDeep * solid.size();
+  const bool is_deep = solid.distance_to_surface(to) > kRounding * probe.epsilon() * solid.size();
   ++(is_deep ? tally.lost_deep : tally.lost_shallow);
   if (tally.first_lost.empty() || (is_deep && tally.lost_deep == 1)) tally.first_lost = report("is free inside");
   return false;
@@ -337,10 +338,10 @@ const Tally& tally_of_all() {
     std::printf(
         "batches %llu to %llu: %llu segments, %llu stopped, %llu surely through the surface, %llu touching an edge or "
         "corner, %llu ends in contact, %llu ticks of bounded sweeps\n"
-        "through unseen %llu, stopped by nothing %llu, free inside %llu deep and %llu within %g of the size, "
+        "through unseen %llu, stopped by nothing %llu, free inside %llu and %llu more within %g eps of the surface, "
         "never reached %llu\n",
         n(first), n(batch - 1), n(tally.segments), n(tally.hits), n(tally.through), n(tally.touching), n(tally.inside),
-        n(tally.bounded), n(tally.through_unseen), n(tally.from_thin_air), n(tally.lost_deep), n(tally.lost_shallow), kDeep,
+        n(tally.bounded), n(tally.through_unseen), n(tally.from_thin_air), n(tally.lost_deep), n(tally.lost_shallow), kRounding,
         n(tally.unfinished));
     return tally;
   }();
@@ -359,9 +360,9 @@ TEST_CASE("no segment aimed at the edges, corners and faces of a closed body pas
   CHECK(tally.through > tally.segments / 10);
 }
 
-TEST_CASE("a HIP that came from outside and is strictly inside is in contact, whatever it was aimed at", "[!mayfail]") {
+TEST_CASE("a HIP that came from outside and is strictly inside is in contact, whatever it was aimed at") {
   const Tally& tally = tally_of_all();
   INFO(tally.first_lost);
   CHECK(tally.lost_deep == 0);
-  CHECK(tally.lost_shallow == 0);
+  CHECK(tally.lost_shallow * 20'000 <= tally.segments);
 }

@@ -58,7 +58,7 @@ MUTANTS = [
     ("open-corner", "an apex with a boundary edge is free", "corner.hpp",
      "if (corner.is_open()) return go_to(kFree);", ""),
     ("steepest-at-vertex", "the longest way at a corner wins", "corner.hpp",
-     "if (along > best.reach)", "if (best.feature == kFree && along > 0)"),
+     "if (are_near ? other.distance2 < distance2 : other.reach2 > reach2)", "if (feature == kFree)"),
 ]
 
 

@@ -106,6 +106,7 @@ void ReferenceWalker<Real>::change(std::uint32_t state, std::uint32_t feature) {
 template <class Real>
 void ReferenceWalker<Real>::release(std::vector<std::uint32_t> left_out_faces) {
   left_out_ = std::move(left_out_faces);
+  if (contact.state != FDCG_VERTEX) is_exact_place_ = false;  // the runtime starts a rounding in front of what it leaves
   change(FDCG_FREE, FDCG_NONE);
 }
 
