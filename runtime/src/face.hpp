@@ -15,7 +15,7 @@ struct Crossing {
 };
 
 template <class Real>
-[[gnu::always_inline]] inline Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
   Crossing<Real> first;
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
@@ -45,8 +45,8 @@ struct FaceMove {
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
 template <class Real>
-[[gnu::always_inline]] inline FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip,
-                                                          Real side, Vec3<Real> god_object) {
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real side,
+                                     Vec3<Real> god_object) {
   using Kind = typename FaceMove<Real>::Kind;
   if (!(side < 0)) return {Kind::leaves, god_object, {}};
   const Vec3<Real> normal = node.normal();

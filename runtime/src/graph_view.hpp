@@ -273,8 +273,7 @@ template <class Real>
 // `bound` is plane_rounding_bound of x. One expression wherever it is asked, so that no two rules disagree. An exact sign
 // spends from *work_left; null: not counted.
 template <class Real>
-[[gnu::always_inline]] inline Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, Real bound,
-                                           uint32_t* work_left) {
+FDCG_HOT Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, Real bound, uint32_t* work_left) {
   const Real distance = node.plane().distance(x);
   if (absolute(distance) > bound || node.is_inexact()) return distance;
   const int sign = exact_side_sign(graph, node, x, work_left);

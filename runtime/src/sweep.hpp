@@ -186,7 +186,7 @@ class Sweep {
     return fraction < best_.fraction || (fraction == best_.fraction && n < best_.node);
   }
 
-  [[nodiscard]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
+  [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
     if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kNearPlaneWork);
     return side_of(graph_, node, x, bound, work_left_);
   }
@@ -207,14 +207,17 @@ class Sweep {
   // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
   // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
   [[nodiscard]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
+    const int sign = sure_orientation(start, end);
+    return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
+  }
+  // The same where rounding cannot matter; else 0.
+  [[nodiscard]] int sure_orientation(Vec3<Real> start, Vec3<Real> end) const {
     spend(work_left_, kOrientationWork);
     const Vec3<Real> v = start - from_, w = end - from_;
     const Real det = dot(cross(v, w), way_);
     // Of each of the six products of three differences: three differences, two products and the sums, half an epsilon each.
     const Real bound = 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way_)) + RealLimits<Real>::kTiny;
-    if (det > bound) return 1;
-    if (det < -bound) return -1;
-    return orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
+    return det > bound ? 1 : det < -bound ? -1 : 0;
   }
 
   // A bit for a side; the last one for all beyond.
@@ -222,6 +225,11 @@ class Sweep {
 
   [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, uint64_t* met_exactly) const {
     Vec3<Real> start = graph_.corner_point(node.corner(0));
+    for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
+      const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
+      if (sure_orientation(start, end) > 0) return false;
+      start = end;
+    }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
       const int sign = orientation(start, end);

@@ -7,6 +7,13 @@
 #include <math.h>
 #include <stdint.h>
 
+// Of the way that a servo loop takes most: worth its copies, but where the library is built for size.
+#ifdef __OPTIMIZE_SIZE__
+#define FDCG_HOT inline
+#else
+#define FDCG_HOT [[gnu::always_inline]] inline
+#endif
+
 namespace fdcg {
 
 template <class Real>

@@ -29,7 +29,7 @@ struct Walk {
   Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
   uint32_t work_left;  // for the rules, see work.hpp
 
-  [[nodiscard]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
+  [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
   void spend(uint32_t units) { fdcg::spend(&work_left, units); }
 
   // A move on a face's inside or along an edge.
