@@ -5,6 +5,7 @@
 //   Face  -> rest | Edge | Vertex | Free          face.hpp     slide to the friction circle, or to the first edge on the way
 //   Edge  -> rest | Face | Vertex | Free          edge.hpp     which face pulls more, or slide along the edge
 //   Vertex-> rest | Face | Edge | Free            corner.hpp   the steepest descent around the corner
+//   ... -> Free                                   leave.hpp    in front, by exact sign, of what is left
 //
 // Each rule moves the god-object nearer to the HIP or hands over to a neighbour that climbs further; the step ends where a rule
 // rests. Every loop is bounded: work left over is carried to the next tick with a valid god-object.

@@ -79,7 +79,8 @@ void measure_force(const fdcg_graph& graph, const fdcg_result& result, Summary& 
   const double* const f = result.force_n;
   const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   summary.largest_force_n = std::max(summary.largest_force_n, std::sqrt(square));
-  if (result.state != FDCG_FACE) return;
+  const bool is_carried = (result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;  // still on its way into the friction cone
+  if (result.state != FDCG_FACE || is_carried) return;
   const fdcg_node_info face = fdcg_get_node(&graph, result.feature);
   const double* const n = face.normal;
   double normal_part = 0, tangential_square = 0;

@@ -103,7 +103,7 @@ typedef struct fdcg_graph {
   const fdcg_busy_corner* busy_corners; /* NULL, and so are the next two: no corner is busy */
   const uint32_t* fans;
   const void* fan_boxes;
-  const fdcg_box8* hierarchy;  /* NULL: the free-space sweep looks at every node */
+  const fdcg_box8* hierarchy; /* NULL: the free-space sweep looks at every node */
   const uint32_t* source_map; /* NULL: not in the file; else header->source_face_count entries */
   const char* info;           /* JSON, not zero-terminated; NULL: not in the file */
   uint64_t info_bytes;
@@ -121,9 +121,11 @@ fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* gra
 /* Unmaps what fdcg_open_file mapped and zeroes the view. Harmless on a zeroed or memory graph. */
 void fdcg_close(fdcg_graph* graph);
 
-/* ---- a graph's records, in double precision whatever the file's: for looking at a graph, the step does not use them -------- */
+/* ---- a graph's records, in double precision whatever the file's: for looking at a graph, the step does not use them --------
+ */
 
-/* Indices must be below the header's counts, `side` below side_count; nothing is checked. What the file leaves out is derived. */
+/* Indices must be below the header's counts, `side` below side_count; nothing is checked. What the file leaves out is derived.
+ */
 typedef struct fdcg_node_info {
   double normal[3], offset; /* distance(x) = normal.x + offset, positive outside, local frame (format.h) */
   uint32_t side_count;
@@ -143,8 +145,8 @@ fdcg_side_info fdcg_get_side(const fdcg_graph* graph, uint32_t node, uint32_t si
 typedef struct fdcg_connection_info {
   double direction[3], length; /* from corner[0] to corner[1] */
   uint32_t corner[2];
-  uint32_t node[2]; /* node[1] is FDCG_NONE on a boundary */
-  uint32_t side[2]; /* of each node */
+  uint32_t node[2];  /* node[1] is FDCG_NONE on a boundary */
+  uint32_t side[2];  /* of each node */
   uint32_t type;     /* fdcg_connection_type */
   uint32_t flatness; /* fdcg_flatness */
 } fdcg_connection_info;
@@ -262,7 +264,14 @@ typedef struct fdcg_result {
   uint32_t reserved;
 } fdcg_result;
 
-/* Moves the contact to the HIP of this tick, in metres in the object's frame, and says what the hand should feel. */
+/* Moves the contact to the HIP of this tick, in metres in the object's frame, and says what the hand should feel.
+ *
+ * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 600, whatever the mesh. At most,
+ * two budgets together (src/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the library
+ * is compiled) let a tick run to some 60,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick with a valid
+ * god-object. A budget is looked at between pieces of work, and the largest piece is a node of many sides: a way that lies
+ * within rounding in the plane of one of 64 takes up to 25 us (tests/bench/worst_cases.txt has the dearest ticks that were
+ * found). */
 void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
                fdcg_result* result);
 
