@@ -11,7 +11,7 @@
 
 namespace fdcg::bake {
 
-inline constexpr std::uint32_t kMaxMergedSides = 64;  // of a merged polygon, so that a step at a face is bounded
+inline constexpr std::uint32_t kMaxMergedSides = 16;  // of a merged polygon, so that a step at a face is bounded
 
 struct MergeOptions {
   bool across_faces = true;  // false: only the triangles of one and the same polygon come together again

@@ -278,8 +278,8 @@ FDCG_HOT Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Rea
   if (absolute(distance) > bound || node.is_inexact()) return distance;
   const int sign = exact_side_sign(graph, node, x, work_left);
   if (sign == 0) return 0;
-  if (sign > 0) return distance > 0 ? distance : RealLimits<Real>::kTiny;
-  return distance < 0 ? distance : -RealLimits<Real>::kTiny;
+  if (sign > 0) return distance > 0 ? distance : RealLimits<Real>::kSignOnly;
+  return distance < 0 ? distance : -RealLimits<Real>::kSignOnly;
 }
 
 }  // namespace fdcg

@@ -68,16 +68,18 @@ template <class Real>
 inline Real norm1(Vec3<Real> a) {
   return absolute(a.x) + absolute(a.y) + absolute(a.z);
 }
-// The spacing of the numbers at 1, the smallest normal one, and a coordinate whose products of three still are numbers.
+// The spacing of the numbers at 1; the smallest normal one; a distance that is no more than a sign, far below the rounding of
+// the smallest object and yet large enough that its square is normal (denormal numbers take a hundred times as long); and a
+// coordinate whose products of three still are numbers.
 template <class Real>
 struct RealLimits;
 template <>
 struct RealLimits<double> {
-  static constexpr double kEpsilon = DBL_EPSILON, kTiny = DBL_MIN, kFar = 1e70;
+  static constexpr double kEpsilon = DBL_EPSILON, kTiny = DBL_MIN, kSignOnly = 1e-150, kFar = 1e70;
 };
 template <>
 struct RealLimits<float> {
-  static constexpr float kEpsilon = FLT_EPSILON, kTiny = FLT_MIN, kFar = 1e10F;
+  static constexpr float kEpsilon = FLT_EPSILON, kTiny = FLT_MIN, kSignOnly = 1e-18F, kFar = 1e10F;
 };
 
 // Neither NaN nor infinite nor so far away that the step's arithmetic would overflow.

@@ -39,7 +39,7 @@
 #define FDCG_NONE 0xFFFFFFFFu        /* "no node here": the far side of an open edge; a dropped source face */
 #define FDCG_LEAF_NODES 4u           /* nodes in one leaf of the hierarchy */
 #define FDCG_TREE_WAYS 8u            /* boxes in one record of the hierarchy */
-#define FDCG_MAX_SIDES 255u          /* sides of one node; fdcg compile cuts larger faces into nodes of at most 64 */
+#define FDCG_MAX_SIDES 255u          /* sides of one node; fdcg compile cuts larger faces into nodes of at most 16 */
 #define FDCG_LEAF_FAN 8u             /* fan entries in one leaf of a corner's tree */
 #define FDCG_BUSY_FAN 32u            /* a corner with more fan entries is busy: it has its fan stored, and a tree */
 #define FDCG_LARGEST_EXTENT_F64 1e60 /* of an object; its inverse is the smallest */
