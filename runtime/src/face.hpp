@@ -62,14 +62,35 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& frictio
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
+// The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
+template <class Real>
+inline uint32_t side_under(const Walk<Real>& walk, NodeRef<Real> node) {
+  const Real rounding = 8 * RealLimits<Real>::kEpsilon * (norm1(walk.god_object) + Real(walk.graph.header->extent));
+  for (uint32_t k = 0; k < node.side_count(); ++k) {
+    if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding) return k;
+  }
+  return FDCG_NONE;
+}
+
+// The face has lost the HIP: the seat's rule decides; without a seat this is Free. A god-object that slid to the face's rim but
+// for rounding may be behind the faces across, so it is seated there first.
+template <class Real>
+inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
+  if (!(walk.seat == kFree)) return walk.seat;
+  const uint32_t side = side_under(walk, node);
+  if (side == FDCG_NONE) return kFree;
+  const EdgeLine<Real> line(walk.graph.edge(node, side));
+  return place_on_edge(walk, node.connection(side), line, line.parameter(walk.god_object));
+}
+
 // Places the god-object where the move says. Returns what comes next.
 template <class Real>
 inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   using Kind = typename FaceMove<Real>::Kind;
-  if (move.kind == Kind::leaves) return go_to(walk.seat);  // the seat's rule decides; without a seat this is Free
+  const NodeRef<Real> node = walk.graph.node(walk.active.index);
+  if (move.kind == Kind::leaves) return go_to(leave_face(walk, node));
   if (move.kind == Kind::slides) walk.place(move.target, kFree);
   if (move.kind != Kind::crosses) return rest();
-  const NodeRef<Real> node = walk.graph.node(walk.active.index);
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
   const EdgeLine<Real> line(walk.graph.edge(node, side));

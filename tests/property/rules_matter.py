@@ -27,7 +27,7 @@ MUTANTS = [
     ("first-crossing", "the first crossing, not the last", "face.hpp",
      "|| fraction < first.fraction)", "|| fraction > first.fraction)"),
     ("on-plane", "on a face's plane is outside", "face.hpp", "if (!(side < 0)) return", "if (side > 0) return"),
-    ("seat", "the seat's rule decides", "face.hpp", "return go_to(walk.seat);", "return go_to(kFree);"),
+    ("seat", "the seat's rule decides", "face.hpp", "return go_to(leave_face(walk, node));", "return go_to(kFree);"),
     ("last-tick-segment", "the sweep starts where the HIP was", "servo_step.cpp",
      "progress.flags = sweep_to_hip(walk, kFree, space);",
      "walk.god_object = walk.hip; progress.flags = sweep_to_hip(walk, kFree, space);"),
