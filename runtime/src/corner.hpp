@@ -144,9 +144,9 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
   return best;
 }
 
-// HIP is in front of the face along which it reaches furthest: free, but for rounding. Where it stands on a concave edge of
-// that face at the corner and behind the face across, edge and faces reach as far as one another, and any of them may have been
-// found: then it is the edge's to say.
+// HIP is in front of the face that is nearest: free, but for rounding. Where it stands on a concave edge of that face at the
+// corner and behind the face across, edge and faces are as near as one another, and any of them may have been found: then it is
+// the edge's to say.
 template <class Real>
 inline Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {

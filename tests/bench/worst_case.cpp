@@ -2,6 +2,7 @@
 // The most expensive tick: searches, at random and by climbing from the worst found so far, over bodies made to be hard, hands
 // that jump, graze and stand exactly on features, and friction. A case is a body and a few HIPs; its cost is its dearest tick,
 // the least of several replays from a copy of the contact. What is found goes into a file that later runs begin with.
+// Over 400 lines: bodies, hands, search and table of one program, read from top to bottom.
 //
 //   fdcg_bench_worst_case [--seconds N] [--seed S] [--cases FILE] [--write] [--no-count] [--body NAME]
 //

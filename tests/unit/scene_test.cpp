@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The scene call by call. Over 400 lines: short cases, one for each promise of scene.h, in its order.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
