@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "table.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+using namespace fdcg::test;
+
+namespace {
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+const std::string kFolder = (std::filesystem::temp_directory_path() / "fdcg_evaluation_table_test").string();
+
+}  // namespace
+
+TEST_CASE("a table has its header, its rows, and quotes what would break a row") {
+  {
+    Table table(kFolder, "t", {"name", "p50_ns", "count"});
+    table.row("plain", 0.1, 3);
+    table.row("comma, \"quote\"", 1.0 / 3, std::uint64_t{1} << 60);
+    table.row("none", std::numeric_limits<double>::quiet_NaN(), -1);
+    CHECK_THROWS_AS(table.row("too few"), std::logic_error);
+  }
+  CHECK(text_of(std::filesystem::path(kFolder) / "t.csv") ==
+        "name,p50_ns,count\nplain,0.1,3\n\"comma, \"\"quote\"\"\",0.333333333,1152921504606846976\nnone,nan,-1\n");
+  std::filesystem::remove_all(kFolder);
+}
+
+TEST_CASE("a bar holds at its limit; beyond it, and for what was not measured, it fails") {
+  {
+    Bars bars(kFolder, "p");
+    CHECK(bars.at_most("error", 8, 8, "ulp"));
+    CHECK_FALSE(bars.at_most("error", 8.5, 8, "ulp"));
+    CHECK(bars.at_least("rate", 8, 8, "kHz"));
+    CHECK_FALSE(bars.at_least("rate", std::numeric_limits<double>::quiet_NaN(), 8, "kHz"));
+    CHECK(bars.failures() == 2);
+  }
+  const std::string text = text_of(std::filesystem::path(kFolder) / "p.bars.csv");
+  CHECK(text.find("error,8.5,at most,8,ulp,FAIL,\n") != std::string::npos);
+  std::filesystem::remove_all(kFolder);
+}
+
+TEST_CASE("a folder that cannot be made is an error that names the file") {
+  CHECK_THROWS(Table("/proc/no such folder", "t", {"a"}));
+}
