@@ -115,9 +115,8 @@ void measure_energy(const LawOptions& options, Bars& bars) {
   const std::vector<PolygonSoup> soups = bodies();
   constexpr std::size_t kFrictionCount = std::size(kFrictions);
   std::vector<std::unique_ptr<PlainGraph>> graphs(2 * soups.size());
-  for_each_index(graphs.size(), options.threads, [&](std::size_t g) {
-    graphs[g] = std::make_unique<PlainGraph>(soups[g / 2], kBothPrecisions[g % 2]);
-  });
+  for_each_index(graphs.size(), options.threads,
+                 [&](std::size_t g) { graphs[g] = std::make_unique<PlainGraph>(soups[g / 2], kBothPrecisions[g % 2]); });
   std::vector<Sum> sums(graphs.size() * kFrictionCount);
   const std::size_t loops = (options.is_quick ? kQuickLoops : kAllLoops) / (soups.size() * kFrictionCount) + 1;
   for_each_index(sums.size(), options.threads, [&](std::size_t i) {
@@ -127,7 +126,8 @@ void measure_energy(const LawOptions& options, Bars& bars) {
   Table table(options.output, "energy",
               {"body", "precision", "mu_static", "mu_dynamic", "loops", "touched", "closed", "exceeding",
                "largest_work_over_bound", "largest_excess_j"});
-  Table histogram(options.output, "energy_histogram", {"precision", "mu_static", "mu_dynamic", "work_over_bound_from", "loops"});
+  Table histogram(options.output, "energy_histogram",
+                  {"precision", "mu_static", "mu_dynamic", "work_over_bound_from", "loops"});
   for (std::size_t p = 0; p < 2; ++p) {
     Sum all;
     for (std::size_t f = 0; f < kFrictionCount; ++f) {
@@ -150,7 +150,8 @@ void measure_energy(const LawOptions& options, Bars& bars) {
                  std::to_string(all.loops) + " loops, " + std::to_string(all.touched) + " touched, " +
                      std::to_string(all.closed) + " of them ended free; largest work / bound " + cell(all.largest_ratio));
     bars.at_least("energy: share of the loops that touched" + of,
-                  static_cast<double>(all.touched) / static_cast<double>(all.loops), 0.5, "", "else the bar above says nothing");
+                  static_cast<double>(all.touched) / static_cast<double>(all.loops), 0.5, "",
+                  "else the bar above says nothing");
   }
 }
 

@@ -9,8 +9,9 @@
 int main(int argc, char** argv) {
   using namespace fdcg::test;
   LawOptions options;
-  CLI::App app{"Measures the step against physical laws: Coulomb's on ramps, in grooves and in motion.\n"
-               "Example: fdcg_bench_laws --quick --output /tmp/laws"};
+  CLI::App app{
+      "Measures the step against physical laws: Coulomb's on ramps, in grooves and in motion.\n"
+      "Example: fdcg_bench_laws --quick --output /tmp/laws"};
   app.add_flag("--quick", options.is_quick, "A few seconds: fewer orientations, ticks and loops");
   app.add_option("--output", options.output, "Folder for the tables")->capture_default_str();
   app.add_option("--seed", options.seed, "Of everything drawn at random")->capture_default_str();

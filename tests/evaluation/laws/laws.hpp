@@ -21,11 +21,10 @@ struct LawOptions {
 constexpr double kPi = std::numbers::pi;
 constexpr double kObject_m = 0.1;  // the largest coordinate of every body: its extent
 
-// Coulomb's law: stick or slip over a grid of friction and lean (coulomb_ramps.csv), and the ratio of tangential to normal force
-// over slides (coulomb_slides.csv).
+// Coulomb's law: stick or slip over a grid of friction and lean (coulomb_ramps.csv), and the ratio of tangential to normal
+// force over slides (coulomb_slides.csv).
 void measure_ramps(const LawOptions& options, Bars& bars);
 void measure_slides(const LawOptions& options, Bars& bars);
-
 
 // The work that closed loops of the HIP do on the user, against what sampling allows (energy.csv, energy_histogram.csv).
 void measure_energy(const LawOptions& options, Bars& bars);

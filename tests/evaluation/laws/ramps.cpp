@@ -16,9 +16,9 @@ namespace fdcg::test {
 namespace {
 
 constexpr int kFrictions = 24, kLeans = 24;
-constexpr double kFrictionStep = 0.1, kLeanStep_deg = 2.75;  // to 2.3, and to 63 degrees
-constexpr double kDynamicShare = 0.75;                       // mu_d of mu_s
-constexpr double kDepths[] = {1e-3, 1e-2, 1e-1};             // of the extent
+constexpr double kFrictionStep = 0.1, kLeanStep_deg = 2.75;            // to 2.3, and to 63 degrees
+constexpr double kDynamicShare = 0.75;                                 // mu_d of mu_s
+constexpr double kDepths[] = {1e-3, 1e-2, 1e-1};                       // of the extent
 constexpr double kOffsets[] = {2e-12, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3};  // of the lean's tangent from mu_s, as a share of it
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -64,8 +64,8 @@ void try_lean(const Ramp& ramp, const RampShape& shape, const Lean& lean, double
 
   const CoulombLoad asked =
       coulomb_load(ramp.surface(), state, feature, wide(before) - wide(pressed.contact.hip), FDCG_EDGE_WEDGE);
-  const CoulombLoad given = coulomb_load(ramp.surface(), pressed.result.state, pressed.result.feature,
-                                         wide(pressed.result.force_n), FDCG_EDGE_WEDGE);
+  const CoulombLoad given =
+      coulomb_load(ramp.surface(), pressed.result.state, pressed.result.feature, wide(pressed.result.force_n), FDCG_EDGE_WEDGE);
   ++tally->cases;
   if (!asked.is_borne || !given.is_borne) {
     ++tally->wrong;

@@ -192,7 +192,8 @@ Results slide_everywhere(const LawOptions& options) {
       const Ramp ramp(track.shape, track.precision, options.seed * 1000 + static_cast<std::uint64_t>(k));
       for (std::size_t m = 0; m < results.motions.size(); ++m) {
         for (std::size_t d = 0; d < kDepthCount; ++d) {
-          const Random random(options.seed + 104729 * (t * results.motions.size() + m) + 31 * d + static_cast<std::uint64_t>(k));
+          const Random random(options.seed + 104729 * (t * results.motions.size() + m) + 31 * d +
+                              static_cast<std::uint64_t>(k));
           results.at(t, m, d).add(run(ramp, track, results.motions[m], kDepths[d], ticks, random));
         }
       }
