@@ -29,4 +29,7 @@ void measure_slides(const LawOptions& options, Bars& bars);
 // The work that closed loops of the HIP do on the user, against what sampling allows (energy.csv, energy_histogram.csv).
 void measure_energy(const LawOptions& options, Bars& bars);
 
+// Sphere, cylinder, torus and cone by formula against eight levels of tessellation (tessellation.csv).
+void measure_tessellation(const LawOptions& options, Bars& bars);
+
 }  // namespace fdcg::test
