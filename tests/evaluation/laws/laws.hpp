@@ -32,4 +32,10 @@ void measure_energy(const LawOptions& options, Bars& bars);
 // Sphere, cylinder, torus and cone by formula against eight levels of tessellation (tessellation.csv).
 void measure_tessellation(const LawOptions& options, Bars& bars);
 
+// Break-away, leap, turn and the saw-tooth of a pulled hand against their formulas (stick_slip.csv, stick_slip_trace.csv).
+void measure_stick_slip(const LawOptions& options, Bars& bars);
+
+// Ticks at rest under static friction (creep.csv).
+void measure_creep(const LawOptions& options, Bars& bars);
+
 }  // namespace fdcg::test
