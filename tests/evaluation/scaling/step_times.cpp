@@ -11,13 +11,14 @@ namespace {
 // One graph's contact on its way, and what its ticks took.
 class Stepper {
  public:
-  Stepper(const fdcg_graph& graph, const Path& path) : graph_(graph) {
-    met_.reserve(path.size());
-    own_.reserve(path.size());
-    fdcg_step(&graph_, &params_, &contact_, path[0].data(), &result_);
+  explicit Stepper(const Lane& lane) : graph_(*lane.graph), path_(*lane.path) {
+    met_.reserve(path_.size());
+    own_.reserve(path_.size());
+    fdcg_step(&graph_, &params_, &contact_, path_[0].data(), &result_);
   }
 
-  void tick(const Point& hip, const Stopwatch& watch, int replays) {
+  void tick(std::size_t i, const Stopwatch& watch, int replays) {
+    const Point& hip = path_[i];
     const fdcg_contact before = contact_;
     const std::uint64_t begin = Stopwatch::now();
     fdcg_step(&graph_, &params_, &contact_, hip.data(), &result_);
@@ -48,6 +49,7 @@ class Stepper {
 
  private:
   const fdcg_graph& graph_;
+  const Path& path_;
   const fdcg_params params_ = fdcg_default_params();
   fdcg_contact contact_ = {};
   fdcg_result result_ = {};
@@ -57,16 +59,13 @@ class Stepper {
 
 }  // namespace
 
-std::vector<StepTimes> time_steps(const std::vector<const fdcg_graph*>& graphs, const Path& path, const Stopwatch& watch,
-                                  int replays) {
-  std::vector<Stepper> steppers;
-  steppers.reserve(graphs.size());
-  for (const fdcg_graph* graph : graphs)
-    steppers.emplace_back(*graph, path);
+std::vector<StepTimes> time_steps(const std::vector<Lane>& lanes, const Stopwatch& watch, int replays) {
+  const std::size_t ticks = lanes[0].path->size();
+  std::vector<Stepper> steppers(lanes.begin(), lanes.end());
   const std::uint64_t heap_before = heap_calls();
-  for (std::size_t i = 1; i < path.size(); ++i) {
+  for (std::size_t i = 1; i < ticks; ++i) {
     for (Stepper& stepper : steppers)
-      stepper.tick(path[i], watch, replays);
+      stepper.tick(i, watch, replays);
   }
   const std::uint64_t heap_after = heap_calls();
   std::vector<StepTimes> times;

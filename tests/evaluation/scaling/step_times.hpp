@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ticks of a way cost on several graphs of one body, measured in turns so that what else the machine does falls on all
-// of them alike.
+// What the ticks of ways on several graphs cost, measured in turns, tick by tick, so that what else the machine does, and how
+// fast its clock runs, falls on all of them alike.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,13 @@ struct StepTimes {
   std::uint64_t bounded_ticks = 0;      // that carried work over
 };
 
-// Steps one contact on each graph along the path. The first point is where it starts; it is not timed.
-std::vector<StepTimes> time_steps(const std::vector<const fdcg_graph*>& graphs, const Path& path, const Stopwatch& watch,
-                                  int replays);
+// A contact on its way over a graph. The first point is where it starts; it is not timed.
+struct Lane {
+  const fdcg_graph* graph;
+  const Path* path;
+};
+
+// The lanes' paths are of one length.
+std::vector<StepTimes> time_steps(const std::vector<Lane>& lanes, const Stopwatch& watch, int replays);
 
 }  // namespace fdcg::test

@@ -24,6 +24,8 @@ class TimedBake {
   [[nodiscard]] const fdcg_graph& view() const { return view_; }
   [[nodiscard]] std::size_t file_bytes() const { return bytes_.size(); }
   [[nodiscard]] double seconds() const { return seconds_; }
+  // The least of the process's processor time, all threads together: what else the machine does is not in it.
+  [[nodiscard]] double cpu_seconds() const { return cpu_seconds_; }
   // As the compiler's progress names them, in order.
   [[nodiscard]] const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
   // By how much the process's resident memory grew at most while the first of them ran, the file included. NaN where the system
@@ -38,7 +40,7 @@ class TimedBake {
 
   std::vector<std::byte> bytes_;
   fdcg_graph view_ = {};
-  double seconds_ = 1e30, peak_bytes_ = 0;
+  double seconds_ = 1e30, cpu_seconds_ = 1e30, peak_bytes_ = 0;
   std::vector<std::pair<std::string, double>> stages_;
 };
 
