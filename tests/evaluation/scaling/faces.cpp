@@ -242,18 +242,18 @@ class FacesPart {
                             exponent);
         said += ", " + quantity + " " + cell(std::round(exponent * 1000) / 1000);
         if (quantity == "bake_cpu_s")
-          run_.bars->at_most("exponent of the bake's processor time, " + series, exponent, kSteepestBake, "",
-                             "n log n is about 1.07");
+          judge_time(run_, "exponent of the bake's processor time, " + series, exponent, kSteepestBake, "",
+                     "n log n is about 1.07");
       }
       std::printf("exponents of %s: %s\n", series.c_str(), said.c_str() + 2);
     }
     for (const auto& [way, worst] : flat_)
-      run_.bars->at_most("flat: own p50 over the body of 980 faces, " + way, worst.value, kFlat, "", worst.where);
+      judge_time(run_, "flat: own p50 over the body of 980 faces, " + way, worst.value, kFlat, "", worst.where);
     for (const auto& [way, worst] : narrow_) {
       if (way == name_of(Motion::near) || way == name_of(Motion::far)) {
-        run_.bars->at_most("f32 less f64, own p50, " + way, worst.value, kConversions_ns, "ns", worst.where);
+        judge_time(run_, "f32 less f64, own p50, " + way, worst.value, kConversions_ns, "ns", worst.where);
       } else {
-        run_.bars->at_most("f32 over f64, own p50, " + way, worst.value, kNoise, "", worst.where);
+        judge_time(run_, "f32 over f64, own p50, " + way, worst.value, kNoise, "", worst.where);
       }
     }
     std::printf("f64 against itself, own p50: %.3f at most (%s)\n", control_.value, control_.where.c_str());

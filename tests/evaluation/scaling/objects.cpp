@@ -130,7 +130,7 @@ void scale_objects(const ScalingRun& run) {
                        series.back().first, exponent);
     std::printf("exponent %6.3f  step by objects, %s\n", exponent, what.name);
     if (what.is_promised_flat)
-      run.bars->at_most(std::string("exponent of a finger's step by objects, ") + what.name, exponent, kFlatExponent, "");
+      judge_time(run, std::string("exponent of a finger's step by objects, ") + what.name, exponent, kFlatExponent, "");
   }
   if (can_count_heap_calls()) run.bars->at_most("heap calls while stepping scenes", static_cast<double>(heap), 0, "");
 }
