@@ -54,6 +54,7 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
   for (std::size_t i = 0; i < way.size(); ++i) {
     const Feel &f = felt[i], &t = truth[i].feel;
     m.transitions += f.transitions;
+    m.carried_ticks += f.is_carried;
     god_object.push_back(length(f.god_object - t.god_object));
     force.push_back(length(f.force - t.force));
     if (!t.in_contact) {
@@ -63,7 +64,8 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
     }
     ++m.contact_ticks;
     const double true_force = length(t.force);
-    const bool is_lost = true_force > kTouch_m * kStiffness_n_per_m && (!f.in_contact || dot(f.force, t.force) < 0);
+    const bool is_lost =
+        !f.is_carried && true_force > kTouch_m * kStiffness_n_per_m && (!f.in_contact || dot(f.force, t.force) < 0);
     lost += is_lost;
     m.push_throughs += is_lost && !was_lost;
     was_lost = is_lost;

@@ -17,8 +17,8 @@ constexpr double kNoticeableForce = 0.07;
 constexpr double kNoticeableDirection_deg = 18;
 
 struct Metrics {
-  std::uint64_t ticks = 0, contact_ticks = 0;  // of the truth
-  std::uint64_t transitions = 0;               // of the contender
+  std::uint64_t ticks = 0, contact_ticks = 0;        // of the truth
+  std::uint64_t transitions = 0, carried_ticks = 0;  // of the contender
   // |god-object - true god-object| over every tick; a free contender's god-object is the HIP, as the truth's is.
   double god_object_rms_m = 0, god_object_p50_m = 0, god_object_p99_m = 0, god_object_max_m = 0;
   double force_rms_n = 0, force_max_n = 0;              // |force - true force|
@@ -28,7 +28,7 @@ struct Metrics {
   double jump_n_per_ms = 0, true_jump_n_per_ms = 0;     // the largest change of force within a millisecond
   double wrong_feature_share = 0;  // of ticks of true contact: god-object over 5 micrometres from the true feature
   // Pushed through: the HIP is over 10 micrometres below the true god-object, and the contender is free or pushes the other
-  // way.
+  // way. Not in carried ticks.
   std::uint64_t push_throughs = 0;  // times that it begins
   double push_through_share = 0;    // of ticks of true contact
   double phantom_share = 0;         // of truly free ticks: a force of over 10 micrometres' depth
