@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -56,6 +55,8 @@ const std::vector<std::string> kColumns = {"body",
                                            "carried_ticks",
                                            "bytes_per_face",
                                            "bake_s",
+                                           "tied_share",
+                                           "god_object_rms_untied_m",
                                            "god_object_rms_m",
                                            "god_object_p50_m",
                                            "god_object_p99_m",
@@ -82,48 +83,12 @@ const char* name_of(BodyGroup group) {
   return kNames[static_cast<std::size_t>(group)];
 }
 
-// Contenders over the ways of a body that count for the frontier: the mean of the times, the root mean square of the errors.
-class Pooled {
- public:
-  void add(const ContenderInfo& info, double faces, double mean_ns, double error_rms_m) {
-    Sum& sum = sums_[info.name];
-    if (sum.ways++ == 0) {
-      order_.push_back(info.name);
-      sum.standing = {info.name, info.family, 0, 0, static_cast<double>(info.bytes) / faces, info.bake_s, false, ""};
-    }
-    sum.time_ns += mean_ns;
-    sum.error2_m2 += error_rms_m * error_rms_m;
-  }
-  void add_control(double first_ns, double again_ns) { first_ns_ += first_ns, again_ns_ += again_ns; }
-
-  [[nodiscard]] std::vector<Standing> standings() const {
-    std::vector<Standing> list;
-    for (const std::string& name : order_) {
-      const Sum& sum = sums_.at(name);
-      list.push_back(sum.standing);
-      list.back().time_ns = sum.time_ns / sum.ways;
-      list.back().error_m = std::sqrt(sum.error2_m2 / sum.ways);
-    }
-    return list;
-  }
-  // What the first contender and its control differ by; never finer than half a per cent, never blinder than three, whatever
-  // the machine does.
-  [[nodiscard]] double resolution() const {
-    constexpr double kFinest = 0.005, kCoarsest = 0.03;
-    const double seen = std::abs(again_ns_ / first_ns_ - 1);
-    return std::isnan(seen) ? kFinest : std::clamp(seen, kFinest, kCoarsest);
-  }
-
- private:
-  struct Sum {
-    Standing standing;
-    double time_ns = 0, error2_m2 = 0;
-    int ways = 0;
-  };
-  std::vector<std::string> order_;
-  std::map<std::string, Sum> sums_;
-  double first_ns_ = 0, again_ns_ = 0;
-};
+// What two runs of the same contender differ by; never finer than half a per cent, never blinder than three, whatever the
+// machine does.
+double resolution_of(const Timing& first, const Timing& again) {
+  constexpr double kFinest = 0.005, kCoarsest = 0.03;
+  return std::clamp(std::abs(again.mean_ns() / first.mean_ns() - 1), kFinest, kCoarsest);
+}
 
 // What must never happen to this runtime, over every row.
 struct OwnFaults {
@@ -164,11 +129,11 @@ class Evaluation {
     const Contenders& contenders;
   };
   [[nodiscard]] bool is_wanted(const WayPlan& way) const;
-  void run_way(const Scene& scene, const WayPlan& plan, Pooled& pooled);
+  void run_way(const Scene& scene, const WayPlan& plan);
   // Its row; returns the god-object's error.
   double run_contender(const Scene& scene, const WayPlan& plan, const Way& way, const std::vector<TrueBody::Tick>& truth,
                        Contender& contender, const Timing& timing);
-  void rank_body(const Body& body, const Pooled& pooled);
+  void rank_body(const Body& body, std::vector<Standing> standings, double resolution);
 
   Options options_;
   Stopwatch watch_;
@@ -187,14 +152,12 @@ void Evaluation::run(const BodyPlan& plan) {
   const Ground ground(body.make());
   const TrueBody truth(ground);
   const Contenders contenders = contenders_for(ground, body, options_.is_quick);
-  Pooled pooled;
   for (const WayPlan& way : plan.ways) {
-    if (is_wanted(way)) run_way({body, ground, truth, contenders}, way, pooled);
+    if (is_wanted(way)) run_way({body, ground, truth, contenders}, way);
   }
-  if (!pooled.standings().empty()) rank_body(body, pooled);
 }
 
-void Evaluation::run_way(const Scene& scene, const WayPlan& plan, Pooled& pooled) {
+void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
   WayOptions options;
   options.kind = plan.kind;
   options.rate_hz = plan.rate_hz;
@@ -213,11 +176,14 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan, Pooled& pooled
   const std::vector<Timing> timings = time_all(entrants, way, watch_, budget_s);
   std::printf("%s, %s at %g Hz, mu %g/%g\n", scene.body.name.c_str(), name_of(plan.kind), plan.rate_hz, plan.mu_static,
               plan.mu_dynamic);
+  std::vector<Standing> standings;
   for (std::size_t e = 0; e + 1 < entrants.size(); ++e) {
     const double error_rms_m = run_contender(scene, plan, way, truth, *entrants[e], timings[e]);
-    if (plan.counts) pooled.add(entrants[e]->info(), scene.body.faces, timings[e].mean_ns(), error_rms_m);
+    const ContenderInfo& info = entrants[e]->info();
+    standings.push_back({info.name, info.family, timings[e].mean_ns(), error_rms_m,
+                         static_cast<double>(info.bytes) / scene.body.faces, info.bake_s, false, ""});
   }
-  if (plan.counts) pooled.add_control(timings.front().mean_ns(), timings.back().mean_ns());
+  if (plan.counts) rank_body(scene.body, std::move(standings), resolution_of(timings.front(), timings.back()));
   std::fflush(stdout);
 }
 
@@ -235,11 +201,11 @@ double Evaluation::run_contender(const Scene& scene, const WayPlan& plan, const 
   table_.row(scene.body.name, name_of(scene.body.group), scene.body.faces, name_of(plan.kind), plan.rate_hz, plan.mu_static,
              plan.mu_dynamic, info.name, info.family, info.precision, info.planes, info.merged, m.ticks, m.contact_ticks,
              timing.rounds, timing.mean_ns(), timing.batch_ns, ticks.at(0.5), ticks.at(0.99), ticks.at(0.999), ticks.at(1),
-             free.at(0.5), contact.at(0.5), m.transitions, m.carried_ticks, bytes_per_face, info.bake_s, m.god_object_rms_m,
-             m.god_object_p50_m, m.god_object_p99_m, m.god_object_max_m, m.force_rms_n, m.force_max_n, m.force_share_p99,
-             m.noticeable_share, m.direction_p99_deg, m.direction_max_deg, m.jump_n_per_ms, m.true_jump_n_per_ms,
-             m.wrong_feature_share, m.push_throughs, m.push_through_share, m.phantom_share, creep, energy.work_j,
-             energy.bound_j, "brute force, long double");
+             free.at(0.5), contact.at(0.5), m.transitions, m.carried_ticks, bytes_per_face, info.bake_s, m.tied_share,
+             m.untied_rms_m, m.god_object_rms_m, m.god_object_p50_m, m.god_object_p99_m, m.god_object_max_m, m.force_rms_n,
+             m.force_max_n, m.force_share_p99, m.noticeable_share, m.direction_p99_deg, m.direction_max_deg, m.jump_n_per_ms,
+             m.true_jump_n_per_ms, m.wrong_feature_share, m.push_throughs, m.push_through_share, m.phantom_share, creep,
+             energy.work_j, energy.bound_j, "brute force, long double");
   std::printf("  %-26s %6.0f ns (p99 %6.0f)  error rms %8.2g m, max %8.2g m  off the feature %5.1f %%  pushed through %llu\n",
               info.name.c_str(), timing.mean_ns(), ticks.at(0.99), m.god_object_rms_m, m.god_object_max_m,
               100 * m.wrong_feature_share, static_cast<unsigned long long>(m.push_throughs));
@@ -249,10 +215,8 @@ double Evaluation::run_contender(const Scene& scene, const WayPlan& plan, const 
   return m.god_object_rms_m;
 }
 
-void Evaluation::rank_body(const Body& body, const Pooled& pooled) {
+void Evaluation::rank_body(const Body& body, std::vector<Standing> standings, double resolution) {
   constexpr double kFloor_m = kBody_m * 0x1p-53;  // a unit in the last place of the body: less is no error
-  std::vector<Standing> standings = pooled.standings();
-  const double resolution = pooled.resolution();
   rank(standings, resolution, kFloor_m);
   int on_frontier[2] = {0, 0};
   double best_ns[2] = {1e300, 1e300};

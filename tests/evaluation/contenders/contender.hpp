@@ -25,7 +25,7 @@ struct Feel {
 
 struct ContenderInfo {
   std::string name;    // as in the tables
-  std::string family;  // fdcg, paper, closest_point, distance_grid, proxy
+  std::string family;  // fdcg, paper, ablation (of fdcg's rules), closest_point, distance_grid, proxy
   std::string precision = "f64", planes = "none", merged = "no";
   bool has_friction = false;
   std::size_t bytes = 0;  // that it needs at run time

@@ -127,7 +127,7 @@ class Paper : public Contender {
     node_of_face_.assign(view_.source_map, view_.source_map + view_.header->source_face_count);
     constexpr const char* kNames[] = {"paper", "paper_crossings", "paper_edges", "paper_vertices"};
     info_.name = kNames[static_cast<std::size_t>(level)];
-    info_.family = "paper";
+    info_.family = level == PaperLevel::printed ? "paper" : "ablation";
     info_.has_friction = true;
     info_.planes = "stored";
     info_.bytes = graph_.bytes() + scene_.bytes();

@@ -16,7 +16,7 @@ struct WayPlan {
   WayKind kind;
   double rate_hz = 1000;
   double mu_static = 0, mu_dynamic = 0;
-  bool counts = false;  // for the frontier of its body
+  bool counts = false;  // for the frontier of its body: at most one of a body's ways does
 };
 
 struct BodyPlan {
