@@ -27,7 +27,10 @@ int main(int argc, char** argv) {
     Bars bars(options.output, "fdcg_bench_laws");
     measure_ramps(options, bars);
     measure_slides(options, bars);
+    measure_stick_slip(options, bars);
+    measure_creep(options, bars);
     measure_energy(options, bars);
+    measure_tessellation(options, bars);
     return bars.failures() > 0 ? 1 : 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fdcg_bench_laws: %s\n", error.what());

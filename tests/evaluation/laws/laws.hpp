@@ -29,4 +29,13 @@ void measure_slides(const LawOptions& options, Bars& bars);
 // The work that closed loops of the HIP do on the user, against what sampling allows (energy.csv, energy_histogram.csv).
 void measure_energy(const LawOptions& options, Bars& bars);
 
+// Sphere, cylinder, torus and cone by formula against eight levels of tessellation (tessellation.csv).
+void measure_tessellation(const LawOptions& options, Bars& bars);
+
+// Break-away, leap, turn and the saw-tooth of a pulled hand against their formulas (stick_slip.csv, stick_slip_trace.csv).
+void measure_stick_slip(const LawOptions& options, Bars& bars);
+
+// Ticks at rest under static friction (creep.csv).
+void measure_creep(const LawOptions& options, Bars& bars);
+
 }  // namespace fdcg::test
