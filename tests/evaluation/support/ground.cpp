@@ -11,6 +11,8 @@
 #include <limits>
 #include <utility>
 
+#include "point.hpp"
+
 namespace fdcg::test {
 namespace {
 
@@ -18,51 +20,7 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Triangle = Kernel::Triangle_3;
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle>::const_iterator>;
 using AabbTree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
-using Point = Ground::Point;
-
-Point operator-(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Point operator+(const Point& a, const Point& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Point operator*(const Point& a, double s) {
-  return {a[0] * s, a[1] * s, a[2] * s};
-}
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Point unit(const Point& a) {
-  const double length = std::sqrt(dot(a, a));
-  return length > 0 ? a * (1 / length) : a;
-}
-
-// The nearest point of a triangle and what it lies on: bit k of `on` is set for each corner that has weight in it.
-struct OnTriangle {
-  Point point;
-  unsigned on;
-};
-// By the regions of Ericson, Real-Time Collision Detection (2005), 5.1.5.
-OnTriangle nearest(const Point& p, const Point& a, const Point& b, const Point& c) {
-  const Point ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return {a, 1};
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return {b, 2};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + ab * (d1 / (d1 - d3)), 3};
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return {c, 4};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + ac * (d2 / (d2 - d6)), 5};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return {b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 6};
-  const double scale = 1 / (va + vb + vc);
-  return {a + ab * (vb * scale) + ac * (vc * scale), 7};
-}
+using namespace plain;
 
 std::uint64_t ends_of(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
@@ -175,11 +133,14 @@ Ground::Point Ground::edge_normal(std::uint32_t a, std::uint32_t b, std::uint32_
 
 Ground::Closest Ground::closest(const Point& point) const {
   const auto found = tree_->aabb.closest_point_and_primitive({point[0], point[1], point[2]});
-  const Tree::Source& source = tree_->sources[static_cast<std::size_t>(found.second - tree_->triangles.begin())];
+  return closest_of(point, static_cast<std::uint32_t>(found.second - tree_->triangles.begin()));
+}
+
+Ground::Closest Ground::closest_of(const Point& point, std::uint32_t triangle) const {
+  const Tree::Source& source = tree_->sources[triangle];
   const std::uint32_t* c = source.corner;
-  const OnTriangle on = nearest(point, corner(c[0]), corner(c[1]), corner(c[2]));
-  const Point offset = point - on.point;
-  Closest result{on.point, face_normals_[source.face], face_normals_[source.face], source.face, std::sqrt(dot(offset, offset))};
+  const OnTriangle on = nearest_on_triangle(point, corner(c[0]), corner(c[1]), corner(c[2]));
+  Closest result{on.point, face_normals_[source.face], face_normals_[source.face], source.face, length(point - on.point)};
   constexpr int kFirst[8] = {0, 0, 1, 0, 2, 0, 1, 0}, kSecond[8] = {0, 0, 0, 1, 0, 2, 2, 0};  // corners of the set bits
   if (on.on == 3 || on.on == 5 || on.on == 6) {
     result.feature_normal = edge_normal(c[kFirst[on.on]], c[kSecond[on.on]], source.face);

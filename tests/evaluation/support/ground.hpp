@@ -32,6 +32,8 @@ class Ground {
   };
   // Some microseconds at a million faces. Safe from several threads.
   [[nodiscard]] Closest closest(const Point& point) const;
+  // The same of one triangle: faces cut into fans, in order; where all faces are triangles, of face `triangle`.
+  [[nodiscard]] Closest closest_of(const Point& point, std::uint32_t triangle) const;
   // Negative inside. Of closed bodies only.
   [[nodiscard]] double signed_distance(const Point& point) const;
 

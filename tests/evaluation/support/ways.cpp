@@ -6,34 +6,18 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "point.hpp"
 #include "random.hpp"
 
 namespace fdcg::test {
 namespace {
 
-using Point = Ground::Point;
+using namespace plain;
 
-Point operator+(const Point& a, const Point& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Point operator-(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Point operator*(const Point& a, double s) {
-  return {a[0] * s, a[1] * s, a[2] * s};
-}
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-double length(const Point& a) {
-  return std::sqrt(dot(a, a));
-}
-Point unit(const Point& a) {
-  const double l = length(a);
-  return l > 0 ? a * (1 / l) : Point{1, 0, 0};
-}
+// In the plane, of unit length; any direction where nothing is left.
 Point flattened(const Point& a, const Point& normal) {
-  return unit(a - normal * dot(a, normal));
+  const Point along = unit(a - normal * dot(a, normal));
+  return dot(along, along) > 0 ? along : Point{1, 0, 0};
 }
 Point direction(Random& random) {
   const bake::Vec3 d = random.direction();
@@ -107,9 +91,7 @@ class HandPen : public Pen {
   // convex edge for ever.
   void walk(double way_m) {
     constexpr double kPiece_m = 1e-3, kPull = 0.3;
-    const Point side = {normal_[1] * heading_[2] - normal_[2] * heading_[1],
-                        normal_[2] * heading_[0] - normal_[0] * heading_[2],
-                        normal_[0] * heading_[1] - normal_[1] * heading_[0]};
+    const Point side = cross(normal_, heading_);
     heading_ = unit(heading_ + side * turn_);
     for (double left = way_m; left > 0; left -= kPiece_m) {
       const double piece = std::min(left, kPiece_m);
@@ -317,8 +299,7 @@ class OrbitPen : public CornerPen {
     const double swell = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * kSwell_hz * t);
     const double radius = kLeast_m * std::pow(kMost_m / kLeast_m, swell);
     const Point u = flattened(std::abs(normal()[0]) < 0.8 ? Point{1, 0, 0} : Point{0, 1, 0}, normal());
-    const Point v = {normal()[1] * u[2] - normal()[2] * u[1], normal()[2] * u[0] - normal()[0] * u[2],
-                     normal()[0] * u[1] - normal()[1] * u[0]};
+    const Point v = cross(normal(), u);
     const Point around = ground_corner() + u * (radius * std::cos(angle)) + v * (radius * std::sin(angle));
     return ground().closest(around).point - ground_corner();
   }
