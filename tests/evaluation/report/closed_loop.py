@@ -25,7 +25,7 @@ def limits(run):
     figure, axes = subplots(2)
     ax = axes[0][0]
     for index, device in enumerate(devices):
-        rows = sorted((r for r in plain if r["device"] == device and r["delay_ticks"] == 0 and r["hand"] in ("no", "none", 0)),
+        rows = sorted((r for r in plain if r["device"] == device and r["delay_ticks"] == 0 and r["hand"] == "none"),
                       key=lambda r: r["rate_hz"])
         if not rows:
             continue
@@ -38,7 +38,7 @@ def limits(run):
     ax = axes[0][1]
     rates = sorted({r["rate_hz"] for r in plain if r["delay_ticks"] > 0})
     for index, rate in enumerate(rates[:6]):
-        rows = sorted((r for r in plain if r["device"] == devices[0] and r["rate_hz"] == rate and r["hand"] in ("no", "none", 0)),
+        rows = sorted((r for r in plain if r["device"] == devices[0] and r["rate_hz"] == rate and r["hand"] == "none"),
                       key=lambda r: r["delay_ticks"])
         x = [r["delay_ticks"] for r in rows]
         ax.plot(x, [r["limit_n_per_m"] for r in rows], linestyle="none", label=f"{rate:g} Hz, simulated", **style(index))
@@ -58,19 +58,21 @@ def quantum(run):
     rows = [r for r in table.rows if r["quantum_m"] > 0]
     if not rows:
         return
-    figure, axes = subplots(1)
+    figure, axes = subplots(1, height=4.4)
     ax = axes[0][0]
-    keys = list(dict.fromkeys((r["device"], r["rate_hz"]) for r in rows))
-    for index, (device, rate) in enumerate(keys[:6]):
-        chosen = sorted((r for r in rows if (r["device"], r["rate_hz"]) == (device, rate) and r["delay_ticks"] == 0),
+    keys = list(dict.fromkeys((r["device"], r["hand"], r["rate_hz"], r["coulomb_n"]) for r in rows))
+    for index, key in enumerate(keys[:8]):
+        device, hand, rate, coulomb = key
+        chosen = sorted((r for r in rows if (r["device"], r["hand"], r["rate_hz"], r["coulomb_n"]) == key and r["delay_ticks"] == 0),
                         key=lambda r: r["quantum_m"])
         if not chosen:
             continue
         x = [r["quantum_m"] for r in chosen]
-        ax.plot(x, [r["limit_n_per_m"] for r in chosen], linestyle="none", label=f"{device}, {rate:g} Hz", **style(index))
+        ax.plot(x, [r["limit_n_per_m"] for r in chosen], linestyle="none", **style(index),
+                label=f"{device}, hand {hand}, {rate:g} Hz, friction {coulomb:g} N")
         ax.plot(x, [r["encoder_line_n_per_m"] for r in chosen], ":", color=COLOURS[index])
     ax.set(xscale="log", yscale="log", xlabel="encoder quantum, m", ylabel="largest stiffness, N/m", title="Against the encoder's quantum")
-    legend(ax, 2)
+    legend(ax, 1)
     yield finish("closed_loop_quantum", figure, "Largest stiffness without a limit cycle against the encoder's quantum", "Dotted: the encoder's line.")
 
 

@@ -91,28 +91,48 @@ def tessellation(run):
     table = run.table("tessellation")
     if table is None:
         return
-    columns = [("god_object_error_m", "God-object error, m"), ("force_rms_error_n", "Force error, RMS, N"), ("jump_n_per_ms", "Largest jump, N per ms")]
-    columns = [(c, t) for c, t in columns if c in table.columns]
-    figure, axes = subplots(len(columns))
-    for ax, (column, title) in zip(axes[0], columns):
+    measures = [("off_surface_max_m", "God-object off the smooth shape, m"), ("god_object_error_max_m", "God-object error, m"),
+                ("largest_jump_n_per_ms", "Largest force jump, N per ms")]
+    figure, axes = subplots(len(measures))
+    for ax, (column, title) in zip(axes[0], measures):
         for index, shape in enumerate(table.values("shape")):
-            rows = table.where(shape=shape, precision="f64").sorted_by("faces").rows
-            ax.plot([r["faces"] for r in rows], [r[column] for r in rows], label=shape, **style(index))
+            of_shape = table.where(shape=shape, precision="f64")
+            depth = min(of_shape.column("depth_m"))
+            rows = [r for r in of_shape.where(depth_m=depth).sorted_by("faces").rows if r["contact_ticks"] > 0]
+            ax.plot([r["faces"] for r in rows], [r[column] for r in rows], label=f"{shape}, {1e3 * depth:g} mm deep", **style(index))
         ax.set(xscale="log", yscale="log", xlabel="faces", title=title)
-    legend(axes[0][0])
+        legend(ax, 2)
     yield finish("tessellation", figure, "Error against the smooth shape over the number of faces for sphere, cylinder, torus and cone",
-                 "The faces' own distance from the shape they stand for: twice as fine, four times as near.")
+                 "What a tessellation costs: the distance from the shape that the faces stand for falls with the square of "
+                 "their edges; along the surface and in direction it falls with the edge.")
 
 
 def stick_slip(run):
-    table = run.table("stick_slip")
-    if table is None:
-        return
-    yield "<h3>Stick-slip</h3>" + page.table(table.columns, table.rows)
+    trace, table = run.table("stick_slip_trace"), run.table("stick_slip")
+    if trace is not None and {"time_s", "position_m"} <= set(trace.columns):
+        figure, axes = subplots(1, width=6)
+        ax = axes[0][0]
+        ax.plot(trace.column("time_s"), trace.column("position_m"), color=COLOURS[0], linewidth=1)
+        ax.set(xlabel="s", ylabel="m", title="Stick-slip")
+        yield finish("stick_slip", figure, "Saw-tooth of the god-object's position over time", "A HIP driven at constant speed.")
+    if table is not None:
+        yield "<h3>Stick-slip</h3>" + page.table(table.columns, table.rows)
 
 
 def energy(run):
-    table = run.table("energy")
+    table = run.table("energy_histogram")
     if table is None:
         return
-    yield "<h3>Closed loops</h3>" + page.table(table.columns, table.rows)
+    figure, axes = subplots(1, width=5.4)
+    ax = axes[0][0]
+    for index, precision in enumerate(table.values("precision")):
+        loops = {}
+        for r in table.where(precision=precision).rows:
+            loops[r["work_over_bound_from"]] = loops.get(r["work_over_bound_from"], 0) + r["loops"]
+        x = sorted(loops)
+        ax.step(x, [loops[v] for v in x], where="post", color=COLOURS[index], label=f"{precision}, {sum(loops.values()):,} loops")
+    ax.axvline(1, color="#000", linewidth=.8, label="bound")
+    ax.set(yscale="log", xlabel="work on the user over the sampling's bound", ylabel="loops", title="Closed loops of the hand")
+    legend(ax)
+    yield finish("energy", figure, "Histogram of the work that closed loops do on the user over the zero-order hold's bound: all below 1",
+                 "Negative: the user pays. What sampling gives at most is half the stiffness times the sum of the squared steps.")
