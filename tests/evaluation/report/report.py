@@ -74,11 +74,10 @@ def sections(run):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", help="where the CSV tables are, and where the report goes")
-    parser.add_argument("--mode", default="full", help="said in the report: full or --quick")
+    parser.add_argument("--mode", default="full", choices=["full", "quick"], help="said in the report")
     parser.add_argument("--seed", default="1", help="said in the report")
     parser.add_argument("--pictures", metavar="DIR", help="the pictures of the README, as SVG files, into DIR")
     options = parser.parse_args()
-    options.mode = options.mode.lstrip("-")
     run = Run(options.folder)
     if not run.tables and not run.bars:
         parser.error(f"{options.folder}: no CSV table there; run tools/bench, which writes them")
