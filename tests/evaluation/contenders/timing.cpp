@@ -7,7 +7,7 @@
 namespace fdcg::test {
 namespace {
 
-constexpr int kLeastRounds = 3, kMostRounds = 41;
+constexpr int kLeastRounds = 3, kMostRounds = 61;
 
 double way_ns(Contender& contender, const Way& way, const Stopwatch& watch) {
   Feel feel;

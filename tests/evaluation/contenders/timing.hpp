@@ -21,7 +21,7 @@ struct Timing {
 
 // Every entrant goes along the whole way in turn, round after round, on this thread, after a round that is not counted; each
 // round begins with the next of them. All have as many rounds as fit the slowest's share of the budget, but fast ones more, up
-// to 41. The same contender may enter twice: what the two differ by is what cannot be told apart.
+// to 61. The same contender may enter twice: what the two differ by is what cannot be told apart.
 std::vector<Timing> time_all(const std::vector<Contender*>& entrants, const Way& way, const Stopwatch& watch, double budget_s);
 
 }  // namespace fdcg::test
