@@ -29,6 +29,7 @@ TrueBody::TrueBody(const Ground& ground) : ground_(ground) {
 std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFriction& friction) const {
   ReferenceWalker<long double> walker(*surface_, friction);
   std::vector<Tick> ticks(way.size());
+  bool is_tied = false;
   double clear = 0;  // no surface is nearer to the last HIP than this; 0: not known
   for (std::size_t i = 0; i < way.size(); ++i) {
     const std::array<double, 3> local = surface_->local(way[i].data());
@@ -42,13 +43,17 @@ std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFric
       walker.contact.is_slipping = false;
     } else {
       clear = 0;
-      ticks[i].feel.transitions = walker.step(local).transitions;
+      const ReferenceStep step = walker.step(local);
+      ticks[i].feel.transitions = step.transitions;
+      is_tied = is_tied || step.margin < kTie;
     }
     Tick& tick = ticks[i];
     tick.state = walker.contact.state;
     tick.feature = walker.contact.feature;
     tick.feel.in_contact = tick.state != FDCG_FREE;
     tick.feel.god_object = way[i];
+    is_tied = is_tied && tick.feel.in_contact;
+    tick.is_tied = is_tied;
     if (!tick.feel.in_contact) continue;
     const Vector<long double>& go = walker.contact.god_object;
     const long double place[3] = {go.x, go.y, go.z};

@@ -14,6 +14,8 @@
 
 namespace fdcg::test {
 
+constexpr double kTie = 0x1p-22;  // twice the spacing of floats at the extent
+
 // A body's unmerged graph in double, with what the truth is computed from: by brute force in long double (ReferenceWalker).
 class TrueBody {
  public:
@@ -23,6 +25,8 @@ class TrueBody {
   struct Tick {
     Feel feel;
     std::uint32_t state = FDCG_FREE, feature = FDCG_NONE;
+    // Since it was last free a decision was closer than floats tell apart, kTie of the extent: another answer may be as right.
+    bool is_tied = false;
   };
   // Sweeps through free space are skipped where the ground is farther than the way is long.
   [[nodiscard]] std::vector<Tick> follow(const Way& way, const ReferenceFriction& friction) const;
