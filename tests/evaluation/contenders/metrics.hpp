@@ -11,10 +11,8 @@
 
 namespace fdcg::test {
 
-// The least change of a force that a hand can tell, as a part of it; and of its direction (Pang, Tan and Durlach 1991; Barbagli
-// et al. 2006 found 18 degrees and more).
+// The least change of a force that a hand can tell, as a part of it (Pang, Tan and Durlach 1991).
 constexpr double kNoticeableForce = 0.07;
-constexpr double kNoticeableDirection_deg = 18;
 
 struct Metrics {
   std::uint64_t ticks = 0, contact_ticks = 0;        // of the truth
