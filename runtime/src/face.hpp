@@ -83,7 +83,7 @@ inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
   if (!(walk.seat == kFree)) return walk.seat;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) return kFree;
-  const EdgeLine<Real> line(walk.graph.edge(node, side));
+  const EdgeLine<Real> line(walk.graph, node, side);
   return place_on_edge(walk, node.connection(side), line, line.parameter(walk.god_object));
 }
 
@@ -97,7 +97,7 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
-  const EdgeLine<Real> line(walk.graph.edge(node, side));
+  const EdgeLine<Real> line(walk.graph, node, side);
   const Vec3<Real> point = walk.god_object + (move.target - walk.god_object) * move.crossing.fraction;
   return go_to(place_on_edge(walk, node.connection(side), line, line.parameter(point)));
 }
