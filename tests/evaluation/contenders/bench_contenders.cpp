@@ -140,7 +140,7 @@ class Evaluation {
   void run_way(const Scene& scene, const WayPlan& plan);
   // Its row; returns the god-object's error.
   double run_contender(const Scene& scene, const WayPlan& plan, const Way& way, const std::vector<TrueBody::Tick>& truth,
-                       Contender& contender, const Timing& timing);
+                       const std::string& reference, Contender& contender, const Timing& timing);
   void rank_body(const Body& body, std::vector<Standing> standings, double resolution);
 
   Options options_;
@@ -192,9 +192,10 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
   const std::vector<Timing> timings = time_all(entrants, way, watch_, budget_s);
   std::printf("%s, %s at %g Hz, mu %g/%g\n", scene.body.name.c_str(), name_of(plan.kind), plan.rate_hz, plan.mu_static,
               plan.mu_dynamic);
+  const std::string reference = scene.truth.reference(way, truth);
   std::vector<Standing> standings;
   for (std::size_t e = 0; e < judged; ++e) {
-    const double error_rms_m = run_contender(scene, plan, way, truth, *entrants[e], timings[e]);
+    const double error_rms_m = run_contender(scene, plan, way, truth, reference, *entrants[e], timings[e]);
     const ContenderInfo& info = entrants[e]->info();
     standings.push_back({info.name, info.family, timings[e].mean_ns(), error_rms_m,
                          static_cast<double>(info.bytes) / scene.body.faces, info.bake_s, false, ""});
@@ -204,7 +205,8 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
 }
 
 double Evaluation::run_contender(const Scene& scene, const WayPlan& plan, const Way& way,
-                                 const std::vector<TrueBody::Tick>& truth, Contender& contender, const Timing& timing) {
+                                 const std::vector<TrueBody::Tick>& truth, const std::string& reference, Contender& contender,
+                                 const Timing& timing) {
   const ContenderInfo& info = contender.info();
   const Metrics m = judge(way, plan.rate_hz, feel_along(contender, way), truth, scene.truth);
   const LoopEnergy energy = energy_of_loop(contender, way);
@@ -221,7 +223,7 @@ double Evaluation::run_contender(const Scene& scene, const WayPlan& plan, const 
              m.untied_rms_m, m.god_object_rms_m, m.god_object_p50_m, m.god_object_p99_m, m.god_object_max_m, m.force_rms_n,
              m.force_max_n, m.force_share_p99, m.noticeable_share, m.direction_p99_deg, m.direction_max_deg, m.jump_n_per_ms,
              m.true_jump_n_per_ms, m.wrong_feature_share, m.push_throughs, m.push_through_share, m.phantom_share, creep,
-             energy.work_j, energy.bound_j, "brute force, long double");
+             energy.work_j, energy.bound_j, reference);
   std::printf("  %-26s %6.0f ns (p99 %6.0f)  error rms %8.2g m, max %8.2g m  off the feature %5.1f %%  pushed through %llu\n",
               info.name.c_str(), timing.mean_ns(), ticks.at(0.99), m.god_object_rms_m, m.god_object_max_m,
               100 * m.wrong_feature_share, static_cast<unsigned long long>(m.push_throughs));
@@ -289,7 +291,7 @@ int main(int argc, char** argv) {
   app.add_option("--output", options.output, "folder for contenders.csv, pareto.csv, pareto_verdict.csv and the bars")
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of the ways")->capture_default_str();
-  app.add_option("--body", options.bodies, "only these; any of bodies.hpp, up to 10 million faces");
+  app.add_option("--body", options.bodies, "only these; any of bodies.hpp, up to 10 million faces (some 12 GB)");
   app.add_option("--way", options.ways, "only these of the plan's ways");
   app.add_option("--ticks", options.ticks, "of each way; default 10,000, quick 4,000")->check(CLI::Range(100u, 1'000'000u));
   try {
