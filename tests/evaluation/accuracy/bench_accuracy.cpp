@@ -28,13 +28,17 @@ namespace {
 constexpr double kMu[4][2] = {{0, 0}, {0.3, 0.2}, {1, 1}, {2, 1}};
 constexpr double kOffsets_sizes[] = {1e3, 1e6};
 constexpr double kP999Bar_ulps = 8, kMaxBar_ulps = 64;  // the project's own
+constexpr unsigned kWaysOfAKind = 16;                   // one for each combination of friction, planes and merging
 constexpr std::uint32_t kMostFaces = 1500;              // of bodies from bodies.hpp: the replay tests every face of a sweep
+
+constexpr const char* kRestless = "restless";  // the way of hip_walk.hpp
 
 struct Options {
   bool is_quick = false, explains = false;
   std::string output = "accuracy";
   std::uint64_t seed = 1;
   unsigned threads = 2;
+  std::string body, way;  // only these; empty: all
 };
 
 // Everything that is to be run. Holds the soups and ways that the settings point to.
@@ -125,6 +129,10 @@ void add_offsets(Plan& plan, const AccuracySetting& base, const Ticks& ticks) {
   }
 }
 
+bool is_wanted(const std::string& only, const std::string& name) {
+  return only.empty() || only == name;
+}
+
 Plan make_plan(const Options& options) {
   const Ticks on_walks = options.is_quick ? Ticks{240, 24, 240, 4} : Ticks{1500, 120, 1500, 1};
   const Ticks on_ways = options.is_quick ? Ticks{200, 12, 200, 8} : Ticks{600, 40, 600, 1};
@@ -132,31 +140,39 @@ Plan make_plan(const Options& options) {
   unsigned turn = 0;
   AccuracySetting base;
   for (PolygonSoup& soup : walked_bodies()) {
+    if (!is_wanted(options.body, soup.name) || !is_wanted(options.way, kRestless)) continue;
     plan.soups.push_back(std::make_unique<PolygonSoup>(std::move(soup)));
     base.soup = plan.soups.back().get();
     base.body = base.soup->name;
-    base.way = "restless";
+    base.way = kRestless;
     base.seed = options.seed * 1000 + turn * 50;
     add_all(plan, base, on_walks, turn++);
     add_offsets(plan, base, on_walks);
   }
   for (const Body& body : bodies(kMostFaces)) {
+    if (!is_wanted(options.body, body.name)) continue;
     plan.soups.push_back(std::make_unique<PolygonSoup>(body.make()));
     base.soup = plan.soups.back().get();
     base.body = body.name;
     const Ground ground(*base.soup);
     for (const WayName& way : kWays) {
+      if (!is_wanted(options.way, way.name)) continue;
+      if (options.is_quick && (turn + static_cast<unsigned>(way.kind)) % 4 != 0) continue;
       WayOptions how;
       how.kind = way.kind;
       how.ticks = static_cast<std::uint32_t>(on_ways.long_double);
-      how.seed = options.seed;
-      plan.ways.push_back(std::make_unique<std::vector<Hip>>(make_way(ground, how)));
-      base.hips = plan.ways.back().get();
+      const std::size_t first_way = plan.ways.size();
+      for (unsigned k = 0; k < kWaysOfAKind; ++k) {
+        how.seed = options.seed * 1000 + k;
+        plan.ways.push_back(std::make_unique<std::vector<Hip>>(make_way(ground, how)));
+      }
+      const std::size_t first_setting = plan.settings.size();
       base.way = way.name;
-      if (options.is_quick && (turn + static_cast<unsigned>(way.kind)) % 4 != 0) continue;
+      base.seed = 0;
       add_all(plan, base, on_ways, turn++);
+      for (std::size_t i = first_setting; i < plan.settings.size(); ++i)
+        plan.settings[i].hips = plan.ways[first_way + plan.settings[i].seed / 2].get();  // f64 and f32 go the same
     }
-    base.hips = nullptr;
   }
   return plan;
 }
@@ -400,6 +416,8 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "the results do not depend on it")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  app.add_option("--body", options.body, "only this one, by its name in the tables");
+  app.add_option("--way", options.way, "only this one");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
