@@ -17,10 +17,11 @@ struct Crossing {
   Real fraction = 1;
 };
 
+// Looks at the sides from the first on beyond whose plane the move ends.
 template <class Real>
-FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
   Crossing<Real> first;
-  for (uint32_t k = 0; k < node.side_count(); ++k) {
+  for (; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
     if (!(s1 >= 0)) continue;
@@ -31,6 +32,14 @@ FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3
     if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
   }
   return first;
+}
+
+template <class Real>
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+  for (uint32_t k = 0; k < node.side_count(); ++k) {
+    if (node.voronoi_plane(k).distance(to) >= 0) return first_crossing_from(k, node, from, to);
+  }
+  return {};
 }
 
 // What becomes of a god-object on a face.
