@@ -48,24 +48,39 @@ PlantState HeldPlant::after_tick(PlantState state, double force_n) const {
   return plant_.coulomb_n > 0 ? with_dry_friction(state, force_n) : whole_(state, force_n);
 }
 
+// Where the velocity changes its sign between 0 and left_s, under a constant net force: Newton's steps, kept between the times
+// of which the sign is known.
+double HeldPlant::standstill_s(const PlantState& start, double net_n, double left_s) const {
+  constexpr int kMostSteps = 80;
+  const double heading = std::copysign(1.0, start.v_m_per_s), resolution_s = std::ldexp(tick_s_, -50);
+  double before = 0, after = left_s, t = left_s / 2;
+  for (int step = 0; step < kMostSteps && after - before > resolution_s; ++step) {
+    const PlantState now = held_step(plant_, t)(start, net_n);
+    if (now.v_m_per_s == 0) return t;
+    (now.v_m_per_s * heading > 0 ? before : after) = t;
+    const double acceleration =
+        (net_n - plant_.stiffness_n_per_m * now.x_m - plant_.damping_n_s_per_m * now.v_m_per_s) / plant_.mass_kg;
+    const double next = t - now.v_m_per_s / acceleration;
+    if (std::abs(next - t) < resolution_s) return t;
+    t = next > before && next < after ? next : (before + after) / 2;
+  }
+  return t;
+}
+
 PlantState HeldPlant::with_dry_friction(PlantState state, double force_n) const {
   constexpr int kMostReversals = 8;  // in one tick; each needs half a swing of the plant, which is longer than a tick
-  constexpr int kHalvings = 50;
   double left_s = tick_s_;
   for (int reversal = 0; reversal < kMostReversals; ++reversal) {
-    const double drive = force_n - plant_.stiffness_n_per_m * state.x_m;
-    if (state.v_m_per_s == 0 && std::abs(drive) <= plant_.coulomb_n) return state;
-    const double heading = state.v_m_per_s != 0 ? std::copysign(1.0, state.v_m_per_s) : std::copysign(1.0, drive);
-    const double net = force_n - heading * plant_.coulomb_n;
-    const PlantState end = (left_s == tick_s_ ? whole_ : held_step(plant_, left_s))(state, net);
-    if (end.v_m_per_s * heading >= 0) return end;
-    double before = 0, after = left_s;  // the velocity changes its sign in between
-    for (int k = 0; k < kHalvings; ++k) {
-      const double middle = (before + after) / 2;
-      (held_step(plant_, middle)(state, net).v_m_per_s * heading > 0 ? before : after) = middle;
-    }
-    state = {held_step(plant_, after)(state, net).x_m, 0};
-    left_s -= after;
+    const double drive_n = force_n - plant_.stiffness_n_per_m * state.x_m;
+    const bool stands = state.v_m_per_s == 0;
+    if (stands && std::abs(drive_n) <= plant_.coulomb_n) return state;
+    const double heading = std::copysign(1.0, stands ? drive_n : state.v_m_per_s), net_n = force_n - heading * plant_.coulomb_n;
+    const PlantState end = (left_s == tick_s_ ? whole_ : held_step(plant_, left_s))(state, net_n);
+    // From a standstill it goes with what drives it; a tick is too short to come back.
+    if (stands || end.v_m_per_s * heading >= 0) return end;
+    const double stop_s = standstill_s(state, net_n, left_s);
+    state = {held_step(plant_, stop_s)(state, net_n).x_m, 0};
+    left_s -= stop_s;
   }
   return state;
 }

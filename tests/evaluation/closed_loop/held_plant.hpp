@@ -49,7 +49,8 @@ struct HeldStep {
 HeldStep held_step(const Plant& plant, double time_s);
 
 // The plant from tick to tick. With dry friction a tick is cut where the velocity changes its sign, found to 2^-50 of the tick:
-// there the plant stays where |u - k x| <= c, and goes on against the new direction otherwise.
+// there the plant stays where |u - k x| <= c, and goes on against the new direction otherwise. Ticks are shorter than half a
+// swing of the plant on its own spring.
 class HeldPlant {
  public:
   HeldPlant(const Plant& plant, double tick_s);
@@ -57,6 +58,7 @@ class HeldPlant {
 
  private:
   [[nodiscard]] PlantState with_dry_friction(PlantState state, double force_n) const;
+  [[nodiscard]] double standstill_s(const PlantState& start, double net_n, double left_s) const;
 
   Plant plant_;
   double tick_s_;

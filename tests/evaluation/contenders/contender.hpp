@@ -20,11 +20,12 @@ struct Feel {
   Ground::Point force{};       // newtons: stiffness times god-object less HIP
   bool in_contact = false;
   std::uint32_t transitions = 0;  // changes of feature, where the contender has features
+  bool is_carried = false;        // the contender says that it goes on with this tick's work in the next
 };
 
 struct ContenderInfo {
   std::string name;    // as in the tables
-  std::string family;  // fdcg, paper, closest_point, distance_grid, proxy
+  std::string family;  // fdcg, paper, ablation (of fdcg's rules), closest_point, distance_grid, proxy
   std::string precision = "f64", planes = "none", merged = "no";
   bool has_friction = false;
   std::size_t bytes = 0;  // that it needs at run time
@@ -55,9 +56,16 @@ struct FdcgVariant {
 // This project's runtime on a graph in memory, without the sections that a step does not use.
 std::unique_ptr<Contender> make_fdcg(const bake::PolygonSoup& soup, const FdcgVariant& variant);
 
-// Melder and Harwin 2004 as printed, with only its signs repaired (depth, Voronoi and end planes, the comparison of figure 4).
-// What it calls "the collision detection algorithm" is Embree's ray.
-std::unique_ptr<Contender> make_paper(const bake::PolygonSoup& soup);
+// Melder and Harwin 2004 as printed, with only its signs repaired (depth, Voronoi and end planes, the comparison of figure 4);
+// then with the contact model's corrections added one after the other, to show what each buys. fdcg has them all: the sweep of
+// every release and the seat as well. What the paper calls "the collision detection algorithm" is Embree's ray.
+enum class PaperLevel {
+  printed,    // paper
+  crossings,  // paper_crossings: and the first crossing along the way, by the signs that a god-object on a plane keeps
+  edges,      // paper_edges: and an edge's rule of contact-model section 6, which looks at the faces' planes too
+  vertices    // paper_vertices: and a vertex's of section 7, the steepest descent
+};
+std::unique_ptr<Contender> make_paper(const bake::PolygonSoup& soup, PaperLevel level = PaperLevel::printed);
 
 // The closest point by CGAL's AABB tree in double, the last answer as its hint. Inside is behind the nearest face's plane.
 std::unique_ptr<Contender> make_cgal_closest(const bake::PolygonSoup& soup);
@@ -67,7 +75,8 @@ std::unique_ptr<Contender> make_cgal_closest(const bake::PolygonSoup& soup);
 std::unique_ptr<Contender> make_embree_closest(const bake::PolygonSoup& soup);
 
 // A grid of float distances over the bounds and 3 mm around them, `resolution` samples along the longest side; the distance is
-// trilinear, its gradient the direction. Distances are signed by the pseudo-normal of the nearest feature.
+// trilinear, its gradient the direction. Exact within 4 mm of the surface, where the nearest feature's pseudo-normal tells the
+// sign.
 std::unique_ptr<Contender> make_distance_grid(const Ground& ground, int resolution);
 
 // A point proxy with a tree of the kind that haptic libraries have: a ray from the proxy towards the HIP, then along the plane

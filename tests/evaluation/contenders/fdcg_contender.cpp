@@ -53,6 +53,7 @@ class FdcgContender : public Contender {
     fdcg_step(&graph_, &params_, &contact_, hip_m.data(), &result);
     feel.in_contact = result.state != FDCG_FREE;
     feel.transitions = result.transitions;
+    feel.is_carried = (result.flags & (FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND)) != 0;
     std::memcpy(feel.god_object.data(), result.god_object_m, sizeof result.god_object_m);
     std::memcpy(feel.force.data(), result.force_n, sizeof result.force_n);
   }

@@ -13,6 +13,7 @@ using namespace plain;
 
 namespace {
 
+constexpr double kBackwards = -0.7;       // a cosine: two forces of a right-angled corner are not opposite
 constexpr double kTouch_m = 1e-5;         // depth from which a contact that is lost or made up counts
 constexpr double kWrongFeature_m = 5e-6;  // far beyond rounding and a proxy's gap, and no hand feels it
 
@@ -48,13 +49,16 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
               const TrueBody& body) {
   Metrics m;
   m.ticks = way.size();
-  std::vector<double> god_object, force, share, direction;
+  std::vector<double> god_object, untied, force, share, direction;
   bool was_lost = false;
-  std::uint64_t lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
+  std::uint64_t tied = 0, lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     const Feel &f = felt[i], &t = truth[i].feel;
     m.transitions += f.transitions;
+    m.carried_ticks += f.is_carried;
     god_object.push_back(length(f.god_object - t.god_object));
+    if (!truth[i].is_tied) untied.push_back(god_object.back());
+    tied += truth[i].is_tied;
     force.push_back(length(f.force - t.force));
     if (!t.in_contact) {
       phantoms += length(f.force) > kTouch_m * kStiffness_n_per_m;
@@ -63,7 +67,8 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
     }
     ++m.contact_ticks;
     const double true_force = length(t.force);
-    const bool is_lost = true_force > kTouch_m * kStiffness_n_per_m && (!f.in_contact || dot(f.force, t.force) < 0);
+    const bool is_lost = !f.is_carried && true_force > kTouch_m * kStiffness_n_per_m &&
+                         (!f.in_contact || dot(f.force, t.force) < kBackwards * length(f.force) * true_force);
     lost += is_lost;
     m.push_throughs += is_lost && !was_lost;
     was_lost = is_lost;
@@ -75,6 +80,8 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
     if (f.in_contact && length(f.force) > 0 && true_force > 0) direction.push_back(angle_deg(f.force, t.force));
   }
   const double contact = std::max<double>(1, static_cast<double>(m.contact_ticks));
+  m.tied_share = static_cast<double>(tied) / contact;
+  m.untied_rms_m = rms(untied);
   m.god_object_rms_m = rms(god_object);
   m.god_object_p50_m = at(god_object, 0.5);
   m.god_object_p99_m = at(god_object, 0.99);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The algorithm as the paper has it, section by section. Repaired are the signs alone: the depth is positive inside, Voronoi
-// and end planes point out of their feature, slip begins when the god-object is outside the friction circle. Kept is all else
-// that the contact model corrects: the product test of 5, that any crossing will do (5c), no sight of the face's plane in 5d,
-// the vertex's rules of 5g and 7, a load on edges that ignores the wedge (6), and that free space is entered without a look
-// (7).
+// and end planes point out of their feature, slip begins when the god-object is outside the friction circle. At
+// PaperLevel::printed all else is as it stands there: the product test of 5, that any crossing will do (5c), no sight of the
+// face's plane in 5d, the vertex's rules of 5g and 7. At every level a load on edges ignores the wedge (6), and free space is
+// entered without a look (7).
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -40,9 +42,11 @@ struct Connection {
   double length;
   Point direction;
   Plane voronoi[2];
+  // The Voronoi plane out of a node.
+  [[nodiscard]] const Plane& out_of(std::uint32_t from) const { return voronoi[node[0] == from ? 0 : 1]; }
 };
 struct Corner {
-  Point point;
+  Point point, normal;
   std::vector<std::uint32_t> connections, nodes;
 };
 
@@ -70,6 +74,7 @@ class PaperGraph {
     for (std::uint32_t v = 0; v < header.corner_count; ++v) {
       const fdcg_corner_info info = fdcg_get_corner(&graph, v);
       corners[v].point = Point{info.point[0], info.point[1], info.point[2]} + origin;
+      corners[v].normal = {info.normal[0], info.normal[1], info.normal[2]};
     }
     for (std::uint32_t f = 0; f < header.node_count; ++f) {
       const fdcg_node_info info = fdcg_get_node(&graph, f);
@@ -112,15 +117,17 @@ std::vector<std::byte> compiled_graph(const bake::PolygonSoup& soup) {
 
 class Paper : public Contender {
  public:
-  explicit Paper(const bake::PolygonSoup& soup)
-      : begin_(std::chrono::steady_clock::now()),
+  Paper(const bake::PolygonSoup& soup, PaperLevel level)
+      : level_(level),
+        begin_(std::chrono::steady_clock::now()),
         file_(compiled_graph(soup)),
         view_(opened(file_)),
         graph_(view_),
         scene_(soup) {
     node_of_face_.assign(view_.source_map, view_.source_map + view_.header->source_face_count);
-    info_.name = "paper";
-    info_.family = "paper";
+    constexpr const char* kNames[] = {"paper", "paper_crossings", "paper_edges", "paper_vertices"};
+    info_.name = kNames[static_cast<std::size_t>(level)];
+    info_.family = level == PaperLevel::printed ? "paper" : "ablation";
     info_.has_friction = true;
     info_.planes = "stored";
     info_.bytes = graph_.bytes() + scene_.bytes();
@@ -210,9 +217,9 @@ class Paper : public Contender {
     const double depth = -node.plane.side(hip_);
     if (depth < 0) return change(FDCG_FREE, FDCG_NONE);  // 5b
     const Point target = after_friction(hip_ + node.plane.normal * depth, depth);
+    if (level_ >= PaperLevel::crossings) return rests_within(node, target);
     for (const std::uint32_t c : node.connections) {  // 5c
-      const Connection& connection = graph_.connections[c];
-      const Plane& plane = connection.voronoi[connection.node[0] == feature_ ? 0 : 1];
+      const Plane& plane = graph_.connections[c].out_of(feature_);
       const double before = plane.side(god_object_), now = plane.side(target);
       if (!(now * before < 0)) continue;
       god_object_ = god_object_ + (target - god_object_) * (before / (before - now));
@@ -222,19 +229,73 @@ class Paper : public Contender {
     return true;
   }
 
+  // To the target, or to the first edge crossed on the way.
+  bool rests_within(const Node& node, const Point& target) {
+    double first = std::numeric_limits<double>::infinity();
+    std::uint32_t crossed = FDCG_NONE;
+    for (const std::uint32_t c : node.connections) {
+      const Plane& plane = graph_.connections[c].out_of(feature_);
+      const double before = plane.side(god_object_), now = plane.side(target);
+      if (!(now >= 0 && now > before)) continue;
+      const double part = std::max(0.0, -before / (now - before));
+      if (part < first) first = part, crossed = c;
+    }
+    if (crossed == FDCG_NONE) {
+      god_object_ = target;
+      return true;
+    }
+    const Connection& edge = graph_.connections[crossed];
+    const Point& start = graph_.corners[edge.corner[0]].point;
+    const double along = dot(god_object_ + (target - god_object_) * first - start, edge.direction);
+    const double near_end = 8 * std::numeric_limits<double>::epsilon() * (length(start) + edge.length);
+    if (along <= near_end || along >= edge.length - near_end) return to_end(edge, along > edge.length / 2);
+    god_object_ = start + edge.direction * along;
+    return change(FDCG_EDGE, crossed);
+  }
+
+  bool to_end(const Connection& edge, bool is_second) {
+    const std::uint32_t end = edge.corner[is_second ? 1 : 0];
+    god_object_ = graph_.corners[end].point;
+    return change(FDCG_VERTEX, end);
+  }
+
+  // What becomes active instead of an edge.
+  struct Next {
+    bool changes = false;
+    std::uint32_t state = FDCG_FREE, feature = FDCG_NONE;
+  };
+  [[nodiscard]] Next from_edge_as_printed(const Connection& edge, double side_a, double side_b) const {
+    const bool is_open = edge.node[1] == FDCG_NONE;
+    const auto normal = [&](int k) { return graph_.nodes[edge.node[k]].plane.normal; };
+    const bool is_acute = !is_open && dot(normal(0), normal(1)) < 0;
+    if (edge.type == FDCG_CONVEX && is_acute && (side_a >= 0) != (side_b >= 0)) return {true};            // 5e
+    if (side_a >= 0 && side_b >= 0) return {true};                                                        // 7
+    const bool in_a = edge.voronoi[0].side(hip_) < 0, in_b = !is_open && edge.voronoi[1].side(hip_) < 0;  // 5d
+    if (in_a && (!in_b || std::abs(side_a) <= std::abs(side_b))) return {true, FDCG_FACE, edge.node[0]};
+    if (in_b) return {true, FDCG_FACE, edge.node[1]};
+    return {};
+  }
+  [[nodiscard]] Next from_edge_corrected(const Connection& edge, double side_a, double side_b) const {
+    const double s_a = edge.voronoi[0].side(hip_);
+    if (edge.type == FDCG_BOUNDARY) {
+      return side_a < 0 && s_a < 0 ? Next{true, FDCG_FACE, edge.node[0]} : Next{true};
+    }
+    const double s_b = edge.voronoi[1].side(hip_);
+    if (edge.type == FDCG_CONCAVE ? side_a >= 0 && side_b >= 0 : side_a >= 0 || side_b >= 0) return {true};
+    const bool to_a = side_a < 0 && s_a < 0, to_b = side_b < 0 && s_b < 0;
+    if (to_a && (!to_b || s_a <= s_b)) return {true, FDCG_FACE, edge.node[0]};
+    if (to_b) return {true, FDCG_FACE, edge.node[1]};
+    return {};
+  }
+
   bool rests_on_edge() {
     const Connection& edge = graph_.connections[feature_];
     const Plane& a = graph_.nodes[edge.node[0]].plane;
-    const bool is_open = edge.node[1] == FDCG_NONE;
-    const double side_a = a.side(hip_), side_b = is_open ? 0 : graph_.nodes[edge.node[1]].plane.side(hip_);
-    const bool is_acute = !is_open && dot(a.normal, graph_.nodes[edge.node[1]].plane.normal) < 0;
-    const bool is_behind_none = side_a >= 0 && side_b >= 0;
-    if (edge.type == FDCG_CONVEX && is_acute && (side_a >= 0) != (side_b >= 0)) return change(FDCG_FREE, FDCG_NONE);  // 5e
-    if (is_behind_none) return change(FDCG_FREE, FDCG_NONE);                                                          // 7
-    const bool in_a = edge.voronoi[0].side(hip_) < 0, in_b = !is_open && edge.voronoi[1].side(hip_) < 0;              // 5d
-    if (in_a && in_b) return change(FDCG_FACE, edge.node[std::abs(side_a) <= std::abs(side_b) ? 0 : 1]);
-    if (in_a) return change(FDCG_FACE, edge.node[0]);
-    if (in_b) return change(FDCG_FACE, edge.node[1]);
+    const double side_a = a.side(hip_);
+    const double side_b = edge.node[1] == FDCG_NONE ? 0 : graph_.nodes[edge.node[1]].plane.side(hip_);
+    const Next next =
+        level_ >= PaperLevel::edges ? from_edge_corrected(edge, side_a, side_b) : from_edge_as_printed(edge, side_a, side_b);
+    if (next.changes) return change(next.state, next.feature);
     const Point& start = graph_.corners[edge.corner[0]].point;  // 6
     const Point foot = start + edge.direction * dot(hip_ - start, edge.direction);
     const Point target = after_friction(foot, length(hip_ - foot));
@@ -243,13 +304,40 @@ class Paper : public Contender {
       god_object_ = start + edge.direction * along;
       return true;
     }
-    const std::uint32_t end = edge.corner[along > 0 ? 1 : 0];  // 5f
-    god_object_ = graph_.corners[end].point;
-    return change(FDCG_VERTEX, end);
+    return to_end(edge, along > 0);  // 5f
+  }
+
+  // The steepest descent at a vertex.
+  bool rests_by_steepest(const Corner& corner) {
+    const Point t = hip_ - corner.point;
+    double longest = 0, side = dot(t, corner.normal);
+    std::uint32_t state = FDCG_VERTEX, feature = feature_;
+    const auto offer = [&](double reach, double sign, std::uint32_t offered, std::uint32_t index) {
+      if (reach > longest) longest = reach, side = sign, state = offered, feature = index;
+    };
+    const auto side_of = [&](std::uint32_t node) { return node == FDCG_NONE ? 0 : graph_.nodes[node].plane.side(hip_); };
+    for (const std::uint32_t c : corner.connections) {
+      const Connection& edge = graph_.connections[c];
+      const double along = dot(t, edge.direction) * (edge.corner[0] == feature_ ? 1 : -1);
+      offer(along, side_of(edge.node[0]) + side_of(edge.node[1]), FDCG_EDGE, c);
+    }
+    for (const std::uint32_t f : corner.nodes) {
+      bool is_in_sector = true;
+      for (const std::uint32_t c : graph_.nodes[f].connections) {
+        const Connection& edge = graph_.connections[c];
+        const bool meets = edge.corner[0] == feature_ || edge.corner[1] == feature_;
+        is_in_sector = is_in_sector && (!meets || dot(edge.out_of(f).normal, t) < 0);
+      }
+      const double height = dot(t, graph_.nodes[f].plane.normal);
+      if (is_in_sector) offer(std::sqrt(std::max(0.0, dot(t, t) - height * height)), side_of(f), FDCG_FACE, f);
+    }
+    if (side >= 0) return change(FDCG_FREE, FDCG_NONE);
+    return state == FDCG_VERTEX || change(state, feature);
   }
 
   bool rests_on_vertex() {
     const Corner& corner = graph_.corners[feature_];
+    if (level_ >= PaperLevel::vertices) return rests_by_steepest(corner);
     bool is_behind_any = false;
     for (const std::uint32_t f : corner.nodes)
       is_behind_any = is_behind_any || graph_.nodes[f].plane.side(hip_) < 0;
@@ -270,12 +358,12 @@ class Paper : public Contender {
   // The HIP lies in the Voronoi region of a face.
   [[nodiscard]] bool is_in_region(std::uint32_t face) const {
     for (const std::uint32_t c : graph_.nodes[face].connections) {
-      const Connection& connection = graph_.connections[c];
-      if (connection.voronoi[connection.node[0] == face ? 0 : 1].side(hip_) >= 0) return false;
+      if (graph_.connections[c].out_of(face).side(hip_) >= 0) return false;
     }
     return true;
   }
 
+  PaperLevel level_;
   std::chrono::steady_clock::time_point begin_;
   std::vector<std::byte> file_;
   fdcg_graph view_;
@@ -290,8 +378,8 @@ class Paper : public Contender {
 
 }  // namespace
 
-std::unique_ptr<Contender> make_paper(const bake::PolygonSoup& soup) {
-  return std::make_unique<Paper>(soup);
+std::unique_ptr<Contender> make_paper(const bake::PolygonSoup& soup, PaperLevel level) {
+  return std::make_unique<Paper>(soup, level);
 }
 
 }  // namespace fdcg::test

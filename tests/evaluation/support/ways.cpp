@@ -329,12 +329,17 @@ Way sampled(Pen& pen, double rate_hz, std::uint32_t ticks) {
   return way;
 }
 
-Way teleports(const Ground& ground, std::uint32_t ticks, std::uint64_t seed) {
+Way teleports(const Ground& ground, const WayOptions& options) {
   constexpr double kReach = 1.2;  // of the bounds
-  Random random(seed);
+  const std::uint32_t hold = std::max(1u, options.hold_ticks);
+  Random random(options.seed);
   Way way;
-  for (std::uint32_t i = 0; i < ticks; ++i) {
-    Point p;
+  Point p{};
+  for (std::uint32_t i = 0; i < options.ticks; ++i) {
+    if (i % hold != 0) {
+      way.push_back(p);
+      continue;
+    }
     for (std::size_t k = 0; k < 3; ++k) {
       const double middle = (ground.low()[k] + ground.high()[k]) / 2, half = (ground.high()[k] - ground.low()[k]) / 2;
       p[k] = middle + kReach * half * (i == 0 ? 1 : random.uniform(-1, 1));
@@ -385,7 +390,7 @@ Way make_way(const Ground& ground, const WayOptions& options) {
       return way;
     }
     case WayKind::teleport:
-      return teleports(ground, options.ticks, options.seed);
+      return teleports(ground, options);
   }
   throw std::invalid_argument("a kind of way that is not in the table");
 }

@@ -28,7 +28,7 @@ constexpr WayName kWays[] = {
     {WayKind::fan_orbit, "fan_orbit", "5 turns a second around the corners with the most edges, 0.02 to 2 mm from them"},
     {WayKind::tremor, "tremor", "0.2 mm at 8 to 12 Hz while held in a corner, a concave one where there is one"},
     {WayKind::quantised, "quantised", "hand, every coordinate rounded to an encoder's quantum"},
-    {WayKind::teleport, "teleport", "a place anywhere in 1.2 times the bounds, another every tick"},
+    {WayKind::teleport, "teleport", "a place anywhere in 1.2 times the bounds, held for `hold_ticks`, then another at once"},
 };
 const char* name_of(WayKind kind);
 // Throws std::invalid_argument, listing the names.
@@ -40,7 +40,8 @@ struct WayOptions {
   std::uint32_t ticks = 10'000;
   double depth_m = 1e-3;  // of the HIP below the surface, most of the time
   std::uint64_t seed = 1;
-  double quantum_m = 3e-5;  // of `quantised`: the nominal resolution of common desktop devices, 0.03 mm
+  double quantum_m = 3e-5;       // of `quantised`: the nominal resolution of common desktop devices, 0.03 mm
+  std::uint32_t hold_ticks = 1;  // of `teleport`
 };
 
 using Way = std::vector<std::array<double, 3>>;  // HIP in metres in the body's frame, one a tick
