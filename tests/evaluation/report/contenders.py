@@ -9,7 +9,7 @@ INTRODUCTION = """<p>The same ways of the same hand over the same bodies, one th
 whole way, the least of many rounds. Error: the god-object's distance from the true one, RMS over the way's ticks. Truth is the
 model's: it remembers on which side the hand came in, which a closest point does not.</p>"""
 
-FAMILIES = {"fdcg": ("fdcg", "o"), "paper": ("the paper's algorithm, and corrections added one by one", "s"),
+FAMILIES = {"fdcg": ("fdcg", "o"), "paper": ("the paper's algorithm", "s"), "ablation": ("corrections added to it one by one", "P"),
             "closest_point": ("closest point by a tree", "^"), "proxy": ("ray proxy", "D"), "distance_grid": ("distance grid", "v")}
 LEAST_M = 1e-20  # where an error of exactly 0 is drawn
 
