@@ -169,7 +169,7 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
   WayOptions options;
   options.kind = plan.kind;
   options.rate_hz = plan.rate_hz;
-  options.ticks = options_.ticks > 0 ? options_.ticks : options_.is_quick ? 4000 : 10'000;
+  options.ticks = options_.ticks > 0 ? options_.ticks : std::min(options_.is_quick ? 4000u : 10'000u, plan.most_ticks);
   options.seed = options_.seed;
   options.hold_ticks = 20;  // of teleports: time to arrive
   const Way way = make_way(scene.ground, options);
