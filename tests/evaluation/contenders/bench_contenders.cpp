@@ -188,7 +188,7 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
     }
   }
   // more rounds where a bar is set: f64 and f32 are a hundredth apart
-  const double budget_s = !options_.judges_times ? 0.05 : (options_.is_quick ? 0.3 : 0.6) * (plan.counts ? 3 : 1);
+  const double budget_s = !options_.judges_times ? 0.05 : (options_.is_quick ? 0.3 : 0.4) * (plan.counts ? 4 : 1);
   const std::vector<Timing> timings = time_all(entrants, way, watch_, budget_s);
   std::printf("%s, %s at %g Hz, mu %g/%g\n", scene.body.name.c_str(), name_of(plan.kind), plan.rate_hz, plan.mu_static,
               plan.mu_dynamic);
