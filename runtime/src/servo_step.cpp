@@ -89,8 +89,8 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
-    if (decision.is_rest) return progress;
-    walk.active = decision.next;
+    if (decision.is_rest()) return progress;
+    walk.active = decision.next();
     ++progress.transitions;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
@@ -290,7 +290,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     FaceMove<Real> move;
     if (is_on_face) {
       const NodeRef<Real> node = graph.node(contact->feature);
-      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound, nullptr), god_object);
+      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
     }
     if (is_on_face && (move.kind == Kind::rests || move.kind == Kind::slides)) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
