@@ -37,9 +37,15 @@ class Trail {
     }
     const uint64_t here = key(walk.active);
     for (int i = 0; i < count_; ++i) {
-      if (visited_[i] == here) return true;
+      if (visited_[i] == here) {
+        FDCG_WATCH(met_again);
+        return true;
+      }
     }
-    if (count_ == kCapacity) return true;
+    if (count_ == kCapacity) {
+      FDCG_WATCH(trail_full);
+      return true;
+    }
     visited_[count_++] = here;
     return false;
   }
