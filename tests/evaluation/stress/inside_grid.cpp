@@ -9,6 +9,7 @@
 #include "contact_rig.hpp"
 #include "exact_sign.hpp"
 #include "random.hpp"
+#include "vector.hpp"
 
 namespace fdcg::test {
 namespace {
@@ -258,6 +259,29 @@ InsideGrid::Crossing InsideGrid::crossing(const Hip& from, const Hip& to) const 
     }
   }
   return result;
+}
+
+double InsideGrid::distance_to_surface(const Hip& point) const {
+  using Wide = long double;  // the plane of a sliver turns by a rounding over its width
+  constexpr Wide kWider = 1e-6L;  // of a triangle
+  const auto wide = [](const Hip& a) { return Vector<Wide>{a[0], a[1], a[2]}; };
+  const Vector<Wide> x = wide(point);
+  Wide nearest = std::numeric_limits<Wide>::infinity();
+  for (const Triangle& t : triangles_) {
+    const Vector<Wide> corners[3] = {wide(t[0]), wide(t[1]), wide(t[2])};
+    const Vector<Wide> u = corners[1] - corners[0], v = corners[2] - corners[0], w = x - corners[0];
+    const Vector<Wide> n = cross(u, v);
+    const Wide nn = dot(n, n), p = dot(cross(w, v), n), q = dot(cross(u, w), n);
+    const bool is_above = p >= -kWider * nn && q >= -kWider * nn && p + q <= (1 + kWider) * nn;
+    if (is_above) nearest = std::min(nearest, std::abs(dot(n, w)) / length(n));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector<Wide>& a = corners[k];
+      const Vector<Wide> e = corners[(k + 1) % 3] - a;
+      const Wide along = std::clamp<Wide>(dot(x - a, e) / dot(e, e), 0, 1);
+      nearest = std::min(nearest, length(x - (a + e * along)));
+    }
+  }
+  return static_cast<double>(nearest);
 }
 
 }  // namespace fdcg::test

@@ -31,6 +31,11 @@ class InsideGrid {
   // Of a straight way, from anywhere to anywhere.
   [[nodiscard]] Crossing crossing(const Hip& from, const Hip& to) const;
 
+  // From a point to the nearest of the surface, in floating point, or less where the nearest is a sliver: its rim is taken a
+  // little wider, so that no rounding lets a point fall between two. Looks at every triangle.
+  [[nodiscard]] double distance_to_surface(const Hip& point) const;
+  [[nodiscard]] double size() const { return size_; }  // of the bounds' longest side
+
   // How many triangles share a cell with a point, in the mean over the cells that the surface meets.
   [[nodiscard]] double mean_crowd() const;
 
@@ -58,7 +63,7 @@ class InsideGrid {
   std::vector<Triangle> triangles_;
   Hip low_{}, cell_{}, per_cell_{};
   std::array<int, 3> count_{};
-  double size_ = 0;                            // of the bounds' longest side
+  double size_ = 0;
   std::vector<std::uint32_t> first_, member_;  // of each cell: the triangles that meet it
   std::vector<Hip> known_point_;               // of each cell
   std::vector<Where> known_;                   // ... which is never on the surface; `surface` where none was found

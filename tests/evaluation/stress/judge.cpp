@@ -34,8 +34,8 @@ constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SW
 }  // namespace
 
 std::string_view name_of(Fault fault) {
-  constexpr std::string_view kNames[] = {"nan",      "cycle",       "bound", "growth",  "push-through", "unseen",
-                                         "thin-air", "off-surface", "pull",  "restless"};
+  constexpr std::string_view kNames[] = {"nan",    "cycle",    "rule-bound",  "sweep-bound", "growth",  "push-through",
+                                         "unseen", "thin-air", "off-surface", "pull",        "restless"};
   static_assert(std::size(kNames) == kFaults);
   return kNames[static_cast<std::size_t>(fault)];
 }
@@ -44,6 +44,8 @@ void Verdicts::add(const Verdicts& other) {
   for (std::size_t i = 0; i < kFaults; ++i)
     count[i] += other.count[i];
   shallow += other.shallow;
+  met_again += other.met_again;
+  most_carried = std::max(most_carried, other.most_carried);
   worst_growth_eps = std::max(worst_growth_eps, other.worst_growth_eps);
   worst_off_surface_eps = std::max(worst_off_surface_eps, other.worst_off_surface_eps);
   worst_restless_eps = std::max(worst_restless_eps, other.worst_restless_eps);
@@ -64,8 +66,8 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after
   tick.rounding = epsilon_ * std::max(far, specimen_.header().extent);
   look_at_numbers(tick);
   if ((result.flags & FDCG_RESULT_NON_FINITE) == 0 && tick.faults == 0) {
-    if (seen.met_again + seen.trail_full > 0) tick.faults |= bit(Fault::cycle);
-    if ((result.flags & kCarried) != 0) tick.faults |= bit(Fault::bound);
+    if ((result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0) tick.faults |= bit(Fault::rule_bound);
+    if ((result.flags & FDCG_RESULT_SWEEP_BOUND) != 0) tick.faults |= bit(Fault::sweep_bound);
     if (before.started != 0 && before.sweep.is_carried == 0) {
       if (after.state != FDCG_FREE) look_at_growth(tick, v);
       if (is_same(before.hip, after.hip)) look_at_rest(tick, v);
@@ -76,6 +78,13 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after
       if ((result.flags & kCarried) == 0) look_at_pull(tick, v);
     }
     if (specimen_.inside != nullptr) look_inside(tick, v);
+  }
+  if ((result.flags & FDCG_RESULT_NON_FINITE) == 0) {
+    last_flags_ = result.flags;
+    was_met_again_ = seen.met_again + seen.trail_full > 0;
+    v.met_again += was_met_again_;
+    carried_ = (result.flags & kCarried) != 0 ? carried_ + 1 : 0;
+    v.most_carried = std::max(v.most_carried, carried_);
   }
   if (tick.faults != 0) {
     for (std::size_t i = 0; i < kFaults; ++i)
@@ -106,16 +115,20 @@ void Judge::look_at_growth(Tick& tick, Verdicts& v) const {
 }
 
 void Judge::look_at_rest(Tick& tick, Verdicts& v) const {
-  // work in hand is no rest, and a HIP that starts on a surface is told so by a way, which it has not had
-  if (tick.before.transition_bound_ticks != tick.after.transition_bound_ticks || tick.before.sweep.is_carried != 0) return;
+  if ((last_flags_ & kCarried) != 0) return;  // work in hand is no rest
+  const std::uint32_t faults = bit(Fault::restless) | (was_met_again_ ? bit(Fault::cycle) : 0);
   if ((tick.before.state == FDCG_FREE) != (tick.after.state == FDCG_FREE)) {
-    tick.faults |= bit(Fault::restless);
+    tick.faults |= faults;
     return;
   }
   if (is_same(tick.before.god_object, tick.after.god_object)) return;
-  const double moved = distance(hip_of(tick.before.god_object), tick.god_object) - deviation_;
-  v.worst_restless_eps = std::max(v.worst_restless_eps, moved / tick.rounding);
-  if (moved > kMostRestless_eps * tick.rounding) tick.faults |= bit(Fault::restless);
+  // Where GO is nearest, a change of its place changes its distance by the square: d may be sqrt(2 gap rounding).
+  const Hip was = hip_of(tick.before.god_object);
+  const double gap = distance(tick.god_object, tick.hip), allowed = kMostRestless_eps * tick.rounding + deviation_;
+  const double nearer = static_cast<double>(long_length(was, tick.hip) - long_length(tick.god_object, tick.hip));
+  v.worst_restless_eps = std::max(v.worst_restless_eps, (nearer - deviation_) / tick.rounding);
+  const bool is_moving = distance(was, tick.god_object) > allowed + 2 * std::sqrt(2 * gap * allowed);
+  if (nearer > allowed || is_moving) tick.faults |= faults;
 }
 
 void Judge::look_at_feature(Tick& tick, Verdicts& v) const {
@@ -172,6 +185,8 @@ void Judge::look_at_pull(Tick& tick, Verdicts& v) const {
 void Judge::look_at_way(Tick& tick) const {
   if (specimen_.inside == nullptr || !is_exact_ || !is_known_outside_) return;
   if ((tick.result.flags & kCarried) != 0) return;
+  const double* from = tick.before.hip;  // from far away the step cuts the way, where rounding may move it
+  if (std::abs(from[0]) + std::abs(from[1]) + std::abs(from[2]) > 8 * specimen_.header().extent) return;
   const bool is_stopped = tick.result.transitions > 0;
   const InsideGrid::Crossing way = specimen_.inside->crossing(hip_of(tick.before.hip), tick.hip);
   if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
@@ -183,15 +198,15 @@ void Judge::look_inside(Tick& tick, Verdicts& v) {
     is_known_outside_ = true;  // if the contact is lost, the HIP has left
     return;
   }
-  if (tick.after.sweep.is_carried != 0) return;  // still on its way
-  const InsideGrid::Where where = specimen_.inside->where(tick.hip);
+  const InsideGrid::Where where = specimen_.inside->where(tick.god_object);  // the HIP, or how far a carried sweep has come
   if (where == InsideGrid::Where::outside) is_known_outside_ = true;
   if (where != InsideGrid::Where::inside || !is_known_outside_) return;
-  is_known_outside_ = false;  // once is enough
-  const double size = specimen_.solid->size();
-  const double depth = specimen_.solid->distance_to_surface(tick.hip) - deviation_;
+  const bool is_on_its_way = tick.after.sweep.is_carried != 0;  // may start on the surface
+  is_known_outside_ = is_on_its_way;                            // once is enough
+  const double size = specimen_.inside->size();
+  const double depth = specimen_.inside->distance_to_surface(tick.god_object) - deviation_;
   v.worst_inside_eps = std::max(v.worst_inside_eps, depth / (epsilon_ * size));
-  if (depth > kShallow_eps * epsilon_ * size) {
+  if (depth > (is_on_its_way ? kMostOffSurface_eps * tick.rounding : kShallow_eps * epsilon_ * size)) {
     tick.faults |= bit(Fault::push_through);
   } else {
     ++v.shallow;

@@ -15,15 +15,17 @@ namespace fdcg::test {
 
 enum class Fault : std::uint8_t {
   not_a_number,  // NaN or infinite output; on a HIP that is not usable: a change of the contact, a force
-  cycle,         // a feature met again within a step though GO had come no nearer
-  bound,         // work carried over
+  cycle,         // a step stopped where a feature was met again, and that was no rest: GO goes on in the next tick
+  rule_bound,    // work on the surface carried over
+  sweep_bound,   // work in free space carried over
   growth,        // |GO - HIP| grew by more than 16 eps of the scale
-  push_through,  // Free while the HIP, which was seen outside, is inside by more than 4 eps of the size
+  push_through,  // Free and, after having been outside or held, inside by more than 4 eps of the size
   unseen,        // a way through the surface that met nothing
   thin_air,      // a contact though the way met nothing
   off_surface,   // GO off the planes of its feature, or beyond its rim, by more than 64 eps of the scale
   pull,          // the HIP is in front of what is said to hold it: the force pulls inwards
-  restless,      // the same HIP again: GO moved by more than 16 eps of the scale, or contact was lost or found
+  restless,      // the same HIP again: GO came nearer by more than 16 eps of the scale, or moved by more than such a change of
+                 // its distance allows, or contact was lost or found
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
@@ -39,7 +41,9 @@ inline constexpr double kPerDeviation = 4;     // where merging moved faces: so 
 
 struct Verdicts {
   std::array<std::uint64_t, kFaults> count{};
-  std::uint64_t shallow = 0;  // Free, and inside by less than kShallow_eps
+  std::uint64_t shallow = 0;      // Free, and inside by less than kShallow_eps
+  std::uint64_t met_again = 0;    // rests where a feature was met again, as contact-model section 1 has it
+  std::uint64_t most_carried = 0;  // ticks in a row
   double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0;
 
   void add(const Verdicts& other);
@@ -50,7 +54,7 @@ class Judge {
   explicit Judge(const Specimen& specimen);
 
   // A new contact: nothing is known of where its HIP is.
-  void begin() { is_known_outside_ = false; }
+  void begin() { is_known_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0; }
 
   // One tick, which began with `before`. Returns a bit for each fault, 1 << fault, and counts them.
   std::uint32_t judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result, const StepWatch& seen,
@@ -77,6 +81,9 @@ class Judge {
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
   bool is_exact_;               // every face is as flat as the exact solid has it
   bool is_known_outside_ = false;
+  std::uint32_t last_flags_ = 0;   // of the last tick with a finite HIP
+  bool was_met_again_ = false;     // ... stopped where a feature was met again
+  std::uint64_t carried_ = 0;      // ticks in a row
 };
 
 }  // namespace fdcg::test

@@ -74,8 +74,8 @@ class Findings {
     const std::string command = program_ + " --seed " + std::to_string(f.name.seed) + " --case " +
                                 std::string(f.name.stress_case->name) + " --precision " + name_of(f.name.precision) +
                                 " --block " + std::to_string(f.name.block);
-    std::printf("FOUND %s at tick %llu of %s\n      repeat: %s\n      file: %s\n", kind.c_str(), n(f.tick),
-                f.specimen->body.description.c_str(), command.c_str(), file.c_str());
+    std::printf("FOUND %s at tick %llu of %s, extent %g\n      repeat: %s\n      file: %s\n", kind.c_str(), n(f.tick),
+                f.specimen->body.description.c_str(), f.specimen->header().extent, command.c_str(), file.c_str());
     std::fflush(stdout);
     write_reproducer(file, {f.specimen->body, f.params, *f.path_m, f.fault, command});
   }
@@ -122,8 +122,11 @@ std::vector<Row> rows_of(const Options& options) {
     }
   }
   const double steps = options.steps > 0 ? options.steps : options.is_quick ? kQuickSteps : kFullSteps;
+  double shares = 0;
+  for (const Row& row : rows)
+    shares += row.stress_case->share;
   for (Row& row : rows) {
-    const double share = steps / static_cast<double>(rows.size()) / kBlockTicks;
+    const double share = steps * row.stress_case->share / shares / kBlockTicks;
     row.end_block = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(share + 0.5));
     if (options.block >= 0) {
       row.first_block = static_cast<std::uint64_t>(options.block);
@@ -146,7 +149,8 @@ std::uint64_t count_of(const BlockResult& r, Fault fault) {
 void write_row(Table& table, const Row& row, const BlockResult& r, double seconds) {
   const Verdicts& v = r.verdicts;
   table.row(row.stress_case->name, row.stress_case->target, name_of(row.precision), r.ticks, r.contact_ticks, r.transitions,
-            count_of(r, Fault::cycle), count_of(r, Fault::bound), r.bounds_allowed, v.worst_growth_eps,
+            count_of(r, Fault::cycle), v.met_again, count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound), r.bounds_allowed,
+            v.most_carried, v.worst_growth_eps,
             count_of(r, Fault::growth), count_of(r, Fault::push_through), count_of(r, Fault::unseen),
             count_of(r, Fault::thin_air), v.shallow, count_of(r, Fault::not_a_number), v.worst_off_surface_eps,
             count_of(r, Fault::off_surface), count_of(r, Fault::pull), v.worst_pull_eps, count_of(r, Fault::restless),
@@ -158,8 +162,8 @@ int judge_whole(const BlockResult& r, const std::string& folder) {
   const auto none = [&](const std::string& bar, std::uint64_t measured, const std::string& note = "") {
     bars.at_most(bar, static_cast<double>(measured), 0, "ticks", note);
   };
-  none("cycles", count_of(r, Fault::cycle));
-  none("bound hits outside the stated cases", count_of(r, Fault::bound) - r.bounds_allowed);
+  none("cycles", count_of(r, Fault::cycle), std::to_string(r.verdicts.met_again) + " rests where a feature was met again");
+  none("bound hits outside the stated cases", count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound) - r.bounds_allowed);
   bars.at_most("growth of |GO - HIP| within a step", r.verdicts.worst_growth_eps, kMostGrowth_eps, "eps of the scale");
   none("push-through: free while inside", count_of(r, Fault::push_through),
        std::to_string(r.verdicts.shallow) + " more by less than " + std::to_string(static_cast<int>(kShallow_eps)) + " eps");
@@ -184,8 +188,8 @@ int run(const Options& options, const std::string& program) {
   std::filesystem::create_directories(options.output);
   Findings findings(options.output, program);
   Table table(options.output, "stress_cases",
-              {"case", "target", "precision", "steps", "contact_steps", "transitions", "cycles", "bound_hits",
-               "bound_hits_allowed", "growth_worst_eps", "growths", "push_through", "unseen", "thin_air", "shallow", "nan",
+              {"case", "target", "precision", "steps", "contact_steps", "transitions", "cycles", "met_again", "bound_hits",
+               "bound_hits_allowed", "most_carried", "growth_worst_eps", "growths", "push_through", "unseen", "thin_air", "shallow", "nan",
                "off_surface_worst_eps", "off_surface", "pulls", "pull_worst_eps", "restless", "restless_worst_eps",
                "inside_worst_eps", "disagreements", "hash", "seconds"});
   const std::vector<Row> rows = rows_of(options);
@@ -222,7 +226,11 @@ int run(const Options& options, const std::string& program) {
 int replay(const std::string& path) {
   const Reproducer r = read_reproducer(path);
   const Specimen specimen(r.body);
-  const std::int64_t tick = first_fault(specimen, r);
+  std::vector<std::string> log;
+  const std::int64_t tick = first_fault(specimen, r, &log);
+  constexpr std::size_t kShown = 12;  // ticks up to the fault
+  for (std::size_t i = log.size() > kShown ? log.size() - kShown : 0; tick >= 0 && i < log.size(); ++i)
+    std::printf("tick %zu: %s\n", i, log[i].c_str());
   if (tick < 0) {
     std::printf("%s: no %s in %zu ticks\n", path.c_str(), std::string(fdcg::test::name_of(r.fault)).c_str(), r.path_m.size());
     return 0;

@@ -63,6 +63,20 @@ void read_remark(std::istringstream& line, Reproducer& r) {
   r.path_m.push_back(hip);
 }
 
+std::string described(const fdcg_contact& c, const fdcg_result& out, std::uint32_t faults) {
+  static const char* const kStates[] = {"free", "face", "edge", "vertex"};
+  std::ostringstream text;
+  text.precision(17);
+  text << kStates[c.state] << ' ' << static_cast<std::int32_t>(c.feature) << (out.slipping ? " slips" : " sticks") << ", seat "
+       << kStates[c.seat_state] << ' ' << static_cast<std::int32_t>(c.seat_feature) << ", transitions " << out.transitions
+       << ", flags " << out.flags << ", HIP " << c.hip[0] << ' ' << c.hip[1] << ' ' << c.hip[2] << ", GO " << c.god_object[0] << ' '
+       << c.god_object[1] << ' ' << c.god_object[2] << " (local)";
+  for (std::size_t i = 0; i < kFaults; ++i) {
+    if ((faults >> i & 1) != 0) text << "; " << name_of(static_cast<Fault>(i));
+  }
+  return text.str();
+}
+
 }  // namespace
 
 void write_reproducer(const std::string& path, const Reproducer& r) {
@@ -125,22 +139,20 @@ Reproducer read_reproducer(const std::string& path) {
   return r;
 }
 
-std::int64_t first_fault(const Specimen& specimen, const Reproducer& r, std::vector<std::uint32_t>* faults) {
+std::int64_t first_fault(const Specimen& specimen, const Reproducer& r, std::vector<std::string>* log) {
   Judge judge(specimen);
   judge.begin();
   Verdicts verdicts;
   fdcg_contact contact{};
-  std::int64_t first = -1;
   for (std::size_t i = 0; i < r.path_m.size(); ++i) {
     const fdcg_contact before = contact;
     fdcg_result out;
     const StepWatch seen = watched_step(specimen.graph(), r.params, contact, r.path_m[i], out);
     const std::uint32_t found = judge.judge(before, contact, out, seen, verdicts);
-    if (faults != nullptr) faults->push_back(found);
-    if (first < 0 && (found >> static_cast<unsigned>(r.fault) & 1) != 0) first = static_cast<std::int64_t>(i);
-    if (first >= 0 && faults == nullptr) break;
+    if (log != nullptr) log->push_back(described(contact, out, found));
+    if ((found >> static_cast<unsigned>(r.fault) & 1) != 0) return static_cast<std::int64_t>(i);
   }
-  return first;
+  return -1;
 }
 
 }  // namespace fdcg::test

@@ -23,7 +23,7 @@ struct Reproducer {
 void write_reproducer(const std::string& path, const Reproducer& reproducer);
 Reproducer read_reproducer(const std::string& path);
 
-// Steps the path; the first tick (from 0) with the fault, or -1. `faults`: if given, a bit for each fault of every tick.
-std::int64_t first_fault(const Specimen& specimen, const Reproducer& reproducer, std::vector<std::uint32_t>* faults = nullptr);
+// Steps the path; the first tick (from 0) with the fault, or -1. `log`: if given, gets a line for each tick up to there.
+std::int64_t first_fault(const Specimen& specimen, const Reproducer& reproducer, std::vector<std::string>* log = nullptr);
 
 }  // namespace fdcg::test

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "exact_solid.hpp"
 #include "meshes.hpp"
 
 namespace fdcg::test {
@@ -19,8 +20,7 @@ Specimen::Specimen(Body b) : body(std::move(b)), mesh(body.soup, body.options) {
   read_shapes();
   find_focus();
   if (!body.is_closed) return;
-  solid = std::make_unique<ExactSolid>(triangulated(body.soup), header());
-  inside = std::make_unique<InsideGrid>(solid->triangles());
+  inside = std::make_unique<InsideGrid>(ExactSolid(triangulated(body.soup), header()).triangles());
 }
 
 void Specimen::read_shapes() {

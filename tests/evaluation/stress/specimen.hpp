@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "contact_rig.hpp"
-#include "exact_solid.hpp"
 #include "inside_grid.hpp"
 
 namespace fdcg::test {
@@ -55,8 +54,7 @@ class Specimen {
   std::vector<EdgeShape> edges;
   std::vector<CornerShape> corners;
   std::vector<std::uint32_t> focus_corners;  // corners of the graph nearest to body.focus
-  std::unique_ptr<ExactSolid> solid;         // of closed bodies, as the next
-  std::unique_ptr<InsideGrid> inside;
+  std::unique_ptr<InsideGrid> inside;        // of closed bodies
 
   [[nodiscard]] const fdcg_graph& graph() const { return mesh.view(); }
   [[nodiscard]] const fdcg_header& header() const { return *mesh.view().header; }

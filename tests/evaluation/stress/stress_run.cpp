@@ -87,11 +87,11 @@ class Block {
   }
 
   void report(std::uint32_t faults) {
-    constexpr std::uint32_t kBound = 1u << static_cast<unsigned>(Fault::bound);
-    if (name_.stress_case->may_hit_bounds && (faults & kBound) != 0) {
-      ++result_.bounds_allowed;
-      faults &= ~kBound;
-    }
+    constexpr std::uint32_t kRules = 1u << static_cast<unsigned>(Fault::rule_bound);
+    constexpr std::uint32_t kSweeps = 1u << static_cast<unsigned>(Fault::sweep_bound);
+    const std::uint32_t allowed = name_.stress_case->carries == Carries::nothing ? 0 : kRules | kSweeps;
+    result_.bounds_allowed += static_cast<std::uint64_t>(std::popcount(faults & allowed));
+    faults &= ~allowed;
     for (std::size_t i = 0; i < kFaults; ++i) {
       if ((faults >> i & 1) != 0) found_({name_, static_cast<Fault>(i), result_.ticks - 1, &specimen_, params_, &path_});
     }
