@@ -12,10 +12,11 @@ namespace fdcg {
 // Records and leaves that one look may open: what has been proved clear by then is taken.
 inline constexpr int kMostClearVisits = 24;
 
-template <class Real>
-inline bool is_in_clear_ball(const fdcg_clear_ball& ball, Vec3<Real> hip) {
-  const Vec3<Real> gap = {hip.x - Real(ball.centre[0]), hip.y - Real(ball.centre[1]), hip.z - Real(ball.centre[2])};
-  return dot(gap, gap) < Real(ball.radius2);  // false where there is none
+// `hip`: in double whatever the graph's reals, which is at hand sooner. Rounding it to them moves it by far less than
+// clear_radius leaves as a margin.
+inline bool is_in_clear_ball(const fdcg_clear_ball& ball, Vec3<double> hip) {
+  const Vec3<double> gap = hip - vec(ball.centre);
+  return dot(gap, gap) < ball.radius2;  // false where there is none
 }
 
 // How near a leaf's nodes may be, squared, in tree units: as near as their planes. `reach`: farther does not matter.

@@ -175,7 +175,8 @@ inline Decision corner_rule(Walk<Real>& walk) {
   }
   if (best.feature.state == FDCG_EDGE) {
     const ConnectionRef<Real> connection = walk.graph.connection(best.feature.index);
-    const EdgeSides<Real> s = edge_sides(walk, connection);
+    EdgeSides<Real> s;
+    look_at_sides(walk, connection, &s);
     if (connection.type() == FDCG_BOUNDARY) {
       return go_to(s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree);
     }

@@ -17,17 +17,17 @@ struct EdgeSides {
   Real voronoi[2];  // to their Voronoi planes
 };
 
+// Not as a return value: four floats would come back two to a register, by way of memory, and wait there for one another.
 template <class Real>
-inline EdgeSides<Real> edge_sides(Walk<Real>& walk, ConnectionRef<Real> connection) {
+inline void look_at_sides(Walk<Real>& walk, ConnectionRef<Real> connection, EdgeSides<Real>* sides) {
   walk.spend(kEdgeWork);
-  EdgeSides<Real> s = {};
+  *sides = {};
   const int faces = connection.type() == FDCG_BOUNDARY ? 1 : 2;
   for (int k = 0; k < faces; ++k) {
     const NodeRef<Real> node = walk.graph.node(connection.node(k));
-    s.side[k] = walk.side(node);
-    s.voronoi[k] = node.voronoi_plane(connection.side(k)).distance(walk.hip);
+    sides->side[k] = walk.side(node);
+    sides->voronoi[k] = node.voronoi_plane(connection.side(k)).distance(walk.hip);
   }
-  return s;
 }
 
 inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
@@ -51,7 +51,8 @@ template <class Real>
 inline Decision edge_rule(Walk<Real>& walk) {
   const uint32_t index = walk.active.index;
   const ConnectionRef<Real> connection = walk.graph.connection(index);
-  const EdgeSides<Real> s = edge_sides(walk, connection);
+  EdgeSides<Real> s;
+  look_at_sides(walk, connection, &s);
   const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
   if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
   if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0)) return go_to(kFree);

@@ -8,6 +8,9 @@ namespace fdcg {
 
 // The first of the node's Voronoi planes that a move crosses; local_side is FDCG_NONE if there is none. GO sits on such planes
 // all the time, so a crossing is "ends on or beyond, and further out than it began", not a change of sign.
+//
+// A move that ends on a plane but for rounding has crossed it, if at all, anywhere on its way: one along a side from a corner
+// might be stopped in that corner, for ever. It crosses where it ends, unless it crosses another side before.
 template <class Real>
 struct Crossing {
   uint32_t local_side = FDCG_NONE;
@@ -26,6 +29,10 @@ FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3
     if (!(s1 >= 0)) continue;
     const Real s0 = plane.distance(from);
     if (!(s1 > s0)) continue;
+<<<<<<< HEAD
+=======
+    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + absolute(plane.offset));
+>>>>>>> main
     const Real fraction = s1 <= rounding ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
     if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
   }

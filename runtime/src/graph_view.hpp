@@ -77,16 +77,19 @@ class NodeRef {
       const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
       return {vec(stored.normal), stored.offset};
     }
-    return derived_plane(k);
+    Plane<Real> derived;
+    derive_plane(k, &derived);
+    return derived;
   }
 
   [[nodiscard]] const unsigned char* block() const { return block_; }
 
  private:
-  // Out of line: every rule asks for planes, and each would hold a copy.
-  [[nodiscard, gnu::noinline]] Plane<Real> derived_plane(uint32_t k) const {
+  // Out of line: every rule asks for planes, and each would hold a copy. Not as a return value: four floats come back two to a
+  // register, by way of memory, and wait there for one another.
+  [[gnu::noinline]] void derive_plane(uint32_t k, Plane<Real>* plane) const {
     const Edge<Real> edge = graph_->edge(*this, k);
-    return derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
+    *plane = derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
   }
   [[nodiscard]] const Record& record() const { return *reinterpret_cast<const Record*>(block_); }
 

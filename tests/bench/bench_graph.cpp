@@ -32,6 +32,12 @@ double face_way_of_triangles(double edge_m) {
   return std::numbers::pi / 2 * (std::sqrt(3.0) / 4 * edge_m * edge_m) / (1.5 * edge_m);
 }
 
+// Of a regular triangle, as many of which as the body has faces cover the sphere.
+double edge_of_sphere_m(int faces) {
+  const double area = 4 * std::numbers::pi * kRadius_m * kRadius_m;
+  return std::sqrt(area / faces * 4 / std::sqrt(3.0));
+}
+
 }  // namespace
 
 BenchGraph::BenchGraph(const bake::PolygonSoup& soup, const bake::CompileOptions& options) {
@@ -48,7 +54,7 @@ bake::PolygonSoup make_body(Body body, int parts) {
   if (body == Body::cube || body == Body::block) return scaled(triangulated(cube()), kObject_m);
   bake::PolygonSoup soup = scaled(geodesic_sphere(parts), kRadius_m);
   if (body == Body::rough) {
-    const double edge = Surface(body, parts).edge_m() / kRadius_m;
+    const double edge = edge_of_sphere_m(faces_of(body, parts)) / kRadius_m;
     Random random(1);
     for (bake::Vec3& p : soup.points) {
       const double factor = 1 + kRoughness * edge * random.uniform(-1, 1);
@@ -73,8 +79,7 @@ Surface::Surface(Body body, int parts) {
     face_way_m_ = std::numbers::pi / 2 * kObject_m / std::numbers::sqrt2;  // the sides' diagonals; rims are not slid over
     return;
   }
-  const double area = 4 * std::numbers::pi * kRadius_m * kRadius_m;
-  edge_m_ = std::sqrt(area / faces_of(body, parts) * 4 / std::sqrt(3.0));
+  edge_m_ = edge_of_sphere_m(faces_of(body, parts));
   face_way_m_ = face_way_of_triangles(edge_m_);
   if (faces_of(body, parts) > kFewFaces) return;
   const bake::PolygonSoup soup = make_body(body, parts);

@@ -12,6 +12,7 @@
 
 using namespace fdcg::test;
 using fdcg::bake::Precision;
+namespace bake = fdcg::bake;
 
 namespace {
 
@@ -120,6 +121,26 @@ TEST_CASE("of the planes crossed the first one along the way counts", "[first-cr
   CHECK(contact.result.state == FDCG_EDGE);
   CHECK(contact.god_object()[0] > 0.3);
   CHECK(contact.god_object()[0] < 0.45);
+}
+
+// From a cube's corner the way down to a HIP on the diagonal runs along the middle of a face, where an edge between its two
+// triangles may lie: by rounding it begins on or beyond that edge, and ends there.
+TEST_CASE("a way along a side is not stopped where it begins", "[along-side]") {
+  std::uint64_t stopped = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const PolygonSoup soup = rounded_to_float(transformed(triangulated(cube(), seed), random_rotation(seed)));
+    for (const Precision precision : {Precision::f64, Precision::f32}) {
+      const PlainGraph graph(soup, precision);
+      for (const bake::Vec3& v : soup.points) {
+        Contact contact(graph.view(), contact_params(0, 0));
+        contact.step(2 * v.x, 2 * v.y, 2 * v.z);
+        const Hip hip = {-v.x / 2, -v.y / 2, -v.z / 2};
+        contact.step(hip);
+        stopped += distance(contact.god_object(), hip) > 0.75 + 1e-6;  // of the near faces; the corner is 1.3 away
+      }
+    }
+  }
+  CHECK(stopped == 0);
 }
 
 TEST_CASE("on a plane is outside", "[on-plane]") {

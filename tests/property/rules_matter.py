@@ -26,6 +26,7 @@ MUTANTS = [
      "if (!(s1 > s0)) continue;", "if (!(s0 <= 0 && s1 > 0)) continue;"),
     ("first-crossing", "the first crossing, not the last", "face.hpp",
      "|| fraction < first.fraction)", "|| fraction > first.fraction)"),
+    ("along-side", "a way along a side ends where it ends", "face.hpp", "s1 <= rounding ? Real(1)", "false ? Real(1)"),
     ("on-plane", "on a face's plane is outside", "face.hpp", "if (!(side < 0)) return", "if (side > 0) return"),
     ("seat", "the seat's rule decides", "face.hpp", "return go_to(leave_face(walk, node));", "return go_to(kFree);"),
     ("last-tick-segment", "the sweep starts where the HIP was", "servo_step.cpp",

@@ -146,6 +146,7 @@ std::vector<std::uint32_t> ReferenceSurface<Real>::wrong_types() const {
 }
 
 template class ReferenceSurface<long double>;
+template class ReferenceSurface<Mpfr256>;
 template class ReferenceSurface<HighPrecision>;
 
 }  // namespace fdcg::test

@@ -478,6 +478,7 @@ std::string describe(const ReferenceStep& step) {
 }
 
 template class ReferenceWalker<long double>;
+template class ReferenceWalker<Mpfr256>;
 template class ReferenceWalker<HighPrecision>;
 
 }  // namespace fdcg::test

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan.hpp"
+
+namespace fdcg::test {
+namespace {
+
+constexpr double kMuStatic = 0.6, kMuDynamic = 0.4;
+
+// What the frontier is over. Ways that are aimed at corners and edges exactly do not count: there two answers are equally
+// right, rounding chooses, and the way that follows remembers. A hand never meets a corner exactly.
+const WayPlan kHand{WayKind::hand, 1000, 0, 0, true};
+const WayPlan kPress{WayKind::hand};  // the same where no frontier is drawn
+const WayPlan kRub{WayKind::hand, 1000, kMuStatic, kMuDynamic};
+const WayPlan kShake{WayKind::tremor, 1000, kMuStatic, kMuDynamic};
+const WayPlan kJumps{WayKind::teleport};
+
+// Without those that count for a frontier: awkward bodies are not on the ladder of sizes.
+BodyPlan awkward(const std::string& name, std::vector<WayPlan> ways) {
+  return {name, std::move(ways)};
+}
+
+}  // namespace
+
+std::vector<BodyPlan> plan_of(bool is_quick) {
+  const WayPlan dive{WayKind::corner_dive}, tremor{WayKind::tremor}, edges{WayKind::edge_slide};
+  if (is_quick) {
+    std::vector<BodyPlan> plan;
+    for (const char* name : {"cube_12", "star_1k", "sphere_10k"})
+      plan.push_back({name, {kHand}});
+    for (const WayPlan& way : {kRub, edges, dive})
+      plan[1].ways.push_back(way);
+    plan.push_back(awkward("thin_plate", {kPress}));
+    plan.push_back(awkward("corner_pit_tilted", {kShake}));
+    return plan;
+  }
+  std::vector<BodyPlan> plan;
+  for (const char* name : {"cube_12", "sphere_80", "star_80", "sphere_1k", "star_1k", "sphere_10k", "star_10k", "torus_10k",
+                           "sphere_100k", "star_100k", "sphere_1M", "star_1M"}) {
+    plan.push_back({name, {kHand}});
+  }
+  for (const WayPlan& way : {kRub, kJumps, dive})
+    plan[0].ways.push_back(way);
+  for (BodyPlan& body : plan) {  // the same motion at other rates, and the other motions
+    if (body.body != "star_1k" && body.body != "star_100k") continue;
+    for (const double rate : {4000.0, 10'000.0, 40'000.0})
+      body.ways.push_back({WayKind::hand, rate});
+    for (const WayPlan& way : {kRub, kJumps, edges, dive, tremor, WayPlan{WayKind::fan_orbit}, WayPlan{WayKind::quantised}})
+      body.ways.push_back(way);
+  }
+  for (const char* name : {"corner_pit_tilted", "v_groove_tilted", "saddle", "spiky", "thin_plate"})
+    plan.push_back(awkward(name, {kPress, kRub, dive, tremor, kShake}));
+  plan.push_back(awkward("knife", {kPress, dive}));
+  plan.push_back(awkward("foil", {kPress}));
+  plan.push_back(awkward("needle_strip", {kPress, edges}));
+  plan.push_back(awkward("fan_peak", {kPress, {WayKind::fan_orbit}}));
+  return plan;
+}
+
+std::vector<WayPlan> ways_of_other(const Body& body) {
+  return body.group == BodyGroup::awkward ? std::vector<WayPlan>{kPress, kRub, kJumps} : std::vector<WayPlan>{kHand, kJumps};
+}
+
+Contenders contenders_for(const Ground& ground, const Body& body, bool is_quick) {
+  const bake::PolygonSoup& soup = ground.soup();
+  constexpr std::uint32_t kLarge = 200'000;  // faces: from here on fewer variants, and no grid that takes minutes to bake
+  Contenders list;
+  for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
+    for (const bool is_stored : {true, false}) {
+      list.push_back(make_fdcg(soup, {precision, is_stored, true}));
+      if (body.faces < kLarge) list.push_back(make_fdcg(soup, {precision, is_stored, false}));
+    }
+  }
+  for (const PaperLevel level : {PaperLevel::printed, PaperLevel::crossings, PaperLevel::edges, PaperLevel::vertices}) {
+    if (level == PaperLevel::printed || level == PaperLevel::vertices || body.faces < kLarge) {
+      list.push_back(make_paper(soup, level));
+    }
+  }
+  list.push_back(make_cgal_closest(soup));
+  list.push_back(make_embree_closest(soup));
+  list.push_back(make_proxy(soup));
+  if (!body.is_closed) return list;  // no inside, no signed distance
+  const std::vector<int> resolutions = is_quick ? std::vector<int>{32, 64} : std::vector<int>{32, 64, 128};
+  for (const int resolution : resolutions)
+    list.push_back(make_distance_grid(ground, resolution));
+  if (!is_quick && body.name == "star_10k") list.push_back(make_distance_grid(ground, 256));
+  return list;
+}
+
+}  // namespace fdcg::test

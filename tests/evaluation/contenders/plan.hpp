@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which contenders go along which ways on which bodies.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bodies.hpp"
+#include "contender.hpp"
+#include "ways.hpp"
+
+namespace fdcg::test {
+
+struct WayPlan {
+  WayKind kind;
+  double rate_hz = 1000;
+  double mu_static = 0, mu_dynamic = 0;
+  bool counts = false;  // for the frontier of its body: at most one of a body's ways does
+};
+
+struct BodyPlan {
+  std::string body;
+  std::vector<WayPlan> ways;
+};
+
+std::vector<BodyPlan> plan_of(bool is_quick);
+// The ways of a body that the plan lacks.
+std::vector<WayPlan> ways_of_other(const Body& body);
+
+using Contenders = std::vector<std::unique_ptr<Contender>>;
+// The first is the runtime in double with stored planes.
+Contenders contenders_for(const Ground& ground, const Body& body, bool is_quick);
+
+}  // namespace fdcg::test

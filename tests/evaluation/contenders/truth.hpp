@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a HIP's way should feel like: the contact model's god-object, tick by tick, from where the way has come.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contender.hpp"
+#include "reference_walker.hpp"
+#include "ways.hpp"
+
+namespace fdcg::test {
+
+constexpr double kTie = 0x1p-22;  // twice the spacing of floats at the extent
+
+// A body's unmerged graph in double, with what the truth is computed from: by brute force in long double (ReferenceWalker).
+class TrueBody {
+ public:
+  // Some kilobyte a face.
+  explicit TrueBody(const Ground& ground);
+
+  struct Tick {
+    Feel feel;
+    std::uint32_t state = FDCG_FREE, feature = FDCG_NONE;
+    // Since it was last free a decision was closer than floats tell apart, kTie of the extent: another answer may be as right.
+    bool is_tied = false;
+  };
+  // Sweeps through free space are skipped where the ground is farther than the way is long.
+  [[nodiscard]] std::vector<Tick> follow(const Way& way, const ReferenceFriction& friction) const;
+
+  // From a point to the closed feature, in metres.
+  [[nodiscard]] double distance_to(std::uint32_t state, std::uint32_t feature, const Ground::Point& point) const;
+
+ private:
+  const Ground& ground_;
+  std::vector<std::byte> file_;
+  fdcg_graph view_{};
+  std::unique_ptr<ReferenceSurface<long double>> surface_;
+};
+
+}  // namespace fdcg::test
