@@ -17,11 +17,8 @@ struct Crossing {
   Real fraction = 1;
 };
 
-//
-// Where the target lies on such a plane but for `rounding`, it is itself the place: of a move along a rim, from one point on the
-// plane to another, two roundings would make an arbitrary part.
 template <class Real>
-FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real rounding) {
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
   Crossing<Real> first;
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
@@ -29,10 +26,7 @@ FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3
     if (!(s1 >= 0)) continue;
     const Real s0 = plane.distance(from);
     if (!(s1 > s0)) continue;
-<<<<<<< HEAD
-=======
     const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + absolute(plane.offset));
->>>>>>> main
     const Real fraction = s1 <= rounding ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
     if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
   }
@@ -53,9 +47,9 @@ struct FaceMove {
 };
 
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
-// Changes nothing but friction.is_slipping. `rounding`: plane_rounding_bound of the HIP.
+// Changes nothing but friction.is_slipping.
 template <class Real>
-FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real rounding, Real side,
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real side,
                                      Vec3<Real> god_object) {
   using Kind = typename FaceMove<Real>::Kind;
   if (!(side < 0)) return {Kind::leaves, god_object, {}};
@@ -68,7 +62,7 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& frictio
   const Real shrink = slip.gap > 0 ? slip.gap / root(gap2) : Real(0);
   const Vec3<Real> surface_point = hip + normal * depth;
   const Vec3<Real> target = surface_point + offset * shrink;
-  const Crossing<Real> crossing = first_crossing(node, god_object, target, rounding);
+  const Crossing<Real> crossing = first_crossing(node, god_object, target);
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
@@ -112,7 +106,7 @@ template <class Real>
 inline Decision face_rule(Walk<Real>& walk) {
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
-  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object));
+  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.side(node), walk.god_object));
 }
 
 }  // namespace fdcg

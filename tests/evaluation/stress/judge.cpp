@@ -40,6 +40,13 @@ std::string_view name_of(Fault fault) {
   return kNames[static_cast<std::size_t>(fault)];
 }
 
+std::optional<Fault> fault_named(std::string_view name) {
+  for (std::size_t i = 0; i < kFaults; ++i) {
+    if (name_of(static_cast<Fault>(i)) == name) return static_cast<Fault>(i);
+  }
+  return std::nullopt;
+}
+
 void Verdicts::add(const Verdicts& other) {
   for (std::size_t i = 0; i < kFaults; ++i)
     count[i] += other.count[i];

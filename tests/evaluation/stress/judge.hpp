@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "fdcg/fdcg.h"
@@ -30,6 +31,7 @@ enum class Fault : std::uint8_t {
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
 std::string_view name_of(Fault fault);
+std::optional<Fault> fault_named(std::string_view name);
 
 // The scale of rounding is the largest of the object's extent and the coordinates of HIP: both enter every sum.
 inline constexpr double kMostGrowth_eps = 16;

@@ -27,19 +27,12 @@ double number(const std::string& text) {
   return std::strtod(text.c_str(), nullptr);
 }
 
-Fault fault_named(const std::string& name) {
-  for (std::size_t i = 0; i < kFaults; ++i) {
-    if (name_of(static_cast<Fault>(i)) == name) return static_cast<Fault>(i);
-  }
-  throw std::runtime_error("no fault is called " + name);
-}
-
 // "# key value": one line of a comment.
 void read_remark(std::istringstream& line, Reproducer& r) {
   std::string key, value;
   line >> key;
   std::getline(line >> std::ws, value);
-  if (key == "fault") r.fault = fault_named(value);
+  if (key == "fault") r.fault = fault_named(value).value_or(Fault::count);
   if (key == "command") r.command = value;
   if (key == "body") r.body.description = value;
   if (key == "precision") r.body.options.precision = value == "f32" ? bake::Precision::f32 : bake::Precision::f64;

@@ -13,16 +13,14 @@
 
 namespace fdcg::test {
 
-// Which work a case may leave for the next tick: none; what needs exact signs, of which some dozen are a tick's work (HIPs and
-// ways within rounding of planes, edges and corners); or any, where hundreds of faces may be crossed in one tick.
-enum class Carries : std::uint8_t { nothing, exact_signs, all };
-
 struct StressCase {
   std::string_view name;
   std::string_view target;  // in words; the judges of judge.hpp are the same for every case
   Body (*make)(Random& random, bake::Precision precision);
   std::vector<Motion> motions;  // drawn from, with equal chances
-  Carries carries = Carries::nothing;
+  // Work may be carried over to the next tick: where HIPs and ways come within rounding of planes, edges and corners, whose exact
+  // signs are a tick's work by the dozen; and where hundreds of faces may be crossed in one tick.
+  bool may_carry = false;
   std::uint32_t blocks_per_body = 1;
   double share = 1;  // of the ticks; dear ones get less
 };
