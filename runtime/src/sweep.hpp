@@ -58,8 +58,10 @@ class Sweep {
 
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
+  static constexpr Real kNever = 2;  // a fraction after the end
   // Where a way that passes inside a node's loop, and comes in at `fraction` but for rounding, surely is over the face: of one
   // that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
+  // kNever where all of it is beyond a side: a loop that is not flat is passed, seen edge-on, by ways that end before it.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Real> node = graph_.node(n);
     spend(work_left_, kSideWork * node.side_count());
@@ -68,6 +70,7 @@ class Sweep {
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Plane<Real> plane = node.voronoi_plane(k);
       const Real s0 = plane.distance(from_) - rounding, s1 = plane.distance(to_) - rounding;
+      if (s0 > 4 * rounding && s1 > 4 * rounding) return kNever;
       if (s0 <= 0 && s1 > 0) {
         const Real leaves = -s0 / (s1 - s0);
         if (leaves < end) end = leaves;
@@ -198,7 +201,7 @@ class Sweep {
     const bool is_inexact = node.is_inexact();
     if (start_side < (is_inexact ? -slab_ : Real(0))) return;
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
-    const Real noise = from_bound_ + to_bound_;
+    const Real noise = from_bound_ + to_bound_ + (is_inexact ? slab_ : Real(0));
     const bool is_grazing = noise > kGrazing * fall;
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
@@ -304,8 +307,8 @@ class Sweep {
 template <class Real>
 inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
-  const Real fraction = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;
-  const Vec3<Real> point = sweep.point_at(fraction);
+  const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;
+  const Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
   walk.active = first.feature;
   if (first.feature.state == FDCG_EDGE) {
     const EdgeLine<Real> line(walk.graph.edge(first.feature.index));

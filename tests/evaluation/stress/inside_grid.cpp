@@ -126,11 +126,9 @@ void InsideGrid::place_triangles() {
     member_[next[cell]++] = f;
 }
 
-double InsideGrid::mean_crowd() const {
-  std::size_t crowded = 0;
-  for (std::size_t c = 0; c + 1 < first_.size(); ++c)
-    crowded += has_triangles(c);
-  return crowded == 0 ? 0 : static_cast<double>(member_.size()) / static_cast<double>(crowded);
+std::size_t InsideGrid::crowd_at(const Hip& point) const {
+  const std::optional<Place> place = place_of(point);
+  return place ? first_[index(*place) + 1] - first_[index(*place)] : 0;
 }
 
 void InsideGrid::count_crossings(std::size_t cell, const Hip& from, const Hip& to, Parity& parity) const {

@@ -36,8 +36,8 @@ class InsideGrid {
   [[nodiscard]] double distance_to_surface(const Hip& point) const;
   [[nodiscard]] double size() const { return size_; }  // of the bounds' longest side
 
-  // How many triangles share a cell with a point, in the mean over the cells that the surface meets.
-  [[nodiscard]] double mean_crowd() const;
+  // How many triangles share a cell with a point: what a question there costs.
+  [[nodiscard]] std::size_t crowd_at(const Hip& point) const;
 
  private:
   using Place = std::array<int, 3>;

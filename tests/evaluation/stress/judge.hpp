@@ -76,13 +76,15 @@ class Judge {
   void look_at_feature(Tick& tick, Verdicts& v) const;
   void look_at_pull(Tick& tick, Verdicts& v) const;
   void look_at_rest(Tick& tick, Verdicts& v) const;
-  void look_at_way(Tick& tick) const;
+  void look_at_way(Tick& tick);
+  bool is_let_off(const Hip& point);
   void look_inside(Tick& tick, Verdicts& v);
 
   const Specimen& specimen_;
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
-  bool is_exact_;               // every face is as flat as the exact solid has it
+  bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
   bool is_known_outside_ = false;
+  std::size_t asked_ = 0;          // in crowded cells
   std::uint32_t last_flags_ = 0;   // of the last tick with a finite HIP
   bool was_met_again_ = false;     // ... stopped where a feature was met again
   std::uint64_t carried_ = 0;      // ticks in a row
