@@ -35,7 +35,7 @@ Meeting meeting(const Triangle& t, const Hip& from, const Hip& to) {
 
 // Cells along each axis: the surface meets about the square of it.
 int resolution(std::size_t triangles) {
-  return std::clamp(static_cast<int>(4 * std::sqrt(std::sqrt(static_cast<double>(triangles) + 16) * 2)), 12, 96);
+  return std::clamp(static_cast<int>(4 * std::sqrt(std::sqrt(static_cast<double>(triangles) + 16) * 2)), 12, 48);
 }
 
 }  // namespace

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg_stress: runs the step on every case of contact-model section 10, judges every tick, and says how to repeat what fails.
 #include <CLI/CLI.hpp>
+#include <unistd.h>
+
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
-
-#include <unistd.h>
 
 #include "minimise.hpp"
 #include "reproducer.hpp"
@@ -25,7 +28,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kQuickSteps = 6e6, kFullSteps = 3e8;
+constexpr double kQuickSteps = 9e5, kFullSteps = 3e7;
 constexpr int kMostReproducers = 3;  // of each case, precision and fault
 
 struct Options {
@@ -86,32 +89,92 @@ class Findings {
   std::map<std::string, int> written_;
 };
 
-// Blocks of a row, dealt out in turns of blocks_per_body; the sum is taken in the blocks' order, whoever ran them.
-BlockResult run_row(const Row& row, const Options& options, Findings& findings) {
-  const std::uint64_t count = row.end_block - row.first_block;
-  std::vector<BlockResult> results(count);
-  const std::uint64_t turn = row.stress_case->blocks_per_body;
-  const auto work = [&](unsigned worker) {
-    SpecimenShelf shelf;
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const std::uint64_t block = row.first_block + i;
-      if (block / turn % options.threads != worker) continue;
-      const BlockName name = {row.stress_case, row.precision, block, options.seed};
-      const auto specimen = shelf.get(name);
-      results[i] = run_block(name, *specimen, [&](const Finding& f) { findings.add(f); });
+// All rows' blocks, in turns of blocks_per_body, each turn for one worker; a row's sum is taken in its blocks' order, whoever ran
+// them.
+class Workers {
+ public:
+  Workers(const std::vector<Row>& rows, const Options& options, Findings& findings)
+      : rows_(rows), options_(options), findings_(findings), results_(rows.size()), left_(rows.size()), seconds_(rows.size()) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const std::uint64_t turn = rows[r].stress_case->blocks_per_body;
+      results_[r].resize(rows[r].end_block - rows[r].first_block);
+      for (std::uint64_t begin = rows[r].first_block; begin < rows[r].end_block;) {
+        const std::uint64_t end = std::min((begin / turn + 1) * turn, rows[r].end_block);
+        turns_.push_back({r, begin, end});
+        ++left_[r];
+        begin = end;
+      }
     }
+    for (unsigned w = 0; w < options.threads; ++w)
+      threads_.emplace_back([this] { work(); });
+  }
+  ~Workers() {
+    for (std::thread& thread : threads_)
+      thread.join();
+  }
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  // Waits for a row. `seconds`: of all workers together. Throws what a worker has thrown.
+  BlockResult row(std::size_t r, double* seconds) {
+    std::unique_lock lock(mutex_);
+    is_done_.wait(lock, [&] { return left_[r] == 0 || failure_ != nullptr; });
+    if (failure_ != nullptr) std::rethrow_exception(failure_);
+    BlockResult sum;
+    for (const BlockResult& result : results_[r])
+      sum.add(result);
+    *seconds = seconds_[r];
+    return sum;
+  }
+
+ private:
+  struct Turn {
+    std::size_t row;
+    std::uint64_t begin, end;
   };
-  std::vector<std::thread> others;
-  for (unsigned w = 1; w < options.threads; ++w)
-    others.emplace_back(work, w);
-  work(0);
-  for (std::thread& other : others)
-    other.join();
-  BlockResult sum;
-  for (const BlockResult& r : results)
-    sum.add(r);
-  return sum;
-}
+
+  void work() {
+    try {
+      while (true) {
+        const std::size_t t = next_.fetch_add(1);
+        if (t >= turns_.size()) return;
+        run(turns_[t]);
+      }
+    } catch (...) {
+      next_ = turns_.size();
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+      is_done_.notify_all();
+    }
+  }
+
+  void run(const Turn& turn) {
+    const auto begin = Clock::now();
+    const Row& row = rows_[turn.row];
+    SpecimenShelf shelf;
+    for (std::uint64_t block = turn.begin; block < turn.end; ++block) {
+      const BlockName name = {row.stress_case, row.precision, block, options_.seed};
+      const auto specimen = shelf.get(name);
+      results_[turn.row][block - row.first_block] = run_block(name, *specimen, [&](const Finding& f) { findings_.add(f); });
+    }
+    const std::lock_guard lock(mutex_);
+    seconds_[turn.row] += seconds_since(begin);
+    if (--left_[turn.row] == 0) is_done_.notify_all();
+  }
+
+  const std::vector<Row>& rows_;
+  const Options& options_;
+  Findings& findings_;
+  std::vector<Turn> turns_;
+  std::vector<std::vector<BlockResult>> results_;
+  std::vector<std::size_t> left_;  // turns of each row
+  std::vector<double> seconds_;
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex mutex_;
+  std::condition_variable is_done_;
+  std::exception_ptr failure_;
+  std::vector<std::thread> threads_;
+};
 
 std::vector<Row> rows_of(const Options& options) {
   std::vector<Row> rows;
@@ -201,10 +264,10 @@ int run(const Options& options, const std::string& program) {
   BlockResult whole;
   std::printf("seed %llu\n%-18s %-4s %11s %5s %7s %8s %9s %7s  %s\n", n(options.seed), "case", "", "ticks", "cont.", "trans.",
               "growth", "off surf.", "ns/tick", "faults");
+  Workers workers(rows, options, findings);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto row_begin = Clock::now();
-    const BlockResult r = run_row(rows[i], options, findings);
-    const double seconds = seconds_since(row_begin);
+    double seconds = 0;
+    const BlockResult r = workers.row(i, &seconds);
     write_row(table, rows[i], r, seconds);
     std::uint64_t faults = 0;
     for (const std::uint64_t c : r.verdicts.count)
@@ -213,7 +276,7 @@ int run(const Options& options, const std::string& program) {
     std::printf("%-18s %-4s %11llu %5.2f %7.3f %8.2f %9.2f %7.0f  %llu%s\n", std::string(rows[i].stress_case->name).c_str(),
                 name_of(rows[i].precision), n(r.ticks), static_cast<double>(r.contact_ticks) / ticks,
                 static_cast<double>(r.transitions) / ticks, r.verdicts.worst_growth_eps, r.verdicts.worst_off_surface_eps,
-                seconds / ticks * 1e9 * options.threads, n(faults - r.bounds_allowed),
+                seconds / ticks * 1e9, n(faults - r.bounds_allowed),
                 r.bounds_allowed > 0 ? (", " + std::to_string(r.bounds_allowed) + " ticks carried over").c_str() : "");
     std::fflush(stdout);
     whole.add(r);

@@ -12,7 +12,7 @@
 
 namespace fdcg::test {
 
-inline constexpr std::uint32_t kBlockTicks = 50'000;
+inline constexpr std::uint32_t kBlockTicks = 20'000;
 
 struct BlockName {
   const StressCase* stress_case = nullptr;
