@@ -90,8 +90,8 @@ void squared_distances(const fdcg_box8& boxes, const float (&point)[3], float (&
 
 void WaitingBoxes::push(const Item& parent, uint32_t lanes, const float (&keys)[FDCG_TREE_WAYS]) {
   const int first = count_;
-  for (uint32_t j = 0; lanes >> j != 0; ++j) {
-    if ((lanes >> j & 1) == 0) continue;
+  for (uint32_t left = lanes; left != 0; left &= left - 1) {
+    const auto j = static_cast<uint32_t>(__builtin_ctz(left));
     int at = count_++;
     for (; at > first && items_[at - 1].key < keys[j]; --at)
       items_[at] = items_[at - 1];

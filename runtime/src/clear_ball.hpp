@@ -19,15 +19,29 @@ inline bool is_in_clear_ball(const fdcg_clear_ball& ball, Vec3<double> hip) {
   return dot(gap, gap) < ball.radius2;  // false where there is none
 }
 
-// How near a leaf's nodes may be, squared, in tree units: as near as their planes. `reach`: farther does not matter.
+// How near a node may be; exact but for rounding where its nearest point is on its inside or on a side. Not asked to be nearer
+// than `nearest`: only what may be is worth its sides. A node whose corners lie off its plane is as near as that slab: a way
+// may enter it from beside.
 template <class Real>
-inline float squared_plane_distance(const GraphView<Real>& graph, uint32_t leaf, Vec3<Real> at, Real reach, Real per_unit) {
+inline Real node_distance(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> at, Real nearest) {
+  const Real from_plane = absolute(node.plane().distance(at));
+  if (node.is_inexact()) return from_plane - static_cast<Real>(graph.header->max_deviation);
+  if (!(from_plane < nearest)) return from_plane;
+  Real beside = 0;
+  for (uint32_t k = 0; k < node.side_count(); ++k) {
+    const Real beyond = node.voronoi_plane(k).distance(at);
+    if (beyond > beside) beside = beyond;
+  }
+  return beside > 0 ? root(from_plane * from_plane + beside * beside) : from_plane;
+}
+
+// How near a leaf's nodes may be, squared, in tree units. `reach`: farther does not matter.
+template <class Real>
+inline float squared_leaf_distance(const GraphView<Real>& graph, uint32_t leaf, Vec3<Real> at, Real reach, Real per_unit) {
   const uint32_t first = leaf * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
-  const Real slab = static_cast<Real>(graph.header->max_deviation);
   Real nearest = reach;
   for (uint32_t n = first; n < end && n < graph.header->node_count; ++n) {
-    const NodeRef<Real> node = graph.node(n);
-    const Real from_plane = absolute(node.plane().distance(at)), distance = node.is_inexact() ? from_plane - slab : from_plane;
+    const Real distance = node_distance(graph, graph.node(n), at, nearest);
     if (distance < nearest) nearest = distance > 0 ? distance : Real(0);
   }
   const float distance = static_cast<float>(nearest * per_unit);
@@ -66,7 +80,7 @@ template <class Real>
     }
     ++visits;
     if (next.level < 0) {
-      const float distance2 = squared_plane_distance(graph, next.index, at, reach * unit, per_unit);
+      const float distance2 = squared_leaf_distance(graph, next.index, at, reach * unit, per_unit);
       const float nearest2 = distance2 > next.key ? distance2 : next.key;
       if (nearest2 < node2) node2 = nearest2;
       if (nearest2 < clear2) clear2 = nearest2;

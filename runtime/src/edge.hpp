@@ -34,14 +34,17 @@ inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
   return type == FDCG_CONCAVE ? !is_behind_a && !is_behind_b : !is_behind_a || !is_behind_b;
 }
 
-// The sum of the two normal loads of the groove, or the paper's distance of HIP from the edge.
+// The sum of the two normal loads of the groove, or the paper's distance of HIP from the edge. `across` is HIP from its foot on
+// the edge: from any other point of the edge it would be the same in theory, but merged faces may lie off their corners, and a
+// load that is not that of the force then errs by the way along the edge.
 template <class Real>
-inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, const EdgeLine<Real>& line, Real distance) {
+inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
+  const Real distance = norm(across);
   if (!walk.friction.has_wedge || connection.type() == FDCG_BOUNDARY) return distance;
   const Vec3<Real> sum = walk.graph.node(connection.node(0)).normal() + walk.graph.node(connection.node(1)).normal();
   const Real most = Real(kMaxWedgeFactor) * distance;
   const Real sum2 = dot(sum, sum);
-  const Real load = -2 * dot(sum, walk.hip - line.start);
+  const Real load = -2 * dot(sum, across);
   if (sum2 > 0 && !(load > 0)) return 0;
   return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
 }
@@ -63,8 +66,8 @@ inline Decision edge_rule(Walk<Real>& walk) {
   const EdgeLine<Real> line(walk.graph.edge(index));
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
-  const Real distance = norm(walk.hip - (line.start + line.direction * foot));
-  const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, line, distance));
+  const Vec3<Real> across = walk.hip - (line.start + line.direction * foot);
+  const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, across));
   if (slip.is_rest) return rest();
   const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + slip.gap : foot - slip.gap);
   return landed == walk.active ? rest() : go_to(landed);

@@ -17,10 +17,11 @@ struct Crossing {
   Real fraction = 1;
 };
 
+// Looks at the sides from the first on beyond whose plane the move ends.
 template <class Real>
-FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
   Crossing<Real> first;
-  for (uint32_t k = 0; k < node.side_count(); ++k) {
+  for (; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
     if (!(s1 >= 0)) continue;
@@ -31,6 +32,14 @@ FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3
     if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
   }
   return first;
+}
+
+template <class Real>
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+  for (uint32_t k = 0; k < node.side_count(); ++k) {
+    if (node.voronoi_plane(k).distance(to) >= 0) return first_crossing_from(k, node, from, to);
+  }
+  return {};
 }
 
 // What becomes of a god-object on a face.
@@ -46,15 +55,15 @@ struct FaceMove {
   Crossing<Real> crossing;
 };
 
+// `reach`: from the HIP to the god-object, more exactly than the two can say.
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
 template <class Real>
 FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real side,
-                                     Vec3<Real> god_object) {
+                                     Vec3<Real> god_object, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
   if (!(side < 0)) return {Kind::leaves, god_object, {}};
   const Vec3<Real> normal = node.normal();
-  const Vec3<Real> reach = god_object - hip;
   const Vec3<Real> offset = reach - normal * dot(normal, reach);  // its part in the plane: from the surface point
   const Real gap2 = dot(offset, offset), depth = -side;
   const Slip<Real> slip = friction.slip(god_object, gap2, depth);
@@ -98,15 +107,19 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
   const EdgeLine<Real> line(walk.graph.edge(node, side));
-  const Vec3<Real> point = walk.god_object + (move.target - walk.god_object) * move.crossing.fraction;
-  return go_to(place_on_edge(walk, node.connection(side), line, line.parameter(point)));
+  const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.lost;
+  const Vec3<Real> ahead = walk.lost + way * move.crossing.fraction;  // from `from` to the crossing
+  const Feature landed = place_on_edge(walk, node.connection(side), line, line.parameter(from + ahead));
+  if (landed.state == FDCG_EDGE) walk.lost = (from - walk.god_object) + ahead;
+  return go_to(landed);
 }
 
 template <class Real>
 inline Decision face_rule(Walk<Real>& walk) {
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
-  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.side(node), walk.god_object));
+  const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.lost;
+  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.side(node), walk.god_object, reach));
 }
 
 }  // namespace fdcg

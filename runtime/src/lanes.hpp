@@ -27,14 +27,15 @@ struct Lanes {
   using Words = int32_t __attribute__((vector_size(16)));
   using Halves = uint16_t __attribute__((vector_size(16)));
   using Bytes = uint8_t __attribute__((vector_size(16)));
+  using Doublewords = uint64_t __attribute__((vector_size(16)));
 
   Floats low, high;
 
   static Lanes all(float x) { return {Floats{x, x, x, x}, Floats{x, x, x, x}}; }
   static Lanes of(const uint8_t (&numbers)[kLanes]) {
-    Bytes bytes = {};
-    memcpy(&bytes, numbers, sizeof numbers);
-    const Bytes none = {};
+    uint64_t word;  // by way of an integer: eight bytes written into a vector in memory would be waited for when it is read
+    memcpy(&word, numbers, sizeof word);
+    const Bytes bytes = reinterpret_cast<Bytes>(Doublewords{word, 0}), none = {};
     const Halves halves =
         reinterpret_cast<Halves>(__builtin_shufflevector(bytes, none, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
     const Halves no_halves = {};

@@ -90,7 +90,7 @@ class Sweep {
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
       if (*work_left_ == 0) return false;
-      try_node(*next_node);
+      glance_at_node(*next_node);
     }
     return true;
   }
@@ -186,7 +186,18 @@ class Sweep {
     const uint32_t left_in_graph = graph_.header->node_count - first;
     const uint32_t count = left_in_graph < FDCG_LEAF_NODES ? left_in_graph : FDCG_LEAF_NODES;
     for (uint32_t n = first; n < first + count; ++n)
+      glance_at_node(n);
+  }
+
+  // Of most nodes the way ends in front, or begins behind, by more than rounding could change: those need no call.
+  void glance_at_node(uint32_t n) {
+    const Plane<Real> plane = graph_.node(n).plane();
+    const Real end = plane.distance(to_);
+    if (end > to_bound_ || (end < -to_bound_ && plane.distance(from_) < -slab_)) {
+      spend(work_left_, kNodeWork);
+    } else {
       try_node(n);
+    }
   }
 
   // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie

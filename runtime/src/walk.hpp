@@ -28,6 +28,9 @@ struct Walk {
   Feature active;
   Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
   uint32_t work_left;  // for the rules, see work.hpp
+  // What rounding took from the god-object when it was placed on the edge by which it crossed into the active face. The way
+  // goes on from god_object + lost: else a tick across hundreds of needle faces adds up their roundings.
+  Vec3<Real> lost = {0, 0, 0};
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
   void spend(uint32_t units) { fdcg::spend(&work_left, units); }
@@ -36,6 +39,7 @@ struct Walk {
   void place(Vec3<Real> point, Feature new_seat) {
     god_object = point;
     seat = new_seat;
+    lost = {0, 0, 0};
   }
 };
 

@@ -104,23 +104,38 @@ TEST_CASE("forces and god-objects are the same bit for bit with and without the 
 }
 
 TEST_CASE("no face reaches into a clear ball") {
-  const PolygonSoup soup = star_sphere(2, 0.4, 2);
-  const CompiledMesh mesh(soup);
-  Random random(4);
-  int balls = 0;
-  for (int i = 0; i < 400; ++i) {
-    const auto d = random.direction();
-    const double radius = random.uniform(1, 2.5), step = std::pow(10.0, random.uniform(-6, -1));
-    Contact contact(mesh.view(), with_skips(0));
-    contact.step(radius * d.x, radius * d.y, radius * d.z);
-    const Hip hip = {radius * d.x + step, radius * d.y, radius * d.z};
-    contact.step(hip);
-    if (!(contact.state.clear_ball.radius2 > 0)) continue;
-    ++balls;
-    REQUIRE(contact.result.state == FDCG_FREE);
-    REQUIRE(std::sqrt(contact.state.clear_ball.radius2) < distance(closest_point(soup, hip), hip));
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    for (const PolygonSoup& soup : {star_sphere(2, 0.4, 2), spiky_sphere(2, 1, 3), torus(20, 10), needle_strip(60, 0.3, 2),
+                                    rounded_to_float(transformed(corner_pit(), random_rotation(5))), cone(60)}) {
+      CompileOptions options;
+      options.precision = precision;
+      options.allow = {"boundary-edge"};
+      const PolygonSoup stored = rounded_to_float(soup);  // what both precisions hold exactly
+      const CompiledMesh mesh(stored, options);
+      const double size = extent(stored);
+      Random random(4);
+      int balls = 0, near_balls = 0;
+      for (int i = 0; i < 400; ++i) {
+        const auto d = random.direction();
+        const double radius = random.uniform(0.2, 2.5) * size, step = std::pow(10.0, random.uniform(-6, -1)) * size;
+        Contact contact(mesh.view(), with_skips(0));
+        contact.step(radius * d.x, radius * d.y, radius * d.z);
+        const Hip hip = {radius * d.x + step, radius * d.y, radius * d.z};
+        contact.step(hip);
+        if (!(contact.state.clear_ball.radius2 > 0)) continue;
+        const double ball = std::sqrt(contact.state.clear_ball.radius2), surface = distance(closest_point(stored, hip), hip);
+        ++balls;
+        near_balls += ball > surface / 2;
+        INFO(soup.name << ", f" << 8 * mesh.view().header->real_bytes << ", direction " << i);
+        REQUIRE(contact.result.state == FDCG_FREE);
+        REQUIRE(ball < surface);
+      }
+      INFO(soup.name << ", f" << 8 * mesh.view().header->real_bytes << ": " << balls << " balls, " << near_balls
+                     << " reach half way");
+      CHECK(balls > 200);
+      CHECK(near_balls > 20);
+    }
   }
-  CHECK(balls > 200);
 }
 
 TEST_CASE("copied and reset contacts go their own way with their ball") {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // One test for each rule of the contact model that an implementer gets wrong; each fails when its rule is taken out. The rule's
 // name stands in brackets as a tag. Over 400 lines: the list of rules stays in one place, in the model's order.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"
-#include "reference_surface.hpp"
+#include "random.hpp"
+#include "reference_walker.hpp"
 
 using namespace fdcg::test;
 using fdcg::bake::Precision;
@@ -141,6 +144,36 @@ TEST_CASE("a way along a side is not stopped where it begins", "[along-side]") {
     }
   }
   CHECK(stopped == 0);
+}
+
+// A tick that drags the god-object across hundreds of needles places it on as many edges, each time rounded.
+TEST_CASE("a tick across hundreds of faces does not add up their roundings", "[lost]") {
+  const PolygonSoup soup = needle_strip(500, 0.2, 3);
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    const PlainGraph graph(soup, precision);
+    const ReferenceSurface<long double> surface(graph.view());
+    const double ulp = std::ldexp(1.0, std::ilogb(graph.view().header->extent) - (precision == Precision::f64 ? 52 : 23));
+    Contact contact(graph.view(), contact_params(1, 1));
+    Random random(2);
+    std::vector<double> ulps;  // of the long ticks
+    for (int i = 0; i < 400; ++i) {
+      ReferenceWalker<long double> walker(surface, {1, 1});
+      walker.resynchronise(contact.state);
+      const Hip hip = {random.uniform(-0.45, 0.45), random.uniform(-0.45, 0.45), i == 0 ? 0.5 : random.uniform(-0.1, 0)};
+      contact.step(hip);
+      walker.step(surface.local(hip.data()));
+      const fdcg_contact& own = contact.state;
+      const bool is_same = own.state == walker.contact.state && own.feature == walker.contact.feature;
+      if (!is_same || contact.result.transitions < 300) continue;
+      const auto& go = walker.contact.god_object;
+      const Vector<long double> at = {own.god_object[0], own.god_object[1], own.god_object[2]};
+      ulps.push_back(static_cast<double>(length(go - at)) / ulp);
+    }
+    std::sort(ulps.begin(), ulps.end());
+    INFO("f" << (precision == Precision::f64 ? 64 : 32));
+    REQUIRE(ulps.size() > 50);
+    CHECK(ulps[ulps.size() * 9 / 10] <= 3);  // the rest cross an edge at a flat angle
+  }
 }
 
 TEST_CASE("on a plane is outside", "[on-plane]") {

@@ -96,6 +96,38 @@ TEST_CASE("a groove holds along its line what the chosen rule says: wedge or pap
   }
 }
 
+// A million sizes away the corners are rounded to 1e-10 of the size; the walls are merged over that and lie off their corners.
+TEST_CASE("the two walls of a groove bear what its friction asks for, where the faces lie off their corners too") {
+  const Vec3 offset = {7e5, -6e5, 4e5};
+  int inexact = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Rotation tilt = random_rotation(seed);
+    const CompiledMesh mesh(triangulated(transformed(v_groove(std::numbers::pi / 3), tilt, 1, offset)));
+    const auto place = [&](double x, double z) {
+      const Vec3 p = rotated(tilt, {x, 0, z});
+      return Hip{p.x + offset.x, p.y + offset.y, p.z + offset.z};
+    };
+    const double mu_s = 0.6, mu_d = 0.4, depth = 2e-3;
+    Contact contact(mesh.view(), contact_params(mu_s, mu_d));
+    contact.step(place(-0.9, 0.2));
+    for (int tick = 0; tick < 40; ++tick) {
+      contact.step(place(-0.9 + 0.04 * tick, -depth));
+      if (tick < 2) continue;
+      REQUIRE(contact.result.state == FDCG_EDGE);
+      REQUIRE(contact.result.slipping == 1);
+      const fdcg_connection_info edge = fdcg_get_connection(&mesh.view(), contact.result.feature);
+      const fdcg_node_info a = fdcg_get_node(&mesh.view(), edge.node[0]), b = fdcg_get_node(&mesh.view(), edge.node[1]);
+      inexact += ((a.flags | b.flags) & FDCG_NODE_INEXACT) != 0;
+      const Hip sum = {a.normal[0] + b.normal[0], a.normal[1] + b.normal[1], a.normal[2] + b.normal[2]};
+      const Hip direction = {edge.direction[0], edge.direction[1], edge.direction[2]};
+      const double held = dot(contact.force(), direction);
+      const double load = 2 * dot(along(contact.force(), direction, -held), sum) / dot(sum, sum);
+      REQUIRE(std::abs(std::abs(held) / load - mu_d) < 1e-12);
+    }
+  }
+  CHECK(inexact > 0);
+}
+
 TEST_CASE("the wedge rule never gives more than 1,024 times the distance from the edge") {
   const PlainGraph graph(v_groove(1e-4), Precision::f64);  // the balance of forces would ask for 20,000 times
   Contact contact(graph.view(), contact_params(0.001, 0.001));

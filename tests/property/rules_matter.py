@@ -27,6 +27,7 @@ MUTANTS = [
     ("first-crossing", "the first crossing, not the last", "face.hpp",
      "|| fraction < first.fraction)", "|| fraction > first.fraction)"),
     ("along-side", "a way along a side ends where it ends", "face.hpp", "s1 <= rounding ? Real(1)", "false ? Real(1)"),
+    ("lost", "what rounding takes at an edge is not lost", "face.hpp", "walk.lost = (from - walk.god_object) + ahead", "(void)0"),
     ("on-plane", "on a face's plane is outside", "face.hpp", "if (!(side < 0)) return", "if (side > 0) return"),
     ("seat", "the seat's rule decides", "face.hpp", "return go_to(leave_face(walk, node));", "return go_to(kFree);"),
     ("last-tick-segment", "the sweep starts where the HIP was", "servo_step.cpp",

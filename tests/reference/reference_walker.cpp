@@ -360,7 +360,7 @@ void ReferenceWalker<Real>::step_edge() {
   const Point from_line = hip_ - (v0 + edge.direction * foot);
   Real load_error = 0;
   bool is_fold = false;
-  const Real load = edge_load(edge, length(from_line), load_error, is_fold);
+  const Real load = edge_load(edge, from_line, load_error, is_fold);
   const Real r = absolute<Real>(here - foot);
   if (is_fold || decide_friction(r, load, load_error) == Friction::rests) {
     rest();
@@ -371,14 +371,15 @@ void ReferenceWalker<Real>::step_edge() {
 }
 
 template <class Real>
-Real ReferenceWalker<Real>::edge_load(const Edge& edge, const Real& h, Real& load_error, bool& is_fold) const {
+Real ReferenceWalker<Real>::edge_load(const Edge& edge, const Point& from_line, Real& load_error, bool& is_fold) const {
+  const Real h = length(from_line);
   if (!friction_.is_wedge) return h;
   const Point sum = surface_.faces[edge.face[0]].normal + surface_.faces[edge.face[1]].normal;
   const Real square = dot(sum, sum);
   is_fold = square == 0;
   if (is_fold) return Real(0);
   load_error = 2 / length(sum);
-  const Real load = -2 * dot(sum, hip_ - surface_.corners[edge.corner[0]].point) / square;
+  const Real load = -2 * dot(sum, from_line) / square;
   return std::clamp<Real>(load, Real(0), kLargestWedge * h);
 }
 

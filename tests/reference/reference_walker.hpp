@@ -80,7 +80,7 @@ class ReferenceWalker {
   Friction decide_friction(const Real& r, const Real& load, const Real& load_error);
   void move_on_face(const Face& face, const Point& target);
   void place_on_edge(std::uint32_t connection, const Real& along);
-  Real edge_load(const Edge& edge, const Real& h, Real& load_error, bool& is_fold) const;
+  Real edge_load(const Edge& edge, const Point& from_line, Real& load_error, bool& is_fold) const;
   std::optional<Hit> sweep(const Point& from, const Point& to);
   std::optional<Hit> meet(std::uint32_t face, const Point& from, const Point& to);
   Hit located(const Face& face, std::uint32_t f, const Real& side_from, const Real& side_to, const Point& from,

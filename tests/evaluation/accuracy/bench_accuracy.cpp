@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far the god-object is from the exact one: the runtime beside rational arithmetic and beside its rules in wider numbers,
 // over bodies, ways, friction, precisions and ways of storing a graph. Errors in ulps of the extent, f32 in its own.
+// Over 400 lines: plan, search, tables and bars of one program, read from top to bottom.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -14,9 +15,11 @@
 #include <vector>
 
 #include "accuracy_run.hpp"
+#include "adversary.hpp"
 #include "bodies.hpp"
 #include "ground.hpp"
 #include "meshes.hpp"
+#include "plain_graph.hpp"
 #include "table.hpp"
 #include "ways.hpp"
 
@@ -28,13 +31,17 @@ namespace {
 constexpr double kMu[4][2] = {{0, 0}, {0.3, 0.2}, {1, 1}, {2, 1}};
 constexpr double kOffsets_sizes[] = {1e3, 1e6};
 constexpr double kP999Bar_ulps = 8, kMaxBar_ulps = 64;  // the project's own
+constexpr unsigned kWaysOfAKind = 16;                   // one for each combination of friction, planes and merging
 constexpr std::uint32_t kMostFaces = 1500;              // of bodies from bodies.hpp: the replay tests every face of a sweep
+
+constexpr const char* kRestless = "restless";  // the way of hip_walk.hpp
 
 struct Options {
   bool is_quick = false, explains = false;
   std::string output = "accuracy";
   std::uint64_t seed = 1;
   unsigned threads = 2;
+  std::string body, way;  // only these; empty: all
 };
 
 // Everything that is to be run. Holds the soups and ways that the settings point to.
@@ -125,6 +132,10 @@ void add_offsets(Plan& plan, const AccuracySetting& base, const Ticks& ticks) {
   }
 }
 
+bool is_wanted(const std::string& only, const std::string& name) {
+  return only.empty() || only == name;
+}
+
 Plan make_plan(const Options& options) {
   const Ticks on_walks = options.is_quick ? Ticks{240, 24, 240, 4} : Ticks{1500, 120, 1500, 1};
   const Ticks on_ways = options.is_quick ? Ticks{200, 12, 200, 8} : Ticks{600, 40, 600, 1};
@@ -132,48 +143,56 @@ Plan make_plan(const Options& options) {
   unsigned turn = 0;
   AccuracySetting base;
   for (PolygonSoup& soup : walked_bodies()) {
+    if (!is_wanted(options.body, soup.name) || !is_wanted(options.way, kRestless)) continue;
     plan.soups.push_back(std::make_unique<PolygonSoup>(std::move(soup)));
     base.soup = plan.soups.back().get();
     base.body = base.soup->name;
-    base.way = "restless";
+    base.way = kRestless;
     base.seed = options.seed * 1000 + turn * 50;
     add_all(plan, base, on_walks, turn++);
     add_offsets(plan, base, on_walks);
   }
   for (const Body& body : bodies(kMostFaces)) {
+    if (!is_wanted(options.body, body.name)) continue;
     plan.soups.push_back(std::make_unique<PolygonSoup>(body.make()));
     base.soup = plan.soups.back().get();
     base.body = body.name;
     const Ground ground(*base.soup);
     for (const WayName& way : kWays) {
+      if (!is_wanted(options.way, way.name)) continue;
+      if (options.is_quick && (turn + static_cast<unsigned>(way.kind)) % 4 != 0) continue;
       WayOptions how;
       how.kind = way.kind;
       how.ticks = static_cast<std::uint32_t>(on_ways.long_double);
-      how.seed = options.seed;
-      plan.ways.push_back(std::make_unique<std::vector<Hip>>(make_way(ground, how)));
-      base.hips = plan.ways.back().get();
+      const std::size_t first_way = plan.ways.size();
+      for (unsigned k = 0; k < kWaysOfAKind; ++k) {
+        how.seed = options.seed * 1000 + k;
+        plan.ways.push_back(std::make_unique<std::vector<Hip>>(make_way(ground, how)));
+      }
+      const std::size_t first_setting = plan.settings.size();
       base.way = way.name;
-      if (options.is_quick && (turn + static_cast<unsigned>(way.kind)) % 4 != 0) continue;
+      base.seed = 0;
       add_all(plan, base, on_ways, turn++);
+      for (std::size_t i = first_setting; i < plan.settings.size(); ++i)
+        plan.settings[i].hips = plan.ways[first_way + plan.settings[i].seed / 2].get();  // f64 and f32 go the same
     }
-    base.hips = nullptr;
   }
   return plan;
 }
 
-// In parallel; the outcomes in the order of the settings.
-std::vector<AccuracyOutcome> run_all(const Plan& plan, unsigned threads) {
-  std::vector<AccuracyOutcome> outcomes(plan.settings.size());
-  std::vector<std::string> faults(plan.settings.size());
+// Calls work(i) for each i below `count`, on so many threads.
+template <class Work>
+void in_parallel(std::size_t count, unsigned threads, Work work) {
+  std::vector<std::string> faults(count);
   std::atomic<std::size_t> next{0};
   std::vector<std::thread> pool;
-  for (unsigned t = 0; t < std::max(1u, threads); ++t) {
+  for (unsigned t = 0; t < threads; ++t) {
     pool.emplace_back([&] {
-      for (std::size_t i; (i = next++) < plan.settings.size();) {
+      for (std::size_t i; (i = next++) < count;) {
         try {
-          outcomes[i] = run(plan.settings[i]);
+          work(i);
         } catch (const std::exception& fault) {
-          faults[i] = plan.settings[i].body + ": " + fault.what();
+          faults[i] = fault.what();
         }
       }
     });
@@ -183,11 +202,79 @@ std::vector<AccuracyOutcome> run_all(const Plan& plan, unsigned threads) {
   for (const std::string& fault : faults) {
     if (!fault.empty()) throw std::runtime_error(fault);
   }
+}
+
+std::vector<AccuracyOutcome> run_all(const Plan& plan, unsigned threads) {
+  std::vector<AccuracyOutcome> outcomes(plan.settings.size());
+  in_parallel(outcomes.size(), threads, [&](std::size_t i) { outcomes[i] = run(plan.settings[i]); });
   return outcomes;
 }
 
 const char* name_of(Precision precision) {
   return precision == Precision::f64 ? "f64" : "f32";
+}
+
+// ---- search ----------------------------------------------------------------------------------------------------------------
+
+struct Search {
+  const PolygonSoup* soup = nullptr;
+  Precision precision = Precision::f64;
+  AdversaryGoal goal = AdversaryGoal::error;
+  AdversaryFind find;
+  std::uint64_t ticks = 0, wrong = 0;
+  std::string first_wrong;
+};
+
+// Over the bodies of the restless walks, as they are, not merged.
+std::vector<Search> search_all(const Plan& plan, const Options& options) {
+  const int cases = options.is_quick ? 60 : 1500;
+  std::vector<Search> searches;
+  for (const auto& soup : plan.soups) {
+    const auto setting = std::find_if(plan.settings.begin(), plan.settings.end(),
+                                      [&](const AccuracySetting& s) { return s.soup == soup.get() && s.way == kRestless; });
+    if (setting == plan.settings.end()) continue;
+    for (const Precision precision : {Precision::f64, Precision::f32}) {
+      for (const auto goal : {AdversaryGoal::error, AdversaryGoal::backward_error, AdversaryGoal::transitions}) {
+        searches.push_back({});
+        searches.back().soup = soup.get();
+        searches.back().precision = precision;
+        searches.back().goal = goal;
+      }
+    }
+  }
+  in_parallel(searches.size(), options.threads, [&](std::size_t i) {
+    Search& s = searches[i];
+    const PlainGraph graph(*s.soup, s.precision);
+    Adversary adversary(graph.view(), *s.soup, options.seed * 1000 + i);
+    s.find = adversary.search(s.goal, cases);
+    s.ticks = adversary.ticks;
+    s.wrong = adversary.wrong;
+    s.first_wrong = adversary.first_wrong;
+  });
+  return searches;
+}
+
+std::string said(const AdversaryCase& way) {
+  std::string text;
+  char number[40];
+  for (const Hip& hip : way.hips) {
+    for (const double c : hip) {
+      std::snprintf(number, sizeof number, "%a ", c);
+      text += number;
+    }
+  }
+  return text;
+}
+
+void write_searches(const std::string& folder, const std::vector<Search>& searches) {
+  Table table(folder, "god_object_search",
+              {"body", "precision", "goal", "ticks", "error_ulps", "conditioning", "backward_ulps", "transitions", "mu_s",
+               "mu_d", "wrong_features", "hips"});
+  for (const Search& s : searches) {
+    table.row(s.soup->name, name_of(s.precision), name_of(s.goal), s.ticks, s.find.ulps, s.find.conditioning,
+              s.find.backward_ulps(), s.find.transitions, s.find.way.mu_static, s.find.way.mu_dynamic, s.wrong,
+              said(s.find.way));
+  }
 }
 
 // ---- tables ----------------------------------------------------------------------------------------------------------------
@@ -318,7 +405,12 @@ void judge(Bars& bars, const std::string& name, Total& total, bool has_accumulat
   bars.at_most(name + ", along the way, largest", most_along.ulps, kMaxBar_ulps, "ulps", most_along.where);
 }
 
-void explain(const Plan& plan, std::vector<AccuracyOutcome>& outcomes) {
+void explain(const Plan& plan, std::vector<AccuracyOutcome>& outcomes, const std::vector<Search>& searches) {
+  for (const Search& s : searches) {
+    if (s.find.ulps > kP999Bar_ulps)
+      std::printf("%s, search for %s, %s: backward %g ulps\n  %s\n", s.soup->name.c_str(), name_of(s.goal),
+                  name_of(s.precision), s.find.backward_ulps(), s.find.what.c_str());
+  }
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const AccuracySetting& s = plan.settings[i];
     if (percentile(outcomes[i].one_step_ulps, 1) <= kP999Bar_ulps) continue;
@@ -354,7 +446,31 @@ void add(Total& total, const AccuracySetting& s, const AccuracyOutcome& o) {
   append(group.accumulated, o.accumulated_ulps);
 }
 
-int say_and_judge(const std::string& folder, const Plan& plan, const std::vector<AccuracyOutcome>& outcomes) {
+// A search finds what the geometry magnifies without bound, so the bar is on the backward error: the step is exact for inputs
+// so near to the ones it got.
+void judge_searches(Bars& bars, const std::vector<Search>& searches) {
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    const Search *worst = nullptr, *furthest = nullptr;
+    std::uint64_t wrong = 0;
+    for (const Search& s : searches) {
+      if (s.precision != precision) continue;
+      wrong += s.wrong;
+      if (worst == nullptr || s.find.backward_ulps() > worst->find.backward_ulps()) worst = &s;
+      if (furthest == nullptr || s.find.ulps > furthest->find.ulps) furthest = &s;
+      if (!s.first_wrong.empty())
+        std::printf("wrong: %s %s\n  %s\n", s.soup->name.c_str(), name_of(precision), s.first_wrong.c_str());
+    }
+    if (worst == nullptr) continue;
+    const std::string name = std::string(name_of(precision)) + ", worst found by search";
+    bars.at_most(name + ", backward error", worst->find.backward_ulps(), kMaxBar_ulps, "ulps",
+                 worst->soup->name + "; largest raw error " + cell(furthest->find.ulps) + " ulps at a conditioning of " +
+                     cell(furthest->find.conditioning) + ", " + furthest->soup->name);
+    bars.at_most(name + ", wrong features", static_cast<double>(wrong), 0, "ticks");
+  }
+}
+
+int say_and_judge(const std::string& folder, const Plan& plan, const std::vector<AccuracyOutcome>& outcomes,
+                  const std::vector<Search>& searches) {
   std::map<std::tuple<std::string, Judge, double>, Total> totals;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const AccuracySetting& s = plan.settings[i];
@@ -382,6 +498,7 @@ int say_and_judge(const std::string& folder, const Plan& plan, const std::vector
     if (offset > 0) name += ", moved by " + cell(offset) + " sizes";
     judge(bars, name, total, reference != Judge::certificate);
   }
+  judge_searches(bars, searches);
   return bars.failures();
 }
 
@@ -391,7 +508,8 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{
       "The god-object's error against exact rational arithmetic and against the same rules in wider numbers.\n"
-      "Writes god_object_error.csv, god_object_error_histogram.csv, god_object_conditioning.csv and bench_accuracy.bars.csv.\n"
+      "Writes god_object_error.csv, god_object_error_histogram.csv, god_object_conditioning.csv, god_object_search.csv\n"
+      "and bench_accuracy.bars.csv.\n"
       "Exit code 1: a bar failed.\n\nExample: fdcg_bench_accuracy --quick --output build/accuracy"};
   app.add_flag("--quick", options.is_quick, "a few seconds instead of a few minutes");
   app.add_flag("--explain", options.explains, "say everything about the worst tick of each run above the limit of p99.9");
@@ -400,6 +518,8 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "the results do not depend on it")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  app.add_option("--body", options.body, "only this one, by its name in the tables");
+  app.add_option("--way", options.way, "only this one");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -411,8 +531,10 @@ int main(int argc, char** argv) {
     write_errors(options.output, plan, outcomes);
     write_histogram(options.output, plan, outcomes);
     write_conditioning(options.output, plan, outcomes);
-    if (options.explains) explain(plan, outcomes);
-    return say_and_judge(options.output, plan, outcomes) > 0 ? 1 : 0;
+    const std::vector<Search> searches = search_all(plan, options);
+    write_searches(options.output, searches);
+    if (options.explains) explain(plan, outcomes, searches);
+    return say_and_judge(options.output, plan, outcomes, searches) > 0 ? 1 : 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fdcg_bench_accuracy: %s\n", error.what());
     return 2;

@@ -46,9 +46,19 @@ Replay<Real>::Replay(const fdcg_graph& graph, const fdcg_params& params)
       params_(params),
       friction_{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE},
       surface_(graph),
-      along_(surface_, friction_),
       ulp_(ulp_of_extent(*graph.header)),
-      rounding_(kTieRoundings * surface_.epsilon + kTieDeviations * graph.header->max_deviation / surface_.extent) {}
+      rounding_(kTieRoundings * surface_.epsilon + kTieDeviations * graph.header->max_deviation / surface_.extent) {
+  along_.emplace(surface_, friction_);
+}
+
+template <class Real>
+void Replay<Real>::restart(const fdcg_params& params) {
+  params_ = params;
+  friction_ = {params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE};
+  along_.emplace(surface_, friction_);
+  contact_ = {};
+  errors = {};
+}
 
 template <class Real>
 Hip Replay<Real>::god_object_m() const {
@@ -81,7 +91,7 @@ void Replay<Real>::step(const Hip& hip_object_m) {
   if (last_.verdict == TickError::Verdict::wrong && errors.wrong++ == 0) errors.first_wrong = say(tick);
   if (last_.verdict == TickError::Verdict::tie) {
     ++errors.ties;
-    if (last_.ulps > kSame_ulps) explain_tie(tick);
+    if (explains_ties && last_.ulps > kSame_ulps) explain_tie(tick);
   }
   if (last_.verdict == TickError::Verdict::agrees && last_.is_contact) {
     if (last_.ulps > kWorthACloserLook_ulps) look_closer(tick);
@@ -112,11 +122,11 @@ TickError Replay<Real>::judge(const Tick& tick) const {
 
 template <class Real>
 void Replay<Real>::accumulate(const Hip& hip) {
-  along_.step(hip);
-  if (last_.verdict != TickError::Verdict::agrees || !agree(along_.contact, contact_)) {
-    along_.resynchronise(contact_);
+  along_->step(hip);
+  if (last_.verdict != TickError::Verdict::agrees || !agree(along_->contact, contact_)) {
+    along_->resynchronise(contact_);
   } else if (last_.is_contact) {
-    errors.accumulated.push_back(static_cast<float>(distance(along_.contact.god_object, contact_.god_object) / ulp_));
+    errors.accumulated.push_back(static_cast<float>(distance(along_->contact.god_object, contact_.god_object) / ulp_));
   }
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,9 +58,11 @@ class Replay {
   [[nodiscard]] const fdcg_contact& contact() const { return contact_; }
   [[nodiscard]] Hip god_object_m() const;
   [[nodiscard]] const TickError& last() const { return last_; }
-  void restart() { contact_ = {}; }
+  // A contact not yet started, under these parameters; the errors so far are forgotten.
+  void restart(const fdcg_params& params);
 
   ReplayErrors errors;
+  bool explains_ties = true;  // false: ties are counted, not looked into, which takes a hundred steps
 
  private:
   struct Tick {
@@ -78,7 +80,7 @@ class Replay {
   fdcg_params params_;
   ReferenceFriction friction_;
   ReferenceSurface<Real> surface_;
-  ReferenceWalker<Real> along_;
+  std::optional<ReferenceWalker<Real>> along_;
   Random random_{1};
   fdcg_contact contact_{};
   TickError last_;

@@ -75,7 +75,8 @@ std::unique_ptr<Contender> make_cgal_closest(const bake::PolygonSoup& soup);
 std::unique_ptr<Contender> make_embree_closest(const bake::PolygonSoup& soup);
 
 // A grid of float distances over the bounds and 3 mm around them, `resolution` samples along the longest side; the distance is
-// trilinear, its gradient the direction. Distances are signed by the pseudo-normal of the nearest feature.
+// trilinear, its gradient the direction. Exact within 4 mm of the surface, where the nearest feature's pseudo-normal tells the
+// sign.
 std::unique_ptr<Contender> make_distance_grid(const Ground& ground, int resolution);
 
 // A point proxy with a tree of the kind that haptic libraries have: a ray from the proxy towards the HIP, then along the plane

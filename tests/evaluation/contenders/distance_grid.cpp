@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
-#include <limits>
+#include <cmath>
 #include <vector>
 
 #include "contender.hpp"
@@ -72,23 +72,65 @@ class DistanceGrid : public Contender {
            static_cast<std::size_t>(z);
   }
 
-  // The nearest triangle by Embree, its distance and sign in double.
+  [[nodiscard]] Point place(int x, int y, int z) const {
+    return {origin_[0] + x * cell_, origin_[1] + y * cell_, origin_[2] + z * cell_};
+  }
+
+  // Near the surface, where a HIP comes, the nearest triangle by Embree, its distance and sign in double. Farther off, as such
+  // grids are commonly baked, the nearest of the triangles that the neighbours have, swept forth and back.
   void bake(const Ground& ground) {
+    constexpr double kBand_m = 4e-3, kBandCells = 3;
     const EmbreeScene scene(ground.soup());
-    distances_.resize(index(count_[0] - 1, count_[1] - 1, count_[2] - 1) + 1);
+    const auto band = static_cast<float>(std::max(kBand_m, kBandCells * cell_));
+    distances_.assign(index(count_[0] - 1, count_[1] - 1, count_[2] - 1) + 1, 0);
+    std::vector<std::uint32_t> triangles(distances_.size(), EmbreeScene::kNone);
     for (int x = 0; x < count_[0]; ++x) {
       for (int y = 0; y < count_[1]; ++y) {
-        float radius = std::numeric_limits<float>::infinity();
         for (int z = 0; z < count_[2]; ++z) {
-          const Point point = {origin_[0] + x * cell_, origin_[1] + y * cell_, origin_[2] + z * cell_};
-          const EmbreeScene::Nearest nearest = scene.nearest(point, radius);
-          const Ground::Closest closest = ground.closest_of(point, nearest.triangle);
+          const Point point = place(x, y, z);
+          const std::uint32_t triangle = triangles[index(x, y, z)] = scene.nearest(point, band).triangle;
+          if (triangle == EmbreeScene::kNone) continue;
+          const Ground::Closest closest = ground.closest_of(point, triangle);
           const bool is_inside = dot(point - closest.point, closest.feature_normal) < 0;
           distances_[index(x, y, z)] = static_cast<float>(is_inside ? -closest.distance : closest.distance);
-          radius = static_cast<float>((closest.distance + cell_) * 1.0001 + 1e-7);  // the next sample is one cell on
         }
       }
     }
+    std::vector<bool> is_exact(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      is_exact[i] = triangles[i] != EmbreeScene::kNone;
+    for (const int step : {1, -1})
+      sweep(scene, is_exact, triangles, step);
+  }
+
+  void sweep(const EmbreeScene& scene, const std::vector<bool>& is_exact, std::vector<std::uint32_t>& triangles, int step) {
+    const auto at = [&](int i, int axis) { return step > 0 ? i : count_[axis] - 1 - i; };
+    for (int i = 0; i < count_[0]; ++i) {
+      for (int j = 0; j < count_[1]; ++j) {
+        for (int k = 0; k < count_[2]; ++k) {
+          const int place_of[3] = {at(i, 0), at(j, 1), at(k, 2)};
+          const std::size_t here = index(place_of[0], place_of[1], place_of[2]);
+          if (is_exact[here]) continue;
+          for (int axis = 0; axis < 3; ++axis) {
+            int other[3] = {place_of[0], place_of[1], place_of[2]};
+            other[axis] -= step;
+            if (other[axis] < 0 || other[axis] >= count_[axis]) continue;
+            const std::size_t there = index(other[0], other[1], other[2]);
+            if (triangles[there] != EmbreeScene::kNone)
+              offer(scene, place_of, triangles[there], distances_[there] < 0, triangles[here]);
+          }
+        }
+      }
+    }
+  }
+
+  // No surface lies between two neighbours that are not both near it: they are on the same side.
+  void offer(const EmbreeScene& scene, const int* place_of, std::uint32_t triangle, bool is_inside, std::uint32_t& own) {
+    const auto distance = static_cast<float>(scene.distance(triangle, place(place_of[0], place_of[1], place_of[2])));
+    float& kept = distances_[index(place_of[0], place_of[1], place_of[2])];
+    if (own != EmbreeScene::kNone && distance >= std::abs(kept)) return;
+    own = triangle;
+    kept = is_inside ? -distance : distance;
   }
 
   double cell_ = 0;

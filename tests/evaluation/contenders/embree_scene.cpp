@@ -98,6 +98,11 @@ Point EmbreeScene::corner(std::uint32_t triangle) const {
   return points_[triangles_[triangle].corner[0]];
 }
 
+double EmbreeScene::distance(std::uint32_t triangle, const Point& point) const {
+  const std::uint32_t* c = triangles_[triangle].corner;
+  return length(point - nearest_on_triangle(point, points_[c[0]], points_[c[1]], points_[c[2]]).point);
+}
+
 std::size_t EmbreeScene::bytes() const {
   return embree_bytes_ + normals_.size() * sizeof normals_[0];
 }

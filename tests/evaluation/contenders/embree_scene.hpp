@@ -37,6 +37,8 @@ class EmbreeScene {
   // Unit normal, in double from the soup's points, and a point of its plane.
   [[nodiscard]] const plain::Point& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] plain::Point corner(std::uint32_t triangle) const;
+  // From a point, in double.
+  [[nodiscard]] double distance(std::uint32_t triangle, const plain::Point& point) const;
   [[nodiscard]] std::uint32_t face(std::uint32_t triangle) const { return faces_[triangle]; }
   [[nodiscard]] std::size_t bytes() const;
 

@@ -50,15 +50,16 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
   Metrics m;
   m.ticks = way.size();
   std::vector<double> god_object, untied, force, share, direction;
-  bool was_lost = false;
+  bool was_lost = false, is_tied = false;
   std::uint64_t tied = 0, lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     const Feel &f = felt[i], &t = truth[i].feel;
     m.transitions += f.transitions;
     m.carried_ticks += f.is_carried;
     god_object.push_back(length(f.god_object - t.god_object));
-    if (!truth[i].is_tied) untied.push_back(god_object.back());
-    tied += truth[i].is_tied;
+    // what a tie has led to lasts until both are free again
+    is_tied = truth[i].is_tied || (is_tied && (t.in_contact || f.in_contact));
+    if (!is_tied) untied.push_back(god_object.back());
     force.push_back(length(f.force - t.force));
     if (!t.in_contact) {
       phantoms += length(f.force) > kTouch_m * kStiffness_n_per_m;
@@ -66,8 +67,9 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
       continue;
     }
     ++m.contact_ticks;
+    tied += is_tied;
     const double true_force = length(t.force);
-    const bool is_lost = !f.is_carried && true_force > kTouch_m * kStiffness_n_per_m &&
+    const bool is_lost = !f.is_carried && !is_tied && true_force > kTouch_m * kStiffness_n_per_m &&
                          (!f.in_contact || dot(f.force, t.force) < kBackwards * length(f.force) * true_force);
     lost += is_lost;
     m.push_throughs += is_lost && !was_lost;
@@ -132,7 +134,7 @@ LoopEnergy energy_of_loop(Contender& contender, const Way& way) {
 
 double creep_m(Contender& contender, const Way& way, const std::vector<TrueBody::Tick>& truth) {
   constexpr std::size_t kPlaces = 5;
-  constexpr int kSettle = 3, kTicks = 500;
+  constexpr int kSettle = 3, kLongestWalk = 5000, kTicks = 500;
   double largest = 0;
   contender.reset();
   Feel feel;
@@ -141,7 +143,7 @@ double creep_m(Contender& contender, const Way& way, const std::vector<TrueBody:
     contender.step(way[i], feel);
     if (i < next || !truth[i].feel.in_contact) continue;
     next = i + way.size() / kPlaces;
-    for (int tick = 0; tick < kSettle; ++tick)
+    for (int tick = 0; tick < kSettle || (feel.is_carried && tick < kLongestWalk); ++tick)
       contender.step(way[i], feel);
     const Point settled = feel.god_object;
     for (int tick = 0; tick < kTicks; ++tick) {

@@ -11,17 +11,16 @@
 
 namespace fdcg::test {
 
-// The least change of a force that a hand can tell, as a part of it; and of its direction (Pang, Tan and Durlach 1991; Barbagli
-// et al. 2006 found 18 degrees and more).
+// The least change of a force that a hand can tell, as a part of it (Pang, Tan and Durlach 1991).
 constexpr double kNoticeableForce = 0.07;
-constexpr double kNoticeableDirection_deg = 18;
 
 struct Metrics {
   std::uint64_t ticks = 0, contact_ticks = 0;        // of the truth
   std::uint64_t transitions = 0, carried_ticks = 0;  // of the contender
+  // Ticks of true contact, as a share, that follow a decision which floats do not tell apart (TrueBody::Tick::is_tied), until
+  // truth and contender are both free again: there another answer is as right. And the error over all ticks but those.
+  double tied_share = 0, untied_rms_m = 0;
   // |god-object - true god-object| over every tick; a free contender's god-object is the HIP, as the truth's is.
-  double tied_share = 0;    // of ticks of true contact: TrueBody::Tick::is_tied
-  double untied_rms_m = 0;  // the root mean square without those
   double god_object_rms_m = 0, god_object_p50_m = 0, god_object_p99_m = 0, god_object_max_m = 0;
   double force_rms_n = 0, force_max_n = 0;              // |force - true force|
   double force_share_p99 = 0;                           // of the true force, over ticks of true contact
@@ -30,7 +29,7 @@ struct Metrics {
   double jump_n_per_ms = 0, true_jump_n_per_ms = 0;     // the largest change of force within a millisecond
   double wrong_feature_share = 0;  // of ticks of true contact: god-object over 5 micrometres from the true feature
   // Pushed through: the HIP is over 10 micrometres below the true god-object, and the contender is free or pushes over 135
-  // degrees away from the true force. Not in carried ticks.
+  // degrees away from the true force. Not in carried or tied ticks.
   std::uint64_t push_throughs = 0;  // times that it begins
   double push_through_share = 0;    // of ticks of true contact
   double phantom_share = 0;         // of truly free ticks: a force of over 10 micrometres' depth

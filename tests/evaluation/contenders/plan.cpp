@@ -63,6 +63,7 @@ std::vector<WayPlan> ways_of_other(const Body& body) {
 Contenders contenders_for(const Ground& ground, const Body& body, bool is_quick) {
   const bake::PolygonSoup& soup = ground.soup();
   constexpr std::uint32_t kLarge = 200'000;  // faces: from here on fewer variants, and no grid that takes minutes to bake
+  constexpr std::uint32_t kLargestPaper = 2'000'000;  // its graph of vectors takes half a kilobyte a face
   Contenders list;
   for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
     for (const bool is_stored : {true, false}) {
@@ -71,6 +72,7 @@ Contenders contenders_for(const Ground& ground, const Body& body, bool is_quick)
     }
   }
   for (const PaperLevel level : {PaperLevel::printed, PaperLevel::crossings, PaperLevel::edges, PaperLevel::vertices}) {
+    if (body.faces > kLargestPaper) break;
     if (level == PaperLevel::printed || level == PaperLevel::vertices || body.faces < kLarge) {
       list.push_back(make_paper(soup, level));
     }

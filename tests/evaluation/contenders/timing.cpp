@@ -7,7 +7,7 @@
 namespace fdcg::test {
 namespace {
 
-constexpr int kLeastRounds = 3, kMostRounds = 41;
+constexpr int kLeastRounds = 3, kMostRounds = 61;
 
 double way_ns(Contender& contender, const Way& way, const Stopwatch& watch) {
   Feel feel;
@@ -42,12 +42,14 @@ std::vector<Timing> time_all(const std::vector<Contender*>& entrants, const Way&
   std::vector<Timing> timings(entrants.size());
   std::vector<int> wanted;
   for (std::size_t e = 0; e < entrants.size(); ++e) {
-    const double once_ns = 2 * way_ns(*entrants[e], way, watch) + 60.0 * static_cast<double>(way.size());  // and the clock
+    double run_ns = way_ns(*entrants[e], way, watch);
+    if (run_ns < share_ns / kLeastRounds)
+      run_ns = std::min(run_ns, way_ns(*entrants[e], way, watch));               // one may be interrupted
+    const double once_ns = 2 * run_ns + 60.0 * static_cast<double>(way.size());  // and the clock
     wanted.push_back(std::clamp(static_cast<int>(share_ns / once_ns), kLeastRounds, kMostRounds));
     timings[e].tick_ns.assign(way.size(), std::numeric_limits<float>::max());
     timings[e].batch_ns = std::numeric_limits<double>::max();
   }
-  wanted.back() = wanted.front() = std::max(wanted.back(), wanted.front());  // the control has no fewer
   const int rounds = *std::max_element(wanted.begin(), wanted.end());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t k = 0; k < entrants.size(); ++k) {

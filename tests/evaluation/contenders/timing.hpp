@@ -19,9 +19,8 @@ struct Timing {
   double batch_ns = 0;                   // a tick, of the whole way timed at once: the least of the rounds. Checks the other
 };
 
-// Every entrant goes along the whole way in turn, round after round, on this thread, after a round that is not counted; each
-// round begins with the next of them. All have as many rounds as fit the slowest's share of the budget, but fast ones more, up
-// to 41. The same contender may enter twice: what the two differ by is what cannot be told apart.
+// Every entrant goes along the whole way in turn, round after round, on this thread, after one that is not counted; each round
+// begins with the next of them. Each has as many rounds as fit its share of the budget, at least 3 and at most 61.
 std::vector<Timing> time_all(const std::vector<Contender*>& entrants, const Way& way, const Stopwatch& watch, double budget_s);
 
 }  // namespace fdcg::test

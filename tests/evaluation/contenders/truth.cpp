@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bodies.hpp"
 #include "point.hpp"
 
 namespace fdcg::test {
@@ -23,10 +24,11 @@ TrueBody::TrueBody(const Ground& ground) : ground_(ground) {
   if (fdcg_open_memory(file_.data(), file_.size(), FDCG_VERIFY_TRUSTED, &view_, &error) != FDCG_OK) {
     throw std::runtime_error(error.message);
   }
-  surface_ = std::make_unique<ReferenceSurface<long double>>(view_);
+  if (view_.header->node_count <= kLargestBruteForce) surface_ = std::make_unique<ReferenceSurface<long double>>(view_);
 }
 
 std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFriction& friction) const {
+  if (!surface_) return follow_by_runtime(way, friction);
   ReferenceWalker<long double> walker(*surface_, friction);
   std::vector<Tick> ticks(way.size());
   bool is_tied = false;
@@ -65,24 +67,61 @@ std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFric
   return ticks;
 }
 
+std::vector<TrueBody::Tick> TrueBody::follow_by_runtime(const Way& way, const ReferenceFriction& friction) const {
+  fdcg_params params = fdcg_default_params();
+  params.mu_static = friction.mu_static;
+  params.mu_dynamic = friction.mu_dynamic;
+  params.stiffness_n_per_m = kStiffness_n_per_m;
+  fdcg_contact contact{};
+  std::vector<Tick> ticks(way.size());
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    fdcg_result result;
+    fdcg_step(&view_, &params, &contact, way[i].data(), &result);
+    Tick& tick = ticks[i];
+    tick.state = result.state;
+    tick.feature = result.feature;
+    tick.feel.in_contact = result.state != FDCG_FREE;
+    tick.feel.transitions = result.transitions;
+    for (std::size_t k = 0; k < 3; ++k) {
+      tick.feel.god_object[k] = result.god_object_m[k];
+      tick.feel.force[k] = result.force_n[k];
+    }
+  }
+  return ticks;
+}
+
+std::string TrueBody::reference(const Way& way, const std::vector<Tick>& ticks) const {
+  if (surface_) return "brute force, long double";
+  constexpr std::size_t kEvery = 37;                 // ticks
+  constexpr double kRounding_m = kBody_m * 0x1p-48;  // of the ground's tree
+  std::size_t seen = 0, closest = 0;
+  for (std::size_t i = 0; i < way.size(); i += kEvery) {
+    if (!ticks[i].feel.in_contact) continue;
+    ++seen;
+    closest += length(ticks[i].feel.god_object - way[i]) <= ground_.closest(way[i]).distance + kRounding_m;
+  }
+  return "own f64 unmerged; " + std::to_string(closest) + " of " + std::to_string(seen) +
+         " sampled contacts are closest points";
+}
+
 double TrueBody::distance_to(std::uint32_t state, std::uint32_t feature, const Point& point) const {
-  const Point x = point - surface_->origin;
+  const double* origin = view_.header->origin;
   const auto at = [&](std::uint32_t corner) {
-    const Vector<long double>& p = surface_->corners[corner].point;
-    return Point{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+    const fdcg_corner_info info = fdcg_get_corner(&view_, corner);
+    return Point{info.point[0] + origin[0], info.point[1] + origin[1], info.point[2] + origin[2]};
   };
-  if (state == FDCG_VERTEX) return length(x - at(feature));
+  if (state == FDCG_VERTEX) return length(point - at(feature));
   if (state == FDCG_EDGE) {
-    const auto& edge = surface_->edges[feature];
+    const fdcg_connection_info edge = fdcg_get_connection(&view_, feature);
     const Point a = at(edge.corner[0]), b = at(edge.corner[1]);
-    const double part = std::clamp(dot(x - a, b - a) / dot(b - a, b - a), 0.0, 1.0);
-    return length(x - (a + (b - a) * part));
+    const double part = std::clamp(dot(point - a, b - a) / dot(b - a, b - a), 0.0, 1.0);
+    return length(point - (a + (b - a) * part));
   }
   double least = std::numeric_limits<double>::infinity();
-  const std::vector<std::uint32_t>& loop = surface_->faces[feature].corners;
-  for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-    const OnTriangle nearest = nearest_on_triangle(x, at(loop[0]), at(loop[k]), at(loop[k + 1]));
-    least = std::min(least, length(x - nearest.point));
+  const auto corner = [&](std::uint32_t side) { return at(fdcg_get_side(&view_, feature, side).corner); };
+  const Point first = corner(0);
+  for (std::uint32_t k = 1; k + 1 < fdcg_get_node(&view_, feature).side_count; ++k) {
+    least = std::min(least, length(point - nearest_on_triangle(point, first, corner(k), corner(k + 1)).point));
   }
   return least;
 }

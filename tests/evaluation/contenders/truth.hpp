@@ -16,6 +16,10 @@ namespace fdcg::test {
 
 constexpr double kTie = 0x1p-22;  // twice the spacing of floats at the extent
 
+// From here on brute force takes gigabytes and minutes: the truth is this runtime's in double, unmerged, and at sampled ticks
+// checked to be the closest point of the mesh, which is sufficient, not necessary.
+constexpr std::uint32_t kLargestBruteForce = 2'000'000;  // faces
+
 // A body's unmerged graph in double, with what the truth is computed from: by brute force in long double (ReferenceWalker).
 class TrueBody {
  public:
@@ -30,11 +34,15 @@ class TrueBody {
   };
   // Sweeps through free space are skipped where the ground is farther than the way is long.
   [[nodiscard]] std::vector<Tick> follow(const Way& way, const ReferenceFriction& friction) const;
+  // What follow() is by, for a table: for a body too large, how many of the sampled contacts passed the check.
+  [[nodiscard]] std::string reference(const Way& way, const std::vector<Tick>& ticks) const;
 
   // From a point to the closed feature, in metres.
   [[nodiscard]] double distance_to(std::uint32_t state, std::uint32_t feature, const Ground::Point& point) const;
 
  private:
+  [[nodiscard]] std::vector<Tick> follow_by_runtime(const Way& way, const ReferenceFriction& friction) const;
+
   const Ground& ground_;
   std::vector<std::byte> file_;
   fdcg_graph view_{};

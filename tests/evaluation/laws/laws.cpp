@@ -3,14 +3,32 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <set>
+#include <string>
 
 #include "laws.hpp"
 
+namespace {
+
+using namespace fdcg::test;
+
+struct Part {
+  const char* name;
+  void (*measure)(const LawOptions&, Bars&);
+};
+constexpr Part kParts[] = {{"ramps", measure_ramps}, {"slides", measure_slides}, {"stick-slip", measure_stick_slip},
+                           {"creep", measure_creep}, {"energy", measure_energy}, {"tessellation", measure_tessellation}};
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace fdcg::test;
   LawOptions options;
+  std::set<std::string> names, only;
+  for (const Part& part : kParts)
+    names.insert(part.name);
   CLI::App app{
-      "Measures the step against physical laws: Coulomb's on ramps, in grooves and in motion.\n"
+      "Measures the step against physical laws: Coulomb's on ramps, in grooves and in motion, stick-slip, creep,\n"
+      "energy over closed loops, and smooth shapes by formula against their tessellations.\n"
       "Example: fdcg_bench_laws --quick --output /tmp/laws"};
   app.add_flag("--quick", options.is_quick, "A few seconds: fewer orientations, ticks and loops");
   app.add_option("--output", options.output, "Folder for the tables")->capture_default_str();
@@ -18,6 +36,7 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "The results do not depend on it")
       ->check(CLI::Range(1u, 256u))
       ->capture_default_str();
+  app.add_option("--only", only, "Parts to run; default: all")->check(CLI::IsMember(names));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -25,12 +44,9 @@ int main(int argc, char** argv) {
   }
   try {
     Bars bars(options.output, "fdcg_bench_laws");
-    measure_ramps(options, bars);
-    measure_slides(options, bars);
-    measure_stick_slip(options, bars);
-    measure_creep(options, bars);
-    measure_energy(options, bars);
-    measure_tessellation(options, bars);
+    for (const Part& part : kParts) {
+      if (only.empty() || only.contains(part.name)) part.measure(options, bars);
+    }
     return bars.failures() > 0 ? 1 : 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fdcg_bench_laws: %s\n", error.what());

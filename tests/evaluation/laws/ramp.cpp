@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kSeams = 16;  // cells a side of the flat grid
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kFar_m = 1e6 * kObject_m;
 constexpr Rotation kUnturned = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
 
 PolygonSoup unit_soup(const RampShape& shape) {
@@ -53,16 +54,36 @@ std::vector<RampShape> ramp_shapes() {
   return shapes;
 }
 
-Ramp::Ramp(const RampShape& shape, bake::Precision precision, std::uint64_t orientation_seed)
+const char* name_of(RampGraph graph) {
+  switch (graph) {
+    case RampGraph::plain:
+      return "plain";
+    case RampGraph::compiled:
+      return "compiled";
+    default:
+      return "far away";
+  }
+}
+
+Ramp::Ramp(const RampShape& shape, bake::Precision precision, std::uint64_t orientation_seed, RampGraph graph)
     : rotation_(shape.kind == RampKind::exact_seams ? kUnturned : random_rotation(orientation_seed)) {
-  // v_groove and prism have points at +-1 along every axis: the same size for all
-  const PolygonSoup turned = triangulated(transformed(unit_soup(shape), rotation_, kObject_m));
-  graph_ = std::make_unique<PlainGraph>(turned, precision);
-  surface_ = std::make_unique<ReferenceSurface<Wide>>(graph_->view());
+  if (graph == RampGraph::far_away) offset_ = {0.7 * kFar_m, -0.6 * kFar_m, 0.4 * kFar_m};
+  // every shape has points at +-1 along an axis: the same size for all
+  const PolygonSoup turned = triangulated(transformed(unit_soup(shape), rotation_, kObject_m, offset_));
+  if (graph == RampGraph::plain) {
+    plain_ = std::make_unique<PlainGraph>(turned, precision);
+  } else {
+    bake::CompileOptions options;
+    options.precision = precision;
+    options.jobs = 1;
+    compiled_ = std::make_unique<CompiledMesh>(turned, options);
+  }
+  surface_ = std::make_unique<ReferenceSurface<Wide>>(view());
 }
 
 Hip Ramp::place(double x, double y, double z) const {
-  return point_of(rotated(rotation_, {x, y, z}));
+  const Vec3 p = rotated(rotation_, {x, y, z});
+  return {p.x + offset_.x, p.y + offset_.y, p.z + offset_.z};
 }
 
 }  // namespace fdcg::test

@@ -32,19 +32,30 @@ struct RampShape {
 // All of them: the groove's openings from 30 to 150 degrees, convex edges from 108 to 170.
 std::vector<RampShape> ramp_shapes();
 
-// One of them in some orientation, as the graph of one triangle or polygon a node: nothing is merged.
+// How a ramp becomes a graph.
+enum class RampGraph {
+  plain,     // a triangle a node: nothing is merged
+  compiled,  // by the compiler, which merges
+  far_away   // the same, a million sizes from the origin
+};
+constexpr RampGraph kRampGraphs[] = {RampGraph::plain, RampGraph::compiled, RampGraph::far_away};
+const char* name_of(RampGraph graph);
+
+// One of them in some orientation.
 class Ramp {
  public:
-  Ramp(const RampShape& shape, bake::Precision precision, std::uint64_t orientation_seed);
+  Ramp(const RampShape& shape, bake::Precision precision, std::uint64_t orientation_seed, RampGraph graph = RampGraph::plain);
 
-  [[nodiscard]] const fdcg_graph& view() const { return graph_->view(); }
+  [[nodiscard]] const fdcg_graph& view() const { return plain_ ? plain_->view() : compiled_->view(); }
   [[nodiscard]] const ReferenceSurface<Wide>& surface() const { return *surface_; }
   // From the body's own frame (z up out of the surface, x along the groove, the prism's axis along z) to the object's.
   [[nodiscard]] Hip place(double x, double y, double z) const;
 
  private:
   Rotation rotation_{};
-  std::unique_ptr<PlainGraph> graph_;
+  Vec3 offset_;
+  std::unique_ptr<PlainGraph> plain_;  // this or the next
+  std::unique_ptr<CompiledMesh> compiled_;
   std::unique_ptr<ReferenceSurface<Wide>> surface_;
 };
 

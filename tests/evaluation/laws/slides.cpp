@@ -30,6 +30,7 @@ constexpr double kStickAgain = 1 - 0x1p-20;
 struct Track {
   RampShape shape;
   bake::Precision precision;
+  RampGraph graph;
   std::uint32_t edge_friction;
 };
 
@@ -127,8 +128,10 @@ std::vector<Track> all_tracks() {
   std::vector<Track> tracks;
   for (const RampShape& shape : ramp_shapes()) {
     for (const bake::Precision precision : kBothPrecisions) {
-      tracks.push_back({shape, precision, FDCG_EDGE_WEDGE});
-      if (shape.kind == RampKind::groove) tracks.push_back({shape, precision, FDCG_EDGE_PAPER});
+      for (const RampGraph graph : kRampGraphs) {
+        tracks.push_back({shape, precision, graph, FDCG_EDGE_WEDGE});
+        if (shape.kind == RampKind::groove) tracks.push_back({shape, precision, graph, FDCG_EDGE_PAPER});
+      }
     }
   }
   return tracks;
@@ -189,7 +192,7 @@ Results slide_everywhere(const LawOptions& options) {
   for_each_index(results.tracks.size(), options.threads, [&](std::size_t t) {
     const Track& track = results.tracks[t];
     for (int k = 0; k < orientations; ++k) {
-      const Ramp ramp(track.shape, track.precision, options.seed * 1000 + static_cast<std::uint64_t>(k));
+      const Ramp ramp(track.shape, track.precision, options.seed * 1000 + static_cast<std::uint64_t>(k), track.graph);
       for (std::size_t m = 0; m < results.motions.size(); ++m) {
         for (std::size_t d = 0; d < kDepthCount; ++d) {
           const Random random(options.seed + 104729 * (t * results.motions.size() + m) + 31 * d +
@@ -204,15 +207,15 @@ Results slide_everywhere(const LawOptions& options) {
 
 void say_by_track(Results& results, const LawOptions& options) {
   Table table(options.output, "coulomb_slides",
-              {"surface", "opening_deg", "precision", "edge_rule", "depth_of_extent", "ticks", "moved", "held", "shallow",
-               "wrong", "worst_ratio_error"});
+              {"surface", "opening_deg", "precision", "graph", "edge_rule", "depth_of_extent", "ticks", "moved", "held",
+               "shallow", "wrong", "worst_ratio_error"});
   for (std::size_t t = 0; t < results.tracks.size(); ++t) {
     const Track& track = results.tracks[t];
     for (std::size_t d = 0; d < kDepthCount; ++d) {
       Tally all;
       for (std::size_t m = 0; m < results.motions.size(); ++m)
         all.add(results.at(t, m, d));
-      table.row(track.shape.name(), track.shape.opening_deg, name_of(track.precision),
+      table.row(track.shape.name(), track.shape.opening_deg, name_of(track.precision), name_of(track.graph),
                 track.edge_friction == FDCG_EDGE_WEDGE ? "wedge" : "paper", kDepths[d], all.ticks, all.moved, all.held,
                 all.shallow, all.wrong, all.worst_ratio_error);
     }

@@ -155,7 +155,7 @@ Pulled analytic_pull(double mu_static, double mu_dynamic) {
 // The mean over the periods after the first, in which the start dies away.
 Pulled pull(const Ramp& ramp, const fdcg_params& params, double rate_hz, Table* trace) {
   constexpr int kPeriods = 7;
-  constexpr double kStart_m = -0.07, kTraceTick_s = 5e-3;
+  constexpr double kStart_m = -0.07, kTraceTick_s = 1e-2, kTraced_s = 9;
   const HeldPlant hand({kMass_kg, kHand_n_s_per_m, kHand_n_per_m, 0}, 1 / rate_hz);
   const Hip along = ramp.place(1, 0, 0);
   Pressed pressed{&ramp.view()};
@@ -180,7 +180,7 @@ Pulled pull(const Ramp& ramp, const fdcg_params& params, double rate_hz, Table* 
       started_at_m = x;
     }
     if (!slips && was_slipping && is_counted && broke_at_s.size() > 1) sums.slip_way_m += x - started_at_m;
-    if (trace != nullptr && tick % traced_ticks == 0) {
+    if (trace != nullptr && tick % traced_ticks == 0 && time_s < kTraced_s) {
       trace->row(rate_hz, time_s, -kHand_n_per_m * state.x_m, now_n, static_cast<int>(slips));
     }
     last_pull_n = now_n;

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+// The harness of the contenders: its judges must see what they are there to see, its rivals must be what they claim.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "metrics.hpp"
+#include "pareto.hpp"
+#include "plan.hpp"
+#include "point.hpp"
+#include "timing.hpp"
+
+using namespace fdcg::test;
+using namespace fdcg::test::plain;
+namespace bake = fdcg::bake;
+
+namespace {
+
+struct Stage {
+  explicit Stage(const std::string& body, WayKind kind = WayKind::hand, std::uint32_t ticks = 2000)
+      : ground(body_named(body).make()), truth(ground) {
+    WayOptions options;
+    options.kind = kind;
+    options.ticks = ticks;
+    way = make_way(ground, options);
+    ticks_true = truth.follow(way, {0, 0, true});
+    for (const TrueBody::Tick& tick : ticks_true)
+      felt.push_back(tick.feel);
+  }
+  [[nodiscard]] Metrics judged() const { return judge(way, 1000, felt, ticks_true, truth); }
+  // The first tick of a stretch of at least `length` ticks of true contact, deep enough to count.
+  [[nodiscard]] std::size_t contact(std::size_t length) const {
+    std::size_t run = 0;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      run = plain::length(ticks_true[i].feel.force) > 0.05 ? run + 1 : 0;
+      if (run == length) return i + 1 - length;
+    }
+    throw std::logic_error("no contact of that length");
+  }
+
+  Ground ground;
+  TrueBody truth;
+  Way way;
+  std::vector<TrueBody::Tick> ticks_true;
+  std::vector<Feel> felt;
+};
+
+// A wall at z = 0 that does what no passive wall may.
+class BadWall : public Contender {
+ public:
+  BadWall(double gain_out, double drift) : gain_out_(gain_out), drift_(drift) {}
+  void reset() override { last_ = 1, place_ = 0; }
+  void step(const Point& hip, Feel& feel) override {
+    feel = {hip, {}, hip[2] < 0, 0, false};
+    place_ += drift_;
+    if (feel.in_contact) {
+      feel.god_object = {hip[0] + place_, hip[1], 0};
+      feel.force = {0, 0, -kStiffness_n_per_m * hip[2] * (hip[2] > last_ ? gain_out_ : 1)};
+    }
+    last_ = hip[2];
+  }
+
+ private:
+  double gain_out_, drift_, last_ = 1, place_ = 0;
+};
+
+Way dip() {
+  Way way;
+  for (int i = 0; i <= 100; ++i)
+    way.push_back({0, 0, 1e-3 * std::cos(0.0314159 * i) - 5e-4});
+  return way;
+}
+
+}  // namespace
+
+TEST_CASE("the truth, with sweeps skipped where the ground is far, is the plain walker's") {
+  for (const WayKind kind : {WayKind::hand, WayKind::teleport}) {
+    const Stage stage("star_80", kind);
+    bake::CompileOptions options;
+    options.merge = false;
+    const auto compiled = bake::compile(stage.ground.soup(), options);
+    REQUIRE(compiled.has_value());
+    fdcg_graph graph{};
+    REQUIRE(fdcg_open_memory(compiled->bytes.data(), compiled->bytes.size(), FDCG_VERIFY_TRUSTED, &graph, nullptr) == FDCG_OK);
+    const ReferenceSurface<long double> surface(graph);
+    ReferenceWalker<long double> walker(surface, {0, 0, true});
+    int contacts = 0;
+    for (std::size_t i = 0; i < stage.way.size(); ++i) {
+      walker.step(surface.local(stage.way[i].data()));
+      REQUIRE(walker.contact.state == stage.ticks_true[i].state);
+      REQUIRE(walker.contact.feature == stage.ticks_true[i].feature);
+      contacts += walker.contact.state != FDCG_FREE;
+    }
+    CHECK(contacts > 200);
+  }
+}
+
+TEST_CASE("the judge finds nothing in the truth and what is planted in it") {
+  Stage stage("star_80");
+  const Metrics clean = stage.judged();
+  CHECK(clean.god_object_max_m == 0);
+  CHECK(clean.force_max_n == 0);
+  CHECK(clean.wrong_feature_share == 0);
+  CHECK(clean.push_throughs == 0);
+  CHECK(clean.phantom_share == 0);
+  CHECK(clean.jump_n_per_ms == clean.true_jump_n_per_ms);
+  CHECK(clean.contact_ticks > 200);
+  CHECK(clean.contact_ticks < clean.ticks);
+
+  const std::size_t first = stage.contact(20);
+  SECTION("contact lost for ten ticks: pushed through once") {
+    for (std::size_t i = first + 5; i < first + 15; ++i)
+      stage.felt[i] = {stage.way[i], {}, false, 0, false};
+    const Metrics m = stage.judged();
+    CHECK(m.push_throughs == 1);
+    CHECK(m.push_through_share == Approx(10.0 / static_cast<double>(m.contact_ticks)));
+    CHECK(m.wrong_feature_share == Approx(m.push_through_share));
+    CHECK(m.god_object_max_m == Approx(m.force_max_n / kStiffness_n_per_m));
+    CHECK(m.jump_n_per_ms > 0.04);
+  }
+  SECTION("pushed out of the other side, twice") {
+    for (const std::size_t i : {first + 3, first + 12}) {
+      Feel& f = stage.felt[i];
+      f.god_object = stage.way[i] - (f.god_object - stage.way[i]);
+      f.force = f.force * -1;
+    }
+    CHECK(stage.judged().push_throughs == 2);
+    CHECK(stage.judged().direction_max_deg == Approx(180));
+  }
+  SECTION("work carried over is told, and is no push-through") {
+    stage.felt[first + 3] = {stage.way[first + 3], {}, false, 0, true};
+    CHECK(stage.judged().push_throughs == 0);
+    CHECK(stage.judged().carried_ticks == 1);
+  }
+  SECTION("god-objects a tenth of a millimetre off") {
+    for (Feel& f : stage.felt) {
+      if (f.in_contact) f.god_object[0] += 1e-4;
+    }
+    const Metrics m = stage.judged();
+    CHECK(m.god_object_max_m == Approx(1e-4));
+    CHECK(m.god_object_p99_m == Approx(1e-4));
+    CHECK(m.wrong_feature_share > 0.3);  // the rest slid along their faces
+  }
+  SECTION("a force in free space") {
+    for (std::size_t i = 0; i < stage.way.size(); ++i) {
+      if (!stage.felt[i].in_contact) stage.felt[i].force = {1, 0, 0};
+    }
+    CHECK(stage.judged().phantom_share == 1);
+  }
+  SECTION("forces ten per cent too strong, none noticed at five") {
+    for (Feel& f : stage.felt)
+      f.force = f.force * 1.05;
+    CHECK(stage.judged().noticeable_share == 0);
+    for (Feel& f : stage.felt)
+      f.force = f.force * (1.10 / 1.05);
+    CHECK(stage.judged().noticeable_share == 1);
+    CHECK(stage.judged().force_share_p99 == Approx(0.1));
+  }
+}
+
+TEST_CASE("an active wall gives more work than the hold's bound, a passive one does not, and a creeping one creeps") {
+  const Way way = dip();
+  BadWall passive(1, 0), active(3, 0), creeping(1, 1e-9);
+  const LoopEnergy good = energy_of_loop(passive, way), bad = energy_of_loop(active, way);
+  CHECK(good.bound_j > 0);
+  CHECK(good.work_j <= good.bound_j);
+  CHECK(bad.work_j > bad.bound_j);
+  std::vector<TrueBody::Tick> truth(way.size());
+  for (std::size_t i = 0; i < way.size(); ++i)
+    truth[i].feel.in_contact = way[i][2] < 0;
+  CHECK(creep_m(passive, way, truth) == 0);
+  CHECK(creep_m(creeping, way, truth) == Approx(500e-9));
+}
+
+TEST_CASE("closest points, grids and proxies are as good as they can be on a ball") {
+  const Stage stage("sphere_1k");
+  struct Case {
+    std::unique_ptr<Contender> contender;
+    double rms_m;
+  };
+  Case cases[] = {
+      {make_fdcg(stage.ground.soup(), {}), 1e-16},
+      {make_fdcg(stage.ground.soup(), {bake::Precision::f32, false, true}), 1e-8},
+      {make_paper(stage.ground.soup(), PaperLevel::vertices), 1e-16},
+      {make_cgal_closest(stage.ground.soup()), 2e-5},  // a ball's facets: the closest face is not always the one slid to
+      {make_embree_closest(stage.ground.soup()), 2e-5},
+      {make_proxy(stage.ground.soup()), 4e-5},
+      {make_distance_grid(stage.ground, 64), 5e-5}};
+  for (const Case& c : cases) {
+    const Metrics m = judge(stage.way, 1000, feel_along(*c.contender, stage.way), stage.ticks_true, stage.truth);
+    INFO(c.contender->info().name);
+    CHECK(m.god_object_rms_m < c.rms_m);
+    CHECK(m.push_through_share < 0.01);
+    CHECK(m.phantom_share < 0.05);
+    CHECK(c.contender->info().bytes > 1000);
+    CHECK(c.contender->info().bake_s > 0);
+  }
+}
+
+TEST_CASE("CGAL's and Embree's closest points are the ground's") {
+  const Stage stage("spiky", WayKind::teleport, 400);
+  const auto cgal = make_cgal_closest(stage.ground.soup()), embree = make_embree_closest(stage.ground.soup());
+  int contacts = 0;
+  for (const Point& hip : stage.way) {
+    const double distance = stage.ground.closest(hip).distance;
+    for (Contender* contender : {cgal.get(), embree.get()}) {
+      Feel feel;
+      contender->step(hip, feel);
+      if (!feel.in_contact) continue;
+      ++contacts;
+      CHECK(plain::length(feel.god_object - hip) == Approx(distance).margin(2e-8));
+    }
+  }
+  CHECK(contacts > 50);
+}
+
+TEST_CASE("thin plates tell who remembers the side that the HIP came in by") {
+  const Stage stage("thin_plate");
+  const auto pushed = [&](Contender& contender) {
+    return judge(stage.way, 1000, feel_along(contender, stage.way), stage.ticks_true, stage.truth).push_throughs;
+  };
+  CHECK(pushed(*make_fdcg(stage.ground.soup(), {})) == 0);
+  CHECK(pushed(*make_cgal_closest(stage.ground.soup())) > 0);
+  CHECK(pushed(*make_distance_grid(stage.ground, 64)) > 0);
+}
+
+TEST_CASE("a contender is beaten by what is faster and no less exact, by ablations and what is not told apart never") {
+  const auto entry = [](const char* name, double time_ns, double error_m, const char* family = "a") {
+    Standing s;
+    s.name = name;
+    s.family = family;
+    s.time_ns = time_ns;
+    s.error_m = error_m;
+    return s;
+  };
+  std::vector<Standing> list = {
+      entry("exact", 100, 1e-17),           entry("slow", 200, 1e-9), entry("coarse", 50, 1e-5),
+      entry("alike", 100.5, 1e-9),          entry("floor", 110, 0),   entry("bare", 10, 1e-18, "ablation"),
+      entry("coarser yet slower", 51, 1e-4)};
+  rank(list, 0.01, 1e-16);
+  const auto beaten_by = [&](std::size_t i) { return list[i].is_on_frontier ? "" : list[i].beaten_by; };
+  CHECK(beaten_by(0) == std::string());
+  CHECK(beaten_by(1) == std::string("exact"));
+  CHECK(beaten_by(2) == std::string());
+  CHECK(beaten_by(3) == std::string());
+  CHECK(beaten_by(4) == std::string("exact"));  // both under the floor
+  CHECK(beaten_by(6) == std::string("coarse"));
+  const std::string better = where_others_win({entry("ours", 10, 0, "fdcg"), entry("theirs", 5, 1e-3)}, "fdcg");
+  CHECK(better.find("theirs faster: 0.5 times ours") == 0);
+  CHECK(where_others_win({entry("ours", 10, 0, "fdcg"), entry("theirs", 11, 0)}, "fdcg").empty());
+}
+
+TEST_CASE("times: every entrant has its rounds, and a slower one is slower") {
+  class Waster : public Contender {
+   public:
+    explicit Waster(int work) : work_(work) {}
+    void reset() override {}
+    void step(const Point& hip, Feel& feel) override {
+      double x = hip[0];
+      for (int i = 0; i < work_; ++i)
+        x = std::sqrt(x + i);
+      feel.force[0] = x;
+    }
+
+   private:
+    int work_;
+  };
+  Waster quick(10), slow(1000);
+  const Way way(500, Point{1, 2, 3});
+  const std::vector<Timing> timings = time_all({&quick, &slow, &quick}, way, Stopwatch(), 0.02);
+  for (const Timing& t : timings) {
+    CHECK(t.rounds >= 3);
+    CHECK(t.tick_ns.size() == way.size());
+    CHECK(t.batch_ns > 0);
+  }
+  CHECK(timings[1].mean_ns() > 5 * timings[0].mean_ns());
+}

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Reads the CSV tables of a run of tools/bench, writes results.json and report.html beside them (schemas/evaluation.md)."""
+import argparse
+import json
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import accuracy  # noqa: E402
+import closed_loop  # noqa: E402
+import contenders  # noqa: E402
+import laws  # noqa: E402
+import page  # noqa: E402
+import scaling  # noqa: E402
+import stress  # noqa: E402
+from tables import Run, jsonable  # noqa: E402
+
+PARTS = [contenders, accuracy, laws, closed_loop, stress, scaling]  # in the report's order
+MOST_BYTES = 5_000_000
+
+
+def first_line(command, otherwise):
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=pathlib.Path(__file__).parent)
+        return done.stdout.strip().splitlines()[0]
+    except (OSError, subprocess.CalledProcessError, IndexError):
+        return otherwise
+
+
+def processor():
+    try:
+        for line in open("/proc/cpuinfo", encoding="utf-8"):
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.machine()
+
+
+def facts(options):
+    return {"revision": first_line(["git", "describe", "--always", "--dirty", "--abbrev=12"], "not known"), "mode": options.mode,
+            "seed": options.seed, "processor": processor(), "cores": len(os.sched_getaffinity(0)),
+            "compiler": first_line(["c++", "--version"], "not known")}
+
+
+def results(run, known):
+    return {"tool": "fdcg bench", "facts": known, "bars": [{k: jsonable(v) for k, v in b.items()} for b in run.bars],
+            "tables": {name: {"columns": t.columns, "rows": [[jsonable(r[c]) for c in t.columns] for r in t.rows]}
+                       for name, t in run.tables.items()}}
+
+
+def sections(run):
+    """Each part's section, and every figure. A part that was not run has a sentence that says so."""
+    made, figures = [], []
+    for part in PARTS:
+        parts, drawn = [], []
+        for item in part.content(run):
+            if isinstance(item, str):
+                parts.append(item)
+            else:
+                parts.append(page.figure(item))
+                drawn.append(item)
+        if not parts:
+            parts = ["<p class=note>Not run.</p>"]
+        made.append((part.IDENTITY, part.TITLE, part.INTRODUCTION, parts))
+        figures += drawn
+    return made, figures
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", help="where the CSV tables are, and where the report goes")
+    parser.add_argument("--mode", default="full", help="said in the report: full or --quick")
+    parser.add_argument("--seed", default="1", help="said in the report")
+    parser.add_argument("--pictures", metavar="DIR", help="the pictures of the README, as SVG files, into DIR")
+    options = parser.parse_args()
+    options.mode = options.mode.lstrip("-")
+    run = Run(options.folder)
+    if not run.tables and not run.bars:
+        parser.error(f"{options.folder}: no CSV table there; run tools/bench, which writes them")
+    known = facts(options)
+    made, figures = sections(run)
+    text = page.page(known, run.bars, made)
+    if len(text.encode()) > MOST_BYTES:
+        sys.exit(f"report.py: the page would have {len(text.encode())} bytes, more than {MOST_BYTES}")
+    (run.folder / "results.json").write_text(json.dumps(results(run, known), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (run.folder / "report.html").write_text(text, encoding="utf-8")
+    if options.pictures:
+        wanted = [f for f in figures if f.name in page.README_PICTURES]
+        for f in wanted:
+            (pathlib.Path(options.pictures) / f"{f.name}.svg").write_text(f.svg + "\n", encoding="utf-8")
+        missing = sorted(page.README_PICTURES - {f.name for f in wanted})
+        if missing:
+            sys.exit(f"report.py: no data for the picture {', '.join(missing)}; run all parts")
+
+
+if __name__ == "__main__":
+    main()

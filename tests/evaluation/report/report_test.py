@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The report over what the programs' quick modes have written (FDCG_EVALUATION: their folder), and over broken tables."""
+import csv
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import jsonschema
+
+HERE = pathlib.Path(__file__).resolve().parent
+SCHEMA = HERE.parents[2] / "schemas" / "evaluation-results.schema.json"
+WRITTEN = os.environ.get("FDCG_EVALUATION", "")
+
+
+def report(folder, *more):
+    return subprocess.run([sys.executable, "-B", str(HERE / "report.py"), str(folder), *more], capture_output=True, text=True)
+
+
+class OfQuickRuns(unittest.TestCase):
+    """Needs the tables of all programs."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(WRITTEN)
+        cls.run_ = report(cls.folder, "--mode", "--quick", "--seed", "1")
+        assert cls.run_.returncode == 0, cls.run_.stderr
+        cls.page = (cls.folder / "report.html").read_text(encoding="utf-8")
+        cls.results = json.loads((cls.folder / "results.json").read_text(encoding="utf-8"))
+
+    def test_the_page_needs_nothing_else_and_is_small(self):
+        self.assertLess(len(self.page.encode()), 5_000_000)
+        for attribute in re.findall(r'\b(?:src|href|xlink:href)="([^"]*)"', self.page):
+            self.assertTrue(attribute.startswith("#"), attribute)
+        self.assertNotIn("<script", self.page)
+        self.assertNotIn("@import", self.page)
+
+    def test_every_part_is_there_and_every_figure_says_what_it_shows(self):
+        self.assertNotIn("Not run.", self.page)
+        figures = self.page.count("<figure")
+        self.assertGreaterEqual(figures, 8)
+        self.assertEqual(len(re.findall(r'role="img" aria-label="[^"]{20,}"', self.page)), figures)
+
+    def test_ids_are_unique(self):
+        ids = re.findall(r'\bid="([^"]+)"', self.page)
+        self.assertEqual(len(ids), len(set(ids)))
+
+    def test_the_results_keep_their_schema_and_leave_no_row_out(self):
+        jsonschema.validate(self.results, json.loads(SCHEMA.read_text(encoding="utf-8")))
+        for path in self.folder.glob("*.csv"):
+            with open(path, newline="", encoding="utf-8") as file:
+                rows = list(csv.reader(file))[1:]
+            if path.name.endswith(".bars.csv"):
+                named = [b["bar"] for b in self.results["bars"] if b["program"] == path.name[:-len(".bars.csv")]]
+                self.assertEqual(named, [r[0] for r in rows])
+            else:
+                self.assertEqual(len(self.results["tables"][path.stem]["rows"]), len(rows), path)
+
+    def test_every_bar_is_on_the_page(self):
+        self.assertGreater(len(self.results["bars"]), 20)
+        for bar in self.results["bars"]:
+            self.assertIn(bar["bar"].replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;"), self.page)
+
+
+class OfBrokenFolders(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def test_an_empty_folder_is_wrong_usage(self):
+        done = report(self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("tools/bench", done.stderr)
+
+    def test_a_row_cut_short_names_file_and_line(self):
+        (self.folder / "t.csv").write_text("a,b\n1,2\n3\n", encoding="utf-8")
+        done = report(self.folder)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("t.csv:3", done.stderr)
+        self.assertFalse((self.folder / "report.html").exists())
+
+    def test_a_part_that_was_not_run_is_said_so_and_a_failed_bar_comes_first(self):
+        (self.folder / "p.bars.csv").write_text("bar,measured,relation,limit,unit,verdict,note\ngood,1,at most,2,s,ok,\n"
+                                                "bad <one>,nan,at most,2,s,FAIL,why\n", encoding="utf-8")
+        done = report(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("Not run.", text)
+        self.assertLess(text.index("bad &lt;one&gt;"), text.index("good"))
+        self.assertIsNone(json.loads((self.folder / "results.json").read_text())["bars"][1]["measured"])
+
+
+if __name__ == "__main__":
+    unittest.main()
