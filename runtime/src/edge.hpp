@@ -63,7 +63,7 @@ inline Decision edge_rule(Walk<Real>& walk) {
   if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0])) return go_to({FDCG_FACE, connection.node(0)});
   if (is_candidate_b) return go_to({FDCG_FACE, connection.node(1)});
 
-  const EdgeLine<Real> line(walk.graph.edge(index));
+  const EdgeLine<Real> line(walk.graph, index);
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
   const Vec3<Real> across = walk.hip - (line.start + line.direction * foot);

@@ -92,7 +92,7 @@ inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
   if (!(walk.seat == kFree)) return walk.seat;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) return kFree;
-  const EdgeLine<Real> line(walk.graph.edge(node, side));
+  const EdgeLine<Real> line(walk.graph, node, side);
   return place_on_edge(walk, node.connection(side), line, line.parameter(walk.god_object));
 }
 
@@ -106,7 +106,7 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
-  const EdgeLine<Real> line(walk.graph.edge(node, side));
+  const EdgeLine<Real> line(walk.graph, node, side);
   const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.lost;
   const Vec3<Real> ahead = walk.lost + way * move.crossing.fraction;  // from `from` to the crossing
   const Feature landed = place_on_edge(walk, node.connection(side), line, line.parameter(from + ahead));

@@ -195,17 +195,29 @@ struct GraphView {
   [[nodiscard]] CornerRef<Real> corner(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return vec(corners[index].point); }
 
-  // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs.
-  [[nodiscard]] Edge<Real> edge(NodeRef<Real> node, uint32_t k) const {
+  // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs. Written number by
+  // number where it is to be: a copy would wait for the numbers to be stored.
+  void read_edge(NodeRef<Real> node, uint32_t k, Edge<Real>* edge) const {
     const uint32_t end[2] = {node.corner(k), node.corner(node.next(k))};
-    const Vec3<Real> start = corner_point(end[node.which(k)]);
-    if (edges == nullptr) return derive_edge(start, corner_point(end[1 - node.which(k)]));
+    const Corner& from = corners[end[node.which(k)]];
+    if (edges == nullptr) {
+      *edge = derive_edge(vec(from.point), corner_point(end[1 - node.which(k)]));
+      return;
+    }
     const auto& stored = edges[node.connection(k)];
-    return {start, vec(stored.direction), stored.length};
+    edge->start.x = from.point[0], edge->start.y = from.point[1], edge->start.z = from.point[2];
+    edge->direction.x = stored.direction[0], edge->direction.y = stored.direction[1], edge->direction.z = stored.direction[2];
+    edge->length = stored.length;
   }
-  [[nodiscard]] Edge<Real> edge(uint32_t connection_index) const {
+  void read_edge(uint32_t connection_index, Edge<Real>* edge) const {
     const fdcg_connection& record = connections[connection_index];
-    return edge(node(record.node), record.side[0]);
+    read_edge(node(record.node), record.side[0], edge);
+  }
+  template <class... Where>
+  [[nodiscard]] Edge<Real> edge(Where... where) const {
+    Edge<Real> edge;
+    read_edge(where..., &edge);
+    return edge;
   }
 
   // Calls what lies at and beyond side k into the cache: all that a god-object that crosses it will ask for. The addresses

@@ -98,11 +98,11 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
-    if (decision.is_rest) {
+    if (decision.is_rest()) {
       space->carried->in_place = 0;
       return progress;
     }
-    walk.active = decision.next;
+    walk.active = decision.next();
     ++progress.transitions;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {

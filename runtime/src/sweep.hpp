@@ -292,7 +292,7 @@ class Sweep {
       if (k >= kLastBit &&
           orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0)
         continue;
-      const EdgeLine<Real> line(graph_.edge(node, k));
+      const EdgeLine<Real> line(graph_, node, k);
       const Real u = line.parameter(point);
       const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));
       if (nearest == kFree || outside < nearest_outside) {
@@ -322,7 +322,7 @@ inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, co
   const Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
   walk.active = first.feature;
   if (first.feature.state == FDCG_EDGE) {
-    const EdgeLine<Real> line(walk.graph.edge(first.feature.index));
+    const EdgeLine<Real> line(walk.graph, first.feature.index);
     walk.active = place_on_edge(walk, first.feature.index, line, line.parameter(point));
   } else {
     walk.place(first.feature == kFree ? to : point, kFree);

@@ -43,16 +43,28 @@ struct Walk {
   }
 };
 
-// What a rule decides: stay (rest), or go on at another feature.
-struct Decision {
-  bool is_rest;
-  Feature next;
+// What a rule decides: stay (rest), or go on at another feature. One word: of parts written one by one the caller would wait
+// for the whole.
+class Decision {
+ public:
+  static constexpr Decision rest() { return Decision(kRest); }
+  static constexpr Decision go_to(Feature next) { return Decision(uint64_t{next.index} << 32 | next.state); }
+
+  [[nodiscard]] bool is_rest() const { return word_ == kRest; }
+  [[nodiscard]] Feature next() const { return {static_cast<uint32_t>(word_), static_cast<uint32_t>(word_ >> 32)}; }
+
+ private:
+  static constexpr uint64_t kRest = ~uint64_t{0};  // no state has such a number
+
+  explicit constexpr Decision(uint64_t word) : word_(word) {}
+
+  uint64_t word_;
 };
 inline Decision rest() {
-  return {true, kFree};
+  return Decision::rest();
 }
 inline Decision go_to(Feature next) {
-  return {false, next};
+  return Decision::go_to(next);
 }
 
 // A connection's line, and how near to an end the vertex is meant (contact-model section 5).
@@ -60,8 +72,12 @@ template <class Real>
 struct EdgeLine : Edge<Real> {
   Real end_tolerance;
 
-  explicit EdgeLine(const Edge<Real>& edge)
-      : Edge<Real>(edge), end_tolerance(8 * RealLimits<Real>::kEpsilon * (norm1(edge.start) + edge.length)) {}
+  // `where`: a connection, or a node and a side of it.
+  template <class... Where>
+  explicit EdgeLine(const GraphView<Real>& graph, Where... where) {
+    graph.read_edge(where..., this);
+    end_tolerance = 8 * RealLimits<Real>::kEpsilon * (norm1(this->start) + this->length);
+  }
 
   [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };

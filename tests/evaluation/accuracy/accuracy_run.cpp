@@ -81,6 +81,7 @@ AccuracyOutcome replayed(const AccuracySetting& setting, const bake::PolygonSoup
   out.error_and_conditioning = std::move(e.looked_at);
   out.worst_conditioning = e.worst_conditioning;
   out.first_wrong = e.first_wrong;
+  out.first_unexplained = e.first_unexplained;
   out.worst = e.worst;
   return out;
 }

@@ -38,7 +38,7 @@ struct AccuracyOutcome {
   std::vector<std::pair<float, float>> error_and_conditioning;
   double worst_conditioning = 1;
   double deviation_ulps = 0;  // header.max_deviation
-  std::string first_wrong, worst;
+  std::string first_wrong, first_unexplained, worst;
 };
 
 // Throws std::runtime_error where the compiler refuses the body.

@@ -413,10 +413,12 @@ void explain(const Plan& plan, std::vector<AccuracyOutcome>& outcomes, const std
   }
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const AccuracySetting& s = plan.settings[i];
-    if (percentile(outcomes[i].one_step_ulps, 1) <= kP999Bar_ulps) continue;
+    const bool is_large = percentile(outcomes[i].one_step_ulps, 1) > kP999Bar_ulps;
+    if (!is_large && outcomes[i].first_unexplained.empty()) continue;
     std::printf("%s, %s, %s, planes %s, merged %s, offset %g, %s, deviation %g ulps\n  %s\n", s.body.c_str(), s.way.c_str(),
                 name_of(s.precision), s.is_stored ? "stored" : "derived", s.is_merged ? "yes" : "no", s.offset_sizes,
-                name_of(s.judge), outcomes[i].deviation_ulps, outcomes[i].worst.c_str());
+                name_of(s.judge), outcomes[i].deviation_ulps, is_large ? outcomes[i].worst.c_str() : "");
+    if (!outcomes[i].first_unexplained.empty()) std::printf("  unexplained tie: %s\n", outcomes[i].first_unexplained.c_str());
   }
 }
 
@@ -446,8 +448,8 @@ void add(Total& total, const AccuracySetting& s, const AccuracyOutcome& o) {
   append(group.accumulated, o.accumulated_ulps);
 }
 
-// A search finds what the geometry magnifies without bound, so the bar is on the backward error: the step is exact for inputs
-// so near to the ones it got.
+// A search may find what the geometry magnifies without bound; the backward error then tells whether the step still is exact
+// for inputs so near to the ones it got.
 void judge_searches(Bars& bars, const std::vector<Search>& searches) {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     const Search *worst = nullptr, *furthest = nullptr;
@@ -462,9 +464,9 @@ void judge_searches(Bars& bars, const std::vector<Search>& searches) {
     }
     if (worst == nullptr) continue;
     const std::string name = std::string(name_of(precision)) + ", worst found by search";
-    bars.at_most(name + ", backward error", worst->find.backward_ulps(), kMaxBar_ulps, "ulps",
-                 worst->soup->name + "; largest raw error " + cell(furthest->find.ulps) + " ulps at a conditioning of " +
-                     cell(furthest->find.conditioning) + ", " + furthest->soup->name);
+    bars.at_most(name + ", error", furthest->find.ulps, kMaxBar_ulps, "ulps",
+                 furthest->soup->name + ", conditioning " + cell(furthest->find.conditioning));
+    bars.at_most(name + ", backward error", worst->find.backward_ulps(), kMaxBar_ulps, "ulps", worst->soup->name);
     bars.at_most(name + ", wrong features", static_cast<double>(wrong), 0, "ticks");
   }
 }
@@ -512,7 +514,8 @@ int main(int argc, char** argv) {
       "and bench_accuracy.bars.csv.\n"
       "Exit code 1: a bar failed.\n\nExample: fdcg_bench_accuracy --quick --output build/accuracy"};
   app.add_flag("--quick", options.is_quick, "a few seconds instead of a few minutes");
-  app.add_flag("--explain", options.explains, "say everything about the worst tick of each run above the limit of p99.9");
+  app.add_flag("--explain", options.explains,
+               "say everything about ticks above the limit of p99.9, and about ties without an explanation");
   app.add_option("--output", options.output, "folder for the tables")->capture_default_str();
   app.add_option("--seed", options.seed, "of the ways")->capture_default_str();
   app.add_option("--threads", options.threads, "the results do not depend on it")

@@ -169,7 +169,7 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
   WayOptions options;
   options.kind = plan.kind;
   options.rate_hz = plan.rate_hz;
-  options.ticks = options_.ticks > 0 ? options_.ticks : options_.is_quick ? 4000 : 10'000;
+  options.ticks = options_.ticks > 0 ? options_.ticks : std::min(options_.is_quick ? 4000u : 10'000u, plan.most_ticks);
   options.seed = options_.seed;
   options.hold_ticks = 20;  // of teleports: time to arrive
   const Way way = make_way(scene.ground, options);
@@ -188,7 +188,7 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
     }
   }
   // more rounds where a bar is set: f64 and f32 are a hundredth apart
-  const double budget_s = !options_.judges_times ? 0.05 : (options_.is_quick ? 0.3 : 0.6) * (plan.counts ? 3 : 1);
+  const double budget_s = !options_.judges_times ? 0.05 : (options_.is_quick ? 0.3 : 0.4) * (plan.counts ? 4 : 1);
   const std::vector<Timing> timings = time_all(entrants, way, watch_, budget_s);
   std::printf("%s, %s at %g Hz, mu %g/%g\n", scene.body.name.c_str(), name_of(plan.kind), plan.rate_hz, plan.mu_static,
               plan.mu_dynamic);

@@ -17,6 +17,7 @@ struct WayPlan {
   double rate_hz = 1000;
   double mu_static = 0, mu_dynamic = 0;
   bool counts = false;  // for the frontier of its body: at most one of a body's ways does
+  std::uint32_t most_ticks = 10'000;
 };
 
 struct BodyPlan {

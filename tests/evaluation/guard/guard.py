@@ -175,7 +175,7 @@ def sides(args):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog="Example: guard.py --against main~5")
-    parser.add_argument("--against", metavar="REV", help="the base: a revision of this repository; the head is this tree as it stands")
+    parser.add_argument("--against", "--base", metavar="REV", help="the base: a revision of this repository; the head is this tree as it stands")
     parser.add_argument("--base-program", type=pathlib.Path, help="in place of building: the base's measuring program")
     parser.add_argument("--head-program", type=pathlib.Path)
     parser.add_argument("--base-library", type=pathlib.Path, help="its runtime library, to be weighed")

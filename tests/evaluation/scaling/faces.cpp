@@ -16,14 +16,15 @@ namespace fdcg::test {
 namespace {
 
 constexpr double kDepth_m = 1e-3;
-constexpr double kHandWay_m = 1e-4;    // a tick: 0.1 m/s at 1 kHz
-constexpr double kHover_m = 2e-3;      // at most, above the surface; less where two edges are
-constexpr double kFlat = 1.3;          // own p50 on a body over that on the small one, at as many faces a tick
+constexpr double kHandWay_m = 1e-4;  // a tick: 0.1 m/s at 1 kHz
+constexpr double kHover_m = 2e-3;    // at most, above the surface; less where two edges are
+// Own p50 on a body over that on the small one, at as many faces a tick and, near the surface, as many edges above it.
+constexpr double kFlat = 1.3;
 constexpr double kSteepestBake = 1.3;  // exponent of the bake's time; n log n is 1.07 over these sizes
 constexpr double kNoise = 1.03;        // of a ratio of two medians of least times: see the control beside it
 constexpr double kClockStep_ns = 0.8;  // of the time-stamp counter, which moves by two at 2.7 GHz: a median is off by as much
-constexpr double kConversions_ns =
-    3;  // three numbers rounded to float and back: f64 has no such work, and in free space little else
+// Three numbers rounded to float and back: f64 has no such work, and in free space there is little else.
+constexpr double kConversions_ns = 3;
 constexpr double kLinearFrom_faces = 900;  // below, what a bake takes at least is in the time
 constexpr int kSmallParts = 7;             // the small body: 980 faces
 constexpr int kReplays = 9;
@@ -62,18 +63,25 @@ const char* name_of(Motion motion) {
 
 // A slide over a cube goes no faster than a tenth of a face a tick: more is a jump from side to side.
 double faces_a_tick(Motion motion, Body body, const Surface& surface) {
-  if (motion == Motion::hand) return kHandWay_m / surface.face_way_m();
-  return motion == Motion::cross ? (body == Body::cube ? 0.1 : 1.0) : 0.0;
+  if (motion == Motion::cross) return body == Body::cube ? 0.1 : 1.0;
+  return motion == Motion::far ? 0.0 : kHandWay_m / surface.face_way_m();
 }
 
-Path path_of(Motion motion, const Surface& surface, double rate, int ticks) {
+// How high a near way goes, in edges of the body.
+double height_in_edges(const Surface& surface) {
+  return std::min(2.0, kHover_m / surface.edge_m());
+}
+
+// A way at so many faces a tick; a near one so many edges above the surface.
+Path path_of(Motion motion, const Surface& surface, double rate, double height_edges, int ticks) {
+  const double way_m = rate * surface.face_way_m();
   switch (motion) {
     case Motion::near:
-      return hover(surface, kHandWay_m, std::min(2 * surface.edge_m(), kHover_m), ticks);
+      return hover(surface, way_m, height_edges * surface.edge_m(), ticks);
     case Motion::far:
       return far_away(kHandWay_m, ticks);
     default:
-      return slide(surface, rate * surface.face_way_m(), kDepth_m, ticks);
+      return slide(surface, way_m, kDepth_m, ticks);
   }
 }
 
@@ -175,7 +183,9 @@ class FacesPart {
     std::map<Motion, std::vector<StepTimes>> all;
     for (const Motion motion : kMotions) {
       const double rate = faces_a_tick(motion, size.body, surface);
-      const Path path = path_of(motion, surface, rate, ticks_), small_path = path_of(motion, small_surface, rate, ticks_);
+      const double height = height_in_edges(surface);
+      const Path path = path_of(motion, surface, rate, height, ticks_);
+      const Path small_path = path_of(motion, small_surface, rate, height, ticks_);
       std::vector<Lane> lanes = {{&graphs[0]->view(), &path}, {&graphs[1]->view(), &path}, {&graphs[0]->view(), &path}};
       if (small != nullptr && size.parts > kSmallParts) {
         for (const auto& graph : *small)
