@@ -10,12 +10,14 @@
 
 namespace fdcg {
 
-// `point`, moved along `outward` by as few roundings as put it in front of the node's plane.
+// `point`, moved along `outward` by as little as puts it in front of the node's plane: a slit may be narrower than a rounding.
 template <class Real>
 [[gnu::noinline]] Vec3<Real> in_front_of(Walk<Real>& walk, NodeRef<Real> node, Vec3<Real> point, Vec3<Real> outward) {
   constexpr int kMostMoves = 16;  // each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, point);
-  Real step = RealLimits<Real>::kEpsilon * Real(walk.graph.header->extent);
+  const Real least = RealLimits<Real>::kEpsilon * Real(walk.graph.header->extent) / 4096;
+  const Real behind = absolute(node.plane().distance(point));
+  Real step = behind > least ? behind : least;
   for (int i = 0; i < kMostMoves; ++i, step = 2 * step) {
     if (side_of(walk.graph, node, point, bound, &walk.work_left) >= 0) break;
     point = point + outward * step;

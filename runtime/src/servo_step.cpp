@@ -34,15 +34,23 @@ class Trail {
     if (now2 < nearest2_) {
       nearest2_ = now2;
       count_ = 0;
+      has_come_nearer_ = true;
     }
     const uint64_t here = key(walk.active);
     for (int i = 0; i < count_; ++i) {
-      if (visited_[i] == here) return true;
+      if (visited_[i] == here) {
+        FDCG_WATCH(met_again);
+        return true;
+      }
     }
-    if (count_ == kCapacity) return true;
+    if (count_ == kCapacity) {
+      FDCG_WATCH(trail_full);
+      return true;
+    }
     visited_[count_++] = here;
     return false;
   }
+  [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
 
  private:
   static constexpr int kCapacity = 32;  // without a move, a step climbs: vertex, edge, face are three
@@ -51,6 +59,7 @@ class Trail {
 
   Real nearest2_;
   int count_;
+  bool has_come_nearer_ = false;
   uint64_t visited_[kCapacity];  // the first count_ are set
 };
 
@@ -89,11 +98,15 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
-    if (decision.is_rest()) return progress;
+    if (decision.is_rest()) {
+      space->carried->in_place = 0;
+      return progress;
+    }
     walk.active = decision.next();
     ++progress.transitions;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
+      if (trail.has_come_nearer()) space->carried->in_place = 0;
       step_clear_of(walk, at);
       progress.flags |= sweep_to_hip(walk, at, space);
       if (walk.active == kFree) return progress;
@@ -295,6 +308,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     if (is_on_face && (move.kind == Kind::rests || move.kind == Kind::slides)) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
       contact->slipping = friction.is_slipping ? 1 : 0;
+      contact->sweep.in_place = 0;
       respond(header, params, *contact, hip, move.target, result);
       store(move.target, contact->god_object);
     } else {

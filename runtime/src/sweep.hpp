@@ -58,8 +58,34 @@ class Sweep {
 
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
+  static constexpr Real kNever = 2;  // a fraction after the end
+  // Where a way that passes inside a node's loop, and comes in at `fraction` but for rounding, surely is over the face: of one
+  // that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
+  // kNever where all of it is beyond a side: a loop that is not flat is passed, seen edge-on, by ways that end before it.
+  [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
+    const NodeRef<Real> node = graph_.node(n);
+    spend(work_left_, kSideWork * node.side_count());
+    const Real rounding = (from_bound_ + to_bound_) / 4;
+    Real begin = least, end = 1;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const Plane<Real> plane = node.voronoi_plane(k);
+      const Real s0 = plane.distance(from_) - rounding, s1 = plane.distance(to_) - rounding;
+      if (s0 > 4 * rounding && s1 > 4 * rounding) return kNever;
+      if (s0 <= 0 && s1 > 0) {
+        const Real leaves = -s0 / (s1 - s0);
+        if (leaves < end) end = leaves;
+      } else if (s0 > 0 && s1 <= 0) {
+        const Real comes_in = s0 / (s0 - s1);
+        if (comes_in > begin) begin = comes_in;
+      }
+    }
+    if (fraction > end) fraction = end;
+    return fraction < begin ? begin : fraction;
+  }
+
  private:
   static constexpr uint32_t kLastBit = 63;
+  static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
 
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
@@ -179,15 +205,21 @@ class Sweep {
   [[gnu::noinline]] void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
     const NodeRef<Real> node = graph_.node(n);
+    if (node.plane().distance(to_) > to_bound_ || is_left_out(n, node)) return;  // before any exact sign is asked for
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
     const bool is_inexact = node.is_inexact();
     if (start_side < (is_inexact ? -slab_ : Real(0))) return;
-    const Real fraction = start_side > 0 ? start_side / (start_side - end_side) : Real(0);
-    if (!is_before_best(fraction, n) || is_left_out(n, node)) return;
+    const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
+    const Real noise = from_bound_ + to_bound_ + (is_inexact ? slab_ : Real(0));
+    const bool is_grazing = noise > kGrazing * fall;
+    const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
+    if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
     if (!passes_inside(node, &met_exactly)) return;
+    const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
+    if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
     best_.node = n;
     best_.feature = met_exactly ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
@@ -285,7 +317,9 @@ class Sweep {
 // Puts the contact where the way met something first, or at its end.
 template <class Real>
 inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
-  const Vec3<Real> point = sweep.point_at(first.fraction);
+  const bool is_on_face = first.feature.state == FDCG_FACE;
+  const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;
+  const Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
   walk.active = first.feature;
   if (first.feature.state == FDCG_EDGE) {
     const EdgeLine<Real> line(walk.graph, first.feature.index);
@@ -342,6 +376,25 @@ inline bool is_in_new_ball(const GraphView<Real>& graph, Vec3<Real> from, Vec3<R
   return true;
 }
 
+// A way that begins far away, cut to begin where it comes near the graph; `to` where it passes by, or where its numbers, which
+// out there are coarser than the object, cannot tell. A place computed from the whole way might be anywhere.
+template <class Real>
+[[gnu::noinline]] Vec3<Real> near_start(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to) {
+  constexpr Real kFar = 16, kBefore = 4;  // extents; the graph lies within less than two of the origin
+  const Real extent = static_cast<Real>(graph.header->extent);
+  if (!(norm1(from) > kFar * extent)) return from;
+  const Vec3<Real> way = to - from;
+  const Real length = norm(way);
+  if (!(length > 0)) return from;
+  const Vec3<Real> along = way * (1 / length);
+  const bool is_from_end = norm1(to) < norm1(from);  // from the nearer end, where numbers are finer
+  const Real past = dot(is_from_end ? to : from, along) + kBefore * extent;  // how far that end is past the cut
+  if (is_from_end ? !(past < length) : !(past < 0)) return from;
+  if (is_from_end ? !(past > 0) : !(-past < length)) return to;
+  const Vec3<Real> start = (is_from_end ? to : from) - along * past;
+  return norm1(start) > kFar * extent ? to : start;
+}
+
 // From free space, or from the surface that was just left: places the contact on what the way to the HIP meets, or at the HIP.
 // A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work ran out, else 0.
 template <class Real>
@@ -360,17 +413,20 @@ template <class Real>
     walk.active = left;
     return 0;
   }
-  const Vec3<Real> from = walk.god_object, to = walk.hip;
+  const Vec3<Real> to = walk.hip, from = left == kFree ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
   const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy != nullptr;
   if (is_still || (may_look && is_in_new_ball(walk.graph, from, to, space->ball))) {
     walk.place(to, kFree);
+    carried->in_place = 0;
     return 0;
   }
+  walk.god_object = from;
   Sweep<Real> sweep(walk.graph, from, to, left, &space->work_left);
   FirstHit<Real> first;
   if (sweep.run(&first)) {
     arrive(walk, sweep, to, first);
+    if (walk.active == kFree) carried->in_place = 0;
     return 0;
   }
   *carried = {

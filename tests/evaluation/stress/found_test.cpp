@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whatever fdcg_stress has found and somebody has mended, cut down: each file in found/ holds a mesh and a path.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "minimise.hpp"
+
+using namespace fdcg::test;
+
+TEST_CASE("what the stress runs found does not come back") {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(FDCG_FOUND)) {
+    if (entry.path().extension() == ".obj") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  REQUIRE(files.size() >= 5);
+  for (const std::string& file : files) {
+    INFO(file);
+    const Reproducer r = read_reproducer(file);
+    CHECK(first_fault(Specimen(r.body), r) == -1);
+  }
+}
+
+TEST_CASE("a reproducer comes back from its file bit for bit") {
+  const std::string file = std::filesystem::directory_iterator(FDCG_FOUND)->path().string();
+  const Reproducer r = read_reproducer(file);
+  const std::string copy = std::filesystem::temp_directory_path() / "fdcg_stress_copy.obj";
+  write_reproducer(copy, r);
+  const Reproducer again = read_reproducer(copy);
+  std::filesystem::remove(copy);
+  CHECK(again.path_m == r.path_m);
+  CHECK(again.body.soup.points == r.body.soup.points);
+  CHECK(again.body.soup.corners == r.body.soup.corners);
+  CHECK(again.fault == r.fault);
+  CHECK(test_case_text(again, "a") == test_case_text(r, "a"));
+}
+
+TEST_CASE("a reproducer that does not fail is not cut down") {
+  CHECK_THROWS(minimised(read_reproducer(std::filesystem::directory_iterator(FDCG_FOUND)->path().string())));
+}

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fdcg::test {
+namespace {
+
+constexpr std::uint32_t bit(Fault fault) {
+  return 1u << static_cast<unsigned>(fault);
+}
+Hip hip_of(const double (&a)[3]) {
+  return {a[0], a[1], a[2]};
+}
+bool is_same(const double (&a)[3], const double (&b)[3]) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+// In long double: what is measured are units in the last place.
+long double long_length(const Hip& a, const Hip& b) {
+  long double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const long double d = static_cast<long double>(a[i]) - b[i];
+    sum += d * d;
+  }
+  return std::sqrt(sum);
+}
+double square_distance(const Hip& a, const Hip& b) {
+  const Hip d = difference(a, b);
+  return dot(d, d);
+}
+constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;
+
+}  // namespace
+
+std::string_view name_of(Fault fault) {
+  constexpr std::string_view kNames[] = {"nan",    "cycle",    "rule-bound",  "sweep-bound", "growth",  "push-through",
+                                         "unseen", "thin-air", "off-surface", "pull",        "restless"};
+  static_assert(std::size(kNames) == kFaults);
+  return kNames[static_cast<std::size_t>(fault)];
+}
+
+std::optional<Fault> fault_named(std::string_view name) {
+  for (std::size_t i = 0; i < kFaults; ++i) {
+    if (name_of(static_cast<Fault>(i)) == name) return static_cast<Fault>(i);
+  }
+  return std::nullopt;
+}
+
+void Verdicts::add(const Verdicts& other) {
+  for (std::size_t i = 0; i < kFaults; ++i)
+    count[i] += other.count[i];
+  shallow += other.shallow;
+  met_again += other.met_again;
+  most_carried = std::max(most_carried, other.most_carried);
+  worst_growth_eps = std::max(worst_growth_eps, other.worst_growth_eps);
+  worst_off_surface_eps = std::max(worst_off_surface_eps, other.worst_off_surface_eps);
+  worst_restless_eps = std::max(worst_restless_eps, other.worst_restless_eps);
+  worst_pull_eps = std::max(worst_pull_eps, other.worst_pull_eps);
+  worst_inside_eps = std::max(worst_inside_eps, other.worst_inside_eps);
+}
+
+Judge::Judge(const Specimen& specimen)
+    : specimen_(specimen),
+      epsilon_(specimen.epsilon()),
+      deviation_(kPerDeviation * specimen.header().max_deviation),
+      is_exact_(specimen.header().max_deviation == 0 &&
+                specimen.body.soup.corners.size() == 3 * specimen.body.soup.face_count()) {}
+
+std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result,
+                           const StepWatch& seen, Verdicts& v) {
+  Tick tick = {before, after, result, hip_of(after.hip), hip_of(after.god_object), 0, 0};
+  const double far = std::max({std::abs(tick.hip[0]), std::abs(tick.hip[1]), std::abs(tick.hip[2])});
+  tick.rounding = epsilon_ * std::max(far, specimen_.header().extent);
+  look_at_numbers(tick);
+  if ((result.flags & FDCG_RESULT_NON_FINITE) == 0 && tick.faults == 0) {
+    if ((result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0) tick.faults |= bit(Fault::rule_bound);
+    if ((result.flags & FDCG_RESULT_SWEEP_BOUND) != 0) tick.faults |= bit(Fault::sweep_bound);
+    if (before.started != 0 && before.sweep.is_carried == 0) {
+      if (after.state != FDCG_FREE) look_at_growth(tick, v);
+      if (is_same(before.hip, after.hip)) look_at_rest(tick, v);
+      if (before.state == FDCG_FREE) look_at_way(tick);
+    }
+    if (after.state != FDCG_FREE) {
+      look_at_feature(tick, v);
+      if ((result.flags & kCarried) == 0) look_at_pull(tick, v);
+    }
+    if (specimen_.inside != nullptr) look_inside(tick, v);
+  }
+  if ((result.flags & FDCG_RESULT_NON_FINITE) == 0) {
+    last_flags_ = result.flags;
+    was_met_again_ = seen.met_again + seen.trail_full > 0;
+    v.met_again += was_met_again_;
+    carried_ = (result.flags & kCarried) != 0 ? carried_ + 1 : 0;
+    v.most_carried = std::max(v.most_carried, carried_);
+  }
+  if (tick.faults != 0) {
+    for (std::size_t i = 0; i < kFaults; ++i)
+      v.count[i] += tick.faults >> i & 1;
+  }
+  return tick.faults;
+}
+
+void Judge::look_at_numbers(Tick& tick) const {
+  const fdcg_result& r = tick.result;
+  const double sum = (r.force_n[0] + r.force_n[1] + r.force_n[2]) * 0 +
+                     (r.god_object_m[0] + r.god_object_m[1] + r.god_object_m[2]) * 0 +
+                     (tick.god_object[0] + tick.god_object[1] + tick.god_object[2]) * 0;
+  if (sum != 0) tick.faults |= bit(Fault::not_a_number);  // true for NaN
+  if ((r.flags & FDCG_RESULT_NON_FINITE) == 0) return;
+  const fdcg_contact &a = tick.before, &b = tick.after;
+  const bool is_kept = a.state == b.state && a.feature == b.feature && is_same(a.god_object, b.god_object) &&
+                       is_same(a.hip, b.hip) && a.slipping == b.slipping;
+  if (!is_kept || r.force_n[0] != 0 || r.force_n[1] != 0 || r.force_n[2] != 0) tick.faults |= bit(Fault::not_a_number);
+}
+
+void Judge::look_at_growth(Tick& tick, Verdicts& v) const {
+  const Hip start = hip_of(tick.before.state == FDCG_FREE ? tick.before.hip : tick.before.god_object);
+  if (square_distance(tick.god_object, tick.hip) <= square_distance(start, tick.hip)) return;
+  const double growth = static_cast<double>(long_length(tick.god_object, tick.hip) - long_length(start, tick.hip)) - deviation_;
+  v.worst_growth_eps = std::max(v.worst_growth_eps, growth / tick.rounding);
+  if (growth > kMostGrowth_eps * tick.rounding) tick.faults |= bit(Fault::growth);
+}
+
+void Judge::look_at_rest(Tick& tick, Verdicts& v) const {
+  if ((last_flags_ & kCarried) != 0) return;  // work in hand is no rest
+  const std::uint32_t faults = bit(Fault::restless) | (was_met_again_ ? bit(Fault::cycle) : 0);
+  if ((tick.before.state == FDCG_FREE) != (tick.after.state == FDCG_FREE)) {
+    tick.faults |= faults;
+    return;
+  }
+  if (is_same(tick.before.god_object, tick.after.god_object)) return;
+  // Where GO is nearest, a change of its place changes its distance by the square: d may be sqrt(2 gap rounding).
+  const Hip was = hip_of(tick.before.god_object);
+  const double gap = distance(tick.god_object, tick.hip), allowed = kMostRestless_eps * tick.rounding + deviation_;
+  const double nearer = static_cast<double>(long_length(was, tick.hip) - long_length(tick.god_object, tick.hip));
+  v.worst_restless_eps = std::max(v.worst_restless_eps, (nearer - deviation_) / tick.rounding);
+  const bool is_moving = distance(was, tick.god_object) > allowed + 2 * std::sqrt(2 * gap * allowed);
+  if (nearer > allowed || is_moving) tick.faults |= faults;
+}
+
+void Judge::look_at_feature(Tick& tick, Verdicts& v) const {
+  double off = 0;
+  const Hip& x = tick.god_object;
+  if (tick.after.state == FDCG_FACE) {
+    const NodeShape& node = specimen_.nodes[tick.after.feature];
+    off = std::abs(signed_distance(node.normal, node.offset, x));
+    for (std::uint32_t k = 0; k < node.side_count; ++k) {
+      const Rim& rim = specimen_.rims[node.first_side + k];
+      off = std::max(off, signed_distance(rim.normal, rim.offset, x));
+    }
+  } else if (tick.after.state == FDCG_EDGE) {
+    const EdgeShape& edge = specimen_.edges[tick.after.feature];
+    const Hip from_start = difference(x, edge.start);
+    const double along = dot(from_start, edge.direction);
+    Hip beside;
+    for (std::size_t i = 0; i < 3; ++i)
+      beside[i] = from_start[i] - edge.direction[i] * along;
+    off = std::max({norm(beside), -along, along - edge.length});
+  } else {
+    off = distance(x, specimen_.corners[tick.after.feature].point);
+  }
+  off -= deviation_;
+  if (off <= 0) return;
+  v.worst_off_surface_eps = std::max(v.worst_off_surface_eps, off / tick.rounding);
+  if (off > kMostOffSurface_eps * tick.rounding) tick.faults |= bit(Fault::off_surface);
+}
+
+// How far the HIP is in front of what holds it.
+void Judge::look_at_pull(Tick& tick, Verdicts& v) const {
+  const auto in_front = [&](std::uint32_t node) {
+    return signed_distance(specimen_.nodes[node].normal, specimen_.nodes[node].offset, tick.hip);
+  };
+  double front = 0;
+  if (tick.after.state == FDCG_FACE) {
+    front = in_front(tick.after.feature);
+  } else if (tick.after.state == FDCG_EDGE) {
+    const EdgeShape& edge = specimen_.edges[tick.after.feature];
+    const double a = in_front(edge.node[0]);
+    const double b = edge.node[1] == FDCG_NONE ? a : in_front(edge.node[1]);
+    front = edge.type == FDCG_CONCAVE ? std::min(a, b) : std::max(a, b);
+  } else {
+    const CornerShape& corner = specimen_.corners[tick.after.feature];
+    front = dot(difference(tick.hip, corner.point), corner.normal);
+  }
+  front -= deviation_;
+  if (front <= 0) return;
+  v.worst_pull_eps = std::max(v.worst_pull_eps, front / tick.rounding);
+  if (front > kMostPull_eps * tick.rounding) tick.faults |= bit(Fault::pull);
+}
+
+// A contact that was free: what its way met.
+void Judge::look_at_way(Tick& tick) {
+  if (specimen_.inside == nullptr || !is_exact_ || !is_known_outside_) return;
+  if ((tick.result.flags & kCarried) != 0 || is_let_off(tick.hip)) return;
+  const double* from = tick.before.hip;  // from far away the step cuts the way, where rounding may move it
+  if (std::abs(from[0]) + std::abs(from[1]) + std::abs(from[2]) > 8 * specimen_.header().extent) return;
+  const bool is_stopped = tick.result.transitions > 0;
+  const InsideGrid::Crossing way = specimen_.inside->crossing(hip_of(tick.before.hip), tick.hip);
+  if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
+  if (!way.is_through && !way.touches && is_stopped) tick.faults |= bit(Fault::thin_air);
+}
+
+// Around an apex of 10^4 faces the grid's cells hold them all: there one tick in some dozens is asked for.
+bool Judge::is_let_off(const Hip& point) {
+  constexpr std::size_t kCrowd = 64;
+  const std::size_t crowd = specimen_.inside->crowd_at(point);
+  if (crowd <= kCrowd) return false;
+  asked_ += 1;
+  return asked_ % (crowd / kCrowd + 1) != 0;
+}
+
+void Judge::look_inside(Tick& tick, Verdicts& v) {
+  if (tick.after.state != FDCG_FREE) {
+    is_known_outside_ = true;  // if the contact is lost, the HIP has left
+    return;
+  }
+  if (is_let_off(tick.god_object)) return;
+  const InsideGrid::Where where = specimen_.inside->where(tick.god_object);  // the HIP, or how far a carried sweep has come
+  if (where == InsideGrid::Where::outside) is_known_outside_ = true;
+  if (where != InsideGrid::Where::inside || !is_known_outside_) return;
+  const bool is_on_its_way = tick.after.sweep.is_carried != 0;  // may start on the surface
+  is_known_outside_ = is_on_its_way;                            // once is enough
+  const double size = specimen_.inside->size();
+  const double depth = specimen_.inside->distance_to_surface(tick.god_object) - deviation_;
+  v.worst_inside_eps = std::max(v.worst_inside_eps, depth / (epsilon_ * size));
+  if (depth > (is_on_its_way ? kMostOffSurface_eps * tick.rounding : kShallow_eps * epsilon_ * size)) {
+    tick.faults |= bit(Fault::push_through);
+  } else {
+    ++v.shallow;
+  }
+}
+
+}  // namespace fdcg::test

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What must hold of every tick, whatever the body and the hand. A judge sees the contact before and after and the specimen, not
+// the step; cost: some 50 ns a tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "fdcg/fdcg.h"
+#include "specimen.hpp"
+#include "step_watch.hpp"
+
+namespace fdcg::test {
+
+enum class Fault : std::uint8_t {
+  not_a_number,  // NaN or infinite output; on a HIP that is not usable: a change of the contact, a force
+  cycle,         // a step stopped where a feature was met again, and that was no rest: GO goes on in the next tick
+  rule_bound,    // work on the surface carried over
+  sweep_bound,   // work in free space carried over
+  growth,        // |GO - HIP| grew by more than 16 eps of the scale
+  push_through,  // Free and, after having been outside or held, inside by more than 4 eps of the size
+  unseen,        // a way through the surface that met nothing
+  thin_air,      // a contact though the way met nothing
+  off_surface,   // GO off the planes of its feature, or beyond its rim, by more than 64 eps of the scale
+  pull,          // the HIP is in front of what is said to hold it: the force pulls inwards
+  restless,      // the same HIP again: GO came nearer by more than 16 eps of the scale, or moved by more than such a change of
+                 // its distance allows, or contact was lost or found
+  count
+};
+inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
+std::string_view name_of(Fault fault);
+std::optional<Fault> fault_named(std::string_view name);
+
+// The scale of rounding is the largest of the object's extent and the coordinates of HIP: both enter every sum.
+inline constexpr double kMostGrowth_eps = 16;
+inline constexpr double kMostOffSurface_eps = 64;
+inline constexpr double kMostRestless_eps = 16;
+inline constexpr double kMostPull_eps = 32;    // of a plane's distance, as the step bounds its own rounding
+inline constexpr double kShallow_eps = 4;      // of the size: a HIP so near to the surface may be taken for outside
+inline constexpr double kPerDeviation = 4;     // where merging moved faces: so many times the largest deviation as well
+
+struct Verdicts {
+  std::array<std::uint64_t, kFaults> count{};
+  std::uint64_t shallow = 0;      // Free, and inside by less than kShallow_eps
+  std::uint64_t met_again = 0;    // rests where a feature was met again, as contact-model section 1 has it
+  std::uint64_t most_carried = 0;  // ticks in a row
+  double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0;
+
+  void add(const Verdicts& other);
+};
+
+class Judge {
+ public:
+  explicit Judge(const Specimen& specimen);
+
+  // A new contact: nothing is known of where its HIP is.
+  void begin() { is_known_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0; }
+
+  // One tick, which began with `before`. Returns a bit for each fault, 1 << fault, and counts them.
+  std::uint32_t judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result, const StepWatch& seen,
+                      Verdicts& verdicts);
+
+ private:
+  struct Tick {
+    const fdcg_contact& before;
+    const fdcg_contact& after;
+    const fdcg_result& result;
+    Hip hip, god_object;
+    double rounding;  // eps of the scale
+    std::uint32_t faults;
+  };
+  void look_at_numbers(Tick& tick) const;
+  void look_at_growth(Tick& tick, Verdicts& v) const;
+  void look_at_feature(Tick& tick, Verdicts& v) const;
+  void look_at_pull(Tick& tick, Verdicts& v) const;
+  void look_at_rest(Tick& tick, Verdicts& v) const;
+  void look_at_way(Tick& tick);
+  bool is_let_off(const Hip& point);
+  void look_inside(Tick& tick, Verdicts& v);
+
+  const Specimen& specimen_;
+  double epsilon_, deviation_;  // deviation_: allowed on top of rounding
+  bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
+  bool is_known_outside_ = false;
+  std::size_t asked_ = 0;          // in crowded cells
+  std::uint32_t last_flags_ = 0;   // of the last tick with a finite HIP
+  bool was_met_again_ = false;     // ... stopped where a feature was met again
+  std::uint64_t carried_ = 0;      // ticks in a row
+};
+
+}  // namespace fdcg::test

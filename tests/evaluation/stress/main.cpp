@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+// fdcg_stress: runs the step on every case of contact-model section 10, judges every tick, and says how to repeat what fails.
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "minimise.hpp"
+#include "reproducer.hpp"
+#include "stress_run.hpp"
+#include "table.hpp"
+
+using namespace fdcg::test;
+using fdcg::bake::Precision;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kQuickSteps = 9e5, kFullSteps = 3e7;
+constexpr int kMostReproducers = 3;  // of each case, precision and fault
+
+struct Options {
+  bool is_quick = false;
+  std::string output = "stress";
+  std::uint64_t seed = 1;
+  double steps = 0;
+  unsigned threads = 1;
+  std::string only;
+  std::string precision;
+  std::int64_t block = -1;
+  std::string minimise, replay;
+  bool lists = false;
+};
+
+// A row of the table: one case in one precision.
+struct Row {
+  const StressCase* stress_case;
+  Precision precision;
+  std::uint64_t first_block = 0, end_block = 0;
+};
+
+const char* name_of(Precision precision) {
+  return precision == Precision::f64 ? "f64" : "f32";
+}
+unsigned long long n(std::uint64_t count) {
+  return count;
+}
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Writes what is found, at most a few of each kind, and says how to repeat it.
+class Findings {
+ public:
+  Findings(const std::string& folder, std::string program) : folder_(folder), program_(std::move(program)) {}
+
+  void add(const Finding& f) {
+    const std::lock_guard lock(mutex_);
+    const std::string kind = std::string(f.name.stress_case->name) + "-" + name_of(f.name.precision) + "-" +
+                             std::string(fdcg::test::name_of(f.fault));
+    int& count = written_[kind];
+    if (count == kMostReproducers) return;
+    ++count;
+    const std::string file = folder_ + "/" + kind + "-" + std::to_string(count) + ".obj";
+    const std::string command = program_ + " --seed " + std::to_string(f.name.seed) + " --case " +
+                                std::string(f.name.stress_case->name) + " --precision " + name_of(f.name.precision) +
+                                " --block " + std::to_string(f.name.block);
+    std::printf("FOUND %s at tick %llu of %s, extent %g\n      repeat: %s\n      file: %s\n", kind.c_str(), n(f.tick),
+                f.specimen->body.description.c_str(), f.specimen->header().extent, command.c_str(), file.c_str());
+    std::fflush(stdout);
+    write_reproducer(file, {f.specimen->body, f.params, *f.path_m, f.fault, command});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::string folder_, program_;
+  std::map<std::string, int> written_;
+};
+
+// All rows' blocks, in turns of blocks_per_body, each turn for one worker; a row's sum is taken in its blocks' order, whoever ran
+// them.
+class Workers {
+ public:
+  Workers(const std::vector<Row>& rows, const Options& options, Findings& findings)
+      : rows_(rows), options_(options), findings_(findings), results_(rows.size()), left_(rows.size()), seconds_(rows.size()) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const std::uint64_t turn = rows[r].stress_case->blocks_per_body;
+      results_[r].resize(rows[r].end_block - rows[r].first_block);
+      for (std::uint64_t begin = rows[r].first_block; begin < rows[r].end_block;) {
+        const std::uint64_t end = std::min((begin / turn + 1) * turn, rows[r].end_block);
+        turns_.push_back({r, begin, end});
+        ++left_[r];
+        begin = end;
+      }
+    }
+    for (unsigned w = 0; w < options.threads; ++w)
+      threads_.emplace_back([this] { work(); });
+  }
+  ~Workers() {
+    for (std::thread& thread : threads_)
+      thread.join();
+  }
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  // Waits for a row. `seconds`: of all workers together. Throws what a worker has thrown.
+  BlockResult row(std::size_t r, double* seconds) {
+    std::unique_lock lock(mutex_);
+    is_done_.wait(lock, [&] { return left_[r] == 0 || failure_ != nullptr; });
+    if (failure_ != nullptr) std::rethrow_exception(failure_);
+    BlockResult sum;
+    for (const BlockResult& result : results_[r])
+      sum.add(result);
+    *seconds = seconds_[r];
+    return sum;
+  }
+
+ private:
+  struct Turn {
+    std::size_t row;
+    std::uint64_t begin, end;
+  };
+
+  void work() {
+    try {
+      while (true) {
+        const std::size_t t = next_.fetch_add(1);
+        if (t >= turns_.size()) return;
+        run(turns_[t]);
+      }
+    } catch (...) {
+      next_ = turns_.size();
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+      is_done_.notify_all();
+    }
+  }
+
+  void run(const Turn& turn) {
+    const auto begin = Clock::now();
+    const Row& row = rows_[turn.row];
+    SpecimenShelf shelf;
+    for (std::uint64_t block = turn.begin; block < turn.end; ++block) {
+      const BlockName name = {row.stress_case, row.precision, block, options_.seed};
+      const auto specimen = shelf.get(name);
+      results_[turn.row][block - row.first_block] = run_block(name, *specimen, [&](const Finding& f) { findings_.add(f); });
+    }
+    const std::lock_guard lock(mutex_);
+    seconds_[turn.row] += seconds_since(begin);
+    if (--left_[turn.row] == 0) is_done_.notify_all();
+  }
+
+  const std::vector<Row>& rows_;
+  const Options& options_;
+  Findings& findings_;
+  std::vector<Turn> turns_;
+  std::vector<std::vector<BlockResult>> results_;
+  std::vector<std::size_t> left_;  // turns of each row
+  std::vector<double> seconds_;
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex mutex_;
+  std::condition_variable is_done_;
+  std::exception_ptr failure_;
+  std::vector<std::thread> threads_;
+};
+
+std::vector<Row> rows_of(const Options& options) {
+  std::vector<Row> rows;
+  for (const StressCase& c : stress_cases()) {
+    if (!options.only.empty() && options.only != c.name) continue;
+    for (const Precision precision : {Precision::f64, Precision::f32}) {
+      if (options.precision.empty() || options.precision == name_of(precision)) rows.push_back({&c, precision});
+    }
+  }
+  const double steps = options.steps > 0 ? options.steps : options.is_quick ? kQuickSteps : kFullSteps;
+  double shares = 0;
+  for (const Row& row : rows)
+    shares += row.stress_case->share;
+  for (Row& row : rows) {
+    const double share = steps * row.stress_case->share / shares / kBlockTicks;
+    row.end_block = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(share + 0.5));
+    if (options.block >= 0) {
+      row.first_block = static_cast<std::uint64_t>(options.block);
+      row.end_block = row.first_block + 1;
+    }
+  }
+  return rows;
+}
+
+std::string hexadecimal(std::uint64_t x) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", n(x));
+  return text;
+}
+
+std::uint64_t count_of(const BlockResult& r, Fault fault) {
+  return r.verdicts.count[static_cast<std::size_t>(fault)];
+}
+
+void write_row(Table& table, const Row& row, const BlockResult& r, double seconds) {
+  const Verdicts& v = r.verdicts;
+  table.row(row.stress_case->name, row.stress_case->target, name_of(row.precision), r.ticks, r.contact_ticks, r.transitions,
+            count_of(r, Fault::cycle), v.met_again, count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound), r.bounds_allowed,
+            v.most_carried, v.worst_growth_eps,
+            count_of(r, Fault::growth), count_of(r, Fault::push_through), count_of(r, Fault::unseen),
+            count_of(r, Fault::thin_air), v.shallow, count_of(r, Fault::not_a_number), v.worst_off_surface_eps,
+            count_of(r, Fault::off_surface), count_of(r, Fault::pull), v.worst_pull_eps, count_of(r, Fault::restless),
+            v.worst_restless_eps, v.worst_inside_eps, r.disagreements, hexadecimal(r.hash), seconds);
+}
+
+int judge_whole(const BlockResult& r, const std::string& folder) {
+  Bars bars(folder, "fdcg_stress");
+  const auto none = [&](const std::string& bar, std::uint64_t measured, const std::string& note = "") {
+    bars.at_most(bar, static_cast<double>(measured), 0, "ticks", note);
+  };
+  none("cycles", count_of(r, Fault::cycle), std::to_string(r.verdicts.met_again) + " rests where a feature was met again");
+  none("bound hits outside the stated cases", count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound) - r.bounds_allowed);
+  bars.at_most("growth of |GO - HIP| within a step", r.verdicts.worst_growth_eps, kMostGrowth_eps, "eps of the scale");
+  none("push-through: free while inside", count_of(r, Fault::push_through),
+       std::to_string(r.verdicts.shallow) + " more by less than " + std::to_string(static_cast<int>(kShallow_eps)) + " eps");
+  none("ways through the surface unseen", count_of(r, Fault::unseen));
+  none("contacts from thin air", count_of(r, Fault::thin_air));
+  none("NaN or infinite results", count_of(r, Fault::not_a_number));
+  bars.at_most("god-object off its feature", r.verdicts.worst_off_surface_eps, kMostOffSurface_eps, "eps of the scale");
+  none("forces that pull", count_of(r, Fault::pull));
+  none("held HIPs that move the god-object", count_of(r, Fault::restless));
+  none("ticks in which the step as it ships differs", r.disagreements, "compared in block 0 of each case");
+  return bars.failures();
+}
+
+void show_progress(std::size_t done, std::size_t rows, const BlockResult& whole, double seconds) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  std::fprintf(stderr, "\r%zu of %zu rows, %.1f million ticks, %.0f s ", done, rows, static_cast<double>(whole.ticks) * 1e-6,
+               seconds);
+  if (done == rows) std::fputc('\n', stderr);
+}
+
+int run(const Options& options, const std::string& program) {
+  std::filesystem::create_directories(options.output);
+  Findings findings(options.output, program);
+  Table table(options.output, "stress_cases",
+              {"case", "target", "precision", "steps", "contact_steps", "transitions", "cycles", "met_again", "bound_hits",
+               "bound_hits_allowed", "most_carried", "growth_worst_eps", "growths", "push_through", "unseen", "thin_air", "shallow", "nan",
+               "off_surface_worst_eps", "off_surface", "pulls", "pull_worst_eps", "restless", "restless_worst_eps",
+               "inside_worst_eps", "disagreements", "hash", "seconds"});
+  const std::vector<Row> rows = rows_of(options);
+  if (rows.empty()) {
+    std::fprintf(stderr, "%s: no case is called %s; --list shows them\n", program.c_str(), options.only.c_str());
+    return 2;
+  }
+  const auto begin = Clock::now();
+  BlockResult whole;
+  std::printf("seed %llu\n%-18s %-4s %11s %5s %7s %8s %9s %7s  %s\n", n(options.seed), "case", "", "ticks", "cont.", "trans.",
+              "growth", "off surf.", "ns/tick", "faults");
+  Workers workers(rows, options, findings);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double seconds = 0;
+    const BlockResult r = workers.row(i, &seconds);
+    write_row(table, rows[i], r, seconds);
+    std::uint64_t faults = 0;
+    for (const std::uint64_t c : r.verdicts.count)
+      faults += c;
+    const auto ticks = static_cast<double>(r.ticks);
+    std::printf("%-18s %-4s %11llu %5.2f %7.3f %8.2f %9.2f %7.0f  %llu%s\n", std::string(rows[i].stress_case->name).c_str(),
+                name_of(rows[i].precision), n(r.ticks), static_cast<double>(r.contact_ticks) / ticks,
+                static_cast<double>(r.transitions) / ticks, r.verdicts.worst_growth_eps, r.verdicts.worst_off_surface_eps,
+                seconds / ticks * 1e9, n(faults - r.bounds_allowed),
+                r.bounds_allowed > 0 ? (", " + std::to_string(r.bounds_allowed) + " ticks carried over").c_str() : "");
+    std::fflush(stdout);
+    whole.add(r);
+    show_progress(i + 1, rows.size(), whole, seconds_since(begin));
+  }
+  std::printf("%llu ticks, hash %s\n", n(whole.ticks), hexadecimal(whole.hash).c_str());
+  return judge_whole(whole, options.output) == 0 ? 0 : 1;
+}
+
+int replay(const std::string& path) {
+  const Reproducer r = read_reproducer(path);
+  const Specimen specimen(r.body);
+  std::vector<std::string> log;
+  const std::int64_t tick = first_fault(specimen, r, &log);
+  constexpr std::size_t kShown = 12;  // ticks up to the fault
+  for (std::size_t i = log.size() > kShown ? log.size() - kShown : 0; tick >= 0 && i < log.size(); ++i)
+    std::printf("tick %zu: %s\n", i, log[i].c_str());
+  if (tick < 0) {
+    std::printf("%s: no %s in %zu ticks\n", path.c_str(), std::string(fdcg::test::name_of(r.fault)).c_str(), r.path_m.size());
+    return 0;
+  }
+  std::printf("%s: %s at tick %lld\n", path.c_str(), std::string(fdcg::test::name_of(r.fault)).c_str(),
+              static_cast<long long>(tick));
+  return 1;
+}
+
+void list_cases() {
+  for (const StressCase& c : stress_cases())
+    std::printf("%-18s %s\n", std::string(c.name).c_str(), std::string(c.target).c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Runs the step on every stress case, judges every tick, writes stress_cases.csv and fdcg_stress.bars.csv.\n"
+      "Exit code 1: a bar fails; 2: wrong usage.\n"
+      "Example: fdcg_stress --steps 1e9 --threads 2 --output stress\n"
+      "         fdcg_stress --case tremor --precision f32 --block 7\n"
+      "         fdcg_stress --minimise stress/tremor-f32-push-through-1.obj");
+  app.add_flag("--quick", options.is_quick, "a few seconds");
+  app.add_option("--output", options.output, "folder for the tables and reproducers")->capture_default_str();
+  app.add_option("--seed", options.seed, "of everything; results but for times depend on it alone")->capture_default_str();
+  app.add_option("--steps", options.steps, "how many ticks in all, shared among the cases");
+  app.add_option("--threads", options.threads, "results do not depend on it")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--case", options.only, "this one alone");
+  app.add_option("--precision", options.precision, "f64 or f32 alone")->check(CLI::IsMember({"f64", "f32"}));
+  app.add_option("--block", options.block, "this block of each case alone");
+  app.add_option("--minimise", options.minimise, "cut this reproducer down; writes FILE.small.obj and FILE.test.cpp");
+  app.add_option("--replay", options.replay, "step this reproducer; exit code 1 if it still fails");
+  app.add_flag("--list", options.lists, "the cases");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  try {
+    if (options.lists) return list_cases(), 0;
+    if (!options.replay.empty()) return replay(options.replay);
+    if (!options.minimise.empty()) return minimise_file(options.minimise);
+    return run(options, argv[0]);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], e.what());
+    return 2;
+  }
+}

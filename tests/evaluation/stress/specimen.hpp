@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// One body that the runner steps on, with all that its judges look up: the graph, its features' planes, and which points are
+// inside. In the graph's own frame ("local") unless a name says otherwise.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contact_rig.hpp"
+#include "inside_grid.hpp"
+
+namespace fdcg::test {
+
+// A body as a case makes it.
+struct Body {
+  bake::PolygonSoup soup;  // source units
+  bake::CompileOptions options;
+  bool is_closed = true;              // and free of self-intersection: the inside is known
+  std::vector<std::uint32_t> focus;  // points of the soup at which hands like to be; may be empty
+  std::string description;
+};
+
+// What a feature is, in double precision.
+struct NodeShape {
+  Hip normal;
+  double offset;
+  std::uint32_t first_side, side_count;  // in Specimen::rims
+};
+struct Rim {  // a Voronoi plane
+  Hip normal;
+  double offset;
+};
+struct EdgeShape {
+  Hip start, direction;
+  double length;
+  std::uint32_t type;     // fdcg_connection_type
+  std::uint32_t node[2];  // node[1] FDCG_NONE on a boundary
+};
+struct CornerShape {
+  Hip point, normal;
+};
+
+// Throws std::runtime_error where the compiler refuses the body.
+class Specimen {
+ public:
+  explicit Specimen(Body body);
+
+  const Body body;
+  const CompiledMesh mesh;
+  std::vector<NodeShape> nodes;
+  std::vector<Rim> rims;
+  std::vector<EdgeShape> edges;
+  std::vector<CornerShape> corners;
+  std::vector<std::uint32_t> focus_corners;  // corners of the graph nearest to body.focus
+  std::unique_ptr<InsideGrid> inside;        // of closed bodies
+
+  [[nodiscard]] const fdcg_graph& graph() const { return mesh.view(); }
+  [[nodiscard]] const fdcg_header& header() const { return *mesh.view().header; }
+  [[nodiscard]] double epsilon() const { return header().real_bytes == 8 ? 0x1p-52 : 0x1p-23; }
+
+ private:
+  void read_shapes();
+  void find_focus();
+};
+
+inline double signed_distance(const Hip& normal, double offset, const Hip& x) {
+  return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2] + offset;
+}
+
+}  // namespace fdcg::test

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stress_run.hpp"
+
+#include <bit>
+#include <cstring>
+
+// servo_step.cpp, compiled with step_watch.hpp
+extern "C" void fdcg_step_watched(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
+                                  const double hip_object_m[3], fdcg_result* result);
+
+namespace fdcg::test {
+namespace {
+
+constexpr double kHoldAgain = 0.05;  // ticks whose HIP is held once more
+
+std::uint64_t hashed(std::uint64_t hash, const fdcg_contact& contact, const fdcg_result& result) {
+  for (const double x : contact.god_object)
+    hash = mixed(hash, std::bit_cast<std::uint64_t>(x));
+  for (const double x : result.force_n)
+    hash = mixed(hash, std::bit_cast<std::uint64_t>(x));
+  hash = mixed(hash, std::uint64_t{result.state} << 32 | result.feature);
+  return mixed(hash, std::uint64_t{result.transitions} << 32 | result.flags << 8 | result.slipping);
+}
+
+std::uint64_t seed_of(const BlockName& name, std::uint64_t number) {
+  std::uint64_t hash = mixed(name.seed, static_cast<std::uint64_t>(name.precision));
+  for (const char c : name.stress_case->name)
+    hash = mixed(hash, static_cast<unsigned char>(c));
+  return mixed(hash, number);
+}
+
+// One block as it goes.
+class Block {
+ public:
+  Block(const BlockName& name, const Specimen& specimen, const OnFinding& found)
+      : name_(name),
+        specimen_(specimen),
+        found_(found),
+        random_(seed_of(name, name.block)),
+        hand_(specimen, random_.bits()),
+        judge_(specimen) {
+    path_.reserve(2 * Hand::kMostTicks);
+  }
+
+  BlockResult run() {
+    while (result_.ticks < kBlockTicks)
+      episode();
+    return result_;
+  }
+
+ private:
+  void episode() {
+    const auto& motions = name_.stress_case->motions;
+    const std::uint32_t ticks = hand_.begin(motions[random_.below(static_cast<std::uint32_t>(motions.size()))]);
+    const auto& mu = kFrictionPairs[random_.below(std::size(kFrictionPairs))];
+    params_ = contact_params(mu[0], mu[1], random_.chance(0.8) ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER);
+    contact_ = {};
+    path_.clear();
+    judge_.begin();
+    for (std::uint32_t i = 0; i < ticks && result_.ticks < kBlockTicks; ++i) {
+      const Hip hip = hand_.next({contact_.god_object[0], contact_.god_object[1], contact_.god_object[2]},
+                                 contact_.state == FDCG_FREE);
+      tick(hip);
+      if (random_.chance(kHoldAgain) && result_.ticks < kBlockTicks) tick(hip);
+    }
+  }
+
+  void tick(const Hip& hip_m) {
+    path_.push_back(hip_m);
+    const fdcg_contact before = contact_;
+    fdcg_result out;
+    const StepWatch seen = watched_step(specimen_.graph(), params_, contact_, hip_m, out);
+    if (name_.block == 0) compare(before, hip_m, out);
+    const std::uint32_t faults = judge_.judge(before, contact_, out, seen, result_.verdicts);
+    ++result_.ticks;
+    result_.contact_ticks += out.state != FDCG_FREE;
+    result_.transitions += out.transitions;
+    result_.hash = hashed(result_.hash, contact_, out);
+    if (faults != 0) report(faults);
+  }
+
+  void compare(const fdcg_contact& before, const Hip& hip_m, const fdcg_result& out) {
+    fdcg_contact as_shipped = before;
+    fdcg_result shipped;
+    fdcg_step(&specimen_.graph(), &params_, &as_shipped, hip_m.data(), &shipped);
+    result_.disagreements += hashed(0, as_shipped, shipped) != hashed(0, contact_, out);
+  }
+
+  void report(std::uint32_t faults) {
+    constexpr std::uint32_t kRules = 1u << static_cast<unsigned>(Fault::rule_bound);
+    constexpr std::uint32_t kSweeps = 1u << static_cast<unsigned>(Fault::sweep_bound);
+    const std::uint32_t allowed = name_.stress_case->may_carry ? kRules | kSweeps : 0;
+    result_.bounds_allowed += static_cast<std::uint64_t>(std::popcount(faults & allowed));
+    faults &= ~allowed;
+    for (std::size_t i = 0; i < kFaults; ++i) {
+      if ((faults >> i & 1) != 0) found_({name_, static_cast<Fault>(i), result_.ticks - 1, &specimen_, params_, &path_});
+    }
+  }
+
+  BlockName name_;
+  const Specimen& specimen_;
+  const OnFinding& found_;
+  Random random_;
+  Hand hand_;
+  Judge judge_;
+  fdcg_params params_{};
+  fdcg_contact contact_{};
+  std::vector<Hip> path_;
+  BlockResult result_;
+};
+
+}  // namespace
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+  return hash ^ hash >> 29;
+}
+
+StepWatch watched_step(const fdcg_graph& graph, const fdcg_params& params, fdcg_contact& contact, const Hip& hip_m,
+                       fdcg_result& result) {
+  step_watch = {};
+  fdcg_step_watched(&graph, &params, &contact, hip_m.data(), &result);
+  return step_watch;
+}
+
+void BlockResult::add(const BlockResult& other) {
+  ticks += other.ticks;
+  contact_ticks += other.contact_ticks;
+  transitions += other.transitions;
+  bounds_allowed += other.bounds_allowed;
+  disagreements += other.disagreements;
+  hash = mixed(hash, other.hash);
+  verdicts.add(other.verdicts);
+}
+
+std::shared_ptr<const Specimen> SpecimenShelf::get(const BlockName& name) {
+  const std::uint64_t key = seed_of(name, ~(name.block / name.stress_case->blocks_per_body));
+  if (last_ == nullptr || key != key_) {
+    Random random(key);
+    last_.reset();
+    last_ = std::make_shared<const Specimen>(name.stress_case->make(random, name.precision));
+    key_ = key;
+  }
+  return last_;
+}
+
+BlockResult run_block(const BlockName& name, const Specimen& specimen, const OnFinding& found) {
+  return Block(name, specimen, found).run();
+}
+
+}  // namespace fdcg::test

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs blocks of ticks. A block is repeated, bit for bit, by (seed, case, precision, block) alone.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "judge.hpp"
+#include "stress_case.hpp"
+
+namespace fdcg::test {
+
+inline constexpr std::uint32_t kBlockTicks = 20'000;
+
+struct BlockName {
+  const StressCase* stress_case = nullptr;
+  bake::Precision precision = bake::Precision::f64;
+  std::uint64_t block = 0;
+  std::uint64_t seed = 1;
+};
+
+struct BlockResult {
+  std::uint64_t ticks = 0, contact_ticks = 0, transitions = 0, hash = 0, bounds_allowed = 0;
+  Verdicts verdicts;
+  std::uint64_t disagreements = 0;  // ticks in which the step as it ships came to another result; block 0 alone is compared
+
+  void add(const BlockResult& other);
+};
+
+// A fault with all that leads up to it: the HIPs since the contact was new.
+struct Finding {
+  BlockName name;
+  Fault fault = Fault::count;
+  std::uint64_t tick = 0;  // of the block
+  const Specimen* specimen = nullptr;
+  fdcg_params params{};
+  const std::vector<Hip>* path_m = nullptr;
+};
+using OnFinding = std::function<void(const Finding&)>;
+
+// Makes specimens, and keeps the last: large ones serve many blocks.
+class SpecimenShelf {
+ public:
+  std::shared_ptr<const Specimen> get(const BlockName& name);
+
+ private:
+  std::uint64_t key_ = 0;
+  std::shared_ptr<const Specimen> last_;
+};
+
+// `found` is called for each fault, several times for one tick where it has several.
+BlockResult run_block(const BlockName& name, const Specimen& specimen, const OnFinding& found);
+
+// One tick of the watched step. Returns what was seen in it.
+StepWatch watched_step(const fdcg_graph& graph, const fdcg_params& params, fdcg_contact& contact, const Hip& hip_m,
+                       fdcg_result& result);
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t word);
+
+}  // namespace fdcg::test
