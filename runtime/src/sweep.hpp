@@ -387,7 +387,7 @@ template <class Real>
   const Real length = norm(way);
   if (!(length > 0)) return from;
   const Vec3<Real> along = way * (1 / length);
-  const bool is_from_end = norm1(to) < norm1(from);  // from the nearer end, where numbers are finer
+  const bool is_from_end = norm1(to) < norm1(from);                          // from the nearer end, where numbers are finer
   const Real past = dot(is_from_end ? to : from, along) + kBefore * extent;  // how far that end is past the cut
   if (is_from_end ? !(past < length) : !(past < 0)) return from;
   if (is_from_end ? !(past > 0) : !(-past < length)) return to;

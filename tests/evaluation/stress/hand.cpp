@@ -59,7 +59,9 @@ std::uint32_t Hand::begin(Motion motion) {
   phase_ = random_.uniform(0, 6.283);
   place_ = around(middle_, 2.5 * size_);
   if (motion == Motion::creep) anchor_ = surface_point();
-  if (motion == Motion::encoder) amount_ = random_.chance(0.5) ? std::exp2(std::floor(std::log2(size_)) - 5 - random_.below(7)) : size_ * random_.uniform(1e-4, 1e-2);
+  if (motion == Motion::encoder)
+    amount_ = random_.chance(0.5) ? std::exp2(std::floor(std::log2(size_)) - 5 - random_.below(7))
+                                  : size_ * random_.uniform(1e-4, 1e-2);
   if (motion == Motion::object) anchor_ = around(surface_point(), share(-4, -0.5));
   return kTicks[static_cast<std::size_t>(motion)];
 }

@@ -95,8 +95,8 @@ bool InsideGrid::meets(const Triangle& t, const Place& place) const {
 }
 
 void InsideGrid::place_triangles() {
-  const std::size_t cells = static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
-                            static_cast<std::size_t>(count_[2]);
+  const std::size_t cells =
+      static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) * static_cast<std::size_t>(count_[2]);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> met;  // cell, triangle
   for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
     const Triangle& t = triangles_[f];
@@ -260,7 +260,7 @@ InsideGrid::Crossing InsideGrid::crossing(const Hip& from, const Hip& to) const 
 }
 
 double InsideGrid::distance_to_surface(const Hip& point) const {
-  using Wide = long double;  // the plane of a sliver turns by a rounding over its width
+  using Wide = long double;       // the plane of a sliver turns by a rounding over its width
   constexpr Wide kWider = 1e-6L;  // of a triangle
   const auto wide = [](const Hip& a) { return Vector<Wide>{a[0], a[1], a[2]}; };
   const Vector<Wide> x = wide(point);

@@ -37,14 +37,14 @@ std::optional<Fault> fault_named(std::string_view name);
 inline constexpr double kMostGrowth_eps = 16;
 inline constexpr double kMostOffSurface_eps = 64;
 inline constexpr double kMostRestless_eps = 16;
-inline constexpr double kMostPull_eps = 32;    // of a plane's distance, as the step bounds its own rounding
-inline constexpr double kShallow_eps = 4;      // of the size: a HIP so near to the surface may be taken for outside
-inline constexpr double kPerDeviation = 4;     // where merging moved faces: so many times the largest deviation as well
+inline constexpr double kMostPull_eps = 32;  // of a plane's distance, as the step bounds its own rounding
+inline constexpr double kShallow_eps = 4;    // of the size: a HIP so near to the surface may be taken for outside
+inline constexpr double kPerDeviation = 4;   // where merging moved faces: so many times the largest deviation as well
 
 struct Verdicts {
   std::array<std::uint64_t, kFaults> count{};
-  std::uint64_t shallow = 0;      // Free, and inside by less than kShallow_eps
-  std::uint64_t met_again = 0;    // rests where a feature was met again, as contact-model section 1 has it
+  std::uint64_t shallow = 0;       // Free, and inside by less than kShallow_eps
+  std::uint64_t met_again = 0;     // rests where a feature was met again, as contact-model section 1 has it
   std::uint64_t most_carried = 0;  // ticks in a row
   double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0;
 
@@ -84,10 +84,10 @@ class Judge {
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
   bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
   bool is_known_outside_ = false;
-  std::size_t asked_ = 0;          // in crowded cells
-  std::uint32_t last_flags_ = 0;   // of the last tick with a finite HIP
-  bool was_met_again_ = false;     // ... stopped where a feature was met again
-  std::uint64_t carried_ = 0;      // ticks in a row
+  std::size_t asked_ = 0;         // in crowded cells
+  std::uint32_t last_flags_ = 0;  // of the last tick with a finite HIP
+  bool was_met_again_ = false;    // ... stopped where a feature was met again
+  std::uint64_t carried_ = 0;     // ticks in a row
 };
 
 }  // namespace fdcg::test

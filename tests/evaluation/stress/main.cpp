@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg_stress: runs the step on every case of contact-model section 10, judges every tick, and says how to repeat what fails.
-#include <CLI/CLI.hpp>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -89,8 +89,8 @@ class Findings {
   std::map<std::string, int> written_;
 };
 
-// All rows' blocks, in turns of blocks_per_body, each turn for one worker; a row's sum is taken in its blocks' order, whoever ran
-// them.
+// All rows' blocks, in turns of blocks_per_body, each turn for one worker; a row's sum is taken in its blocks' order, whoever
+// ran them.
 class Workers {
  public:
   Workers(const std::vector<Row>& rows, const Options& options, Findings& findings)
@@ -212,12 +212,12 @@ std::uint64_t count_of(const BlockResult& r, Fault fault) {
 void write_row(Table& table, const Row& row, const BlockResult& r, double seconds) {
   const Verdicts& v = r.verdicts;
   table.row(row.stress_case->name, row.stress_case->target, name_of(row.precision), r.ticks, r.contact_ticks, r.transitions,
-            count_of(r, Fault::cycle), v.met_again, count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound), r.bounds_allowed,
-            v.most_carried, v.worst_growth_eps,
-            count_of(r, Fault::growth), count_of(r, Fault::push_through), count_of(r, Fault::unseen),
-            count_of(r, Fault::thin_air), v.shallow, count_of(r, Fault::not_a_number), v.worst_off_surface_eps,
-            count_of(r, Fault::off_surface), count_of(r, Fault::pull), v.worst_pull_eps, count_of(r, Fault::restless),
-            v.worst_restless_eps, v.worst_inside_eps, r.disagreements, hexadecimal(r.hash), seconds);
+            count_of(r, Fault::cycle), v.met_again, count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound),
+            r.bounds_allowed, v.most_carried, v.worst_growth_eps, count_of(r, Fault::growth), count_of(r, Fault::push_through),
+            count_of(r, Fault::unseen), count_of(r, Fault::thin_air), v.shallow, count_of(r, Fault::not_a_number),
+            v.worst_off_surface_eps, count_of(r, Fault::off_surface), count_of(r, Fault::pull), v.worst_pull_eps,
+            count_of(r, Fault::restless), v.worst_restless_eps, v.worst_inside_eps, r.disagreements, hexadecimal(r.hash),
+            seconds);
 }
 
 int judge_whole(const BlockResult& r, const std::string& folder) {
@@ -226,7 +226,8 @@ int judge_whole(const BlockResult& r, const std::string& folder) {
     bars.at_most(bar, static_cast<double>(measured), 0, "ticks", note);
   };
   none("cycles", count_of(r, Fault::cycle), std::to_string(r.verdicts.met_again) + " rests where a feature was met again");
-  none("bound hits outside the stated cases", count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound) - r.bounds_allowed);
+  none("bound hits outside the stated cases",
+       count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound) - r.bounds_allowed);
   bars.at_most("growth of |GO - HIP| within a step", r.verdicts.worst_growth_eps, kMostGrowth_eps, "eps of the scale");
   none("push-through: free while inside", count_of(r, Fault::push_through),
        std::to_string(r.verdicts.shallow) + " more by less than " + std::to_string(static_cast<int>(kShallow_eps)) + " eps");
@@ -251,10 +252,34 @@ int run(const Options& options, const std::string& program) {
   std::filesystem::create_directories(options.output);
   Findings findings(options.output, program);
   Table table(options.output, "stress_cases",
-              {"case", "target", "precision", "steps", "contact_steps", "transitions", "cycles", "met_again", "bound_hits",
-               "bound_hits_allowed", "most_carried", "growth_worst_eps", "growths", "push_through", "unseen", "thin_air", "shallow", "nan",
-               "off_surface_worst_eps", "off_surface", "pulls", "pull_worst_eps", "restless", "restless_worst_eps",
-               "inside_worst_eps", "disagreements", "hash", "seconds"});
+              {"case",
+               "target",
+               "precision",
+               "steps",
+               "contact_steps",
+               "transitions",
+               "cycles",
+               "met_again",
+               "bound_hits",
+               "bound_hits_allowed",
+               "most_carried",
+               "growth_worst_eps",
+               "growths",
+               "push_through",
+               "unseen",
+               "thin_air",
+               "shallow",
+               "nan",
+               "off_surface_worst_eps",
+               "off_surface",
+               "pulls",
+               "pull_worst_eps",
+               "restless",
+               "restless_worst_eps",
+               "inside_worst_eps",
+               "disagreements",
+               "hash",
+               "seconds"});
   const std::vector<Row> rows = rows_of(options);
   if (rows.empty()) {
     std::fprintf(stderr, "%s: no case is called %s; --list shows them\n", program.c_str(), options.only.c_str());

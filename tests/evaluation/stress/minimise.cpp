@@ -16,7 +16,7 @@ namespace fdcg::test {
 namespace {
 
 constexpr int kMostRounds = 4;
-constexpr int kMostTrials = 20'000;                        // compilations in all
+constexpr int kMostTrials = 20'000;                       // compilations in all
 constexpr int kShortBits[] = {3, 6, 10, 16, 24, 32, 40};  // of a coordinate
 
 using Faces = std::vector<Polygon>;
@@ -237,7 +237,8 @@ std::string test_case_text(const Reproducer& r, const std::string& name) {
     text << (&h == r.path_m.data() ? "{" : ", {") << text_of("%a", h[0]) << ", " << text_of("%a", h[1]) << ", "
          << text_of("%a", h[2]) << "}";
   }
-  text << "};\n  r.fault = *fault_named(\"" << name_of(r.fault) << "\");\n  CHECK(first_fault(Specimen(r.body), r) == -1);\n}\n";
+  text << "};\n  r.fault = *fault_named(\"" << name_of(r.fault)
+       << "\");\n  CHECK(first_fault(Specimen(r.body), r) == -1);\n}\n";
   return text.str();
 }
 

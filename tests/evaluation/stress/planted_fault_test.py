@@ -19,9 +19,9 @@ FLAGS = ["-std=c++20", "-O2", "-w", "-ffp-contract=off", "-fno-math-errno", "-fn
 MUTANTS = [
     ("aimed", "f64", "push-through", "a face that is left without a seat seats the god-object first", "face.hpp",
      "return go_to(leave_face(walk, node));", "return go_to(kFree);", 16, 8),
-    ("tremor", "f64", "off-surface", "a god-object that crosses a side is placed on it", "face.hpp",
-     "return go_to(place_on_edge(walk, node.connection(side), line, line.parameter(point)));",
-     "walk.god_object = point + node.normal() * Real(1e-9); return go_to({FDCG_EDGE, node.connection(side)});", 4, 6),
+    ("open-boundaries", "f64", "off-surface", "a way that grazes a face ends over it", "sweep.hpp",
+     "const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;",
+     "const Real over = first.fraction + (is_on_face ? Real(0.01) : Real(0));", 4, 6),
 ]
 
 

@@ -36,7 +36,8 @@ void read_remark(std::istringstream& line, Reproducer& r) {
   if (key == "command") r.command = value;
   if (key == "body") r.body.description = value;
   if (key == "precision") r.body.options.precision = value == "f32" ? bake::Precision::f32 : bake::Precision::f64;
-  if (key == "flat") r.body.options.coplanar.kind = value == "quantum" ? bake::Coplanar::Kind::quantum : bake::Coplanar::Kind::exact;
+  if (key == "flat")
+    r.body.options.coplanar.kind = value == "quantum" ? bake::Coplanar::Kind::quantum : bake::Coplanar::Kind::exact;
   if (key == "merge") r.body.options.merge = value == "1";
   if (key == "planes") r.body.options.store_planes = value == "stored";
   if (key == "closed") r.body.is_closed = value == "1";
@@ -62,8 +63,8 @@ std::string described(const fdcg_contact& c, const fdcg_result& out, std::uint32
   text.precision(17);
   text << kStates[c.state] << ' ' << static_cast<std::int32_t>(c.feature) << (out.slipping ? " slips" : " sticks") << ", seat "
        << kStates[c.seat_state] << ' ' << static_cast<std::int32_t>(c.seat_feature) << ", transitions " << out.transitions
-       << ", flags " << out.flags << ", HIP " << c.hip[0] << ' ' << c.hip[1] << ' ' << c.hip[2] << ", GO " << c.god_object[0] << ' '
-       << c.god_object[1] << ' ' << c.god_object[2] << " (local)";
+       << ", flags " << out.flags << ", HIP " << c.hip[0] << ' ' << c.hip[1] << ' ' << c.hip[2] << ", GO " << c.god_object[0]
+       << ' ' << c.god_object[1] << ' ' << c.god_object[2] << " (local)";
   for (std::size_t i = 0; i < kFaults; ++i) {
     if ((faults >> i & 1) != 0) text << "; " << name_of(static_cast<Fault>(i));
   }

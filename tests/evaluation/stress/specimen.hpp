@@ -17,7 +17,7 @@ namespace fdcg::test {
 struct Body {
   bake::PolygonSoup soup;  // source units
   bake::CompileOptions options;
-  bool is_closed = true;              // and free of self-intersection: the inside is known
+  bool is_closed = true;             // and free of self-intersection: the inside is known
   std::vector<std::uint32_t> focus;  // points of the soup at which hands like to be; may be empty
   std::string description;
 };

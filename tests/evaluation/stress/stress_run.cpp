@@ -58,8 +58,8 @@ class Block {
     path_.clear();
     judge_.begin();
     for (std::uint32_t i = 0; i < ticks && result_.ticks < kBlockTicks; ++i) {
-      const Hip hip = hand_.next({contact_.god_object[0], contact_.god_object[1], contact_.god_object[2]},
-                                 contact_.state == FDCG_FREE);
+      const Hip hip =
+          hand_.next({contact_.god_object[0], contact_.god_object[1], contact_.god_object[2]}, contact_.state == FDCG_FREE);
       tick(hip);
       if (random_.chance(kHoldAgain) && result_.ticks < kBlockTicks) tick(hip);
     }
