@@ -75,6 +75,37 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& frictio
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
+// The side that holds a point of the rim, from one whose plane holds it. Sides in one line have one plane but for rounding, and
+// beyond the end of one the point is on the next.
+template <class Real>
+[[gnu::noinline]] uint32_t side_along(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
+  EdgeLine<Real> line(walk.graph, node, side);
+  Real u = line.parameter(point);
+  for (uint32_t i = 0; i < node.side_count() && (u < 0 || u > line.length); ++i) {
+    walk.spend(kSideWork);
+    const bool is_ahead = (u > 0) == (node.which(side) == 0);  // in winding order
+    const uint32_t neighbour = is_ahead ? node.next(side) : node.previous(side);
+    line = EdgeLine<Real>(walk.graph, node, neighbour);
+    u = line.parameter(point);
+    const bool begins_here = is_ahead == (node.which(neighbour) == 0);
+    if (!((begins_here ? u : line.length - u) > line.end_tolerance)) break;
+    side = neighbour;
+  }
+  return side;
+}
+
+// Seats the god-object on the rim at `point`, which the plane of this side holds.
+template <class Real>
+inline Feature place_on_rim(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
+  const EdgeLine<Real> line(walk.graph, node, side);
+  const Feature landed = place_on_edge(walk, node.connection(side), line, line.parameter(point));
+  if (landed.state != FDCG_VERTEX) return landed;
+  const uint32_t holds = side_along(walk, node, side, point);
+  if (holds == side) return landed;
+  const EdgeLine<Real> other(walk.graph, node, holds);
+  return place_on_edge(walk, node.connection(holds), other, other.parameter(point));
+}
+
 // The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
 template <class Real>
 inline uint32_t side_under(const Walk<Real>& walk, NodeRef<Real> node) {
@@ -92,8 +123,7 @@ inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
   if (!(walk.seat == kFree)) return walk.seat;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) return kFree;
-  const EdgeLine<Real> line(walk.graph, node, side);
-  return place_on_edge(walk, node.connection(side), line, line.parameter(walk.god_object));
+  return place_on_rim(walk, node, side, walk.god_object);
 }
 
 // Places the god-object where the move says. Returns what comes next.
@@ -106,10 +136,9 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
-  const EdgeLine<Real> line(walk.graph, node, side);
   const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.lost;
   const Vec3<Real> ahead = walk.lost + way * move.crossing.fraction;  // from `from` to the crossing
-  const Feature landed = place_on_edge(walk, node.connection(side), line, line.parameter(from + ahead));
+  const Feature landed = place_on_rim(walk, node, side, from + ahead);
   if (landed.state == FDCG_EDGE) walk.lost = (from - walk.god_object) + ahead;
   return go_to(landed);
 }

@@ -201,7 +201,8 @@ class Sweep {
   }
 
   // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie
-  // off its plane is a slab: a way that begins within it still begins in front.
+  // off its plane is a slab: a way that begins within it still begins in front. So is every node of a graph that has such ones:
+  // where one of them lets a way go, its neighbours' exact planes may lie in front of where that begins.
   [[gnu::noinline]] void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
     const NodeRef<Real> node = graph_.node(n);
@@ -209,15 +210,15 @@ class Sweep {
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
-    const bool is_inexact = node.is_inexact();
-    if (start_side < (is_inexact ? -slab_ : Real(0))) return;
+    const bool is_slab = graph_.header->max_deviation > 0;
+    if (start_side < (is_slab ? -slab_ : Real(0))) return;
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
-    const Real noise = from_bound_ + to_bound_ + (is_inexact ? slab_ : Real(0));
+    const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
     const bool is_grazing = noise > kGrazing * fall;
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
-    if (!passes_inside(node, &met_exactly)) return;
+    if (!passes_inside(node, rounded, &met_exactly)) return;
     const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
     if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
@@ -266,27 +267,40 @@ class Sweep {
   // A bit for a side; the last one for all beyond.
   static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
-  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, uint64_t* met_exactly) const {
+  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, Real fraction, uint64_t* met_exactly) const {
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      if (sure_orientation(start, end) > 0) return false;
+      if (sure_orientation(start, end) > 0 && !is_held_out(node, k, fraction)) return false;
       start = end;
     }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
       const int sign = orientation(start, end);
-      if (sign > 0) return false;
+      if (sign > 0 && !is_held_out(node, k, fraction)) return false;
       if (sign == 0) *met_exactly |= bit_of(k);
       start = end;
     }
     return true;
   }
 
-  // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it.
+  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, cannot pass there:
+  // beyond the side stands a wall, in front of which the way stays. Of a wall whose corners lie off its plane the two may
+  // differ, and a way along a groove would pass between.
+  [[nodiscard]] bool is_held_out(NodeRef<Real> node, uint32_t k, Real fraction) const {
+    if (!(graph_.header->max_deviation > 0) || node.across(k) == FDCG_NONE) return false;
+    const NodeRef<Real> wall = graph_.node(node.across(k));
+    if (!wall.is_inexact() || graph_.connection(node.connection(k)).type() != FDCG_CONCAVE) return false;
+    spend(work_left_, kNodeWork);
+    return wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0 &&
+           node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
+  }
+
+  // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
+  // the face's own plane meets all sides, and the point may be beside most of them.
   Feature on_rim(NodeRef<Real> node, uint64_t met_exactly, Vec3<Real> point) const {
     Feature nearest = kFree;
-    Real nearest_outside = 0;
+    Real nearest2 = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if ((met_exactly & bit_of(k)) == 0) continue;
       if (k >= kLastBit &&
@@ -294,10 +308,11 @@ class Sweep {
         continue;
       const EdgeLine<Real> line(graph_, node, k);
       const Real u = line.parameter(point);
-      const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));
-      if (nearest == kFree || outside < nearest_outside) {
+      const Vec3<Real> off = point - (line.start + line.direction * (u < 0 ? Real(0) : u > line.length ? line.length : u));
+      const Real off2 = dot(off, off);
+      if (nearest == kFree || off2 < nearest2) {
         nearest = {FDCG_EDGE, node.connection(k)};
-        nearest_outside = outside;
+        nearest2 = off2;
       }
     }
     return nearest;
