@@ -27,7 +27,7 @@ template <class Real>
     if (!(s1 >= 0)) continue;
     const Real s0 = plane.distance(from);
     if (!(s1 > s0)) continue;
-    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + absolute(plane.offset));
+    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());  // an offset may have cancelled to 0
     const Real fraction = s1 <= rounding ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
     if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
   }

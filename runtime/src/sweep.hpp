@@ -401,6 +401,8 @@ template <class Real>
   const Vec3<Real> way = to - from;
   const Real length = norm(way);
   if (!(length > 0)) return from;
+  const Real nearer = norm1(to) < norm1(from) ? norm1(to) : norm1(from);  // all places on the way are as coarse, or coarser
+  if (8 * RealLimits<Real>::kEpsilon * nearer > extent) return to;
   const Vec3<Real> along = way * (1 / length);
   const bool is_from_end = norm1(to) < norm1(from);                          // from the nearer end, where numbers are finer
   const Real past = dot(is_from_end ? to : from, along) + kBefore * extent;  // how far that end is past the cut
