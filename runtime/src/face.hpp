@@ -75,35 +75,32 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& frictio
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
-// The side that holds a point of the rim, from one whose plane holds it. Sides in one line have one plane but for rounding, and
-// beyond the end of one the point is on the next.
+// A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.
 template <class Real>
-[[gnu::noinline]] uint32_t side_along(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
+inline bool is_far(const GraphView<Real>& graph, Vec3<Real> hip) {
+  constexpr Real kNear = 16;  // extents
+  return norm1(hip) > kNear * Real(graph.header->extent);
+}
+
+// Seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have one plane but for
+// rounding: beyond the end of one the point is on the next.
+template <class Real>
+[[gnu::noinline]] Feature place_on_rim(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
   for (uint32_t i = 0; i < node.side_count() && (u < 0 || u > line.length); ++i) {
     walk.spend(kSideWork);
     const bool is_ahead = (u > 0) == (node.which(side) == 0);  // in winding order
     const uint32_t neighbour = is_ahead ? node.next(side) : node.previous(side);
-    line = EdgeLine<Real>(walk.graph, node, neighbour);
-    u = line.parameter(point);
+    const EdgeLine<Real> next(walk.graph, node, neighbour);
+    const Real v = next.parameter(point);
     const bool begins_here = is_ahead == (node.which(neighbour) == 0);
-    if (!((begins_here ? u : line.length - u) > line.end_tolerance)) break;
+    if (!((begins_here ? v : next.length - v) > next.end_tolerance)) break;
     side = neighbour;
+    line = next;
+    u = v;
   }
-  return side;
-}
-
-// Seats the god-object on the rim at `point`, which the plane of this side holds.
-template <class Real>
-inline Feature place_on_rim(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
-  const EdgeLine<Real> line(walk.graph, node, side);
-  const Feature landed = place_on_edge(walk, node.connection(side), line, line.parameter(point));
-  if (landed.state != FDCG_VERTEX) return landed;
-  const uint32_t holds = side_along(walk, node, side, point);
-  if (holds == side) return landed;
-  const EdgeLine<Real> other(walk.graph, node, holds);
-  return place_on_edge(walk, node.connection(holds), other, other.parameter(point));
+  return place_on_edge(walk, node.connection(side), line, u);
 }
 
 // The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
@@ -132,7 +129,11 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   using Kind = typename FaceMove<Real>::Kind;
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   if (move.kind == Kind::leaves) return go_to(leave_face(walk, node));
-  if (move.kind == Kind::slides) walk.place(move.target, kFree);
+  if (move.kind == Kind::slides) {
+    constexpr Real kMostOff = Real(1) / 1024;  // extents; beyond, the numbers cannot tell where the target is: no move
+    const Real off = is_far(walk.graph, walk.hip) ? node.plane().distance(move.target) : Real(0);
+    if (absolute(off) <= kMostOff * node.extent()) walk.place(move.target - node.normal() * off, kFree);
+  }
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
