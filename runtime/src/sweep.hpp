@@ -288,11 +288,10 @@ class Sweep {
   // beyond the side stands a wall, in front of which the way stays. Of a wall whose corners lie off its plane the two may
   // differ, and a way along a groove would pass between.
   [[nodiscard]] bool is_held_out(NodeRef<Real> node, uint32_t k, Real fraction) const {
-    if (!(graph_.header->max_deviation > 0) || node.across(k) == FDCG_NONE) return false;
-    const NodeRef<Real> wall = graph_.node(node.across(k));
-    if (!wall.is_inexact() || graph_.connection(node.connection(k)).type() != FDCG_CONCAVE) return false;
+    if (!(graph_.header->max_deviation > 0) || graph_.connection(node.connection(k)).type() != FDCG_CONCAVE) return false;
     spend(work_left_, kNodeWork);
-    return wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0 &&
+    const NodeRef<Real> wall = graph_.node(node.across(k));
+    return wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0 &&
            node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
   }
 
