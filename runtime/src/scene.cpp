@@ -107,11 +107,11 @@ bool is_same(const fdcg_pose& a, const fdcg_pose& b) {
          a.translation_m[2] == b.translation_m[2] && a.scale == b.scale;
 }
 
-// The first record that is not in use; null, with the reason, if there is none.
+// The first record that is not in use, from *first_free on, which moves up to it; null, with the reason, if there is none.
 template <class Record>
-Record* unused(Record* records, uint32_t capacity, const char* full, fdcg_error* error) {
-  for (uint32_t i = 0; i < capacity; ++i) {
-    if (records[i].is_used == 0) return records + i;
+Record* unused(Record* records, uint32_t* first_free, uint32_t capacity, const char* full, fdcg_error* error) {
+  for (; *first_free < capacity; ++*first_free) {
+    if (records[*first_free].is_used == 0) return records + *first_free;
   }
   Message(error, FDCG_E_ARGUMENT).text(full).text(" is ").number(capacity).text(", and as many are in the scene");
   return nullptr;
@@ -208,7 +208,8 @@ extern "C" fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph
   fdcg_pose checked;
   if (status == FDCG_OK) status = checked_pose(pose, &checked, error);
   if (status != FDCG_OK) return status;
-  Object* const added = unused(scene->objects(), scene->config.object_capacity, "config.object_capacity", error);
+  Object* const added =
+      unused(scene->objects(), &scene->first_free_object, scene->config.object_capacity, "config.object_capacity", error);
   if (added == nullptr) return FDCG_E_ARGUMENT;
   added->graph = graph;
   fdcg_params room;
@@ -228,6 +229,7 @@ extern "C" fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_i
   Object* const object = find(scene, id, error);
   if (object == nullptr) return FDCG_E_ARGUMENT;
   object->is_used = 0;
+  if (id.index < scene->first_free_object) scene->first_free_object = id.index;
   put_in_place(scene, object);
   return FDCG_OK;
 }
@@ -266,7 +268,8 @@ extern "C" fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_i
 extern "C" fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip_world_m[3], fdcg_finger_id* finger,
                                              fdcg_error* error) {
   if (hip_world_m == nullptr || finger == nullptr) return refuse(error, "hip_world_m or finger: null pointer");
-  Finger* const added = unused(scene->fingers(), scene->config.finger_capacity, "config.finger_capacity", error);
+  Finger* const added =
+      unused(scene->fingers(), &scene->first_free_finger, scene->config.finger_capacity, "config.finger_capacity", error);
   if (added == nullptr) return FDCG_E_ARGUMENT;
   const uint32_t generation = added->generation + 1;
   *added = {};
@@ -283,6 +286,7 @@ extern "C" fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_i
   Finger* const finger = find_finger(scene, id, error);
   if (finger == nullptr) return FDCG_E_ARGUMENT;
   finger->is_used = 0;
+  if (id.index < scene->first_free_finger) scene->first_free_finger = id.index;
   return FDCG_OK;
 }
 

@@ -61,6 +61,7 @@ struct fdcg_scene {
   fdcg_scene_config config;
   uint64_t objects_at, scan_at, changing_at, fingers_at, slots_at, contacts_at, touches_at;  // offsets
   uint32_t object_end, finger_end;                                                           // indices in use lie below
+  uint32_t first_free_object, first_free_finger;  // no index below is free
   uint32_t changing_count;
   uint32_t tick;
   uint32_t look;  // changes when objects come, go or change their size: then every finger looks anew

@@ -265,6 +265,28 @@ TEST_CASE("names of what was removed are not found again") {
   CHECK(fdcg_scene_step_finger(rig.scene.get(), {0, 0}, nullptr) == FDCG_E_ARGUMENT);
 }
 
+TEST_CASE("what is added takes the lowest free place") {
+  fdcg_scene_config config = fdcg_default_scene_config();
+  config.finger_capacity = 4;
+  Rig rig(config);
+  fdcg_scene* const scene = rig.scene.get();
+  fdcg_error error = {};
+  fdcg_finger_id fingers[4], again;
+  const double hip[3] = {0, 0, 3};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    REQUIRE(fdcg_scene_add_finger(scene, hip, &fingers[i], &error) == FDCG_OK);
+    CHECK(fingers[i].index == i);
+  }
+  CHECK(fdcg_scene_add_finger(scene, hip, &again, &error) == FDCG_E_ARGUMENT);
+  for (const std::uint32_t i : {2u, 1u, 3u})
+    REQUIRE(fdcg_scene_remove_finger(scene, fingers[i], &error) == FDCG_OK);
+  for (const std::uint32_t i : {1u, 2u, 3u}) {
+    REQUIRE(fdcg_scene_add_finger(scene, hip, &again, &error) == FDCG_OK);
+    CHECK(again.index == i);
+  }
+  CHECK(fdcg_scene_add_finger(scene, hip, &again, &error) == FDCG_E_ARGUMENT);
+}
+
 TEST_CASE("a bad pose is refused with its reason, and the old one stays") {
   Rig rig;
   const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});

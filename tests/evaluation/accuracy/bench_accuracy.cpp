@@ -315,12 +315,20 @@ void write_errors(const std::string& folder, const Plan& plan, std::vector<Accur
   }
 }
 
+// Where faces were merged that are flat only within the input's quantum, the file says how far corners are off the planes, and
+// exactness ends there: such a run's errors are held against that.
+bool has_deviation(const AccuracyOutcome& outcome) {
+  return outcome.deviation_ulps > kMaxBar_ulps;
+}
+
 // Shares of errors between two powers of two: `from_ulps` to twice that; the first row of each kind holds all that is less.
+// Faces that are flat only within the input's quantum are left out, here and below: they are not held to roundings.
 void write_histogram(const std::string& folder, const Plan& plan, const std::vector<AccuracyOutcome>& outcomes) {
   constexpr int kLeast = -6, kMost = 16;  // powers of two
   std::map<std::tuple<std::string, std::string>, std::vector<std::uint64_t>> counts;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const AccuracySetting& s = plan.settings[i];
+    if (has_deviation(outcomes[i])) continue;
     auto& bins = counts[{name_of(s.precision), name_of(s.judge)}];
     bins.resize(kMost - kLeast + 1);
     for (const float ulps : outcomes[i].one_step_ulps)
@@ -340,6 +348,7 @@ void write_conditioning(const std::string& folder, const Plan& plan, const std::
   std::size_t rows = 0;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const AccuracySetting& s = plan.settings[i];
+    if (has_deviation(outcomes[i])) continue;
     for (const auto& [error, conditioning] : outcomes[i].error_and_conditioning) {
       if (rows++ < kMostRows)
         table.row(s.body, name_of(s.precision), s.way, name_of(s.judge), static_cast<double>(error),
@@ -420,12 +429,6 @@ void explain(const Plan& plan, std::vector<AccuracyOutcome>& outcomes, const std
                 name_of(s.judge), outcomes[i].deviation_ulps, is_large ? outcomes[i].worst.c_str() : "");
     if (!outcomes[i].first_unexplained.empty()) std::printf("  unexplained tie: %s\n", outcomes[i].first_unexplained.c_str());
   }
-}
-
-// Where faces were merged that are flat only within the input's quantum, the file says how far corners are off the planes, and
-// exactness ends there: such a run's errors are held against that.
-bool has_deviation(const AccuracyOutcome& outcome) {
-  return outcome.deviation_ulps > kMaxBar_ulps;
 }
 
 void add(Total& total, const AccuracySetting& s, const AccuracyOutcome& o) {

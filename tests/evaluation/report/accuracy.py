@@ -57,6 +57,13 @@ def conditioning(run):
         rows = [r for r in table.where(precision=precision).rows if r["error_ulps"] > 0 and r["conditioning"] > 0]
         ax.scatter([r["conditioning"] for r in rows], [r["error_ulps"] for r in rows], s=7, alpha=.6, linewidths=0,
                    color=COLOURS[index], label=precision)
+    found = run.table("god_object_search")
+    for index, precision in enumerate(found.values("precision") if found is not None else []):
+        rows = [r for r in found.where(precision=precision).rows if r["error_ulps"] > 0 and r["conditioning"] > 0]
+        ax.scatter([r["conditioning"] for r in rows], [r["error_ulps"] for r in rows], s=30, marker="x", linewidths=1,
+                   color=COLOURS[index + 2], label=f"{precision}, found by search")
+    most = max(ax.get_xlim()[1], ax.get_ylim()[1])
+    ax.plot([1, most], [1, most], ":", color="#666", label="error = conditioning")
     ax.axhline(64, color="#000", linewidth=.8)
     ax.set(xscale="log", yscale="log", xlabel="how far the exact answer itself moves for inputs half an ulp off, ulps",
            ylabel="error, ulps", title="The largest errors beside the problem's own conditioning")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run time against error: the contenders on the same bodies and ways."""
 import page
-from figure import COLOURS, finish, subplots
+from figure import COLOURS, finish, legend, style, subplots
 
 IDENTITY = "contenders"
 TITLE = "Run time against error"
@@ -15,6 +15,7 @@ LEAST_M = 1e-20  # where an error of exactly 0 is drawn
 
 
 def content(run):
+    yield from overview(run)
     yield from pareto(run)
     yield from verdicts(run)
     yield from faults(run)
@@ -23,6 +24,40 @@ def content(run):
 
 def colour(row):
     return COLOURS[list(FAMILIES).index(row["family"])] if row["family"] in FAMILIES else COLOURS[-1]
+
+
+CHOSEN = ["fdcg_f64_stored", "fdcg_f32_stored", "paper", "ray_proxy", "embree_closest", "cgal_closest", "grid_64"]
+
+
+def overview(run):
+    """One body's frontier, the largest that all contenders have, and time over the number of faces."""
+    frontier, table = run.table("pareto"), run.table("contenders")
+    if frontier is None or table is None:
+        return
+    body = max(frontier.rows, key=lambda r: (r["faces"], r["group"] == "star"))["body"]
+    figure, axes = subplots(2, width=5, height=4)
+    ax = axes[0][0]
+    rows = {r["contender"]: r for r in frontier.where(body=body).rows}
+    for index, contender in enumerate(c for c in CHOSEN if c in rows):
+        r = rows[contender]
+        ax.scatter(max(r["god_object_rms_m"], LEAST_M), r["mean_ns"], s=60, zorder=3, label=contender, **style(index))
+    ax.set(xscale="log", yscale="log", xlabel="god-object error, RMS, m", ylabel="ns a step, mean",
+           title=f"{body}: {frontier.where(body=body).rows[0]['faces']:,} faces, 0.1 m")
+    ax = axes[0][1]
+    for index, contender in enumerate(CHOSEN):
+        line = [r for r in table.where(contender=contender, way="hand", mu_static=0, rate_hz=1000).sorted_by("faces").rows
+                if r["group"] in ("sphere", "star")]
+        faces = sorted({r["faces"] for r in line})
+        means = [min(r["mean_ns"] for r in line if r["faces"] == f) for f in faces]
+        if faces:
+            ax.plot(faces, means, label=contender, **style(index))
+    ax.set(xscale="log", yscale="log", xlabel="faces", ylabel="ns a step, mean", title="A hand's step over mesh size")
+    for ax in axes[0]:
+        legend(ax, 3)
+    yield finish("overview", figure,
+                 "Left: time of a step against the god-object's error on the largest body; right: time over the number of faces. "
+                 "fdcg is nearest to the truth and faster than all but the distance grid",
+                 "A hand presses, slides and lifts at 1 kHz without friction; spheres and rough stars, the faster of each size.")
 
 
 def pareto(run):

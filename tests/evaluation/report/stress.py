@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The stress cases of the contact model, and what the judges found."""
 import page
+from figure import COLOURS, finish, legend, subplots
 
 IDENTITY = "stress"
 TITLE = "Numerical stability under stress"
@@ -25,8 +26,27 @@ def content(run):
            f"{sum(table.column('transitions')):,} changes of state. Found: " +
            ", ".join(f"{page.escape(c)} {n:,}" for c, n in found.items()) +
            f"; bound hits outside the stated cases {unbounded:,}.</p>")
+    yield margins(table)
     columns = ["case", "precision", "steps", "contact_steps", "transitions", "bound_hits", "growth_worst_eps",
                "off_surface_worst_eps", *counts]
     yield page.table([c for c in columns if c in table.columns], table.rows)
     targets = list({r["case"]: r for r in table.rows}.values())
     yield "<h3>What each case is held to</h3>" + page.table(["case", "target"], targets)
+
+
+def margins(table):
+    """How near each case comes to the judges' limits."""
+    figure, axes = subplots(2, width=5, height=.2 * len(table.values("case")) + 1.2)
+    cases = table.values("case")
+    for ax, (column, limit, title) in zip(axes[0], [("growth_worst_eps", 16, "Growth of |GO - HIP| within a step"),
+                                                    ("off_surface_worst_eps", 64, "God-object off its feature")]):
+        for index, precision in enumerate(table.values("precision")):
+            worst = {r["case"]: r[column] for r in table.where(precision=precision).rows}
+            ax.plot([max(worst.get(c, 0), 1e-2) for c in cases], range(len(cases)), "os"[index % 2], color=COLOURS[index], label=precision)
+        ax.axvline(limit, color="#000", linewidth=.8, label="limit")
+        ax.set(xscale="log", xlabel="eps of the scale, the worst of all steps", title=title)
+        ax.set_yticks(range(len(cases)), cases if ax is axes[0][0] else [], fontsize=7)
+        ax.invert_yaxis()
+    legend(axes[0][0])
+    return finish("stress_margins", figure, "The worst growth and the worst distance off the surface in each stress case, beside their limits",
+                  "The scale is the larger of the object's extent and the HIP's coordinates.")

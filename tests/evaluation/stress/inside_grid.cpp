@@ -28,7 +28,9 @@ Meeting meeting(const Triangle& t, const Hip& from, const Hip& to) {
   }
   const int at_start = exact_sign(a, b, c, from), at_end = exact_sign(a, b, c, to);
   if (at_start * at_end > 0) return Meeting::apart;
-  const int e0 = exact_sign(from, to, a, b), e1 = exact_sign(from, to, b, c), e2 = exact_sign(from, to, c, a);
+  const int e0 = exact_sign(from, to, a, b), e1 = exact_sign(from, to, b, c);
+  if (e0 * e1 < 0) return Meeting::apart;
+  const int e2 = exact_sign(from, to, c, a);
   if (std::max({e0, e1, e2}) > 0 && std::min({e0, e1, e2}) < 0) return Meeting::apart;
   return at_start * at_end < 0 && e0 * e1 * e2 != 0 ? Meeting::proper : Meeting::touching;
 }
