@@ -65,7 +65,7 @@ class Sweep {
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Real> node = graph_.node(n);
     spend(work_left_, kSideWork * node.side_count());
-    const Real rounding = rim_rounding();
+    const Real rounding = (from_bound_ + to_bound_) / 4;
     Real begin = least, end = 1;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Plane<Real> plane = node.voronoi_plane(k);
@@ -86,9 +86,6 @@ class Sweep {
  private:
   static constexpr uint32_t kLastBit = 63;
   static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
-
-  // So far beyond a side may an end of the way be that is over the face.
-  [[nodiscard]] Real rim_rounding() const { return (from_bound_ + to_bound_) / 4; }
 
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
@@ -254,12 +251,12 @@ class Sweep {
     return false;
   }
 
-  // A slit may be narrower than the rounding of the god-object's place, which then is behind the other wall; and that must hold.
-  // Where the way crossed the wall is lost to the same rounding: it counts where the way begins over it.
+  // A slit may be narrower than the rounding of the god-object's place, which then is behind the other wall; and that must
+  // hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over it.
   [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Real> node) {
     if (!is_before_best(0, n) || !faces_what_was_left(node)) return;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (node.voronoi_plane(k).distance(from_) > rim_rounding()) return;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
+      if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
     }
     best_.fraction = 0;
     best_.node = n;
@@ -267,8 +264,8 @@ class Sweep {
   }
 
   // Whether the face or edge that the way leaves and the node look at each other, corner by corner: if the former lies in front
-  // of the node, then so did the god-object, whatever rounding made of its place; and to be met, the node must reach in front of
-  // those faces that the way does not enter.
+  // of the node, then so did the god-object, whatever rounding made of its place; and to be met, the node must reach in front
+  // of those faces that the way does not enter.
   [[nodiscard]] bool faces_what_was_left(NodeRef<Real> node) const {
     if (left_.state == FDCG_FACE) {
       const NodeRef<Real> face = graph_.node(left_.index);
@@ -286,8 +283,8 @@ class Sweep {
     }
     return true;
   }
-  // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it, though
-  // it may begin in its slab.
+  // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it,
+  // though it may begin in its slab.
   [[nodiscard, gnu::noinline]] bool left_lies_behind(NodeRef<Real> node) const {
     if (left_.state != FDCG_FACE && left_.state != FDCG_EDGE) return false;
     const bool is_edge = left_.state == FDCG_EDGE;
