@@ -254,10 +254,11 @@ class Sweep {
   // A slit may be narrower than the rounding of the god-object's place, which then is behind the other wall; and that must
   // hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over it.
   [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Real> node) {
-    if (!is_before_best(0, n) || !faces_what_was_left(node)) return;
+    if (left_ == kFree || !is_before_best(0, n)) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
       if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
     }
+    if (!faces_what_was_left(node)) return;
     best_.fraction = 0;
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
