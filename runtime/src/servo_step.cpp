@@ -35,6 +35,7 @@ class Trail {
       nearest2_ = now2;
       count_ = 0;
       has_come_nearer_ = true;
+      has_begun_again_ = false;
     }
     const uint64_t here = key(walk.active);
     for (int i = 0; i < count_; ++i) {
@@ -52,6 +53,17 @@ class Trail {
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
 
+  // Where the step would rest. The next tick knows nothing of Walk::lost: a rest must be one without it. So it is forgotten, and
+  // the way goes on as that tick would go; once for each time that the god-object came nearer.
+  bool begins_again(Walk<Real>& walk) {
+    if (has_begun_again_ || norm1(walk.lost) == 0) return false;
+    walk.lost = {0, 0, 0};
+    has_begun_again_ = true;
+    visited_[0] = key(walk.active);
+    count_ = 1;
+    return true;
+  }
+
  private:
   static constexpr int kCapacity = 32;  // without a move, a step climbs: vertex, edge, face are three
 
@@ -60,6 +72,7 @@ class Trail {
   Real nearest2_;
   int count_;
   bool has_come_nearer_ = false;
+  bool has_begun_again_ = false;
   uint64_t visited_[kCapacity];  // the first count_ are set
 };
 
@@ -99,6 +112,7 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
     if (decision.is_rest()) {
+      if (trail.begins_again(walk)) continue;
       space->carried->in_place = 0;
       return progress;
     }
@@ -112,7 +126,7 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
       if (walk.active == kFree) return progress;
       ++progress.transitions;
     }
-    if (trail.has_met_again(walk)) return progress;
+    if (trail.has_met_again(walk) && !trail.begins_again(walk)) return progress;
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
       progress.flags |= FDCG_RESULT_TRANSITION_BOUND;

@@ -211,7 +211,11 @@ class Sweep {
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
     const bool is_slab = graph_.header->max_deviation > 0;
-    if (start_side < (is_slab ? -slab_ : Real(0))) return;
+    if (start_side < (is_slab ? -slab_ : Real(0))) {
+      if (start_side >= -from_bound_) try_other_wall(n, node);
+      return;
+    }
+    if (start_side < 0 && left_lies_behind(node)) return;
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
     const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
     const bool is_grazing = noise > kGrazing * fall;
@@ -246,6 +250,72 @@ class Sweep {
       if (node.corner(k) == left_.index) return true;
     }
     return false;
+  }
+
+  // A slit may be narrower than the rounding of the god-object's place, which then is behind the other wall; and that must
+  // hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over it.
+  [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Real> node) {
+    if (left_ == kFree || !is_before_best(0, n)) return;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
+      if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
+    }
+    if (!faces_what_was_left(node)) return;
+    best_.fraction = 0;
+    best_.node = n;
+    best_.feature = {FDCG_FACE, n};
+  }
+
+  // Whether the face or edge that the way leaves and the node look at each other, corner by corner: if the former lies in front
+  // of the node, then so did the god-object, whatever rounding made of its place; and to be met, the node must reach in front
+  // of those faces that the way does not enter.
+  [[nodiscard]] bool faces_what_was_left(NodeRef<Real> node) const {
+    if (left_.state == FDCG_FACE) {
+      const NodeRef<Real> face = graph_.node(left_.index);
+      return reaches_before(face, node) && !reaches_behind(node, face);
+    }
+    if (left_.state != FDCG_EDGE) return false;  // a corner is where it is
+    const ConnectionRef<Real> connection = graph_.connection(left_.index);
+    for (uint32_t end = 0; end < 2; ++end) {
+      if (side_of_corner(node, connection.corner(end)) < 0) return false;
+    }
+    const uint32_t count = connection.type() == FDCG_BOUNDARY ? 1 : 2;
+    for (uint32_t k = 0; k < count; ++k) {
+      const NodeRef<Real> face = graph_.node(connection.node(k));
+      if (side(face, to_, to_bound_) >= 0 && !reaches_before(face, node)) return false;
+    }
+    return true;
+  }
+  // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it,
+  // though it may begin in its slab.
+  [[nodiscard, gnu::noinline]] bool left_lies_behind(NodeRef<Real> node) const {
+    if (left_.state != FDCG_FACE && left_.state != FDCG_EDGE) return false;
+    const bool is_edge = left_.state == FDCG_EDGE;
+    const NodeRef<Real> face = is_edge ? node : graph_.node(left_.index);
+    const uint32_t count = is_edge ? 2 : face.side_count();
+    bool is_behind = false;
+    for (uint32_t k = 0; k < count; ++k) {
+      const Real side = side_of_corner(node, is_edge ? graph_.connection(left_.index).corner(k) : face.corner(k));
+      if (side > slab_) return false;
+      is_behind = is_behind || side < -slab_;
+    }
+    return is_behind;
+  }
+  [[nodiscard]] bool reaches_before(NodeRef<Real> plane, NodeRef<Real> node) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (side_of_corner(plane, node.corner(k)) > 0) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] bool reaches_behind(NodeRef<Real> plane, NodeRef<Real> node) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (side_of_corner(plane, node.corner(k)) < 0) return true;
+    }
+    return false;
+  }
+  [[nodiscard, gnu::noinline]] Real side_of_corner(NodeRef<Real> plane, uint32_t corner) const {
+    const Vec3<Real> point = graph_.corner_point(corner);
+    spend(work_left_, kNodeWork);
+    return side(plane, point, plane_rounding_bound(graph_, point));
   }
 
   // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
@@ -328,12 +398,22 @@ class Sweep {
   FirstHit<Real> best_;
 };
 
+// A way that meets a merged face may begin behind its plane, within its slab: friction would hold the god-object there.
+template <class Real>
+inline Vec3<Real> onto_slab(const Walk<Real>& walk, Vec3<Real> point, uint32_t n) {
+  const NodeRef<Real> node = walk.graph.node(n);
+  if (!node.is_inexact()) return point;
+  const Real side = node.plane().distance(point);
+  return side < 0 ? point - node.normal() * side : point;
+}
+
 // Puts the contact where the way met something first, or at its end.
 template <class Real>
 inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
   const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;
-  const Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
+  Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
+  if (is_on_face) point = onto_slab(walk, point, first.feature.index);
   walk.active = first.feature;
   if (first.feature.state == FDCG_EDGE) {
     const EdgeLine<Real> line(walk.graph, first.feature.index);
