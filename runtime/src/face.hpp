@@ -27,7 +27,7 @@ template <class Real>
     if (!(s1 >= 0)) continue;
     const Real s0 = plane.distance(from);
     if (!(s1 > s0)) continue;
-    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + absolute(plane.offset));
+    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());  // an offset may have cancelled to 0
     const Real fraction = s1 <= rounding ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
     if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
   }
@@ -75,6 +75,34 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& frictio
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
+// A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.
+template <class Real>
+inline bool is_far(const GraphView<Real>& graph, Vec3<Real> hip) {
+  constexpr Real kNear = 16;  // extents
+  return norm1(hip) > kNear * Real(graph.header->extent);
+}
+
+// Seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have one plane but for
+// rounding: beyond the end of one the point is on the next.
+template <class Real>
+[[gnu::noinline]] Feature place_on_rim(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
+  EdgeLine<Real> line(walk.graph, node, side);
+  Real u = line.parameter(point);
+  for (uint32_t i = 0; i < node.side_count() && (u < 0 || u > line.length); ++i) {
+    walk.spend(kSideWork);
+    const bool is_ahead = (u > 0) == (node.which(side) == 0);  // in winding order
+    const uint32_t neighbour = is_ahead ? node.next(side) : node.previous(side);
+    const EdgeLine<Real> next(walk.graph, node, neighbour);
+    const Real v = next.parameter(point);
+    const bool begins_here = is_ahead == (node.which(neighbour) == 0);
+    if (!((begins_here ? v : next.length - v) > next.end_tolerance)) break;
+    side = neighbour;
+    line = next;
+    u = v;
+  }
+  return place_on_edge(walk, node.connection(side), line, u);
+}
+
 // The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
 template <class Real>
 inline uint32_t side_under(const Walk<Real>& walk, NodeRef<Real> node) {
@@ -92,8 +120,7 @@ inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
   if (!(walk.seat == kFree)) return walk.seat;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) return kFree;
-  const EdgeLine<Real> line(walk.graph, node, side);
-  return place_on_edge(walk, node.connection(side), line, line.parameter(walk.god_object));
+  return place_on_rim(walk, node, side, walk.god_object);
 }
 
 // Places the god-object where the move says. Returns what comes next.
@@ -102,14 +129,17 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   using Kind = typename FaceMove<Real>::Kind;
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   if (move.kind == Kind::leaves) return go_to(leave_face(walk, node));
-  if (move.kind == Kind::slides) walk.place(move.target, kFree);
+  if (move.kind == Kind::slides) {
+    constexpr Real kMostOff = Real(1) / 1024;  // extents; beyond, the numbers cannot tell where the target is: no move
+    const Real off = is_far(walk.graph, walk.hip) ? node.plane().distance(move.target) : Real(0);
+    if (absolute(off) <= kMostOff * node.extent()) walk.place(move.target - node.normal() * off, kFree);
+  }
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
-  const EdgeLine<Real> line(walk.graph, node, side);
   const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.lost;
   const Vec3<Real> ahead = walk.lost + way * move.crossing.fraction;  // from `from` to the crossing
-  const Feature landed = place_on_edge(walk, node.connection(side), line, line.parameter(from + ahead));
+  const Feature landed = place_on_rim(walk, node, side, from + ahead);
   if (landed.state == FDCG_EDGE) walk.lost = (from - walk.god_object) + ahead;
   return go_to(landed);
 }

@@ -52,6 +52,8 @@ class NodeRef {
   NodeRef(const GraphView<Real>& graph, const unsigned char* block) : graph_(&graph), block_(block) {}
 
   [[nodiscard]] uint32_t side_count() const { return record().side_count; }
+  // The graph's, which bounds the rounding of what is stored of a node.
+  [[nodiscard]] Real extent() const { return static_cast<Real>(graph_->header->extent); }
   // Its corners lie off its plane, by up to header.max_deviation.
   [[nodiscard]] bool is_inexact() const { return (record().flags & FDCG_NODE_INEXACT) != 0; }
   [[nodiscard]] uint16_t flags() const { return record().flags; }

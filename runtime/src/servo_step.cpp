@@ -35,6 +35,7 @@ class Trail {
       nearest2_ = now2;
       count_ = 0;
       has_come_nearer_ = true;
+      has_begun_again_ = false;
     }
     const uint64_t here = key(walk.active);
     for (int i = 0; i < count_; ++i) {
@@ -52,6 +53,17 @@ class Trail {
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
 
+  // Where the step would rest. The next tick knows nothing of Walk::lost: a rest must be one without it. So it is forgotten, and
+  // the way goes on as that tick would go; once for each time that the god-object came nearer.
+  bool begins_again(Walk<Real>& walk) {
+    if (has_begun_again_ || norm1(walk.lost) == 0) return false;
+    walk.lost = {0, 0, 0};
+    has_begun_again_ = true;
+    visited_[0] = key(walk.active);
+    count_ = 1;
+    return true;
+  }
+
  private:
   static constexpr int kCapacity = 32;  // without a move, a step climbs: vertex, edge, face are three
 
@@ -60,6 +72,7 @@ class Trail {
   Real nearest2_;
   int count_;
   bool has_come_nearer_ = false;
+  bool has_begun_again_ = false;
   uint64_t visited_[kCapacity];  // the first count_ are set
 };
 
@@ -99,6 +112,7 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
     if (decision.is_rest()) {
+      if (trail.begins_again(walk)) continue;
       space->carried->in_place = 0;
       return progress;
     }
@@ -112,7 +126,7 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
       if (walk.active == kFree) return progress;
       ++progress.transitions;
     }
-    if (trail.has_met_again(walk)) return progress;
+    if (trail.has_met_again(walk) && !trail.begins_again(walk)) return progress;
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
       progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
@@ -305,7 +319,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
       const NodeRef<Real> node = graph.node(contact->feature);
       move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
     }
-    if (is_on_face && (move.kind == Kind::rests || move.kind == Kind::slides)) {
+    if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
       contact->slipping = friction.is_slipping ? 1 : 0;
       contact->sweep.in_place = 0;

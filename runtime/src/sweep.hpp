@@ -201,7 +201,8 @@ class Sweep {
   }
 
   // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie
-  // off its plane is a slab: a way that begins within it still begins in front.
+  // off its plane is a slab: a way that begins within it still begins in front. So is every node of a graph that has such ones:
+  // where one of them lets a way go, its neighbours' exact planes may lie in front of where that begins.
   [[gnu::noinline]] void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
     const NodeRef<Real> node = graph_.node(n);
@@ -209,15 +210,19 @@ class Sweep {
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
-    const bool is_inexact = node.is_inexact();
-    if (start_side < (is_inexact ? -slab_ : Real(0))) return;
+    const bool is_slab = graph_.header->max_deviation > 0;
+    if (start_side < (is_slab ? -slab_ : Real(0))) {
+      if (start_side >= -from_bound_) try_other_wall(n, node);
+      return;
+    }
+    if (start_side < 0 && left_lies_behind(node)) return;
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
-    const Real noise = from_bound_ + to_bound_ + (is_inexact ? slab_ : Real(0));
+    const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
     const bool is_grazing = noise > kGrazing * fall;
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
-    if (!passes_inside(node, &met_exactly)) return;
+    if (!passes_inside(node, rounded, &met_exactly)) return;
     const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
     if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
@@ -247,6 +252,72 @@ class Sweep {
     return false;
   }
 
+  // A slit may be narrower than the rounding of the god-object's place, which then is behind the other wall; and that must
+  // hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over it.
+  [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Real> node) {
+    if (left_ == kFree || !is_before_best(0, n)) return;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
+      if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
+    }
+    if (!faces_what_was_left(node)) return;
+    best_.fraction = 0;
+    best_.node = n;
+    best_.feature = {FDCG_FACE, n};
+  }
+
+  // Whether the face or edge that the way leaves and the node look at each other, corner by corner: if the former lies in front
+  // of the node, then so did the god-object, whatever rounding made of its place; and to be met, the node must reach in front
+  // of those faces that the way does not enter.
+  [[nodiscard]] bool faces_what_was_left(NodeRef<Real> node) const {
+    if (left_.state == FDCG_FACE) {
+      const NodeRef<Real> face = graph_.node(left_.index);
+      return reaches_before(face, node) && !reaches_behind(node, face);
+    }
+    if (left_.state != FDCG_EDGE) return false;  // a corner is where it is
+    const ConnectionRef<Real> connection = graph_.connection(left_.index);
+    for (uint32_t end = 0; end < 2; ++end) {
+      if (side_of_corner(node, connection.corner(end)) < 0) return false;
+    }
+    const uint32_t count = connection.type() == FDCG_BOUNDARY ? 1 : 2;
+    for (uint32_t k = 0; k < count; ++k) {
+      const NodeRef<Real> face = graph_.node(connection.node(k));
+      if (side(face, to_, to_bound_) >= 0 && !reaches_before(face, node)) return false;
+    }
+    return true;
+  }
+  // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it,
+  // though it may begin in its slab.
+  [[nodiscard, gnu::noinline]] bool left_lies_behind(NodeRef<Real> node) const {
+    if (left_.state != FDCG_FACE && left_.state != FDCG_EDGE) return false;
+    const bool is_edge = left_.state == FDCG_EDGE;
+    const NodeRef<Real> face = is_edge ? node : graph_.node(left_.index);
+    const uint32_t count = is_edge ? 2 : face.side_count();
+    bool is_behind = false;
+    for (uint32_t k = 0; k < count; ++k) {
+      const Real side = side_of_corner(node, is_edge ? graph_.connection(left_.index).corner(k) : face.corner(k));
+      if (side > slab_) return false;
+      is_behind = is_behind || side < -slab_;
+    }
+    return is_behind;
+  }
+  [[nodiscard]] bool reaches_before(NodeRef<Real> plane, NodeRef<Real> node) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (side_of_corner(plane, node.corner(k)) > 0) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] bool reaches_behind(NodeRef<Real> plane, NodeRef<Real> node) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (side_of_corner(plane, node.corner(k)) < 0) return true;
+    }
+    return false;
+  }
+  [[nodiscard, gnu::noinline]] Real side_of_corner(NodeRef<Real> plane, uint32_t corner) const {
+    const Vec3<Real> point = graph_.corner_point(corner);
+    spend(work_left_, kNodeWork);
+    return side(plane, point, plane_rounding_bound(graph_, point));
+  }
+
   // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
   // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
   [[nodiscard]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
@@ -266,27 +337,39 @@ class Sweep {
   // A bit for a side; the last one for all beyond.
   static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
-  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, uint64_t* met_exactly) const {
+  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, Real fraction, uint64_t* met_exactly) const {
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      if (sure_orientation(start, end) > 0) return false;
+      if (sure_orientation(start, end) > 0 && !is_held_out(node, k, fraction)) return false;
       start = end;
     }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
       const int sign = orientation(start, end);
-      if (sign > 0) return false;
+      if (sign > 0 && !is_held_out(node, k, fraction)) return false;
       if (sign == 0) *met_exactly |= bit_of(k);
       start = end;
     }
     return true;
   }
 
-  // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it.
+  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, cannot pass there:
+  // beyond the side stands a wall, in front of which the way stays. Of a wall whose corners lie off its plane the two may
+  // differ, and a way along a groove would pass between.
+  [[nodiscard]] bool is_held_out(NodeRef<Real> node, uint32_t k, Real fraction) const {
+    if (!(graph_.header->max_deviation > 0) || graph_.connection(node.connection(k)).type() != FDCG_CONCAVE) return false;
+    spend(work_left_, kNodeWork);
+    const NodeRef<Real> wall = graph_.node(node.across(k));
+    return wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0 &&
+           node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
+  }
+
+  // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
+  // the face's own plane meets all sides, and the point may be beside most of them.
   Feature on_rim(NodeRef<Real> node, uint64_t met_exactly, Vec3<Real> point) const {
     Feature nearest = kFree;
-    Real nearest_outside = 0;
+    Real nearest2 = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if ((met_exactly & bit_of(k)) == 0) continue;
       if (k >= kLastBit &&
@@ -294,10 +377,11 @@ class Sweep {
         continue;
       const EdgeLine<Real> line(graph_, node, k);
       const Real u = line.parameter(point);
-      const Real outside = u < 0 ? -u : (u > line.length ? u - line.length : Real(0));
-      if (nearest == kFree || outside < nearest_outside) {
+      const Vec3<Real> off = point - (line.start + line.direction * (u < 0 ? Real(0) : u > line.length ? line.length : u));
+      const Real off2 = dot(off, off);
+      if (nearest == kFree || off2 < nearest2) {
         nearest = {FDCG_EDGE, node.connection(k)};
-        nearest_outside = outside;
+        nearest2 = off2;
       }
     }
     return nearest;
@@ -314,12 +398,22 @@ class Sweep {
   FirstHit<Real> best_;
 };
 
+// A way that meets a merged face may begin behind its plane, within its slab: friction would hold the god-object there.
+template <class Real>
+inline Vec3<Real> onto_slab(const Walk<Real>& walk, Vec3<Real> point, uint32_t n) {
+  const NodeRef<Real> node = walk.graph.node(n);
+  if (!node.is_inexact()) return point;
+  const Real side = node.plane().distance(point);
+  return side < 0 ? point - node.normal() * side : point;
+}
+
 // Puts the contact where the way met something first, or at its end.
 template <class Real>
 inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
   const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;
-  const Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
+  Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
+  if (is_on_face) point = onto_slab(walk, point, first.feature.index);
   walk.active = first.feature;
   if (first.feature.state == FDCG_EDGE) {
     const EdgeLine<Real> line(walk.graph, first.feature.index);
@@ -386,6 +480,8 @@ template <class Real>
   const Vec3<Real> way = to - from;
   const Real length = norm(way);
   if (!(length > 0)) return from;
+  const Real nearer = norm1(to) < norm1(from) ? norm1(to) : norm1(from);  // all places on the way are as coarse, or coarser
+  if (8 * RealLimits<Real>::kEpsilon * nearer > extent) return to;
   const Vec3<Real> along = way * (1 / length);
   const bool is_from_end = norm1(to) < norm1(from);                          // from the nearer end, where numbers are finer
   const Real past = dot(is_from_end ? to : from, along) + kBefore * extent;  // how far that end is past the cut

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step counts, so that it ends in bounded time whatever the mesh: units of some 10 instructions. The rules that move the
+// What a step counts, so that it ends in bounded time whatever the mesh: units of some 15 instructions. The rules that move the
 // god-object over the surface have one budget, the sweeps through free space another; the step goes on until one is spent, and
 // then a little further, to the end of the piece of work at hand.
 #pragma once
@@ -25,8 +25,8 @@ inline constexpr uint32_t kLeafWork = 4;         // a leaf taken up, besides its
 inline constexpr uint32_t kNodeWork = 5;         // one node fetched, both ends of the way against its plane
 inline constexpr uint32_t kNearPlaneWork = 18;   // ... one end so near that its side is asked of the corners
 inline constexpr uint32_t kOrientationWork = 9;  // one side's edge against the way, where rounding cannot matter
-inline constexpr uint32_t kExactWork = 100;      // ... and where it does
-inline constexpr uint32_t kLongExactWork = 350;  // ... with coordinates of very different sizes
+inline constexpr uint32_t kExactWork = 70;       // ... and where it does: 1,050 instructions
+inline constexpr uint32_t kLongExactWork = 290;  // ... with coordinates of very different sizes: 4,300
 inline constexpr uint32_t kTransitionWork = 10;  // one change of state
 inline constexpr uint32_t kSideWork = 4;         // one side of a face that the god-object slides on
 inline constexpr uint32_t kEdgeWork = 15;        // the rule of an edge

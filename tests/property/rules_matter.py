@@ -16,10 +16,10 @@ import sys
 FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fno-exceptions", "-fno-rtti",
          "-DFDCG_RULE_WORK=1000000000", "-DFDCG_SWEEP_WORK=1000000000"]
 
-# (tag of the test, what is taken out, file, the text as it stands, what replaces it)
+# (tag of the test, what is taken out, then for each place: file, the text as it stands, what replaces it)
 MUTANTS = [
     ("met-again", "a feature met again is a rest", "servo_step.cpp",
-     "if (trail.has_met_again(walk)) return progress;", ""),
+     "if (trail.has_met_again(walk) && !trail.begins_again(walk)) return progress;", ""),
     ("crossing", "crossed means on or beyond, and further out than before: the paper's change of sign instead", "face.hpp",
      "if (!(s1 > s0)) continue;", "if (!(s1 * s0 < 0)) continue;"),
     ("crossing", "... or from not beyond to beyond instead", "face.hpp",
@@ -29,7 +29,9 @@ MUTANTS = [
     ("along-side", "a way along a side ends where it ends", "face.hpp", "s1 <= rounding ? Real(1)", "false ? Real(1)"),
     ("lost", "what rounding takes at an edge is not lost", "face.hpp", "walk.lost = (from - walk.god_object) + ahead", "(void)0"),
     ("on-plane", "on a face's plane is outside", "face.hpp", "if (!(side < 0)) return", "if (side > 0) return"),
-    ("seat", "the seat's rule decides", "face.hpp", "return go_to(leave_face(walk, node));", "return go_to(kFree);"),
+    ("seat", "the seat's rule decides, and where it is not asked the other wall holds", "face.hpp",
+     "return go_to(leave_face(walk, node));", "return go_to(kFree);",
+     "sweep.hpp", "if (start_side >= -from_bound_) try_other_wall(n, node);", ""),
     ("last-tick-segment", "the sweep starts where the HIP was", "servo_step.cpp",
      "progress.flags = sweep_to_hip(walk, kFree, space);",
      "walk.god_object = walk.hip; progress.flags = sweep_to_hip(walk, kFree, space);"),
@@ -87,14 +89,15 @@ def run(program, tag):
 
 
 def try_mutant(args, index, mutant):
-    tag, rule, file, before, after = mutant
+    tag, rule, *places = mutant
     directory = pathlib.Path(args.work) / f"{index:02d}-{tag}"
     shutil.copytree(args.source + "/runtime/src", directory)
-    path = directory / file
-    text = path.read_text()
-    if text.count(before) != 1:
-        return f"{tag}: the text of this rule stands {text.count(before)} times in {file}, expected once: {before}"
-    path.write_text(text.replace(before, after))
+    for file, before, after in zip(*[iter(places)] * 3, strict=True):
+        path = directory / file
+        text = path.read_text()
+        if text.count(before) != 1:
+            return f"{tag}: the text of this rule stands {text.count(before)} times in {file}, expected once: {before}"
+        path.write_text(text.replace(before, after))
     if run(build(args, tag, directory), tag):
         return f"{tag}: the test passes without the rule: {rule}"
     print(f"without '{rule}' [{tag}] fails, as it must", flush=True)

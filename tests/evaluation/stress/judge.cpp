@@ -117,9 +117,19 @@ void Judge::look_at_numbers(Tick& tick) const {
 void Judge::look_at_growth(Tick& tick, Verdicts& v) const {
   const Hip start = hip_of(tick.before.state == FDCG_FREE ? tick.before.hip : tick.before.god_object);
   if (square_distance(tick.god_object, tick.hip) <= square_distance(start, tick.hip)) return;
-  const double growth = static_cast<double>(long_length(tick.god_object, tick.hip) - long_length(start, tick.hip)) - deviation_;
+  double growth = static_cast<double>(long_length(tick.god_object, tick.hip) - long_length(start, tick.hip)) - deviation_;
+  if (tick.before.state == FDCG_FREE && deviation_ > 0) growth -= slab_around(start);
   v.worst_growth_eps = std::max(v.worst_growth_eps, growth / tick.rounding);
   if (growth > kMostGrowth_eps * tick.rounding) tick.faults |= bit(Fault::growth);
+}
+
+// How far behind a merged face's plane a way may begin that meets it. Its corners lie off its plane, so no exact sign tells two
+// such neighbours' sides apart: what is in front of one within the rounding of a plane's distance is in front of the other, or a
+// way would slip through their seam. The step bounds that rounding by 8 eps of the coordinates' sum and two extents; from there
+// to the plane the god-object moves away from the HIP.
+double Judge::slab_around(const Hip& x) const {
+  const double sum = std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
+  return kSlab_eps * epsilon_ * (sum + 2 * specimen_.header().extent);
 }
 
 void Judge::look_at_rest(Tick& tick, Verdicts& v) const {

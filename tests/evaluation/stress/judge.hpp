@@ -19,7 +19,7 @@ enum class Fault : std::uint8_t {
   cycle,         // a step stopped where a feature was met again, and that was no rest: GO goes on in the next tick
   rule_bound,    // work on the surface carried over
   sweep_bound,   // work in free space carried over
-  growth,        // |GO - HIP| grew by more than 16 eps of the scale
+  growth,        // |GO - HIP| grew by more than 16 eps of the scale; where a merged face is met, that beyond its slab
   push_through,  // Free and, after having been outside or held, inside by more than 4 eps of the size
   unseen,        // a way through the surface that met nothing
   thin_air,      // a contact though the way met nothing
@@ -35,6 +35,7 @@ std::optional<Fault> fault_named(std::string_view name);
 
 // The scale of rounding is the largest of the object's extent and the coordinates of HIP: both enter every sum.
 inline constexpr double kMostGrowth_eps = 16;
+inline constexpr double kSlab_eps = 8;  // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostOffSurface_eps = 64;
 inline constexpr double kMostRestless_eps = 16;
 inline constexpr double kMostPull_eps = 32;  // of a plane's distance, as the step bounds its own rounding
@@ -73,6 +74,7 @@ class Judge {
   };
   void look_at_numbers(Tick& tick) const;
   void look_at_growth(Tick& tick, Verdicts& v) const;
+  [[nodiscard]] double slab_around(const Hip& x) const;
   void look_at_feature(Tick& tick, Verdicts& v) const;
   void look_at_pull(Tick& tick, Verdicts& v) const;
   void look_at_rest(Tick& tick, Verdicts& v) const;
