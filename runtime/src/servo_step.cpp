@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step: the friction-cone god-object algorithm of Melder and Harwin (2004) on a Face Directed Connection Graph.
 //
-//   Free --sweep--> Face | Edge | Vertex          sweep.hpp    where does the hand's way first meet the surface?
+//   Free --sweep--> Face | Edge | Vertex          free_space.hpp, sweep.hpp: where does the hand's way first meet the surface?
 //   Face  -> rest | Edge | Vertex | Free          face.hpp     slide to the friction circle, or to the first edge on the way
 //   Edge  -> rest | Face | Vertex | Free          edge.hpp     which face pulls more, or slide along the edge
 //   Vertex-> rest | Face | Edge | Free            corner.hpp   the steepest descent around the corner
@@ -13,10 +13,10 @@
 #include "corner.hpp"
 #include "edge.hpp"
 #include "face.hpp"
+#include "free_space.hpp"
 #include "hooks.hpp"
 #include "leave.hpp"
 #include "struct_bytes.hpp"
-#include "sweep.hpp"
 
 namespace fdcg {
 namespace {
@@ -53,8 +53,8 @@ class Trail {
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
 
-  // Where the step would rest. The next tick knows nothing of Walk::lost: a rest must be one without it. So it is forgotten, and
-  // the way goes on as that tick would go; once for each time that the god-object came nearer.
+  // Where the step would rest. The next tick knows nothing of Walk::lost: a rest must be one without it. So it is forgotten,
+  // and the way goes on as that tick would go; once for each time that the god-object came nearer.
   bool begins_again(Walk<Real>& walk) {
     if (has_begun_again_ || norm1(walk.lost) == 0) return false;
     walk.lost = {0, 0, 0};

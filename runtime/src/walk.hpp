@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
-// of contact-model sections 5, 6 and 7, sweep.hpp that of section 4; servo_step.cpp drives them.
+// of contact-model sections 5, 6 and 7, free_space.hpp and sweep.hpp that of section 4; servo_step.cpp drives them.
 #pragma once
 
 #include "friction.hpp"
