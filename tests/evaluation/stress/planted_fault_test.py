@@ -17,8 +17,9 @@ FLAGS = ["-std=c++20", "-O2", "-w", "-ffp-contract=off", "-fno-math-errno", "-fn
 
 # (case, precision, fault, what is taken out, file, the text as it stands, what replaces it, most faces, most ticks)
 MUTANTS = [
-    ("aimed", "f64", "push-through", "a face that is left without a seat seats the god-object first", "face.hpp",
-     "return go_to(leave_face(walk, node));", "return go_to(kFree);", 16, 8),
+    ("aimed", "f64", "push-through", "no distance tolerance where contact was lost", "sweep.hpp",
+     "if (!is_before_best(fraction, n)) return;",
+     "if (!is_before_best(fraction, n) || (left_.state != FDCG_FREE && fraction < Real(1e-4))) return;", 16, 8),
     ("open-boundaries", "f64", "off-surface", "a way that grazes a face ends over it", "free_space.hpp",
      "const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;",
      "const Real over = first.fraction + (is_on_face ? Real(0.01) : Real(0));", 4, 6),
