@@ -113,7 +113,7 @@ class PlantedSlowdown(unittest.TestCase):
         entry = "  fdcg_params room;\n"
         self.assertEqual(text.count(entry), 1, "where fdcg_step begins has changed: this test plants its delay there")
         slow = self.path / "servo_step.cpp"
-        slow.write_text(text.replace(entry, "  for (volatile int i = 0; i < 40; i = i + 1) {\n  }\n" + entry))
+        slow.write_text(text.replace(entry, "  for (volatile int i = 0; i < 400; i = i + 1) {\n  }\n" + entry))
         compiler = os.environ["FDCG_COMPILER"]
         subprocess.run([compiler, "-std=c++20", "-O2", "-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-fno-math-errno", "-I",
                         str(source / "include"), "-I", str(source / "src"), "-c", str(slow), "-o", str(self.path / "slow.o")],
