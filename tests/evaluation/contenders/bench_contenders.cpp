@@ -288,7 +288,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{
       "Run time against error: this runtime and other ways to find a god-object, along the same ways.\n"
-      "Example: fdcg_bench_contenders --body star_10k --way hand --output /tmp/bench"};
+      "Example: fdcg_bench_contenders --body star_10k --way hand --output bench"};
   app.add_flag("--quick", options.is_quick, "small bodies, few ways: some 10 s in place of 3 minutes");
   app.add_flag("!--no-time-bars", options.judges_times, "measure times briefly and do not judge them: for busy machines");
   app.add_option("--output", options.output, "folder for contenders.csv, pareto.csv, pareto_verdict.csv and the bars")
@@ -309,8 +309,13 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
   }
-  Evaluation evaluation(options);
-  for (const BodyPlan& body : plan_with(options))
-    evaluation.run(body);
-  return evaluation.finish();
+  try {
+    Evaluation evaluation(options);
+    for (const BodyPlan& body : plan_with(options))
+      evaluation.run(body);
+    return evaluation.finish();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 2;
+  }
 }
