@@ -214,7 +214,7 @@ int main(int argc, char** argv) {
   fdcg::test::Options options;
   CLI::App app{
       "Finds the largest stable stiffness of a simulated device on a wall that fdcg_step renders.\n"
-      "Example: fdcg_bench_closed_loop --quick --output /tmp/closed_loop"};
+      "Example: fdcg_bench_closed_loop --quick --output closed_loop"};
   app.add_flag("--quick", options.is_quick, "A few seconds: two rates");
   app.add_option("--output", options.output, "Folder for the tables")->capture_default_str();
   app.add_option("--seed", options.seed, "Of the wall's orientation and the encoder's steps")->capture_default_str();

@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Measures the step against physical laws: Coulomb's on ramps, in grooves and in motion, stick-slip, creep,\n"
       "energy over closed loops, and smooth shapes by formula against their tessellations.\n"
-      "Example: fdcg_bench_laws --quick --output /tmp/laws"};
+      "Example: fdcg_bench_laws --quick --output laws"};
   app.add_flag("--quick", options.is_quick, "A few seconds: fewer orientations, ticks and loops");
   app.add_option("--output", options.output, "Folder for the tables")->capture_default_str();
   app.add_option("--seed", options.seed, "Of everything drawn at random")->capture_default_str();

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   run.output = "build/evaluation/scaling";
   std::string part = "all";
   CLI::App app("How bake time, memory, opening and the step grow with faces, contacts and objects; f32 beside f64.");
-  app.footer("Example: fdcg_bench_scaling --quick --part contacts --output /tmp/scaling");
+  app.footer("Example: fdcg_bench_scaling --quick --part contacts --output scaling");
   app.add_flag("--quick", run.is_quick,
                "up to 10^5 faces, 10^4 contacts and 10^3 objects; else 10^7, 10^5 and 10^4, in some 12 GB");
   bool no_time_bars = false;
