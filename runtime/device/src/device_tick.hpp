@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// One tick of one device as a pure function of what came in: reports -> judge -> kinematics -> world -> scene step -> gate.
+// The loop gathers a TickInput (every clock reading and every byte is in it), calls device_tick, hands the force to the writer
+// and the record to the log. So a session is replayed bit for bit by feeding the same inputs, and every fault can be tested
+// without a device. No heap, no lock, no clock.
+#pragma once
+
+#include <cstdint>
+
+#include "fdcg/fdcg.h"
+#include "gate.hpp"
+#include "profile.hpp"
+#include "report_codec.hpp"
+#include "transport.hpp"
+
+namespace fdcg::dev {
+
+inline constexpr int kMaxDrain = 64;      // reports in one tick: what hidraw keeps
+inline constexpr int kMaxContacts = 8;    // of one device
+inline constexpr int kMaxDriven = 16;     // objects that something moves
+
+struct RawReport {
+  std::uint64_t host_ns = 0;
+  std::uint16_t bytes = 0;  // as read; what is beyond kMaxReportBytes is cut off, and bytes is then kMaxReportBytes + 1
+  std::uint8_t data[kMaxReportBytes] = {};
+};
+
+struct TickInput {
+  std::uint64_t now_ns = 0;  // after the drain
+  ReadStatus read = ReadStatus::kTimeout;
+  bool arm = false, disarm = false;
+  bool begins = false;       // the device has just been opened (again): nothing is known of its sequence and clock
+  bool write_failed = false;
+  std::uint64_t write_busy_ns = 0;
+  std::uint32_t report_count = 0;
+  std::uint32_t pose_count = 0;         // of driven objects, in the order of DeviceSetup::driven
+  fdcg_pose poses[kMaxDriven];
+  RawReport reports[kMaxDrain];         // oldest first; only the first report_count are set
+};
+
+struct TickOutput {
+  GatedForce force;
+  std::uint32_t echo = 0;        // sequence of the report that the force answers
+  Phase phase = Phase::kDisarmed;
+  Fault fault = Fault::kNone;
+  bool arming_refused = false;
+  bool has_sample = false;
+  std::uint32_t state = 0;       // of the contact with the largest force: fdcg_state
+  double hip_world_m[3] = {};    // of the tip
+  double wanted_force_n[3] = {}; // world, before the gate
+  Sample sample;
+};
+
+struct TickCounters {
+  std::uint64_t ticks = 0;        // with a good report
+  std::uint64_t late = 0;         // more than 1.5 periods after the one before
+  std::uint64_t lost = 0;         // gaps in the device's sequence, in reports
+  std::uint64_t superseded = 0;   // good, but a newer one was there
+  std::uint64_t rejected[kVerdicts] = {};
+  std::uint64_t timeouts = 0;
+  std::uint64_t disarmed[kFaults] = {};
+};
+
+// World = R (scale * device) + offset.
+struct Mapping {
+  double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
+  double scale = 1;
+  double offset_m[3] = {};
+};
+
+struct DeviceSetup {
+  Profile profile;
+  Mapping mapping;
+  int contact_count = 1;
+  double contacts_m[kMaxContacts][3] = {};  // from the tip, device's frame, not scaled
+  double most_force_n = 0;                  // the scene's limit; 0: the profile's
+  fdcg_scene* scene = nullptr;              // this device's own: nothing is shared but the graphs
+  fdcg_finger_id fingers[kMaxContacts] = {};
+  int driven_count = 0;
+  fdcg_object_id driven[kMaxDriven] = {};
+};
+
+// All that a device's loop remembers from tick to tick, but for the scene's memory.
+struct DeviceState {
+  DeviceSetup setup;
+  Gate gate;
+  ReportJudge judge;
+  TickCounters counters;
+  bool has_place = false;        // fingers stand where the tip was last seen
+  std::uint64_t last_good_ns = 0;
+  double wanted_device_n[3] = {};
+};
+
+// setup.scene's fingers are added here. False with *error where the scene refuses them.
+bool begin_device(const DeviceSetup& setup, DeviceState* device, fdcg_error* error);
+void device_tick(DeviceState& device, const TickInput& input, TickOutput* output);
+
+}  // namespace fdcg::dev

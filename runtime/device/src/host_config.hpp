@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a host is asked to run: a scene file's content (scene_json.hpp fills it), checked and with every file named in full.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device_tick.hpp"
+#include "fdcg/fdcg.h"
+#include "simulated_device.hpp"
+
+namespace fdcg::dev {
+
+enum class MotionKind { kFixed, kSpin, kSwing, kDriven };  // kDriven: by the caller, fdcg_host_set_pose
+
+// Of an object, as a function of the time since the host started.
+struct Motion {
+  MotionKind kind = MotionKind::kFixed;
+  double axis[3] = {0, 0, 1};    // unit: of the spin, or the direction of the swing
+  double rate_hz = 0;            // turns or swings a second
+  double amplitude_m = 0;        // of the swing
+};
+
+struct ObjectConfig {
+  std::string name, file;
+  fdcg_pose pose;
+  fdcg_params params;            // tick_s is set from each device's rate
+  Motion motion;
+};
+
+enum class DeviceSource { kHid, kSimulated, kRecorded };
+
+struct DeviceConfig {
+  std::string name;
+  DeviceSource source = DeviceSource::kHid;
+  Profile profile;
+  std::string profile_text;      // its JSON, for the log
+  std::string serial, path;      // of the HID device; empty: the first that matches
+  std::string recording;         // kRecorded: a session's log
+  SimulationConfig simulation;   // kSimulated
+  Mapping mapping;
+  int contact_count = 1;
+  double contacts_m[kMaxContacts][3] = {};
+  double most_force_n = 0;
+};
+
+enum class HidBackend { kAny, kHidraw, kLibusb };
+
+struct LoopConfig {
+  int servo_priority = 80, writer_priority = 70;  // SCHED_FIFO; 0: ordinary scheduling
+  int cpu = -1;                                   // -1: any
+  bool lock_memory = true;
+  HidBackend backend = HidBackend::kAny;
+};
+
+struct HostConfig {
+  std::string scene_file, scene_text;
+  std::vector<ObjectConfig> objects;
+  std::vector<DeviceConfig> devices;
+  LoopConfig loop;
+  std::string log_file;          // empty: none
+  double log_megabytes = 0;      // the log ends there; 0: no limit
+};
+
+}  // namespace fdcg::dev

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A session's log: every TickInput and TickOutput of every device, so that it can be replayed bit for bit. The servo thread puts
+// records into a ring that was made at the start and never waits; a thread of its own writes them to the file. A full ring or a
+// full disk costs records, never a tick: they are counted, the status says so, and the replay ends before the gap.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "device_tick.hpp"
+#include "host_config.hpp"
+
+namespace fdcg::dev {
+
+// One servo thread's way into the log.
+class LogRing {
+ public:
+  explicit LogRing(std::uint32_t bytes);  // a power of two; allocates
+  ~LogRing();
+  LogRing(const LogRing&) = delete;
+  LogRing& operator=(const LogRing&) = delete;
+  // The servo thread's. False: the ring is full, and the tick is counted as dropped. No lock, no heap.
+  bool put(const TickInput& input, const TickOutput& output);
+  std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  friend class SessionLog;
+  std::uint8_t* bytes_ = nullptr;
+  std::uint32_t capacity_ = 0;
+  alignas(64) std::atomic<std::uint64_t> head_{0};  // written by the servo thread
+  alignas(64) std::atomic<std::uint64_t> tail_{0};  // written by the log's thread
+  std::atomic<std::uint64_t> dropped_{0};
+};
+
+// The file and its thread.
+class SessionLog {
+ public:
+  SessionLog();
+  ~SessionLog();  // stops
+  // Writes the header (the scene, the profiles, the graphs' checksums) and starts the thread. Rings: one a device, in order.
+  // Empty: fine. Otherwise why not.
+  std::string start(const HostConfig& config, LogRing* const* rings, int ring_count);
+  // Writes what is left, closes the file. Empty, or what went wrong since the start ("disk full").
+  std::string stop();
+  bool has_failed() const;
+  std::string failure() const;  // any thread
+
+ private:
+  struct Impl;
+  Impl* impl_;
+};
+
+}  // namespace fdcg::dev
