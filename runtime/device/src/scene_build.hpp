@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a HostConfig to what device_tick works on: the graphs, opened once and only read, and for each device a scene of its own.
+// The host and the replay of its log build it the same way.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "device_tick.hpp"
+#include "host_config.hpp"
+
+namespace fdcg::dev {
+
+// The graph files of a scene; objects that share a file share the graph.
+class SceneGraphs {
+ public:
+  SceneGraphs() = default;
+  ~SceneGraphs() { close(); }
+  SceneGraphs(const SceneGraphs&) = delete;
+  SceneGraphs& operator=(const SceneGraphs&) = delete;
+  // Opens and verifies every file. Empty: fine. Otherwise the object, its file, and what is wrong with it.
+  std::string open(const HostConfig& config);
+  void close();
+  const fdcg_graph& of_object(std::size_t index) const { return graphs_[graph_of_object_[index]]; }
+
+ private:
+  std::vector<fdcg_graph> graphs_;
+  std::vector<std::size_t> graph_of_object_;
+};
+
+// One device's scene, in memory that is filled once and does not move.
+struct DeviceScene {
+  std::vector<std::uint64_t> memory;
+  DeviceSetup setup;  // fingers are added by begin_device; driven: the objects with a motion, in the scene's order
+};
+// `graphs` must outlive *scene. Empty: fine. Otherwise what the runtime refuses.
+std::string build_device_scene(const HostConfig& config, std::size_t device, const SceneGraphs& graphs, DeviceScene* scene);
+
+// Where a moved object is so long after the host started. Of MotionKind::kDriven and kFixed: its first pose. No heap.
+fdcg_pose pose_at(const ObjectConfig& object, double seconds);
+
+}  // namespace fdcg::dev
