@@ -1,1 +1,160 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "device_tick.hpp"
+
+#include <algorithm>
+
+namespace fdcg::dev {
+namespace {
+
+constexpr double kLatePeriods = 1.5;
+
+void to_world(const Mapping& mapping, const double device_m[3], double world_m[3]) {
+  for (int i = 0; i < 3; ++i) {
+    const double* const row = mapping.rotation + 3 * i;
+    world_m[i] = row[0] * device_m[0] * mapping.scale + row[1] * device_m[1] * mapping.scale +
+                 row[2] * device_m[2] * mapping.scale + mapping.offset_m[i];
+  }
+}
+
+void force_to_device(const Mapping& mapping, const double world_n[3], double device_n[3]) {
+  const double* const r = mapping.rotation;
+  for (int i = 0; i < 3; ++i)
+    device_n[i] = r[i] * world_n[0] + r[3 + i] * world_n[1] + r[6 + i] * world_n[2];
+}
+
+void contact_place(const DeviceSetup& setup, int contact, const double tip_m[3], double world_m[3]) {
+  double place_m[3];
+  for (int i = 0; i < 3; ++i)
+    place_m[i] = tip_m[i] + setup.contacts_m[contact][i];
+  to_world(setup.mapping, place_m, world_m);
+}
+
+// Judges what was read. True with the newest good report in *sample.
+bool newest_good(DeviceState& device, const TickInput& input, Sample* sample) {
+  const Profile& profile = device.setup.profile;
+  TickCounters& counters = device.counters;
+  const std::uint64_t lost_before = device.judge.lost;
+  bool has_sample = false;
+  for (std::uint32_t i = 0; i < std::min<std::uint32_t>(input.report_count, kMaxDrain); ++i) {
+    const RawReport& report = input.reports[i];
+    Sample read;
+    Verdict verdict = decode_input(profile, report.data, report.bytes, &read);
+    if (verdict == Verdict::kGood) {
+      verdict = judge_report(profile, read, static_cast<double>(report.host_ns) * 1e-9, &device.judge);
+    }
+    if (verdict != Verdict::kGood) {
+      ++counters.rejected[static_cast<int>(verdict)];
+      continue;
+    }
+    counters.superseded += has_sample;
+    has_sample = true;
+    *sample = read;
+  }
+  counters.lost += device.judge.lost - lost_before;
+  return has_sample;
+}
+
+void count_tick(DeviceState& device, const TickInput& input, bool has_sample) {
+  TickCounters& counters = device.counters;
+  counters.timeouts += input.read == ReadStatus::kTimeout && input.report_count == 0;
+  if (!has_sample) return;
+  const double since_s = static_cast<double>(input.now_ns - device.last_good_ns) * 1e-9;
+  counters.late += device.last_good_ns != 0 && since_s * device.setup.profile.rate_hz > kLatePeriods;
+  device.last_good_ns = input.now_ns;
+  ++counters.ticks;
+}
+
+// Moves the fingers to the tip, steps the scene, sums what they feel. World's frame.
+void feel(DeviceState& device, const TickInput& input, const double tip_m[3], TickOutput* output) {
+  const DeviceSetup& setup = device.setup;
+  for (std::uint32_t i = 0; i < std::min<std::uint32_t>(input.pose_count, setup.driven_count); ++i) {
+    fdcg_scene_set_pose(setup.scene, setup.driven[i], &input.poses[i], nullptr);  // a bad pose: the old one stays
+  }
+  const auto place = device.has_place ? fdcg_scene_move_finger : fdcg_scene_reset_finger;
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
+    double world_m[3];
+    contact_place(setup, contact, tip_m, world_m);
+    place(setup.scene, setup.fingers[contact], world_m, nullptr);
+  }
+  device.has_place = true;
+  fdcg_scene_step(setup.scene);
+  double largest = 0;
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
+    fdcg_finger_result felt;
+    if (fdcg_scene_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
+    for (int i = 0; i < 3; ++i)
+      output->wanted_force_n[i] += felt.force_n[i];
+    for (std::uint32_t t = 0; t < felt.touch_count; ++t) {
+      const double* const f = felt.touches[t].force_n;
+      const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+      if (square < largest) continue;
+      largest = square;
+      output->state = felt.touches[t].state;
+    }
+  }
+}
+
+}  // namespace
+
+bool begin_device(const DeviceSetup& setup, DeviceState* device, fdcg_error* error) {
+  *device = DeviceState();
+  device->setup = setup;
+  device->gate.begin(setup.profile.limits, setup.profile.axis_count, setup.profile.rate_hz, setup.most_force_n);
+  const double tip_m[3] = {0, 0, 0};
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
+    double world_m[3];
+    contact_place(setup, contact, tip_m, world_m);
+    if (fdcg_scene_add_finger(setup.scene, world_m, &device->setup.fingers[contact], error) != FDCG_OK) return false;
+  }
+  return true;
+}
+
+void device_tick(DeviceState& device, const TickInput& input, TickOutput* output) {
+  *output = TickOutput();
+  if (input.begins) {
+    device.judge = ReportJudge();
+    device.has_place = false;
+    device.last_good_ns = 0;
+  }
+  Sample sample;
+  output->has_sample = newest_good(device, input, &sample);
+  count_tick(device, input, output->has_sample);
+
+  GateInput gate;
+  if (output->has_sample) {
+    device.sample = sample;
+    gate.has_sample = true;
+    gate.device_fault = sample.has_fault;
+    gate.is_tip_valid = tip_pose(device.setup.profile.kinematics, device.setup.profile.axis_count, sample.axis, &gate.tip);
+    if (gate.is_tip_valid) {
+      feel(device, input, gate.tip.position_m, output);
+      to_world(device.setup.mapping, gate.tip.position_m, device.tip_world_m);
+      std::copy_n(output->wanted_force_n, 3, device.wanted_n);
+      device.state = output->state;
+    }
+  }
+  // Without a good report all stays as it was last seen; the gate knows how old that is.
+  output->sample = device.sample;
+  output->echo = device.sample.sequence;
+  output->state = device.state;
+  std::copy_n(device.tip_world_m, 3, output->hip_world_m);
+  std::copy_n(device.wanted_n, 3, output->wanted_force_n);
+
+  gate.now_ns = input.now_ns;
+  gate.arm = input.arm;
+  gate.disarm = input.disarm;
+  gate.read_failed = input.read == ReadStatus::kLost;
+  gate.write_failed = input.write_failed;
+  gate.write_busy_ns = input.write_busy_ns;
+  force_to_device(device.setup.mapping, device.wanted_n, gate.wanted_force_n);
+  const Phase phase_before = device.gate.phase();
+  output->force = device.gate.step(gate);
+  output->phase = device.gate.phase();
+  output->fault = device.gate.fault();
+  output->arming_refused = device.gate.arming_refused();
+  if (phase_before != Phase::kDisarmed && output->phase == Phase::kDisarmed) {
+    ++device.counters.disarmed[static_cast<int>(output->fault)];
+  }
+}
+
+}  // namespace fdcg::dev

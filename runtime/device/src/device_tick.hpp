@@ -15,9 +15,9 @@
 
 namespace fdcg::dev {
 
-inline constexpr int kMaxDrain = 64;      // reports in one tick: what hidraw keeps
-inline constexpr int kMaxContacts = 8;    // of one device
-inline constexpr int kMaxDriven = 16;     // objects that something moves
+inline constexpr int kMaxDrain = 64;    // reports in one tick: what hidraw keeps
+inline constexpr int kMaxContacts = 8;  // of one device
+inline constexpr int kMaxDriven = 16;   // objects that something moves
 
 struct RawReport {
   std::uint64_t host_ns = 0;
@@ -29,39 +29,39 @@ struct TickInput {
   std::uint64_t now_ns = 0;  // after the drain
   ReadStatus read = ReadStatus::kTimeout;
   bool arm = false, disarm = false;
-  bool begins = false;       // the device has just been opened (again): nothing is known of its sequence and clock
+  bool begins = false;  // the device has just been opened (again): nothing is known of its sequence and clock
   bool write_failed = false;
   std::uint64_t write_busy_ns = 0;
   std::uint32_t report_count = 0;
-  std::uint32_t pose_count = 0;         // of driven objects, in the order of DeviceSetup::driven
+  std::uint32_t pose_count = 0;  // of driven objects, in the order of DeviceSetup::driven
   fdcg_pose poses[kMaxDriven];
-  RawReport reports[kMaxDrain];         // oldest first; only the first report_count are set
+  RawReport reports[kMaxDrain];  // oldest first; only the first report_count are set
 };
 
 struct TickOutput {
   GatedForce force;
-  std::uint32_t echo = 0;        // sequence of the report that the force answers
+  std::uint32_t echo = 0;  // sequence of the report that the force answers
   Phase phase = Phase::kDisarmed;
   Fault fault = Fault::kNone;
   bool arming_refused = false;
   bool has_sample = false;
-  std::uint32_t state = 0;       // of the contact with the largest force: fdcg_state
-  double hip_world_m[3] = {};    // of the tip
-  double wanted_force_n[3] = {}; // world, before the gate
+  std::uint32_t state = 0;        // of the contact with the largest force: fdcg_state
+  double hip_world_m[3] = {};     // of the tip
+  double wanted_force_n[3] = {};  // world, before the gate
   Sample sample;
 };
 
 struct TickCounters {
-  std::uint64_t ticks = 0;        // with a good report
-  std::uint64_t late = 0;         // more than 1.5 periods after the one before
-  std::uint64_t lost = 0;         // gaps in the device's sequence, in reports
-  std::uint64_t superseded = 0;   // good, but a newer one was there
+  std::uint64_t ticks = 0;       // with a good report
+  std::uint64_t late = 0;        // more than 1.5 periods after the one before
+  std::uint64_t lost = 0;        // gaps in the device's sequence, in reports
+  std::uint64_t superseded = 0;  // good, but a newer one was there
   std::uint64_t rejected[kVerdicts] = {};
   std::uint64_t timeouts = 0;
   std::uint64_t disarmed[kFaults] = {};
 };
 
-// World = R (scale * device) + offset.
+// World = R (scale * device) + offset. Forces are turned, not scaled: a stiffness of K in the world is felt as scale * K.
 struct Mapping {
   double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
   double scale = 1;
@@ -86,9 +86,13 @@ struct DeviceState {
   Gate gate;
   ReportJudge judge;
   TickCounters counters;
-  bool has_place = false;        // fingers stand where the tip was last seen
+  bool has_place = false;  // fingers stand where the tip was last seen
   std::uint64_t last_good_ns = 0;
-  double wanted_device_n[3] = {};
+  // as of the last good report
+  Sample sample;
+  double tip_world_m[3] = {};
+  double wanted_n[3] = {};  // world
+  std::uint32_t state = 0;
 };
 
 // setup.scene's fingers are added here. False with *error where the scene refuses them.

@@ -10,9 +10,9 @@
 namespace fdcg::dev {
 
 inline constexpr int kMaxAxes = 3;
-inline constexpr int kMaxFields = 24;         // of one report
+inline constexpr int kMaxFields = 24;  // of one report
 inline constexpr int kMaxReportBytes = 128;
-inline constexpr int kMaxFixedReports = 8;    // init, and as many to stop safely
+inline constexpr int kMaxFixedReports = 8;  // init, and as many to stop safely
 inline constexpr int kProfileNameBytes = 64;
 
 enum class NumberType : std::uint8_t { kU8, kI8, kU16, kI16, kU32, kI32, kF32 };
@@ -26,12 +26,12 @@ struct Field {
   Role role = Role::kConstant;
   NumberType type = NumberType::kU8;
   bool is_big_endian = false;
-  std::uint8_t axis = 0;        // of kAxis and kEffort
-  std::uint16_t offset = 0;     // bytes
-  double scale = 1;             // value = raw * scale + bias; kEffort: raw = (value - bias) / scale, rounded to nearest, held in range
+  std::uint8_t axis = 0;     // of kAxis and kEffort
+  std::uint16_t offset = 0;  // bytes
+  double scale = 1;  // value = raw * scale + bias; kEffort: raw = (value - bias) / scale, rounded to nearest, held in range
   double bias = 0;
-  std::uint32_t constant = 0;   // kConstant: the raw value; kEnable: the raw value while armed (0 otherwise); kStatus: mask of
-                                // the bits that say that the device has a fault
+  std::uint32_t constant = 0;  // kConstant: the raw value; kEnable: the raw value while armed (0 otherwise); kStatus: mask of
+                               // the bits that say that the device has a fault
 };
 
 enum class CrcKind : std::uint8_t { kNone, kCrc16CcittFalse, kCrc16Modbus, kCrc32, kCrc8, kSum8, kXor8 };
@@ -39,7 +39,7 @@ enum class CrcKind : std::uint8_t { kNone, kCrc16CcittFalse, kCrc16Modbus, kCrc3
 struct Crc {
   CrcKind kind = CrcKind::kNone;
   bool is_big_endian = false;
-  std::uint16_t offset = 0;      // where it stands
+  std::uint16_t offset = 0;            // where it stands
   std::uint16_t first = 0, bytes = 0;  // what it covers
 };
 
@@ -75,11 +75,11 @@ struct KinematicsParams {
 // What the device and the hand can stand, in the device's frame. A limit that is not known (0, not finite) means no force.
 struct DeviceLimits {
   double force_n = 0;
-  double effort[kMaxAxes] = {};      // of each axis: N (cartesian) or N m
+  double effort[kMaxAxes] = {};  // of each axis: N (cartesian) or N m
   double slew_n_per_s = 0;
   double velocity_m_per_s = 0;
   double workspace_min_m[3] = {}, workspace_max_m[3] = {};  // of the tip
-  double device_watchdog_s = 0;      // the device drops its force by itself after this; 0: it has none
+  double device_watchdog_s = 0;                             // the device drops its force by itself after this; 0: it has none
 };
 
 struct Profile {

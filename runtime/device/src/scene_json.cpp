@@ -15,7 +15,7 @@
 namespace fdcg::dev {
 namespace {
 
-constexpr int kMostObjects = 10000;
+constexpr int kMostObjects = 1000;
 constexpr std::size_t kLongestName = 60, kLongestPath = 4000;
 constexpr double kUnitTolerance = 1e-3;        // of a quaternion, as fdcg_pose has it
 constexpr double kOrthonormalTolerance = 1e-9; // of a rotation matrix
