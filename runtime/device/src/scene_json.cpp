@@ -13,6 +13,7 @@
 #include "words.hpp"
 
 namespace fdcg::dev {
+Profile simulated_profile(const SimulationConfig& simulation);
 namespace {
 
 constexpr int kMostObjects = 1000;
@@ -144,8 +145,7 @@ void SceneParser::read_object(const JsonObject& from) {
 }
 
 void SceneParser::read_motion(const JsonObject& from, Motion* motion) {
-  constexpr Keys kKinds = {"fixed", "spin", "swing", "driven"};
-  motion->kind = static_cast<MotionKind>(from.choice("kind", kKinds));
+  motion->kind = static_cast<MotionKind>(from.choice("kind", {"fixed", "spin", "swing", "driven"}));
   const bool is_spin = motion->kind == MotionKind::kSpin, is_swing = motion->kind == MotionKind::kSwing;
   if (is_spin) from.allow_only({"kind", "axis", "rate_hz"}, " of a spin");
   if (is_swing) from.allow_only(kMotionKeys, " of a swing");
@@ -164,8 +164,6 @@ void SceneParser::read_device(const JsonObject& from) {
   device.name = from.text("name", kLongestName);
   refuse_twins(from, config_.devices, device.name);
   device.source = static_cast<DeviceSource>(from.choice_or("source", 0, {"hid", "simulated", "recorded"}));
-  constexpr Keys kCommon = {"name", "source", "mapping", "contacts", "force_limit_n", "notes"};
-  std::vector<const char*> keys(kCommon);
   if (device.source == DeviceSource::kHid) {
     from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "profile", "serial", "path"},
                     " of a hid device");
