@@ -33,6 +33,13 @@ std::array<double, 3> Hand::at(Nanoseconds now) {
   return {kStrokeM * std::sin(turn * kStrokeHz), 0, z_m_ + inside * kTrembleM * std::sin(turn * kTrembleHz)};
 }
 
+void Record::restart() {
+  sent = answered = outputs = refused = misled = watchdog_trips = 0;
+  oldest_answer = 0;
+  most_force_n = force_n;
+  round_trips_ns.clear();
+}
+
 Device::Device(std::unique_ptr<Port> port, int rate_hz, bool has_float_axes)
     : port_(std::move(port)), rate_hz_(rate_hz), has_float_axes_(has_float_axes) {
   record.round_trips_ns.reserve(kRemembered);

@@ -43,6 +43,8 @@ struct Record {
   Nanoseconds watched_from = 0, first_zero = 0;  // the first moment without force since `watch`; 0: none yet
   Nanoseconds output_before_zero = 0;            // last_output at that moment
 
+  // Counts and worst values begin again; what the motors do now stays.
+  void restart();
   void watch(Nanoseconds from) {
     watched_from = from;
     first_zero = 0;

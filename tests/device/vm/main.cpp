@@ -1,57 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs in the guest: vm_rig timing|faults [usb] [NAME=VALUE...]. Exit code: 0 all passed, 1 not, 2 the rig itself failed.
+// Runs in the guest: vm_rig timing|faults [NAME=VALUE...] [then timing|faults ...]. Exit code: 0 all passed, 1 not, 2 the rig
+// itself failed.
 #include <sched.h>
 #include <sys/mman.h>
 
 #include <csignal>
-#include <cstring>
 #include <exception>
 #include <map>
+#include <stdexcept>
 
 #include "scenarios.hpp"
 
+namespace fdcg::vm {
 namespace {
 
 constexpr int kDevicePriority = 85;  // above the host's threads: a real device does not wait for them
 
+using Settings = std::map<std::string, std::string>;
+
+const Settings kDefaults = {{"way", "uhid"}, {"backend", "hidraw"}, {"rate", "1000"}, {"seconds", "10"},
+                            {"times", "20"}, {"only", ""},          {"seed", "1"},    {"timed", "1"}};
+
+void run_scenario(const std::string& name, Settings& settings, Verdicts& verdicts) {
+  RigOptions options;
+  options.is_usb = settings["way"] == "usb";
+  options.backend = settings["backend"];
+  options.rate_hz = std::stoi(settings["rate"]);
+  options.seed = std::stoull(settings["seed"]);
+  options.is_timed = settings["timed"] == "1";
+  if (name == "timing") {
+    options.has_log = true;
+    run_timing(options, std::stoi(settings["seconds"]), verdicts);
+  } else if (name == "faults") {
+    run_faults(options, std::stoi(settings["times"]), settings["only"], verdicts);
+  } else {
+    throw std::runtime_error("there is no scenario \"" + name + '"');
+  }
+}
+
+void run_all(const std::vector<std::string>& given, Verdicts& verdicts) {
+  for (std::size_t at = 0; at < given.size(); ++at) {
+    const std::string& name = given[at];
+    Settings settings = kDefaults;
+    for (++at; at < given.size() && given[at] != "then"; ++at) {
+      const std::size_t equals = given[at].find('=');
+      const auto setting = settings.find(given[at].substr(0, equals));
+      if (equals == std::string::npos || setting == settings.end()) throw std::runtime_error("there is no setting " + given[at]);
+      setting->second = given[at].substr(equals + 1);
+    }
+    run_scenario(name, settings, verdicts);
+  }
+}
+
 }  // namespace
+}  // namespace fdcg::vm
 
 int main(int count, char** arguments) {
-  using namespace fdcg::vm;
-  std::map<std::string, std::string> given = {{"times", "20"}, {"seconds", "10"}, {"only", ""},   {"rate", "1000"},
-                                              {"seed", "1"},   {"backend", "hidraw"}, {"way", "uhid"}, {"timed", "1"}};
-  for (int i = 2; i < count; ++i) {
-    const std::string word = arguments[i];
-    const std::size_t equals = word.find('=');
-    if (equals == std::string::npos || !given.contains(word.substr(0, equals))) {
-      std::printf("vm_rig does not know %s\n", word.c_str());
-      return 2;
-    }
-    given[word.substr(0, equals)] = word.substr(equals + 1);
-  }
   sched_param parameters{};
-  parameters.sched_priority = kDevicePriority;
+  parameters.sched_priority = fdcg::vm::kDevicePriority;
   if (sched_setscheduler(0, SCHED_FIFO, &parameters)) std::puts("vm_rig: no real-time priority");
   mlockall(MCL_CURRENT | MCL_FUTURE);
   std::signal(SIGPIPE, SIG_IGN);
-  Verdicts verdicts;
+  fdcg::vm::Verdicts verdicts;
   try {
-    RigOptions options;
-    options.is_usb = given["way"] == "usb";
-    options.backend = given["backend"];
-    options.rate_hz = std::stoi(given["rate"]);
-    options.seed = std::stoull(given["seed"]);
-    options.is_timed = given["timed"] == "1";
-    const std::string scenario = count > 1 ? arguments[1] : "";
-    if (scenario == "timing") {
-      options.has_log = true;
-      run_timing(options, std::stoi(given["seconds"]), verdicts);
-    } else if (scenario == "faults") {
-      run_faults(options, std::stoi(given["times"]), given["only"], verdicts);
-    } else {
-      std::printf("vm_rig: timing or faults, not \"%s\"\n", scenario.c_str());
-      return 2;
-    }
+    fdcg::vm::run_all({arguments + 1, arguments + count}, verdicts);
   } catch (const std::exception& error) {
     std::printf("vm_rig: %s\n", error.what());
     return 2;

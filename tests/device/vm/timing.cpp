@@ -25,8 +25,9 @@ void run_timing(const RigOptions& options, int seconds, Verdicts& verdicts) {
     return rig.say_host_words(verdicts);
   }
   const std::uint64_t late = rig.host_counter("late"), lost = rig.host_counter("lost");
+  rig.run_for(10 * rig.period());  // what was missed while the status was read
   rig.missed_ticks = 0;
-  rig.device.record = Record();
+  rig.device.record.restart();
   rig.run_for(seconds * kSecond);
   Record record = rig.device.record;
   rig.refresh_status();
