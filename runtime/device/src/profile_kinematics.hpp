@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The "kinematics" of a profile's JSON. A part of profile_json.cpp.
+#pragma once
+
+#include "json_reader.hpp"
+#include "profile.hpp"
+
+namespace fdcg::dev {
+
+// Of all kinds together; read_kinematics refuses those of another kind.
+inline constexpr Keys kKinematicsKeys{"kind", "radius_m", "lengths_m", "angles_rad"};
+
+// What is wrong goes to the file's error.
+void read_kinematics(const JsonObject& json, KinematicsParams* kinematics);
+// A cartesian device has one to three axes, a rotary one has one, the others three. `profile` is the whole file.
+void check_axis_count(const JsonObject& profile, KinematicsKind kind, int axis_count);
+
+}  // namespace fdcg::dev
