@@ -8,11 +8,13 @@
 namespace fdcg::dev {
 
 // Of all kinds together; read_kinematics refuses those of another kind.
-inline constexpr Keys kKinematicsKeys{"kind", "radius_m", "lengths_m", "angles_rad"};
+inline constexpr Keys kKinematicsKeys{"kind",      "radius_m",          "shoulder_height_m", "upper_m",
+                                      "forearm_m", "origin_m",          "elbow_coupling",    "base_radius_m",
+                                      "lower_m",   "platform_radius_m", "origin_z_m",        "azimuths_rad"};
 
 // What is wrong goes to the file's error.
 void read_kinematics(const JsonObject& json, KinematicsParams* kinematics);
-// A cartesian device has one to three axes, a rotary one has one, the others three. `profile` is the whole file.
+// `profile` is the whole file.
 void check_axis_count(const JsonObject& profile, KinematicsKind kind, int axis_count);
 
 }  // namespace fdcg::dev
