@@ -41,8 +41,7 @@ struct Rig {
     setup.mapping = mapping;
     setup.contact_count = static_cast<int>(contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      for (int k = 0; k < 3; ++k)
-        setup.contacts_m[i][k] = contacts[i][static_cast<std::size_t>(k)];
+      setup.contacts_m[i][0] = contacts[i].x, setup.contacts_m[i][1] = contacts[i].y, setup.contacts_m[i][2] = contacts[i].z;
     }
     const fdcg_scene_config config = fdcg_default_scene_config();
     memory.resize(fdcg_scene_bytes(&config) / 8 + 1);
@@ -233,7 +232,10 @@ TEST_CASE("the same inputs give the same bits, whatever lies in the unused part 
   std::vector<double> seen[2];
   for (int run = 0; run < 2; ++run) {
     Rig rig;
-    if (run == 1) std::memset(rig.input.reports, 0xA5, sizeof rig.input.reports);
+    if (run == 1) {
+      for (RawReport& raw : rig.input.reports)
+        std::fill_n(raw.data, kMaxReportBytes, std::uint8_t{0xA5});
+    }
     rig.press(0.001);
     for (int i = 0; i < 500; ++i) {
       rig.at(0.1 + 0.02 * std::sin(0.1 * i), 0.1 + 0.0001 * i, 0.499 + 0.002 * std::sin(0.37 * i));
