@@ -6,7 +6,8 @@
 
 namespace fdcg::test {
 
-// The sign of ((b - a) x (c - a)) . (d - a), exact. Cost: some 10 ns where rounding cannot matter.
+// The sign of ((b - a) x (c - a)) . (d - a), exact. Cost: some 10 ns where rounding cannot matter, some
+// hundreds where it can.
 int exact_sign(const Hip& a, const Hip& b, const Hip& c, const Hip& d);
 
 }  // namespace fdcg::test

@@ -18,7 +18,8 @@ constexpr double kSlack = 1e-9;  // of a cell: more than the rounding of where i
 constexpr int kTries = 8;        // points tried in a cell before it is given up
 
 // Bounds first, then planes, then edges: most triangles of a cell go by the bounds.
-enum class Meeting { apart, proper, touching };
+// ends_on: the way touches it, and there it ends, whatever way it is.
+enum class Meeting { apart, proper, touching, ends_on };
 
 Meeting meeting(const Triangle& t, const Hip& from, const Hip& to) {
   const auto& [a, b, c] = t;
@@ -32,7 +33,8 @@ Meeting meeting(const Triangle& t, const Hip& from, const Hip& to) {
   if (e0 * e1 < 0) return Meeting::apart;
   const int e2 = exact_sign(from, to, c, a);
   if (std::max({e0, e1, e2}) > 0 && std::min({e0, e1, e2}) < 0) return Meeting::apart;
-  return at_start * at_end < 0 && e0 * e1 * e2 != 0 ? Meeting::proper : Meeting::touching;
+  if (at_start * at_end < 0 && e0 * e1 * e2 != 0) return Meeting::proper;
+  return at_end == 0 && at_start != 0 ? Meeting::ends_on : Meeting::touching;
 }
 
 // Cells along each axis: the surface meets about the square of it.
@@ -82,18 +84,19 @@ std::optional<InsideGrid::Place> InsideGrid::place_of(const Hip& point) const {
   return place;
 }
 
-// Whether the triangle's plane passes the cell's box, slack and rounding counted in; the bounds do already.
-bool InsideGrid::meets(const Triangle& t, const Place& place) const {
-  const Hip u = difference(t[1], t[0]), v = difference(t[2], t[0]);
-  const Hip n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  double at = 0, reach = 0, rounding = 0;
+// The cells of a run along x that a triangle's plane passes, slack and rounding counted in.
+void InsideGrid::meet_row(const Triangle& t, const Hip& normal, std::uint32_t f, Place from, int to,
+                          std::vector<std::pair<std::uint32_t, std::uint32_t>>& met) const {
+  double at = 0, reach = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double middle = low_[i] + (place[i] + 0.5) * cell_[i];
-    at += n[i] * (middle - t[0][i]);
-    reach += std::abs(n[i]) * cell_[i] * (0.5 + kSlack);
-    rounding += std::abs(n[i]);
+    at += normal[i] * (low_[i] + (from[i] + 0.5) * cell_[i] - t[0][i]);
+    reach += std::abs(normal[i]) * (cell_[i] * (0.5 + kSlack) + 1e-12 * size_);
   }
-  return std::abs(at) <= reach + 1e-12 * rounding * size_;
+  const double step = normal[0] * cell_[0];
+  const auto first = static_cast<std::uint32_t>(index(from));
+  for (int i = 0; i <= to - from[0]; ++i) {
+    if (std::abs(at + i * step) <= reach) met.emplace_back(first + static_cast<std::uint32_t>(i), f);
+  }
 }
 
 void InsideGrid::place_triangles() {
@@ -108,13 +111,12 @@ void InsideGrid::place_triangles() {
       from[i] = clamped(i, low - kSlack * cell_[i]);
       to[i] = clamped(i, high + kSlack * cell_[i]);
     }
-    Place p;
+    const Hip u = difference(t[1], t[0]), v = difference(t[2], t[0]);
+    const Hip n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    Place p = from;
     for (p[2] = from[2]; p[2] <= to[2]; ++p[2]) {
-      for (p[1] = from[1]; p[1] <= to[1]; ++p[1]) {
-        for (p[0] = from[0]; p[0] <= to[0]; ++p[0]) {
-          if (meets(t, p)) met.emplace_back(static_cast<std::uint32_t>(index(p)), f);
-        }
-      }
+      for (p[1] = from[1]; p[1] <= to[1]; ++p[1])
+        meet_row(t, n, f, p, to[0], met);
     }
   }
   first_.assign(cells + 1, 0);
@@ -133,25 +135,24 @@ std::size_t InsideGrid::crowd_at(const Hip& point) const {
   return place ? first_[index(*place) + 1] - first_[index(*place)] : 0;
 }
 
-void InsideGrid::count_crossings(std::size_t cell, const Hip& from, const Hip& to, Parity& parity) const {
-  for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
-    const Meeting m = meeting(triangles_[member_[i]], from, to);
-    parity.is_odd ^= m == Meeting::proper;
-    parity.touches |= m == Meeting::touching;
-  }
-}
-
-// Of a way within two neighbouring cells: each triangle counts once.
+// Of a way within two neighbouring cells: each triangle counts once. One that the way touches ends the count.
 InsideGrid::Parity InsideGrid::parity_between(std::size_t a, std::size_t b, const Hip& from, const Hip& to) const {
   Parity parity;
-  count_crossings(a, from, to, parity);
+  const auto is_over_after = [&](std::uint32_t f) {
+    const Meeting m = meeting(triangles_[f], from, to);
+    parity.is_odd ^= m == Meeting::proper;
+    parity.ends_on_surface = m == Meeting::ends_on;
+    parity.touches = m == Meeting::touching || m == Meeting::ends_on;
+    return parity.touches;
+  };
+  for (std::uint32_t i = first_[a]; i < first_[a + 1]; ++i) {
+    if (is_over_after(member_[i])) return parity;
+  }
   if (a == b) return parity;
   for (std::uint32_t i = first_[b]; i < first_[b + 1]; ++i) {  // both lists ascend
     const std::uint32_t f = member_[i];
     if (std::binary_search(member_.begin() + first_[a], member_.begin() + first_[a + 1], f)) continue;
-    const Meeting m = meeting(triangles_[f], from, to);
-    parity.is_odd ^= m == Meeting::proper;
-    parity.touches |= m == Meeting::touching;
+    if (is_over_after(f)) return parity;
   }
   return parity;
 }
@@ -208,6 +209,7 @@ InsideGrid::Where InsideGrid::where(const Hip& point) const {
     if (known_[cell] == Where::surface) continue;
     const Parity parity = parity_between(here, cell, known_point_[cell], point);
     if (!parity.touches) return (known_[cell] == Where::inside) != parity.is_odd ? Where::inside : Where::outside;
+    if (parity.ends_on_surface) break;  // so would every way
   }
   return Where::surface;
 }
@@ -216,7 +218,7 @@ void InsideGrid::cross_cell(std::size_t cell, const Hip& from, const Hip& to, Cr
   for (std::uint32_t i = first_[cell]; i < first_[cell + 1] && !result.is_through; ++i) {
     const Meeting m = meeting(triangles_[member_[i]], from, to);
     result.is_through |= m == Meeting::proper;
-    result.touches |= m == Meeting::touching;
+    result.touches |= m == Meeting::touching || m == Meeting::ends_on;
   }
 }
 

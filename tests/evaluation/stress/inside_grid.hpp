@@ -42,12 +42,15 @@ class InsideGrid {
  private:
   using Place = std::array<int, 3>;
   struct Parity {
-    bool is_odd = false, touches = false;
+    bool is_odd = false;  // of the triangles passed; means nothing where one was touched
+    bool touches = false;
+    bool ends_on_surface = false;  // touches it there
   };
 
   void place_triangles();
   void find_sides();
-  [[nodiscard]] bool meets(const Triangle& t, const Place& place) const;
+  void meet_row(const Triangle& t, const Hip& normal, std::uint32_t f, Place from, int to,
+                std::vector<std::pair<std::uint32_t, std::uint32_t>>& met) const;
   [[nodiscard]] std::size_t index(const Place& p) const {
     return (static_cast<std::size_t>(p[2]) * static_cast<std::size_t>(count_[1]) + static_cast<std::size_t>(p[1])) *
                static_cast<std::size_t>(count_[0]) +
@@ -56,7 +59,6 @@ class InsideGrid {
   [[nodiscard]] std::optional<Place> place_of(const Hip& point) const;  // none: outside of the grid
   [[nodiscard]] int clamped(std::size_t axis, double x) const;
   [[nodiscard]] bool has_triangles(std::size_t cell) const { return first_[cell + 1] > first_[cell]; }
-  void count_crossings(std::size_t cell, const Hip& from, const Hip& to, Parity& parity) const;
   [[nodiscard]] Parity parity_between(std::size_t a, std::size_t b, const Hip& from, const Hip& to) const;
   void cross_cell(std::size_t cell, const Hip& from, const Hip& to, Crossing& result) const;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fdcg::test {
 namespace {
@@ -69,7 +70,7 @@ Judge::Judge(const Specimen& specimen)
 
 std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result,
                            const StepWatch& seen, Verdicts& v) {
-  Tick tick = {before, after, result, hip_of(after.hip), hip_of(after.god_object), 0, 0};
+  Tick tick = {before, after, result, hip_of(after.hip), hip_of(after.god_object), 0, 0, false};
   const double far = std::max({std::abs(tick.hip[0]), std::abs(tick.hip[1]), std::abs(tick.hip[2])});
   tick.rounding = epsilon_ * std::max(far, specimen_.header().extent);
   look_at_numbers(tick);
@@ -124,9 +125,9 @@ void Judge::look_at_growth(Tick& tick, Verdicts& v) const {
 }
 
 // How far behind a merged face's plane a way may begin that meets it. Its corners lie off its plane, so no exact sign tells two
-// such neighbours' sides apart: what is in front of one within the rounding of a plane's distance is in front of the other, or a
-// way would slip through their seam. The step bounds that rounding by 8 eps of the coordinates' sum and two extents; from there
-// to the plane the god-object moves away from the HIP.
+// such neighbours' sides apart: what is in front of one within the rounding of a plane's distance is in front of the other, or
+// a way would slip through their seam. The step bounds that rounding by 8 eps of the coordinates' sum and two extents; from
+// there to the plane the god-object moves away from the HIP.
 double Judge::slab_around(const Hip& x) const {
   const double sum = std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
   return kSlab_eps * epsilon_ * (sum + 2 * specimen_.header().extent);
@@ -207,8 +208,9 @@ void Judge::look_at_way(Tick& tick) {
   if (std::abs(from[0]) + std::abs(from[1]) + std::abs(from[2]) > 8 * specimen_.header().extent) return;
   const bool is_stopped = tick.result.transitions > 0;
   const InsideGrid::Crossing way = specimen_.inside->crossing(hip_of(tick.before.hip), tick.hip);
+  tick.is_way_clear = !way.is_through && !way.touches;
   if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
-  if (!way.is_through && !way.touches && is_stopped) tick.faults |= bit(Fault::thin_air);
+  if (tick.is_way_clear && is_stopped) tick.faults |= bit(Fault::thin_air);
 }
 
 // Around an apex of 10^4 faces the grid's cells hold them all: there one tick in some dozens is asked for.
@@ -221,13 +223,19 @@ bool Judge::is_let_off(const Hip& point) {
 }
 
 void Judge::look_inside(Tick& tick, Verdicts& v) {
+  const bool was_outside = std::exchange(is_outside_, false);
   if (tick.after.state != FDCG_FREE) {
     is_known_outside_ = true;  // if the contact is lost, the HIP has left
     return;
   }
+  if (was_outside && (tick.is_way_clear || is_same(tick.before.god_object, tick.after.god_object))) {
+    is_outside_ = true;
+    return;
+  }
   if (is_let_off(tick.god_object)) return;
   const InsideGrid::Where where = specimen_.inside->where(tick.god_object);  // the HIP, or how far a carried sweep has come
-  if (where == InsideGrid::Where::outside) is_known_outside_ = true;
+  is_outside_ = where == InsideGrid::Where::outside;
+  if (is_outside_) is_known_outside_ = true;
   if (where != InsideGrid::Where::inside || !is_known_outside_) return;
   const bool is_on_its_way = tick.after.sweep.is_carried != 0;  // may start on the surface
   is_known_outside_ = is_on_its_way;                            // once is enough

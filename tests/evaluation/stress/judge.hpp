@@ -57,7 +57,7 @@ class Judge {
   explicit Judge(const Specimen& specimen);
 
   // A new contact: nothing is known of where its HIP is.
-  void begin() { is_known_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0; }
+  void begin() { is_known_outside_ = is_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0; }
 
   // One tick, which began with `before`. Returns a bit for each fault, 1 << fault, and counts them.
   std::uint32_t judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result, const StepWatch& seen,
@@ -71,6 +71,7 @@ class Judge {
     Hip hip, god_object;
     double rounding;  // eps of the scale
     std::uint32_t faults;
+    bool is_way_clear;  // the way from the last HIP to this one surely does not meet the surface
   };
   void look_at_numbers(Tick& tick) const;
   void look_at_growth(Tick& tick, Verdicts& v) const;
@@ -86,6 +87,7 @@ class Judge {
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
   bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
   bool is_known_outside_ = false;
+  bool is_outside_ = false;       // ... and of the last tick's HIP: exactly, in no face's plane
   std::size_t asked_ = 0;         // in crowded cells
   std::uint32_t last_flags_ = 0;  // of the last tick with a finite HIP
   bool was_met_again_ = false;    // ... stopped where a feature was met again
