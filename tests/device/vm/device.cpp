@@ -138,13 +138,11 @@ void Device::note_force(Nanoseconds now) {
   const double before_n = record.force_n;
   record.force_n = std::hypot(force_n[0], force_n[1], force_n[2]);
   record.most_force_n = std::max(record.most_force_n, record.force_n);
-  if (record.force_n != 0) record.last_force = now;
   if (record.force_n == 0 && now >= record.watched_from && record.first_zero == 0) {
     record.first_zero = now;
     record.output_before_zero = record.last_output;
   }
   if (before_n == 0 && record.force_n != 0) record.force_since = now;
-  if (before_n != 0 && record.force_n == 0) record.zero_since = now;
 }
 
 }  // namespace fdcg::vm

@@ -28,17 +28,16 @@ class Hand {
 
 // What the motors did and whom they obeyed.
 struct Record {
-  std::uint64_t sent = 0, answered = 0;       // reports; those that an output report named as the one it answers
-  std::uint64_t outputs = 0, refused = 0;     // output reports, and those that the firmware did not take
-  std::uint64_t misled = 0;                   // non-zero forces that answer no report, or one that must not be used
+  std::uint64_t sent = 0, answered = 0;    // reports; those that an output report named as the one it answers
+  std::uint64_t outputs = 0, refused = 0;  // output reports, and those that the firmware did not take
+  std::uint64_t misled = 0;                // non-zero forces that answer no report, or one that must not be used
   std::uint64_t watchdog_trips = 0;
   std::vector<std::uint32_t> round_trips_ns;  // from a report's sending to the first output that answers it
   Nanoseconds oldest_answer = 0;              // of a non-zero force: since the report that it answers was sent
   double most_force_n = 0;
-  double force_n = 0;                         // now
-  bool is_enabled = false;                    // by the last output report taken
-  Nanoseconds force_since = 0, zero_since = 0;  // when it last became non-zero, zero
-  Nanoseconds last_force = 0;                 // when it was last seen to be non-zero
+  double force_n = 0;           // now
+  bool is_enabled = false;      // by the last output report taken
+  Nanoseconds force_since = 0;  // when it last became non-zero
   Nanoseconds last_output = 0;
   Nanoseconds watched_from = 0, first_zero = 0;  // the first moment without force since `watch`; 0: none yet
   Nanoseconds output_before_zero = 0;            // last_output at that moment

@@ -68,7 +68,8 @@ std::string judge(const Rig& rig, const Expectation& expected, Tally& tally) {
     if (!late.empty()) return late;
   }
   const bool has_force = record.force_n > 0;
-  if (expected.disarms && (has_force || record.force_since > record.first_zero)) return "there is force before it was armed again";
+  if (expected.disarms && (has_force || record.force_since > record.first_zero))
+    return "there is force before it was armed again";
   if (!expected.disarms && !expected.may_disarm && !has_force) return "the force has not come back";
   tally.disarmed += expected.disarms;
   return {};
@@ -107,7 +108,8 @@ void run_strike(RigOptions options, const StrikeKind& kind, int times, Verdicts&
     if (rig.longest_reopening > 0) numbers += words("; answers within %.1f ms of the plug", ms(rig.longest_reopening));
     numbers += words("; oldest answer %.3f ms", ms(rig.device.record.oldest_answer));
   }
-  verdicts.check(true, words("%s: %d times, %d to zero, %d disarmed", name.c_str(), done, tally.zeros, tally.disarmed) + numbers);
+  verdicts.check(true,
+                 words("%s: %d times, %d to zero, %d disarmed", name.c_str(), done, tally.zeros, tally.disarmed) + numbers);
   rig.end_host();
 }
 

@@ -50,19 +50,22 @@ void write_host_files(const RigOptions& options) {
   profile["rate_hz"] = options.rate_hz;
   if (options.has_float_axes) make_axes_floats(profile);
   // the cube's upper face is the device's z = 0
-  const json cube = {{"name", "cube"}, {"file", kCube}, {"pose", {{"scale", 0.2}, {"translation_m", {-0.1, -0.1, -0.2}}}}, {"stiffness_n_per_m", 500},
-                     {"mu_static", 0.5}, {"mu_dynamic", 0.4}};
+  const json cube = {
+      {"name", "cube"},           {"file", kCube},    {"pose", {{"scale", 0.2}, {"translation_m", {-0.1, -0.1, -0.2}}}},
+      {"stiffness_n_per_m", 500}, {"mu_static", 0.5}, {"mu_dynamic", 0.4}};
   write_json(kScene, {{"fdcg_scene", 1},
                       {"objects", {cube}},
                       {"devices", {{{"name", "virtual"}, {"source", "hid"}, {"profile", profile}, {"force_limit_n", 3}}}},
                       {"loop", {{"servo_priority", 80}, {"writer_priority", 70}, {"backend", options.backend}}}});
   if (!options.is_log_small) return;
   const std::string size = "size=" + std::to_string(kSmallDiskKb) + "k";
-  if (mount("small", kSmallDisk, "tmpfs", 0, size.c_str())) throw std::runtime_error(std::string("no small disk: ") + std::strerror(errno));
+  if (mount("small", kSmallDisk, "tmpfs", 0, size.c_str()))
+    throw std::runtime_error(std::string("no small disk: ") + std::strerror(errno));
 }
 
 std::vector<std::string> host_command(const RigOptions& options) {
-  std::vector<std::string> command = {"/bin/fdcg-servo", "run", kScene, "--status", "json", "--status-every", std::to_string(kStatusPeriodS)};
+  std::vector<std::string> command = {
+      "/bin/fdcg-servo", "run", kScene, "--status", "json", "--status-every", std::to_string(kStatusPeriodS)};
   if (!options.has_log) {
     command.push_back("--no-log");
     return command;

@@ -22,7 +22,8 @@ constexpr std::size_t kKeptWords = 40;
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
   std::vector<char*> words;
-  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
+  for (const std::string& word : command)
+    words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   execv(words[0], words.data());
   _exit(127);
@@ -54,7 +55,8 @@ void HostProcess::start(const std::vector<std::string>& command) {
 
 void HostProcess::say(const std::string& line) {
   const std::string words = line + '\n';
-  if (input_ >= 0 && write(input_, words.data(), words.size()) < 0 && errno != EPIPE) throw std::runtime_error("the host takes no word");
+  if (input_ >= 0 && write(input_, words.data(), words.size()) < 0 && errno != EPIPE)
+    throw std::runtime_error("the host takes no word");
 }
 
 void HostProcess::signal(int number) {

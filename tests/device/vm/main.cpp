@@ -45,7 +45,8 @@ void run_all(const std::vector<std::string>& given, Verdicts& verdicts) {
     for (++at; at < given.size() && given[at] != "then"; ++at) {
       const std::size_t equals = given[at].find('=');
       const auto setting = settings.find(given[at].substr(0, equals));
-      if (equals == std::string::npos || setting == settings.end()) throw std::runtime_error("there is no setting " + given[at]);
+      if (equals == std::string::npos || setting == settings.end())
+        throw std::runtime_error("there is no setting " + given[at]);
       setting->second = given[at].substr(equals + 1);
     }
     run_scenario(name, settings, verdicts);

@@ -97,6 +97,8 @@ class UhidPort final : public Port {
 
 }  // namespace
 
-std::unique_ptr<Port> make_uhid_port(PortIdentity identity) { return std::make_unique<UhidPort>(std::move(identity)); }
+std::unique_ptr<Port> make_uhid_port(PortIdentity identity) {
+  return std::make_unique<UhidPort>(std::move(identity));
+}
 
 }  // namespace fdcg::vm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A USB device over USB/IP: the kernel's vhci_hcd is the host controller, and the wire is a socket pair whose other end is here.
-// The kernel sends requests (URBs) with a number each; a request stays with us until the device has something to say to it, so
-// holding back an interrupt OUT request is a device that answers NAK.
+// A USB device over USB/IP: the kernel's vhci_hcd is the host controller, and the wire is a socket pair whose other end is
+// here. The kernel sends requests (URBs) with a number each; a request stays with us until the device has something to say to
+// it, so holding back an interrupt OUT request is a device that answers NAK.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -28,14 +28,15 @@ constexpr char kAttach[] = "/sys/devices/platform/vhci_hcd.0/attach";
 // usbip_header of the kernel's Documentation/usb/usbip_protocol.rst; every number big-endian.
 struct Header {
   std::uint32_t command = 0, number = 0, device = 0, is_in = 0, endpoint = 0;
-  std::uint32_t argument[5] = {};  // submit: flags, length, ...; submitted: status, length, ...; unlink: number; unlinked: status
+  std::uint32_t argument[5] =
+      {};  // submit: flags, length, ...; submitted: status, length, ...; unlink: number; unlinked: status
   std::uint8_t setup[8] = {};
 };
 static_assert(sizeof(Header) == 48);
 
 struct Request {
   std::uint32_t number = 0;
-  Bytes data;           // OUT
+  Bytes data;            // OUT
   std::size_t room = 0;  // IN
 };
 
@@ -97,7 +98,8 @@ class UsbPort final : public Port {
     if (count < 0) return;  // nothing
     if (count == 0) return unplug();
     unread_.insert(unread_.end(), bytes, bytes + count);
-    while (handle_message(user)) continue;
+    while (handle_message(user))
+      continue;
   }
 
  private:
@@ -110,7 +112,8 @@ class UsbPort final : public Port {
     const std::size_t length = is_submit ? ntohl(header.argument[1]) : 0;
     const std::size_t total = sizeof header + (is_submit && header.is_in == 0 ? length : 0);
     if (unread_.size() < total) return false;
-    Request request{ntohl(header.number), Bytes(unread_.begin() + sizeof header, unread_.begin() + static_cast<long>(total)), length};
+    Request request{ntohl(header.number), Bytes(unread_.begin() + sizeof header, unread_.begin() + static_cast<long>(total)),
+                    length};
     unread_.erase(unread_.begin(), unread_.begin() + static_cast<long>(total));
     if (is_submit) on_submit(header, std::move(request), user);
     if (ntohl(header.command) == kUnlink) on_unlink(header);
@@ -171,11 +174,11 @@ class UsbPort final : public Port {
       return reply(request.number, 0, request.data.size());
     }
     Bytes data;
-    if (setup[0] == 0x80 && setup[1] == 0) data = {0, 0};                                         // GET_STATUS
+    if (setup[0] == 0x80 && setup[1] == 0) data = {0, 0};  // GET_STATUS
     if (setup[0] == 0x80 && setup[1] == 6) data = descriptor(value >> 8, value & 0xFF);
     if (setup[0] == 0x81 && setup[1] == 6 && value >> 8 == 0x22) data = identity_.report_descriptor;
     if (setup[0] == 0xA1 && setup[1] == 1 && value >> 8 == 3) data = user.on_get_feature(value & 0xFF);
-    if (data.empty()) return reply(request.number, -EPIPE, 0);                                    // STALL
+    if (data.empty()) return reply(request.number, -EPIPE, 0);  // STALL
     data.resize(std::min(data.size(), asked));
     reply(request.number, 0, data.size(), data);
   }
@@ -185,18 +188,22 @@ class UsbPort final : public Port {
     const auto high = [](std::size_t x) { return static_cast<std::uint8_t>(x >> 8 & 0xFF); };
     const auto vendor = identity_.vendor, product = identity_.product;
     const std::size_t report_bytes = identity_.report_descriptor.size();
+    // clang-format off
     if (type == 1)  // device: USB 2.0, one configuration, strings 1 to 3
       return {18, 1, 0, 2, 0, 0, 0, 64, low(vendor), high(vendor), low(product), high(product), 0, 1, 1, 2, 3, 1};
-    if (type == 2)  // configuration: one HID interface, an interrupt endpoint each way, every microframe
-      return {9, 2, 41, 0, 1, 1, 0, 0x80, 50,                                            // configuration: bus-powered, 100 mA
-              9, 4, 0, 0, 2, 3, 0, 0, 0,                                                 // interface 0: HID, two endpoints
-              9, 0x21, 0x11, 1, 0, 1, 0x22, low(report_bytes), high(report_bytes),       // HID 1.11
-              7, 5, 0x81, 3, kPacketBytes, 0, 1, 7, 5, 0x01, 3, kPacketBytes, 0, 1};     // IN 1, OUT 1
+    if (type == 2)
+      return {9, 2, 41, 0, 1, 1, 0, 0x80, 50,                                        // configuration: bus-powered, 100 mA
+              9, 4, 0, 0, 2, 3, 0, 0, 0,                                             // interface 0: HID, two endpoints
+              9, 0x21, 0x11, 1, 0, 1, 0x22, low(report_bytes), high(report_bytes),   // HID 1.11, one report descriptor
+              7, 5, 0x81, 3, kPacketBytes, 0, 1,                                     // interrupt IN 1, every microframe
+              7, 5, 0x01, 3, kPacketBytes, 0, 1};                                    // interrupt OUT 1
+    // clang-format on
     if (type == 3 && index == 0) return {4, 3, 9, 4};  // strings are in English
     if (type != 3 || index > 3) return {};
     const std::string& text = index == 1 ? identity_.maker : index == 2 ? identity_.name : identity_.serial;
     Bytes data = {low(2 + 2 * text.size()), 3};
-    for (const char letter : text) data.insert(data.end(), {static_cast<std::uint8_t>(letter), 0});
+    for (const char letter : text)
+      data.insert(data.end(), {static_cast<std::uint8_t>(letter), 0});
     return data;
   }
 
@@ -210,6 +217,8 @@ class UsbPort final : public Port {
 
 }  // namespace
 
-std::unique_ptr<Port> make_usb_port(PortIdentity identity) { return std::make_unique<UsbPort>(std::move(identity)); }
+std::unique_ptr<Port> make_usb_port(PortIdentity identity) {
+  return std::make_unique<UsbPort>(std::move(identity));
+}
 
 }  // namespace fdcg::vm

@@ -130,10 +130,11 @@ bool Rig::host_says_log_failed() {
 
 void Rig::say_host_words(Verdicts& verdicts) const {
   const Record& record = device.record;
-  verdicts.say(words("  device: %llu reports sent, %llu answered; %llu outputs, %llu refused; enabled %d, force %.3f N, %llu watchdog trips",
-                     static_cast<unsigned long long>(record.sent), static_cast<unsigned long long>(record.answered),
-                     static_cast<unsigned long long>(record.outputs), static_cast<unsigned long long>(record.refused),
-                     record.is_enabled, record.force_n, static_cast<unsigned long long>(record.watchdog_trips)));
+  verdicts.say(words(
+      "  device: %llu reports sent, %llu answered; %llu outputs, %llu refused; enabled %d, force %.3f N, %llu watchdog trips",
+      static_cast<unsigned long long>(record.sent), static_cast<unsigned long long>(record.answered),
+      static_cast<unsigned long long>(record.outputs), static_cast<unsigned long long>(record.refused), record.is_enabled,
+      record.force_n, static_cast<unsigned long long>(record.watchdog_trips)));
   for (const std::string& line : host.words())
     verdicts.say("  host: " + line);
   if (host.status_count() > 0) verdicts.say("  host: " + host.status().dump());

@@ -52,7 +52,8 @@ Expectation strike_no_output(Rig& rig) {
   rig.device.take_output(false);
   rig.run_for(7 * kSecond);
   rig.device.take_output(true);
-  if (!is_answered_again(rig, kReopenLimit)) expected.broken = "the host writes nothing 5 s after the device takes output again";
+  if (!is_answered_again(rig, kReopenLimit))
+    expected.broken = "the host writes nothing 5 s after the device takes output again";
   rig.run_for(kSecond / 10);
   return expected;
 }
@@ -90,7 +91,8 @@ Expectation strike_disk_full(Rig& rig) {
   const int filler = open(kFiller, O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   if (filler < 0) throw std::runtime_error("the small disk does not open");
   const std::string block(4096, 'x');
-  while (write(filler, block.data(), block.size()) > 0) continue;
+  while (write(filler, block.data(), block.size()) > 0)
+    continue;
   close(filler);
   rig.run_for(kSecond / 2);
   if (!rig.host_says_log_failed()) expected.broken = "the host does not say that its log has ended";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bursts of bad reports. The gate lets two missing reports pass, fades from the third on, and disarms after 10 ms; burst lengths
-// stay clear of the edges between the three, so that it is certain which of them must happen.
+// Bursts of bad reports. The gate lets two missing reports pass, fades from the third on, and disarms after 10 ms; burst
+// lengths stay clear of the edges between the three, so that it is certain which of them must happen.
 #include <algorithm>
 #include <deque>
 
@@ -10,16 +10,19 @@ namespace fdcg::vm {
 namespace {
 
 constexpr Nanoseconds kSilence = 10 * kMillisecond;  // the gate's
-constexpr double kMissedPeriods = 3.5;               // from the last good report until the third missing one is overdue by half a period
+constexpr double kMissedPeriods = 3.5;  // from the last good report until the third missing one is overdue by half a period
 constexpr Nanoseconds kAfterwards = 60 * kMillisecond;
 
 // Reports in a burst: passes, fades, or disarms.
 int burst_length(Rig& rig, int longest) {
   const int silence = static_cast<int>(kSilence / rig.period());
   switch (rig.random_between(0, 2)) {
-    case 0: return static_cast<int>(rig.random_between(1, 2));
-    case 1: return static_cast<int>(rig.random_between(5, silence - 2));
-    default: return static_cast<int>(rig.random_between(silence + 3, longest));
+    case 0:
+      return static_cast<int>(rig.random_between(1, 2));
+    case 1:
+      return static_cast<int>(rig.random_between(5, silence - 2));
+    default:
+      return static_cast<int>(rig.random_between(silence + 3, longest));
   }
 }
 
@@ -56,7 +59,8 @@ Expectation burst(Rig& rig, int count, const Device::Wire& wire) {
 }
 
 std::uint32_t get32(const Bytes& report, std::size_t at) {
-  return report[at] | std::uint32_t{report[at + 1]} << 8 | std::uint32_t{report[at + 2]} << 16 | std::uint32_t{report[at + 3]} << 24;
+  return report[at] | std::uint32_t{report[at + 1]} << 8 | std::uint32_t{report[at + 2]} << 16 |
+         std::uint32_t{report[at + 3]} << 24;
 }
 
 void put32(Bytes& report, std::size_t at, std::uint32_t value) {
@@ -81,7 +85,8 @@ Expectation strike_short(Rig& rig) {
   });
 }
 
-// To usbhid a packet beyond the report's length is an error of the line: it waits before it asks again, so that silence follows.
+// To usbhid a packet beyond the report's length is an error of the line: it waits before it asks again, so that silence
+// follows.
 Expectation strike_long(Rig& rig) {
   Expectation expected = burst(rig, burst_length(rig, kLongest), [&](const Bytes& report) {
     Bytes longer = report;
@@ -100,7 +105,8 @@ Expectation strike_garbled(Rig& rig) {
     Bytes other = report;
     const auto bits = static_cast<std::uint64_t>(rig.random_between(1, 3));
     for (std::uint64_t i = 0; i < bits; ++i) {  // different bits: in thirds of the report
-      const auto place = static_cast<std::size_t>(rig.random_between(0, FDCG_FW_INPUT_BYTES / 3 - 1)) + i * (FDCG_FW_INPUT_BYTES / 3);
+      const auto place =
+          static_cast<std::size_t>(rig.random_between(0, FDCG_FW_INPUT_BYTES / 3 - 1)) + i * (FDCG_FW_INPUT_BYTES / 3);
       other[place] ^= static_cast<std::uint8_t>(1 << rig.random_between(0, 7));
     }
     rig.device.send(other);

@@ -19,7 +19,8 @@ void run_timing(const RigOptions& options, int seconds, Verdicts& verdicts) {
   Rig rig(options);
   rig.device.plug(true);
   rig.start_host();
-  const std::string name = words("%s over %s, %d Hz", options.is_usb ? "usb" : "uhid", options.backend.c_str(), options.rate_hz);
+  const std::string name =
+      words("%s over %s, %d Hz", options.is_usb ? "usb" : "uhid", options.backend.c_str(), options.rate_hz);
   if (!rig.feel() || !rig.refresh_status()) {
     verdicts.check(false, name + ": the host gives no force");
     return rig.say_host_words(verdicts);
@@ -37,13 +38,13 @@ void run_timing(const RigOptions& options, int seconds, Verdicts& verdicts) {
     return rig.say_host_words(verdicts);
   }
   const std::uint64_t late_now = rig.host_counter("late") - late, lost_now = rig.host_counter("lost") - lost;
-  verdicts.say(words("%s, %d s: %llu reports, %llu answered; round trip p50 %.1f, p99 %.1f, p99.9 %.1f, max %.1f us; most force %.2f N",
-                     name.c_str(), seconds, static_cast<unsigned long long>(record.sent),
-                     static_cast<unsigned long long>(record.answered), quantile_us(record.round_trips_ns, 0.5),
-                     quantile_us(record.round_trips_ns, 0.99), quantile_us(record.round_trips_ns, 0.999),
-                     quantile_us(record.round_trips_ns, 1), record.most_force_n));
-  bool is_good = verdicts.check(late_now == 0 && lost_now == 0, name + words(": %d late, %d lost", static_cast<int>(late_now),
-                                                                            static_cast<int>(lost_now)));
+  verdicts.say(words(
+      "%s, %d s: %llu reports, %llu answered; round trip p50 %.1f, p99 %.1f, p99.9 %.1f, max %.1f us; most force %.2f N",
+      name.c_str(), seconds, static_cast<unsigned long long>(record.sent), static_cast<unsigned long long>(record.answered),
+      quantile_us(record.round_trips_ns, 0.5), quantile_us(record.round_trips_ns, 0.99),
+      quantile_us(record.round_trips_ns, 0.999), quantile_us(record.round_trips_ns, 1), record.most_force_n));
+  bool is_good = verdicts.check(late_now == 0 && lost_now == 0,
+                                name + words(": %d late, %d lost", static_cast<int>(late_now), static_cast<int>(lost_now)));
   is_good &= verdicts.check(record.sent - record.answered <= 1 && rig.missed_ticks == 0,
                             name + words(": %d reports without answer, %d ticks missed by the device itself",
                                          static_cast<int>(record.sent - record.answered), static_cast<int>(rig.missed_ticks)));
@@ -52,7 +53,8 @@ void run_timing(const RigOptions& options, int seconds, Verdicts& verdicts) {
   is_good &= verdicts.check(record.force_n > 0 && record.misled == 0, name + ": force to the end, none misled");
   const bool is_ended = rig.end_host();
   is_good &= verdicts.check(is_ended && rig.host.ending() == 0, name + words(": the host ends with %d", rig.host.ending()));
-  is_good &= verdicts.check(rig.device.record.force_n == 0 && rig.device.record.watchdog_trips == 0, name + ": zero force at the end, by the host");
+  is_good &= verdicts.check(rig.device.record.force_n == 0 && rig.device.record.watchdog_trips == 0,
+                            name + ": zero force at the end, by the host");
   if (!is_good) rig.say_host_words(verdicts);
 }
 
