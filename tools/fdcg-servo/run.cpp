@@ -123,6 +123,7 @@ class Session {
   void obey(const std::string& command);
   void look();
   void notice(std::size_t device);
+  void notice_connection(std::size_t device);
   void arm_where_wanted(std::size_t device);
   void say(const std::string& line);
   void show_status();
@@ -180,17 +181,16 @@ void Session::show_status() {
 void Session::arm_where_wanted(std::size_t device) {
   Seen& seen = seen_[device];
   const dev::TickOutput& last = looks_[device].status.last;
-  if (last.phase == dev::Phase::kRamping || last.phase == dev::Phase::kArmed) seen.wants_arming = false;
-  if (last.fault == dev::Fault::kUnknownLimit) seen.wants_arming = false;
+  const std::uint64_t* const disarmed = looks_[device].status.counters.disarmed;
+  const bool was_armed = std::any_of(disarmed, disarmed + dev::kFaults, [](std::uint64_t count) { return count != 0; });
+  if (was_armed || last.phase != dev::Phase::kDisarmed || last.fault == dev::Fault::kUnknownLimit) seen.wants_arming = false;
   const bool is_there = looks_[device].connection.connection == dev::Connection::kOpen && looks_[device].status.counters.ticks > 0;
   if (seen.wants_arming && is_there && seconds() >= next_arming_s_) host_.arm(static_cast<int>(device));
 }
 
-// Tells what has changed since the last look.
-void Session::notice(std::size_t device) {
+void Session::notice_connection(std::size_t device) {
   Seen& seen = seen_[device];
   const DeviceLook& look = looks_[device];
-  const dev::DeviceStatus& status = look.status;
   if (look.connection.connection != seen.connection) {
     say(look.name + (look.connection.connection == dev::Connection::kOpen ? ": open" : ": gone"));
     seen.connection = look.connection.connection;
@@ -199,6 +199,13 @@ void Session::notice(std::size_t device) {
     seen.problem = look.connection.problem;
     if (!seen.problem.empty()) say(look.name + ": " + seen.problem);
   }
+}
+
+// Tells what has changed since the last look.
+void Session::notice(std::size_t device) {
+  Seen& seen = seen_[device];
+  const DeviceLook& look = looks_[device];
+  const dev::DeviceStatus& status = look.status;
   for (int i = 1; i < dev::kFaults; ++i) {
     const auto fault = static_cast<dev::Fault>(i);
     if (status.counters.disarmed[i] > seen.disarmed[i]) say(look.name + ": disarmed: " + dev::fault_text(fault));
@@ -219,6 +226,7 @@ void Session::look() {
   for (std::size_t i = 0; i < looks_.size(); ++i) {
     looks_[i].connection = host_.connection(static_cast<int>(i));
     looks_[i].status = host_.status(static_cast<int>(i));
+    notice_connection(i);
     notice(i);
     arm_where_wanted(i);
   }
@@ -271,9 +279,9 @@ void Session::run() {
 int Session::end(const std::string& stop_problem) {
   bool is_clean = true;
   for (std::size_t i = 0; i < looks_.size(); ++i) {
-    looks_[i].connection = host_.connection(static_cast<int>(i));
+    const dev::ConnectionReport after = host_.connection(static_cast<int>(i));  // all are closed: only is_over tells
     looks_[i].status = host_.status(static_cast<int>(i));
-    const bool is_played = looks_[i].connection.is_over;  // a recording's end is no fault
+    const bool is_played = after.is_over;  // a recording's end is no fault
     if (!is_played) notice(i);
     const bool is_missing = looks_[i].status.opened == 0;
     is_clean = is_clean && (is_played || (!is_trouble(looks_[i].status.last.fault) && !is_missing));

@@ -25,7 +25,7 @@ std::string status_json(const char* event, double seconds, const std::vector<Dev
 // Some lines a device: what it did and how long it took.
 std::string summary_text(const std::vector<DeviceLook>& looks);
 
-// Of the last disarming: "silence". Nothing was wrong with kNone and kCommanded.
+// Something went wrong: not kNone, and not the user's own doing.
 bool is_trouble(dev::Fault fault);
 std::uint64_t rejected_in_all(const dev::TickCounters& counters);
 
