@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device in memory with knobs for all that a real one does wrong, and a profile and a scene for it: the tip moves along z, the
-// top of a cube is at z = 0 of the device's frame. It counts what the host must never do: read, write or close it at the wrong
-// time. Reading takes no lock and no heap.
+// A device in memory with knobs for all that a real one does wrong, and a profile and a scene for it: the tip moves along z,
+// the top of a cube is at z = 0 of the device's frame. It counts what the host must never do: read, write or close it at the
+// wrong time. Reading takes no lock and no heap.
 #pragma once
 
 #include <time.h>
@@ -23,7 +23,9 @@ inline void sleep_ns(std::uint64_t ns) {
   const timespec pause{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
   nanosleep(&pause, nullptr);
 }
-inline void sleep_ms(int ms) { sleep_ns(static_cast<std::uint64_t>(ms) * 1'000'000); }
+inline void sleep_ms(int ms) {
+  sleep_ns(static_cast<std::uint64_t>(ms) * 1'000'000);
+}
 
 // True as soon as `is_so` is, false after `ms`.
 template <class Condition>
@@ -84,14 +86,14 @@ struct FakeDevice {
   // Knobs.
   std::atomic<bool> is_plugged{true}, is_silent{false}, holds_reads{false}, holds_writes{false}, refuses_writes{false};
   std::atomic<double> tip_z_m{0.01};
-  std::atomic<int> burst{0};      // reports that wait all at once
-  std::atomic<int> excess{0};     // bytes too many on each report
+  std::atomic<int> burst{0};   // reports that wait all at once
+  std::atomic<int> excess{0};  // bytes too many on each report
   std::atomic<int> emergency{-1};
   std::uint64_t period_ns = 1'000'000;
   // What it saw.
   std::atomic<int> opened{0}, closed{0}, misused{0}, safe_stops{0};
   std::atomic<std::uint64_t> writes{0}, last_write_ns{0}, reads{0};
-  std::atomic<double> force_n{0};           // of the last output report that it took
+  std::atomic<double> force_n{0};  // of the last output report that it took
   std::atomic<bool> is_enabled{false};
   std::atomic<std::uint32_t> sequence{0}, echo{0};
   std::atomic<bool> is_open{false};
@@ -116,7 +118,8 @@ class FakeTransport final : public Transport {
     const Inside inside(device_.inside_reads);
     device_.misused += !device_.is_open;
     ++device_.reads;
-    while (device_.holds_reads) sleep_ms(1);
+    while (device_.holds_reads)
+      sleep_ms(1);
     if (!device_.is_plugged) return {ReadStatus::kLost, 0};
     if (!wait_for_report(timeout_ms)) return {ReadStatus::kTimeout, 0};
     if (!device_.is_plugged) return {ReadStatus::kLost, 0};
@@ -126,13 +129,15 @@ class FakeTransport final : public Transport {
     std::uint8_t report[kMaxReportBytes] = {};
     encode_input(profile_, sample, report);
     const int bytes = std::min(profile_.input.bytes + device_.excess.load(), capacity);
-    for (int i = 0; i < bytes; ++i) data[i] = i < kMaxReportBytes ? report[i] : 0;
+    for (int i = 0; i < bytes; ++i)
+      data[i] = i < kMaxReportBytes ? report[i] : 0;
     return {ReadStatus::kReport, bytes};
   }
   bool write(const std::uint8_t* data, int bytes) override {
     const Inside inside(device_.inside_writes);
     device_.misused += !device_.is_open;
-    while (device_.holds_writes) sleep_ns(300'000);
+    while (device_.holds_writes)
+      sleep_ns(300'000);
     device_.last_write_ns = monotonic_ns();
     ++device_.writes;
     if (!device_.is_plugged || device_.refuses_writes) return false;

@@ -2,13 +2,14 @@
 // The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind.
 #include "host.hpp"
 
-#include <catch2/catch.hpp>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <catch2/catch.hpp>
 
 #include <fstream>
 
+#include "device_c11.h"
 #include "emergency.hpp"
 #include "fake_device.hpp"
 #include "fdcg/bake.hpp"
@@ -39,8 +40,10 @@ struct Hosted {
   Host host{[this](const DeviceConfig&, HidBackend) { return std::make_unique<FakeTransport>(*devices[made++]); }};
 
   explicit Hosted(int count = 1) {
-    for (int i = 0; i < count; ++i) devices.push_back(std::make_unique<FakeDevice>());
-    while (static_cast<int>(config.devices.size()) < count) config.devices.push_back(config.devices[0]);
+    for (int i = 0; i < count; ++i)
+      devices.push_back(std::make_unique<FakeDevice>());
+    while (static_cast<int>(config.devices.size()) < count)
+      config.devices.push_back(config.devices[0]);
   }
   void start() {
     REQUIRE(host.open(config) == "");
@@ -265,10 +268,13 @@ TEST_CASE("a stop that is asked for ends the wait at once, from any thread or si
   CHECK_FALSE(hosted.host.wait_ms(10));
   const std::uint64_t before_ns = monotonic_ns();
   Thread other;
-  REQUIRE(other.start("stopper", [&] {
-    sleep_ms(20);
-    hosted.host.request_stop();
-  }).empty());
+  REQUIRE(other
+              .start("stopper",
+                     [&] {
+                       sleep_ms(20);
+                       hosted.host.request_stop();
+                     })
+              .empty());
   CHECK(hosted.host.wait_ms(20'000));
   CHECK(monotonic_ns() - before_ns < 5'000'000'000);
   CHECK(hosted.host.is_stopping());
@@ -281,6 +287,16 @@ TEST_CASE("a scene that cannot be run is refused with its reason") {
   HostConfig config = fake_config("no_such_file.fdcg");
   CHECK(host.open(config).find("no_such_file.fdcg") != std::string::npos);
   CHECK(host.start() == "no scene is open");
+  FakeDevice device;
+  Host other([&](const DeviceConfig&, HidBackend) { return std::make_unique<FakeTransport>(device); });
+  REQUIRE(other.open(fake_config("")) == "");
+  REQUIRE(other.start() == "");
+  CHECK(other.start() == "the host is running already");
+  CHECK(other.open(fake_config("")).find("stop it first") != std::string::npos);
+  CHECK(other.stop() == "");
+  CHECK(other.start() == "the host has stopped; open the scene again");
+  REQUIRE(other.open(fake_config("")) == "");
+  CHECK(other.start() == "");
   config = fake_config("");
   config.devices.clear();
   CHECK(host.open(config).find("devices") != std::string::npos);
@@ -288,36 +304,52 @@ TEST_CASE("a scene that cannot be run is refused with its reason") {
   CHECK(host.open(config).find("at most 16") != std::string::npos);
 }
 
+TEST_CASE("the C API refuses what is not right, with the reason") {
+  CHECK(refuses_from_c() == 0);
+}
+
+TEST_CASE("a C program runs a host") {
+  const std::string scene = R"({"fdcg_scene": 1,
+    "objects": [{"name": "cube", "file": ")" + cube_file() + R"(", "motion": {"kind": "driven"}}],
+    "devices": [{"name": "toy", "source": "simulated", "mapping": {"offset_m": [0, 0, 5]}}],
+    "loop": {"servo_priority": 0, "writer_priority": 0, "lock_memory": false}})";
+  CHECK(runs_from_c(scene.c_str(), "cube") == 0);
+}
+
 // In a process of its own: crashes with a force on. The descriptor stands for a hidraw node.
-static void crash_with_force(int descriptor, int signal) {
+static void crash_with_force(int descriptor, int crash) {
+  for (const int one : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
+    signal(one, SIG_DFL);  // the test framework has its own
   Hosted hosted;
   hosted.device().emergency = descriptor;
   install_crash_handlers();
   hosted.start();
   hosted.press();
-  raise(signal);
+  raise(crash);
 }
 
 TEST_CASE("a crash sends zero force and the safe stop on the descriptor kept for it, then dies of its signal") {
   static_cast<void>(cube_file());
-  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) {
+  for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) {
     int ends[2];
     REQUIRE(pipe(ends) == 0);
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {
       close(ends[0]);
-      crash_with_force(ends[1], signal);
+      crash_with_force(ends[1], crash);
       _exit(0);
     }
     close(ends[1]);
     std::uint8_t data[256];
     std::size_t count = 0;
-    for (ssize_t n = 0; (n = read(ends[0], data + count, sizeof data - count)) > 0;) count += static_cast<std::size_t>(n);
+    for (ssize_t n = 0; (n = read(ends[0], data + count, sizeof data - count)) > 0;)
+      count += static_cast<std::size_t>(n);
     close(ends[0]);
     int status = 0;
     REQUIRE(waitpid(child, &status, 0) == child);
-    CHECK((WIFSIGNALED(status) || WEXITSTATUS(status) != 0));
+    CHECK(WIFSIGNALED(status));
+    CHECK(WTERMSIG(status) == crash);
     const Profile profile = fake_profile();
     REQUIRE(count == static_cast<std::size_t>(profile.output.bytes) + profile.safe_stop[0].bytes);
     Command command;

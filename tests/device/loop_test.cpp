@@ -54,7 +54,8 @@ GatedForce gated_force() {
   Gate gate;
   gate.begin(profile.limits, profile.axis_count, profile.rate_hz, 0);
   GateInput input;
-  for (int axis = 0; axis < 3; ++axis) input.tip.jacobian[axis][axis] = 1;
+  for (int axis = 0; axis < 3; ++axis)
+    input.tip.jacobian[axis][axis] = 1;
   input.has_sample = true;
   GatedForce force;
   for (int tick = 0; tick < 2000; ++tick) {
@@ -106,10 +107,14 @@ TEST_CASE("an event wakes its waiter, every time") {
 TEST_CASE("a thread that does not end is reported, and can be left alone") {
   std::atomic<bool> ends{false}, has_ended{false};
   Thread thread;
-  REQUIRE(thread.start("slow", [&] {
-    while (!ends) sleep_ms(1);
-    has_ended = true;
-  }).empty());
+  REQUIRE(thread
+              .start("slow",
+                     [&] {
+                       while (!ends)
+                         sleep_ms(1);
+                       has_ended = true;
+                     })
+              .empty());
   CHECK_FALSE(thread.join_within(5 * kMsNs));
   thread.abandon();
   CHECK_FALSE(thread.is_started());
@@ -138,9 +143,11 @@ TEST_CASE("nobody is inside a link when it is closed") {
     is_usable = true;
     link.open();
     const std::uint64_t before = entered;
-    while (entered == before) std::this_thread::yield();
+    while (entered == before)
+      std::this_thread::yield();
     link.close();
-    while (!link.is_empty()) std::this_thread::yield();
+    while (!link.is_empty())
+      std::this_thread::yield();
     is_usable = false;
   }
   ends = true;
@@ -189,7 +196,8 @@ TEST_CASE("after a write that was held the first thing sent is the newest") {
   REQUIRE(within_ms(1000, [&] { return rig.device.inside_writes == 1; }));
   sleep_ms(8);
   CHECK(rig.writer.busy_ns(monotonic_ns()) >= 7 * kMsNs);
-  for (std::uint32_t echo = 2; echo <= 500; ++echo) rig.writer.put(GatedForce(), echo);
+  for (std::uint32_t echo = 2; echo <= 500; ++echo)
+    rig.writer.put(GatedForce(), echo);
   rig.device.holds_writes = false;
   REQUIRE(within_ms(1000, [&] { return rig.device.writes >= 2; }));
   CHECK(rig.device.echo == 500);
@@ -277,7 +285,8 @@ TEST_CASE("a loss is told once, after its zero force is on the way, and the devi
   CHECK(rig.lost.wait(0));
   CHECK(rig.servo.lost_opening() == 1);
   const std::uint64_t reads = rig.device.reads, before_ns = monotonic_ns();
-  for (int i = 0; i < 20; ++i) rig.servo.tick();
+  for (int i = 0; i < 20; ++i)
+    rig.servo.tick();
   CHECK(rig.device.reads == reads);
   CHECK(monotonic_ns() - before_ns >= 20 * kMsNs);  // asleep, not spinning
   CHECK_FALSE(rig.lost.wait(0));

@@ -66,12 +66,12 @@ Function next(const char* name) {
 }  // namespace
 
 // Found at the first call, which is before any thread counts; a magic static would lock by itself.
-#define FDCG_COUNTED_LOCK(name, type)                                     \
-  extern "C" int name(type* lock) {                                       \
-    static std::atomic<int (*)(type*)> real{nullptr};                     \
+#define FDCG_COUNTED_LOCK(name, type)                                    \
+  extern "C" int name(type* lock) {                                      \
+    static std::atomic<int (*)(type*)> real{nullptr};                    \
     if (real.load() == nullptr) real.store(next<int (*)(type*)>(#name)); \
-    count(lock_calls);                                                    \
-    return real.load()(lock);                                             \
+    count(lock_calls);                                                   \
+    return real.load()(lock);                                            \
   }
 FDCG_COUNTED_LOCK(pthread_mutex_lock, pthread_mutex_t)
 FDCG_COUNTED_LOCK(pthread_mutex_trylock, pthread_mutex_t)
@@ -81,8 +81,14 @@ FDCG_COUNTED_LOCK(pthread_rwlock_wrlock, pthread_rwlock_t)
 
 namespace fdcg::dev::test {
 
-bool can_count_thread_calls() { return FDCG_COUNTS != 0; }
-void count_calls_of_this_thread(bool is_counting) { is_counted = is_counting; }
-ThreadCalls thread_calls() { return {heap_calls.load(), lock_calls.load()}; }
+bool can_count_thread_calls() {
+  return FDCG_COUNTS != 0;
+}
+void count_calls_of_this_thread(bool is_counting) {
+  is_counted = is_counting;
+}
+ThreadCalls thread_calls() {
+  return {heap_calls.load(), lock_calls.load()};
+}
 
 }  // namespace fdcg::dev::test

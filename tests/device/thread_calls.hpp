@@ -12,6 +12,6 @@ struct ThreadCalls {
 
 bool can_count_thread_calls();  // not under sanitizers, which have their own heap
 void count_calls_of_this_thread(bool is_counting);
-ThreadCalls thread_calls();     // so far, of the thread that counts
+ThreadCalls thread_calls();  // so far, of the thread that counts
 
 }  // namespace fdcg::dev::test
