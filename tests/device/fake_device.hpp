@@ -81,6 +81,11 @@ inline Profile fake_profile() {
   return profile;
 }
 
+struct Written {
+  std::uint64_t ns = 0;
+  Command command;
+};
+
 // What a device has done and had done to it; outlives its transport.
 struct FakeDevice {
   // Knobs.
@@ -98,6 +103,12 @@ struct FakeDevice {
   std::atomic<std::uint32_t> sequence{0}, echo{0};
   std::atomic<bool> is_open{false};
   std::atomic<int> inside_reads{0}, inside_writes{0};
+  std::mutex mutex;
+  std::vector<Written> written;  // under mutex
+  std::vector<Written> all_written() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return written;
+  }
 };
 
 class FakeTransport final : public Transport {
@@ -150,6 +161,8 @@ class FakeTransport final : public Transport {
       device_.misused += command.sequence <= device_.sequence;
       device_.sequence = command.sequence;
       device_.echo = command.echo;
+      const std::lock_guard<std::mutex> lock(device_.mutex);
+      device_.written.push_back({device_.last_write_ns, command});
     } else {
       ++device_.misused;
     }

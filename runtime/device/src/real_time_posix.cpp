@@ -15,7 +15,7 @@ namespace fdcg::dev {
 
 namespace {
 
-constexpr std::size_t kStackTouchBytes = 128 * 1024;
+constexpr std::size_t kStackTouchBytes = 64 * 1024;
 constexpr std::size_t kPageBytes = 4096;
 
 std::string limit_text(int resource) {

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint64_t kNsPerS = 1'000'000'000;
 constexpr std::uint32_t kIdle = 0, kSignalled = 1, kWaiting = 2;
-constexpr std::size_t kStackBytes = 512 * 1024;  // the step needs some 20 KB; small, since all of it is locked in memory
+constexpr std::size_t kStackBytes =
+    1024 * 1024;  // the step needs some 20 KB, a sanitizer half a MB; all of it is locked in memory
 constexpr std::size_t kCrashStackBytes = 64 * 1024;
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free && sizeof(std::atomic<std::uint32_t>) == 4, "the kernel's futex");
