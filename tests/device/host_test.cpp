@@ -63,7 +63,9 @@ struct Hosted {
       device(index).tip_z_m = 0.01;
       sleep_ms(30);
       host.arm(index);
-      if (!within_ms(3000, [&] { return phase(index) == Phase::kArmed; })) continue;
+      sleep_ms(60);
+      within_ms(3000, [&] { return phase(index) == Phase::kArmed || phase(index) == Phase::kDisarmed; });
+      if (phase(index) != Phase::kArmed) continue;
       device(index).tip_z_m = -0.002;
       if (within_ms(500, [&] { return device(index).force_n > 1.5; })) return;
     }
