@@ -80,7 +80,7 @@ void check_good(const Profile& profile, const Sample& sample) {
 // The bytes also as efforts, whatever numbers they are.
 void check_output(const Profile& profile, const unsigned char* data, std::size_t size) {
   Command command;
-  std::memcpy(command.effort, data, std::min(size, sizeof command.effort));
+  if (size > 0) std::memcpy(command.effort, data, std::min(size, sizeof command.effort));
   command.is_enabled = size % 2 == 0;
   std::uint8_t report[kMaxReportBytes];
   encode_output(profile, command, report);
