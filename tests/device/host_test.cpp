@@ -37,7 +37,7 @@ struct Hosted {
   std::vector<std::unique_ptr<FakeDevice>> devices;
   HostConfig config = fake_config(cube_file());
   std::size_t made = 0;
-  Host host{[this](const DeviceConfig&, HidBackend) { return std::make_unique<FakeTransport>(*devices[made++]); }};
+  Host host{[this](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(*devices[made++]); }};
 
   explicit Hosted(int count = 1) {
     for (int i = 0; i < count; ++i)
@@ -93,7 +93,7 @@ TEST_CASE("a host starts and stops, again and again, and every device is closed"
 TEST_CASE("a host that is destroyed without a stop leaves zero force") {
   FakeDevice device;
   {
-    Host host([&](const DeviceConfig&, HidBackend) { return std::make_unique<FakeTransport>(device); });
+    Host host([&](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(device); });
     REQUIRE(host.open(fake_config(cube_file())) == "");
     REQUIRE(host.start() == "");
     REQUIRE(within_ms(5000, [&] { return device.echo > 2; }));
@@ -290,7 +290,7 @@ TEST_CASE("a scene that cannot be run is refused with its reason") {
   CHECK(host.open(config).find("no_such_file.fdcg") != std::string::npos);
   CHECK(host.start() == "no scene is open");
   FakeDevice device;
-  Host other([&](const DeviceConfig&, HidBackend) { return std::make_unique<FakeTransport>(device); });
+  Host other([&](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(device); });
   REQUIRE(other.open(fake_config("")) == "");
   REQUIRE(other.start() == "");
   CHECK(other.start() == "the host is running already");
