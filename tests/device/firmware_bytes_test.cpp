@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "firmware_rig.hpp"
+#include "profile_json.hpp"
+#include "report_codec.hpp"
 
 namespace {
 
@@ -53,6 +55,44 @@ TEST_CASE("firmware: the document's dumps are what the core makes and takes") {
   CHECK(device.force() == kPush);
   device.time_us = 259000;
   CHECK(dump[5] == device.input());
+}
+
+TEST_CASE("firmware: the built-in profile reads and writes the document's dumps") {
+  using namespace fdcg::dev;
+  const BuiltinProfile* builtin = find_builtin_profile("fdcg-reference");
+  REQUIRE(builtin != nullptr);
+  Profile profile;
+  REQUIRE(parse_profile(builtin->text, "fdcg-reference.json", &profile) == "");
+  const std::vector<Bytes> dump = dumps();
+  Sample sample;
+  REQUIRE(decode_input(profile, dump.at(5).data(), static_cast<int>(dump[5].size()), &sample) == Verdict::kGood);
+  CHECK(sample.sequence == 259);
+  CHECK(sample.time_s == Approx(0.259));
+  CHECK(sample.axis[0] == Approx(0.012));
+  CHECK(sample.axis[1] == Approx(-0.0035));
+  CHECK(sample.axis[2] == Approx(0.00025));
+  CHECK(sample.echo == 501);
+  CHECK(sample.buttons == 1);
+  CHECK_FALSE(sample.has_fault);
+  Command command;
+  command.sequence = 501;
+  command.echo = 258;
+  command.effort[1] = 0.5;
+  command.effort[2] = -1.25;
+  command.is_enabled = true;
+  Bytes bytes(profile.output.bytes);
+  encode_output(profile, command, bytes.data());
+  CHECK(bytes == dump[4]);
+  // each status bit that takes the force away is a fault to the host
+  fdcg_fw fw;
+  REQUIRE(fdcg_fw_init(&fw, &kConfig));
+  for (int bit = 0; bit < 8; ++bit) {
+    Bytes input(FDCG_FW_INPUT_BYTES);
+    fw.status = static_cast<std::uint8_t>(1 << bit);
+    fdcg_fw_make_input(&fw, 0, kCounts, 0, input.data());
+    REQUIRE(decode_input(profile, input.data(), static_cast<int>(input.size()), &sample) == Verdict::kGood);
+    CHECK(sample.has_fault == (((FDCG_FW_FAULTS | FDCG_FW_WATCHDOG) & 1u << bit) != 0));
+  }
 }
 
 TEST_CASE("firmware: CRC-16/CCITT-FALSE") {
