@@ -51,6 +51,10 @@ TEST_CASE("simulated: a mass on the hand's spring swings as the closed form says
     const double x = 0.01 + 1 / k * (1 - std::exp(-d * t) * (std::cos(w * t) + d / w * std::sin(w * t)));
     CHECK(std::fabs(body.position_m()[0] - x) < 2e-5);  // of 5 mm
     CHECK(body.position_m()[1] == 0);
+    Sample sample;
+    body.make_report(report);
+    REQUIRE(decode_input(profile, report, FDCG_FW_INPUT_BYTES, &sample) == Verdict::kGood);
+    CHECK(std::fabs(sample.axis[0] - body.position_m()[0]) <= config.quantum_m * 0.500001);
   }
 }
 
@@ -58,7 +62,7 @@ TEST_CASE("simulated: stable whatever the spring and the mass") {
   SimulationConfig config;
   config.mass_kg = 0.001;
   config.damping_n_s_per_m = 0;
-  config.hand_stiffness_n_per_m = 1e5;
+  config.hand_stiffness_n_per_m = 1e8;
   config.hand_damping_n_s_per_m = 1000;
   SECTION("damped") {}
   SECTION("not damped") {
