@@ -90,8 +90,11 @@ class CommandInput {
 
 class Session {
  public:
-  Session(const RunArguments& arguments, dev::Host& host)
-      : arguments_(arguments), host_(host), is_terminal_(tools::wants_colour(tools::Stream::standard_output)) {
+  Session(const RunArguments& arguments, dev::Host& host, std::string log_file)
+      : arguments_(arguments),
+        host_(host),
+        log_file_(std::move(log_file)),
+        is_terminal_(tools::wants_colour(tools::Stream::standard_output)) {
     const auto count = static_cast<std::size_t>(host.device_count());
     looks_.resize(count);
     seen_.resize(count);
@@ -131,6 +134,7 @@ class Session {
 
   const RunArguments& arguments_;
   dev::Host& host_;
+  const std::string log_file_;  // empty: none
   const bool is_terminal_;
   const Clock::time_point started_ = Clock::now();
   std::vector<DeviceLook> looks_;
@@ -294,7 +298,10 @@ int Session::end(const std::string& stop_problem) {
   }
   if (says_text()) std::fputs(summary_text(looks_).c_str(), stdout);
   std::fflush(stdout);
-  if (!stop_problem.empty()) return fail(log_failure_.empty() ? kFindings : kFile, stop_problem);
+  if (!stop_problem.empty()) {
+    const bool is_of_log = !log_file_.empty() && stop_problem.find(log_file_ + ": ") != std::string::npos;
+    return fail(is_of_log ? kFile : kFindings, stop_problem);
+  }
   return is_clean ? kClean : kFindings;
 }
 
@@ -308,6 +315,7 @@ int run_scene(const RunArguments& arguments) {
   if (arguments.no_log) config.log_file.clear();
   if (arguments.hid == "hidraw") config.loop.backend = dev::HidBackend::kHidraw;
   if (arguments.hid == "libusb") config.loop.backend = dev::HidBackend::kLibusb;
+  const std::string log_file = config.log_file;
   dev::Host host;
   if (const std::string problem = host.open(std::move(config)); !problem.empty()) return fail(kFile, problem);
   const Signals signals(&host);
@@ -318,7 +326,7 @@ int run_scene(const RunArguments& arguments) {
   if (!arguments.arm && !arguments.quiet && arguments.status == StatusKind::kText) {
     std::puts("Not armed: there is no force until you type arm and Enter (disarm, quit), or start with --arm.");
   }
-  Session session(arguments, host);
+  Session session(arguments, host, log_file);
   session.run();
   const std::string problem = host.stop();
   return session.end(problem);
