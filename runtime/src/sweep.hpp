@@ -60,7 +60,8 @@ class Sweep {
   static constexpr Real kNever = 2;  // a fraction after the end
   // Where a way that passes inside a node's loop, and comes in at `fraction` but for rounding, surely is over the face: of one
   // that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
-  // kNever where all of it is beyond a side: a loop that is not flat is passed, seen edge-on, by ways that end before it.
+  // kNever where it is nowhere over the face: a loop that is not flat is passed, seen edge-on, by ways that end before it, and
+  // by ways that pass it by.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Real> node = graph_.node(n);
     spend(work_left_, kSideWork * node.side_count());
@@ -78,6 +79,7 @@ class Sweep {
         if (comes_in > begin) begin = comes_in;
       }
     }
+    if (begin > end && graph_.header->max_deviation > 0 && is_beyond(node, point_at(begin))) return kNever;
     if (fraction > end) fraction = end;
     return fraction < begin ? begin : fraction;
   }
@@ -85,6 +87,13 @@ class Sweep {
  private:
   static constexpr uint32_t kLastBit = 63;
   static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
+
+  [[nodiscard, gnu::noinline]] bool is_beyond(NodeRef<Real> node, Vec3<Real> point) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (node.voronoi_plane(k).distance(point) > slab_) return true;
+    }
+    return false;
+  }
 
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
@@ -221,7 +230,11 @@ class Sweep {
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
-    if (!passes_inside(node, rounded, &met_exactly)) return;
+    if (!passes_inside(node, rounded, &met_exactly)) {
+      const Real most = start_side + noise < fall ? (start_side + noise) / fall : Real(1);
+      if (!is_grazing || !node.is_inexact() || !is_over(node, least, most)) return;
+      met_exactly = 0;
+    }
     const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
     if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
@@ -337,31 +350,73 @@ class Sweep {
   static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
   [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, Real fraction, uint64_t* met_exactly) const {
+    bool must_wind = false;
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      if (sure_orientation(start, end) > 0 && !is_held_out(node, k, fraction)) return false;
+      if (sure_orientation(start, end) > 0 && !is_open(node, k, fraction, &must_wind)) return false;
       start = end;
     }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
       const int sign = orientation(start, end);
-      if (sign > 0 && !is_held_out(node, k, fraction)) return false;
+      if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
       if (sign == 0) *met_exactly |= bit_of(k);
       start = end;
     }
-    return true;
+    return !must_wind || is_wound_by(node);
   }
 
-  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, cannot pass there:
-  // beyond the side stands a wall, in front of which the way stays. Of a wall whose corners lie off its plane the two may
-  // differ, and a way along a groove would pass between.
-  [[nodiscard]] bool is_held_out(NodeRef<Real> node, uint32_t k, Real fraction) const {
-    if (!(graph_.header->max_deviation > 0) || graph_.connection(node.connection(k)).type() != FDCG_CONCAVE) return false;
+  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, may pass inside
+  // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
+  // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
+  // inwards but for rounding included, winds about the way: that is still to be asked, once for all sides.
+  [[nodiscard]] bool is_open(NodeRef<Real> node, uint32_t k, Real fraction, bool* must_wind) const {
+    if (!(graph_.header->max_deviation > 0)) return false;
     spend(work_left_, kNodeWork);
-    const NodeRef<Real> wall = graph_.node(node.across(k));
-    return wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0 &&
-           node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
+    const bool is_near = node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
+    if (is_near && graph_.connection(node.connection(k)).type() == FDCG_CONCAVE) {
+      const NodeRef<Real> wall = graph_.node(node.across(k));
+      if (wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0) return true;
+    }
+    *must_wind = true;
+    return is_near && node.is_inexact();
+  }
+
+  // Whether the line passes through the loop, convex or not, from its front: through one more of the fan's triangles from the
+  // front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
+  [[nodiscard, gnu::noinline]] bool is_wound_by(NodeRef<Real> node) const {
+    const Vec3<Real> apex = graph_.corner_point(node.corner(0));
+    Vec3<Real> start = graph_.corner_point(node.corner(1));
+    int times = 0, first = orientation(apex, start);
+    for (uint32_t k = 1; k + 1 < node.side_count(); ++k) {
+      const Vec3<Real> end = graph_.corner_point(node.corner(k + 1));
+      const bool is_last = k + 2 == node.side_count();
+      const int sign = orientation(apex, end);
+      const int diagonal = sign != 0 || is_last ? sign : -1;  // a line through a diagonal is on one side of it for both
+      const int side = orientation(start, end);
+      times += first <= 0 && side <= 0 && diagonal >= 0;
+      times -= first > 0 && side > 0 && diagonal < 0;
+      first = diagonal;
+      start = end;
+    }
+    return times > 0;
+  }
+
+  // Whether a way along an inexact node, which is within rounding of its slab from `begin` to `end`, is over it then. Seen
+  // edge-on the loop is a line, and the way may pass it on either side.
+  [[nodiscard, gnu::noinline]] bool is_over(NodeRef<Real> node, Real begin, Real end) const {
+    spend(work_left_, kSideWork * node.side_count());
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const Plane<Real> plane = node.voronoi_plane(k);
+      const Real s0 = plane.distance(from_), s1 = plane.distance(to_);
+      if (s0 > 0 && s1 > 0) return false;
+      if (s0 <= 0 && s1 <= 0) continue;
+      const Real at = s0 / (s0 - s1);
+      if (s0 > 0 && at > begin) begin = at;
+      if (s1 > 0 && at < end) end = at;
+    }
+    return begin <= end;
   }
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
