@@ -64,22 +64,11 @@ class Sweep {
   // by ways that pass it by.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Real> node = graph_.node(n);
-    spend(work_left_, kSideWork * node.side_count());
     const Real rounding = (from_bound_ + to_bound_) / 4;
-    Real begin = least, end = 1;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Plane<Real> plane = node.voronoi_plane(k);
-      const Real s0 = plane.distance(from_) - rounding, s1 = plane.distance(to_) - rounding;
-      if (s0 > 4 * rounding && s1 > 4 * rounding) return kNever;
-      if (s0 <= 0 && s1 > 0) {
-        const Real leaves = -s0 / (s1 - s0);
-        if (leaves < end) end = leaves;
-      } else if (s0 > 0 && s1 <= 0) {
-        const Real comes_in = s0 / (s0 - s1);
-        if (comes_in > begin) begin = comes_in;
-      }
-    }
-    if (begin > end && graph_.header->max_deviation > 0 && is_beyond(node, point_at(begin))) return kNever;
+    Real begin = least, end = 1, widest_begin = least, widest_end = 1;
+    if (!clip_to(node, rounding, &begin, &end) &&
+        !clip_to(node, 5 * rounding + (slab_ - from_bound_), &widest_begin, &widest_end))
+      return kNever;
     if (fraction > end) fraction = end;
     return fraction < begin ? begin : fraction;
   }
@@ -88,11 +77,21 @@ class Sweep {
   static constexpr uint32_t kLastBit = 63;
   static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
 
-  [[nodiscard, gnu::noinline]] bool is_beyond(NodeRef<Real> node, Vec3<Real> point) const {
+  // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
+  [[nodiscard, gnu::noinline]] bool clip_to(NodeRef<Real> node, Real outwards, Real* begin, Real* end) const {
+    spend(work_left_, kSideWork * node.side_count());
+    bool is_beside = false;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (node.voronoi_plane(k).distance(point) > slab_) return true;
+      const Plane<Real> plane = node.voronoi_plane(k);
+      const Real s0 = plane.distance(from_) - outwards, s1 = plane.distance(to_) - outwards;
+      const bool begins_inside = s0 <= 0, ends_inside = s1 <= 0;
+      is_beside = is_beside || !(begins_inside || ends_inside);
+      if (begins_inside == ends_inside) continue;
+      const Real at = s0 / (s0 - s1);
+      if (begins_inside && at < *end) *end = at;
+      if (ends_inside && at > *begin) *begin = at;
     }
-    return false;
+    return !is_beside && *begin <= *end;
   }
 
   bool try_all_nodes(uint32_t* next_node) {
@@ -231,8 +230,11 @@ class Sweep {
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
     if (!passes_inside(node, rounded, &met_exactly)) {
-      const Real most = start_side + noise < fall ? (start_side + noise) / fall : Real(1);
-      if (!is_grazing || !node.is_inexact() || !is_over(node, least, most)) return;
+      // Along an inexact node, within rounding of its slab. Seen edge-on its loop is a line, which the way may pass on either
+      // side.
+      if (!is_grazing || !node.is_inexact()) return;
+      Real begin = least, end = start_side + noise < fall ? (start_side + noise) / fall : Real(1);
+      if (!clip_to(node, 0, &begin, &end)) return;
       met_exactly = 0;
     }
     const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
@@ -332,7 +334,7 @@ class Sweep {
 
   // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
   // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
-  [[nodiscard]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
+  [[nodiscard, gnu::noinline]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
     const int sign = sure_orientation(start, end);
     return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
@@ -351,18 +353,20 @@ class Sweep {
 
   [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, Real fraction, uint64_t* met_exactly) const {
     bool must_wind = false;
+    uint64_t sure = 0;  // the sides that the line surely passes on their inner side
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      if (sure_orientation(start, end) > 0 && !is_open(node, k, fraction, &must_wind)) return false;
+      const int sign = sure_orientation(start, end);
+      if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
+      if (sign < 0 && k < kLastBit) sure |= bit_of(k);
       start = end;
     }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      const int sign = orientation(start, end);
+      if ((sure & bit_of(k)) != 0) continue;
+      const int sign = orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k))));
       if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
       if (sign == 0) *met_exactly |= bit_of(k);
-      start = end;
     }
     return !must_wind || is_wound_by(node);
   }
@@ -371,7 +375,7 @@ class Sweep {
   // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
   // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
   // inwards but for rounding included, winds about the way: that is still to be asked, once for all sides.
-  [[nodiscard]] bool is_open(NodeRef<Real> node, uint32_t k, Real fraction, bool* must_wind) const {
+  [[nodiscard, gnu::noinline]] bool is_open(NodeRef<Real> node, uint32_t k, Real fraction, bool* must_wind) const {
     if (!(graph_.header->max_deviation > 0)) return false;
     spend(work_left_, kNodeWork);
     const bool is_near = node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
@@ -401,22 +405,6 @@ class Sweep {
       start = end;
     }
     return times > 0;
-  }
-
-  // Whether a way along an inexact node, which is within rounding of its slab from `begin` to `end`, is over it then. Seen
-  // edge-on the loop is a line, and the way may pass it on either side.
-  [[nodiscard, gnu::noinline]] bool is_over(NodeRef<Real> node, Real begin, Real end) const {
-    spend(work_left_, kSideWork * node.side_count());
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Plane<Real> plane = node.voronoi_plane(k);
-      const Real s0 = plane.distance(from_), s1 = plane.distance(to_);
-      if (s0 > 0 && s1 > 0) return false;
-      if (s0 <= 0 && s1 <= 0) continue;
-      const Real at = s0 / (s0 - s1);
-      if (s0 > 0 && at > begin) begin = at;
-      if (s1 > 0 && at < end) end = at;
-    }
-    return begin <= end;
   }
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
