@@ -12,11 +12,13 @@
 // One thread at a time is in a host, but for request_stop.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "host_config.hpp"
+#include "make_transport.hpp"
 #include "status.hpp"
 
 namespace fdcg::dev {
@@ -31,10 +33,12 @@ struct ConnectionReport {
   bool is_over = false;  // a recording that has ended: it will not open again
 };
 
+using TransportMaker = std::function<std::unique_ptr<Transport>(const DeviceConfig&, const LoopConfig&)>;
+
 class Host {
  public:
-  Host();
-  ~Host();  // stops
+  explicit Host(TransportMaker maker = make_transport);  // another one: a caller's own devices
+  ~Host();                                               // stops
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
