@@ -230,10 +230,11 @@ class Sweep {
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
     if (!passes_inside(node, rounded, &met_exactly)) {
-      // Along an inexact node, within rounding of its slab. Seen edge-on its loop is a line, which the way may pass on either
-      // side.
+      // Along an inexact node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
       if (!is_grazing || !node.is_inexact()) return;
-      Real begin = least, end = start_side + noise < fall ? (start_side + noise) / fall : Real(1);
+      const Real thick = (slab_ - from_bound_) + (from_bound_ + to_bound_) / 8;
+      Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
+      Real end = start_side + thick < fall ? (start_side + thick) / fall : Real(1);
       if (!clip_to(node, 0, &begin, &end)) return;
       met_exactly = 0;
     }
