@@ -335,7 +335,7 @@ class Inspect(Case):
         self.assertIn("not closed: 4 edges", about["no_mass"])
         for option in ("--density", "--mass"):
             os.remove(out)
-            self.assert_one_line(self.fdcg("compile", mesh, "-o", out, option, "2", code=1), "open.off", "4 edges", "vertex 4 to 5")
+            self.assert_one_line(self.fdcg("compile", mesh, "-o", out, option, "2", code=1), "open.off", "4 edges", "vertex 5 to 4")
             self.assert_only("open.off")
             self.write("open.fdcg", b"")
 
