@@ -22,9 +22,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kLookMs = 50;                     // how soon a command, a fault or a device is noticed here
+constexpr int kLookMs = 50;  // how soon a command, a fault or a device is noticed here
 constexpr double kTerminalStatusS = 0.2, kPlainStatusS = 1;
-constexpr double kArmAgainS = 0.2;              // between requests, until the gate has granted the first
+constexpr double kArmAgainS = 0.2;  // between requests, until the gate has granted the first
 constexpr std::size_t kLongestCommand = 200;
 
 enum class StatusKind { kText, kJson, kNone };
@@ -115,7 +115,7 @@ class Session {
     std::uint64_t disarmed[dev::kFaults] = {};
     dev::Phase phase = dev::Phase::kDisarmed;
     bool wants_arming = false, told_refused = false;
-    std::uint64_t ticks = 0;      // at the last status line
+    std::uint64_t ticks = 0;  // at the last status line
   };
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
@@ -184,7 +184,8 @@ void Session::arm_where_wanted(std::size_t device) {
   const std::uint64_t* const disarmed = looks_[device].status.counters.disarmed;
   const bool was_armed = std::any_of(disarmed, disarmed + dev::kFaults, [](std::uint64_t count) { return count != 0; });
   if (was_armed || last.phase != dev::Phase::kDisarmed || last.fault == dev::Fault::kUnknownLimit) seen.wants_arming = false;
-  const bool is_there = looks_[device].connection.connection == dev::Connection::kOpen && looks_[device].status.counters.ticks > 0;
+  const bool is_there =
+      looks_[device].connection.connection == dev::Connection::kOpen && looks_[device].status.counters.ticks > 0;
   if (seen.wants_arming && is_there && seconds() >= next_arming_s_) host_.arm(static_cast<int>(device));
 }
 
@@ -214,8 +215,9 @@ void Session::notice(std::size_t device) {
   if (status.last.arming_refused && !seen.told_refused) {
     seen.told_refused = true;
     const bool is_unknown = status.last.fault == dev::Fault::kUnknownLimit;
-    say(look.name + ": not armed: " + (is_unknown ? dev::fault_text(dev::Fault::kUnknownLimit)
-                                                  : "the tip is pressed against something, or does not report; let go"));
+    say(look.name + ": not armed: " +
+        (is_unknown ? dev::fault_text(dev::Fault::kUnknownLimit)
+                    : "the tip is pressed against something, or does not report; let go"));
   }
   if (status.last.phase == dev::Phase::kRamping && seen.phase == dev::Phase::kDisarmed) say(look.name + ": armed");
   if (status.last.phase != dev::Phase::kDisarmed) seen.told_refused = false;

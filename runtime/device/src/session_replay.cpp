@@ -22,8 +22,9 @@ std::string compare_graph(const std::string& path, const SessionGraph& graph, bo
   if (fdcg_open_file(path.c_str(), FDCG_VERIFY_TRUSTED, &view, &error) != FDCG_OK) return error.message;
   const bool is_same = view.mapping_bytes == graph.bytes && fdcg_checksum(view.mapping, view.mapping_bytes) == graph.checksum;
   fdcg_close(&view);
-  return is_same ? std::string() : "'" + path + "' is not the file that the session had (" + std::to_string(graph.bytes) +
-                                       " bytes, and another checksum)";
+  return is_same ? std::string()
+                 : "'" + path + "' is not the file that the session had (" + std::to_string(graph.bytes) +
+                       " bytes, and another checksum)";
 }
 
 // Where the graph is now. Empty, or why it cannot be had.
@@ -72,7 +73,8 @@ std::string SessionReplay::Impl::begin_devices() {
   for (std::size_t i = 0; i < config.devices.size(); ++i) {
     scenes.push_back(std::make_unique<DeviceScene>());
     states.push_back(std::make_unique<DeviceState>());
-    if (const std::string problem = build_device_scene(config, i, graphs, scenes.back().get()); !problem.empty()) return problem;
+    if (const std::string problem = build_device_scene(config, i, graphs, scenes.back().get()); !problem.empty())
+      return problem;
     fdcg_error error{};
     if (!begin_device(scenes.back()->setup, states.back().get(), &error)) {
       return "device '" + config.devices[i].name + "': " + error.message;
@@ -113,8 +115,8 @@ bool SessionReplay::Impl::replay(const SessionRecord& from) {
   const bool is_same = bytes == from.payload_bytes && std::memcmp(payload.data(), from.payload, bytes) == 0;
   if (is_same) return true;
   const std::string difference = first_difference(in_log, replayed);
-  device.difference = "tick " + std::to_string(from.tick) + ": " +
-                      (difference.empty() ? "the same numbers, in other bytes" : difference);
+  device.difference =
+      "tick " + std::to_string(from.tick) + ": " + (difference.empty() ? "the same numbers, in other bytes" : difference);
   device.is_over = true;
   return true;
 }
@@ -165,11 +167,23 @@ bool SessionReplay::is_same() const {
   return impl_->reader.ending() == Ending::kEnded && std::none_of(impl_->devices.begin(), impl_->devices.end(), is_over);
 }
 
-const HostConfig& SessionReplay::config() const { return impl_->config; }
-const SessionReader& SessionReplay::reader() const { return impl_->reader; }
-const std::vector<DeviceReplay>& SessionReplay::devices() const { return impl_->devices; }
-const std::vector<std::uint8_t>& SessionReplay::record() const { return impl_->record; }
-std::string SessionReplay::header_bytes() const { return encode_session_header(impl_->reader.header()); }
-std::string SessionReplay::end_bytes() const { return encode_end(impl_->reader.end()); }
+const HostConfig& SessionReplay::config() const {
+  return impl_->config;
+}
+const SessionReader& SessionReplay::reader() const {
+  return impl_->reader;
+}
+const std::vector<DeviceReplay>& SessionReplay::devices() const {
+  return impl_->devices;
+}
+const std::vector<std::uint8_t>& SessionReplay::record() const {
+  return impl_->record;
+}
+std::string SessionReplay::header_bytes() const {
+  return encode_session_header(impl_->reader.header());
+}
+std::string SessionReplay::end_bytes() const {
+  return encode_end(impl_->reader.end());
+}
 
 }  // namespace fdcg::dev

@@ -26,7 +26,6 @@ void Writer::put(const GatedForce& force, std::uint32_t echo) {
   letter.number = ++put_number_;
   letters_.put(letter);
   put_.store(put_number_, std::memory_order_release);
-  wake_.signal();
 }
 
 std::uint64_t Writer::busy_ns(std::uint64_t now_ns) const {

@@ -26,8 +26,10 @@ class Writer {
   // All three must outlive it.
   Writer(const Profile& profile, Transport& transport, Link& link);
 
-  // The servo thread's. No lock, no heap, no wait.
+  // The servo thread's. No lock, no heap, no wait. What is put is sent by the thread's next look: wake has it look now (a call of
+  // the kernel's, of some microseconds, where the thread sleeps).
   void put(const GatedForce& force, std::uint32_t echo);
+  void wake() { wake_.signal(); }
   std::uint64_t busy_ns(std::uint64_t now_ns) const;  // for how long the write in progress has been going on; 0: there is none
   bool has_failed() const { return has_failed_.load(std::memory_order_acquire); }  // the last write
 
