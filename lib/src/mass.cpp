@@ -14,6 +14,7 @@
 
 #include "parallel.hpp"
 #include "vec.hpp"
+#include "wide.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -44,7 +45,7 @@ int lowest_bit(double x) {
 }
 
 // z = x / 2^grid, where that is an integer.
-void set(Integer& z, double x, int grid) {
+void set_scaled(Integer& z, double x, int grid) {
   int exponent = 0;
   mpz_set_d(z, std::ldexp(std::frexp(x, &exponent), kMantissaBits));
   const int shift = exponent - kMantissaBits - grid;
@@ -54,8 +55,55 @@ void set(Integer& z, double x, int grid) {
     mpz_tdiv_q_2exp(z, z, static_cast<mp_bitcnt_t>(-shift));  // the bits that go are zeros
   }
 }
+void set_zero(Integer& z) {
+  mpz_set_ui(z, 0);
+}
+void add(Integer& to, const Integer& what) {
+  mpz_add(to, to, what);
+}
+void add_product(Integer& to, const Integer& a, const Integer& b) {
+  mpz_addmul(to, a, b);
+}
+void subtract_product(Integer& from, const Integer& a, const Integer& b) {
+  mpz_submul(from, a, b);
+}
 
-using Triple = std::array<Integer, 3>;
+template <std::size_t N>
+void add(Integer& to, const Wide<N>& what) {
+  Wide<N> magnitude;
+  const bool is_negative = what.sign_mask() != 0;
+  if (is_negative) {
+    subtract(magnitude, what);
+  } else {
+    magnitude = what;
+  }
+  Integer number;
+  mpz_import(number, N, -1, sizeof(std::uint64_t), 0, 0, magnitude.limb.data());
+  if (is_negative) mpz_neg(number, number);
+  mpz_add(to, to, number);
+}
+
+// Numbers for coordinates of so many bits. Widths, with b bits a coordinate: a minor of two rows takes 2 b + 1, a determinant
+// 3 b + 3, a sum of three coordinates b + 2, of four products of those 2 b + 5; 2^32 triangles add 32 bits to each sum. So
+// 64 N - kSpareBits bits a coordinate are few enough.
+constexpr int kSpareBits = 4;
+template <std::size_t N>
+struct WideNumbers {
+  using Coordinate = Wide<N>;
+  using Square = Wide<2 * N>;
+  using Determinant = Wide<3 * N>;
+  using VolumeSum = Wide<3 * N + 1>;
+  using FirstSum = Wide<4 * N + 1>;
+  using SecondSum = Wide<5 * N + 1>;
+};
+struct AnyNumbers {
+  using Coordinate = Integer;
+  using Square = Integer;
+  using Determinant = Integer;
+  using VolumeSum = Integer;
+  using FirstSum = Integer;
+  using SecondSum = Integer;
+};
 
 constexpr int kFirstOf[6] = {0, 1, 2, 0, 0, 1};  // xx, yy, zz, xy, xz, yz
 constexpr int kSecondOf[6] = {0, 1, 2, 1, 2, 2};
@@ -64,61 +112,79 @@ constexpr int kSecondOf[6] = {0, 1, 2, 1, 2, 2};
 // times the second.
 struct Moments {
   Integer volume;
-  Triple first;
+  std::array<Integer, 3> first;
   std::array<Integer, 6> second;
-
-  void add(const Moments& other) {
-    mpz_add(volume, volume, other.volume);
-    for (std::size_t k = 0; k < 3; ++k)
-      mpz_add(first[k], first[k], other.first[k]);
-    for (std::size_t k = 0; k < 6; ++k)
-      mpz_add(second[k], second[k], other.second[k]);
-  }
 };
 
 // Adds triangles up; keeps its integers from one to the next, so that nothing is allocated.
+template <class Numbers>
 class Adder {
  public:
   explicit Adder(int grid) : grid_(grid) {}
 
-  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
+  void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     read(a, a_);
     read(b, b_);
     read(c, c_);
-    mpz_set_ui(determinant_, 0);
+    set_zero(determinant_);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-      mpz_mul(product_, b_[i], c_[j]);
-      mpz_submul(product_, b_[j], c_[i]);
-      mpz_addmul(determinant_, a_[k], product_);
-      mpz_add(sum_[k], a_[k], b_[k]);
-      mpz_add(sum_[k], sum_[k], c_[k]);
+      set_zero(square_);
+      add_product(square_, b_[i], c_[j]);
+      subtract_product(square_, b_[j], c_[i]);
+      add_product(determinant_, a_[k], square_);
+      set_zero(sum_[k]);
+      for (const Triple* corner : {&a_, &b_, &c_})
+        add(sum_[k], (*corner)[k]);
     }
-    mpz_add(moments_.volume, moments_.volume, determinant_);
+    add(volume_, determinant_);
     for (std::size_t k = 0; k < 3; ++k)
-      mpz_addmul(moments_.first[k], determinant_, sum_[k]);
+      add_product(first_[k], determinant_, sum_[k]);
     for (std::size_t n = 0; n < 6; ++n) {
       const auto k = static_cast<std::size_t>(kFirstOf[n]), l = static_cast<std::size_t>(kSecondOf[n]);
-      mpz_mul(product_, sum_[k], sum_[l]);
-      mpz_addmul(product_, a_[k], a_[l]);
-      mpz_addmul(product_, b_[k], b_[l]);
-      mpz_addmul(product_, c_[k], c_[l]);
-      mpz_addmul(moments_.second[n], determinant_, product_);
+      set_zero(square_);
+      for (const Triple* factors : {&sum_, &a_, &b_, &c_})
+        add_product(square_, (*factors)[k], (*factors)[l]);
+      add_product(second_[n], determinant_, square_);
     }
   }
-  [[nodiscard]] const Moments& moments() const { return moments_; }
+  void add_to(Moments& total) const {
+    add(total.volume, volume_);
+    for (std::size_t k = 0; k < 3; ++k)
+      add(total.first[k], first_[k]);
+    for (std::size_t n = 0; n < 6; ++n)
+      add(total.second[n], second_[n]);
+  }
 
  private:
+  using Triple = std::array<typename Numbers::Coordinate, 3>;
+
   void read(const Vec3& point, Triple& to) const {
     for (int k = 0; k < 3; ++k)
-      set(to[static_cast<std::size_t>(k)], component(point, k), grid_);
+      set_scaled(to[static_cast<std::size_t>(k)], component(point, k), grid_);
   }
 
   int grid_;
   Triple a_, b_, c_, sum_;
-  Integer determinant_, product_;
-  Moments moments_;
+  typename Numbers::Square square_;
+  typename Numbers::Determinant determinant_;
+  typename Numbers::VolumeSum volume_;
+  std::array<typename Numbers::FirstSum, 3> first_;
+  std::array<typename Numbers::SecondSum, 6> second_;
 };
+
+template <class Numbers>
+void add_up(const Mesh& mesh, int grid, unsigned jobs, Moments& total) {
+  std::mutex lock;
+  parallel_for(jobs, mesh.face_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Adder<Numbers> adder(grid);
+    const auto corner = [&](std::size_t slot) { return mesh.points[+mesh.corners[slot]]; };
+    for (std::size_t f = begin; f < end; ++f)
+      adder.add_triangle(corner(3 * f), corner(3 * f + 1), corner(3 * f + 2));
+    const std::lock_guard<std::mutex> guard(lock);
+    adder.add_to(total);  // exact: the order does not matter
+  });
+}
 
 // numerator / denominator * 2^exponent, to the nearest double.
 double rounded(const Integer& numerator, const Integer& denominator, long exponent) {
@@ -199,33 +265,37 @@ std::string open_edges(const Mesh& mesh, const Topology& topology) {
          corner(next(mesh, topology.face(h), h)) + "; close it (fdcg validate lists them under boundary-edge)";
 }
 
-// Of the points that triangles use.
-int grid_of(const Mesh& mesh) {
-  constexpr int kNoBits = std::numeric_limits<int>::max();
-  int grid = kNoBits;
+// Of the coordinates that triangles use: the exponents of the lowest bit that any has, and of the bit above the highest.
+struct BitRange {
+  int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
+};
+BitRange bits_of(const Mesh& mesh) {
+  BitRange bits;
   for (const VertexId corner : mesh.corners) {
     for (int k = 0; k < 3; ++k) {
-      if (const double x = component(mesh.points[+corner], k); x != 0) grid = std::min(grid, lowest_bit(x));
+      const double x = component(mesh.points[+corner], k);
+      if (x == 0) continue;
+      bits.low = std::min(bits.low, lowest_bit(x));
+      bits.high = std::max(bits.high, std::ilogb(x) + 1);
     }
   }
-  return grid == kNoBits ? 0 : grid;
+  return bits.low > bits.high ? BitRange{0, 0} : bits;
 }
 
 }  // namespace
 
 Solid measure_solid(const Mesh& mesh, const Topology& topology, unsigned jobs) {
   if (std::string reason = open_edges(mesh, topology); !reason.empty()) return {{}, std::move(reason)};
-  const int grid = grid_of(mesh);
+  const BitRange bits = bits_of(mesh);
+  const int grid = bits.low, width = bits.high - bits.low;
   Moments total;
-  std::mutex lock;
-  parallel_for(jobs, mesh.face_count(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Adder adder(grid);
-    const auto corner = [&](std::size_t slot) { return mesh.points[+mesh.corners[slot]]; };
-    for (std::size_t f = begin; f < end; ++f)
-      adder.add(corner(3 * f), corner(3 * f + 1), corner(3 * f + 2));
-    const std::lock_guard<std::mutex> guard(lock);
-    total.add(adder.moments());  // exact: the order does not matter
-  });
+  if (width <= 64 - kSpareBits) {
+    add_up<WideNumbers<1>>(mesh, grid, jobs, total);
+  } else if (width <= 128 - kSpareBits) {
+    add_up<WideNumbers<2>>(mesh, grid, jobs, total);
+  } else {
+    add_up<AnyNumbers>(mesh, grid, jobs, total);
+  }
   Integer six;
   mpz_set_ui(six, 6);
   if (total.volume.sign() <= 0) {

@@ -217,6 +217,8 @@ TEST_CASE("mass of any polyhedron is that of rational arithmetic") {
     CAPTURE(soup.name);
     const PolygonSoup cut = triangulated(soup, 1);  // so that every face is planar, and there is one answer
     check_close(mass_of(cut), by_rationals(cut), 1, 1e-15);
+    const PolygonSoup short_numbers = rounded_to_float(cut);  // summed in another width
+    check_close(mass_of(short_numbers), by_rationals(short_numbers), 1, 1e-15);
   }
 }
 
