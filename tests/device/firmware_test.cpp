@@ -1,179 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The firmware core: the bytes of schemas/fdcg-hid.md, and that whatever arrives it never pushes beyond its limits.
-#include "fdcg_firmware.h"
-
-#include <array>
+// The firmware core: what it takes and what not, and that whatever arrives it never pushes beyond its limits.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <random>
-#include <sstream>
-#include <string>
 #include <vector>
 
-namespace {
+#include "firmware_rig.hpp"
 
-constexpr fdcg_fw_config kConfig = {1000000, {-80, -60, -50}, {80, 60, 50}, 3.3f, 0.9f, 1000, 20, 3, FDCG_FW_CARTESIAN};
-constexpr std::int32_t kCounts[3] = {12000, -3500, 250};
-using Bytes = std::vector<std::uint8_t>;
-
-Bytes output(std::uint32_t sequence, std::array<float, 3> force_n, std::uint32_t answers, std::uint8_t flags) {
-  Bytes bytes(FDCG_FW_OUTPUT_BYTES);
-  bytes[0] = FDCG_FW_OUTPUT_ID;
-  const auto put = [&](std::size_t at, std::uint32_t value) {
-    for (int i = 0; i < 4; ++i)
-      bytes[at + i] = static_cast<std::uint8_t>(value >> 8 * i);
-  };
-  put(1, sequence);
-  for (int i = 0; i < 3; ++i) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &force_n[i], 4);
-    put(5 + 4 * i, bits);
-  }
-  put(17, answers);
-  bytes[21] = flags;
-  const std::uint16_t crc = fdcg_fw_crc16(bytes.data(), bytes.size() - 2);
-  bytes[22] = static_cast<std::uint8_t>(crc);
-  bytes[23] = static_cast<std::uint8_t>(crc >> 8);
-  return bytes;
-}
-
-struct Device {
-  fdcg_fw fw;
-  std::uint32_t time_us = 1000;
-  std::uint32_t sequence = 0;  // of the last output report sent
-
-  explicit Device(const fdcg_fw_config& config = kConfig) { fdcg_fw_init(&fw, &config); }
-  fdcg_fw_verdict take(const Bytes& bytes) { return fdcg_fw_take_output(&fw, time_us, bytes.data(), bytes.size()); }
-  fdcg_fw_verdict send(std::array<float, 3> force_n, std::uint8_t flags = FDCG_FW_ENABLE) {
-    return take(output(++sequence, force_n, fw.sequence, flags));
-  }
-  Bytes input() {
-    Bytes bytes(FDCG_FW_INPUT_BYTES);
-    fdcg_fw_make_input(&fw, time_us, kCounts, 1, bytes.data());
-    return bytes;
-  }
-  unsigned status() { return input()[26]; }
-  std::array<float, 3> force() {
-    std::array<float, 3> force_n;
-    fdcg_fw_force(&fw, time_us, force_n.data());
-    return force_n;
-  }
-};
-
-constexpr std::array<float, 3> kZero = {0, 0, 0}, kPush = {0, 0.5f, -1.25f};
-
-Device pushing() {
-  Device device;
-  REQUIRE(device.send(kZero, 0) == FDCG_FW_TAKEN);
-  REQUIRE(device.send(kPush) == FDCG_FW_TAKEN);
-  REQUIRE(device.force() == kPush);
-  return device;
-}
-
-// The blocks of hexadecimal numbers between ``` lines, and within them between empty lines.
-std::vector<Bytes> dumps() {
-  std::ifstream file(FDCG_SOURCE_DIR "/schemas/fdcg-hid.md");
-  std::vector<Bytes> found;
-  bool is_inside = false, is_new = true;
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("```", 0) == 0) is_inside = !is_inside;
-    if (line.empty() || line.rfind("```", 0) == 0) {
-      is_new = true;
-    } else if (is_inside) {
-      if (is_new) found.emplace_back();
-      is_new = false;
-      std::istringstream words(line);
-      for (unsigned byte; words >> std::hex >> byte;)
-        found.back().push_back(static_cast<std::uint8_t>(byte));
-    }
-  }
-  return found;
-}
-
-}  // namespace
-
-TEST_CASE("firmware: the document's dumps are what the core makes and takes") {
-  const std::vector<Bytes> dump = dumps();
-  REQUIRE(dump.size() == 5);  // descriptor, feature, two outputs, input
-  CHECK(dump[0] == Bytes(std::begin(fdcg_fw_report_descriptor), std::end(fdcg_fw_report_descriptor)));
-  Device device;
-  Bytes feature(FDCG_FW_FEATURE_BYTES);
-  fdcg_fw_feature(&device.fw, feature.data());
-  CHECK(dump[1] == feature);
-  for (int i = 0; i < 258; ++i)
-    device.input();
-  CHECK(dump[2] == output(500, kZero, 257, 0));
-  CHECK(dump[3] == output(501, kPush, 258, FDCG_FW_ENABLE));
-  device.time_us = 258000;
-  CHECK(device.take(dump[2]) == FDCG_FW_TAKEN);
-  CHECK(device.take(dump[3]) == FDCG_FW_TAKEN);
-  CHECK(device.force() == kPush);
-  device.time_us = 259000;
-  CHECK(dump[4] == device.input());
-}
-
-TEST_CASE("firmware: CRC-16/CCITT-FALSE") {
-  CHECK(fdcg_fw_crc16(reinterpret_cast<const std::uint8_t*>("123456789"), 9) == 0x29B1);
-  CHECK(fdcg_fw_crc16(nullptr, 0) == 0xFFFF);
-}
-
-// A second reading of HID 1.11, 6.2.2: sums the bits of each report.
-TEST_CASE("firmware: the report descriptor describes reports of the core's lengths") {
-  unsigned size = 0, count = 0, id = 0, usages = 0, depth = 0;
-  unsigned bits[4] = {8, 8, 8, 8};  // the id
-  std::size_t at = 0;
-  while (at < FDCG_FW_DESCRIPTOR_BYTES) {
-    const unsigned tag = fdcg_fw_report_descriptor[at++], length = (tag & 3) == 3 ? 4 : tag & 3;
-    REQUIRE(at + length <= FDCG_FW_DESCRIPTOR_BYTES);
-    std::uint32_t value = 0;
-    for (unsigned i = 0; i < length; ++i)
-      value |= std::uint32_t{fdcg_fw_report_descriptor[at++]} << 8 * i;
-    switch (tag & 0xFC) {
-      case 0x04:
-        CHECK(value == FDCG_FW_USAGE_PAGE);
-        break;
-      case 0x74:
-        size = value;
-        break;
-      case 0x94:
-        count = value;
-        break;
-      case 0x84:
-        id = value;
-        break;
-      case 0x08:
-        ++usages;
-        break;
-      case 0xA0:
-        ++depth;
-        usages = 0;
-        break;
-      case 0xC0:
-        --depth;
-        break;
-      case 0x80:
-      case 0x90:
-      case 0xB0:
-        CHECK((tag & 0xFC) == (id == 1 ? 0x80u : id == 2 ? 0x90u : 0xB0u));
-        CHECK(value == 2);                       // data, variable, absolute
-        CHECK(usages == (id == 3 ? 1 : count));  // one a field
-        bits[id] += size * count;
-        usages = 0;
-        break;
-      default:
-        CHECK(((tag & 0xFC) == 0x14 || (tag & 0xFC) == 0x24));  // logical minimum, maximum
-    }
-  }
-  CHECK(depth == 0);
-  CHECK(bits[1] == 8 * FDCG_FW_INPUT_BYTES);
-  CHECK(bits[2] == 8 * FDCG_FW_OUTPUT_BYTES);
-  CHECK(bits[3] == 8 * FDCG_FW_FEATURE_BYTES);
-}
+using namespace fdcg::test;
 
 TEST_CASE("firmware: no force at power-up until a report without enable has come") {
   Device device;
@@ -281,6 +116,16 @@ TEST_CASE("firmware: what makes an output report invalid") {
     CHECK(device.force() == kPush);
     CHECK(device.take(output(next, kPush, device.fw.sequence - 20, FDCG_FW_ENABLE)) == FDCG_FW_TAKEN);
   }
+  SECTION("a watchdog that is no whole number of reports counts the one begun") {
+    fdcg_fw_config config = kConfig;
+    config.rate_hz = 333;  // 6.66 in 20 ms
+    Device slow(config);
+    for (int i = 0; i < 10; ++i)
+      slow.input();
+    CHECK(slow.take(output(1, kZero, 0, 0)) == FDCG_FW_TAKEN);
+    CHECK(slow.take(output(2, other, 10 - 8, FDCG_FW_ENABLE)) == FDCG_FW_STALE);
+    CHECK(slow.take(output(2, other, 10 - 7, FDCG_FW_ENABLE)) == FDCG_FW_TAKEN);
+  }
   CHECK(device.force() == kPush);  // the last good one is still in force
   CHECK(device.take(output(next + 1, other, device.fw.sequence, FDCG_FW_ENABLE)) == FDCG_FW_TAKEN);
 }
@@ -329,13 +174,17 @@ TEST_CASE("firmware: faults, a stop and a bad configuration mean no force, and n
     fdcg_fw_set_faults(&device.fw, 0);
   }
   SECTION("stop") {
+    SECTION("after the watchdog") {
+      device.time_us += 20000;
+      CHECK(device.status() == FDCG_FW_WATCHDOG);
+    }
     fdcg_fw_stop(&device.fw);
     CHECK(device.status() == 0);
     CHECK(device.send(kPush) == FDCG_FW_HELD);
   }
   SECTION("configuration") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    std::vector<fdcg_fw_config> bad(11, kConfig);
+    std::vector<fdcg_fw_config> bad(12, kConfig);
     bad[0].peak_force_n = nan;
     bad[1].peak_force_n = 0;
     bad[2].peak_force_n = HUGE_VALF;
@@ -347,6 +196,7 @@ TEST_CASE("firmware: faults, a stop and a bad configuration mean no force, and n
     bad[8].dof = 0;
     bad[9].dof = 4;
     bad[10].axes = 2;
+    bad[11].peak_force_n = 1.1e6f;  // would not fit the feature report
     for (const fdcg_fw_config& config : bad) {
       CHECK_FALSE(fdcg_fw_init(&device.fw, &config));
       device.send(kZero, 0);

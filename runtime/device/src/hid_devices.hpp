@@ -12,14 +12,15 @@
 namespace fdcg::dev {
 
 struct HidDevice {
-  std::string path;               // "/dev/hidraw0"; of libusb "1-2:1.0"
+  std::string path;  // "/dev/hidraw0"; of libusb "1-2:1.0"
   std::uint16_t vendor = 0, product = 0;
   std::uint16_t usage_page = 0, usage = 0;  // 0, 0: not told (libusb)
-  int interface_number = -1;      // -1: not a USB device
+  int interface_number = -1;                // -1: not a USB device
   std::string serial, manufacturer, product_name;
 };
 
-std::vector<HidDevice> list_hid_devices(const HidLibrary& library);
+// Of one vendor and product; 0, 0: all. libusb opens every device that it lists, to read its strings: ask it for few.
+std::vector<HidDevice> list_hid_devices(const HidLibrary& library, std::uint16_t vendor = 0, std::uint16_t product = 0);
 
 enum class Fit {
   kNo,

@@ -33,12 +33,12 @@ struct ConnectionReport {
   bool is_over = false;  // a recording that has ended: it will not open again
 };
 
-using TransportMaker = std::function<std::unique_ptr<Transport>(const DeviceConfig&, HidBackend)>;
+using TransportMaker = std::function<std::unique_ptr<Transport>(const DeviceConfig&, const LoopConfig&)>;
 
 class Host {
  public:
   explicit Host(TransportMaker maker = make_transport);  // another one: a caller's own devices
-  ~Host();  // stops
+  ~Host();                                               // stops
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 

@@ -110,6 +110,14 @@ bool JsonObject::has(const char* key) const {
   return json_ != nullptr && json_->contains(key);
 }
 
+bool JsonObject::is_object(const char* key) const {
+  return has(key) && json_->at(key).is_object();
+}
+
+std::string JsonObject::json(const char* key) const {
+  return has(key) ? json_->at(key).dump(-1, ' ', false, Json::error_handler_t::replace) : std::string();
+}
+
 std::string JsonObject::path(const char* key) const {
   return path_.empty() ? key : path_ + "." + key;
 }

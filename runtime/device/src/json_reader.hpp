@@ -34,6 +34,8 @@ class JsonFile;
 class JsonObject {
  public:
   bool has(const char* key) const;
+  bool is_object(const char* key) const;
+  std::string json(const char* key) const;  // the member as it stands, on one line; "" where it is absent
   std::string path(const char* key) const;  // "input.fields[3].offset"
   // The file's error, unless there is one: "PATH of the key" + " " + what.
   void fail(const char* key, const std::string& what) const;

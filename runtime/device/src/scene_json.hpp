@@ -26,4 +26,8 @@ std::string read_scene(const std::string& path, HostConfig* config, std::vector<
 // number written out, profiles in place, files as `config` names them. One line. What a log starts with.
 std::string write_scene(const HostConfig& config);
 
+// Which device of a recording a scene's device of that name plays: the one of the same name, or the only one. The number of
+// devices where there is none.
+std::size_t find_recorded_device(const HostConfig& recorded, const std::string& name);
+
 }  // namespace fdcg::dev

@@ -1,1 +1,317 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "session_log.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "scene_json.hpp"
+#include "session_reader.hpp"
+#include "tick_bytes.hpp"
+
+namespace fdcg::dev {
+namespace {
+
+constexpr std::size_t kEntryBytes = 12;                  // before a tick in the ring: its length and its number
+constexpr std::chrono::milliseconds kDrainInterval{20};  // what a crash can lose, beside what the system holds
+constexpr std::size_t kChunkBytes = 1 << 16;             // a write
+constexpr double kBytesPerMegabyte = 1e6;
+
+bool is_same_file(const struct stat& a, const std::string& path) {
+  struct stat b {};
+  return stat(path.c_str(), &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+// Empty, or which file of the session the log would overwrite.
+std::string overwritten(const HostConfig& config) {
+  struct stat log {};
+  if (stat(config.log_file.c_str(), &log) != 0) return {};
+  if (S_ISDIR(log.st_mode)) return "is a folder";
+  if (is_same_file(log, config.scene_file)) return "would overwrite the scene";
+  for (const ObjectConfig& object : config.objects)
+    if (is_same_file(log, object.file)) return "would overwrite the graph of '" + object.name + "'";
+  for (const DeviceConfig& device : config.devices)
+    if (is_same_file(log, device.recording)) return "would overwrite the recording that '" + device.name + "' plays";
+  return {};
+}
+
+std::string describe(const HostConfig& config, SessionHeader* header) {
+  header->program = FDCG_VERSION_STRING;
+  header->scene_file = config.scene_file;
+  header->scene = write_scene(config);
+  // a log that could not be replayed is found now, not when it is needed
+  HostConfig back;
+  if (const std::string problem = parse_scene(header->scene, "its scene", &back); !problem.empty()) return problem;
+  for (const ObjectConfig& object : config.objects) {
+    fdcg_graph graph{};
+    fdcg_error error{};
+    if (fdcg_open_file(object.file.c_str(), FDCG_VERIFY_TRUSTED, &graph, &error) != FDCG_OK) return error.message;
+    header->graphs.push_back({object.file, graph.mapping_bytes, fdcg_checksum(graph.mapping, graph.mapping_bytes)});
+    fdcg_close(&graph);
+  }
+  return {};
+}
+
+}  // namespace
+
+// ---- ring -----------------------------------------------------------------------------------------------------------------
+
+static_assert(LogRing::kLeastBytes >= 2 * (kMostTickBytes + kEntryBytes));
+
+LogRing::LogRing(std::uint32_t bytes)
+    : bytes_(new std::uint8_t[bytes]), scratch_(new std::uint8_t[kMostTickBytes]), capacity_(bytes) {
+  // every page is there before the first tick
+  std::memset(bytes_, 0, bytes);
+  std::memset(scratch_, 0, kMostTickBytes);
+}
+
+LogRing::~LogRing() {
+  delete[] bytes_;
+  delete[] scratch_;
+}
+
+void LogRing::copy_in(std::uint64_t at, const std::uint8_t* from, std::size_t bytes) {
+  const std::size_t place = at & (capacity_ - 1), first = std::min<std::size_t>(bytes, capacity_ - place);
+  std::memcpy(bytes_ + place, from, first);
+  std::memcpy(bytes_, from + first, bytes - first);
+}
+
+void LogRing::copy_out(std::uint64_t at, std::uint8_t* to, std::size_t bytes) const {
+  const std::size_t place = at & (capacity_ - 1), first = std::min<std::size_t>(bytes, capacity_ - place);
+  std::memcpy(to, bytes_ + place, first);
+  std::memcpy(to + first, bytes_, bytes - first);
+}
+
+bool LogRing::put(const TickInput& input, const TickOutput& output) {
+  const std::uint64_t tick = tick_++;
+  std::size_t bytes = encode_tick_input(input, scratch_);
+  bytes += encode_tick_output(logged(output), scratch_ + bytes);
+  const std::uint64_t head = head_.load(std::memory_order_relaxed);
+  if (capacity_ - (head - tail_.load(std::memory_order_acquire)) < kEntryBytes + bytes) {
+    dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    return false;
+  }
+  const auto length = static_cast<std::uint32_t>(bytes);
+  std::uint8_t entry[kEntryBytes];
+  std::memcpy(entry, &length, sizeof length);
+  std::memcpy(entry + sizeof length, &tick, sizeof tick);
+  copy_in(head, entry, kEntryBytes);
+  copy_in(head + kEntryBytes, scratch_, bytes);
+  head_.store(head + kEntryBytes + bytes, std::memory_order_release);
+  return true;
+}
+
+std::size_t LogRing::take(std::uint64_t* tick, std::uint8_t* payload) {
+  const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
+  if (tail == head_.load(std::memory_order_acquire)) return 0;
+  std::uint8_t entry[kEntryBytes];
+  std::uint32_t length = 0;
+  copy_out(tail, entry, kEntryBytes);
+  std::memcpy(&length, entry, sizeof length);
+  std::memcpy(tick, entry + sizeof length, sizeof *tick);
+  copy_out(tail + kEntryBytes, payload, length);
+  tail_.store(tail + kEntryBytes + length, std::memory_order_release);
+  return length;
+}
+
+// ---- file -----------------------------------------------------------------------------------------------------------------
+
+struct SessionLog::Impl {
+  std::string path;
+  std::vector<LogRing*> rings;
+  std::uint64_t limit_bytes = 0;  // 0: none
+  int descriptor = -1;
+  std::thread thread;
+  std::mutex mutex;  // of is_stopping
+  std::condition_variable wake;
+  bool is_stopping = false;
+
+  // the thread's
+  std::vector<std::uint8_t> chunk, payload, record;
+  std::uint64_t chunk_ticks = 0;
+  std::uint64_t whole_bytes = 0;  // of the file: up to the end of a record
+  SessionEnd end;                 // ticks: taken from the rings so far
+
+  // told to any thread
+  enum : int { kWell = 0, kAtLimit = -1 };  // or an errno
+  std::atomic<int> trouble{kWell};
+  std::atomic<std::uint64_t> bytes_written{0}, ticks_left_out{0};
+
+  void run();
+  void drain();
+  void add(const std::uint8_t* bytes, std::size_t count);
+  bool flush();
+  void fail(int error_number);
+  std::string trouble_text() const;
+};
+
+void SessionLog::Impl::fail(int error_number) {
+  trouble.store(error_number, std::memory_order_release);
+  // What is left ends with a whole record. Of a device there is nothing to cut off, and no harm in trying.
+  if (ftruncate(descriptor, static_cast<off_t>(whole_bytes)) == 0) bytes_written.store(whole_bytes, std::memory_order_relaxed);
+}
+
+// The chunk holds whole records; after a failure it is lost.
+bool SessionLog::Impl::flush() {
+  std::size_t done = 0;
+  while (done < chunk.size() && trouble.load(std::memory_order_relaxed) <= kWell) {
+    const ssize_t wrote = write(descriptor, chunk.data() + done, chunk.size() - done);
+    if (wrote > 0) {
+      done += static_cast<std::size_t>(wrote);
+    } else if (wrote == 0 || errno != EINTR) {
+      fail(wrote == 0 ? EIO : errno);
+    }
+  }
+  const bool is_whole = done == chunk.size();
+  if (is_whole) {
+    whole_bytes += done;
+    bytes_written.store(whole_bytes, std::memory_order_relaxed);
+  } else {
+    ticks_left_out.fetch_add(chunk_ticks, std::memory_order_relaxed);
+  }
+  chunk_ticks = 0;
+  chunk.clear();
+  return is_whole;
+}
+
+void SessionLog::Impl::add(const std::uint8_t* bytes, std::size_t count) {
+  chunk.insert(chunk.end(), bytes, bytes + count);
+  if (chunk.size() >= kChunkBytes) flush();
+}
+
+void SessionLog::Impl::drain() {
+  for (std::size_t device = 0; device < rings.size(); ++device) {
+    std::uint64_t tick = 0;
+    // no more than was there at first: a fast device does not keep the others waiting
+    const std::uint64_t until = rings[device]->head_.load(std::memory_order_acquire);
+    while (rings[device]->tail_.load(std::memory_order_relaxed) < until) {
+      const std::size_t bytes = rings[device]->take(&tick, payload.data());
+      if (trouble.load(std::memory_order_relaxed) != kWell) {
+        ticks_left_out.fetch_add(1, std::memory_order_relaxed);
+        continue;
+      }
+      const std::size_t length =
+          encode_record(RecordKind::kTick, static_cast<std::uint16_t>(device), tick, payload.data(), bytes, record.data());
+      const std::uint64_t room_for_end = kRecordFrameBytes + 1 + 16 * rings.size();
+      if (limit_bytes != 0 && whole_bytes + chunk.size() + length + room_for_end > limit_bytes) {
+        end.reason = EndReason::kLimit;
+        const std::string last = encode_end(end);
+        add(reinterpret_cast<const std::uint8_t*>(last.data()), last.size());
+        if (flush()) trouble.store(kAtLimit, std::memory_order_release);
+        ticks_left_out.fetch_add(1, std::memory_order_relaxed);
+        continue;
+      }
+      ++chunk_ticks;
+      add(record.data(), length);
+      end.ticks[device] = tick + 1;
+    }
+  }
+  flush();
+}
+
+void SessionLog::Impl::run() {
+  for (bool is_last = false; !is_last;) {
+    {
+      std::unique_lock lock(mutex);
+      wake.wait_for(lock, kDrainInterval, [this] { return is_stopping; });
+      is_last = is_stopping;
+    }
+    drain();
+  }
+  if (trouble.load(std::memory_order_relaxed) != kWell) return;
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    end.ticks[i] = rings[i]->tick_;  // its thread has put its last
+    end.dropped[i] = rings[i]->dropped();
+  }
+  const std::string last = encode_end(end);
+  add(reinterpret_cast<const std::uint8_t*>(last.data()), last.size());
+  flush();
+}
+
+std::string SessionLog::Impl::trouble_text() const {
+  const int what = trouble.load(std::memory_order_acquire);
+  if (what == kWell) return {};
+  char size[32];
+  std::snprintf(size, sizeof size, "%.1f MB",
+                static_cast<double>(bytes_written.load(std::memory_order_relaxed)) / kBytesPerMegabyte);
+  const std::string left_out = std::to_string(ticks_left_out.load(std::memory_order_relaxed)) + " later ticks are not in it";
+  if (what == kAtLimit) return path + ": the log has come to its limit (log.limit_mb) at " + size + "; " + left_out;
+  return path + ": " + std::strerror(what) + " after " + size + "; " + left_out +
+         ". The session goes on without a log; make room, then start anew";
+}
+
+SessionLog::SessionLog() : impl_(new Impl) {}
+
+SessionLog::~SessionLog() {
+  stop();
+  delete impl_;
+}
+
+std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, int ring_count) {
+  const std::string cannot = "cannot write the log '" + config.log_file + "': ";
+  if (const std::string problem = overwritten(config); !problem.empty()) {
+    return cannot + "it " + problem + "; give another name (log.file, --log)";
+  }
+  SessionHeader header;
+  if (const std::string problem = describe(config, &header); !problem.empty()) return cannot + problem;
+  impl_->path = config.log_file;
+  impl_->rings.assign(rings, rings + ring_count);
+  impl_->end.ticks.assign(impl_->rings.size(), 0);
+  impl_->end.dropped.assign(impl_->rings.size(), 0);
+  impl_->limit_bytes = static_cast<std::uint64_t>(config.log_megabytes * kBytesPerMegabyte);
+  impl_->payload.resize(kMostTickBytes);
+  impl_->record.resize(kRecordFrameBytes + kMostTickBytes);
+  impl_->chunk.reserve(2 * kChunkBytes);
+
+  // A crash must leave a log that can be read: it is written in place as the session goes, unlike other outputs.
+  impl_->descriptor = ::open(config.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (impl_->descriptor < 0) return cannot + std::strerror(errno);
+  // The thread takes no signals: those of the process belong to others, and SIGXFSZ becomes an error of write.
+  sigset_t all{}, before{};
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const std::string first = encode_session_header(header);
+  impl_->add(reinterpret_cast<const std::uint8_t*>(first.data()), first.size());
+  const bool is_written = impl_->flush();
+  if (is_written) impl_->thread = std::thread([this] { impl_->run(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (is_written) return {};
+  const int error_number = impl_->trouble.load();
+  ::close(impl_->descriptor);
+  impl_->descriptor = -1;
+  return cannot + std::strerror(error_number);
+}
+
+std::string SessionLog::stop() {
+  if (!impl_->thread.joinable()) return {};
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->is_stopping = true;
+  }
+  impl_->wake.notify_one();
+  impl_->thread.join();
+  if (::close(impl_->descriptor) != 0 && impl_->trouble.load() == Impl::kWell) impl_->trouble.store(errno);
+  impl_->descriptor = -1;
+  return impl_->trouble.load() > Impl::kWell ? failure() : std::string();
+}
+
+bool SessionLog::has_failed() const {
+  return impl_->trouble.load(std::memory_order_acquire) != Impl::kWell;
+}
+
+std::string SessionLog::failure() const {
+  return impl_->trouble_text();
+}
+
+}  // namespace fdcg::dev

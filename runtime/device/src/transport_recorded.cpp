@@ -1,1 +1,119 @@
 // SPDX-License-Identifier: Apache-2.0
+// The reports of one device of a session, as they were read, at the times between them, or as fast as they are asked for. What
+// is written goes nowhere: the hand and the device of a recording do not feel.
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <memory>
+
+#include "make_transport.hpp"
+#include "scene_json.hpp"
+#include "session_reader.hpp"
+
+namespace fdcg::dev {
+namespace {
+
+constexpr std::uint64_t kSecond_ns = 1'000'000'000, kMillisecond_ns = 1'000'000;
+
+std::uint64_t now_ns() {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return static_cast<std::uint64_t>(time.tv_sec) * kSecond_ns + static_cast<std::uint64_t>(time.tv_nsec);
+}
+
+void sleep_until(std::uint64_t when_ns) {
+  const timespec time{static_cast<time_t>(when_ns / kSecond_ns), static_cast<long>(when_ns % kSecond_ns)};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr) != 0) {
+  }
+}
+
+class RecordedTransport final : public Transport {
+ public:
+  explicit RecordedTransport(const DeviceConfig& config) : path_(config.recording), name_(config.name) {}
+
+  std::string open() override;
+  void close() override { reports_.clear(); }
+  bool is_over() const override { return is_over_; }
+  ReadResult read(std::uint8_t* data, int capacity, int timeout_ms) override;
+  bool write(const std::uint8_t*, int) override { return true; }
+  bool write_feature(const std::uint8_t*, int) override { return true; }
+
+ private:
+  struct Report {
+    std::uint64_t host_ns;
+    std::size_t first;  // in bytes_
+    std::uint16_t bytes;
+  };
+  std::string load();
+
+  std::string path_, name_;
+  // All of it is read before the first report is asked for: the loop's thread touches no file.
+  std::vector<Report> reports_;
+  std::vector<std::uint8_t> bytes_;
+  std::size_t next_ = 0;
+  std::uint64_t started_ns_ = 0;  // 0: not yet
+  std::atomic<bool> is_over_{false};
+};
+
+std::string RecordedTransport::load() {
+  SessionReader reader;
+  if (std::string problem = reader.open(path_); !problem.empty()) return problem;
+  HostConfig recorded;
+  if (std::string problem = parse_scene(reader.header().scene, path_ + " (its scene)", &recorded); !problem.empty())
+    return problem;
+  const std::size_t device = find_recorded_device(recorded, name_);
+  if (device == recorded.devices.size()) return path_ + ": no device '" + name_ + "' in it";
+  const auto input = std::make_unique<TickInput>();
+  for (SessionRecord record; reader.next(&record);) {
+    if (record.device != device || decode_tick_input(record.payload, record.payload_bytes, input.get()) == 0) continue;
+    for (std::uint32_t i = 0; i < input->report_count; ++i) {
+      const RawReport& report = input->reports[i];
+      const auto length = std::min<std::size_t>(report.bytes, kMaxReportBytes);
+      reports_.push_back({report.host_ns, bytes_.size(), report.bytes});
+      bytes_.insert(bytes_.end(), report.data, report.data + length);
+    }
+  }
+  if (reports_.empty()) return path_ + ": no report of '" + name_ + "' in it: there is nothing to play";
+  return {};
+}
+
+std::string RecordedTransport::open() {
+  if (is_over_) return path_ + ": the recording has ended";
+  reports_.clear();
+  bytes_.clear();
+  next_ = 0;
+  started_ns_ = 0;
+  return load();
+}
+
+ReadResult RecordedTransport::read(std::uint8_t* data, int capacity, int timeout_ms) {
+  if (next_ == reports_.size()) {
+    is_over_ = true;
+    return {ReadStatus::kLost, 0};
+  }
+  if (started_ns_ == 0) started_ns_ = now_ns();
+  const Report& report = reports_[next_];
+  const std::uint64_t due_ns = started_ns_ + (report.host_ns - std::min(report.host_ns, reports_[0].host_ns));
+  const std::uint64_t until_ns = now_ns() + static_cast<std::uint64_t>(std::max(timeout_ms, 0)) * kMillisecond_ns;
+  if (due_ns > until_ns) {
+    if (timeout_ms > 0) sleep_until(until_ns);
+    return {ReadStatus::kTimeout, 0};
+  }
+  if (timeout_ms > 0) sleep_until(due_ns);
+  if (now_ns() < due_ns) return {ReadStatus::kTimeout, 0};
+  ++next_;
+  // what the log cut off is not there: a report that was too long is still too long
+  const int length = std::min<int>(report.bytes, kMaxReportBytes);
+  std::memcpy(data, bytes_.data() + report.first, static_cast<std::size_t>(std::min(length, capacity)));
+  return {ReadStatus::kReport, report.bytes};
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_recorded_transport(const DeviceConfig& config) {
+  return std::make_unique<RecordedTransport>(config);
+}
+
+}  // namespace fdcg::dev

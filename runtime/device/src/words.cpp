@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -51,8 +52,11 @@ std::string in_quotes(std::string_view word) {
 }
 
 std::string shown_number(double number) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, number).ptr;
+  char text[64];
+  const double size = std::fabs(number);
+  const bool is_plain = size == 0 || (size >= 1e-4 && size < 1e10);
+  const auto format = is_plain ? std::chars_format::fixed : std::chars_format::scientific;
+  const auto end = std::to_chars(text, text + sizeof text, number, format).ptr;
   return std::string(text, end);
 }
 

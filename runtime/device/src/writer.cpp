@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint64_t kSilenceNs = static_cast<std::uint64_t>(kSilenceS * 1e9);
 constexpr std::uint64_t kPublishNs = 20'000'000;
 constexpr std::uint64_t kAwakeNs = 100'000'000;  // with nothing to do: often enough to see a stop, even if its wake were lost
-// A write may hold the thread for 5.1 s, and a host that is told to stop ends within 6 s: a device that does not take what it is
-// sent gets no further try after that.
+// A write may hold the thread for 5.1 s, and a host that is told to stop ends within 6 s: a device that does not take what it
+// is sent gets no further try after that.
 constexpr std::uint64_t kGoodbyeNs = 800'000'000;
 
 }  // namespace
@@ -26,7 +26,6 @@ void Writer::put(const GatedForce& force, std::uint32_t echo) {
   letter.number = ++put_number_;
   letters_.put(letter);
   put_.store(put_number_, std::memory_order_release);
-  wake_.signal();
 }
 
 std::uint64_t Writer::busy_ns(std::uint64_t now_ns) const {
@@ -45,7 +44,8 @@ void Writer::flush_within(std::uint64_t timeout_ns) {
   const std::uint64_t until_ns = monotonic_ns() + timeout_ns;
   const std::uint64_t wanted = put_.load(std::memory_order_acquire);
   Event never;
-  while (done_.load(std::memory_order_acquire) < wanted && monotonic_ns() < until_ns) never.wait(kStepNs);
+  while (done_.load(std::memory_order_acquire) < wanted && monotonic_ns() < until_ns)
+    never.wait(kStepNs);
 }
 
 void Writer::run() {
@@ -70,7 +70,8 @@ void Writer::run() {
 bool Writer::send(const GatedForce& force, std::uint32_t echo) {
   if (!profile_.has_output) return true;
   Command command;
-  for (int axis = 0; axis < profile_.axis_count; ++axis) command.effort[axis] = force.effort()[axis];
+  for (int axis = 0; axis < profile_.axis_count; ++axis)
+    command.effort[axis] = force.effort()[axis];
   command.is_enabled = force.is_enabled();
   command.echo = echo;
   return timed([&] {
@@ -113,9 +114,11 @@ void Writer::publish(std::uint64_t now_ns) {
 void Writer::say_goodbye() {
   const auto has_time = [&] { return monotonic_ns() - stop_ns_.load(std::memory_order_acquire) < kGoodbyeNs; };
   // After a blocked write that the device took in the end it takes this one too.
-  if (has_failed() && !has_time()) return;
-  bool is_taken = send(GatedForce(), 0);
-  for (int i = 0; i < profile_.safe_stop_count && (is_taken || has_time()); ++i) is_taken = send_fixed(profile_.safe_stop[i]);
+  bool is_taken = (!has_failed() || has_time()) && send(GatedForce(), 0);
+  has_left_zero_.store(is_taken || !link_.is_open(), std::memory_order_release);
+  for (int i = 0; i < profile_.safe_stop_count && (is_taken || has_time()); ++i) {
+    is_taken = send_fixed(profile_.safe_stop[i]);
+  }
 }
 
 }  // namespace fdcg::dev

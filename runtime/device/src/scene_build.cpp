@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_build.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fdcg::dev {
+namespace {
+
+constexpr std::uint32_t kMostTouches = 8;  // objects that one contact can feel at once
+constexpr double kTurn = 6.283185307179586;
+
+std::string place_of(const HostConfig& config, std::size_t object) {
+  return config.scene_file + ": objects[" + std::to_string(object) + "] '" + config.objects[object].name + "': ";
+}
+
+// a after b.
+void multiply(const double a[4], const double b[4], double product[4]) {
+  product[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
+  product[1] = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
+  product[2] = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];
+  product[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
+}
+
+}  // namespace
+
+std::string SceneGraphs::open(const HostConfig& config) {
+  close();
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    const auto same_file = [&](const ObjectConfig& other) { return other.file == config.objects[i].file; };
+    const auto first = static_cast<std::size_t>(std::find_if(config.objects.begin(), config.objects.end(), same_file) -
+                                                config.objects.begin());
+    if (first < i) {
+      graph_of_object_.push_back(graph_of_object_[first]);
+      continue;
+    }
+    fdcg_graph graph{};
+    fdcg_error error{};
+    if (fdcg_open_file(config.objects[i].file.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
+      close();
+      return place_of(config, i) + error.message;
+    }
+    graph_of_object_.push_back(graphs_.size());
+    graphs_.push_back(graph);
+  }
+  return {};
+}
+
+void SceneGraphs::close() {
+  for (fdcg_graph& graph : graphs_)
+    fdcg_close(&graph);
+  graphs_.clear();
+  graph_of_object_.clear();
+}
+
+std::string build_device_scene(const HostConfig& config, std::size_t device, const SceneGraphs& graphs, DeviceScene* scene) {
+  const DeviceConfig& from = config.devices[device];
+  const auto object_count = static_cast<std::uint32_t>(config.objects.size());
+  fdcg_scene_config capacities = fdcg_default_scene_config();
+  capacities.object_capacity = std::max(1u, object_count);
+  capacities.finger_capacity = static_cast<std::uint32_t>(from.contact_count);
+  capacities.touches_per_finger = std::clamp(object_count, 1u, kMostTouches);
+  const std::uint64_t bytes = fdcg_scene_bytes(&capacities);
+  scene->memory.assign(static_cast<std::size_t>(bytes / sizeof(std::uint64_t) + 1), 0);
+
+  DeviceSetup& setup = scene->setup;
+  setup = DeviceSetup{};
+  setup.profile = from.profile;
+  setup.mapping = from.mapping;
+  setup.contact_count = from.contact_count;
+  std::copy(&from.contacts_m[0][0], &from.contacts_m[0][0] + kMaxContacts * 3, &setup.contacts_m[0][0]);
+  setup.most_force_n = from.most_force_n;
+  fdcg_error error{};
+  if (fdcg_scene_create(scene->memory.data(), bytes, &capacities, &setup.scene, &error) != FDCG_OK) {
+    return config.scene_file + ": devices[" + std::to_string(device) + "] '" + from.name + "': " + error.message;
+  }
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    const ObjectConfig& object = config.objects[i];
+    fdcg_params params = object.params;
+    params.tick_s = 1 / from.profile.rate_hz;
+    fdcg_object_id id{};
+    if (fdcg_scene_add_object(setup.scene, &graphs.of_object(i), &params, &object.pose, &id, &error) != FDCG_OK) {
+      return place_of(config, i) + error.message;
+    }
+    if (object.motion.kind == MotionKind::kFixed) continue;
+    if (setup.driven_count == kMaxDriven) {
+      return place_of(config, i) + "more than " + std::to_string(kMaxDriven) + " objects have a motion; make it fixed";
+    }
+    setup.driven[setup.driven_count++] = id;
+  }
+  return {};
+}
+
+fdcg_pose pose_at(const ObjectConfig& object, double seconds) {
+  const Motion& motion = object.motion;
+  fdcg_pose pose = object.pose;
+  // turns taken off before the sine: as exact after a day as at the start
+  const double turns = motion.rate_hz * seconds;
+  const double angle = kTurn * (turns - std::floor(turns));
+  if (motion.kind == MotionKind::kSpin) {
+    const double sine = std::sin(angle / 2);
+    const double turn[4] = {motion.axis[0] * sine, motion.axis[1] * sine, motion.axis[2] * sine, std::cos(angle / 2)};
+    multiply(turn, object.pose.rotation_xyzw, pose.rotation_xyzw);
+  } else if (motion.kind == MotionKind::kSwing) {
+    for (int axis = 0; axis < 3; ++axis)
+      pose.translation_m[axis] += motion.axis[axis] * motion.amplitude_m * std::sin(angle);
+  }
+  return pose;
+}
+
+}  // namespace fdcg::dev

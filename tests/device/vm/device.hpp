@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The virtual device: the reference firmware core behind a port, a hand that moves it, and a record of what its motors did.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "clock.hpp"
+#include "fdcg_firmware.h"
+#include "port.hpp"
+
+namespace fdcg::vm {
+
+// Where the hand holds the tip: above the surface (z = 0) or inside it, moving at most kHandSpeed on the way.
+class Hand {
+ public:
+  static constexpr double kAboveM = 0.005, kBelowM = -0.003, kSpeedMPerS = 0.2;
+  void above() { target_m_ = kAboveM; }
+  void below() { target_m_ = kBelowM; }
+  bool is_above() const { return z_m_ == kAboveM; }
+  std::array<double, 3> at(Nanoseconds now);
+
+ private:
+  double target_m_ = kAboveM, z_m_ = kAboveM;
+  Nanoseconds last_ = 0;
+};
+
+// What the motors did and whom they obeyed.
+struct Record {
+  std::uint64_t sent = 0, answered = 0;    // reports; those that an output report named as the one it answers
+  std::uint64_t outputs = 0, refused = 0;  // output reports, and those that the firmware did not take
+  std::uint64_t misled = 0;                // non-zero forces that answer no report, or one that must not be used
+  std::uint64_t watchdog_trips = 0;
+  std::vector<std::uint32_t> round_trips_ns;  // from a report's sending to the first output that answers it
+  Nanoseconds oldest_answer = 0;              // of a non-zero force: since the report that it answers was sent
+  double most_force_n = 0;
+  double force_n = 0;           // now
+  bool is_enabled = false;      // by the last output report taken
+  Nanoseconds force_since = 0;  // when it last became non-zero
+  Nanoseconds last_output = 0;
+  Nanoseconds watched_from = 0, first_zero = 0;  // the first moment without force since `watch`; 0: none yet
+  Nanoseconds output_before_zero = 0;            // last_output at that moment
+
+  // Counts and worst values begin again; what the motors do now stays.
+  void restart();
+  void watch(Nanoseconds from) {
+    watched_from = from;
+    first_zero = 0;
+  }
+};
+
+class Device final : public PortUser {
+ public:
+  // A report on its way: kept, altered, doubled, left out.
+  using Wire = std::function<void(const Bytes& report)>;
+
+  Device(std::unique_ptr<Port> port, int rate_hz, bool has_float_axes);
+  // As after a loss of power, or (false) with its motors' supply, its clock and its counters kept.
+  void plug(bool is_power_cycled);
+  void unplug();
+  int fd() const { return port_->fd(); }
+  void receive();
+  // Makes a report of this moment and gives it to the wire.
+  void tick();
+  void send(const Bytes& report) { port_->send(report); }
+  void take_output(bool takes);
+
+  void set_wire(Wire wire) { wire_ = std::move(wire); }
+  void clear_wire() { wire_ = nullptr; }
+  // Reports from now on must not be answered by force: they are bad, or the host must not be there.
+  void distrust(bool is_bad) { is_bad_ = is_bad; }
+
+  Hand hand;
+  Record record;
+
+  void on_output(const std::uint8_t* data, int bytes) override;
+  Bytes on_get_feature(int report_id) override;
+
+ private:
+  struct Sent {
+    std::uint32_t sequence = 0;
+    bool is_bad = false, is_answered = false;
+    Nanoseconds at = 0;
+  };
+  static constexpr std::size_t kRemembered = 1 << 17;
+
+  void power_up();
+  void note_force(Nanoseconds now);
+  std::uint32_t device_us(Nanoseconds now) const { return static_cast<std::uint32_t>((now - born_) / kMicrosecond); }
+
+  std::unique_ptr<Port> port_;
+  fdcg_fw firmware_{};
+  int rate_hz_;
+  bool has_float_axes_, is_bad_ = false, was_tripped_ = false;
+  Nanoseconds born_ = 0;
+  Wire wire_;
+  std::vector<Sent> sent_ = std::vector<Sent>(kRemembered);
+};
+
+}  // namespace fdcg::vm

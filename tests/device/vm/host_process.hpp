@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// `fdcg-servo run` as a child process: commands to its standard input, its status from its standard output.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <deque>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace fdcg::vm {
+
+class HostProcess {
+ public:
+  HostProcess() = default;
+  ~HostProcess();  // kills
+  HostProcess(const HostProcess&) = delete;
+  HostProcess& operator=(const HostProcess&) = delete;
+
+  void start(const std::vector<std::string>& command);
+  void say(const std::string& line);  // to its standard input
+  void signal(int number);
+  bool is_running() const { return pid_ > 0; }
+  // How it ended: its exit code, or 128 + the signal.
+  int ending() const { return ending_; }
+
+  // To be polled for reading; receive() then reads what is there and notices its end. -1: not running.
+  int fd() const { return output_; }
+  void receive();
+
+  // The newest status line, null before there was one or where it is no JSON; how many there were. Only read when asked for:
+  // it would hold up the device. What else the host said, newest last.
+  nlohmann::json status() const { return nlohmann::json::parse(status_line_, nullptr, false); }
+  std::uint64_t status_count() const { return status_count_; }
+  const std::deque<std::string>& words() const { return words_; }
+
+ private:
+  void take_line(const std::string& line);
+
+  pid_t pid_ = -1;
+  int input_ = -1, output_ = -1, ending_ = 0;
+  std::string partial_;
+  std::string status_line_ = "null";
+  std::uint64_t status_count_ = 0;
+  std::deque<std::string> words_;
+};
+
+}  // namespace fdcg::vm

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The faults: each does its harm once, at the moment it is called, stays long enough for what follows to be seen, and says what
+// must have come of it. The device is being felt when it begins.
+#pragma once
+
+#include "rig.hpp"
+
+namespace fdcg::vm {
+
+struct Expectation {
+  // When the host could first know; 0: it need not notice.
+  Nanoseconds known = 0;
+  // The host's word cannot reach the device: its own watchdog takes the force away, counted from the last output it took.
+  bool is_by_watchdog = false;
+  // Disarmed, and no force until it is armed again. Otherwise force comes back by itself.
+  bool disarms = false;
+  // Neither is asked for.
+  bool may_disarm = false;
+  std::string broken;  // what else has gone wrong; empty: nothing
+};
+
+struct StrikeKind {
+  const char* name;
+  Expectation (*strike)(Rig&);
+  const char* rejected_as = nullptr;  // the host's counter that must grow; null: none must
+  bool has_float_axes = false, is_log_small = false;
+};
+
+// On the wire: strikes_wire.cpp.
+Expectation strike_short(Rig& rig);
+Expectation strike_long(Rig& rig);
+Expectation strike_garbled(Rig& rig);
+Expectation strike_repeated(Rig& rig);
+Expectation strike_out_of_order(Rig& rig);
+Expectation strike_stale(Rig& rig);
+Expectation strike_nan(Rig& rig);
+Expectation strike_stalled(Rig& rig);
+
+// On the device or the host: strikes_ends.cpp.
+Expectation strike_unplugged(Rig& rig);
+Expectation strike_no_output(Rig& rig);
+Expectation strike_asleep(Rig& rig);
+Expectation strike_killed(Rig& rig);
+Expectation strike_disk_full(Rig& rig);
+
+inline constexpr Nanoseconds kWatchdog = 20 * kMillisecond;  // of the device
+
+}  // namespace fdcg::vm

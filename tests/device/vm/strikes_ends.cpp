@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Harm to the device as a whole, to the host program, and to the disk under its log.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <stdexcept>
+
+#include "host_files.hpp"
+#include "strikes.hpp"
+
+namespace fdcg::vm {
+namespace {
+
+constexpr Nanoseconds kReopenLimit = 5 * kSecond;
+constexpr char kFiller[] = "/full/filler";
+
+bool is_answered_again(Rig& rig, Nanoseconds limit) {
+  const std::uint64_t answered = rig.device.record.answered;
+  return rig.run_until([&] { return rig.device.record.answered > answered; }, limit);
+}
+
+}  // namespace
+
+// Away for a moment or for a while, with or without its motors' supply. The force dies by the watchdog; after the re-plug there
+// is none before it is armed.
+Expectation strike_unplugged(Rig& rig) {
+  Expectation expected;
+  expected.known = now_ns();
+  expected.is_by_watchdog = expected.disarms = true;
+  rig.device.record.watch(expected.known);
+  rig.device.unplug();
+  const bool is_brief = rig.random_between(0, 3) == 0;
+  rig.run_for(is_brief ? rig.random_between(0, 2 * kMillisecond) : rig.random_between(30 * kMillisecond, 300 * kMillisecond));
+  rig.device.plug(rig.random_between(0, 1) == 0);
+  const Nanoseconds plugged = now_ns();
+  if (!is_answered_again(rig, kReopenLimit)) expected.broken = "the host has not opened it again within 5 s";
+  rig.longest_reopening = std::max(rig.longest_reopening, now_ns() - plugged);
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
+// uhid keeps 32 reports for the device and drops the rest; usbhid blocks the write and gives up after 5 s. Either way the first
+// thing that the device takes afterwards is old.
+Expectation strike_no_output(Rig& rig) {
+  Expectation expected;
+  expected.known = now_ns();
+  expected.is_by_watchdog = expected.disarms = true;
+  rig.device.record.watch(expected.known);
+  rig.device.take_output(false);
+  rig.run_for(7 * kSecond);
+  rig.device.take_output(true);
+  if (!is_answered_again(rig, kReopenLimit))
+    expected.broken = "the host writes nothing 5 s after the device takes output again";
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
+// The device's watchdog takes the force away; from the moment that the host runs again it is the host's.
+Expectation strike_asleep(Rig& rig) {
+  Expectation expected;
+  expected.is_by_watchdog = expected.disarms = true;
+  rig.device.record.watch(now_ns());
+  rig.host.signal(SIGSTOP);
+  rig.run_for(300 * kMillisecond);
+  expected.known = now_ns();
+  rig.host.signal(SIGCONT);
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
+Expectation strike_killed(Rig& rig) {
+  Expectation expected;
+  expected.known = now_ns();
+  expected.is_by_watchdog = expected.disarms = true;
+  rig.device.record.watch(expected.known);
+  rig.host.signal(SIGKILL);
+  if (!rig.run_until([&] { return !rig.host.is_running(); }, kSecond)) expected.broken = "the killed host does not end";
+  rig.run_for(rig.random_between(0, kSecond / 10));
+  rig.start_host();
+  if (!is_answered_again(rig, kReopenLimit)) expected.broken = "a new host has not opened the device within 5 s";
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
+// Nothing happens to the force; the host says that its log has ended, and only that.
+Expectation strike_disk_full(Rig& rig) {
+  Expectation expected;
+  const int filler = open(kFiller, O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  if (filler < 0) throw std::runtime_error("the small disk does not open");
+  const std::string block(4096, 'x');
+  while (write(filler, block.data(), block.size()) > 0)
+    continue;
+  close(filler);
+  rig.run_for(kSecond / 2);
+  if (!rig.host_says_log_failed()) expected.broken = "the host does not say that its log has ended";
+  if (!(rig.device.record.force_n > 0)) expected.broken = "the force is gone";
+  if (!rig.end_host() || rig.host.ending() >= 128) expected.broken = "the host does not end in order";
+  for (const auto& entry : std::filesystem::directory_iterator(kSmallDisk))
+    std::filesystem::remove(entry.path());
+  rig.start_host();
+  expected.may_disarm = true;  // by its end
+  return expected;
+}
+
+}  // namespace fdcg::vm

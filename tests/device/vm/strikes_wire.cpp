@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bursts of bad reports. The gate lets two missing reports pass, fades from the third on, and disarms after 10 ms; burst
+// lengths stay clear of the edges between the three, so that it is certain which of them must happen.
+#include <algorithm>
+#include <deque>
+
+#include "strikes.hpp"
+
+namespace fdcg::vm {
+namespace {
+
+constexpr Nanoseconds kSilence = 10 * kMillisecond;  // the gate's
+constexpr double kMissedPeriods = 3.5;  // from the last good report until the third missing one is overdue by half a period
+constexpr Nanoseconds kAfterwards = 60 * kMillisecond;
+
+// Reports in a burst: passes, fades, or disarms.
+int burst_length(Rig& rig, int longest) {
+  const int silence = static_cast<int>(kSilence / rig.period());
+  switch (rig.random_between(0, 2)) {
+    case 0:
+      return static_cast<int>(rig.random_between(1, 2));
+    case 1:
+      return static_cast<int>(rig.random_between(5, silence - 2));
+    default:
+      return static_cast<int>(rig.random_between(silence + 3, longest));
+  }
+}
+
+Expectation expect_of(Rig& rig, int missing) {
+  Expectation expected;
+  if (missing < 3) return expected;
+  expected.known = now_ns() + static_cast<Nanoseconds>(kMissedPeriods * static_cast<double>(rig.period()));
+  expected.disarms = missing * rig.period() > kSilence;
+  return expected;
+}
+
+// Right after a good report.
+void begin_on_report(Rig& rig) {
+  const std::uint64_t sent = rig.device.record.sent;
+  rig.run_until([&] { return rig.device.record.sent > sent; }, kSecond);
+}
+
+// Each of `count` reports goes through `wire` instead of the cable.
+Expectation burst(Rig& rig, int count, const Device::Wire& wire) {
+  begin_on_report(rig);
+  const Expectation expected = expect_of(rig, count);
+  rig.device.record.watch(expected.known);
+  int left = count;
+  rig.device.distrust(true);
+  rig.device.set_wire([&](const Bytes& report) {
+    --left;
+    wire(report);
+  });
+  rig.run_until([&] { return left == 0; }, (count + 2) * rig.period());
+  rig.device.clear_wire();
+  rig.device.distrust(false);
+  rig.run_for(kAfterwards);
+  return expected;
+}
+
+std::uint32_t get32(const Bytes& report, std::size_t at) {
+  return report[at] | std::uint32_t{report[at + 1]} << 8 | std::uint32_t{report[at + 2]} << 16 |
+         std::uint32_t{report[at + 3]} << 24;
+}
+
+void put32(Bytes& report, std::size_t at, std::uint32_t value) {
+  for (std::size_t i = 0; i < 4; ++i)
+    report[at + i] = static_cast<std::uint8_t>(value >> 8 * i);
+}
+
+void set_crc(Bytes& report) {
+  const std::uint16_t crc = fdcg_fw_crc16(report.data(), report.size() - 2);
+  report[report.size() - 2] = static_cast<std::uint8_t>(crc);
+  report[report.size() - 1] = static_cast<std::uint8_t>(crc >> 8);
+}
+
+constexpr int kLongest = 40;
+constexpr int kLongestWithOldNumbers = 15;  // more than 20 in a row are a device that has begun again: report_codec.hpp
+
+}  // namespace
+
+Expectation strike_short(Rig& rig) {
+  return burst(rig, burst_length(rig, kLongest), [&](const Bytes& report) {
+    rig.device.send(Bytes(report.begin(), report.begin() + rig.random_between(1, FDCG_FW_INPUT_BYTES - 1)));
+  });
+}
+
+// To usbhid a packet beyond the report's length is an error of the line: it waits before it asks again, so that silence
+// follows.
+Expectation strike_long(Rig& rig) {
+  Expectation expected = burst(rig, burst_length(rig, kLongest), [&](const Bytes& report) {
+    Bytes longer = report;
+    longer.resize(static_cast<std::size_t>(rig.random_between(FDCG_FW_INPUT_BYTES + 1, 64)), 0xA5);
+    rig.device.send(longer);
+  });
+  if (rig.options.is_usb) {
+    expected.may_disarm = !expected.disarms;
+    rig.run_for(kSecond / 10);
+  }
+  return expected;
+}
+
+Expectation strike_garbled(Rig& rig) {
+  return burst(rig, burst_length(rig, kLongest), [&](const Bytes& report) {
+    Bytes other = report;
+    const auto bits = static_cast<std::uint64_t>(rig.random_between(1, 3));
+    for (std::uint64_t i = 0; i < bits; ++i) {  // different bits: in thirds of the report
+      const auto place =
+          static_cast<std::size_t>(rig.random_between(0, FDCG_FW_INPUT_BYTES / 3 - 1)) + i * (FDCG_FW_INPUT_BYTES / 3);
+      other[place] ^= static_cast<std::uint8_t>(1 << rig.random_between(0, 7));
+    }
+    rig.device.send(other);
+  });
+}
+
+// Instead of new ones, or besides them: then nothing is missing.
+Expectation strike_repeated(Rig& rig) {
+  Bytes last;
+  rig.device.set_wire([&](const Bytes& report) {
+    last = report;
+    rig.device.send(report);
+  });
+  begin_on_report(rig);
+  rig.device.clear_wire();
+  if (rig.random_between(0, 1) == 0) {
+    return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes&) { rig.device.send(last); });
+  }
+  const Nanoseconds end = now_ns() + rig.random_between(1, 40) * rig.period();
+  rig.device.set_wire([&](const Bytes& report) {
+    rig.device.send(report);
+    rig.device.send(report);
+  });
+  rig.run_until(end);
+  rig.device.clear_wire();
+  rig.run_for(kAfterwards);
+  return {};
+}
+
+// Old ones instead of new ones, or a few in the wrong order.
+Expectation strike_out_of_order(Rig& rig) {
+  std::deque<Bytes> past;
+  rig.device.set_wire([&](const Bytes& report) {
+    past.push_back(report);
+    rig.device.send(report);
+  });
+  rig.run_for((kLongestWithOldNumbers + 5) * rig.period());
+  rig.device.clear_wire();
+  if (rig.random_between(0, 1) == 0) {
+    return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes&) {
+      rig.device.send(past.front());
+      past.pop_front();
+    });
+  }
+  // two out of every three are late by a report: the last of them is in time
+  std::vector<Bytes> held;
+  rig.device.set_wire([&](const Bytes& report) {
+    held.push_back(report);
+    if (held.size() < 3) return;
+    std::for_each(held.rbegin(), held.rend(), [&](const Bytes& each) { rig.device.send(each); });
+    held.clear();
+  });
+  rig.run_for(rig.random_between(1, 12) * 3 * rig.period());
+  rig.run_until([&] { return held.empty(); }, 4 * rig.period());
+  rig.device.clear_wire();
+  rig.run_for(kAfterwards);
+  return {};
+}
+
+// Held up on the way, all of them, and then let go at once; or made long ago by their own time.
+Expectation strike_stale(Rig& rig) {
+  if (rig.random_between(0, 1) == 0) {
+    return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes& report) {
+      Bytes older = report;
+      put32(older, 5, get32(older, 5) - static_cast<std::uint32_t>(rig.random_between(20'000, 200'000)));
+      set_crc(older);
+      rig.device.send(older);
+    });
+  }
+  std::vector<Bytes> held;
+  const int count = static_cast<int>(rig.random_between(13, kLongest));
+  Expectation expected = burst(rig, count, [&](const Bytes& report) {
+    held.push_back(report);
+    if (held.size() == static_cast<std::size_t>(count))
+      for (const Bytes& each : held)
+        rig.device.send(each);
+  });
+  return expected;
+}
+
+// No number, or none that is finite, in one axis or more; the CRC is right.
+Expectation strike_nan(Rig& rig) {
+  return burst(rig, burst_length(rig, kLongest), [&](const Bytes& report) {
+    Bytes other = report;
+    const auto lost_axes = rig.random_between(1, 7);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (lost_axes >> axis & 1) put32(other, 9 + 4 * axis, rig.random_between(0, 1) == 0 ? 0x7FC00000 : 0xFF800000);
+    set_crc(other);
+    rig.device.send(other);
+  });
+}
+
+Expectation strike_stalled(Rig& rig) {
+  return burst(rig, burst_length(rig, 300), [](const Bytes&) {});
+}
+
+}  // namespace fdcg::vm
