@@ -18,12 +18,6 @@
 namespace fdcg::tools {
 namespace {
 
-struct UnitName {
-  const char* name;
-  double metres;
-};
-constexpr UnitName kUnits[] = {{"m", 1}, {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}};
-
 struct CompileArguments {
   std::string mesh;
   std::string output;
@@ -238,29 +232,6 @@ int run_compile(CompileArguments& arguments) {
   }
 }
 
-void add_unit_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
-  const auto parse_units = [arguments](const std::string& text) {
-    require_choice("--units", text, {"m", "mm", "cm", "in"});
-    for (const UnitName& unit : kUnits) {
-      if (text != unit.name) continue;
-      arguments->options.metres_per_unit = unit.metres;
-      arguments->unit_text = text;
-    }
-  };
-  const auto parse_scale = [arguments](const std::string& text) {
-    const auto scale = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
-    if (!scale) throw CLI::ValidationError("--scale", "'" + text + "' is no number above 0 (metres for one unit of the file)");
-    arguments->options.metres_per_unit = *scale;
-    arguments->unit_text = "1 unit = " + number(*scale) + " m";
-  };
-  CLI::Option* const units =
-      command.add_option_function<std::string>("--units", parse_units, "Unit of the file's coordinates; default: metres");
-  units->type_name("m|mm|cm|in");
-  command.add_option_function<std::string>("--scale", parse_scale, "Metres for one unit of the file")
-      ->type_name("METRES")
-      ->excludes(units);
-}
-
 void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
   add_precision_option(command, arguments->options.precision, "Numbers in the file; default: f64");
   const auto parse_coplanar = [arguments](const std::string& text) {
@@ -342,7 +313,7 @@ The same mesh and options give the same bytes.)");
       ->required()
       ->type_name("FILE");
   add_input_format_option(*command, arguments->input_format);
-  add_unit_options(*command, arguments);
+  add_unit_options(*command, arguments->options.metres_per_unit, arguments->unit_text);
   add_graph_options(*command, arguments);
   add_mass_options(*command, arguments);
   add_weld_option(*command, arguments->options.weld);
