@@ -228,6 +228,20 @@ TEST_CASE("a device that takes no output does not keep the host from stopping wi
   CHECK(device->misused == 0);
 }
 
+TEST_CASE("a device that refuses its last zero force is told of") {
+  Hosted hosted;
+  hosted.start();
+  hosted.device().refuses_writes = true;
+  CHECK(hosted.host.stop().find("may not have got its zero force") != std::string::npos);
+  CHECK_FALSE(hosted.device().is_open);
+
+  Hosted gone;
+  gone.start();
+  gone.device().is_plugged = false;
+  REQUIRE(within_ms(5000, [&] { return !gone.device().is_open; }));
+  CHECK(gone.host.stop() == "");
+}
+
 TEST_CASE("a read that does not return leaves no force, and does not keep the host from stopping", "[slow]") {
   auto device = std::make_unique<FakeDevice>();
   {
