@@ -172,12 +172,14 @@ TEST_CASE("every limit that is unknown means no force") {
   }
 }
 
-TEST_CASE("without a watchdog in the device the force limit is low, and a scene can only lower it") {
-  DeviceLimits limits = sound_limits();
-  limits.device_watchdog_s = 0;
-  Rig without(limits);
-  without.push(100);
-  CHECK(norm(without.tick().force_n()) == Approx(kForceWithoutWatchdogN));
+TEST_CASE("without a watchdog in the device, or with a slow one, the force limit is low, and a scene can only lower it") {
+  for (const double watchdog_s : {0.0, 0.5}) {
+    DeviceLimits limits = sound_limits();
+    limits.device_watchdog_s = watchdog_s;
+    Rig without(limits);
+    without.push(100);
+    CHECK(norm(without.tick().force_n()) == Approx(kForceWithoutWatchdogN));
+  }
   Rig lowered(sound_limits(), 0.5);
   lowered.push(100);
   CHECK(norm(lowered.tick().force_n()) == Approx(0.5));
