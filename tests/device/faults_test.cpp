@@ -114,10 +114,18 @@ double slot_part(double time_s) {
   return slots < 0 ? kArmFrom : slots - std::floor(slots);
 }
 
-void check_strikes(const Case& c, const SimulationConfig& device) {
+// On a machine that holds this test up an arming may come late, into the next strike: was there one between the two times?
+// Both on the host's clock, and some time before the first is no time before it for a thread that waits for its turn.
+bool is_armed_between(const std::vector<std::uint64_t>& armed_ns, std::uint64_t from_ns, std::uint64_t to_ns) {
+  constexpr std::uint64_t kMarginNs = 30'000'000;
+  return std::any_of(armed_ns.begin(), armed_ns.end(),
+                     [&](std::uint64_t at_ns) { return at_ns + kMarginNs > from_ns && at_ns < to_ns; });
+}
+
+void check_strikes(const Case& c, const SimulationConfig& device, const std::vector<std::uint64_t>& armed_ns) {
   const SimulationRecord& record = *device.record;
   constexpr std::uint64_t kBeforeNs = 5'000'000;
-  int noticed = 0, with_force = 0;
+  int noticed = 0, with_force = 0, judged = 0;
   double slowest_s = 0;
   for (int i = 0; i < kStrikes; ++i) {
     const std::uint64_t at_ns = record.noticed_ns[i].load();
@@ -129,14 +137,18 @@ void check_strikes(const Case& c, const SimulationConfig& device) {
     const std::uint64_t zero_ns = record.zero_at(at_ns);
     slowest_s = std::max(slowest_s, static_cast<double>(zero_ns - at_ns) * 1e-9);
     // until the slot's last part nobody arms
-    const auto armed_ns = static_cast<std::uint64_t>((kFirst_s + kSlot_s * (i + kArmFrom)) * 1e9);
-    CAPTURE(i, at_ns, zero_ns, armed_ns);
-    if (zero_ns < armed_ns) CHECK(record.most_force_between(zero_ns, armed_ns) == 0);
+    const auto until_ns = static_cast<std::uint64_t>((kFirst_s + kSlot_s * (i + kArmFrom)) * 1e9);
+    if (zero_ns >= until_ns || is_armed_between(armed_ns, record.origin_ns + at_ns, record.origin_ns + until_ns)) continue;
+    ++judged;
+    CAPTURE(i, at_ns, zero_ns, until_ns);
+    CHECK(record.most_force_between(zero_ns, until_ns) == 0);
   }
-  CAPTURE(noticed, with_force, slowest_s);
+  CAPTURE(noticed, judged, with_force, slowest_s);
   CHECK(noticed >= kStrikes - 3);  // a host that the machine holds up for longer than a strike never sees it
   CHECK(slowest_s < kLoose_s);
-  if (c.takes_force) CHECK(with_force >= 1);  // not all of them in free space
+  if (!c.takes_force) return;
+  CHECK(with_force >= 1);  // not all of them in free space
+  CHECK(judged >= kStrikes / 2);
 }
 
 }  // namespace
@@ -149,11 +161,22 @@ TEST_CASE("thirteen devices, each with its fault, twenty times: the force goes, 
     devices.push_back(device.simulation);
   REQUIRE(host.open(std::move(config)) == "");
   REQUIRE(host.start() == "");
-  const std::uint64_t start_ns = monotonic_ns();
-  // arms in the last part of each slot only; the two clocks differ by what the opening took, far less than a slot's parts
+  const auto are_open = [&] {
+    for (int i = 0; i < host.device_count(); ++i) {
+      if (host.connection(i).connection != Connection::kOpen) return false;
+    }
+    return true;
+  };
+  while (!are_open())
+    host.wait_ms(1);
+  const std::uint64_t start_ns = monotonic_ns();  // of the slots: a little after each device's own
+  std::vector<std::uint64_t> armed_ns;
   while (seconds_since(start_ns) < kRun_s) {
     const double part = slot_part(seconds_since(start_ns));
-    if (part > kArmFrom + 0.04 && part < 0.97) host.arm(kAllDevices);
+    if (part > kArmFrom + 0.04 && part < 0.93) {
+      host.arm(kAllDevices);
+      armed_ns.push_back(monotonic_ns());
+    }
     host.wait_ms(5);
   }
   // all strikes are over: every device comes back
@@ -176,7 +199,7 @@ TEST_CASE("thirteen devices, each with its fault, twenty times: the force goes, 
     INFO(kCases[i].name);
     CHECK(is_back[i]);
     const SimulationRecord& record = *devices[i].record;
-    check_strikes(kCases[i], devices[i]);
+    check_strikes(kCases[i], devices[i], armed_ns);
     CHECK(record.most_force_n <= kMost_n * 1.000001F);
     CHECK(record.zero_at(record.forces.empty() ? 0 : record.forces.back().time_ns) != SimulationRecord::kNever);
     CHECK(last[i].counters.ticks > 1000);
