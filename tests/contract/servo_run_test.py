@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """fdcg-servo on devices: run, replay of what was recorded, check, devices. The devices are simulated, in real time, on a
-machine that may be busy: a fault of timing is allowed where a test is not about it."""
+machine that may be busy: a fault of timing is allowed where a test is not about it. Over 400 lines: a class for each command."""
 import csv
 import io
 import json
@@ -177,6 +177,19 @@ class Run(ServoCase):
         done = self.run_scene(scene, "--arm", "--no-log", "--for", "2", codes=(1,))
         self.assertIn(b"hand: gone", done.stdout)
         self.assertIn(b"hand: disarmed: ", done.stdout)
+
+    def test_a_device_that_is_pressed_is_not_armed_and_that_is_said(self):
+        simulation = {"start_m": [0, 0, -0.01], "amplitude_m": [0, 0, 0], "hand_stiffness_n_per_m": 1000}
+        cube = {"name": "cube", "file": "cube.fdcg", "motion": {"kind": "swing", "axis": [0, 0, 1], "rate_hz": 0.1, "amplitude_m": 0.2},
+                "pose": {"scale": 0.1, "translation_m": [-0.05, -0.05, -0.13]}}
+        scene = self.scene(objects=[cube], devices=[{"name": "hand", "source": "simulated", "simulation": simulation}])
+        process = self.started(scene, "--no-log")
+        time.sleep(1)  # the cube has come up from below: 2 N by now
+        process.stdin.write(b"arm\n")
+        process.stdin.flush()
+        time.sleep(0.8)
+        out, _ = process.communicate(b"quit\n", timeout=20)
+        self.assertIn(b"hand: not armed: the tip is pressed against something", out)
 
     def test_a_device_that_was_never_there_is_told_and_costs_the_code(self):
         scene = self.scene(devices=[{"name": "hand", "profile": "fdcg-reference", "serial": "no such device"}])

@@ -117,6 +117,7 @@ std::string summary(const dev::SessionReplay& replay, double seconds) {
   if (replay.reader().ending() == dev::Ending::kEnded && replay.reader().end().reason == dev::EndReason::kLimit) {
     text += "the log ends at its limit of bytes; the session went on\n";
   }
+  if (replay.has_strays()) text += "there are ticks of devices that the scene has not\n";
   if (replay.reader().ending() != dev::Ending::kEnded) text += replay.reader().damage() + "\n";
   char time[64];
   std::snprintf(time, sizeof time, "%.3g s, %.3g us a tick\n", seconds,

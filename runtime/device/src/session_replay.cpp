@@ -64,6 +64,8 @@ struct SessionReplay::Impl {
   LoggedOutput replayed;
   std::vector<std::uint8_t> record, payload = std::vector<std::uint8_t>(kMostTickBytes);
 
+  bool has_strays = false;
+
   std::string begin_devices();
   bool replay(const SessionRecord& record);
   void note_lost_tail();
@@ -154,7 +156,11 @@ std::string SessionReplay::open(const std::string& path, const std::string& grap
 bool SessionReplay::next(ReplayedTick* tick) {
   SessionRecord record;
   while (impl_->reader.next(&record)) {
-    if (record.device >= impl_->devices.size() || impl_->devices[record.device].is_over || !impl_->replay(record)) continue;
+    if (record.device >= impl_->devices.size()) {
+      impl_->has_strays = true;
+      continue;
+    }
+    if (impl_->devices[record.device].is_over || !impl_->replay(record)) continue;
     *tick = {record.device, record.tick, impl_->input.get(), &impl_->replayed, impl_->states[record.device].get()};
     return true;
   }
@@ -164,9 +170,13 @@ bool SessionReplay::next(ReplayedTick* tick) {
 
 bool SessionReplay::is_same() const {
   const auto is_over = [](const DeviceReplay& device) { return device.is_over; };
-  return impl_->reader.ending() == Ending::kEnded && std::none_of(impl_->devices.begin(), impl_->devices.end(), is_over);
+  return impl_->reader.ending() == Ending::kEnded && !impl_->has_strays &&
+         std::none_of(impl_->devices.begin(), impl_->devices.end(), is_over);
 }
 
+bool SessionReplay::has_strays() const {
+  return impl_->has_strays;
+}
 const HostConfig& SessionReplay::config() const {
   return impl_->config;
 }

@@ -46,6 +46,7 @@ class SessionReplay {
   const std::vector<DeviceReplay>& devices() const;
   // Every tick was there and the same, and the log was closed in order (at its limit, too).
   bool is_same() const;
+  bool has_strays() const;  // records of devices that the scene has not: they were passed by
   // The last tick's record, its bytes made anew from the replay; and the whole header, and the end.
   const std::vector<std::uint8_t>& record() const;
   std::string header_bytes() const;
