@@ -117,7 +117,7 @@ bool Rig::refresh_status(Nanoseconds limit) {
 }
 
 std::uint64_t Rig::host_counter(const std::string& name) const {
-  return host.status().value(nlohmann::json::json_pointer("/devices/0/counters/" + name), std::uint64_t{0});
+  return host.status().at(nlohmann::json::json_pointer("/devices/0/" + name)).get<std::uint64_t>();
 }
 
 std::uint64_t Rig::host_rejected(const std::string& verdict) const {
