@@ -166,9 +166,9 @@ Expectation strike_out_of_order(Rig& rig) {
   return {};
 }
 
-// Held up on the way, all of them, and then let go at once; or made long ago by their own time.
+// Held up on the way by a queue, from which they come late but in order; or made long ago by their own time.
 Expectation strike_stale(Rig& rig) {
-  if (rig.random_between(0, 1) == 0) {
+  if (rig.random_between(0, 2) == 0) {
     return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes& report) {
       Bytes older = report;
       put32(older, 5, get32(older, 5) - static_cast<std::uint32_t>(rig.random_between(20'000, 200'000)));
@@ -176,15 +176,14 @@ Expectation strike_stale(Rig& rig) {
       rig.device.send(older);
     });
   }
-  std::vector<Bytes> held;
-  const int count = static_cast<int>(rig.random_between(13, kLongest));
-  Expectation expected = burst(rig, count, [&](const Bytes& report) {
-    held.push_back(report);
-    if (held.size() == static_cast<std::size_t>(count))
-      for (const Bytes& each : held)
-        rig.device.send(each);
+  const auto delay = static_cast<std::size_t>(rig.random_between(7, 40));
+  std::deque<Bytes> queue;
+  return burst(rig, static_cast<int>(delay) + static_cast<int>(rig.random_between(10, 40)), [&](const Bytes& report) {
+    queue.push_back(report);
+    if (queue.size() <= delay) return;
+    rig.device.send(queue.front());
+    queue.pop_front();
   });
-  return expected;
 }
 
 // No number, or none that is finite, in one axis or more; the CRC is right.
