@@ -33,7 +33,7 @@ def inside_out(off):
 
 class Usage(Case):
     def test_help_names_examples_and_version_names_the_format(self):
-        for program, commands in ((FDCG, ("compile", "validate", "repair", "inspect", "explain")), (SERVO, ("replay",))):
+        for program, commands in ((FDCG, ("compile", "validate", "repair", "inspect", "explain")), (SERVO, ("run", "devices", "check", "replay"))):
             self.assertIn(b"Examples:", self.run_program(program, "--help").stdout)
             self.assertRegex(self.run_program(program, "--version").stdout, rb"^fdcg(-servo)? \d+\.\d+\.\d+ \(file format 1\)\n$")
             for command in commands:
@@ -556,7 +556,7 @@ class Replay(Case):
     def test_wrong_usage_and_bad_files(self):
         graph, path = self.compiled_cube(), self.slide(10)
         for arguments, code, words in (
-            ((), 2, ()), (("run", "scene.json"), 2, ()), (("replay", graph), 2, ("--trajectory",)),
+            ((), 2, ()), (("run", "scene.json"), 3, ("scene.json",)), (("replay", graph), 2, ("--trajectory",)),
             (("replay", graph, "--trajectory", path, "--mu-s", "0.3"), 2, ("--mu-s", "0.3", "0.4", "default")),
             (("replay", graph, "--trajectory", path, "--mu-d", "-1"), 2, ("--mu-d", "'-1'")),
             (("replay", graph, "--trajectory", path, "--stiffness", "nan"), 2, ("--stiffness", "'nan'")),

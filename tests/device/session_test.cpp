@@ -1,2 +1,505 @@
 // SPDX-License-Identifier: Apache-2.0
+// A session's log: bytes of a tick, the ring, the file, and what its reader makes of damage.
+#include <signal.h>
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <thread>
+
+#include "session_log.hpp"
+#include "session_reader.hpp"
+#include "tick_bytes.hpp"
+
+using namespace fdcg::dev;
+
+namespace {
+
+using Random = std::mt19937_64;
+
+double any_double(Random& random) {
+  switch (random() % 4) {
+    case 0:
+      return 0;
+    case 1:
+      return -0.0;
+    case 2:
+      return std::bit_cast<double>(random());  // NaN and infinities among them
+    default:
+      return std::uniform_real_distribution<double>(-10, 10)(random);
+  }
+}
+
+void fill(Random& random, TickInput* input) {
+  *input = TickInput{};
+  input->now_ns = random();
+  input->read = static_cast<ReadStatus>(random() % 3);
+  input->arm = random() % 2;
+  input->disarm = random() % 2;
+  input->begins = random() % 2;
+  input->write_failed = random() % 2;
+  input->write_busy_ns = random() % 2 * random();
+  input->pose_count = static_cast<std::uint32_t>(random() % 3 == 0 ? random() % (kMaxDriven + 1) : 0);
+  input->report_count = static_cast<std::uint32_t>(random() % 8 == 0 ? random() % (kMaxDrain + 1) : random() % 3);
+  for (std::uint32_t i = 0; i < input->pose_count; ++i) {
+    for (double& x : input->poses[i].rotation_xyzw)
+      x = any_double(random);
+    for (double& x : input->poses[i].translation_m)
+      x = any_double(random);
+    input->poses[i].scale = any_double(random);
+  }
+  for (std::uint32_t i = 0; i < input->report_count; ++i) {
+    RawReport& report = input->reports[i];
+    report.host_ns = random();
+    report.bytes = static_cast<std::uint16_t>(random() % (kMaxReportBytes + 2));
+    for (int k = 0; k < std::min<int>(report.bytes, kMaxReportBytes); ++k)
+      report.data[k] = static_cast<std::uint8_t>(random());
+  }
+}
+
+LoggedOutput any_output(Random& random) {
+  LoggedOutput output;
+  const auto fill_part = [&random](double* values, int count) {
+    if (random() % 2 == 0) return;
+    for (int i = 0; i < count; ++i)
+      values[i] = any_double(random);
+  };
+  fill_part(output.effort, kMaxAxes);
+  fill_part(output.force_n, 3);
+  fill_part(output.hip_world_m, 3);
+  fill_part(output.wanted_force_n, 3);
+  fill_part(output.sample.axis, kMaxAxes);
+  output.is_enabled = random() % 2;
+  output.arming_refused = random() % 2;
+  output.has_sample = random() % 2;
+  output.phase = static_cast<std::uint8_t>(random() % 4);
+  output.fault = static_cast<std::uint8_t>(random() % kFaults);
+  output.state = static_cast<std::uint32_t>(random() % 4);
+  if (random() % 2 == 0) output.echo = static_cast<std::uint32_t>(random());
+  if (random() % 2 == 0) output.sample.sequence = static_cast<std::uint32_t>(random());
+  if (random() % 2 == 0) output.sample.time_s = any_double(random);
+  output.sample.has_fault = random() % 2;
+  return output;
+}
+
+// The bytes of a tick that says its own number.
+void number_tick(std::uint64_t number, TickInput* input, TickOutput* output) {
+  Random random(number);
+  fill(random, input);
+  input->now_ns = number;
+  output->echo = static_cast<std::uint32_t>(number);
+  output->has_sample = number % 3 == 0;
+  output->hip_world_m[1] = static_cast<double>(number);
+}
+
+class Folder {
+ public:
+  Folder() {
+    char name[] = "/tmp/fdcg-session-XXXXXX";
+    path_ = mkdtemp(name);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string file(const char* name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+HostConfig config_for(const std::string& log_file, double megabytes = 0, int devices = 1) {
+  HostConfig config;
+  config.scene_file = "scene.json";
+  config.log_file = log_file;
+  config.log_megabytes = megabytes;
+  for (int i = 0; i < devices; ++i) {
+    DeviceConfig device;
+    device.name = "device " + std::to_string(i);
+    device.source = DeviceSource::kSimulated;
+    config.devices.push_back(device);
+  }
+  return config;
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+// What a log of `count` ticks of one device is, and what start and stop said.
+struct Written {
+  std::string started, stopped;
+};
+Written write_log(const HostConfig& config, std::uint64_t count, std::uint32_t ring_bytes = 1 << 22) {
+  LogRing ring(ring_bytes);
+  LogRing* const rings[] = {&ring};
+  SessionLog log;
+  Written written;
+  written.started = log.start(config, rings, 1);
+  if (!written.started.empty()) return written;
+  TickInput input;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    TickOutput output;
+    number_tick(i, &input, &output);
+    ring.put(input, output);
+  }
+  written.stopped = log.stop();
+  return written;
+}
+
+// The ticks that a file gives before it ends; each is checked against number_tick.
+std::vector<std::uint64_t> read_ticks(SessionReader& reader) {
+  std::vector<std::uint64_t> ticks;
+  std::uint8_t expected[kMostTickBytes];
+  TickInput input;
+  for (SessionRecord record; reader.next(&record);) {
+    TickOutput output;
+    number_tick(record.tick, &input, &output);
+    std::size_t bytes = encode_tick_input(input, expected);
+    bytes += encode_tick_output(logged(output), expected + bytes);
+    REQUIRE(record.payload_bytes == bytes);
+    REQUIRE(std::memcmp(record.payload, expected, bytes) == 0);
+    ticks.push_back(record.tick);
+  }
+  return ticks;
+}
+
+}  // namespace
+
+TEST_CASE("a tick's input and output come back from their bytes") {
+  Random random(11);
+  std::uint8_t first[kMostTickBytes], second[kMostTickBytes];
+  std::size_t most_output = 0;
+  for (int round = 0; round < 20000; ++round) {
+    TickInput input, back;
+    fill(random, &input);
+    const std::size_t bytes = encode_tick_input(input, first);
+    REQUIRE(bytes <= kMostInputBytes);
+    REQUIRE(decode_tick_input(first, bytes, &back) == bytes);
+    REQUIRE(encode_tick_input(back, second) == bytes);
+    REQUIRE(std::memcmp(first, second, bytes) == 0);
+    REQUIRE(back.arm == input.arm);
+    REQUIRE(back.write_busy_ns == input.write_busy_ns);
+    REQUIRE(back.report_count == input.report_count);
+
+    const LoggedOutput output = any_output(random);
+    const std::size_t output_bytes = encode_tick_output(output, first);
+    most_output = std::max(most_output, output_bytes);
+    LoggedOutput output_back;
+    REQUIRE(decode_tick_output(first, output_bytes, &output_back) == output_bytes);
+    REQUIRE(first_difference(output, output_back).empty());
+  }
+  CHECK(most_output <= kMostOutputBytes);
+  CHECK(most_output > kMostOutputBytes / 2);
+}
+
+TEST_CASE("the largest tick fits into what is kept for one") {
+  TickInput input;
+  input.pose_count = kMaxDriven;
+  input.report_count = kMaxDrain;
+  for (RawReport& report : input.reports)
+    report.bytes = kMaxReportBytes + 1;
+  std::uint8_t bytes[kMostTickBytes];
+  CHECK(encode_tick_input(input, bytes) <= kMostInputBytes);
+}
+
+TEST_CASE("bytes that are no tick are refused, and none is read beyond the end") {
+  Random random(12);
+  std::uint8_t bytes[kMostTickBytes];
+  TickInput input, back;
+  LoggedOutput output;
+  for (int round = 0; round < 50; ++round) {
+    fill(random, &input);
+    const std::size_t input_bytes = encode_tick_input(input, bytes);
+    for (std::size_t cut = 0; cut < std::min<std::size_t>(input_bytes, 600); ++cut) {
+      const std::vector<std::uint8_t> copy(bytes, bytes + cut);
+      REQUIRE(decode_tick_input(copy.data(), cut, &back) == 0);
+    }
+    const std::size_t output_bytes = encode_tick_output(any_output(random), bytes);
+    for (std::size_t cut = 0; cut < output_bytes; ++cut) {
+      const std::vector<std::uint8_t> copy(bytes, bytes + cut);
+      REQUIRE(decode_tick_output(copy.data(), cut, &output) == 0);
+    }
+    for (std::size_t i = 0; i < output_bytes; ++i) {
+      std::vector<std::uint8_t> copy(bytes, bytes + output_bytes);
+      copy[i] = static_cast<std::uint8_t>(random());
+      REQUIRE(decode_tick_output(copy.data(), copy.size(), &output) <= copy.size());
+    }
+  }
+  for (const std::size_t place : {16u, 17u, 18u, 19u}) {  // read, flags, poses, reports
+    input = TickInput{};
+    const std::size_t count = encode_tick_input(input, bytes);
+    bytes[place] = 200;
+    CHECK(decode_tick_input(bytes, count, &back) == 0);
+  }
+}
+
+TEST_CASE("the first field that differs is named with both values") {
+  LoggedOutput a, b;
+  CHECK(first_difference(a, b).empty());
+  b.wanted_force_n[2] = 1.5;
+  CHECK(first_difference(a, b) == "wanted_force_n[2]: 0 in the log, 1.5 in the replay");
+  b = a;
+  b.hip_world_m[0] = -0.0;  // equal, but not the same bits
+  CHECK(first_difference(a, b) == "hip_world_m[0]: 0 in the log, -0 in the replay");
+  b = a;
+  a.phase = 2;
+  CHECK(first_difference(a, b) == "phase: 2 in the log, 0 in the replay");
+}
+
+TEST_CASE("a log gives back every tick, in order, and says that it is whole") {
+  const Folder folder;
+  const HostConfig config = config_for(folder.file("a.fdcglog"));
+  const Written written = write_log(config, 500);
+  REQUIRE(written.started.empty());
+  REQUIRE(written.stopped.empty());
+  CHECK(is_session_log(config.log_file));
+  SessionReader reader;
+  REQUIRE(reader.open(config.log_file).empty());
+  CHECK(reader.header().program == FDCG_VERSION_STRING);
+  CHECK(reader.header().scene_file == "scene.json");
+  const std::vector<std::uint64_t> ticks = read_ticks(reader);
+  CHECK(ticks.size() == 500);
+  CHECK(ticks.back() == 499);
+  CHECK(reader.ending() == Ending::kEnded);
+  CHECK(reader.end().ticks == std::vector<std::uint64_t>{500});
+  CHECK(reader.end().dropped == std::vector<std::uint64_t>{0});
+  CHECK(reader.end().reason == EndReason::kStopped);
+  CHECK(reader.offset() == std::filesystem::file_size(config.log_file));
+}
+
+TEST_CASE("the header is made again from what was read, byte for byte") {
+  SessionHeader header;
+  header.program = "0.1.0";
+  header.scene_file = "a folder/\xFFno UTF-8.json";
+  header.scene = R"({"fdcg_scene":1})";
+  header.graphs = {{"cube.fdcg", 1234, 0xFFFFFFFFFFFFFFFF}};
+  const Folder folder;
+  write_bytes(folder.file("h"), encode_session_header(header));
+  SessionReader reader;
+  REQUIRE(reader.open(folder.file("h")).empty());
+  CHECK(reader.header().graphs[0].checksum == 0xFFFFFFFFFFFFFFFF);
+  CHECK(encode_session_header(reader.header()) == encode_session_header(header));
+}
+
+TEST_CASE("a log that was cut at any byte gives the ticks before the cut, and says where it ends") {
+  const Folder folder;
+  const HostConfig config = config_for(folder.file("a.fdcglog"));
+  write_log(config, 6);
+  const std::string whole = bytes_of(config.log_file);
+  std::vector<std::uint64_t> boundaries;
+  {
+    SessionReader reader;
+    REQUIRE(reader.open(config.log_file).empty());
+    boundaries.push_back(reader.offset());
+    for (SessionRecord record; reader.next(&record);)
+      boundaries.push_back(reader.offset());
+  }
+  REQUIRE(boundaries.size() == 7);
+  const std::string cut_file = folder.file("cut.fdcglog");
+  for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+    write_bytes(cut_file, whole.substr(0, cut));
+    SessionReader reader;
+    const std::string problem = reader.open(cut_file);
+    INFO("cut after " << cut << " of " << whole.size());
+    if (cut < boundaries[0]) {
+      REQUIRE(problem.find(cut_file) == 0);
+      continue;
+    }
+    REQUIRE(problem.empty());
+    const std::size_t ticks = read_ticks(reader).size();
+    const auto at = std::upper_bound(boundaries.begin(), boundaries.end(), cut) - 1;
+    REQUIRE(ticks == static_cast<std::size_t>(at - boundaries.begin()));
+    REQUIRE(reader.ending() == (*at == cut ? Ending::kUnclosed : Ending::kDamaged));
+    REQUIRE(reader.damage().find("byte " + std::to_string(*at)) != std::string::npos);
+  }
+}
+
+TEST_CASE("a byte changed anywhere is found, and only the ticks before it are given") {
+  const Folder folder;
+  const HostConfig config = config_for(folder.file("a.fdcglog"));
+  write_log(config, 4);
+  const std::string whole = bytes_of(config.log_file);
+  const std::string changed_file = folder.file("changed.fdcglog");
+  Random random(13);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    std::string changed = whole;
+    changed[i] = static_cast<char>(static_cast<unsigned char>(changed[i]) ^ (1 + random() % 255));
+    write_bytes(changed_file, changed);
+    SessionReader reader;
+    INFO("byte " << i);
+    if (!reader.open(changed_file).empty()) continue;
+    const std::size_t ticks = read_ticks(reader).size();
+    REQUIRE(reader.ending() == Ending::kDamaged);
+    REQUIRE(reader.offset() <= i);
+    REQUIRE(ticks <= 4);
+  }
+}
+
+TEST_CASE("what is no log, and what follows a log, is refused by name") {
+  const Folder folder;
+  SessionReader missing, empty, other, appended, newer;
+  CHECK(missing.open(folder.file("missing")).find("No such file") != std::string::npos);
+  write_bytes(folder.file("empty"), "");
+  CHECK(empty.open(folder.file("empty")).find("not a session's log") != std::string::npos);
+  write_bytes(folder.file("other"), std::string(1000, 'x'));
+  CHECK(other.open(folder.file("other")).find("not a session's log") != std::string::npos);
+  CHECK(SessionReader().open("/tmp").find("Is a directory") != std::string::npos);
+  const HostConfig config = config_for(folder.file("a.fdcglog"));
+  write_log(config, 1);
+  std::string bytes = bytes_of(config.log_file);
+  write_bytes(folder.file("appended"), bytes + "x");
+  REQUIRE(appended.open(folder.file("appended")).empty());
+  read_ticks(appended);
+  CHECK(appended.ending() == Ending::kDamaged);
+  bytes[8] = 2;
+  write_bytes(folder.file("newer"), bytes);
+  CHECK(newer.open(folder.file("newer")).find("version 2") != std::string::npos);
+}
+
+TEST_CASE("a full ring drops ticks and counts them, and the numbers of the rest show which") {
+  LogRing ring(LogRing::kLeastBytes);
+  TickInput input;
+  input.report_count = 1;
+  input.reports[0].bytes = 100;
+  const TickOutput output;
+  std::uint64_t taken = 0;
+  while (ring.put(input, output))
+    ++taken;
+  CHECK(taken > 100);
+  CHECK(ring.dropped() == 1);
+  CHECK(!ring.put(input, output));
+  CHECK(ring.dropped() == 2);
+
+  const Folder folder;
+  const HostConfig config = config_for(folder.file("a.fdcglog"));
+  LogRing* const rings[] = {&ring};
+  SessionLog log;
+  REQUIRE(log.start(config, rings, 1).empty());
+  while (!ring.put(input, output))
+    std::this_thread::yield();
+  const std::uint64_t dropped = ring.dropped();
+  REQUIRE(log.stop().empty());
+  SessionReader reader;
+  REQUIRE(reader.open(config.log_file).empty());
+  std::vector<std::uint64_t> ticks;
+  for (SessionRecord record; reader.next(&record);)
+    ticks.push_back(record.tick);
+  REQUIRE(ticks.size() == taken + 1);
+  CHECK(ticks[taken - 1] == taken - 1);
+  CHECK(ticks[taken] == taken + dropped);
+  CHECK(reader.end().dropped == std::vector<std::uint64_t>{dropped});
+  CHECK(reader.end().ticks == std::vector<std::uint64_t>{taken + dropped + 1});
+}
+
+TEST_CASE("rings filled by threads of their own come whole into one file") {
+  constexpr std::uint64_t kTicks = 20000;
+  const Folder folder;
+  const HostConfig config = config_for(folder.file("a.fdcglog"), 0, 2);
+  LogRing small(LogRing::kLeastBytes), large(1 << 20);
+  LogRing* const rings[] = {&small, &large};
+  SessionLog log;
+  REQUIRE(log.start(config, rings, 2).empty());
+  const auto put_all = [](LogRing* ring) {
+    TickInput input;
+    for (std::uint64_t i = 0; i < kTicks; ++i) {
+      TickOutput output;
+      number_tick(i, &input, &output);
+      ring->put(input, output);
+    }
+  };
+  std::thread first(put_all, &small), second(put_all, &large);
+  first.join();
+  second.join();
+  REQUIRE(log.stop().empty());
+  SessionReader reader;
+  REQUIRE(reader.open(config.log_file).empty());
+  std::uint64_t counts[2] = {}, next[2] = {};
+  TickInput input;
+  std::uint8_t expected[kMostTickBytes];
+  for (SessionRecord record; reader.next(&record);) {
+    REQUIRE(record.device < 2);
+    REQUIRE(record.tick >= next[record.device]);
+    next[record.device] = record.tick + 1;
+    ++counts[record.device];
+    TickOutput output;
+    number_tick(record.tick, &input, &output);
+    std::size_t bytes = encode_tick_input(input, expected);
+    bytes += encode_tick_output(logged(output), expected + bytes);
+    REQUIRE(record.payload_bytes == bytes);
+    REQUIRE(std::memcmp(record.payload, expected, bytes) == 0);
+  }
+  CHECK(reader.ending() == Ending::kEnded);
+  CHECK(counts[0] + small.dropped() == kTicks);
+  CHECK(counts[1] + large.dropped() == kTicks);
+  CHECK(counts[0] > 0);
+}
+
+TEST_CASE("a disk that fills up costs the log its end, is told, and leaves whole ticks") {
+  const Folder folder;
+  const HostConfig config = config_for(folder.file("a.fdcglog"));
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+  rlimit small = before;
+  small.rlim_cur = 40000;
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &small) == 0);  // SIGXFSZ would end the program, were the log's thread to take it
+  const Written written = write_log(config, 500);
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &before) == 0);
+  CHECK(written.started.empty());
+  CHECK(written.stopped.find(config.log_file + ": File too large after 0.0 MB; ") == 0);
+  CHECK(std::filesystem::file_size(config.log_file) <= 40000);
+  SessionReader reader;
+  REQUIRE(reader.open(config.log_file).empty());
+  const std::size_t ticks = read_ticks(reader).size();
+  CHECK(reader.ending() == Ending::kUnclosed);
+  CHECK(written.stopped.find("; " + std::to_string(500 - ticks) + " later ticks are not in it") != std::string::npos);
+}
+
+TEST_CASE("a log that cannot be written is refused before the session starts") {
+  CHECK(write_log(config_for("/dev/full"), 0).started == "cannot write the log '/dev/full': No space left on device");
+  CHECK(write_log(config_for("/nonexistent/a.fdcglog"), 0).started.find("No such file") != std::string::npos);
+  CHECK(write_log(config_for("/tmp"), 0).started.find("is a folder") != std::string::npos);
+  const Folder folder;
+  write_bytes(folder.file("scene.json"), "{}");
+  HostConfig config = config_for(folder.file("scene.json"));
+  config.scene_file = folder.file("./scene.json");
+  CHECK(write_log(config, 0).started.find("would overwrite the scene") != std::string::npos);
+  config.scene_file = "scene.json";
+  config.devices[0].recording = folder.file("scene.json");
+  CHECK(write_log(config, 0).started.find("would overwrite the recording that 'device 0' plays") != std::string::npos);
+  CHECK(bytes_of(folder.file("scene.json")) == "{}");
+}
+
+TEST_CASE("a log ends in order at its limit") {
+  const Folder folder;
+  const HostConfig config = config_for(folder.file("a.fdcglog"), 0.05);
+  LogRing ring(1 << 22);
+  LogRing* const rings[] = {&ring};
+  SessionLog log;
+  REQUIRE(log.start(config, rings, 1).empty());
+  TickInput input;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    TickOutput output;
+    number_tick(i, &input, &output);
+    ring.put(input, output);
+  }
+  CHECK(log.stop().empty());
+  CHECK(log.has_failed());
+  CHECK(log.failure().find("has come to its limit (log.limit_mb)") != std::string::npos);
+  const std::uint64_t bytes = std::filesystem::file_size(config.log_file);
+  CHECK(bytes <= 50000);
+  CHECK(bytes > 35000);  // at most one large tick short
+  SessionReader reader;
+  REQUIRE(reader.open(config.log_file).empty());
+  const std::size_t ticks = read_ticks(reader).size();
+  CHECK(reader.ending() == Ending::kEnded);
+  CHECK(reader.end().reason == EndReason::kLimit);
+  CHECK(reader.end().ticks == std::vector<std::uint64_t>{ticks});
+  CHECK(log.failure().find("; " + std::to_string(1000 - ticks) + " later ticks") != std::string::npos);
+}

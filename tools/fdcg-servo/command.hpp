@@ -8,7 +8,7 @@
 
 namespace fdcg::servo {
 
-enum ExitCode { kClean = 0, kUsage = 2, kFile = 3, kInternal = 4 };
+enum ExitCode { kClean = 0, kFindings = 1, kUsage = 2, kFile = 3, kInternal = 4 };
 
 struct Command {
   CLI::App* app = nullptr;
@@ -16,6 +16,9 @@ struct Command {
 };
 
 Command add_replay(CLI::App& app);
+Command add_run(CLI::App& app);
+Command add_devices(CLI::App& app);
+Command add_check(CLI::App& app);
 
 // "fdcg-servo: message" on standard error; returns the code.
 int fail(int exit_code, std::string_view message);

@@ -13,18 +13,22 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
+  fdcg-servo run scene.json --arm
+  fdcg-servo devices
+  fdcg-servo check scene.json
   fdcg-servo replay bunny.fdcg --trajectory hip.csv -o log.csv
+  fdcg-servo replay session.fdcglog
 
-Exit codes: 0 clean; 2 wrong usage; 3 an input that cannot be read or an output that cannot be written; 4 a fault of the
+Exit codes: 0 clean; 1 findings (each command says which); 2 wrong usage; 3 an input that cannot be read or an output that cannot be written; 4 a fault of the
 program.)";
 
 int run(int argc, char** argv) {
-  CLI::App app{"Runs the servo step of a Face Directed Connection Graph (.fdcg).", "fdcg-servo"};
+  CLI::App app{"Runs the servo step of Face Directed Connection Graphs (.fdcg): on devices, or replayed.", "fdcg-servo"};
   app.footer(kExamples);
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "fdcg-servo " FDCG_VERSION_STRING " (file format 1)");
   app.require_subcommand(1);
-  const std::vector<Command> commands{add_replay(app)};
+  const std::vector<Command> commands{add_run(app), add_devices(app), add_check(app), add_replay(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

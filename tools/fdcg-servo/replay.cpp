@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fdcg-servo replay: the step over a recorded HIP, as fast as it goes.
+// fdcg-servo replay: the step over a recorded HIP, as fast as it goes; or a session's log (replay_session.cpp).
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -11,6 +11,8 @@
 #include "../common/terminal.hpp"
 #include "command.hpp"
 #include "fdcg/fdcg.h"
+#include "replay_session.hpp"
+#include "session_reader.hpp"
 #include "step_time_histogram.hpp"
 #include "trajectory_csv.hpp"
 
@@ -35,6 +37,7 @@ struct ReplayArguments {
   fdcg_params params = fdcg_default_params();
   bool has_mu_dynamic = false;
   bool quiet = false;
+  std::string graphs, rewritten;  // of a session's log
 };
 
 struct Tick {
@@ -231,7 +234,17 @@ int check_arguments(const ReplayArguments& arguments) {
   return kClean;
 }
 
+// `given`: the options of a graph's replay that stand on the command line.
+int run_session(const ReplayArguments& arguments, const std::string& given) {
+  if (!given.empty()) return fail(kUsage, given + " is not for a session's log: the log has all that is replayed");
+  return replay_session({arguments.graph, arguments.graphs, arguments.log, arguments.rewritten, arguments.quiet});
+}
+
 int run_replay(const ReplayArguments& arguments) {
+  if (arguments.trajectory.empty()) return fail(kUsage, "--trajectory is required (see 'fdcg-servo replay --help')");
+  if (!arguments.graphs.empty() || !arguments.rewritten.empty()) {
+    return fail(kUsage, "--graphs and --write are for a session's log, and '" + arguments.graph + "' is none");
+  }
   if (const int code = check_arguments(arguments); code != kClean) return code;
   std::optional<AtomicFile> log;
   if (!arguments.log.empty()) log.emplace(arguments.log);
@@ -272,21 +285,24 @@ void add_number(CLI::App& command, const char* name, double& value, const std::s
 }  // namespace
 
 Command add_replay(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("replay", "Run the step over a recorded path, log every tick, time every step");
+  CLI::App* const command = app.add_subcommand("replay", "Run the step over a recorded path, or a session's log once more");
   command->footer(R"(
 Examples:
   fdcg-servo replay bunny.fdcg --trajectory hip.csv -o log.csv
   fdcg-servo replay bunny.fdcg --trajectory hip.csv -o - --mu-s 0 --mu-d 0 | head
   fdcg-servo replay bunny.fdcg --trajectory hip.csv --stiffness 2000 --edge-friction paper
 
+  fdcg-servo replay session.fdcglog -o session.csv
+
 The trajectory's header names at least t, x, y and z: seconds, and metres in the object's frame. Replaying twice gives the
-same log, byte for byte. Without -o only the summary is printed.)");
+same log, byte for byte. Without -o only the summary is printed.
+
+A session's log (of fdcg-servo run) has all that is needed: every recorded input is given to the same code again, and every
+output compared bit for bit. Exit code 1: an output differs, or the log lacks ticks.)");
   const auto arguments = std::make_shared<ReplayArguments>();
   fdcg_params& params = arguments->params;
-  command->add_option("graph", arguments->graph, "FDCG file")->required()->type_name("GRAPH");
-  command->add_option("--trajectory", arguments->trajectory, "Recorded HIP: CSV; - is standard input")
-      ->required()
-      ->type_name("FILE");
+  command->add_option("graph", arguments->graph, "FDCG file, or a session's log")->required()->type_name("GRAPH");
+  command->add_option("--trajectory", arguments->trajectory, "Recorded HIP: CSV; - is standard input")->type_name("FILE");
   command->add_option("-o,--output", arguments->log, "Write the log to FILE (CSV); - is standard output")->type_name("FILE");
   add_number(*command, "--mu-s", params.mu_static, "", "Static friction coefficient, at least --mu-d; default: 0.6", "MU");
   add_number(*command, "--mu-d", params.mu_dynamic, "", "Dynamic friction coefficient; default: 0.4", "MU",
@@ -302,8 +318,17 @@ same log, byte for byte. Without -o only the summary is printed.)");
                                          "In a groove: by the load of both faces (wedge, the default), or by the distance from "
                                          "the edge as the 2004 paper has it")
       ->type_name("wedge|paper");
+  command->add_option("--graphs", arguments->graphs, "Session's log: the folder of its graphs; default: where they were")
+      ->type_name("FOLDER");
+  command->add_option("--write", arguments->rewritten, "Session's log: write it anew from the replay")->type_name("FILE");
   command->add_flag("-q,--quiet", arguments->quiet, "No summary");
-  return {command, [arguments] { return run_replay(*arguments); }};
+  return {command, [arguments, command] {
+            if (!dev::is_session_log(arguments->graph)) return run_replay(*arguments);
+            std::string given;
+            for (const char* const name : {"--trajectory", "--mu-s", "--mu-d", "--stiffness", "--edge-friction"})
+              if (given.empty() && command->count(name) != 0) given = name;
+            return run_session(*arguments, given);
+          }};
 }
 
 }  // namespace fdcg::servo

@@ -94,7 +94,8 @@ void send_emergency_zeros() noexcept {
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
     EmergencyExit* const exit = exits[i].load();
     if (exit == nullptr || descriptors[i] < 0) continue;
-    for (int k = 0; k < exit->profile->safe_stop_count; ++k) write_fixed(descriptors[i], exit->profile->safe_stop[k]);
+    for (int k = 0; k < exit->profile->safe_stop_count; ++k)
+      write_fixed(descriptors[i], exit->profile->safe_stop[k]);
   }
 }
 
@@ -105,7 +106,8 @@ void install_crash_handlers() {
   action.sa_handler = on_crash;
   action.sa_flags = SA_ONSTACK | SA_RESETHAND;
   sigemptyset(&action.sa_mask);
-  for (int i = 0; i < kCrashCount; ++i) sigaction(kCrashes[i], &action, &handled_before[i]);
+  for (int i = 0; i < kCrashCount; ++i)
+    sigaction(kCrashes[i], &action, &handled_before[i]);
 }
 
 }  // namespace fdcg::dev

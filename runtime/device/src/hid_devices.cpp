@@ -29,7 +29,8 @@ std::string utf8(const wchar_t* text) {
     } else if (c < 0x800) {
       out += {static_cast<char>(0xC0 | c >> 6), static_cast<char>(0x80 | (c & 0x3F))};
     } else if (c < 0x10000 && (c < 0xD800 || c > 0xDFFF)) {
-      out += {static_cast<char>(0xE0 | c >> 12), static_cast<char>(0x80 | (c >> 6 & 0x3F)), static_cast<char>(0x80 | (c & 0x3F))};
+      out +=
+          {static_cast<char>(0xE0 | c >> 12), static_cast<char>(0x80 | (c >> 6 & 0x3F)), static_cast<char>(0x80 | (c & 0x3F))};
     } else if (c >= 0x10000 && c < 0x110000) {
       out += {static_cast<char>(0xF0 | c >> 18), static_cast<char>(0x80 | (c >> 12 & 0x3F)),
               static_cast<char>(0x80 | (c >> 6 & 0x3F)), static_cast<char>(0x80 | (c & 0x3F))};
@@ -82,13 +83,16 @@ std::string wanted_text(const Match& match, const std::string& serial, const std
 std::string seen_text(const std::vector<HidDevice>& devices) {
   if (devices.empty()) return "no HID device is seen at all";
   std::string text = "seen: ";
-  for (std::size_t i = 0; i < devices.size() && i < kMostListed; ++i) text += (i > 0 ? "; " : "") + describe(devices[i]);
+  for (std::size_t i = 0; i < devices.size() && i < kMostListed; ++i)
+    text += (i > 0 ? "; " : "") + describe(devices[i]);
   if (devices.size() > kMostListed) text += "; and " + std::to_string(devices.size() - kMostListed) + " more";
   return text;
 }
 
 // Interfaces of the same plugged-in device have paths that differ behind the last colon (libusb).
-std::string before_colon(const std::string& path) { return path.substr(0, path.rfind(':')); }
+std::string before_colon(const std::string& path) {
+  return path.substr(0, path.rfind(':'));
+}
 
 }  // namespace
 
@@ -119,7 +123,8 @@ Fit fit_of(const Match& match, const HidDevice& device) {
     const bool asks = match.usage_page >= 0 || match.usage >= 0;
     return asks && match.interface_number < 0 ? Fit::kUnsure : Fit::kYes;
   }
-  const bool fits = (match.usage_page < 0 || match.usage_page == device.usage_page) && (match.usage < 0 || match.usage == device.usage);
+  const bool fits =
+      (match.usage_page < 0 || match.usage_page == device.usage_page) && (match.usage < 0 || match.usage == device.usage);
   return fits ? Fit::kYes : Fit::kNo;
 }
 
@@ -138,9 +143,10 @@ const HidDevice* choose_hid_device(const std::vector<HidDevice>& devices, const 
     if (fit == Fit::kYes || siblings == 1 || !path.empty()) return &device;
     is_unsure = true;
   }
-  *problem = is_unsure ? "the device has several HID interfaces and this back end does not tell their usages; give the profile's"
-                         " match an \"interface\", or the scene's device a \"path\": "
-                       : "no HID device is " + wanted_text(match, serial, path) + "; ";
+  *problem = is_unsure
+                 ? "the device has several HID interfaces and this back end does not tell their usages; give the profile's"
+                   " match an \"interface\", or the scene's device a \"path\": "
+                 : "no HID device is " + wanted_text(match, serial, path) + "; ";
   *problem += seen_text(devices);
   return nullptr;
 }
@@ -168,7 +174,8 @@ std::string permission_problem(const HidDevice& device) {
   std::string text = node + ": no permission to read and write it";
   struct stat status {};
   if (stat(node.c_str(), &status) == 0) {
-    text += printed(" (mode %04o, owner %u, group ", static_cast<unsigned>(status.st_mode & 07777), static_cast<unsigned>(status.st_uid)) +
+    text += printed(" (mode %04o, owner %u, group ", static_cast<unsigned>(status.st_mode & 07777),
+                    static_cast<unsigned>(status.st_uid)) +
             group_name(status.st_gid) + "; you are in " + own_groups() + ")";
   }
   return text + "; install the udev rule that 'fdcg-servo devices --udev' prints, then plug the device in again";

@@ -12,10 +12,10 @@
 namespace fdcg::dev {
 
 struct HidDevice {
-  std::string path;               // "/dev/hidraw0"; of libusb "1-2:1.0"
+  std::string path;  // "/dev/hidraw0"; of libusb "1-2:1.0"
   std::uint16_t vendor = 0, product = 0;
   std::uint16_t usage_page = 0, usage = 0;  // 0, 0: not told (libusb)
-  int interface_number = -1;      // -1: not a USB device
+  int interface_number = -1;                // -1: not a USB device
   std::string serial, manufacturer, product_name;
 };
 

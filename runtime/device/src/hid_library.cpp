@@ -20,7 +20,8 @@ std::string load(bool is_libusb, HidLibrary* library) {
   void* const file = dlopen(file_name, RTLD_NOW | RTLD_LOCAL);
   if (file == nullptr) {
     const char* const reason = dlerror();
-    return std::string(reason != nullptr ? reason : file_name) + "; install " + package + " (Debian, Ubuntu) or hidapi (others)";
+    return std::string(reason != nullptr ? reason : file_name) + "; install " + package +
+           " (Debian, Ubuntu) or hidapi (others)";
   }
   HidLibrary found;
   found.name = is_libusb ? "libusb" : "hidraw";

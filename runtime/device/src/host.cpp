@@ -18,9 +18,9 @@ namespace fdcg::dev {
 
 namespace {
 
-constexpr std::uint32_t kLogRingBytes = 1u << 22;      // some 1.5 s of ticks at 8 kHz while the disk is busy
+constexpr std::uint32_t kLogRingBytes = 1u << 22;  // some 1.5 s of ticks at 8 kHz while the disk is busy
 constexpr std::uint64_t kStopNs = static_cast<std::uint64_t>(Host::kStopS * 1e9);
-constexpr std::uint64_t kStopMarginNs = 100'000'000;   // of kStopS, for what follows the threads
+constexpr std::uint64_t kStopMarginNs = 100'000'000;  // of kStopS, for what follows the threads
 
 // A device and all that its two threads touch.
 struct Unit {
@@ -57,7 +57,7 @@ struct Host::Impl {
   Thread supervisor;
   std::vector<Thread> servos, writers;  // as the units
   std::vector<std::string> warnings;
-  bool is_running = false, has_log = false;
+  bool is_running = false, has_run = false, has_log = false;
   std::atomic<bool> is_stopping{false};
   Event stop_asked;
 
@@ -69,9 +69,13 @@ struct Host::Impl {
   std::string end_threads();
 };
 
-Host::Host(TransportMaker maker) : impl_(std::make_unique<Impl>()) { impl_->maker = std::move(maker); }
+Host::Host(TransportMaker maker) : impl_(std::make_unique<Impl>()) {
+  impl_->maker = std::move(maker);
+}
 
-Host::~Host() { stop(); }
+Host::~Host() {
+  stop();
+}
 
 std::string Host::open(HostConfig config) {
   if (impl_->is_running) return "the host is running; stop it first";
@@ -85,7 +89,11 @@ std::string Host::open(HostConfig config) {
   std::string problem = shared->graphs.open(shared->config);
   if (!problem.empty()) return problem;
   impl_->shared = std::move(shared);
-  for (std::size_t i = 0; i < impl_->shared->config.devices.size() && problem.empty(); ++i) problem = impl_->build_unit(i);
+  impl_->warnings.clear();
+  impl_->has_run = false;
+  impl_->is_stopping.store(false);
+  for (std::size_t i = 0; i < impl_->shared->config.devices.size() && problem.empty(); ++i)
+    problem = impl_->build_unit(i);
   if (!problem.empty()) impl_->shared = nullptr;
   return problem;
 }
@@ -123,9 +131,10 @@ std::string Host::Impl::build_unit(std::size_t index) {
 std::string Host::start() {
   if (!impl_->shared) return "no scene is open";
   if (impl_->is_running) return "the host is running already";
+  if (impl_->has_run) return "the host has stopped; open the scene again";
   std::string problem = impl_->start_log();
   if (!problem.empty()) return problem;
-  impl_->is_running = true;
+  impl_->is_running = impl_->has_run = true;
   problem = impl_->start_threads();
   if (!problem.empty()) {
     stop();
@@ -138,7 +147,8 @@ std::string Host::start() {
 std::string Host::Impl::start_log() {
   if (shared->config.log_file.empty()) return {};
   std::vector<LogRing*> rings;
-  for (const auto& unit : shared->units) rings.push_back(unit->log.get());
+  for (const auto& unit : shared->units)
+    rings.push_back(unit->log.get());
   std::string problem = shared->log.start(shared->config, rings.data(), static_cast<int>(rings.size()));
   has_log = problem.empty();
   return problem;
@@ -151,7 +161,8 @@ std::string Host::Impl::start_threads() {
   const std::shared_ptr<Shared> share = shared;
   for (std::size_t i = 0; i < shared->units.size(); ++i) {
     Unit* const unit = shared->units[i].get();
-    if (!add_emergency_exit(&unit->emergency)) warnings.push_back("too many devices: one gets no zero force if this program crashes");
+    if (!add_emergency_exit(&unit->emergency))
+      warnings.push_back("too many devices: one gets no zero force if this program crashes");
     std::string problem = writers[i].start("fdcg-writer", [share, unit] { unit->writer.run(); });
     if (problem.empty()) problem = servos[i].start("fdcg-servo", [share, unit] { unit->servo.run(); });
     if (!problem.empty()) return problem;
@@ -174,11 +185,17 @@ void Host::Impl::make_punctual() {
   }
 }
 
-const std::vector<std::string>& Host::warnings() const { return impl_->warnings; }
+const std::vector<std::string>& Host::warnings() const {
+  return impl_->warnings;
+}
 
-int Host::device_count() const { return impl_->shared ? static_cast<int>(impl_->shared->units.size()) : 0; }
+int Host::device_count() const {
+  return impl_->shared ? static_cast<int>(impl_->shared->units.size()) : 0;
+}
 
-const DeviceConfig& Host::device(int index) const { return impl_->shared->config.devices[static_cast<std::size_t>(index)]; }
+const DeviceConfig& Host::device(int index) const {
+  return impl_->shared->config.devices[static_cast<std::size_t>(index)];
+}
 
 void Host::arm(int device) {
   for (int i = 0; i < device_count(); ++i) {
@@ -198,7 +215,7 @@ std::string Host::set_pose(const std::string& object, const fdcg_pose& pose) {
   const auto found = std::find_if(objects.begin(), objects.end(), [&](const ObjectConfig& one) { return one.name == object; });
   if (found == objects.end()) return "the scene has no object '" + object + "'";
   if (found->motion.kind != MotionKind::kDriven) {
-    return "object '" + object + "' is not driven by the program; give it \"motion\": \"driven\" in the scene";
+    return "object '" + object + "' is not driven by the program; give it \"motion\": {\"kind\": \"driven\"} in the scene";
   }
   const auto index = static_cast<std::size_t>(found - objects.begin());
   for (const auto& unit : impl_->shared->units) {
@@ -233,14 +250,18 @@ ConnectionReport Host::connection(int device) {
   return report;
 }
 
-std::string Host::log_failure() const { return impl_->has_log ? impl_->shared->log.failure() : std::string(); }
+std::string Host::log_failure() const {
+  return impl_->has_log ? impl_->shared->log.failure() : std::string();
+}
 
 void Host::request_stop() noexcept {
   impl_->is_stopping.store(true);
   impl_->stop_asked.signal();
 }
 
-bool Host::is_stopping() const noexcept { return impl_->is_stopping.load(); }
+bool Host::is_stopping() const noexcept {
+  return impl_->is_stopping.load();
+}
 
 bool Host::wait_ms(int milliseconds) {
   constexpr std::uint64_t kMsNs = 1'000'000;
@@ -257,7 +278,8 @@ std::string Host::stop() {
   impl_->is_running = false;
   impl_->is_stopping.store(true);
   std::string problem = impl_->end_threads();
-  for (const auto& unit : impl_->shared->units) remove_emergency_exit(&unit->emergency);
+  for (const auto& unit : impl_->shared->units)
+    remove_emergency_exit(&unit->emergency);
   if (impl_->has_log) {
     const std::string log_problem = impl_->shared->log.stop();
     if (!log_problem.empty()) problem += (problem.empty() ? "" : "; ") + log_problem;
@@ -275,8 +297,10 @@ std::string Host::Impl::end_threads() {
     thread.abandon();
     return false;
   };
-  for (const auto& unit : shared->units) unit->writer.request_stop();
-  for (const auto& unit : shared->units) unit->servo.request_stop();
+  for (const auto& unit : shared->units)
+    unit->writer.request_stop();
+  for (const auto& unit : shared->units)
+    unit->servo.request_stop();
   shared->supervisor.request_stop();
   const bool has_supervisor_ended = join(supervisor);
   std::string problem;
@@ -290,8 +314,9 @@ std::string Host::Impl::end_threads() {
       continue;
     }
     problem += (problem.empty() ? "device '" : "; device '") + shared->config.devices[i].name + "': " +
-               (!has_writer_ended ? "takes no output, and may not have got its zero force"
-                : !has_servo_ended ? "its read does not return" : "was being opened") +
+               (!has_writer_ended  ? "takes no output, and may not have got its zero force"
+                : !has_servo_ended ? "its read does not return"
+                                   : "was being opened") +
                "; it is left as it is";
   }
   return problem;

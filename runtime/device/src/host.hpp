@@ -38,7 +38,7 @@ using TransportMaker = std::function<std::unique_ptr<Transport>(const DeviceConf
 class Host {
  public:
   explicit Host(TransportMaker maker = make_transport);  // another one: a caller's own devices
-  ~Host();  // stops
+  ~Host();                                               // stops
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 

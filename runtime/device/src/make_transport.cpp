@@ -5,9 +5,12 @@ namespace fdcg::dev {
 
 std::unique_ptr<Transport> make_transport(const DeviceConfig& config, HidBackend backend) {
   switch (config.source) {
-    case DeviceSource::kHid: return make_hid_transport(config, backend);
-    case DeviceSource::kSimulated: return make_simulated_transport(config);
-    case DeviceSource::kRecorded: return make_recorded_transport(config);
+    case DeviceSource::kHid:
+      return make_hid_transport(config, backend);
+    case DeviceSource::kSimulated:
+      return make_simulated_transport(config);
+    case DeviceSource::kRecorded:
+      return make_recorded_transport(config);
   }
   return nullptr;  // no other source
 }

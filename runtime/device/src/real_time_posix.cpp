@@ -15,7 +15,7 @@ namespace fdcg::dev {
 
 namespace {
 
-constexpr std::size_t kStackTouchBytes = 128 * 1024;
+constexpr std::size_t kStackTouchBytes = 64 * 1024;
 constexpr std::size_t kPageBytes = 4096;
 
 std::string limit_text(int resource) {
@@ -67,7 +67,8 @@ std::string lock_memory() {
 
 void prepare_servo_thread() {
   volatile char stack[kStackTouchBytes];
-  for (std::size_t i = 0; i < sizeof stack; i += kPageBytes) stack[i] = 0;
+  for (std::size_t i = 0; i < sizeof stack; i += kPageBytes)
+    stack[i] = 0;
   prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0);  // ns; ordinary threads wake up to 50 us late otherwise
 }
 

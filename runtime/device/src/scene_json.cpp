@@ -13,7 +13,6 @@
 #include "words.hpp"
 
 namespace fdcg::dev {
-Profile simulated_profile(const SimulationConfig& simulation);
 namespace {
 
 constexpr int kMostObjects = 1000;
@@ -34,7 +33,8 @@ constexpr Keys kMappingKeys = {"scale", "rotation_xyzw", "rotation_matrix", "off
 constexpr Keys kContactKeys = {"offset_m"};
 constexpr Keys kSimulationKeys = {"rate_hz", "mass_kg",     "damping_n_s_per_m", "hand_stiffness_n_per_m", "hand_damping_n_s_per_m",
                                   "quantum_m", "start_m",   "amplitude_m",       "frequency_hz",           "real_time",
-                                  "seed"};
+                                  "seed",      "force_n",   "watchdog_s",        "float_axes",             "faults"};
+constexpr Keys kFaultKeys = {"kind", "at_s", "for_s", "delay_s", "reports"};
 constexpr Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend"};
 constexpr Keys kLogKeys = {"file", "limit_mb"};
 constexpr Keys kLimitsKeys = {"force_n"};
@@ -296,6 +296,24 @@ void SceneParser::read_simulation(const JsonObject& from, SimulationConfig* simu
   if (from.has("frequency_hz")) from.numbers("frequency_hz", s.frequency_hz, 3, from_0(1000, "Hz"));
   s.is_real_time = from.boolean_or("real_time", s.is_real_time);
   s.seed = static_cast<std::uint64_t>(from.integer_or("seed", static_cast<std::int64_t>(s.seed), 0, 9007199254740992));
+  s.force_n = from.number_or("force_n", s.force_n, above_0(kMostForce, "N"));
+  s.watchdog_s = from.number_or("watchdog_s", s.watchdog_s, {0.001, 10, true, "s"});
+  s.has_float_axes = from.boolean_or("float_axes", s.has_float_axes);
+  if (!from.has("faults")) return;
+  for (const JsonObject& fault : from.objects("faults", 0, SimulationRecord::kMaxFaults, kFaultKeys)) {
+    SimulatedFault f;
+    f.kind = static_cast<SimulatedFaultKind>(
+        fault.choice("kind", {"unplug", "restart", "short", "long", "garbled", "unknown-id", "repeated", "out-of-order", "stale",
+                              "not-finite", "stall", "no-output", "device-fault"}));
+    f.at_s = fault.number("at_s", from_0(1e6, "s"));
+    f.for_s = fault.number_or("for_s", f.for_s, from_0(1e6, "s"));
+    f.delay_s = fault.number_or("delay_s", f.delay_s, from_0(1e3, "s"));
+    f.reports = static_cast<int>(fault.integer_or("reports", f.reports, 1, 1000000));
+    if (f.kind == SimulatedFaultKind::kNotFinite && !s.has_float_axes) {
+      fault.fail("kind", "is not-finite, which counts cannot be; set float_axes to true");
+    }
+    s.faults.push_back(f);
+  }
 }
 
 void SceneParser::read_loop(const JsonObject& from) {

@@ -51,6 +51,18 @@ Json simulation_json(const SimulationConfig& simulation) {
   json["frequency_hz"] = list(simulation.frequency_hz);
   json["real_time"] = simulation.is_real_time;
   json["seed"] = simulation.seed;
+  json["force_n"] = simulation.force_n;
+  json["watchdog_s"] = simulation.watchdog_s;
+  json["float_axes"] = simulation.has_float_axes;
+  constexpr const char* kFaults[] = {"unplug",   "restart",      "short", "long",       "garbled", "unknown-id",  "repeated",
+                                     "out-of-order", "stale", "not-finite", "stall",   "no-output", "device-fault"};
+  static_assert(std::size(kFaults) == kSimulatedFaultKinds);
+  for (const SimulatedFault& fault : simulation.faults)
+    json["faults"].push_back({{"kind", kFaults[static_cast<int>(fault.kind)]},
+                              {"at_s", fault.at_s},
+                              {"for_s", fault.for_s},
+                              {"delay_s", fault.delay_s},
+                              {"reports", fault.reports}});
   return json;
 }
 

@@ -19,7 +19,8 @@ constexpr std::uint64_t kPublishNs = 20'000'000;
 
 bool ServoLoop::begin(const DeviceSetup& setup, const ServoParts& parts, fdcg_error* error) {
   parts_ = parts;
-  for (std::size_t i = 0; i < parts_.moving.size(); ++i) input_.poses[i] = parts_.moving[i]->pose;
+  for (std::size_t i = 0; i < parts_.moving.size(); ++i)
+    input_.poses[i] = parts_.moving[i]->pose;
   input_.pose_count = static_cast<std::uint32_t>(parts_.moving.size());
   return begin_device(setup, &device_, error);
 }
@@ -31,7 +32,8 @@ void ServoLoop::request_stop() {
 
 void ServoLoop::run() {
   prepare_servo_thread();
-  while (!is_stopping_.load(std::memory_order_acquire)) tick();
+  while (!is_stopping_.load(std::memory_order_acquire))
+    tick();
   publish(monotonic_ns());
 }
 
@@ -68,8 +70,8 @@ void ServoLoop::gather() {
   set_poses();
 }
 
-// The oldest with a wait, then all that are there. A device that sends faster than this drains is cut at kMaxDrain: what is left
-// is read by the next tick, and judged by its age.
+// The oldest with a wait, then all that are there. A device that sends faster than this drains is cut at kMaxDrain: what is
+// left is read by the next tick, and judged by its age.
 void ServoLoop::read_reports() {
   if (!read_one(kReadTimeoutMs)) return;
   while (input_.report_count < kMaxDrain && read_one(0)) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's servo loop: waits for a report, drains to the newest, gathers all that device_tick works on, hands the force to the
-// writer and the tick to the log. The thread sleeps in the read, 1 ms at most; while the device is away it ticks all the same,
-// so that commands and faults go on. No heap, no lock, no exception from the first tick to the last (but for what hidapi's
-// libusb back end does inside its read).
+// A device's servo loop: waits for a report, drains to the newest, gathers all that device_tick works on, hands the force to
+// the writer and the tick to the log. The thread sleeps in the read, 1 ms at most; while the device is away it ticks all the
+// same, so that commands and faults go on. No heap, no lock, no exception from the first tick to the last (but for what
+// hidapi's libusb back end does inside its read).
 #pragma once
 
 #include <atomic>
@@ -24,10 +24,10 @@ struct ServoParts {
   Transport* transport = nullptr;
   Link* link = nullptr;
   Writer* writer = nullptr;
-  LogRing* log = nullptr;                      // may be null
-  Event* lost = nullptr;                       // signalled when the reader finds the device gone
-  std::vector<const ObjectConfig*> moving;     // in the order of DeviceSetup::driven
-  std::uint64_t start_ns = 0;                  // the motions' time 0
+  LogRing* log = nullptr;                   // may be null
+  Event* lost = nullptr;                    // signalled when the reader finds the device gone
+  std::vector<const ObjectConfig*> moving;  // in the order of DeviceSetup::driven
+  std::uint64_t start_ns = 0;               // the motions' time 0
 };
 
 class ServoLoop {
@@ -68,7 +68,7 @@ class ServoLoop {
   Event stop_;
   std::atomic<bool> is_stopping_{false}, arm_{false}, disarm_{false};
   std::atomic<std::uint64_t> lost_opening_{0};
-  std::uint64_t seen_opened_ = 0;   // Link::opened() at the last look
+  std::uint64_t seen_opened_ = 0;  // Link::opened() at the last look
   bool begins_ = false, is_lost_ = true, was_inside_ = false;
   std::uint64_t last_good_ns_ = 0, published_ns_ = 0;
   std::uint8_t scratch_[kMaxReportBytes + 1] = {};  // one more, so that a report that is too long shows

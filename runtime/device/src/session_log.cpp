@@ -136,6 +136,7 @@ struct SessionLog::Impl {
 
   // the thread's
   std::vector<std::uint8_t> chunk, payload, record;
+  std::uint64_t chunk_ticks = 0;
   std::uint64_t whole_bytes = 0;  // of the file: up to the end of a record
   SessionEnd end;                 // ticks: taken from the rings so far
 
@@ -170,8 +171,13 @@ bool SessionLog::Impl::flush() {
     }
   }
   const bool is_whole = done == chunk.size();
-  if (is_whole) whole_bytes += done;
-  if (is_whole) bytes_written.store(whole_bytes, std::memory_order_relaxed);
+  if (is_whole) {
+    whole_bytes += done;
+    bytes_written.store(whole_bytes, std::memory_order_relaxed);
+  } else {
+    ticks_left_out.fetch_add(chunk_ticks, std::memory_order_relaxed);
+  }
+  chunk_ticks = 0;
   chunk.clear();
   return is_whole;
 }
@@ -203,6 +209,7 @@ void SessionLog::Impl::drain() {
         ticks_left_out.fetch_add(1, std::memory_order_relaxed);
         continue;
       }
+      ++chunk_ticks;
       add(record.data(), length);
       end.ticks[device] = tick + 1;
     }

@@ -2,6 +2,7 @@
 #include "session_replay.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -109,9 +110,12 @@ bool SessionReplay::Impl::replay(const SessionRecord& from) {
   bytes += encode_tick_output(replayed, payload.data() + bytes);
   record.resize(kRecordFrameBytes + bytes);
   encode_record(RecordKind::kTick, from.device, from.tick, payload.data(), bytes, record.data());
+  const bool is_same = bytes == from.payload_bytes && std::memcmp(payload.data(), from.payload, bytes) == 0;
+  if (is_same) return true;
   const std::string difference = first_difference(in_log, replayed);
-  if (!difference.empty()) device.difference = "tick " + std::to_string(from.tick) + ": " + difference;
-  device.is_over = !difference.empty();
+  device.difference = "tick " + std::to_string(from.tick) + ": " +
+                      (difference.empty() ? "the same numbers, in other bytes" : difference);
+  device.is_over = true;
   return true;
 }
 

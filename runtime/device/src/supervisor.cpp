@@ -29,7 +29,8 @@ void Supervisor::request_stop() {
 
 void Supervisor::run() {
   const std::uint64_t start_ns = monotonic_ns();
-  for (const auto& device : devices_) device->absent_since_ns = device->next_try_ns = start_ns;
+  for (const auto& device : devices_)
+    device->absent_since_ns = device->next_try_ns = start_ns;
   while (!is_stopping_.load(std::memory_order_acquire)) {
     for (const auto& device : devices_) {
       look_after(*device);

@@ -16,8 +16,8 @@ std::uint64_t monotonic_ns();
 // A signal is kept until a wait takes it; several before it are one. One thread waits, any number signal. No lock, no heap.
 class Event {
  public:
-  void signal() noexcept;                             // async-signal-safe
-  bool wait(std::uint64_t timeout_ns) noexcept;       // true: signalled; false: the time has run out
+  void signal() noexcept;                        // async-signal-safe
+  bool wait(std::uint64_t timeout_ns) noexcept;  // true: signalled; false: the time has run out
 
  private:
   std::atomic<std::uint32_t> word_{0};
@@ -25,8 +25,8 @@ class Event {
 
 struct ThreadState;
 
-// Every signal but those of a crash is blocked in such a thread, so that no blocking read of a device ends early; it has a stack of its own for
-// the handler of a crash.
+// Every signal but those of a crash is blocked in such a thread, so that no blocking read of a device ends early; it has a
+// stack of its own for the handler of a crash.
 class Thread {
  public:
   // Empty: it runs. `name`: at most 15 characters. The body must not throw; what it captures lives until it returns.

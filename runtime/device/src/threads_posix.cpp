@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint64_t kNsPerS = 1'000'000'000;
 constexpr std::uint32_t kIdle = 0, kSignalled = 1, kWaiting = 2;
-constexpr std::size_t kStackBytes = 512 * 1024;      // the step needs some 20 KB; small, since all of it is locked in memory
+constexpr std::size_t kStackBytes =
+    1024 * 1024;  // the step needs some 20 KB, a sanitizer half a MB; all of it is locked in memory
 constexpr std::size_t kCrashStackBytes = 64 * 1024;
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free && sizeof(std::atomic<std::uint32_t>) == 4, "the kernel's futex");
@@ -38,8 +39,7 @@ void Event::signal() noexcept {
 bool Event::wait(std::uint64_t timeout_ns) noexcept {
   std::uint32_t was = kIdle;
   if (!word_.compare_exchange_strong(was, kWaiting, std::memory_order_acq_rel)) {
-    word_.store(kIdle, std::memory_order_relaxed);  // only this thread takes a signal away
-    std::atomic_thread_fence(std::memory_order_acquire);
+    word_.exchange(kIdle, std::memory_order_acq_rel);  // only this thread takes a signal away
     return true;
   }
   const std::uint64_t until_ns = monotonic_ns() + timeout_ns;
@@ -92,7 +92,8 @@ std::string Thread::start(const char* name, std::function<void()> body) {
   pthread_attr_setstacksize(&attributes, kStackBytes);
   sigset_t all, before;
   sigfillset(&all);
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigdelset(&all, signal);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+    sigdelset(&all, signal);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const int failure = pthread_create(&state_->thread, &attributes, fdcg_run_thread, share.get());
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
@@ -125,6 +126,8 @@ void Thread::abandon() {
   state_ = nullptr;
 }
 
-std::uintptr_t Thread::handle() const { return state_ ? static_cast<std::uintptr_t>(state_->thread) : 0; }
+std::uintptr_t Thread::handle() const {
+  return state_ ? static_cast<std::uintptr_t>(state_->thread) : 0;
+}
 
 }  // namespace fdcg::dev

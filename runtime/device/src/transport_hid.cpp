@@ -2,8 +2,8 @@
 // A device over hidapi.
 //
 // hidraw: three descriptors on one path. hidapi keeps a handle's last error as a string in the heap, which read and write both
-// free and set: two threads on ONE handle corrupt it when a device is pulled out. So reader and writer have a handle each, and a
-// third descriptor, of our own, is kept for a crash (emergency.hpp).
+// free and set: two threads on ONE handle corrupt it when a device is pulled out. So reader and writer have a handle each, and
+// a third descriptor, of our own, is kept for a crash (emergency.hpp).
 //
 // libusb: an interface can be claimed once only, so there is ONE handle. That is safe: its hid_error is a constant, the handle
 // keeps no string, reads take reports from a queue under a mutex of the handle's, and writes are libusb transfers, which any
@@ -123,7 +123,8 @@ bool HidTransport::with_id(const std::uint8_t* data, int bytes, const Send& send
 }
 
 bool HidTransport::write(const std::uint8_t* data, int bytes) {
-  return with_id(data, bytes, [this](const std::uint8_t* report, std::size_t size) { return library_->write(writer_, report, size); });
+  return with_id(data, bytes,
+                 [this](const std::uint8_t* report, std::size_t size) { return library_->write(writer_, report, size); });
 }
 
 bool HidTransport::write_feature(const std::uint8_t* data, int bytes) {

@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint64_t kSilenceNs = static_cast<std::uint64_t>(kSilenceS * 1e9);
 constexpr std::uint64_t kPublishNs = 20'000'000;
 constexpr std::uint64_t kAwakeNs = 100'000'000;  // with nothing to do: often enough to see a stop, even if its wake were lost
-// A write may hold the thread for 5.1 s, and a host that is told to stop ends within 6 s: a device that does not take what it is
-// sent gets no further try after that.
+// A write may hold the thread for 5.1 s, and a host that is told to stop ends within 6 s: a device that does not take what it
+// is sent gets no further try after that.
 constexpr std::uint64_t kGoodbyeNs = 800'000'000;
 
 }  // namespace
@@ -45,7 +45,8 @@ void Writer::flush_within(std::uint64_t timeout_ns) {
   const std::uint64_t until_ns = monotonic_ns() + timeout_ns;
   const std::uint64_t wanted = put_.load(std::memory_order_acquire);
   Event never;
-  while (done_.load(std::memory_order_acquire) < wanted && monotonic_ns() < until_ns) never.wait(kStepNs);
+  while (done_.load(std::memory_order_acquire) < wanted && monotonic_ns() < until_ns)
+    never.wait(kStepNs);
 }
 
 void Writer::run() {
@@ -70,7 +71,8 @@ void Writer::run() {
 bool Writer::send(const GatedForce& force, std::uint32_t echo) {
   if (!profile_.has_output) return true;
   Command command;
-  for (int axis = 0; axis < profile_.axis_count; ++axis) command.effort[axis] = force.effort()[axis];
+  for (int axis = 0; axis < profile_.axis_count; ++axis)
+    command.effort[axis] = force.effort()[axis];
   command.is_enabled = force.is_enabled();
   command.echo = echo;
   return timed([&] {
@@ -115,7 +117,8 @@ void Writer::say_goodbye() {
   // After a blocked write that the device took in the end it takes this one too.
   if (has_failed() && !has_time()) return;
   bool is_taken = send(GatedForce(), 0);
-  for (int i = 0; i < profile_.safe_stop_count && (is_taken || has_time()); ++i) is_taken = send_fixed(profile_.safe_stop[i]);
+  for (int i = 0; i < profile_.safe_stop_count && (is_taken || has_time()); ++i)
+    is_taken = send_fixed(profile_.safe_stop[i]);
 }
 
 }  // namespace fdcg::dev

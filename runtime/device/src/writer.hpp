@@ -67,11 +67,11 @@ class Writer {
   Mailbox<WriterStatus> status_;
   Event wake_;
   std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false};
-  std::atomic<std::uint64_t> stop_ns_{0};     // when the stop was asked for
-  std::atomic<std::uint64_t> began_ns_{0};    // of the write in progress
+  std::atomic<std::uint64_t> stop_ns_{0};   // when the stop was asked for
+  std::atomic<std::uint64_t> began_ns_{0};  // of the write in progress
   std::atomic<std::uint64_t> put_{0}, done_{0};
   std::atomic<std::uint32_t> sequence_{1};
-  std::uint64_t put_number_ = 0;              // the servo thread's
+  std::uint64_t put_number_ = 0;  // the servo thread's
   WriterStatus counts_;
   std::uint64_t published_ns_ = 0;
   std::uint8_t report_[kMaxReportBytes] = {};

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counts calls of the heap and of locks on one thread: the one that has asked for it.
+#pragma once
+
+#include <cstdint>
+
+namespace fdcg::dev::test {
+
+struct ThreadCalls {
+  std::uint64_t heap = 0, locks = 0;
+};
+
+bool can_count_thread_calls();  // not under sanitizers, which have their own heap
+void count_calls_of_this_thread(bool is_counting);
+ThreadCalls thread_calls();  // so far, of the thread that counts
+
+}  // namespace fdcg::dev::test

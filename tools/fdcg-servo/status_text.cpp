@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "status_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "../common/terminal.hpp"
+
+namespace fdcg::servo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using tools::grouped;
+
+constexpr const char* kPhases[] = {"disarmed", "ramping", "armed", "fading"};
+constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
+constexpr const char* kVerdictNames[] = {"good",       "length",   "id",           "crc",  "constant",
+                                         "not-finite", "repeated", "out-of-order", "stale"};
+static_assert(std::size(kVerdictNames) == dev::kVerdicts);
+
+double norm(const double* x) { return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]); }
+
+const char* state_name(std::uint32_t state) { return kStates[std::min<std::uint32_t>(state, FDCG_VERTEX)]; }
+const char* phase_name(dev::Phase phase) { return kPhases[static_cast<int>(phase)]; }
+
+Json times_json(const dev::TimeHistogram& histogram) {
+  constexpr double kMicro = 1e-3;
+  Json json;
+  json["count"] = histogram.total;
+  json["p50"] = static_cast<double>(histogram.quantile(0.5)) * kMicro;
+  json["p99"] = static_cast<double>(histogram.quantile(0.99)) * kMicro;
+  json["p99.9"] = static_cast<double>(histogram.quantile(0.999)) * kMicro;
+  json["max"] = static_cast<double>(histogram.largest_ns) * kMicro;
+  return json;
+}
+
+// Not a number in JSON: null.
+Json vector_json(const double* x) {
+  Json json = Json::array();
+  for (int i = 0; i < 3; ++i)
+    json.push_back(std::isfinite(x[i]) ? Json(x[i]) : Json());
+  return json;
+}
+
+Json device_json(const DeviceLook& look) {
+  const dev::DeviceStatus& status = look.status;
+  const dev::TickCounters& counters = status.counters;
+  Json json;
+  json["name"] = look.name;
+  json["connection"] = look.connection.connection == dev::Connection::kOpen ? "open" : "absent";
+  if (!look.connection.problem.empty()) json["problem"] = look.connection.problem;
+  json["opened"] = status.opened;
+  json["phase"] = phase_name(status.last.phase);
+  json["fault"] = dev::fault_name(status.last.fault);
+  json["rate_hz"] = look.rate_hz;
+  json["contact"] = state_name(status.last.state);
+  json["tip_m"] = vector_json(status.last.hip_world_m);
+  json["wanted_force_n"] = vector_json(status.last.wanted_force_n);
+  json["force_n"] = vector_json(status.last.force.force_n());
+  json["ticks"] = counters.ticks;
+  json["late"] = counters.late;
+  json["lost"] = counters.lost;
+  json["superseded"] = counters.superseded;
+  json["timeouts"] = counters.timeouts;
+  json["rejected"] = Json::object();
+  for (int i = 1; i < dev::kVerdicts; ++i)
+    json["rejected"][kVerdictNames[i]] = counters.rejected[i];
+  json["disarmed"] = Json::object();
+  for (int i = 1; i < dev::kFaults; ++i)
+    if (counters.disarmed[i] != 0) json["disarmed"][dev::fault_name(static_cast<dev::Fault>(i))] = counters.disarmed[i];
+  json["writes"] = status.writes;
+  json["write_failures"] = status.write_failures;
+  json["log_dropped"] = status.log_dropped;
+  json["interval_us"] = times_json(status.interval);
+  json["work_us"] = times_json(status.work);
+  json["write_us"] = times_json(status.write);
+  return json;
+}
+
+std::string microseconds(std::uint64_t ns) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", static_cast<double>(ns) * 1e-3);
+  return text;
+}
+
+std::string times_text(const dev::TimeHistogram& histogram) {
+  if (histogram.total == 0) return "-\n";
+  return "p50 " + microseconds(histogram.quantile(0.5)) + ", p99 " + microseconds(histogram.quantile(0.99)) + ", p99.9 " +
+         microseconds(histogram.quantile(0.999)) + ", max " + microseconds(histogram.largest_ns) + " us\n";
+}
+
+// "; 3 rejected (2 crc, 1 stale)"
+std::string rejected_text(const dev::TickCounters& counters) {
+  const std::uint64_t total = rejected_in_all(counters);
+  std::string text = ", " + grouped(total) + " rejected";
+  const char* before = " (";
+  for (int i = 1; i < dev::kVerdicts; ++i) {
+    if (counters.rejected[i] == 0) continue;
+    text += before + grouped(counters.rejected[i]) + " " + kVerdictNames[i];
+    before = ", ";
+  }
+  return total == 0 ? text : text + ")";
+}
+
+std::string disarmed_text(const dev::TickCounters& counters) {
+  std::string text;
+  for (int i = 1; i < dev::kFaults; ++i) {
+    if (counters.disarmed[i] == 0) continue;
+    text += (text.empty() ? "" : ", ") + std::string(dev::fault_name(static_cast<dev::Fault>(i)));
+    if (counters.disarmed[i] > 1) text += " " + grouped(counters.disarmed[i]) + " times";
+  }
+  return text.empty() ? "never" : text;
+}
+
+}  // namespace
+
+bool is_trouble(dev::Fault fault) { return fault != dev::Fault::kNone && fault != dev::Fault::kCommanded; }
+
+std::uint64_t rejected_in_all(const dev::TickCounters& counters) {
+  std::uint64_t total = 0;
+  for (int i = 1; i < dev::kVerdicts; ++i)
+    total += counters.rejected[i];
+  return total;
+}
+
+std::string status_line(const DeviceLook& look, std::size_t name_width) {
+  const dev::DeviceStatus& status = look.status;
+  std::string line = look.name + std::string(name_width - std::min(name_width, look.name.size()) + 2, ' ');
+  if (look.connection.connection == dev::Connection::kAbsent) {
+    return line + "absent" + (look.connection.problem.empty() ? "" : ": " + look.connection.problem);
+  }
+  std::string phase = phase_name(status.last.phase);
+  if (status.last.phase == dev::Phase::kDisarmed && is_trouble(status.last.fault)) {
+    phase += std::string(" (") + dev::fault_name(status.last.fault) + ")";
+  }
+  char numbers[160];
+  std::snprintf(numbers, sizeof numbers, "%-10s %6.0f/s  %-6s %6.2f N  lost %s, rejected %s, late %s", phase.c_str(), look.rate_hz,
+                state_name(status.last.state), norm(status.last.force.force_n()), grouped(status.counters.lost).c_str(),
+                grouped(rejected_in_all(status.counters)).c_str(), grouped(status.counters.late).c_str());
+  line += numbers;
+  if (status.log_dropped != 0) line += ", not logged " + grouped(status.log_dropped);
+  return line;
+}
+
+std::string status_json(const char* event, double seconds, const std::vector<DeviceLook>& looks,
+                        const std::string& log_failure) {
+  Json json;
+  json["event"] = event;
+  json["time_s"] = seconds;
+  json["devices"] = Json::array();
+  for (const DeviceLook& look : looks)
+    json["devices"].push_back(device_json(look));
+  if (!log_failure.empty()) json["log_failure"] = log_failure;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string summary_text(const std::vector<DeviceLook>& looks) {
+  std::string text;
+  for (const DeviceLook& look : looks) {
+    const dev::DeviceStatus& status = look.status;
+    const dev::TickCounters& counters = status.counters;
+    text += look.name + "\n";
+    if (status.opened == 0) {
+      text += "  never there" + (look.connection.problem.empty() ? "" : ": " + look.connection.problem) + "\n";
+      continue;
+    }
+    text += "  reports        " + grouped(counters.ticks) + " answered, " + grouped(counters.superseded) + " superseded, " +
+            grouped(counters.lost) + " lost" + rejected_text(counters) + "\n";
+    text += "  late           " + grouped(counters.late) + "; opened " + grouped(status.opened) +
+            (status.opened == 1 ? " time\n" : " times\n");
+    text += "  interval       " + times_text(status.interval);
+    text += "  work           " + times_text(status.work);
+    text += "  write          " + times_text(status.write);
+    if (status.write_failures != 0) text += "  writes failed  " + grouped(status.write_failures) + "\n";
+    if (status.log_dropped != 0) text += "  not logged     " + grouped(status.log_dropped) + " ticks\n";
+    text += "  disarmed       " + disarmed_text(counters) + "\n";
+  }
+  return text;
+}
+
+}  // namespace fdcg::servo

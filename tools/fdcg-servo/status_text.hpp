@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What fdcg-servo run says of its devices: lines for people, JSON lines for programs (schemas/servo-status.schema.json).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host.hpp"
+
+namespace fdcg::servo {
+
+// Of one device at one moment.
+struct DeviceLook {
+  std::string name;
+  dev::DeviceSource source = dev::DeviceSource::kHid;
+  dev::ConnectionReport connection;
+  dev::DeviceStatus status;
+  double rate_hz = 0;  // of good reports since the last line
+};
+
+// "right hand   armed       1000/s  face    1.23 N  lost 0, rejected 0, late 0"; no line end. `name_width`: of the column.
+std::string status_line(const DeviceLook& look, std::size_t name_width);
+// One object; no line end. `event`: "status" or "end".
+std::string status_json(const char* event, double seconds, const std::vector<DeviceLook>& looks, const std::string& log_failure);
+// Some lines a device: what it did and how long it took.
+std::string summary_text(const std::vector<DeviceLook>& looks);
+
+// Something went wrong: not kNone, and not the user's own doing.
+bool is_trouble(dev::Fault fault);
+std::uint64_t rejected_in_all(const dev::TickCounters& counters);
+
+}  // namespace fdcg::servo
