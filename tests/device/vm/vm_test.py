@@ -44,7 +44,7 @@ class VmCase(unittest.TestCase):
             with locked(FOLDER / "lock"):
                 self.kernel = image.fetch_kernel(FOLDER / "kernels", self.flavour)
             image.need("qemu-system-x86_64")
-            image.run(os.environ["FDCG"], "-q", "compile", CUBE, "-o", folder / "cube.fdcg")
+            image.run(os.environ["FDCG"], "compile", CUBE, "-o", folder / "cube.fdcg")
             image.build_initramfs(self.kernel, [os.environ["FDCG_VM_RIG"], os.environ["FDCG_SERVO"]],
                                   {"etc/cube.fdcg": folder / "cube.fdcg", "etc/fdcg-reference.json": PROFILE}, INIT, self.initramfs)
         except image.Missing as missing:
