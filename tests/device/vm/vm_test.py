@@ -114,4 +114,12 @@ class RealTimeKernel(VmCase):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:2] == ["Custom"]:  # one boot with the scenario of the command line
+        scenario = " ".join(sys.argv[2:])
+
+        class Custom(VmCase):
+            def test_scenario(self):
+                self.boot(scenario)
+
+        sys.argv[2:] = []
     unittest.main()
