@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -60,5 +61,14 @@ struct Device {
 };
 
 inline constexpr std::array<float, 3> kZero = {0, 0, 0}, kPush = {0, 0.5f, -1.25f};
+
+// Armed, with kPush.
+inline Device pushing() {
+  Device device;
+  REQUIRE(device.send(kZero, 0) == FDCG_FW_TAKEN);
+  REQUIRE(device.send(kPush) == FDCG_FW_TAKEN);
+  REQUIRE(device.force() == kPush);
+  return device;
+}
 
 }  // namespace fdcg::test

@@ -16,14 +16,6 @@ namespace {
 
 using namespace fdcg::test;
 
-Device pushing() {
-  Device device;
-  REQUIRE(device.send(kZero, 0) == FDCG_FW_TAKEN);
-  REQUIRE(device.send(kPush) == FDCG_FW_TAKEN);
-  REQUIRE(device.force() == kPush);
-  return device;
-}
-
 // The blocks of hexadecimal numbers between ``` lines, and within them between empty lines.
 std::vector<Bytes> dumps() {
   std::ifstream file(FDCG_SOURCE_DIR "/schemas/fdcg-hid.md");
@@ -230,6 +222,16 @@ TEST_CASE("firmware: what makes an output report invalid") {
     CHECK(device.force() == kPush);
     CHECK(device.take(output(next, kPush, device.fw.sequence - 20, FDCG_FW_ENABLE)) == FDCG_FW_TAKEN);
   }
+  SECTION("a watchdog that is no whole number of reports counts the one begun") {
+    fdcg_fw_config config = kConfig;
+    config.rate_hz = 333;  // 6.66 in 20 ms
+    Device slow(config);
+    for (int i = 0; i < 10; ++i)
+      slow.input();
+    CHECK(slow.take(output(1, kZero, 0, 0)) == FDCG_FW_TAKEN);
+    CHECK(slow.take(output(2, other, 10 - 8, FDCG_FW_ENABLE)) == FDCG_FW_STALE);
+    CHECK(slow.take(output(2, other, 10 - 7, FDCG_FW_ENABLE)) == FDCG_FW_TAKEN);
+  }
   CHECK(device.force() == kPush);  // the last good one is still in force
   CHECK(device.take(output(next + 1, other, device.fw.sequence, FDCG_FW_ENABLE)) == FDCG_FW_TAKEN);
 }
@@ -278,13 +280,17 @@ TEST_CASE("firmware: faults, a stop and a bad configuration mean no force, and n
     fdcg_fw_set_faults(&device.fw, 0);
   }
   SECTION("stop") {
+    SECTION("after the watchdog") {
+      device.time_us += 20000;
+      CHECK(device.status() == FDCG_FW_WATCHDOG);
+    }
     fdcg_fw_stop(&device.fw);
     CHECK(device.status() == 0);
     CHECK(device.send(kPush) == FDCG_FW_HELD);
   }
   SECTION("configuration") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    std::vector<fdcg_fw_config> bad(11, kConfig);
+    std::vector<fdcg_fw_config> bad(12, kConfig);
     bad[0].peak_force_n = nan;
     bad[1].peak_force_n = 0;
     bad[2].peak_force_n = HUGE_VALF;
@@ -296,6 +302,7 @@ TEST_CASE("firmware: faults, a stop and a bad configuration mean no force, and n
     bad[8].dof = 0;
     bad[9].dof = 4;
     bad[10].axes = 2;
+    bad[11].peak_force_n = 1.1e6f;  // would not fit the feature report
     for (const fdcg_fw_config& config : bad) {
       CHECK_FALSE(fdcg_fw_init(&device.fw, &config));
       device.send(kZero, 0);

@@ -273,37 +273,41 @@ TEST_CASE("simulated: a host that does not read keeps the oldest reports") {
   config.is_real_time = true;
   config.rate_hz = 8000;
   Host host(config);
-  host.read();
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  std::uint8_t data[kMaxReportBytes];
-  int waiting = 0;
-  while (host.transport->read(data, sizeof data, 0).status == ReadStatus::kReport && ++waiting < 200) {
+  for (std::uint32_t i = 1; i <= 64; ++i) {
+    REQUIRE(host.read() == Verdict::kGood);
+    CHECK(host.sample.sequence == i);
   }
-  CHECK(waiting >= 64);
-  CHECK(waiting < 100);  // and some that have come since
-  CHECK(host.record->reports_lost > 500);
+  host.read();
+  CHECK(host.sample.sequence > 700);
+  CHECK(host.record->reports_lost > 600);
 }
 
 TEST_CASE("simulated: in real time the device keeps its own, and a write that is not taken blocks") {
+  constexpr std::uint64_t kMs = 1000000;
   SimulationConfig config = still();
   config.is_real_time = true;
-  config.faults = {fault(Kind::kNoOutput, 0.1, 0.15)};
+  config.faults = {fault(Kind::kNoOutput, 0.1, 0.4)};
   Host host(config);
-  const std::uint64_t begin = monotonic_ns();
-  host.run(90);
-  while (monotonic_ns() < begin + 110000000)
+  const auto now = [&] { return monotonic_ns() - host.record->origin_ns; };
+  while (now() < 90 * kMs) {  // before any write can meet the fault
     host.read();
-  const std::uint64_t before = monotonic_ns();
+    if (now() < 80 * kMs) host.write(host.sequence > 0);
+  }
+  while (now() < 110 * kMs)
+    host.read();
+  const std::uint64_t before = now();
   CHECK(host.write());
-  const std::uint64_t after = monotonic_ns();
-  CHECK(after - begin >= 250000000);
-  CHECK(host.record->noticed_ns[0] <= before - begin + 1000000);
-  while (monotonic_ns() < begin + 300000000)
+  const std::uint64_t after = now();
+  CHECK(after >= 500 * kMs);
+  CHECK(host.record->noticed_ns[0] >= before);
+  CHECK(host.record->noticed_ns[0] <= after);
+  while (now() < 550 * kMs)
     host.read();
   host.transport->close();
-  CHECK(host.record->watchdog_trips == 1);
-  CHECK(host.record->reports >= 299);
-  CHECK(host.record->reports <= 310 + (monotonic_ns() - begin - 300000000) / 1000000);
+  CHECK(host.record->watchdog_trips >= 1);
+  CHECK(host.record->reports >= 549);
+  CHECK(host.record->reports <= now() / kMs);
 }
 
 // For ThreadSanitizer above all: a reader and a writer at once, through an unplug.
@@ -320,7 +324,7 @@ TEST_CASE("simulated: one thread reads while another writes") {
       const std::uint64_t begin = monotonic_ns();
       Sample sample;
       std::uint8_t data[kMaxReportBytes];
-      while (monotonic_ns() < begin + 400000000) {
+      while (round == 0 || monotonic_ns() < begin + 200000000) {
         const ReadResult result = host.transport->read(data, sizeof data, 1);
         if (result.status == ReadStatus::kLost) break;
         if (result.status == ReadStatus::kTimeout) continue;
@@ -343,16 +347,16 @@ TEST_CASE("simulated: one thread reads while another writes") {
     });
     reader.join();
     writer.join();
-    CHECK(read > 1000);
-    CHECK(written > 100);
+    CHECK(read > 200);
+    CHECK(written > 50);
     host.transport->close();
     if (round == 0) {
       const std::uint64_t begin = monotonic_ns();
-      while (host.transport->open() != "" && monotonic_ns() < begin + 1000000000)
+      while (host.transport->open() != "" && monotonic_ns() < begin + 10000000000)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
-  CHECK(host.record->verdicts[FDCG_FW_TAKEN] > 100);
+  CHECK(host.record->verdicts[FDCG_FW_TAKEN] > 50);
   CHECK(host.record->noticed_ns[2] >= 300000000);
   CHECK(host.record->noticed_ns[2] < SimulationRecord::kNever);
   CHECK(host.record->most_force_n == Approx(0.3));

@@ -100,7 +100,7 @@ std::string Host::open(HostConfig config) {
 
 std::string Host::Impl::build_unit(std::size_t index) {
   const DeviceConfig& config = shared->config.devices[index];
-  auto unit = std::make_unique<Unit>(maker(config, shared->config.loop.backend), config.profile);
+  auto unit = std::make_unique<Unit>(maker(config, shared->config.loop), config.profile);
   std::string problem = build_device_scene(shared->config, index, shared->graphs, &unit->scene);
   if (!problem.empty()) return problem;
   ServoParts parts;

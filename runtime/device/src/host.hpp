@@ -33,7 +33,7 @@ struct ConnectionReport {
   bool is_over = false;  // a recording that has ended: it will not open again
 };
 
-using TransportMaker = std::function<std::unique_ptr<Transport>(const DeviceConfig&, HidBackend)>;
+using TransportMaker = std::function<std::unique_ptr<Transport>(const DeviceConfig&, const LoopConfig&)>;
 
 class Host {
  public:

@@ -69,7 +69,8 @@ void fill_status(const DeviceStatus& from, const ConnectionReport& connection, f
   to->ticks = from.counters.ticks;
   to->late = from.counters.late;
   to->lost = from.counters.lost;
-  for (const std::uint64_t rejected : from.counters.rejected) to->rejected += rejected;
+  for (const std::uint64_t rejected : from.counters.rejected)
+    to->rejected += rejected;
   to->write_failures = from.write_failures;
   to->opened = from.opened;
   to->log_dropped = from.log_dropped;
@@ -84,7 +85,8 @@ void fill_status(const DeviceStatus& from, const ConnectionReport& connection, f
 const std::vector<std::string>& profile_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const BuiltinProfile& profile : builtin_profiles()) all.emplace_back(profile.name);
+    for (const BuiltinProfile& profile : builtin_profiles())
+      all.emplace_back(profile.name);
     return all;
   }();
   return names;

@@ -3,10 +3,10 @@
 
 namespace fdcg::dev {
 
-std::unique_ptr<Transport> make_transport(const DeviceConfig& config, HidBackend backend) {
+std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop) {
   switch (config.source) {
     case DeviceSource::kHid:
-      return make_hid_transport(config, backend);
+      return make_hid_transport(config, loop);
     case DeviceSource::kSimulated:
       return make_simulated_transport(config);
     case DeviceSource::kRecorded:

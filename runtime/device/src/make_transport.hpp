@@ -9,11 +9,11 @@
 
 namespace fdcg::dev {
 
-std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, HidBackend backend);
+std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const LoopConfig& loop);
 std::unique_ptr<Transport> make_simulated_transport(const DeviceConfig& config);
 std::unique_ptr<Transport> make_recorded_transport(const DeviceConfig& config);
 
 // Whichever config.source says.
-std::unique_ptr<Transport> make_transport(const DeviceConfig& config, HidBackend backend);
+std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop);
 
 }  // namespace fdcg::dev

@@ -16,6 +16,20 @@ std::string set_cpu(const Thread& thread, const std::string& name, int cpu);
 // All pages of the process stay in memory: those there are, and where the limit is no hindrance those to come.
 std::string lock_memory();
 
+// While it lives, the calling thread has that SCHED_FIFO priority, and so have the threads that it starts. 0, or not granted:
+// nothing changes.
+class OwnPriority {
+ public:
+  explicit OwnPriority(int priority);
+  ~OwnPriority();
+  OwnPriority(const OwnPriority&) = delete;
+  OwnPriority& operator=(const OwnPriority&) = delete;
+
+ private:
+  bool is_changed_ = false;
+  int policy_before_ = 0, priority_before_ = 0;
+};
+
 // For the calling thread, at its start: touches the stack that it will use, asks for timers without slack.
 void prepare_servo_thread();
 

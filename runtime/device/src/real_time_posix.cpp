@@ -65,6 +65,20 @@ std::string lock_memory() {
          " and log in again, or give the program CAP_IPC_LOCK";
 }
 
+OwnPriority::OwnPriority(int priority) {
+  sched_param before{}, wanted{};
+  wanted.sched_priority = priority;
+  if (priority == 0 || pthread_getschedparam(pthread_self(), &policy_before_, &before) != 0) return;
+  priority_before_ = before.sched_priority;
+  is_changed_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) == 0;
+}
+
+OwnPriority::~OwnPriority() {
+  sched_param before{};
+  before.sched_priority = priority_before_;
+  if (is_changed_) pthread_setschedparam(pthread_self(), policy_before_, &before);
+}
+
 void prepare_servo_thread() {
   volatile char stack[kStackTouchBytes];
   for (std::size_t i = 0; i < sizeof stack; i += kPageBytes)

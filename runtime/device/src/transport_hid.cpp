@@ -7,9 +7,10 @@
 //
 // libusb: an interface can be claimed once only, so there is ONE handle. That is safe: its hid_error is a constant, the handle
 // keeps no string, reads take reports from a queue under a mutex of the handle's, and writes are libusb transfers, which any
-// thread may make. Its read lock is held for moments only, but it is one, and it frees a report's memory: on this back end
-// hidapi itself does so in the servo thread. Its time-out runs on the wall clock: when that is set back, a read of a silent
-// device lasts as much longer; the writer's own 10 ms take the force away then.
+// thread may make. That mutex is held for moments only, but it is one, and a report's memory is freed: on this back end hidapi
+// itself does so in the servo thread. Reports come in through a thread of hidapi's, which gets the servo thread's priority by
+// being started under it, or a busy machine would hold up every report. A read's time-out runs on the wall clock: when that is
+// set back, a read of a silent device lasts as much longer; the writer's own 10 ms take the force away then.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@
 #include "hid_devices.hpp"
 #include "hid_library.hpp"
 #include "make_transport.hpp"
+#include "real_time.hpp"
 
 namespace fdcg::dev {
 
@@ -25,8 +27,8 @@ namespace {
 
 class HidTransport final : public Transport {
  public:
-  HidTransport(const DeviceConfig& config, HidBackend backend)
-      : profile_(config.profile), serial_(config.serial), path_(config.path), backend_(backend) {}
+  HidTransport(const DeviceConfig& config, const LoopConfig& loop)
+      : profile_(config.profile), serial_(config.serial), path_(config.path), loop_(loop) {}
   ~HidTransport() override { HidTransport::close(); }
 
   std::string open() override;
@@ -45,7 +47,7 @@ class HidTransport final : public Transport {
 
   const Profile profile_;
   const std::string serial_, path_;
-  const HidBackend backend_;
+  const LoopConfig loop_;
   const HidLibrary* library_ = nullptr;
   hid_device* reader_ = nullptr;
   hid_device* writer_ = nullptr;  // the same on libusb
@@ -53,7 +55,7 @@ class HidTransport final : public Transport {
 };
 
 std::string HidTransport::open() {
-  if (backend_ != HidBackend::kAny) return open_with(backend_);
+  if (loop_.backend != HidBackend::kAny) return open_with(loop_.backend);
   const std::string hidraw_problem = open_with(HidBackend::kHidraw);
   if (hidraw_problem.empty()) return {};
   const std::string libusb_problem = open_with(HidBackend::kLibusb);
@@ -76,6 +78,7 @@ std::string HidTransport::open_with(HidBackend backend) {
 
 std::string HidTransport::open_handles(const HidDevice& device) {
   const char* const path = device.path.c_str();
+  const OwnPriority priority(library_->is_libusb ? loop_.servo_priority : 0);
   reader_ = library_->open_path(path);
   writer_ = library_->is_libusb ? reader_ : library_->open_path(path);
   if (reader_ == nullptr || writer_ == nullptr) {
@@ -135,8 +138,8 @@ bool HidTransport::write_feature(const std::uint8_t* data, int bytes) {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, HidBackend backend) {
-  return std::make_unique<HidTransport>(config, backend);
+std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const LoopConfig& loop) {
+  return std::make_unique<HidTransport>(config, loop);
 }
 
 }  // namespace fdcg::dev
