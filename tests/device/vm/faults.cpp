@@ -94,7 +94,8 @@ void run_strike(RigOptions options, const StrikeKind& kind, int times, Verdicts&
     rig.run_for(rig.random_between(5 * kMillisecond, 60 * kMillisecond));
     wrong = judge(rig, kind.strike(rig), tally);
   }
-  if (wrong.empty() && kind.rejected_as && rig.refresh_status() && rig.host_rejected(kind.rejected_as) == 0)
+  if (wrong.empty() && kind.rejected_as && rig.refresh_status() &&
+      count_of(rig.host.status_line(), std::string("rejected/") + kind.rejected_as) == 0)
     wrong = std::string("the host has rejected no report as ") + kind.rejected_as;
   const char* const way = options.is_usb ? "usb" : "uhid";
   const std::string name = words("%s %s", way, kind.name);

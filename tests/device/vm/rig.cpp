@@ -116,16 +116,8 @@ bool Rig::refresh_status(Nanoseconds limit) {
   return run_until([&] { return host.status_count() >= before + 2 || !host.is_running(); }, limit);
 }
 
-std::uint64_t Rig::host_counter(const std::string& name) const {
-  return host.status().at(nlohmann::json::json_pointer("/devices/0/" + name)).get<std::uint64_t>();
-}
-
-std::uint64_t Rig::host_rejected(const std::string& verdict) const {
-  return host_counter("rejected/" + verdict);
-}
-
 bool Rig::host_says_log_failed() {
-  return refresh_status() && !host.status().value("log_failure", "").empty();
+  return refresh_status() && host.status_line().find("\"log_failure\":") != std::string::npos;
 }
 
 void Rig::say_host_words(Verdicts& verdicts) const {
@@ -137,7 +129,7 @@ void Rig::say_host_words(Verdicts& verdicts) const {
       record.force_n, static_cast<unsigned long long>(record.watchdog_trips)));
   for (const std::string& line : host.words())
     verdicts.say("  host: " + line);
-  if (host.status_count() > 0) verdicts.say("  host: " + host.status().dump());
+  if (host.status_count() > 0) verdicts.say("  host: " + host.status_line());
 }
 
 }  // namespace fdcg::vm
