@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake --install: headers, libraries, the two programs where they are built, a CMake package and a pkg-config file. Components
-# of find_package(fdcg): runtime, always; tools (fdcg::fdcg, fdcg::fdcg-servo) and bake (fdcg::bake) unless FDCG_RUNTIME_ONLY.
+# of find_package(fdcg): runtime, always; tools (fdcg::fdcg, fdcg::fdcg-servo), bake (fdcg::bake) and device (fdcg::device)
+# unless FDCG_RUNTIME_ONLY.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fdcg)
@@ -19,6 +20,8 @@ if(NOT FDCG_RUNTIME_ONLY)
   fdcg_install_component(tools fdcg fdcg-servo)
   fdcg_install_component(bake fdcg_bake)
   install(DIRECTORY lib/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  fdcg_install_component(device fdcg_device)
+  install(DIRECTORY runtime/device/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 install(FILES LICENSE README.md CHANGELOG.md schemas/fdcg-v1.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

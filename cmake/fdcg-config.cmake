@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# find_package(fdcg [COMPONENTS runtime tools bake]): fdcg::runtime and fdcg_add_graph always; the programs fdcg::fdcg and
-# fdcg::fdcg-servo where they are installed; fdcg::bake on request, since it looks for what it links.
+# find_package(fdcg [COMPONENTS runtime tools bake device]): fdcg::runtime and fdcg_add_graph always; the programs fdcg::fdcg and
+# fdcg::fdcg-servo where they are installed; fdcg::bake and fdcg::device on request, since they look for what they link.
 include(CMakeFindDependencyMacro)
 set(${CMAKE_FIND_PACKAGE_NAME}_FOUND TRUE)
 set(fdcg_wanted ${${CMAKE_FIND_PACKAGE_NAME}_FIND_COMPONENTS})
 
 foreach(component IN LISTS fdcg_wanted)
-  if(component MATCHES "^(runtime|tools|bake)$" AND EXISTS "${CMAKE_CURRENT_LIST_DIR}/fdcg-${component}.cmake")
+  if(component MATCHES "^(runtime|tools|bake|device)$" AND EXISTS "${CMAKE_CURRENT_LIST_DIR}/fdcg-${component}.cmake")
     set(${CMAKE_FIND_PACKAGE_NAME}_${component}_FOUND TRUE)
   elseif(${CMAKE_FIND_PACKAGE_NAME}_FIND_REQUIRED_${component})
     set(${CMAKE_FIND_PACKAGE_NAME}_FOUND FALSE)
@@ -31,5 +31,9 @@ if("bake" IN_LIST fdcg_wanted)
   find_dependency(draco)
   find_dependency(OpenMesh CONFIG)
   include("${CMAKE_CURRENT_LIST_DIR}/fdcg-bake.cmake")
+endif()
+if("device" IN_LIST fdcg_wanted)
+  find_dependency(Threads)
+  include("${CMAKE_CURRENT_LIST_DIR}/fdcg-device.cmake")
 endif()
 include("${CMAKE_CURRENT_LIST_DIR}/FdcgAddGraph.cmake")

@@ -49,6 +49,17 @@ inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Ve
   return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
 }
 
+// Behind one face of a convex edge, over it and not over the other, and yet in front of the other's plane: that is no place,
+// but for corners off a small face's plane, which far from it is anywhere. The face below decides.
+template <class Real>
+inline Feature face_despite_noise(const Walk<Real>& walk, ConnectionRef<Real> connection, const EdgeSides<Real>& s) {
+  if (!(walk.graph.header->max_deviation > 0) || connection.type() == FDCG_CONCAVE) return kFree;
+  for (uint32_t k = 0; k < 2; ++k) {
+    if (s.side[k] < 0 && s.voronoi[k] < 0 && s.voronoi[1 - k] > 0) return {FDCG_FACE, connection.node(k)};
+  }
+  return kFree;
+}
+
 // Cost: two face planes, two Voronoi planes.
 template <class Real>
 inline Decision edge_rule(Walk<Real>& walk) {
@@ -58,7 +69,7 @@ inline Decision edge_rule(Walk<Real>& walk) {
   look_at_sides(walk, connection, &s);
   const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
   if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
-  if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0)) return go_to(kFree);
+  if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0)) return go_to(face_despite_noise(walk, connection, s));
   const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
   if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0])) return go_to({FDCG_FACE, connection.node(0)});
   if (is_candidate_b) return go_to({FDCG_FACE, connection.node(1)});

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter decides where rounding cannot matter. Where it can, the twelve coordinates are taken as what they are, whole
-// multiples of one small unit, and the determinant is worked out in whole numbers: of the processor's own size where the
-// coordinates are near enough to one another, else of as many limbs as it takes.
+// The filter decides where rounding cannot matter. Where it can, points that are one, and four that share a coordinate, lie in
+// a plane; of others the determinant is worked out once more in pairs of doubles, which tells all but zero from zero and points
+// within 2^-98 of their size of a plane. For those, the twelve coordinates are taken as what they are, whole multiples of one
+// small unit, and the determinant is worked out in whole numbers: of the processor's own size where the coordinates are near
+// enough to one another, else of as many limbs as it takes.
 #include "exact_orient.hpp"
 
 #include <string.h>
@@ -10,6 +12,9 @@
 
 namespace fdcg {
 namespace {
+
+// What products that fall below the normal numbers may lose, times a coordinate of 1e70: under 1e-252.
+constexpr double kUnderflow = 1e-250;
 
 #ifdef __SIZEOF_INT128__
 using Limb = uint64_t;
@@ -24,6 +29,43 @@ constexpr int kLimbBits = 8 * sizeof(Limb);
 // two bits for the difference of two.
 constexpr int kLargestBits = 234 + 1074 + 2;
 constexpr int kLimbs = kLargestBits / kLimbBits + 1;
+
+// high + low, |low| at most half a unit in the last place of high. Products and sums of such pairs err by 2^-101 of the terms'
+// sizes at most, where no part falls below the normal numbers.
+struct Pair {
+  double high, low;
+};
+
+inline Pair exact_sum(double a, double b) {
+  const double sum = a + b, from_b = sum - a, from_a = sum - from_b;
+  return {sum, (a - from_a) + (b - from_b)};
+}
+
+// The same on every processor, with a fused multiplication or without.
+inline Pair exact_product(double a, double b) {
+  constexpr double kSplit = 0x1p27 + 1;
+  const double a_wide = kSplit * a, b_wide = kSplit * b;
+  const double a_high = a_wide - (a_wide - a), b_high = b_wide - (b_wide - b);
+  const double a_low = a - a_high, b_low = b - b_high, product = a * b;
+  return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
+}
+
+inline Pair joined(double high, double low) {
+  const double sum = high + low;
+  return {sum, low - (sum - high)};
+}
+
+inline Pair operator*(Pair a, Pair b) {
+  const Pair product = exact_product(a.high, b.high);
+  return joined(product.high, product.low + (a.high * b.low + a.low * b.high));
+}
+inline Pair operator+(Pair a, Pair b) {
+  const Pair sum = exact_sum(a.high, b.high);
+  return joined(sum.high, sum.low + (a.low + b.low));
+}
+inline Pair operator-(Pair a, Pair b) {
+  return a + Pair{-b.high, -b.low};
+}
 
 // A whole number: sign and size, lowest limb first, no zero limb on top.
 template <int kCapacity>
@@ -226,7 +268,47 @@ int sign_in_limbs(const Multiples& m) {
   return sum.is_negative ? -1 : 1;
 }
 
-[[gnu::noinline]] int exact_sign(const Vec3<double> (&point)[4], uint32_t* work_left) {
+// The determinant but for 2^-98 of the size of its products.
+[[gnu::noinline]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
+  Pair edge[3][3];
+  for (int p = 0; p < 3; ++p) {
+    const Vec3<double>&to = point[p + 1], &from = point[0];
+    edge[p][0] = exact_sum(to.x, -from.x);
+    edge[p][1] = exact_sum(to.y, -from.y);
+    edge[p][2] = exact_sum(to.z, -from.z);
+  }
+  const auto &u = edge[0], &v = edge[1], &w = edge[2];
+  Pair sum = {0, 0};
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    sum = sum + (u[i] * v[j] - u[j] * v[i]) * w[k];
+  }
+  return sum.high;
+}
+
+inline bool are_same(double a, double b, double c, double d) {
+  return a == b && a == c && a == d;
+}
+
+// What is in one plane at a glance: a way that begins in a corner meets all its edges there, and axes have planes.
+inline bool is_plainly_flat(const Vec3<double> (&point)[4]) {
+  const auto &a = point[0], &b = point[1], &c = point[2], &d = point[3];
+  for (int i = 1; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (point[i].x == point[j].x && point[i].y == point[j].y && point[i].z == point[j].z) return true;
+    }
+  }
+  return are_same(a.x, b.x, c.x, d.x) || are_same(a.y, b.y, c.y, d.y) || are_same(a.z, b.z, c.z, d.z);
+}
+
+// `bound`: of the filter, 4 epsilons of the products' size.
+[[gnu::noinline]] int exact_sign(const Vec3<double> (&point)[4], double bound, uint32_t* work_left) {
+  if (is_plainly_flat(point)) return 0;
+  if (work_left != nullptr) spend(work_left, kPairsWork);
+  constexpr double kOfFilter = 0x1p-48;  // 2^-98 of the size
+  const double det = determinant_in_pairs(point), least = kOfFilter * bound + kUnderflow;
+  if (det > least) return 1;
+  if (det < -least) return -1;
   const Multiples m = multiples_of(point);
   const bool is_narrow = m.bits <= kWordBits;
   if (work_left != nullptr) spend(work_left, is_narrow ? kExactWork : kLongExactWork);
@@ -246,12 +328,10 @@ int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<doubl
   const double size = (fabs(yz) + fabs(zy)) * fabs(w.x) + (fabs(zx) + fabs(xz)) * fabs(w.y) + (fabs(xy) + fabs(yx)) * fabs(w.z);
   // Three differences, two products and three sums, each off by half an epsilon at most: under 7/2 epsilon of the size.
   constexpr double kErrorBound = 4 * DBL_EPSILON;
-  // What products that fall below the normal numbers may lose, times a coordinate of 1e70: under 1e-252.
-  constexpr double kUnderflow = 1e-250;
   const double bound = kErrorBound * size + kUnderflow;
   if (det > bound) return 1;
   if (det < -bound) return -1;
-  return exact_sign({a, b, c, d}, work_left);
+  return exact_sign({a, b, c, d}, bound, work_left);
 }
 
 }  // namespace fdcg

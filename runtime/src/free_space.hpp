@@ -8,13 +8,12 @@
 
 namespace fdcg {
 
-// A way that meets a merged face may begin behind its plane, within its slab: friction would hold the god-object there.
+// A way that meets a merged face may begin behind its plane, within its slab, or meet it before: friction would hold the
+// god-object there.
 template <class Real>
 inline Vec3<Real> onto_slab(const Walk<Real>& walk, Vec3<Real> point, uint32_t n) {
   const NodeRef<Real> node = walk.graph.node(n);
-  if (!node.is_inexact()) return point;
-  const Real side = node.plane().distance(point);
-  return side < 0 ? point - node.normal() * side : point;
+  return node.is_inexact() ? point - node.normal() * node.plane().distance(point) : point;
 }
 
 // Puts the contact where the way met something first, or at its end.

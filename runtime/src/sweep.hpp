@@ -60,24 +60,15 @@ class Sweep {
   static constexpr Real kNever = 2;  // a fraction after the end
   // Where a way that passes inside a node's loop, and comes in at `fraction` but for rounding, surely is over the face: of one
   // that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
-  // kNever where all of it is beyond a side: a loop that is not flat is passed, seen edge-on, by ways that end before it.
+  // kNever where it is nowhere over the face: a loop that is not flat is passed, seen edge-on, by ways that end before it, and
+  // by ways that pass it by.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Real> node = graph_.node(n);
-    spend(work_left_, kSideWork * node.side_count());
     const Real rounding = (from_bound_ + to_bound_) / 4;
-    Real begin = least, end = 1;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Plane<Real> plane = node.voronoi_plane(k);
-      const Real s0 = plane.distance(from_) - rounding, s1 = plane.distance(to_) - rounding;
-      if (s0 > 4 * rounding && s1 > 4 * rounding) return kNever;
-      if (s0 <= 0 && s1 > 0) {
-        const Real leaves = -s0 / (s1 - s0);
-        if (leaves < end) end = leaves;
-      } else if (s0 > 0 && s1 <= 0) {
-        const Real comes_in = s0 / (s0 - s1);
-        if (comes_in > begin) begin = comes_in;
-      }
-    }
+    Real begin = least, end = 1, widest_begin = least, widest_end = 1;
+    if (!clip_to(node, rounding, &begin, &end) &&
+        !clip_to(node, 5 * rounding + (slab_ - from_bound_), &widest_begin, &widest_end))
+      return kNever;
     if (fraction > end) fraction = end;
     return fraction < begin ? begin : fraction;
   }
@@ -85,6 +76,23 @@ class Sweep {
  private:
   static constexpr uint32_t kLastBit = 63;
   static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
+
+  // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
+  [[nodiscard, gnu::noinline]] bool clip_to(NodeRef<Real> node, Real outwards, Real* begin, Real* end) const {
+    spend(work_left_, kSideWork * node.side_count());
+    bool is_beside = false;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const Plane<Real> plane = node.voronoi_plane(k);
+      const Real s0 = plane.distance(from_) - outwards, s1 = plane.distance(to_) - outwards;
+      const bool begins_inside = s0 <= 0, ends_inside = s1 <= 0;
+      is_beside = is_beside || !(begins_inside || ends_inside);
+      if (begins_inside == ends_inside) continue;
+      const Real at = s0 / (s0 - s1);
+      if (begins_inside && at < *end) *end = at;
+      if (ends_inside && at > *begin) *begin = at;
+    }
+    return !is_beside && *begin <= *end;
+  }
 
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
@@ -221,7 +229,15 @@ class Sweep {
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
-    if (!passes_inside(node, rounded, &met_exactly)) return;
+    if (!passes_inside(node, rounded, &met_exactly)) {
+      // Along an inexact node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
+      if (!is_grazing || !node.is_inexact()) return;
+      const Real thick = (slab_ - from_bound_) + (from_bound_ + to_bound_) / 8;
+      Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
+      Real end = start_side + thick < fall ? (start_side + thick) / fall : Real(1);
+      if (!clip_to(node, 0, &begin, &end)) return;
+      met_exactly = 0;
+    }
     const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
     if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
@@ -319,7 +335,7 @@ class Sweep {
 
   // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
   // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
-  [[nodiscard]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
+  [[nodiscard, gnu::noinline]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
     const int sign = sure_orientation(start, end);
     return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
@@ -337,31 +353,59 @@ class Sweep {
   static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
   [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, Real fraction, uint64_t* met_exactly) const {
+    bool must_wind = false;
+    uint64_t sure = 0;  // the sides that the line surely passes on their inner side
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      if (sure_orientation(start, end) > 0 && !is_held_out(node, k, fraction)) return false;
+      const int sign = sure_orientation(start, end);
+      if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
+      if (sign < 0 && k < kLastBit) sure |= bit_of(k);
       start = end;
     }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      const int sign = orientation(start, end);
-      if (sign > 0 && !is_held_out(node, k, fraction)) return false;
+      if ((sure & bit_of(k)) != 0) continue;
+      const int sign = orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k))));
+      if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
       if (sign == 0) *met_exactly |= bit_of(k);
-      start = end;
     }
-    return true;
+    return !must_wind || is_wound_by(node);
   }
 
-  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, cannot pass there:
-  // beyond the side stands a wall, in front of which the way stays. Of a wall whose corners lie off its plane the two may
-  // differ, and a way along a groove would pass between.
-  [[nodiscard]] bool is_held_out(NodeRef<Real> node, uint32_t k, Real fraction) const {
-    if (!(graph_.header->max_deviation > 0) || graph_.connection(node.connection(k)).type() != FDCG_CONCAVE) return false;
+  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, may pass inside
+  // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
+  // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
+  // inwards but for rounding included, winds about the way: that is still to be asked, once for all sides.
+  [[nodiscard, gnu::noinline]] bool is_open(NodeRef<Real> node, uint32_t k, Real fraction, bool* must_wind) const {
+    if (!(graph_.header->max_deviation > 0)) return false;
     spend(work_left_, kNodeWork);
-    const NodeRef<Real> wall = graph_.node(node.across(k));
-    return wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0 &&
-           node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
+    const bool is_near = node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
+    if (is_near && graph_.connection(node.connection(k)).type() == FDCG_CONCAVE) {
+      const NodeRef<Real> wall = graph_.node(node.across(k));
+      if (wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0) return true;
+    }
+    *must_wind = true;
+    return is_near && node.is_inexact();
+  }
+
+  // Whether the line passes through the loop, convex or not, from its front: through one more of the fan's triangles from the
+  // front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
+  [[nodiscard, gnu::noinline]] bool is_wound_by(NodeRef<Real> node) const {
+    const Vec3<Real> apex = graph_.corner_point(node.corner(0));
+    Vec3<Real> start = graph_.corner_point(node.corner(1));
+    int times = 0, first = orientation(apex, start);
+    for (uint32_t k = 1; k + 1 < node.side_count(); ++k) {
+      const Vec3<Real> end = graph_.corner_point(node.corner(k + 1));
+      const bool is_last = k + 2 == node.side_count();
+      const int sign = orientation(apex, end);
+      const int diagonal = sign != 0 || is_last ? sign : -1;  // a line through a diagonal is on one side of it for both
+      const int side = orientation(start, end);
+      times += first <= 0 && side <= 0 && diagonal >= 0;
+      times -= first > 0 && side > 0 && diagonal < 0;
+      first = diagonal;
+      start = end;
+    }
+    return times > 0;
   }
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in

@@ -82,12 +82,21 @@ struct EdgeLine : Edge<Real> {
   [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };
 
+// Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. Taken, it
+// would cost more distance than a step may.
+template <class Real>
+[[gnu::noinline]] bool leads_back(const Walk<Real>& walk, const EdgeLine<Real>& line, uint32_t end, Real from_end) {
+  if (from_end <= 8 * RealLimits<Real>::kEpsilon * static_cast<Real>(walk.graph.header->extent)) return false;
+  const Real foot = line.parameter(walk.hip);
+  return 2 * (end == 0 ? foot : line.length - foot) > from_end;
+}
+
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
 template <class Real>
-inline Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
+[[gnu::noinline]] Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
-    if (!(from_end <= line.end_tolerance)) continue;
+    if (!(from_end <= line.end_tolerance) || leads_back(walk, line, end, from_end)) continue;
     const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
     walk.place(walk.graph.corner_point(vertex.index), vertex);
     return vertex;

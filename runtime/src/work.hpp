@@ -16,7 +16,7 @@ inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 
 // Of one step, all its sweeps together: some 30,000 instructions.
 #ifndef FDCG_SWEEP_WORK
-#define FDCG_SWEEP_WORK 1000
+#define FDCG_SWEEP_WORK 1500
 #endif
 inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 
@@ -25,7 +25,8 @@ inline constexpr uint32_t kLeafWork = 4;         // a leaf taken up, besides its
 inline constexpr uint32_t kNodeWork = 5;         // one node fetched, both ends of the way against its plane
 inline constexpr uint32_t kNearPlaneWork = 18;   // ... one end so near that its side is asked of the corners
 inline constexpr uint32_t kOrientationWork = 9;  // one side's edge against the way, where rounding cannot matter
-inline constexpr uint32_t kExactWork = 70;       // ... and where it does: 1,050 instructions
+inline constexpr uint32_t kPairsWork = 30;       // ... and where it does: 450 instructions
+inline constexpr uint32_t kExactWork = 70;       // ... so much more on a plane but for 2^-98 of the size: 1,050
 inline constexpr uint32_t kLongExactWork = 290;  // ... with coordinates of very different sizes: 4,300
 inline constexpr uint32_t kTransitionWork = 10;  // one change of state
 inline constexpr uint32_t kSideWork = 4;         // one side of a face that the god-object slides on

@@ -82,6 +82,12 @@ class Package(ConsumerCase):
         done = self.run_program(os.path.join(folder, "consumer"), str(EXAMPLES / "cube.obj"))
         self.assertEqual(b"nodes 6\n", done.stdout)
 
+    def test_a_program_in_c_drives_a_device(self):
+        folder = self.path("build")
+        self.configure(CONSUMER / "device", folder)
+        self.build(folder)
+        self.assertEqual(self.run_program(os.path.join(folder, "consumer")).stdout, b"toy: ticks\n")
+
     def test_pkg_config_names_what_a_compiler_needs(self):
         self.need("pkg-config")
         found = pathlib.Path(self.prefix).glob("**/fdcg.pc")

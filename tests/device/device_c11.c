@@ -36,13 +36,13 @@ static int run(fdcg_host* host, const char* moved) {
   if (fdcg_host_set_pose(host, moved, &pose, &message) != FDCG_OK) return 15;
   if (fdcg_host_set_pose(host, "nothing", &pose, &message) == FDCG_OK) return 16;
   /* A machine that is busy disarms: try again. */
-  for (tries = 0; tries < 20; ++tries) {
+  for (tries = 0; tries < 200; ++tries) {
     fdcg_host_arm(host, FDCG_ALL_DEVICES);
     if (fdcg_host_wait(host, 200)) return 17;
     if (fdcg_host_get_status(host, 0, &status) != FDCG_OK) return 18;
     if (status.is_open && status.ticks > 20 && status.phase != FDCG_DISARMED) break;
   }
-  if (tries == 20) return 19;
+  if (tries == 200) return 19;
   fdcg_host_disarm(host, 0);
   fdcg_host_request_stop(host);
   if (!fdcg_host_wait(host, 20000)) return 20;

@@ -23,10 +23,9 @@ int hid_init(void) {
 struct hid_device_info* hid_enumerate(unsigned short vendor, unsigned short product) {
   struct hid_device_info* list = NULL;
   int i;
-  (void)vendor;
-  (void)product;
   ++state.lists;
-  for (i = state.interfaces - 1; i >= 0 && !state.is_absent; --i) {
+  if (state.is_absent || (vendor && vendor != 0x1209) || (product && product != 0xf001)) return NULL;
+  for (i = state.interfaces - 1; i >= 0; --i) {
     struct hid_device_info* const info = (struct hid_device_info*)calloc(1, sizeof *info);
     info->path = (char*)malloc(sizeof state.path + 16);
     snprintf(info->path, sizeof state.path + 16, state.interfaces > 1 ? "%s:1.%d" : "%s", state.path, i);

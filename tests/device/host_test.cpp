@@ -32,6 +32,8 @@ const std::string& cube_file() {
   return path;
 }
 
+constexpr std::uint64_t kPatienceNs = 60'000'000'000;  // for a machine that is busy with other things
+
 // A host with devices of its own.
 struct Hosted {
   std::vector<std::unique_ptr<FakeDevice>> devices;
@@ -42,6 +44,8 @@ struct Hosted {
   explicit Hosted(int count = 1) {
     for (int i = 0; i < count; ++i)
       devices.push_back(std::make_unique<FakeDevice>());
+    config.loop.servo_priority = 80;  // where it is granted a busy machine is no matter
+    config.loop.writer_priority = 70;
     while (static_cast<int>(config.devices.size()) < count)
       config.devices.push_back(config.devices[0]);
   }
@@ -59,7 +63,8 @@ struct Hosted {
 
   // A machine that is busy may be 10 ms late, which disarms: then once more.
   void press(int index = 0) {
-    for (int attempt = 0; attempt < 20; ++attempt) {
+    const std::uint64_t until_ns = monotonic_ns() + kPatienceNs;
+    while (monotonic_ns() < until_ns) {
       device(index).tip_z_m = 0.01;
       sleep_ms(30);
       host.arm(index);
@@ -69,7 +74,7 @@ struct Hosted {
       device(index).tip_z_m = -0.002;
       if (within_ms(500, [&] { return device(index).force_n > 1.5; })) return;
     }
-    FAIL("no force after 20 attempts: " << fault_text(fault(index)));
+    FAIL("no force in a minute: " << fault_text(fault(index)));
   }
 };
 
@@ -223,6 +228,20 @@ TEST_CASE("a device that takes no output does not keep the host from stopping wi
   CHECK(device->misused == 0);
 }
 
+TEST_CASE("a device that refuses its last zero force is told of") {
+  Hosted hosted;
+  hosted.start();
+  hosted.device().refuses_writes = true;
+  CHECK(hosted.host.stop().find("may not have got its zero force") != std::string::npos);
+  CHECK_FALSE(hosted.device().is_open);
+
+  Hosted gone;
+  gone.start();
+  gone.device().is_plugged = false;
+  REQUIRE(within_ms(5000, [&] { return !gone.device().is_open; }));
+  CHECK(gone.host.stop() == "");
+}
+
 TEST_CASE("a read that does not return leaves no force, and does not keep the host from stopping", "[slow]") {
   auto device = std::make_unique<FakeDevice>();
   {
@@ -315,12 +334,12 @@ TEST_CASE("a C program runs a host") {
     "objects": [{"name": "cube", "file": ")" +
                             cube_file() + R"(", "motion": {"kind": "driven"}}],
     "devices": [{"name": "toy", "source": "simulated", "mapping": {"offset_m": [0, 0, 5]}}],
-    "loop": {"servo_priority": 0, "writer_priority": 0, "lock_memory": false}})";
+    "loop": {"servo_priority": 80, "writer_priority": 70, "lock_memory": false}})";
   CHECK(runs_from_c(scene.c_str(), "cube") == 0);
 }
 
 // In a process of its own: crashes with a force on. The descriptor stands for a hidraw node.
-static void crash_with_force(int descriptor, int crash) {
+static void crash_with_force(int descriptor, int crash) try {
   for (const int one : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
     signal(one, SIG_DFL);  // the test framework has its own
   Hosted hosted;
@@ -329,6 +348,8 @@ static void crash_with_force(int descriptor, int crash) {
   hosted.start();
   hosted.press();
   raise(crash);
+} catch (...) {  // a check that failed
+  _exit(3);
 }
 
 TEST_CASE("a crash sends zero force and the safe stop on the descriptor kept for it, then dies of its signal") {

@@ -96,6 +96,17 @@ TEST_CASE("kinematics: known poses") {
   check_position(kDeltaRobot, 3, {kPi / 2, kPi / 2, kPi / 2}, 0, 0, 0.1 + std::sqrt(0.2 * 0.2 - 0.03 * 0.03) - 0.15);
 }
 
+TEST_CASE("kinematics: a delta whose arms are numbered the other way round hangs on the same side") {
+  const KinematicsParams there = params(KinematicsKind::kDelta, {0.06, 0.1, 0.2, 0.03, 0}, {0, 2 * kPi / 3, 4 * kPi / 3});
+  const KinematicsParams back = params(KinematicsKind::kDelta, {0.06, 0.1, 0.2, 0.03, 0}, {0, 4 * kPi / 3, 2 * kPi / 3});
+  const TipPose one = pose(there, 3, {0.1, 0.3, -0.2}), other = pose(back, 3, {0.1, -0.2, 0.3});
+  CHECK(one.position_m[2] > 0.1);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(std::fabs(one.position_m[i] - other.position_m[i]) < 1e-15);
+    CHECK(one.jacobian[i][1] == Approx(other.jacobian[i][2]));
+  }
+}
+
 TEST_CASE("kinematics: the Jacobian is what differences say") {
   Random random(61);
   for (const Case& c : kCases)
@@ -206,6 +217,8 @@ TEST_CASE("kinematics: what has no pose is refused") {
   }
   SECTION("a delta stretched flat: no effort holds it") {
     CHECK_FALSE(tip_pose(params(KinematicsKind::kDelta, {0.06, 0.1, 0.13, 0.03}), 3, zero.data(), &tip));
+    CHECK_FALSE(tip_pose(params(KinematicsKind::kDelta, {0.06, 0.1, 0.13 * (1 + 2e-14), 0.03}), 3, zero.data(), &tip));
+    CHECK(tip_pose(params(KinematicsKind::kDelta, {0.06, 0.1, 0.13 * (1 + 1e-10), 0.03}), 3, zero.data(), &tip));
   }
   SECTION("a delta whose arms stand in one place") {
     CHECK_FALSE(tip_pose(params(KinematicsKind::kDelta, {0.06, 0.1, 0.2, 0.03}, {1, 1, 1}), 3, zero.data(), &tip));

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated device: its mechanics against closed forms, its protocol through the host's own codec, each of its faults, and
-// two threads on it at once.
+// The simulated device: its mechanics against closed forms, its protocol through the host's own codec, each of its faults. In
+// virtual time: simulated_real_time_test.cpp has the rest.
 #include "simulated_rig.hpp"
 
-#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <thread>
 
 #include "fdcg_firmware.h"
 #include "simulated_body.hpp"
@@ -53,6 +51,10 @@ TEST_CASE("simulated: a mass on the hand's spring swings as the closed form says
     const double x = 0.01 + 1 / k * (1 - std::exp(-d * t) * (std::cos(w * t) + d / w * std::sin(w * t)));
     CHECK(std::fabs(body.position_m()[0] - x) < 2e-5);  // of 5 mm
     CHECK(body.position_m()[1] == 0);
+    Sample sample;
+    body.make_report(report);
+    REQUIRE(decode_input(profile, report, FDCG_FW_INPUT_BYTES, &sample) == Verdict::kGood);
+    CHECK(std::fabs(sample.axis[0] - body.position_m()[0]) <= config.quantum_m * 0.500001);
   }
 }
 
@@ -60,7 +62,7 @@ TEST_CASE("simulated: stable whatever the spring and the mass") {
   SimulationConfig config;
   config.mass_kg = 0.001;
   config.damping_n_s_per_m = 0;
-  config.hand_stiffness_n_per_m = 1e5;
+  config.hand_stiffness_n_per_m = 1e8;
   config.hand_damping_n_s_per_m = 1000;
   SECTION("damped") {}
   SECTION("not damped") {
@@ -241,6 +243,22 @@ TEST_CASE("simulated: unplugged, plugged in again, restarted") {
     host.transport->close();
     CHECK(host.transport->open() == "the simulated device is unplugged, for ever: its script says so");
   }
+  SECTION("what was waiting when it was unplugged is gone") {
+    config.faults = {fault(Kind::kOutOfOrder, 0.0985), fault(Kind::kStale, 0.09, 0.005), fault(Kind::kUnplug, 0.1, 0.2)};
+    Host host(config);
+    host.run(80);
+    host.transport->close();
+    std::uint8_t data[kMaxReportBytes];
+    REQUIRE(host.transport->open() == "");  // at 90 ms: four reports come late, four stand behind them, one is held back
+    for (int i = 0; i < 30; ++i)
+      host.transport->read(data, sizeof data, 1);
+    host.transport->close();
+    while (host.transport->open() != "") {
+    }
+    host.judge = ReportJudge();
+    CHECK(bad(host.run(20)).empty());
+    CHECK(host.sample.sequence == 20);
+  }
   SECTION("restarted") {
     config.faults = {fault(Kind::kRestart, 0.1)};
     Host host(config);
@@ -268,96 +286,11 @@ TEST_CASE("simulated: unplugged, plugged in again, restarted") {
   }
 }
 
-TEST_CASE("simulated: a host that does not read keeps the oldest reports") {
-  SimulationConfig config = still();
-  config.is_real_time = true;
-  config.rate_hz = 8000;
-  Host host(config);
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  for (std::uint32_t i = 1; i <= 64; ++i) {
-    REQUIRE(host.read() == Verdict::kGood);
-    CHECK(host.sample.sequence == i);
-  }
-  host.read();
-  CHECK(host.sample.sequence > 700);
-  CHECK(host.record->reports_lost > 600);
-}
-
-TEST_CASE("simulated: in real time the device keeps its own, and a write that is not taken blocks") {
-  constexpr std::uint64_t kMs = 1000000;
-  SimulationConfig config = still();
-  config.is_real_time = true;
-  config.faults = {fault(Kind::kNoOutput, 0.1, 0.4)};
-  Host host(config);
-  const auto now = [&] { return monotonic_ns() - host.record->origin_ns; };
-  while (now() < 90 * kMs) {  // before any write can meet the fault
-    host.read();
-    if (now() < 80 * kMs) host.write(host.sequence > 0);
-  }
-  while (now() < 110 * kMs)
-    host.read();
-  const std::uint64_t before = now();
-  CHECK(host.write());
-  const std::uint64_t after = now();
-  CHECK(after >= 500 * kMs);
-  CHECK(host.record->noticed_ns[0] >= before);
-  CHECK(host.record->noticed_ns[0] <= after);
-  while (now() < 550 * kMs)
-    host.read();
-  host.transport->close();
-  CHECK(host.record->watchdog_trips >= 1);
-  CHECK(host.record->reports >= 549);
-  CHECK(host.record->reports <= now() / kMs);
-}
-
-// For ThreadSanitizer above all: a reader and a writer at once, through an unplug.
-TEST_CASE("simulated: one thread reads while another writes") {
-  SimulationConfig config;
-  config.rate_hz = 8000;
-  config.faults = {fault(Kind::kGarbled, 0.05, 0, 20), fault(Kind::kNoOutput, 0.1, 0.02), fault(Kind::kUnplug, 0.3, 0.05)};
-  Host host(config);
-  for (int round = 0; round < 2; ++round) {
-    std::atomic<bool> is_lost{false};
-    std::atomic<std::uint32_t> answers{0};
-    std::uint64_t read = 0, written = 0;
-    std::thread reader([&] {
-      const std::uint64_t begin = monotonic_ns();
-      Sample sample;
-      std::uint8_t data[kMaxReportBytes];
-      while (round == 0 || monotonic_ns() < begin + 200000000) {
-        const ReadResult result = host.transport->read(data, sizeof data, 1);
-        if (result.status == ReadStatus::kLost) break;
-        if (result.status == ReadStatus::kTimeout) continue;
-        ++read;
-        if (decode_input(host.profile, data, result.bytes, &sample) == Verdict::kGood) answers.store(sample.sequence);
-      }
-      is_lost.store(true);
-    });
-    std::thread writer([&] {
-      Command command;
-      std::uint8_t data[kMaxReportBytes];
-      while (!is_lost.load()) {
-        command.echo = answers.load();
-        command.is_enabled = ++command.sequence > 1;
-        command.effort[1] = 0.3;
-        encode_output(host.profile, command, data);
-        if (host.transport->write(data, host.profile.output.bytes)) ++written;
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-      }
-    });
-    reader.join();
-    writer.join();
-    CHECK(read > 200);
-    CHECK(written > 50);
-    host.transport->close();
-    if (round == 0) {
-      const std::uint64_t begin = monotonic_ns();
-      while (host.transport->open() != "" && monotonic_ns() < begin + 10000000000)
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-  }
-  CHECK(host.record->verdicts[FDCG_FW_TAKEN] > 50);
-  CHECK(host.record->noticed_ns[2] >= 300000000);
-  CHECK(host.record->noticed_ns[2] < SimulationRecord::kNever);
-  CHECK(host.record->most_force_n == Approx(0.3));
+TEST_CASE("simulated: a body that was left alone for a day is there at once") {
+  SimulatedBody body{SimulationConfig()};
+  const std::uint64_t begin = monotonic_ns();
+  body.advance(86400000000000);
+  CHECK(body.time_ns() == 86400000000000);
+  CHECK(monotonic_ns() - begin < 10000000000);  // 10 s of its life take some 30 ms, a day four minutes
+  CHECK(std::fabs(body.position_m()[2]) < 0.021);
 }

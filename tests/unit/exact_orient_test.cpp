@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "work.hpp"
+
 namespace {
 
 using Point = fdcg::Vec3<double>;
@@ -102,4 +104,31 @@ TEST_CASE("orientation is exact for coordinates of every size a double has, up t
   CHECK(decided[0] > 100);
   CHECK(decided[1] > 100);
   CHECK(decided[2] > 100);
+}
+
+TEST_CASE("orientation spends as little as a sign needs") {
+  using fdcg::kExactWork, fdcg::kLongExactWork, fdcg::kPairsWork;
+  const auto spent = [](const Point& a, const Point& b, const Point& c, const Point& d) {
+    uint32_t left = 1000;
+    fdcg::orient3d_sign(a, b, c, d, &left);
+    return 1000 - left;
+  };
+  const Point a = {0.1, 0.2, 0.3}, b = {1.3, 0.4, 0.7}, c = {0.6, 1.9, 1.1};
+  CHECK(spent(a, b, c, {0.5, 0.5, 2}) == 0);                          // the filter
+  CHECK(spent(a, b, c, b) == 0);                                      // a corner
+  CHECK(spent({1, 2, 5}, {3, 7, 5}, {4, 1, 5}, {0.1, 0.3, 5}) == 0);  // an axis' plane
+  const Point middle = {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
+  CHECK(spent(a, b, c, {middle.x, middle.y, nudge(middle.z, 1)}) == kPairsWork);
+  const Point even = {1, 2, 3}, along = {2, 4, 7}, across = {5, 1, 2};
+  CHECK(spent(even, along, across, {3, 6, 11}) == kPairsWork + kExactWork);  // even + 2 (along - even)
+  CHECK(spent({0, 0, 0}, {0x1p-60, 1, 0}, {0x1p-60, 1, 1}, {0x1p-59, 2, 5}) == kPairsWork + kLongExactWork);
+}
+
+TEST_CASE("orientation is right beside planes nearer than pairs of doubles tell") {
+  for (const double off : {0x1p-100, 0x1p-150, 0x1p-300, -0x1p-101, -0x1p-400}) {
+    const Point a = {0, 0, 0}, b = {1, 3, 0}, c = {2, 1, 1}, d = {3, 4, 1};  // d = b + c
+    INFO(off);
+    CHECK(fdcg::orient3d_sign({off, 0, 0}, b, c, d) == rational_sign({off, 0, 0}, b, c, d));
+    CHECK(fdcg::orient3d_sign(a, {1, 3, off}, c, d) == rational_sign(a, {1, 3, off}, c, d));
+  }
 }

@@ -61,8 +61,8 @@ std::string udev_rules(const std::vector<NamedProfile>& profiles) {
     std::snprintf(upper, sizeof upper, "%04X:%04X", named.profile.match.vendor, named.profile.match.product);
     text += "\n# " + std::string(named.profile.name) + " (" + named.name + ")\n";
     text += "KERNEL==\"hidraw*\", SUBSYSTEM==\"hidraw\", KERNELS==\"*:" + std::string(upper) + ".*\", " + grant;
-    text += "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ATTR{idVendor}==\"" + vendor + "\", ATTR{idProduct}==\"" + product +
-            "\", " + grant;
+    text += "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ATTR{idVendor}==\"" + vendor + "\", ATTR{idProduct}==\"" +
+            product + "\", " + grant;
   }
   return text;
 }
@@ -152,7 +152,8 @@ int run_devices(const DevicesArguments& arguments) {
 }  // namespace
 
 Command add_devices(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("devices", "List the HID devices, the profiles that fit them, and who may open them");
+  CLI::App* const command =
+      app.add_subcommand("devices", "List the HID devices, the profiles that fit them, and who may open them");
   command->footer(R"(
 Examples:
   fdcg-servo devices

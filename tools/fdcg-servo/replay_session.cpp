@@ -21,7 +21,8 @@ constexpr std::size_t kChunkBytes = 1 << 16;
 constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
 constexpr const char* kPhases[] = {"disarmed", "ramping", "armed", "fading"};
 constexpr const char* kCsvHeader =
-    "t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions,device,tick,phase,fault,sent_fx,sent_fy,sent_fz\n";
+    "t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions,device,tick,phase,fault,sent_fx,sent_fy,sent_"
+    "fz\n";
 
 // An output in chunks; nothing where it was not asked for.
 class Output {
@@ -116,9 +117,11 @@ std::string summary(const dev::SessionReplay& replay, double seconds) {
   if (replay.reader().ending() == dev::Ending::kEnded && replay.reader().end().reason == dev::EndReason::kLimit) {
     text += "the log ends at its limit of bytes; the session went on\n";
   }
+  if (replay.has_strays()) text += "there are ticks of devices that the scene has not\n";
   if (replay.reader().ending() != dev::Ending::kEnded) text += replay.reader().damage() + "\n";
   char time[64];
-  std::snprintf(time, sizeof time, "%.3g s, %.3g us a tick\n", seconds, ticks == 0 ? 0 : seconds * 1e6 / static_cast<double>(ticks));
+  std::snprintf(time, sizeof time, "%.3g s, %.3g us a tick\n", seconds,
+                ticks == 0 ? 0 : seconds * 1e6 / static_cast<double>(ticks));
   return text + time;
 }
 
@@ -147,7 +150,8 @@ int replay_session(const ReplaySessionArguments& arguments) {
   for (const Output* output : {&csv, &rewritten})
     if (!output->ok()) return fail(kFile, output->error());
   const auto replay = std::make_unique<dev::SessionReplay>();
-  if (const std::string problem = replay->open(arguments.session, arguments.graphs); !problem.empty()) return fail(kFile, problem);
+  if (const std::string problem = replay->open(arguments.session, arguments.graphs); !problem.empty())
+    return fail(kFile, problem);
   const auto started = std::chrono::steady_clock::now();
   csv.add(kCsvHeader);
   rewritten.add(replay->header_bytes());

@@ -22,9 +22,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kLookMs = 50;                     // how soon a command, a fault or a device is noticed here
+constexpr int kLookMs = 50;  // how soon a command, a fault or a device is noticed here
 constexpr double kTerminalStatusS = 0.2, kPlainStatusS = 1;
-constexpr double kArmAgainS = 0.2;              // between requests, until the gate has granted the first
+constexpr double kArmAgainS = 0.2;      // between requests, until the gate has granted the first
+constexpr double kRefusedAfterS = 0.3;  // a request is granted in a tick, or is not
 constexpr std::size_t kLongestCommand = 200;
 
 enum class StatusKind { kText, kJson, kNone };
@@ -90,8 +91,11 @@ class CommandInput {
 
 class Session {
  public:
-  Session(const RunArguments& arguments, dev::Host& host)
-      : arguments_(arguments), host_(host), is_terminal_(tools::wants_colour(tools::Stream::standard_output)) {
+  Session(const RunArguments& arguments, dev::Host& host, std::string log_file)
+      : arguments_(arguments),
+        host_(host),
+        log_file_(std::move(log_file)),
+        is_terminal_(tools::wants_colour(tools::Stream::standard_output)) {
     const auto count = static_cast<std::size_t>(host.device_count());
     looks_.resize(count);
     seen_.resize(count);
@@ -102,7 +106,7 @@ class Session {
       seen_[i].wants_arming = arguments.arm;
     }
     const double standard = is_terminal_ && arguments.status == StatusKind::kText ? kTerminalStatusS : kPlainStatusS;
-    status_every_s_ = arguments.status_every_s > 0 ? arguments.status_every_s : standard;
+    status_every_s_ = next_status_s_ = arguments.status_every_s > 0 ? arguments.status_every_s : standard;
   }
 
   void run();
@@ -114,8 +118,10 @@ class Session {
     std::string problem;
     std::uint64_t disarmed[dev::kFaults] = {};
     dev::Phase phase = dev::Phase::kDisarmed;
-    bool wants_arming = false, told_refused = false;
-    std::uint64_t ticks = 0;      // at the last status line
+    bool wants_arming = false;  // --arm: until the gate has granted it once
+    bool was_asked = false;     // to arm
+    double asked_s = -1;        // when; -1: answered, or told
+    std::uint64_t ticks = 0;    // at the last status line
   };
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
@@ -131,6 +137,7 @@ class Session {
 
   const RunArguments& arguments_;
   dev::Host& host_;
+  const std::string log_file_;  // empty: none
   const bool is_terminal_;
   const Clock::time_point started_ = Clock::now();
   std::vector<DeviceLook> looks_;
@@ -184,8 +191,12 @@ void Session::arm_where_wanted(std::size_t device) {
   const std::uint64_t* const disarmed = looks_[device].status.counters.disarmed;
   const bool was_armed = std::any_of(disarmed, disarmed + dev::kFaults, [](std::uint64_t count) { return count != 0; });
   if (was_armed || last.phase != dev::Phase::kDisarmed || last.fault == dev::Fault::kUnknownLimit) seen.wants_arming = false;
-  const bool is_there = looks_[device].connection.connection == dev::Connection::kOpen && looks_[device].status.counters.ticks > 0;
-  if (seen.wants_arming && is_there && seconds() >= next_arming_s_) host_.arm(static_cast<int>(device));
+  const bool is_there =
+      looks_[device].connection.connection == dev::Connection::kOpen && looks_[device].status.counters.ticks > 0;
+  if (!seen.wants_arming || !is_there || seconds() < next_arming_s_) return;
+  host_.arm(static_cast<int>(device));
+  if (!seen.was_asked) seen.asked_s = seconds();
+  seen.was_asked = true;
 }
 
 void Session::notice_connection(std::size_t device) {
@@ -206,19 +217,23 @@ void Session::notice(std::size_t device) {
   Seen& seen = seen_[device];
   const DeviceLook& look = looks_[device];
   const dev::DeviceStatus& status = look.status;
+  bool has_disarmed = false;
   for (int i = 1; i < dev::kFaults; ++i) {
     const auto fault = static_cast<dev::Fault>(i);
-    if (status.counters.disarmed[i] > seen.disarmed[i]) say(look.name + ": disarmed: " + dev::fault_text(fault));
+    if (status.counters.disarmed[i] > seen.disarmed[i]) {
+      say(look.name + ": disarmed: " + dev::fault_text(fault));
+      has_disarmed = true;
+    }
     seen.disarmed[i] = status.counters.disarmed[i];
   }
-  if (status.last.arming_refused && !seen.told_refused) {
-    seen.told_refused = true;
+  if (status.last.phase != dev::Phase::kDisarmed || has_disarmed) seen.asked_s = -1;
+  if (seen.asked_s >= 0 && seconds() - seen.asked_s > kRefusedAfterS) {
     const bool is_unknown = status.last.fault == dev::Fault::kUnknownLimit;
-    say(look.name + ": not armed: " + (is_unknown ? dev::fault_text(dev::Fault::kUnknownLimit)
-                                                  : "the tip is pressed against something, or does not report; let go"));
+    say(look.name + ": not armed: " +
+        (is_unknown ? dev::fault_text(dev::Fault::kUnknownLimit) : "the tip is pressed against something, or does not report"));
+    seen.asked_s = -1;
   }
   if (status.last.phase == dev::Phase::kRamping && seen.phase == dev::Phase::kDisarmed) say(look.name + ": armed");
-  if (status.last.phase != dev::Phase::kDisarmed) seen.told_refused = false;
   seen.phase = status.last.phase;
 }
 
@@ -247,6 +262,10 @@ void Session::obey(const std::string& line) {
   const std::size_t first = line.find_first_not_of(" \t\r"), last = line.find_last_not_of(" \t\r");
   const std::string command = first == std::string::npos ? "" : line.substr(first, last - first + 1);
   if (command == "arm") {
+    for (Seen& seen : seen_) {
+      seen.was_asked = true;
+      seen.asked_s = seconds();
+    }
     host_.arm(dev::kAllDevices);
   } else if (command == "disarm") {
     for (Seen& seen : seen_)
@@ -269,6 +288,8 @@ void Session::run() {
     const int wait_ms = std::clamp(static_cast<int>(std::ceil(left_s * 1000)), 0, kLookMs);
     commands.clear();
     const bool has_waited = input.wait(wait_ms, &commands);
+    // what is typed on the terminal that shows the status takes a line below it
+    if (lines_drawn_ > 0 && isatty(STDIN_FILENO) != 0) lines_drawn_ += commands.size();
     for (const std::string& command : commands)
       obey(command);
     if (host_.wait_ms(has_waited ? 0 : wait_ms)) break;
@@ -284,7 +305,9 @@ int Session::end(const std::string& stop_problem) {
     const bool is_played = after.is_over;  // a recording's end is no fault
     if (!is_played) notice(i);
     const bool is_missing = looks_[i].status.opened == 0;
-    is_clean = is_clean && (is_played || (!is_trouble(looks_[i].status.last.fault) && !is_missing));
+    const dev::Fault fault = looks_[i].status.last.fault;
+    const bool is_only_read = fault == dev::Fault::kUnknownLimit && !seen_[i].was_asked;
+    is_clean = is_clean && (is_played || ((!is_trouble(fault) || is_only_read) && !is_missing));
   }
   wipe();
   if (!arguments_.quiet && arguments_.status == StatusKind::kJson) {
@@ -292,7 +315,10 @@ int Session::end(const std::string& stop_problem) {
   }
   if (says_text()) std::fputs(summary_text(looks_).c_str(), stdout);
   std::fflush(stdout);
-  if (!stop_problem.empty()) return fail(log_failure_.empty() ? kFindings : kFile, stop_problem);
+  if (!stop_problem.empty()) {
+    const bool is_of_log = !log_file_.empty() && stop_problem.find(log_file_ + ": ") != std::string::npos;
+    return fail(is_of_log ? kFile : kFindings, stop_problem);
+  }
   return is_clean ? kClean : kFindings;
 }
 
@@ -306,6 +332,7 @@ int run_scene(const RunArguments& arguments) {
   if (arguments.no_log) config.log_file.clear();
   if (arguments.hid == "hidraw") config.loop.backend = dev::HidBackend::kHidraw;
   if (arguments.hid == "libusb") config.loop.backend = dev::HidBackend::kLibusb;
+  const std::string log_file = config.log_file;
   dev::Host host;
   if (const std::string problem = host.open(std::move(config)); !problem.empty()) return fail(kFile, problem);
   const Signals signals(&host);
@@ -316,7 +343,7 @@ int run_scene(const RunArguments& arguments) {
   if (!arguments.arm && !arguments.quiet && arguments.status == StatusKind::kText) {
     std::puts("Not armed: there is no force until you type arm and Enter (disarm, quit), or start with --arm.");
   }
-  Session session(arguments, host);
+  Session session(arguments, host, log_file);
   session.run();
   const std::string problem = host.stop();
   return session.end(problem);

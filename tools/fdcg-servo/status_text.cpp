@@ -20,10 +20,16 @@ constexpr const char* kVerdictNames[] = {"good",       "length",   "id",        
                                          "not-finite", "repeated", "out-of-order", "stale"};
 static_assert(std::size(kVerdictNames) == dev::kVerdicts);
 
-double norm(const double* x) { return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]); }
+double norm(const double* x) {
+  return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
 
-const char* state_name(std::uint32_t state) { return kStates[std::min<std::uint32_t>(state, FDCG_VERTEX)]; }
-const char* phase_name(dev::Phase phase) { return kPhases[static_cast<int>(phase)]; }
+const char* state_name(std::uint32_t state) {
+  return kStates[std::min<std::uint32_t>(state, FDCG_VERTEX)];
+}
+const char* phase_name(dev::Phase phase) {
+  return kPhases[static_cast<int>(phase)];
+}
 
 Json times_json(const dev::TimeHistogram& histogram) {
   constexpr double kMicro = 1e-3;
@@ -116,7 +122,9 @@ std::string disarmed_text(const dev::TickCounters& counters) {
 
 }  // namespace
 
-bool is_trouble(dev::Fault fault) { return fault != dev::Fault::kNone && fault != dev::Fault::kCommanded; }
+bool is_trouble(dev::Fault fault) {
+  return fault != dev::Fault::kNone && fault != dev::Fault::kCommanded;
+}
 
 std::uint64_t rejected_in_all(const dev::TickCounters& counters) {
   std::uint64_t total = 0;
@@ -136,9 +144,10 @@ std::string status_line(const DeviceLook& look, std::size_t name_width) {
     phase += std::string(" (") + dev::fault_name(status.last.fault) + ")";
   }
   char numbers[160];
-  std::snprintf(numbers, sizeof numbers, "%-10s %6.0f/s  %-6s %6.2f N  lost %s, rejected %s, late %s", phase.c_str(), look.rate_hz,
-                state_name(status.last.state), norm(status.last.force.force_n()), grouped(status.counters.lost).c_str(),
-                grouped(rejected_in_all(status.counters)).c_str(), grouped(status.counters.late).c_str());
+  std::snprintf(numbers, sizeof numbers, "%-10s %6.0f/s  %-6s %6.2f N  lost %s, rejected %s, late %s", phase.c_str(),
+                look.rate_hz, state_name(status.last.state), norm(status.last.force.force_n()),
+                grouped(status.counters.lost).c_str(), grouped(rejected_in_all(status.counters)).c_str(),
+                grouped(status.counters.late).c_str());
   line += numbers;
   if (status.log_dropped != 0) line += ", not logged " + grouped(status.log_dropped);
   return line;

@@ -21,7 +21,8 @@ struct DeviceLook {
 // "right hand   armed       1000/s  face    1.23 N  lost 0, rejected 0, late 0"; no line end. `name_width`: of the column.
 std::string status_line(const DeviceLook& look, std::size_t name_width);
 // One object; no line end. `event`: "status" or "end".
-std::string status_json(const char* event, double seconds, const std::vector<DeviceLook>& looks, const std::string& log_failure);
+std::string status_json(const char* event, double seconds, const std::vector<DeviceLook>& looks,
+                        const std::string& log_failure);
 // Some lines a device: what it did and how long it took.
 std::string summary_text(const std::vector<DeviceLook>& looks);
 

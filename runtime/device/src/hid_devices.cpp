@@ -81,7 +81,7 @@ std::string wanted_text(const Match& match, const std::string& serial, const std
 }
 
 std::string seen_text(const std::vector<HidDevice>& devices) {
-  if (devices.empty()) return "no HID device is seen at all";
+  if (devices.empty()) return "none is seen";
   std::string text = "seen: ";
   for (std::size_t i = 0; i < devices.size() && i < kMostListed; ++i)
     text += (i > 0 ? "; " : "") + describe(devices[i]);
@@ -96,9 +96,9 @@ std::string before_colon(const std::string& path) {
 
 }  // namespace
 
-std::vector<HidDevice> list_hid_devices(const HidLibrary& library) {
+std::vector<HidDevice> list_hid_devices(const HidLibrary& library, std::uint16_t vendor, std::uint16_t product) {
   std::vector<HidDevice> devices;
-  hid_device_info* const list = library.enumerate(0, 0);
+  hid_device_info* const list = library.enumerate(vendor, product);
   for (const hid_device_info* info = list; info != nullptr; info = info->next) {
     HidDevice device;
     device.path = info->path != nullptr ? info->path : "";

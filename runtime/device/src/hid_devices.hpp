@@ -19,7 +19,8 @@ struct HidDevice {
   std::string serial, manufacturer, product_name;
 };
 
-std::vector<HidDevice> list_hid_devices(const HidLibrary& library);
+// Of one vendor and product; 0, 0: all. libusb opens every device that it lists, to read its strings: ask it for few.
+std::vector<HidDevice> list_hid_devices(const HidLibrary& library, std::uint16_t vendor = 0, std::uint16_t product = 0);
 
 enum class Fit {
   kNo,

@@ -179,6 +179,9 @@ void Host::Impl::make_punctual() {
   if (loop.lock_memory) warn(lock_memory());
   for (std::size_t i = 0; i < shared->units.size(); ++i) {
     const std::string name = "device '" + shared->config.devices[i].name + "'";
+    // A device that answers as fast as it is read would keep a real-time thread from ever sleeping.
+    const DeviceConfig& device = shared->config.devices[i];
+    if (device.source == DeviceSource::kSimulated && !device.simulation.is_real_time) continue;
     warn(set_real_time_priority(servos[i], name + ", servo thread", loop.servo_priority));
     warn(set_real_time_priority(writers[i], name + ", writer thread", loop.writer_priority));
     warn(set_cpu(servos[i], name + ", servo thread", loop.cpu));
@@ -309,15 +312,16 @@ std::string Host::Impl::end_threads() {
     const bool has_writer_ended = join(writers[i]), has_servo_ended = join(servos[i]);
     unit.link.close();
     unit.emergency.descriptor.store(-1);
-    if (has_writer_ended && has_servo_ended && has_supervisor_ended) {
-      unit.transport->close();
-      continue;
+    const bool has_ended = has_writer_ended && has_servo_ended && has_supervisor_ended;
+    if (has_ended) unit.transport->close();
+    if (has_ended && unit.writer.has_left_zero()) continue;
+    problem += (problem.empty() ? "device '" : "; device '") + shared->config.devices[i].name + "': ";
+    if (!has_writer_ended || !unit.writer.has_left_zero()) {
+      problem += "takes no output, and may not have got its zero force";
+    } else {
+      problem += !has_servo_ended ? "its read does not return" : "was being opened";
     }
-    problem += (problem.empty() ? "device '" : "; device '") + shared->config.devices[i].name + "': " +
-               (!has_writer_ended  ? "takes no output, and may not have got its zero force"
-                : !has_servo_ended ? "its read does not return"
-                                   : "was being opened") +
-               "; it is left as it is";
+    if (!has_ended) problem += "; it is left as it is";
   }
   return problem;
 }

@@ -74,7 +74,7 @@ bool meeting_point(const V3 centre[3], double radius, V3* point) {
   const V3 u = centre[1] - centre[0], v = centre[2] - centre[0];
   V3 normal = cross(u, v);
   const double normal2 = dot(normal, normal);
-  if (!(normal2 > 1e-12 * dot(u, u) * dot(v, v))) return false;  // centres on a line, to a millionth of a radian
+  if (!(normal2 > 0)) return false;  // on one line; nearly so, and the circle below is out of reach
   // the circumcentre of the triangle, from centre 0
   const V3 c = (1 / (2 * normal2)) * (dot(u, u) * cross(v, normal) + dot(v, v) * cross(normal, u));
   const double height2 = radius * radius - dot(c, c);

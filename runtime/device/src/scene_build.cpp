@@ -28,8 +28,8 @@ std::string SceneGraphs::open(const HostConfig& config) {
   close();
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const auto same_file = [&](const ObjectConfig& other) { return other.file == config.objects[i].file; };
-    const auto first = static_cast<std::size_t>(
-        std::find_if(config.objects.begin(), config.objects.end(), same_file) - config.objects.begin());
+    const auto first = static_cast<std::size_t>(std::find_if(config.objects.begin(), config.objects.end(), same_file) -
+                                                config.objects.begin());
     if (first < i) {
       graph_of_object_.push_back(graph_of_object_[first]);
       continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a HostConfig to what device_tick works on: the graphs, opened once and only read, and for each device a scene of its own.
-// The host and the replay of its log build it the same way.
+// From a HostConfig to what device_tick works on: the graphs, opened once and only read, and for each device a scene of its
+// own. The host and the replay of its log build it the same way.
 #pragma once
 
 #include <cstdint>

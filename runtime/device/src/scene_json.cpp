@@ -17,31 +17,51 @@ namespace {
 
 constexpr int kMostObjects = 1000;
 constexpr std::size_t kLongestName = 60, kLongestPath = 4000;
-constexpr double kUnitTolerance = 1e-3;        // of a quaternion, as fdcg_pose has it
-constexpr double kOrthonormalTolerance = 1e-9; // of a rotation matrix
-constexpr double kMostForce = 1000;            // N; no hand goes beyond
+constexpr double kUnitTolerance = 1e-3;  // of a quaternion, as fdcg_pose has it
+constexpr double kUnitAsItIs = 1e-12;
+constexpr double kOrthonormalTolerance = 1e-9;  // of a rotation matrix
+constexpr double kMostForce = 1000;             // N; no hand goes beyond
 constexpr std::size_t kMostSceneBytes = kMostJsonBytes;
 
 constexpr Keys kSceneKeys = {"fdcg_scene", "$schema", "notes", "objects", "devices", "loop", "log", "limits"};
-constexpr Keys kObjectKeys = {"name",       "file",          "pose",  "stiffness_n_per_m", "damping_n_s_per_m", "mu_static",
-                              "mu_dynamic", "edge_friction", "motion", "notes"};
+constexpr Keys kObjectKeys = {
+    "name",          "file",   "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static", "mu_dynamic",
+    "edge_friction", "motion", "notes"};
 constexpr Keys kPoseKeys = {"rotation_xyzw", "translation_m", "scale"};
 constexpr Keys kMotionKeys = {"kind", "axis", "rate_hz", "amplitude_m"};
 constexpr Keys kDeviceKeys = {"name",     "source",        "profile",    "serial",    "path", "mapping",
                               "contacts", "force_limit_n", "simulation", "recording", "notes"};
 constexpr Keys kMappingKeys = {"scale", "rotation_xyzw", "rotation_matrix", "offset_m"};
 constexpr Keys kContactKeys = {"offset_m"};
-constexpr Keys kSimulationKeys = {"rate_hz", "mass_kg",     "damping_n_s_per_m", "hand_stiffness_n_per_m", "hand_damping_n_s_per_m",
-                                  "quantum_m", "start_m",   "amplitude_m",       "frequency_hz",           "real_time",
-                                  "seed",      "force_n",   "watchdog_s",        "float_axes",             "faults"};
+constexpr Keys kSimulationKeys = {"rate_hz",
+                                  "mass_kg",
+                                  "damping_n_s_per_m",
+                                  "hand_stiffness_n_per_m",
+                                  "hand_damping_n_s_per_m",
+                                  "quantum_m",
+                                  "start_m",
+                                  "amplitude_m",
+                                  "frequency_hz",
+                                  "real_time",
+                                  "seed",
+                                  "force_n",
+                                  "watchdog_s",
+                                  "float_axes",
+                                  "faults"};
 constexpr Keys kFaultKeys = {"kind", "at_s", "for_s", "delay_s", "reports"};
 constexpr Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend"};
 constexpr Keys kLogKeys = {"file", "limit_mb"};
 constexpr Keys kLimitsKeys = {"force_n"};
 
-constexpr NumberRange metres(double most) { return {-most, most, true, "m"}; }
-constexpr NumberRange from_0(double most, const char* unit) { return {0, most, true, unit}; }
-constexpr NumberRange above_0(double most, const char* unit) { return {0, most, false, unit}; }
+constexpr NumberRange metres(double most) {
+  return {-most, most, true, "m"};
+}
+constexpr NumberRange from_0(double most, const char* unit) {
+  return {0, most, true, unit};
+}
+constexpr NumberRange above_0(double most, const char* unit) {
+  return {0, most, false, unit};
+}
 constexpr NumberRange kLengths = metres(1e6);
 
 std::string beside(const std::string& scene_file, const std::string& name) {
@@ -153,8 +173,9 @@ void SceneParser::read_motion(const JsonObject& from, Motion* motion) {
   from.numbers("axis", motion->axis, 3, {-1e6, 1e6});
   const double length = norm(motion->axis, 3);
   if (!(length > 1e-6)) from.fail("axis", "has length " + shown_number(length) + "; give a direction");
+  // one that is of length 1 stays as it is, so that it reads back the same
   for (double& x : motion->axis)
-    x = length == 1 ? x : x / length;
+    x = std::fabs(length - 1) <= kUnitAsItIs ? x : x / length;
   motion->rate_hz = from.number("rate_hz", {-100, 100, true, "Hz"});
   if (is_swing) motion->amplitude_m = from.number("amplitude_m", from_0(1e6, "m"));
 }
@@ -171,7 +192,8 @@ void SceneParser::read_device(const JsonObject& from) {
     device.serial = from.text_or("serial", "", kLongestName);
     device.path = from.text_or("path", "", kLongestPath);
   } else if (device.source == DeviceSource::kSimulated) {
-    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "simulation"}, " of a simulated device");
+    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "simulation"},
+                    " of a simulated device");
     if (from.has("simulation")) read_simulation(from.object("simulation", kSimulationKeys), &device.simulation);
     device.profile = simulated_profile(device.simulation);
   } else {
@@ -270,7 +292,8 @@ void SceneParser::read_mapping(const JsonObject& from, Mapping* mapping) {
                                           (i == j ? 1 : 0)));
     if (!(worst <= kOrthonormalTolerance)) {
       from.fail("rotation_matrix", "is off a rotation by " + shown_number(worst) + "; at most " +
-                                       shown_number(kOrthonormalTolerance) + ": three rows of length 1, at right angles, "
+                                       shown_number(kOrthonormalTolerance) +
+                                       ": three rows of length 1, at right angles, "
                                        "right-handed");
     }
   } else if (double q[4]; from.has("rotation_xyzw") && read_unit(from, "rotation_xyzw", q, 4, kUnitTolerance)) {
@@ -303,8 +326,8 @@ void SceneParser::read_simulation(const JsonObject& from, SimulationConfig* simu
   for (const JsonObject& fault : from.objects("faults", 0, SimulationRecord::kMaxFaults, kFaultKeys)) {
     SimulatedFault f;
     f.kind = static_cast<SimulatedFaultKind>(
-        fault.choice("kind", {"unplug", "restart", "short", "long", "garbled", "unknown-id", "repeated", "out-of-order", "stale",
-                              "not-finite", "stall", "no-output", "device-fault"}));
+        fault.choice("kind", {"unplug", "restart", "short", "long", "garbled", "unknown-id", "repeated", "out-of-order",
+                              "stale", "not-finite", "stall", "no-output", "device-fault"}));
     f.at_s = fault.number("at_s", from_0(1e6, "s"));
     f.for_s = fault.number_or("for_s", f.for_s, from_0(1e6, "s"));
     f.delay_s = fault.number_or("delay_s", f.delay_s, from_0(1e3, "s"));

@@ -54,8 +54,8 @@ Json simulation_json(const SimulationConfig& simulation) {
   json["force_n"] = simulation.force_n;
   json["watchdog_s"] = simulation.watchdog_s;
   json["float_axes"] = simulation.has_float_axes;
-  constexpr const char* kFaults[] = {"unplug",   "restart",      "short", "long",       "garbled", "unknown-id",  "repeated",
-                                     "out-of-order", "stale", "not-finite", "stall",   "no-output", "device-fault"};
+  constexpr const char* kFaults[] = {"unplug",       "restart", "short",      "long",  "garbled",   "unknown-id",  "repeated",
+                                     "out-of-order", "stale",   "not-finite", "stall", "no-output", "device-fault"};
   static_assert(std::size(kFaults) == kSimulatedFaultKinds);
   for (const SimulatedFault& fault : simulation.faults)
     json["faults"].push_back({{"kind", kFaults[static_cast<int>(fault.kind)]},
@@ -74,7 +74,7 @@ Json device_json(const DeviceConfig& device) {
   if (device.source == DeviceSource::kSimulated) {
     json["simulation"] = simulation_json(device.simulation);
   } else {
-    json["profile"] = Json::parse(device.profile_text, nullptr, false);
+    json["profile"] = nlohmann::json::parse(device.profile_text, nullptr, false);  // its keys sorted: always the same text
   }
   if (!device.serial.empty()) json["serial"] = device.serial;
   if (!device.path.empty()) json["path"] = device.path;

@@ -108,13 +108,14 @@ void ServoLoop::set_poses() {
 
 void ServoLoop::hand_over() {
   parts_.writer->put(output_.force, output_.echo);
+  const std::uint64_t done_ns = monotonic_ns();
+  parts_.writer->wake();
   // Only now may the supervisor act: the zero force of this tick is on its way.
   if (input_.read == ReadStatus::kLost && !is_lost_ && was_inside_) {
     is_lost_ = true;
     lost_opening_.store(seen_opened_, std::memory_order_release);
     parts_.lost->signal();
   }
-  const std::uint64_t done_ns = monotonic_ns();
   status_now_.work.add(done_ns - input_.now_ns);
   if (input_.begins) last_good_ns_ = 0;
   if (output_.has_sample) {

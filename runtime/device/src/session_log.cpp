@@ -23,9 +23,9 @@
 namespace fdcg::dev {
 namespace {
 
-constexpr std::size_t kEntryBytes = 12;                   // before a tick in the ring: its length and its number
-constexpr std::chrono::milliseconds kDrainInterval{20};   // what a crash can lose, beside what the system holds
-constexpr std::size_t kChunkBytes = 1 << 16;              // a write
+constexpr std::size_t kEntryBytes = 12;                  // before a tick in the ring: its length and its number
+constexpr std::chrono::milliseconds kDrainInterval{20};  // what a crash can lose, beside what the system holds
+constexpr std::size_t kChunkBytes = 1 << 16;             // a write
 constexpr double kBytesPerMegabyte = 1e6;
 
 bool is_same_file(const struct stat& a, const std::string& path) {
@@ -50,6 +50,9 @@ std::string describe(const HostConfig& config, SessionHeader* header) {
   header->program = FDCG_VERSION_STRING;
   header->scene_file = config.scene_file;
   header->scene = write_scene(config);
+  // a log that could not be replayed is found now, not when it is needed
+  HostConfig back;
+  if (const std::string problem = parse_scene(header->scene, "its scene", &back); !problem.empty()) return problem;
   for (const ObjectConfig& object : config.objects) {
     fdcg_graph graph{};
     fdcg_error error{};
@@ -198,8 +201,8 @@ void SessionLog::Impl::drain() {
         ticks_left_out.fetch_add(1, std::memory_order_relaxed);
         continue;
       }
-      const std::size_t length = encode_record(RecordKind::kTick, static_cast<std::uint16_t>(device), tick, payload.data(), bytes,
-                                               record.data());
+      const std::size_t length =
+          encode_record(RecordKind::kTick, static_cast<std::uint16_t>(device), tick, payload.data(), bytes, record.data());
       const std::uint64_t room_for_end = kRecordFrameBytes + 1 + 16 * rings.size();
       if (limit_bytes != 0 && whole_bytes + chunk.size() + length + room_for_end > limit_bytes) {
         end.reason = EndReason::kLimit;
@@ -240,7 +243,8 @@ std::string SessionLog::Impl::trouble_text() const {
   const int what = trouble.load(std::memory_order_acquire);
   if (what == kWell) return {};
   char size[32];
-  std::snprintf(size, sizeof size, "%.1f MB", static_cast<double>(bytes_written.load(std::memory_order_relaxed)) / kBytesPerMegabyte);
+  std::snprintf(size, sizeof size, "%.1f MB",
+                static_cast<double>(bytes_written.load(std::memory_order_relaxed)) / kBytesPerMegabyte);
   const std::string left_out = std::to_string(ticks_left_out.load(std::memory_order_relaxed)) + " later ticks are not in it";
   if (what == kAtLimit) return path + ": the log has come to its limit (log.limit_mb) at " + size + "; " + left_out;
   return path + ": " + std::strerror(what) + " after " + size + "; " + left_out +
@@ -302,8 +306,12 @@ std::string SessionLog::stop() {
   return impl_->trouble.load() > Impl::kWell ? failure() : std::string();
 }
 
-bool SessionLog::has_failed() const { return impl_->trouble.load(std::memory_order_acquire) != Impl::kWell; }
+bool SessionLog::has_failed() const {
+  return impl_->trouble.load(std::memory_order_acquire) != Impl::kWell;
+}
 
-std::string SessionLog::failure() const { return impl_->trouble_text(); }
+std::string SessionLog::failure() const {
+  return impl_->trouble_text();
+}
 
 }  // namespace fdcg::dev

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A session's log: every TickInput and TickOutput of every device, so that it can be replayed bit for bit. The servo thread puts
-// records into a ring that was made at the start and never waits; a thread of its own writes them to the file. A full ring or a
-// full disk costs records, never a tick: they are counted, the status says so, and the replay ends before the gap.
+// A session's log: every TickInput and TickOutput of every device, so that it can be replayed bit for bit. The servo thread
+// puts records into a ring that was made at the start and never waits; a thread of its own writes them to the file. A full ring
+// or a full disk costs records, never a tick: they are counted, the status says so, and the replay ends before the gap.
 #pragma once
 
 #include <atomic>

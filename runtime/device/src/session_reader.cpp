@@ -39,7 +39,9 @@ bool parse_header(const std::string& text, SessionHeader* header) {
   return true;
 }
 
-std::string no_log(const std::string& path, const std::string& why) { return path + ": not a session's log: " + why; }
+std::string no_log(const std::string& path, const std::string& why) {
+  return path + ": not a session's log: " + why;
+}
 
 }  // namespace
 
@@ -106,8 +108,10 @@ bool SessionReader::read_record() {
   bytes_.resize(4);
   std::size_t got = std::fread(bytes_.data(), 1, 4, file_);
   if (got == 0 && std::ferror(file_) != 0) return ends(Ending::kDamaged, std::strerror(errno));
-  if (got == 0) return ends(Ending::kUnclosed, "the log ends here without its last record: whoever wrote it was ended or ran "
-                                               "out of disk");
+  if (got == 0)
+    return ends(Ending::kUnclosed,
+                "the log ends here without its last record: whoever wrote it was ended or ran "
+                "out of disk");
   const std::uint64_t length = got == 4 ? get(bytes_.data(), 4) : 0;
   if (got == 4 && (length < kRecordFrameBytes || length > kMostRecordBytes)) {
     return ends(Ending::kDamaged, "a record of " + std::to_string(length) + " bytes; " + std::to_string(kRecordFrameBytes) +

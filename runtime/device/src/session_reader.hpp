@@ -20,9 +20,9 @@ inline constexpr std::uint32_t kSessionVersion = 1;
 bool is_session_log(const std::string& path);
 
 struct SessionGraph {
-  std::string file;             // as the host opened it
+  std::string file;  // as the host opened it
   std::uint64_t bytes = 0;
-  std::uint64_t checksum = 0;   // fdcg_checksum of the whole file
+  std::uint64_t checksum = 0;  // fdcg_checksum of the whole file
 };
 
 struct SessionHeader {
@@ -36,9 +36,9 @@ enum class EndReason : std::uint8_t { kStopped = 0, kLimit = 1 };
 
 struct SessionRecord {
   RecordKind kind = RecordKind::kTick;
-  std::uint16_t device = 0;                 // of kTick: its place in the scene
-  std::uint64_t tick = 0;                   // of kTick: counts the device's ticks from 0; a number left out is a lost record
-  const std::uint8_t* payload = nullptr;    // good until the next record is read
+  std::uint16_t device = 0;               // of kTick: its place in the scene
+  std::uint64_t tick = 0;                 // of kTick: counts the device's ticks from 0; a number left out is a lost record
+  const std::uint8_t* payload = nullptr;  // good until the next record is read
   std::size_t payload_bytes = 0;
 };
 

@@ -22,8 +22,9 @@ std::string compare_graph(const std::string& path, const SessionGraph& graph, bo
   if (fdcg_open_file(path.c_str(), FDCG_VERIFY_TRUSTED, &view, &error) != FDCG_OK) return error.message;
   const bool is_same = view.mapping_bytes == graph.bytes && fdcg_checksum(view.mapping, view.mapping_bytes) == graph.checksum;
   fdcg_close(&view);
-  return is_same ? std::string() : "'" + path + "' is not the file that the session had (" + std::to_string(graph.bytes) +
-                                       " bytes, and another checksum)";
+  return is_same ? std::string()
+                 : "'" + path + "' is not the file that the session had (" + std::to_string(graph.bytes) +
+                       " bytes, and another checksum)";
 }
 
 // Where the graph is now. Empty, or why it cannot be had.
@@ -63,6 +64,8 @@ struct SessionReplay::Impl {
   LoggedOutput replayed;
   std::vector<std::uint8_t> record, payload = std::vector<std::uint8_t>(kMostTickBytes);
 
+  bool has_strays = false;
+
   std::string begin_devices();
   bool replay(const SessionRecord& record);
   void note_lost_tail();
@@ -72,7 +75,8 @@ std::string SessionReplay::Impl::begin_devices() {
   for (std::size_t i = 0; i < config.devices.size(); ++i) {
     scenes.push_back(std::make_unique<DeviceScene>());
     states.push_back(std::make_unique<DeviceState>());
-    if (const std::string problem = build_device_scene(config, i, graphs, scenes.back().get()); !problem.empty()) return problem;
+    if (const std::string problem = build_device_scene(config, i, graphs, scenes.back().get()); !problem.empty())
+      return problem;
     fdcg_error error{};
     if (!begin_device(scenes.back()->setup, states.back().get(), &error)) {
       return "device '" + config.devices[i].name + "': " + error.message;
@@ -113,8 +117,8 @@ bool SessionReplay::Impl::replay(const SessionRecord& from) {
   const bool is_same = bytes == from.payload_bytes && std::memcmp(payload.data(), from.payload, bytes) == 0;
   if (is_same) return true;
   const std::string difference = first_difference(in_log, replayed);
-  device.difference = "tick " + std::to_string(from.tick) + ": " +
-                      (difference.empty() ? "the same numbers, in other bytes" : difference);
+  device.difference =
+      "tick " + std::to_string(from.tick) + ": " + (difference.empty() ? "the same numbers, in other bytes" : difference);
   device.is_over = true;
   return true;
 }
@@ -152,7 +156,11 @@ std::string SessionReplay::open(const std::string& path, const std::string& grap
 bool SessionReplay::next(ReplayedTick* tick) {
   SessionRecord record;
   while (impl_->reader.next(&record)) {
-    if (record.device >= impl_->devices.size() || impl_->devices[record.device].is_over || !impl_->replay(record)) continue;
+    if (record.device >= impl_->devices.size()) {
+      impl_->has_strays = true;
+      continue;
+    }
+    if (impl_->devices[record.device].is_over || !impl_->replay(record)) continue;
     *tick = {record.device, record.tick, impl_->input.get(), &impl_->replayed, impl_->states[record.device].get()};
     return true;
   }
@@ -162,14 +170,30 @@ bool SessionReplay::next(ReplayedTick* tick) {
 
 bool SessionReplay::is_same() const {
   const auto is_over = [](const DeviceReplay& device) { return device.is_over; };
-  return impl_->reader.ending() == Ending::kEnded && std::none_of(impl_->devices.begin(), impl_->devices.end(), is_over);
+  return impl_->reader.ending() == Ending::kEnded && !impl_->has_strays &&
+         std::none_of(impl_->devices.begin(), impl_->devices.end(), is_over);
 }
 
-const HostConfig& SessionReplay::config() const { return impl_->config; }
-const SessionReader& SessionReplay::reader() const { return impl_->reader; }
-const std::vector<DeviceReplay>& SessionReplay::devices() const { return impl_->devices; }
-const std::vector<std::uint8_t>& SessionReplay::record() const { return impl_->record; }
-std::string SessionReplay::header_bytes() const { return encode_session_header(impl_->reader.header()); }
-std::string SessionReplay::end_bytes() const { return encode_end(impl_->reader.end()); }
+bool SessionReplay::has_strays() const {
+  return impl_->has_strays;
+}
+const HostConfig& SessionReplay::config() const {
+  return impl_->config;
+}
+const SessionReader& SessionReplay::reader() const {
+  return impl_->reader;
+}
+const std::vector<DeviceReplay>& SessionReplay::devices() const {
+  return impl_->devices;
+}
+const std::vector<std::uint8_t>& SessionReplay::record() const {
+  return impl_->record;
+}
+std::string SessionReplay::header_bytes() const {
+  return encode_session_header(impl_->reader.header());
+}
+std::string SessionReplay::end_bytes() const {
+  return encode_end(impl_->reader.end());
+}
 
 }  // namespace fdcg::dev

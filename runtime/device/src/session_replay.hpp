@@ -17,19 +17,19 @@ namespace fdcg::dev {
 
 struct DeviceReplay {
   std::string name;
-  std::uint64_t ticks = 0;      // replayed, the one that differs included
-  std::string difference;       // of the first tick that is not the same; empty: none
-  bool is_over = false;         // it came to a difference or a gap
+  std::uint64_t ticks = 0;  // replayed, the one that differs included
+  std::string difference;   // of the first tick that is not the same; empty: none
+  bool is_over = false;     // it came to a difference or a gap
   bool has_gap = false;
-  std::uint64_t gap_at = 0;     // the first tick that the log lacks
+  std::uint64_t gap_at = 0;  // the first tick that the log lacks
 };
 
 struct ReplayedTick {
   std::size_t device = 0;
   std::uint64_t tick = 0;
   const TickInput* input = nullptr;
-  const LoggedOutput* output = nullptr;    // the replay's
-  const DeviceState* state = nullptr;      // after the tick
+  const LoggedOutput* output = nullptr;  // the replay's
+  const DeviceState* state = nullptr;    // after the tick
 };
 
 class SessionReplay {
@@ -46,6 +46,7 @@ class SessionReplay {
   const std::vector<DeviceReplay>& devices() const;
   // Every tick was there and the same, and the log was closed in order (at its limit, too).
   bool is_same() const;
+  bool has_strays() const;  // records of devices that the scene has not: they were passed by
   // The last tick's record, its bytes made anew from the replay; and the whole header, and the end.
   const std::vector<std::uint8_t>& record() const;
   std::string header_bytes() const;

@@ -21,7 +21,7 @@ enum class Connection : std::uint8_t { kAbsent = 0, kOpen = 1 };
 
 struct DeviceStatus {
   Connection connection = Connection::kAbsent;
-  std::uint64_t opened = 0;       // how often
+  std::uint64_t opened = 0;  // how often
   TickOutput last;
   TickCounters counters;
   std::uint64_t log_dropped = 0;  // ticks that found the log's ring full

@@ -13,9 +13,9 @@ namespace fdcg::dev {
 namespace {
 
 template <std::size_t bytes>
-using Bits = std::conditional_t<bytes == 1, std::uint8_t,
-                                std::conditional_t<bytes == 2, std::uint16_t,
-                                                   std::conditional_t<bytes == 4, std::uint32_t, std::uint64_t>>>;
+using Bits = std::conditional_t<
+    bytes == 1, std::uint8_t,
+    std::conditional_t<bytes == 2, std::uint16_t, std::conditional_t<bytes == 4, std::uint32_t, std::uint64_t>>>;
 
 class Writer {
  public:

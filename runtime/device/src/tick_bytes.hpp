@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tick's input and output as bytes, as they stand in a session's log (schemas/session-log.md). Little-endian; only the reports
-// that were read, only the parts of the output that are not all zero. No heap.
+// A tick's input and output as bytes, as they stand in a session's log (schemas/session-log.md). Little-endian; only the
+// reports that were read, only the parts of the output that are not all zero. No heap.
 #pragma once
 
 #include <cstddef>

@@ -67,8 +67,11 @@ std::string HidTransport::open_with(HidBackend backend) {
   std::string problem;
   library_ = hid_library(backend, &problem);
   if (library_ == nullptr) return problem;
-  const std::vector<HidDevice> devices = list_hid_devices(*library_);
-  const HidDevice* const device = choose_hid_device(devices, profile_.match, serial_, path_, &problem);
+  // hidraw's list is read from the kernel's, so it can tell all that is there.
+  const Match& match = profile_.match;
+  const std::vector<HidDevice> devices =
+      library_->is_libusb ? list_hid_devices(*library_, match.vendor, match.product) : list_hid_devices(*library_);
+  const HidDevice* const device = choose_hid_device(devices, match, serial_, path_, &problem);
   if (device == nullptr) return problem;
   problem = open_handles(*device);
   if (problem.empty()) problem = send_init();

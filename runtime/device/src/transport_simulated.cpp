@@ -87,7 +87,7 @@ class SimulatedTransport final : public Transport {
   std::atomic<std::uint64_t> virtual_ns_{0};
   // The reader's.
   SimulatedBody body_;
-  std::uint64_t next_report_ = 0, last_arrival_ns_ = 0;
+  std::uint64_t next_report_ = 0;
   bool is_plugged_ = false, is_holding_ = false;
   SimulatedPacket held_;
   SimulatedPacket queue_[kOnTheWay];  // on the way, or waiting to be read
@@ -131,7 +131,7 @@ std::string SimulatedTransport::open() {
   is_holding_ = false;
   body_.advance(now);
   body_.power_up();
-  opened_ns_ = last_arrival_ns_ = now;
+  opened_ns_ = now;
   next_report_ = 1;
   is_plugged_ = true;
   return "";
@@ -226,7 +226,7 @@ void SimulatedTransport::report_due() {
 
 // Into the kernel's queue, behind those that are on the way. The kernel keeps the oldest and drops what comes after.
 void SimulatedTransport::send(const SimulatedPacket& packet) {
-  const std::uint64_t now = body_.time_ns(), arrival = std::max(packet.arrival_ns, last_arrival_ns_);
+  const std::uint64_t now = body_.time_ns();
   std::uint32_t waiting = 0;
   while (waiting < queue_head_ - queue_tail_ && queue_[(queue_tail_ + waiting) % kOnTheWay].arrival_ns <= now)
     ++waiting;
@@ -234,9 +234,7 @@ void SimulatedTransport::send(const SimulatedPacket& packet) {
     if (record_ != nullptr) ++record_->reports_lost;
     return;
   }
-  SimulatedPacket& slot = queue_[queue_head_++ % kOnTheWay];
-  slot = packet;
-  slot.arrival_ns = last_arrival_ns_ = arrival;
+  queue_[queue_head_++ % kOnTheWay] = packet;
 }
 
 bool SimulatedTransport::write(const std::uint8_t* data, int bytes) {

@@ -26,7 +26,6 @@ void Writer::put(const GatedForce& force, std::uint32_t echo) {
   letter.number = ++put_number_;
   letters_.put(letter);
   put_.store(put_number_, std::memory_order_release);
-  wake_.signal();
 }
 
 std::uint64_t Writer::busy_ns(std::uint64_t now_ns) const {
@@ -115,10 +114,11 @@ void Writer::publish(std::uint64_t now_ns) {
 void Writer::say_goodbye() {
   const auto has_time = [&] { return monotonic_ns() - stop_ns_.load(std::memory_order_acquire) < kGoodbyeNs; };
   // After a blocked write that the device took in the end it takes this one too.
-  if (has_failed() && !has_time()) return;
-  bool is_taken = send(GatedForce(), 0);
-  for (int i = 0; i < profile_.safe_stop_count && (is_taken || has_time()); ++i)
+  bool is_taken = (!has_failed() || has_time()) && send(GatedForce(), 0);
+  has_left_zero_.store(is_taken || !link_.is_open(), std::memory_order_release);
+  for (int i = 0; i < profile_.safe_stop_count && (is_taken || has_time()); ++i) {
     is_taken = send_fixed(profile_.safe_stop[i]);
+  }
 }
 
 }  // namespace fdcg::dev

@@ -26,14 +26,18 @@ class Writer {
   // All three must outlive it.
   Writer(const Profile& profile, Transport& transport, Link& link);
 
-  // The servo thread's. No lock, no heap, no wait.
+  // The servo thread's. No lock, no heap, no wait. What is put is sent by the thread's next look: wake has it look now (a call
+  // of the kernel's, of some microseconds, where the thread sleeps).
   void put(const GatedForce& force, std::uint32_t echo);
+  void wake() { wake_.signal(); }
   std::uint64_t busy_ns(std::uint64_t now_ns) const;  // for how long the write in progress has been going on; 0: there is none
   bool has_failed() const { return has_failed_.load(std::memory_order_acquire); }  // the last write
 
   // The thread's body, until request_stop: then zero force and the profile's safe-stop reports, and out.
   void run();
   void request_stop();
+  // After run: false where a device that is there did not take its zero force.
+  bool has_left_zero() const { return has_left_zero_.load(std::memory_order_acquire); }
 
   // The supervisor's: waits until what was put last has been sent, or for that long.
   void flush_within(std::uint64_t timeout_ns);
@@ -66,7 +70,7 @@ class Writer {
   Mailbox<Letter> letters_;
   Mailbox<WriterStatus> status_;
   Event wake_;
-  std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false};
+  std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false}, has_left_zero_{true};
   std::atomic<std::uint64_t> stop_ns_{0};   // when the stop was asked for
   std::atomic<std::uint64_t> began_ns_{0};  // of the write in progress
   std::atomic<std::uint64_t> put_{0}, done_{0};

@@ -116,7 +116,7 @@ Body needles(Random& random, Precision precision) {
     case 0:
       return placed(triangulated(fan_block(20 + static_cast<int>(random.below(60)), 40, -0.9, -0.8)), random, precision);
     case 1:
-      return placed(cone(100 + static_cast<int>(random.below(200))), random, precision);
+      return placed(triangulated(cone(100 + static_cast<int>(random.below(200)))), random, precision);
     case 2:
       return placed(sliver(random), random, precision);
     default:

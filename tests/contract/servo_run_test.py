@@ -1,0 +1,424 @@
+# SPDX-License-Identifier: Apache-2.0
+"""fdcg-servo on devices: run, replay of what was recorded, check, devices. The devices are simulated, in real time, on a
+machine that may be busy: a fault of timing is allowed where a test is not about it. Over 400 lines: a class for each command."""
+import csv
+import io
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import unittest
+
+import jsonschema
+
+from support import ROOT, SERVO, Case, checksum
+
+EXAMPLE = ROOT / "testdata" / "scenes" / "cube.json"
+PROFILES = sorted((ROOT / "runtime" / "device" / "profiles").glob("*.json"))
+
+
+def schema(name):
+    return json.loads((ROOT / "schemas" / name).read_text())
+
+
+class ServoCase(Case):
+    """The example, with changes, in the test's own folder."""
+
+    def setUp(self):
+        super().setUp()
+        shutil.copy(EXAMPLE.parent / "cube.fdcg", self.folder)
+
+    def scene(self, name="scene.json", **changes):
+        scene = json.loads(EXAMPLE.read_text())
+        scene["loop"] = {"servo_priority": 0, "writer_priority": 0, "lock_memory": False}
+        scene.update(changes)
+        return self.write(name, json.dumps(scene))
+
+    def run_scene(self, *arguments, codes=(0, 1), **options):
+        done = subprocess.run([SERVO, "run", *arguments], stdin=subprocess.DEVNULL, capture_output=True, timeout=60,
+                              check=False, **options)
+        self.assertIn(done.returncode, codes, done.stdout[-2000:] + done.stderr[-2000:])
+        return done
+
+    def started(self, *arguments, **options):
+        process = subprocess.Popen([SERVO, "run", *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, **options)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.stdin.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def session(self, seconds="0.6", *arguments):
+        log = self.path("session.fdcglog")
+        self.run_scene(self.scene(), "--for", seconds, "--log", log, "-q", *arguments)
+        return log
+
+
+def lines_of(output):
+    return [json.loads(line) for line in output.splitlines()]
+
+
+class Run(ServoCase):
+    def test_the_example_runs_and_every_line_of_its_status_fits_the_schema(self):
+        jsonschema.validate(json.loads(EXAMPLE.read_text()), schema("servo-scene.schema.json"))
+        done = self.run_scene(str(EXAMPLE), "--arm", "--for", "1.5", "--no-log", "--status", "json", "--status-every", "0.1")
+        lines = lines_of(done.stdout)
+        for line in lines:
+            jsonschema.validate(line, schema("servo-status.schema.json"))
+        self.assertEqual(["status"] * (len(lines) - 1) + ["end"], [line["event"] for line in lines])
+        self.assertGreater(len(lines), 5)
+        device = lines[-1]["devices"][0]
+        self.assertEqual(("hand", 1), (device["name"], device["opened"]))
+        self.assertGreater(device["ticks"], 300)
+        self.assertTrue(any(line["devices"][0]["phase"] != "disarmed" for line in lines) or device["disarmed"])
+        # code 1 only with a fault that the last line names
+        self.assertEqual(done.returncode == 1, device["fault"] not in ("none", "not-armed"))
+
+    def test_the_example_graph_is_what_the_compiler_makes(self):
+        mesh = ROOT / "testdata" / "meshes" / "good" / "cube_quads.off"
+        self.assertEqual((EXAMPLE.parent / "cube.fdcg").read_bytes(), self.fdcg("compile", str(mesh), "-o", "-").stdout)
+
+    def test_without_arm_no_force_goes_out_and_that_is_said(self):
+        log = self.path("a.fdcglog")
+        done = self.run_scene(self.scene(), "--for", "1.5", "--log", log, codes=(0,))
+        self.assertIn(b"Not armed", done.stdout)
+        rows = list(csv.DictReader(io.StringIO(self.servo("replay", log, "-o", "-").stdout.decode())))
+        self.assertTrue(any(float(row["fz"]) != 0 for row in rows), "the hand never touched the cube")
+        for row in rows:
+            self.assertEqual((0, 0, 0), tuple(float(row[f"sent_f{axis}"]) for axis in "xyz"))
+            self.assertEqual("disarmed", row["phase"])
+
+    def test_commands_on_standard_input(self):
+        process = self.started(self.scene(), "--no-log", "--status", "json", "--status-every", "0.05")
+
+        def wait_for(wanted, command):
+            process.stdin.write(command)
+            process.stdin.flush()
+            for _ in range(200):
+                device = json.loads(process.stdout.readline())["devices"][0]
+                if wanted(device):
+                    return
+            self.fail(f"nothing came of {command}")
+
+        wait_for(lambda device: device["ticks"] > 0, b"\n")
+        wait_for(lambda device: device["phase"] != "disarmed" or device["disarmed"], b" arm \r\n")
+        wait_for(lambda device: device["phase"] == "disarmed", b"disarm\n")
+        out, err = process.communicate(b"dance\nquit\n", timeout=20)
+        self.assertIn(b"arm, disarm, quit", err)
+        self.assertEqual("end", lines_of(out)[-1]["event"])
+
+    def test_the_end_of_standard_input_ends_nothing(self):
+        before = time.monotonic()
+        self.run_scene(self.scene(), "--no-log", "--for", "0.7", "-q")
+        self.assertGreater(time.monotonic() - before, 0.7)
+
+    def test_signals_end_it_in_order(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(signal=number):
+                log = self.path("a.fdcglog")
+                process = self.started(self.scene(), "--log", log, "--status", "json", "--status-every", "0.05")
+                for _ in range(4):
+                    process.stdout.readline()
+                process.send_signal(number)
+                out, _ = process.communicate(timeout=20)
+                self.assertEqual(0, process.returncode)
+                self.assertEqual("end", lines_of(out)[-1]["event"])
+                self.servo("replay", log)
+
+    def test_killed_it_leaves_a_log_that_can_be_read(self):
+        log = self.path("a.fdcglog")
+        process = self.started(self.scene(), "--log", log, "--status", "json", "--status-every", "0.1")
+        for _ in range(6):
+            process.stdout.readline()
+        process.kill()
+        process.wait()
+        done = self.servo("replay", log, code=1)
+        self.assertRegex(done.stdout, rb"hand: [\d,]+ ticks, every output the same bit for bit\n")
+        self.assertRegex(done.stdout, rb"a.fdcglog: byte \d+: the (log ends here without its last record|file ends within)")
+
+    def test_a_reader_that_goes_away_ends_it(self):
+        process = self.started(self.scene(), "--no-log", "--status", "json", "--status-every", "0.05")
+        process.stdout.readline()
+        process.stdout.close()
+        process.wait(timeout=20)
+        self.assertIn(process.returncode, (0, 1))
+
+    def test_a_disk_that_fills_up_is_told_once_and_the_session_goes_on(self):
+        limit = 60_000
+
+        def with_little_disk():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        before = time.monotonic()
+        done = self.run_scene(self.scene(), "--for", "2", "--log", self.path("a.fdcglog"), "--status", "none", codes=(3,),
+                              preexec_fn=with_little_disk)
+        self.assertGreater(time.monotonic() - before, 2)
+        self.assertEqual(1, done.stderr.count(b"warning: "), done.stderr)
+        self.assertIn(b"File too large", done.stderr)
+        self.assertLessEqual((self.folder / "a.fdcglog").stat().st_size, limit)
+        self.assertIn(b"every output the same", self.servo("replay", self.path("a.fdcglog"), code=1).stdout)
+
+    def test_a_log_that_cannot_be_written_ends_it_before_it_starts(self):
+        scene = self.scene()
+        for log, words in (("/dev/full", ("/dev/full", "No space left")), (self.path("no/a"), ("no/a",)),
+                           (scene, ("would overwrite the scene",)), (self.path("cube.fdcg"), ("graph of 'cube'",))):
+            self.assert_one_line(self.run_scene(scene, "--log", log, codes=(3,)), *words)
+
+    def test_a_device_that_is_unplugged_is_told_and_costs_the_code(self):
+        simulation = {"start_m": [0, 0, 0.03], "amplitude_m": [0, 0, 0], "faults": [{"kind": "unplug", "at_s": 0.8}]}
+        scene = self.scene(devices=[{"name": "hand", "source": "simulated", "simulation": simulation}])
+        done = self.run_scene(scene, "--arm", "--no-log", "--for", "2", codes=(1,))
+        self.assertIn(b"hand: gone", done.stdout)
+        self.assertIn(b"hand: disarmed: ", done.stdout)
+
+    def test_a_device_that_is_pressed_is_not_armed_and_that_is_said(self):
+        simulation = {"start_m": [0, 0, -0.01], "amplitude_m": [0, 0, 0], "hand_stiffness_n_per_m": 1000}
+        cube = {"name": "cube", "file": "cube.fdcg", "motion": {"kind": "swing", "axis": [0, 0, 1], "rate_hz": 0.1, "amplitude_m": 0.2},
+                "pose": {"scale": 0.1, "translation_m": [-0.05, -0.05, -0.13]}}
+        scene = self.scene(objects=[cube], devices=[{"name": "hand", "source": "simulated", "simulation": simulation}])
+        process = self.started(scene, "--no-log")
+        time.sleep(1)  # the cube has come up from below: 2 N by now
+        process.stdin.write(b"arm\n")
+        process.stdin.flush()
+        time.sleep(0.8)
+        out, _ = process.communicate(b"quit\n", timeout=20)
+        self.assertIn(b"hand: not armed: the tip is pressed against something", out)
+
+    def test_a_device_that_was_never_there_is_told_and_costs_the_code(self):
+        scene = self.scene(devices=[{"name": "hand", "profile": "fdcg-reference", "serial": "no such device"}])
+        done = self.run_scene(scene, "--no-log", "--for", "0.4", codes=(1,))
+        self.assertIn(b"never there: ", done.stdout)
+
+    def test_a_recording_is_played_and_ends_by_itself(self):
+        log = self.session("1")
+        scene = self.scene(devices=[{"name": "player", "source": "recorded", "recording": os.path.basename(log)}])
+        jsonschema.validate(json.loads(pathlib.Path(scene).read_text()), schema("servo-scene.schema.json"))
+        done = self.run_scene(scene, "--no-log", "--status", "json", codes=(0,))
+        device = lines_of(done.stdout)[-1]["devices"][0]
+        self.assertGreater(device["ticks"], 200)
+        self.run_scene(scene, "--log", log, codes=(3,))  # would overwrite what it plays
+
+    def test_wrong_usage(self):
+        scene = self.scene()
+        for arguments, words in (((), ("scene",)), ((scene, "--for", "0"), ("--for",)), ((scene, "--hid", "x"), ("--hid",)),
+                                 ((scene, "--status", "xml"), ("--status",)), ((scene, "--log", "a", "--no-log"), ("--no-log",))):
+            self.assert_one_line(self.servo("run", *arguments, code=2), *words)
+        for name, words in ((self.path("missing.json"), ("missing.json",)), (str(self.folder), (str(self.folder),)),
+                            (self.write("bad.json", "{"), ("bad.json", "JSON")),
+                            (self.scene("gone.json", objects=[{"name": "a", "file": "gone.fdcg"}]), ("objects[0] 'a'", "gone.fdcg"))):
+            self.assert_one_line(self.servo("run", name, code=3), *words)
+
+
+class Replay(ServoCase):
+    def records(self, log):
+        """[(offset, length)] of a log's records, and its bytes, as schemas/session-log.md has them."""
+        data = pathlib.Path(log).read_bytes()
+        self.assertEqual(b"\x89FLOG\r\n\x1a", data[:8])
+        version, size = struct.unpack_from("<II", data, 8)
+        self.assertEqual(1, version)
+        at = 16 + size + 8
+        self.assertEqual(checksum(data[:at - 8]), struct.unpack_from("<Q", data, at - 8)[0])
+        records = []
+        while at < len(data):
+            length = struct.unpack_from("<I", data, at)[0]
+            records.append((at, length))
+            at += length
+        self.assertEqual(len(data), at)
+        return records, data
+
+    def test_a_session_replays_to_the_same_bytes(self):
+        log = self.session("1.2", "--arm")
+        done = self.servo("replay", log, "--write", self.path("again"), "-o", self.path("log.csv"))
+        self.assertRegex(done.stdout, rb"^hand: [\d,]+ ticks, every output the same bit for bit\n")
+        self.assertEqual(pathlib.Path(log).read_bytes(), (self.folder / "again").read_bytes())
+        rows = list(csv.DictReader(io.StringIO((self.folder / "log.csv").read_text())))
+        self.assertEqual("t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions,device,tick,phase,fault,"
+                         "sent_fx,sent_fy,sent_fz", ",".join(rows[0]))
+        self.assertGreater(len(rows), 200)
+        records, _ = self.records(log)
+        self.assertLessEqual(len(rows), len(records) - 1)
+        for row in rows:
+            if row["state"] != "free":
+                self.assertLessEqual(float(row["hip_z"]), float(row["go_z"]) + 1e-9)  # on the top, pressed into it
+        self.assertEqual(b"", self.servo("replay", log, "-q").stdout)
+
+    def test_the_pages_layout_is_the_files(self):
+        log = self.session()
+        records, data = self.records(log)
+        sample = 0
+        for number, (at, length) in enumerate(records[:-1]):
+            kind, device, tick = struct.unpack_from("<HHQ", data, at + 4)
+            self.assertEqual((1, 0, number), (kind, device, tick))
+            self.assertEqual(checksum(data[at:at + length - 8]), struct.unpack_from("<Q", data, at + length - 8)[0])
+            p = at + 16
+            _, _, read, flags, poses, reports = struct.unpack_from("<QQBBBB", data, p)
+            self.assertLessEqual(read, 2)
+            self.assertEqual(0, flags & ~15)
+            p += 20 + 64 * poses
+            for _ in range(reports):
+                p += 10 + min(128, struct.unpack_from("<H", data, p + 8)[0])
+            parts = data[p]
+            sample += data[p + 5]
+            p += 6 + sum(size for bit, size in ((1, 48), (2, 28), (4, 24), (8, 49)) if parts & bit)
+            self.assertEqual(at + length - 8, p)
+        self.assertGreater(sample, 100)
+        at, length = records[-1]
+        self.assertEqual((2, 1, 0), struct.unpack_from("<HHQ", data, at + 4))
+        self.assertEqual((0, len(records) - 1, 0), struct.unpack_from("<BQQ", data, at + 16))
+
+    def test_a_changed_output_is_found_and_named(self):
+        log = self.session()
+        records, data = self.records(log)
+        at, length = records[len(records) // 2]
+        changed = bytearray(data)
+        changed[at + length - 9] ^= 1  # the last byte before the checksum: of the sequence that the force answers
+        struct.pack_into("<Q", changed, at + length - 8, checksum(bytes(changed[at:at + length - 8])))
+        done = self.servo("replay", self.write("changed.fdcglog", bytes(changed)), code=1)
+        self.assertIn(f"tick {len(records) // 2}: echo: ".encode(), done.stdout)
+        self.assertIn(b" in the log, ", done.stdout)
+
+    def test_a_lost_tick_ends_the_replay(self):
+        log = self.session()
+        records, data = self.records(log)
+        at, length = records[10]
+        done = self.servo("replay", self.write("gap.fdcglog", data[:at] + data[at + length:]), code=1)
+        self.assertIn(b"hand: 10 ticks, the same bit for bit; then the log lacks ticks from 10 on", done.stdout)
+
+    def test_what_is_cut_off_or_damaged_is_told_and_the_rest_is_replayed(self):
+        log = self.session()
+        records, data = self.records(log)
+        at = records[20][0]
+        done = self.servo("replay", self.write("cut.fdcglog", data[:at + 5]), code=1)
+        self.assertIn(b"hand: 20 ticks, every output the same", done.stdout)
+        self.assertIn(f"byte {at}: the file ends within a record".encode(), done.stdout)
+        damaged = bytearray(data)
+        damaged[at + 20] ^= 0x40
+        done = self.servo("replay", self.write("damaged.fdcglog", bytes(damaged)), code=1)
+        self.assertIn(f"byte {at}: a record whose bytes have changed".encode(), done.stdout)
+        self.assert_one_line(self.servo("replay", self.write("header.fdcglog", data[:40]), code=3), "header.fdcglog")
+
+    def test_graphs_are_found_beside_the_log_or_where_told_and_must_be_the_same(self):
+        log = self.session()
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        moved = str(shutil.move(log, elsewhere))
+        graph = self.folder / "cube.fdcg"
+        self.servo("replay", moved)
+        graph.rename(elsewhere / "cube.fdcg")
+        self.servo("replay", moved)
+        (elsewhere / "cube.fdcg").rename(graph)
+        graphs = self.folder / "graphs"
+        graphs.mkdir()
+        graph.rename(graphs / "cube.fdcg")
+        self.assert_one_line(self.servo("replay", moved, code=3), "object 'cube'", "is not there", "--graphs")
+        self.servo("replay", moved, "--graphs", str(graphs))
+        other = self.write("other.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
+        self.fdcg("compile", other, "-o", str(graph), "-q")
+        self.assert_one_line(self.servo("replay", moved, code=3), "is not the file that the session had", "--graphs")
+
+    def test_wrong_usage(self):
+        log = self.session("0.2")
+        graph = self.path("cube.fdcg")
+        for arguments, words in (
+            ((log, "--trajectory", "x.csv"), ("--trajectory", "session's log")), ((log, "--mu-s", "1"), ("--mu-s",)),
+            ((log, "--write", log), ("would overwrite",)), ((log, "-o", log), ("would overwrite",)),
+            ((log, "-o", self.path("x"), "--write", self.path("x")), ("one file",)),
+            ((graph, "--trajectory", "x.csv", "--write", "y"), ("--write", "session's log")), ((graph,), ("--trajectory",))):
+            self.assert_one_line(self.servo("replay", *arguments, code=2), *words)
+        self.assert_one_line(self.servo("replay", log, "--write", "/dev/full", code=3), "/dev/full")
+
+
+class Check(ServoCase):
+    def test_what_is_shipped_is_fine_by_schema_and_by_meaning(self):
+        done = self.servo("check", str(EXAMPLE), *map(str, PROFILES))
+        self.assertEqual(len(PROFILES) + 1, done.stdout.count(b": ok\n"))
+        self.assertGreater(len(PROFILES), 3)
+
+    def test_a_refused_scene_is_refused_by_its_schema_too(self):
+        validator = jsonschema.Draft202012Validator(schema("servo-scene.schema.json"))
+        validator.check_schema(validator.schema)
+        cube = {"name": "cube", "file": "cube.fdcg"}
+        hand = {"name": "hand", "source": "simulated"}
+        for changes in (
+            {"fdcg_scene": 2}, {"object": []}, {"objects": [{"name": "cube"}]}, {"devices": []},
+            {"objects": [{**cube, "stiffness_n_per_m": -1}]}, {"objects": [{**cube, "pose": {"scale": 0}}]},
+            {"objects": [{**cube, "motion": {"kind": "spin"}}]}, {"objects": [{**cube, "motion": {"kind": "fixed", "rate_hz": 1}}]},
+            {"objects": [{**cube, "edge_friction": "glue"}]}, {"devices": [{**hand, "profile": "fdcg-reference"}]},
+            {"devices": [{"name": "hand"}]}, {"devices": [{"name": "hand", "source": "recorded"}]},
+            {"devices": [{**hand, "contacts": []}]}, {"devices": [{**hand, "force_limit_n": 0}]},
+            {"devices": [{**hand, "simulation": {"rate_hz": 0}}]},
+            {"devices": [{**hand, "simulation": {"faults": [{"kind": "fire", "at_s": 1}]}}]},
+            {"devices": [{**hand, "mapping": {"rotation_xyzw": [0, 0, 0, 1], "rotation_matrix": [1, 0, 0, 0, 1, 0, 0, 0, 1]}}]},
+            {"loop": {"servo_priority": 100}}, {"loop": {"backend": "usb"}}, {"log": {}}, {"limits": {"force_n": 0}},
+        ):
+            with self.subTest(changes=changes):
+                path = self.scene(**changes)
+                self.assertFalse(validator.is_valid(json.loads(pathlib.Path(path).read_text())))
+                done = self.servo("check", path, code=1)
+                self.assertEqual(1, done.stdout.count(b"\n"))
+                self.assertTrue(done.stdout.startswith(path.encode() + b": "))
+
+    def test_what_only_the_program_can_know(self):
+        for name, changes, words in (
+            ("a.json", {"objects": [{"name": "cube", "file": "gone.fdcg"}]}, ("objects[0] 'cube'", "gone.fdcg")),
+            ("b.json", {"objects": [{"name": "cube", "file": "b.json"}]}, ("b.json",)),
+            ("c.json", {"devices": [{"name": "hand", "profile": "fdcg-referense"}]}, ("did you mean 'fdcg-reference'?",)),
+        ):
+            done = self.servo("check", self.scene(name, **changes), code=1)
+            for word in words:
+                self.assertIn(word, done.stdout.decode())
+
+    def test_unknown_limits_are_a_warning_that_says_what_follows(self):
+        profile = json.loads((ROOT / "runtime/device/profiles/fdcg-reference.json").read_text())
+        del profile["limits"]
+        for path in (self.write("device.json", json.dumps(profile)),
+                     self.scene(devices=[{"name": "hand", "profile": "device.json"}])):
+            done = self.servo("check", path)
+            self.assertIn(b": ok\n", done.stdout)
+            self.assertIn(b"warning: ", done.stdout)
+            self.assertIn(b"limits.force_n", done.stdout)
+
+    def test_what_is_neither_and_what_cannot_be_read(self):
+        self.assertIn(b"neither a scene nor a device profile", self.servo("check", self.write("x.json", "{}"), code=1).stdout)
+        self.assertIn(b"JSON", self.servo("check", self.write("y.json", "[1,"), code=1).stdout)
+        self.assertIn(b"JSON", self.servo("check", self.write("z.json", ""), code=1).stdout)
+        done = self.servo("check", str(EXAMPLE), self.path("missing.json"), code=3)
+        self.assertIn(b"missing.json", done.stderr)
+        self.assertIn(b": ok\n", done.stdout)
+        self.assert_one_line(self.servo("check", code=2), "files")
+
+
+class Devices(ServoCase):
+    def test_udev_rules_name_every_profile(self):
+        rules = self.servo("devices", "--udev").stdout.decode()
+        for path in PROFILES:
+            match = json.loads(path.read_text())["match"]
+            vendor, product = (int(str(match[key]), 0) for key in ("vendor_id", "product_id"))
+            self.assertIn(f'KERNELS=="*:{vendor:04X}:{product:04X}.*"', rules)
+            self.assertIn(f'ATTR{{idVendor}}=="{vendor:04x}", ATTR{{idProduct}}=="{product:04x}"', rules)
+        for line in rules.splitlines():
+            self.assertTrue(line == "" or line.startswith("#") or 'TAG+="uaccess"' in line, line)
+
+    def test_the_list_is_json_where_asked_for(self):
+        listed = json.loads(self.servo("devices", "--json").stdout)
+        self.assertIn(listed["backend"], ("hidraw", "libusb"))
+        self.assertIsInstance(listed["devices"], list)
+        self.servo("devices")
+
+    def test_wrong_usage(self):
+        self.assert_one_line(self.servo("devices", "--udev", "--json", code=2), "--json")
+        self.assert_one_line(self.servo("devices", "--hid", "x", code=2), "--hid")
+        self.assert_one_line(self.servo("devices", "--profile", self.path("no.json"), "--udev", code=3), "no.json")
+        bad = self.write("bad.json", '{"fdcg_profile": 1}')
+        self.assert_one_line(self.servo("devices", "--profile", bad, code=3), "bad.json", "is missing")
+
+
+if __name__ == "__main__":
+    unittest.main()
