@@ -3,6 +3,7 @@
 // here. The kernel sends requests (URBs) with a number each; a request stays with us until the device has something to say to
 // it, so holding back an interrupt OUT request is a device that answers NAK.
 #include <arpa/inet.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -23,6 +25,7 @@ constexpr std::uint32_t kSubmit = 1, kUnlink = 2, kSubmitted = 3, kUnlinked = 4;
 constexpr int kHighSpeed = 3;                                                     // enum usb_device_speed
 constexpr int kHubPort = 0;                                                       // the first high-speed port of vhci_hcd
 constexpr int kPacketBytes = 64;
+constexpr int kControllerPriority = 95;  // above the device and the host
 constexpr char kAttach[] = "/sys/devices/platform/vhci_hcd.0/attach", kStatus[] = "/sys/devices/platform/vhci_hcd.0/status";
 
 // usbip_header of the kernel's Documentation/usb/usbip_protocol.rst; every number big-endian.
@@ -54,6 +57,7 @@ class UsbPort final : public Port {
     close(ends[1]);                                                                 // the kernel has its own reference
     if (!attach) throw std::runtime_error(std::string(kAttach) + " refuses the device");
     fd_ = ends[0];
+    hurry_controller();
     waiting_in_.clear();
     waiting_out_.clear();
     fresh_.reset();
@@ -112,6 +116,19 @@ class UsbPort final : public Port {
       usleep(1000);
     }
     throw std::runtime_error(std::string(kStatus) + ": the port does not become free");
+  }
+
+  // A real host controller interrupts whatever runs; vhci_hcd has two threads of ordinary priority, which would wait for any
+  // program that writes a file.
+  static void hurry_controller() {
+    sched_param parameters{};
+    parameters.sched_priority = kControllerPriority;
+    for (const auto& process : std::filesystem::directory_iterator("/proc")) {
+      std::string name;
+      std::getline(std::ifstream(process.path() / "comm"), name);
+      if (name == "vhci_rx" || name == "vhci_tx")
+        sched_setscheduler(std::stoi(process.path().filename()), SCHED_FIFO, &parameters);
+    }
   }
 
   // False: the next message is not there in full yet.
