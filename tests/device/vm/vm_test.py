@@ -100,12 +100,11 @@ class SameConsole(VmCase):
         self.assertEqual(first, self.boot(*scenarios))
 
 
-class Races(VmCase):
-    """Two processors at once, where nothing is the same twice: behaviour counts, time does not."""
-    mode = machine.RACING
+class TwoProcessors(VmCase):
+    mode = machine.TWO_PROCESSORS
 
     def test_every_fault(self):
-        console = self.boot("faults timed=0 times=4", "faults way=usb timed=0 times=4")
+        console = self.boot("faults times=5 seed=2", "faults way=usb times=5 seed=2")
         self.assert_passes(2 * len(REPORTS + ENDS), console)
 
 

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Each test boots a virtual machine in which the virtual device (vm_rig) has `fdcg-servo run` as its host. What is judged is
+judged in there, line by line; here the exit code and the number of PASS lines count."""
+import contextlib
+import fcntl
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import image
+import machine
+
+ROOT = pathlib.Path(os.environ["FDCG_ROOT"])
+FOLDER = pathlib.Path(os.environ["FDCG_VM_FOLDER"])
+INIT = ROOT / "tests" / "device" / "vm" / "guest_init.sh"
+CUBE = ROOT / "testdata" / "meshes" / "good" / "cube_quads.off"
+PROFILE = ROOT / "runtime" / "device" / "profiles" / "fdcg-reference.json"
+LIMIT_S = 1500  # a boot: ten times what it takes, since the machine may be busy
+
+REPORTS = "short long garbled repeated out-of-order stale nan stalled".split()
+ENDS = "unplugged no-output asleep killed disk-full".split()
+
+
+@contextlib.contextmanager
+def locked(file):
+    with open(file, "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+class VmCase(unittest.TestCase):
+    flavour = "amd64"
+    mode = machine.TWO_PROCESSORS
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        folder = pathlib.Path(temporary.name)
+        self.initramfs = folder / "initramfs"
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        try:
+            with locked(FOLDER / "lock"):
+                self.kernel = image.fetch_kernel(FOLDER / "kernels", self.flavour)
+            image.need("qemu-system-x86_64")
+            image.run(os.environ["FDCG"], "compile", CUBE, "-o", folder / "cube.fdcg")
+            image.build_initramfs(self.kernel, [os.environ["FDCG_VM_RIG"], os.environ["FDCG_SERVO"]],
+                                  {"etc/cube.fdcg": folder / "cube.fdcg", "etc/fdcg-reference.json": PROFILE}, INIT, self.initramfs)
+        except image.Missing as missing:
+            if os.environ.get("FDCG_VM_REQUIRED"):
+                self.fail(str(missing))
+            self.skipTest(str(missing))
+
+    def boot(self, *scenarios, mode=None):
+        """Returns the console of a guest in which every scenario passed."""
+        outcome = machine.boot(self.kernel, self.initramfs, " then ".join(scenarios).split(), LIMIT_S, mode or self.mode)
+        print(f"{outcome.console}{outcome.wall_s:.0f} s of wall time, {outcome.cpu_s:.0f} s of processor time", file=sys.stderr)
+        self.assertEqual(0, outcome.code, "see the FAIL lines above, or what the guest said last")
+        self.assertNotIn("FAIL", outcome.console)
+        return outcome.console
+
+    def assert_passes(self, count, console):
+        self.assertEqual(count, sum(line.startswith("PASS ") for line in console.splitlines()))
+
+
+class TimingUhid(VmCase):
+    def test_ten_seconds_at_1_and_8_khz(self):
+        self.assert_passes(2 * 6, self.boot("timing rate=1000", "timing rate=8000"))
+
+
+class TimingUsb(VmCase):
+    mode = machine.TIMED_FASTER  # vhci_hcd's own threads take most of a period otherwise
+    backend = "hidraw"
+
+    def test_ten_seconds_at_1_and_8_khz(self):
+        way = f"way=usb backend={self.backend}"
+        self.assert_passes(2 * 6, self.boot(f"timing rate=1000 {way}", f"timing rate=8000 {way}"))
+
+
+class TimingLibusb(TimingUsb):
+    backend = "libusb"
+
+
+class FaultsUhid(VmCase):
+    def test_each_fault_twenty_times(self):
+        self.assert_passes(len(REPORTS + ENDS), self.boot("faults"))
+
+
+class FaultsUsb(VmCase):
+    def test_each_fault_twenty_times(self):
+        console = self.boot("faults way=usb", "faults way=usb backend=libusb only=unplugged,no-output")
+        self.assert_passes(len(REPORTS + ENDS) + 2, console)
+
+
+class SameConsole(VmCase):
+    def test_two_runs_print_the_same_bytes(self):
+        scenarios = ["timing rate=8000 seconds=1", "faults way=usb times=2 only=garbled,stalled,unplugged,asleep,killed"]
+        first = self.boot(*scenarios)
+        self.assertEqual(first, self.boot(*scenarios))
+
+
+class TwoProcessors(VmCase):
+    mode = machine.TWO_PROCESSORS
+
+    def test_every_fault(self):
+        console = self.boot("faults times=5 seed=2", "faults way=usb times=5 seed=2")
+        self.assert_passes(2 * len(REPORTS + ENDS), console)
+
+
+class RealTimeKernel(VmCase):
+    flavour = "rt-amd64"
+
+    def test_ten_seconds_at_1_and_8_khz(self):
+        self.assert_passes(2 * 6, self.boot("timing rate=1000", "timing rate=8000"))
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["Custom"]:  # one boot with the scenario of the command line
+        scenario = " ".join(sys.argv[2:])
+
+        class Custom(VmCase):
+            def test_scenario(self):
+                self.boot(scenario)
+
+        sys.argv[2:] = []
+    unittest.main()
