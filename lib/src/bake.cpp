@@ -25,6 +25,7 @@
 #include "triangulate.hpp"
 #include "validate.hpp"
 #include "vec.hpp"
+#include "weigh.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -45,12 +46,12 @@ std::string contradiction_in(const CompileOptions& options) {
     return "the coplanar angle is " + said(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
   if (options.weld.kind == Weld::Kind::distance && !(options.weld.distance >= 0 && std::isfinite(options.weld.distance)))
     return "the weld distance is " + said(options.weld.distance) + "; it must be at least 0 and finite";
-  constexpr std::array<std::string_view, 3> kOptional{"hierarchy", "source-map", "info"};
+  constexpr std::array<std::string_view, 4> kOptional{"hierarchy", "source-map", "info", "mass"};
   for (const std::string& section : options.without) {
     if (std::find(kOptional.begin(), kOptional.end(), section) == kOptional.end())
-      return "the section '" + section + "' cannot be left out; hierarchy, source-map and info can";
+      return "the section '" + section + "' cannot be left out; hierarchy, source-map, info and mass can";
   }
-  return {};
+  return mass_contradiction_in(options);
 }
 
 // Of one coordinate at the object's extent: what the header tells.
@@ -156,6 +157,9 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
   faces.regions = find_regions(cut.mesh, cut.topology, faces.edges, {options.coplanar, quantum, options.precision});
   compiled.split_faces = count_split(cut, faces.regions);
+  auto mass = weigh(cut.mesh, cut.topology, faces.regions, options, jobs, compiled);
+  if (!mass) return mass.error();
+  input.mass = *mass;
   if (faces.regions.list.empty()) {
     faces.mesh = std::move(cut.mesh);
     faces.topology = std::move(cut.topology);

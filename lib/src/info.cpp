@@ -66,6 +66,8 @@ Json options_json(const CompileOptions& options) {
   json["without"] = options.without;
   json["allow"] = options.allow;
   json["self_intersections"] = options.self_intersections;
+  if (options.density_kg_per_m3 != 0) json["density_kg_per_m3"] = options.density_kg_per_m3;
+  if (options.mass_kg != 0) json["mass_kg"] = options.mass_kg;
   return json;
 }
 
@@ -98,6 +100,7 @@ std::string info_json(const PolygonSoup& soup, const CompileOptions& options, co
   json["flipped_faces"] = compiled.flipped_faces;
   json["split_faces"] = compiled.split_faces;
   json["merged_faces"] = compiled.merged_faces;
+  if (!compiled.no_mass.empty()) json["no_mass"] = compiled.no_mass;
   return json.dump();
 }
 

@@ -89,6 +89,7 @@ class Writer {
     }
     write_source_map();
     std::copy(input_.info.begin(), input_.info.end(), layout_.records<char>(file_, FDCG_SECTION_INFO).begin());
+    if (input_.mass) layout_.records<fdcg_mass_record>(file_, FDCG_SECTION_MASS)[0] = *input_.mass;
     write_header();
     return file_;
   }
@@ -116,6 +117,7 @@ class Writer {
       layout_.add(FDCG_SECTION_FAN_BOXES, sizeof(typename Records::FanBox), fan_boxes_);
       layout_.add(FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), busy_corners_.size());
     }
+    if (input_.mass) layout_.add(FDCG_SECTION_MASS, sizeof(fdcg_mass_record), 1);
     layout_.place();
   }
 

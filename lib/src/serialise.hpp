@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "fdcg/format.h"
 #include "graph.hpp"
 
 namespace fdcg::bake {
@@ -20,6 +22,7 @@ struct SerialiseInput {
   std::uint32_t source_vertex_count = 0;
   std::uint32_t source_face_count = 0;
   std::vector<std::uint32_t> face_of_source;  // of each source face: the face the graph was made of, or kNone; empty: itself
+  std::optional<fdcg_mass_record> mass;       // none: no section
   std::string info;                           // JSON; empty: no section
   Precision precision = Precision::f64;
   bool with_planes = true;

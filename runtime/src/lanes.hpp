@@ -66,12 +66,12 @@ struct Lanes {
 #endif
   // A bit for each lane in which a <= b.
   friend uint32_t where_at_most(Lanes a, Lanes b) {
-    const Words low = a.low <= b.low, high = a.high <= b.high;
+    const Words low_words = a.low <= b.low, high_words = a.high <= b.high;
 #if defined(__SSE2__)
-    return static_cast<uint32_t>(__builtin_ia32_movmskps(reinterpret_cast<Floats>(low)) |
-                                 __builtin_ia32_movmskps(reinterpret_cast<Floats>(high)) << 4);
+    return static_cast<uint32_t>(__builtin_ia32_movmskps(reinterpret_cast<Floats>(low_words)) |
+                                 __builtin_ia32_movmskps(reinterpret_cast<Floats>(high_words)) << 4);
 #else
-    const Words bits = (low & Words{1, 2, 4, 8}) | (high & Words{16, 32, 64, 128});
+    const Words bits = (low_words & Words{1, 2, 4, 8}) | (high_words & Words{16, 32, 64, 128});
     return static_cast<uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 #endif
   }

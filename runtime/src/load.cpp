@@ -8,6 +8,7 @@
 #include "graph_view.hpp"
 #include "hooks.hpp"
 #include "map_file.hpp"
+#include "mass.hpp"
 #include "message.hpp"
 #include "sections.hpp"
 #include "verify.hpp"
@@ -155,6 +156,7 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_INFO, 1, 1, Presence::optional},
     {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners},
     {FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), sizeof(fdcg_busy_corner), Presence::of_busy_corners},
+    {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional},
 };
 
 uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
@@ -183,6 +185,8 @@ uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found
       return header.fan_box_count;
     case FDCG_SECTION_BUSY_CORNERS:
       return header.busy_count;
+    case FDCG_SECTION_MASS:
+      return 1;
     default:
       return found;
   }
@@ -305,6 +309,7 @@ fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, f
   if (status != FDCG_OK) return status;
   const fdcg_graph candidate = view(data, header);
   if (verify == FDCG_VERIFY_FULL) status = verify_graph(candidate, error);
+  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_mass(header, error);
   if (status == FDCG_OK) *graph = candidate;
   return status;
 }

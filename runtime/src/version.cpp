@@ -28,6 +28,8 @@ extern "C" const char* fdcg_status_text(fdcg_status status) {
       return "bytes have changed since the file was written";
     case FDCG_E_GRAPH:
       return "an index or a number inside a section is out of range";
+    case FDCG_E_ABSENT:
+      return "the file does not hold what is asked for";
   }
   return "unknown status";
 }

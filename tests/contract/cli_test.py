@@ -33,7 +33,8 @@ def inside_out(off):
 
 class Usage(Case):
     def test_help_names_examples_and_version_names_the_format(self):
-        for program, commands in ((FDCG, ("compile", "validate", "repair", "inspect", "explain")), (SERVO, ("run", "devices", "check", "replay"))):
+        for program, commands in ((FDCG, ("compile", "validate", "repair", "inspect", "explain", "grasp")),
+                                  (SERVO, ("run", "devices", "check", "replay"))):
             self.assertIn(b"Examples:", self.run_program(program, "--help").stdout)
             self.assertRegex(self.run_program(program, "--version").stdout, rb"^fdcg(-servo)? \d+\.\d+\.\d+ \(file format 1\)\n$")
             for command in commands:
@@ -57,8 +58,10 @@ class Usage(Case):
             ((*compile_, "--coplanar", "90"), ("exact, quantum",)),
             ((*compile_, "--coplanar", "1x"), ("exact, quantum",)),
             ((*compile_, "--weld", "-1"), ("exact, none",)),
+            ((*compile_, "--density", "0"), ("--density", "above 0")),
+            ((*compile_, "--mass", "1", "--density", "1"), ("--mass", "--density")),
             ((*compile_, "--planes", "some"), ("stored, derived",)),
-            ((*compile_, "--without", "nodes"), ("hierarchy, source-map, info",)),
+            ((*compile_, "--without", "nodes"), ("hierarchy, source-map, info, mass",)),
             ((*compile_, "--allow", "non-manifold-edge"), ("cannot be allowed", "boundary-edge")),
             ((*compile_, "--allow", "nonsense"), ("no rule",)),
             ((*compile_, "--jobs", "0"), ("--jobs",)),
@@ -152,7 +155,7 @@ class Compile(Case):
         self.assertEqual({"edges"}, everything - sections("--planes", "derived"))
         node_bytes = {planes: about("--planes", planes)["sections"][0]["bytes"] for planes in ("stored", "derived")}
         self.assertLess(node_bytes["derived"], node_bytes["stored"] / 2)
-        for name in ("hierarchy", "source-map", "info"):
+        for name in ("hierarchy", "source-map", "info", "mass"):
             self.assertEqual({name}, everything - sections("--without", name))
         self.assertEqual({"hierarchy", "info"}, everything - sections("--without", "info", "--without", "hierarchy"))
         self.assertIsNone(about("--without", "info")["options"])
@@ -303,6 +306,40 @@ class Inspect(Case):
         self.assertIsNone(about["options"])
         self.assertIsNone(about["verdict"])
 
+    def test_a_density_or_a_mass_is_told_as_it_was_given(self):
+        def told(*options):
+            graph = self.compiled_cube("--units", "cm", *options)
+            about = json.loads(self.fdcg("inspect", "--json", graph).stdout)
+            jsonschema.validate(about, schema("inspect.schema.json"))
+            return about["mass"], self.fdcg("inspect", graph).stdout.decode()
+
+        mass, text = told()
+        self.assertAlmostEqual(1e-6, mass["volume_m3"], delta=1e-18)
+        self.assertIsNone(mass["mass_kg"])
+        self.assertIsNone(mass["inertia_kg_m2"])
+        self.assertIn("not known", text)
+        mass, text = told("--density", "7850")
+        self.assertEqual(7850, mass["density_kg_per_m3"])
+        self.assertAlmostEqual(7850e-6, mass["mass_kg"], delta=1e-15)
+        self.assertAlmostEqual(7850e-6 * 1e-4 / 6, mass["inertia_kg_m2"]["xx"], delta=1e-18)
+        self.assertIn("7850.0 kg/m^3", text)
+        self.assertEqual(0.3, told("--mass", "0.3")[0]["mass_kg"])
+        self.assertIn("not in the file", told("--without", "mass")[1])
+
+    def test_an_open_mesh_has_no_mass_and_says_why(self):
+        lid_off = CUBE.replace("8 6 0", "8 5 0").replace("4 4 5 6 7\n", "")
+        mesh, out = self.write("open.off", lid_off), self.path("open.fdcg")
+        self.assertIn(b"not closed: 4 edges", self.fdcg("compile", mesh, "-o", out).stdout)
+        about = json.loads(self.fdcg("inspect", "--json", out).stdout)
+        jsonschema.validate(about, schema("inspect.schema.json"))
+        self.assertIsNone(about["mass"])
+        self.assertIn("not closed: 4 edges", about["no_mass"])
+        for option in ("--density", "--mass"):
+            os.remove(out)
+            self.assert_one_line(self.fdcg("compile", mesh, "-o", out, option, "2", code=1), "open.off", "4 edges", "vertex 5 to 4")
+            self.assert_only("open.off")
+            self.write("open.fdcg", b"")
+
     def test_dump_names_every_record(self):
         for precision in ("f64", "f32"):
             text = self.fdcg("inspect", "--dump", self.compiled_cube("--precision", precision)).stdout.decode().splitlines()
@@ -339,7 +376,9 @@ class Inspect(Case):
         for section_id, at, code, value, types, invariant in (
                 (4, 6, "<B", 1, (11, 1, 0, 0), "types agree"), (1, 24, "<d", -0.25, None, "corners lie"),
                 (1, 112, "<d", 0.5, None, "Voronoi planes"), (3, 24, "<d", 0.5, None, "edges lead"),
-                (5, 0, "<d", 0.5, None, "corners lie")):
+                (5, 0, "<d", 0.5, None, "corners lie"), (12, 0, "<d", 1.001, None, "mass properties"),
+                (12, 8, "<d", 0.001, None, "mass properties"), (12, 40, "<d", 0.1667, None, "mass properties"),
+                (12, 72, "<d", 1e-9, None, "mass properties")):
             with self.subTest(invariant=invariant, section=section_id):
                 forged(section_id, at, code, value, types)
                 self.fdcg("inspect", str(graph))

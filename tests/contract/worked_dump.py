@@ -37,9 +37,11 @@ RECORDS = {  # the tetrahedron's: every node is a triangle
     5: ("corner", (("point", "3d"), ("first", "I"), ("normal", "3h"), ("side", "B"), ("fan", "B"), ("reserved", "I"))),
     7: ("box record", (("origin", "3f"), ("exponent", "3B"), ("reserved", "B"), ("low", "24B"), ("high", "24B"))),
     8: ("source face", (("", "I"),)),
+    12: ("mass", (("volume", "d"), ("centroid", "3d"), ("inertia", "6d"), ("density_kg_per_m3", "d"), ("mass_kg", "d"),
+                  ("deviation", "d"))),
 }
 SECTION_NAMES = ("", "NODES", "NODE_OFFSETS", "EDGES", "CONNECTIONS", "CORNERS", "FANS", "HIERARCHY", "SOURCE_MAP", "INFO",
-                 "FAN_BOXES", "BUSY_CORNERS")
+                 "FAN_BOXES", "BUSY_CORNERS", "MASS")
 
 
 def shown(name, values):

@@ -22,6 +22,7 @@ Command add_validate(CLI::App& app);
 Command add_repair(CLI::App& app);
 Command add_inspect(CLI::App& app);
 Command add_explain(CLI::App& app);
+Command add_grasp(CLI::App& app);
 
 // "fdcg: message" on standard error; returns the code.
 int fail(int exit_code, std::string_view message);

@@ -18,12 +18,6 @@
 namespace fdcg::tools {
 namespace {
 
-struct UnitName {
-  const char* name;
-  double metres;
-};
-constexpr UnitName kUnits[] = {{"m", 1}, {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}};
-
 struct CompileArguments {
   std::string mesh;
   std::string output;
@@ -57,6 +51,19 @@ std::string plural(std::uint64_t count, const std::string& singular) {
   return grouped(count) + " " + singular + (count == 1 ? "" : "s");
 }
 
+// Of the file as it stands in memory: what it weighs, or why it does not say.
+std::string mass_summary(const bake::Compiled& compiled) {
+  fdcg_graph graph{};
+  fdcg_mass mass{};
+  const bool has_mass =
+      fdcg_open_memory(compiled.file().data(), compiled.file().size(), FDCG_VERIFY_TRUSTED, &graph, nullptr) == FDCG_OK &&
+      fdcg_get_mass(&graph, &mass, nullptr) == FDCG_OK;
+  if (!has_mass) return compiled.no_mass.empty() ? "" : "no mass properties: " + compiled.no_mass + "\n";
+  const std::string volume = "volume " + number(mass.volume_m3) + " m^3";
+  if (mass.mass_kg == 0) return volume + "; its mass is not known (--density, --mass)\n";
+  return volume + ", " + number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + number(mass.mass_kg) + " kg\n";
+}
+
 // What came out, for a person: sizes, types, and everything that was changed on the way.
 std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
   fdcg_header header;
@@ -76,6 +83,7 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
   text += "corners lie within " + number(header.max_deviation * scale) + " m of their nodes' planes\n";
+  text += mass_summary(compiled);
   text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") +
           " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
           grouped(types[FDCG_COPLANAR]) + " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " +
@@ -224,29 +232,6 @@ int run_compile(CompileArguments& arguments) {
   }
 }
 
-void add_unit_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
-  const auto parse_units = [arguments](const std::string& text) {
-    require_choice("--units", text, {"m", "mm", "cm", "in"});
-    for (const UnitName& unit : kUnits) {
-      if (text != unit.name) continue;
-      arguments->options.metres_per_unit = unit.metres;
-      arguments->unit_text = text;
-    }
-  };
-  const auto parse_scale = [arguments](const std::string& text) {
-    const auto scale = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
-    if (!scale) throw CLI::ValidationError("--scale", "'" + text + "' is no number above 0 (metres for one unit of the file)");
-    arguments->options.metres_per_unit = *scale;
-    arguments->unit_text = "1 unit = " + number(*scale) + " m";
-  };
-  CLI::Option* const units =
-      command.add_option_function<std::string>("--units", parse_units, "Unit of the file's coordinates; default: metres");
-  units->type_name("m|mm|cm|in");
-  command.add_option_function<std::string>("--scale", parse_scale, "Metres for one unit of the file")
-      ->type_name("METRES")
-      ->excludes(units);
-}
-
 void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
   add_precision_option(command, arguments->options.precision, "Numbers in the file; default: f64");
   const auto parse_coplanar = [arguments](const std::string& text) {
@@ -279,14 +264,31 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
       ->type_name("stored|derived");
   const auto parse_without = [arguments](const std::vector<std::string>& names) {
     for (const std::string& name : names) {
-      require_choice("--without", name, {"hierarchy", "source-map", "info"});
+      require_choice("--without", name, {"hierarchy", "source-map", "info", "mass"});
       arguments->options.without.insert(name);
     }
   };
   command.add_option_function<std::vector<std::string>>("--without", parse_without, "Leave SECTION out; may be repeated")
-      ->type_name("hierarchy|source-map|info")
+      ->type_name("hierarchy|source-map|info|mass")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_mass_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
+  const auto add = [&](const char* name, double& value, const char* unit, const char* help) {
+    const auto parse = [&value, name, unit](const std::string& text) {
+      const auto given = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+      if (!given) throw CLI::ValidationError(name, "'" + text + "' is no number above 0 (" + unit + ")");
+      value = *given;
+    };
+    return command.add_option_function<std::string>(name, parse, help);
+  };
+  CLI::Option* const density = add("--density", arguments->options.density_kg_per_m3, "kilograms for a cubic metre",
+                                   "What the body is made of; its mesh must be closed. Default: not known");
+  density->type_name("KG_PER_M3");
+  add("--mass", arguments->options.mass_kg, "kilograms", "What the body weighs, in place of --density")
+      ->type_name("KG")
+      ->excludes(density);
 }
 
 }  // namespace
@@ -299,6 +301,7 @@ Examples:
   fdcg compile part.stl -o part.fdcg --units mm --coplanar 0.5 --precision f32
   fdcg compile scan.ply -o scan.fdcg --orient --depfile scan.d --report scan.json
   fdcg compile cube.obj -o - | fdcg inspect -
+  fdcg compile hammer.stl -o hammer.fdcg --units mm --density 7850
 
 A mesh with errors is refused with the report that 'fdcg validate' prints, and nothing is written.
 The same mesh and options give the same bytes.)");
@@ -310,8 +313,9 @@ The same mesh and options give the same bytes.)");
       ->required()
       ->type_name("FILE");
   add_input_format_option(*command, arguments->input_format);
-  add_unit_options(*command, arguments);
+  add_unit_options(*command, arguments->options.metres_per_unit, arguments->unit_text);
   add_graph_options(*command, arguments);
+  add_mass_options(*command, arguments);
   add_weld_option(*command, arguments->options.weld);
   command->add_flag("--self-intersections", arguments->options.self_intersections,
                     "Also look for faces that cross or touch others, and report them as warnings");

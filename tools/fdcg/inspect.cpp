@@ -49,8 +49,8 @@ class OpenGraph {
 };
 
 std::string section_name(std::uint32_t id) {
-  constexpr const char* kNames[] = {"nodes",     "node-offsets", "edges", "connections", "corners",     "fans",
-                                    "hierarchy", "source-map",   "info",  "fan-boxes",   "busy-corners"};
+  constexpr const char* kNames[] = {"nodes",     "node-offsets", "edges", "connections", "corners",      "fans",
+                                    "hierarchy", "source-map",   "info",  "fan-boxes",   "busy-corners", "mass"};
   if (id >= 1 && id <= std::size(kNames)) return kNames[id - 1];
   return "unknown-" + std::to_string(id);
 }
@@ -88,6 +88,24 @@ Json bound(const fdcg_header& header, const double (&local)[3]) {
   return point;
 }
 
+// null where the file has none. Without a density the inertia is that of density 1.
+Json mass_of(const fdcg_graph& graph) {
+  fdcg_mass mass{};
+  if (fdcg_get_mass(&graph, &mass, nullptr) != FDCG_OK) return nullptr;
+  const bool is_known = mass.mass_kg != 0;
+  const auto tensor = [&mass](double factor) {
+    const double* const i = mass.inertia_per_density_m5;
+    return Json{{"xx", i[0] * factor}, {"yy", i[1] * factor}, {"zz", i[2] * factor},
+                {"xy", i[3] * factor}, {"xz", i[4] * factor}, {"yz", i[5] * factor}};
+  };
+  return {{"volume_m3", mass.volume_m3},
+          {"centroid_m", mass.centroid_m},
+          {"inertia_per_density_m5", tensor(1)},
+          {"density_kg_per_m3", is_known ? Json(mass.density_kg_per_m3) : Json(nullptr)},
+          {"mass_kg", is_known ? Json(mass.mass_kg) : Json(nullptr)},
+          {"inertia_kg_m2", is_known ? tensor(mass.density_kg_per_m3) : Json(nullptr)}};
+}
+
 Json description_of(const fdcg_graph& graph) {
   const fdcg_header& header = *graph.header;
   const std::uint32_t* const types = header.connection_type_count;
@@ -109,6 +127,8 @@ Json description_of(const fdcg_graph& graph) {
           {"bounds", {{"min", bound(header, header.bounds_min)}, {"max", bound(header, header.bounds_max)}}},
           {"metres_per_unit", header.metres_per_unit},
           {"max_deviation_m", header.max_deviation * header.metres_per_unit},
+          {"mass", mass_of(graph)},
+          {"no_mass", from_info("no_mass")},
           {"sections", sections_of(header)},
           {"source",
            {{"file_sha256", source.contains("file_sha256") ? source["file_sha256"] : Json(nullptr)},
@@ -120,6 +140,18 @@ Json description_of(const fdcg_graph& graph) {
 
 std::string as_words(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string mass_text(const Json& about) {
+  const Json& mass = about["mass"];
+  if (mass.is_null())
+    return "  mass         " + (about["no_mass"].is_null() ? "not in the file" : "none: " + as_words(about["no_mass"])) + "\n";
+  const bool is_known = !mass["mass_kg"].is_null();
+  const Json& inertia = mass[is_known ? "inertia_kg_m2" : "inertia_per_density_m5"];
+  return "  volume       " + mass["volume_m3"].dump() + " m^3 about " + mass["centroid_m"].dump() + " m\n  mass         " +
+         (is_known ? mass["mass_kg"].dump() + " kg, " + mass["density_kg_per_m3"].dump() + " kg/m^3\n"
+                   : std::string("not known: compiled without --density or --mass\n")) +
+         "  inertia      " + inertia.dump() + (is_known ? " kg m^2\n" : " m^5 times the density\n");
 }
 
 std::string description_text(const std::string& file, const Json& about) {
@@ -134,6 +166,7 @@ std::string description_text(const std::string& file, const Json& about) {
   text += "  bounds       " + about["bounds"]["min"].dump() + " to " + about["bounds"]["max"].dump() + " m\n";
   text += "  unit         " + about["metres_per_unit"].dump() + " m\n";
   text += "  deviation    " + about["max_deviation_m"].dump() + " m at most between a corner and its node's plane\n";
+  text += mass_text(about);
   const Json& source = about["source"];
   text += "  source       " + count(source["vertices"]) + " vertices, " + count(source["faces"]) + " faces, SHA-256 " +
           (source["file_sha256"].is_null() ? "not recorded" : as_words(source["file_sha256"])) + "\n";

@@ -139,7 +139,10 @@ class Checker {
 }  // namespace
 
 std::vector<Invariant> check_invariants(const fdcg_graph& graph) {
-  return Checker(graph).run();
+  std::vector<Invariant> invariants = Checker(graph).run();
+  const std::vector<Invariant> mass = check_mass(graph);
+  invariants.insert(invariants.end(), mass.begin(), mass.end());
+  return invariants;
 }
 
 }  // namespace fdcg::tools

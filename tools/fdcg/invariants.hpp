@@ -23,4 +23,7 @@ struct Invariant {
 // Every invariant over every record of a graph that FDCG_VERIFY_FULL has passed. Cost: linear in the file.
 std::vector<Invariant> check_invariants(const fdcg_graph& graph);
 
+// The one about mass properties; none where the file has no such section. A part of check_invariants.
+std::vector<Invariant> check_mass(const fdcg_graph& graph);
+
 }  // namespace fdcg::tools

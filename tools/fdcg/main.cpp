@@ -19,6 +19,7 @@ Examples:
   fdcg repair bunny.off -o clean.off --all
   fdcg inspect bunny.fdcg
   fdcg explain non-manifold-edge
+  fdcg grasp cube.fdcg --contacts fingers.csv --mu 0.5 --grip 10
 
 Exit codes: 0 clean; 1 findings; 2 wrong usage; 3 an input that cannot be read or an output that cannot be written;
 4 a fault of the program.
@@ -62,7 +63,7 @@ int run(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "fdcg " FDCG_VERSION_STRING " (file format 1)");
   app.require_subcommand(1);
-  const std::vector<Command> commands{add_compile(app), add_validate(app), add_repair(app), add_inspect(app), add_explain(app)};
+  const std::vector<Command> commands{add_compile(app), add_validate(app), add_repair(app), add_inspect(app), add_explain(app), add_grasp(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <functional>
 #include <limits>
 
@@ -70,6 +71,36 @@ void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld) {
 const std::vector<std::string>& mesh_endings() {
   static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc"};
   return kEndings;
+}
+
+void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& unit_text) {
+  struct UnitName {
+    const char* name;
+    double metres;
+  };
+  const auto parse_units = [&metres_per_unit, &unit_text](const std::string& text) {
+    constexpr UnitName kUnits[] = {{"m", 1}, {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}};
+    require_choice("--units", text, {"m", "mm", "cm", "in"});
+    for (const UnitName& unit : kUnits) {
+      if (text != unit.name) continue;
+      metres_per_unit = unit.metres;
+      unit_text = text;
+    }
+  };
+  const auto parse_scale = [&metres_per_unit, &unit_text](const std::string& text) {
+    const auto scale = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+    if (!scale) throw CLI::ValidationError("--scale", "'" + text + "' is no number above 0 (metres for one unit of the file)");
+    char number[32];
+    std::snprintf(number, sizeof number, "%.6g", *scale);
+    metres_per_unit = *scale;
+    unit_text = std::string("1 unit = ") + number + " m";
+  };
+  CLI::Option* const units =
+      command.add_option_function<std::string>("--units", parse_units, "Unit of the file's coordinates; default: metres");
+  units->type_name("m|mm|cm|in");
+  command.add_option_function<std::string>("--scale", parse_scale, "Metres for one unit of the file")
+      ->type_name("METRES")
+      ->excludes(units);
 }
 
 void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help) {

@@ -18,6 +18,8 @@ bake::Weld parse_weld_value(const std::string& text);
 void add_weld_option(CLI::App& command, bake::Weld& weld);
 void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld);
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format);
+// --units and --scale. unit_text: for people; unchanged where neither is given.
+void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& unit_text);
 void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help);
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable);
 

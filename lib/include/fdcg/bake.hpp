@@ -29,8 +29,8 @@ namespace fdcg::bake {
 
 // ---- results -------------------------------------------------------------------------------------------------------------
 
-// Why there is no value. `exit_code` is the promise of the command line: 2 wrong usage, 3 unreadable input or unwritable
-// output, 4 our own fault.
+// Why there is no value. `exit_code` is the promise of the command line: 1 findings in the mesh, 2 wrong usage, 3 unreadable
+// input or unwritable output, 4 our own fault.
 struct Failure {
   int exit_code = 4;
   std::string message;  // one line: file, element, value, limit, remedy
@@ -112,8 +112,8 @@ struct ImportOptions {
 
 // Reads OFF (also COFF, NOFF, comments), OBJ, PLY (ascii, both binaries), STL (ascii, binary), glTF 2.0 (JSON, GLB; buffers in
 // files beside or beneath it) and Draco. Never allocates more than a small multiple of the file's size (glTF: of what its scene
-// may show, see gltf_scene.hpp). Fails with exit code 3 on what cannot be read or holds no face. Draco data is decoded in a child
-// process (guarded_child.hpp).
+// may show, see gltf_scene.hpp). Fails with exit code 3 on what cannot be read or holds no face. Draco data is decoded in a
+// child process (guarded_child.hpp).
 Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 // The same from memory; `name` is for messages, and no other file is read.
@@ -299,7 +299,11 @@ struct CompileOptions {
   Weld weld;
   bool orient = false;
   bool store_planes = true;
-  std::set<std::string> without;  // optional sections left out: hierarchy, source-map, info
+  std::set<std::string> without;  // optional sections left out: hierarchy, source-map, info, mass
+  // At most one of the two; 0: not known. With either, a mesh that encloses no solid is refused; without, its file has no mass
+  // properties (Compiled::no_mass says why).
+  double density_kg_per_m3 = 0;
+  double mass_kg = 0;
   std::set<std::string> allow;
   bool self_intersections = false;  // run that rule too
   std::size_t max_elements = kListedElements;
@@ -313,6 +317,7 @@ struct Compiled {
   std::uint64_t flipped_faces = 0;  // by orient
   std::uint64_t split_faces = 0;    // not convex or not planar: cut into several nodes
   std::uint64_t merged_faces = 0;   // source faces that share their node with others
+  std::string no_mass;              // why the file has no mass properties; empty where it has, and where they were left out
   std::vector<std::byte> bytes;     // the file, unless CompileOptions::allocate placed it; empty if the report does not pass
   std::span<std::byte> placed;      // the file, where CompileOptions::allocate placed it
 
@@ -322,7 +327,8 @@ struct Compiled {
 // About how large the file will be; larger than it comes out where faces are merged.
 std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& options);
 
-// Fails only where the options contradict one another (2), the mesh outgrows the format (3), or by our own fault (4).
+// Fails only where a mass was asked for of a mesh that encloses no solid (1), the options contradict one another (2), the mesh
+// outgrows the format (3), or by our own fault (4).
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options);
 
 // ---- repair ----------------------------------------------------------------------------------------------------------------
@@ -377,7 +383,8 @@ struct ExportOptions {
 };
 
 // The bytes of a mesh file. Numbers read back as the same doubles: text with the shortest digits that do, PLY as float where
-// every coordinate is one and as double else. STL holds triangles only, binary STL floats only: fails (2) on what would be lost.
+// every coordinate is one and as double else. STL holds triangles only, binary STL floats only: fails (2) on what would be
+// lost.
 Result<std::string> export_mesh(const PolygonSoup& soup, const ExportOptions& options);
 
 }  // namespace fdcg::bake

@@ -78,8 +78,8 @@ struct SimulationConfig {
   double start_m[3] = {};                // device's frame
   double amplitude_m[3] = {0, 0, 0.02};  // the hand's target swings about start_m
   double frequency_hz[3] = {1, 1, 0.5};
-  // false: as fast as it is read. Reads with a time-out carry a clock of its own forward, and writes never block: for tests that
-  // take their time from the reports, since a host's threads live in real time.
+  // false: as fast as it is read. Reads with a time-out carry a clock of its own forward, and writes never block: for tests
+  // that take their time from the reports, since a host's threads live in real time.
   bool is_real_time = true;
   std::uint64_t seed = 1;
   double force_n = 10;  // that its motors can give

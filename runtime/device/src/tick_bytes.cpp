@@ -72,7 +72,7 @@ class Reader {
 // Text of every field, in order.
 class Describer {
  public:
-  static constexpr bool kReads = false;
+  [[maybe_unused]] static constexpr bool kReads = false;
   struct Named {
     std::string name, value;
     std::uint64_t bits;

@@ -56,7 +56,8 @@ typedef enum fdcg_status {
   FDCG_E_VERSION,   /* a format version or precision that this library was not built for */
   FDCG_E_LAYOUT,    /* header or section table contradict themselves */
   FDCG_E_CHECKSUM,  /* bytes have changed since the file was written */
-  FDCG_E_GRAPH      /* an index or a number inside a section is out of range */
+  FDCG_E_GRAPH,     /* an index or a number inside a section is out of range */
+  FDCG_E_ABSENT     /* the file does not hold what is asked for */
 } fdcg_status;
 
 /* Filled in by every function that returns an fdcg_status other than FDCG_OK. */
@@ -163,6 +164,21 @@ fdcg_corner_info fdcg_get_corner(const fdcg_graph* graph, uint32_t corner);
 /* The corner's connections, counter-clockwise seen from outside, each as connection << 1 | end (end 0: its corner[0] is this
  * corner). Writes at most `capacity` of them and returns their number. Cost: linear in it. */
 uint32_t fdcg_get_fan(const fdcg_graph* graph, uint32_t corner, uint32_t* entries, uint32_t capacity);
+
+/* Of the solid that the mesh encloses, all of one density (fdcg compile --density or --mass; a caller may set its own). */
+typedef struct fdcg_mass {
+  double volume_m3;
+  double centroid_m[3];             /* object's frame */
+  double inertia_per_density_m5[6]; /* tensor about the centroid, axes of the object's frame: xx, yy, zz, xy, xz, yz, where xy
+                                       is minus the integral of x y; times a density: kg m^2 */
+  double density_kg_per_m3;         /* 0: the file does not say, nor does it say the mass */
+  double mass_kg;
+} fdcg_mass;
+
+/* FDCG_E_ABSENT where the file holds none: an open mesh, one that is inside out, or --without mass. FDCG_E_GRAPH where its
+ * numbers cannot be: a damaged file that was opened as trusted. On failure *mass is zeroed. Cost: a look at the section table.
+ */
+fdcg_status fdcg_get_mass(const fdcg_graph* graph, fdcg_mass* mass, fdcg_error* error);
 
 /* The checksum of the format: `bytes` bytes at `data`. Any change of one byte changes it (schemas/fdcg-v1.md). */
 uint64_t fdcg_checksum(const void* data, uint64_t bytes);

@@ -51,18 +51,19 @@ extern "C" {
 
 /* What a section holds. A reader skips ids that it does not know; a writer never reuses one. */
 enum fdcg_section_id {
-  FDCG_SECTION_NODES = 1,        /* node blocks, node_count of them, in Hilbert order of their centres */
-  FDCG_SECTION_NODE_OFFSETS = 2, /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
-                                    are of one size, header.node_bytes */
-  FDCG_SECTION_EDGES = 3,        /* fdcg_edge_f64 or _f32, one a connection. Optional: derived from the corners */
-  FDCG_SECTION_CONNECTIONS = 4,  /* fdcg_connection, connection_count of them, by first use */
-  FDCG_SECTION_CORNERS = 5,      /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
-  FDCG_SECTION_FANS = 6,         /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
-  FDCG_SECTION_HIERARCHY = 7,    /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
-  FDCG_SECTION_SOURCE_MAP = 8,   /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
-  FDCG_SECTION_INFO = 9,         /* UTF-8 JSON: source, options, verdict. Optional */
-  FDCG_SECTION_FAN_BOXES = 10,   /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
-  FDCG_SECTION_BUSY_CORNERS = 11 /* fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
+  FDCG_SECTION_NODES = 1,         /* node blocks, node_count of them, in Hilbert order of their centres */
+  FDCG_SECTION_NODE_OFFSETS = 2,  /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
+                                     are of one size, header.node_bytes */
+  FDCG_SECTION_EDGES = 3,         /* fdcg_edge_f64 or _f32, one a connection. Optional: derived from the corners */
+  FDCG_SECTION_CONNECTIONS = 4,   /* fdcg_connection, connection_count of them, by first use */
+  FDCG_SECTION_CORNERS = 5,       /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
+  FDCG_SECTION_FANS = 6,          /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
+  FDCG_SECTION_HIERARCHY = 7,     /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
+  FDCG_SECTION_SOURCE_MAP = 8,    /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
+  FDCG_SECTION_INFO = 9,          /* UTF-8 JSON: source, options, verdict. Optional */
+  FDCG_SECTION_FAN_BOXES = 10,    /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
+  FDCG_SECTION_BUSY_CORNERS = 11, /* fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
+  FDCG_SECTION_MASS = 12          /* fdcg_mass_record, one. Optional: of closed meshes that enclose a solid */
 };
 
 enum fdcg_connection_type { FDCG_CONVEX = 0, FDCG_CONCAVE = 1, FDCG_COPLANAR = 2, FDCG_BOUNDARY = 3 };
@@ -229,6 +230,18 @@ typedef struct fdcg_box8 {
   uint8_t high[3][FDCG_TREE_WAYS];
 } fdcg_box8;
 
+/* The solid that the mesh encloses, all of one density: of the mesh as it was before faces were merged, its coordinates rounded
+ * to the file's precision. Each number is the exact one, rounded once. Doubles in every file. */
+typedef struct fdcg_mass_record {
+  double volume;            /* source units cubed, > 0 */
+  double centroid[3];       /* local */
+  double inertia[6];        /* tensor about the centroid at density 1, source units to the fifth: xx, yy, zz, xy, xz, yz;
+                               xy is minus the integral of x y */
+  double density_kg_per_m3; /* 0, and so is the next: not known */
+  double mass_kg;           /* density times volume, to rounding: one of them was given */
+  double deviation; /* largest distance of a source corner from the plane of a node that took its face in, source units */
+} fdcg_mass_record;
+
 #ifdef __cplusplus
 }
 #define FDCG_STATIC_ASSERT(condition, text) static_assert(condition, text)
@@ -253,6 +266,7 @@ FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f64, first) == 24 && offsetof(fdcg_corne
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corner_f32, fan) == 23, "corner_f32");
 FDCG_STATIC_ASSERT(sizeof(fdcg_busy_corner) == 16, "busy corner: 16 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_box8) == 64, "eight boxes: 64 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_mass_record) == 104, "mass: 104 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_fan_box_f64) == 96 && sizeof(fdcg_fan_box_f32) == 48, "fan box: 96 or 48 bytes");
 
 #endif /* FDCG_FORMAT_H */

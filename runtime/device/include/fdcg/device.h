@@ -96,7 +96,7 @@ typedef struct fdcg_device_status {
   fdcg_host_message problem; /* why it is not open; empty: it is, or nobody has tried yet */
 } fdcg_device_status;
 
-/* Some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, or struct_bytes is 0. */
+/* Some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, or struct_bytes is no multiple of 8. */
 fdcg_status fdcg_host_get_status(fdcg_host* host, int32_t device, fdcg_device_status* status);
 /* Static text, one line: what happened and what to do. Never NULL. */
 const char* fdcg_fault_text(uint32_t fault);

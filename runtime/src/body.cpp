@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies: made, set in motion, looked at. body_step.cpp moves them.
+#include "fdcg/body.h"
+#include "body_math.hpp"
+#include "message.hpp"
+#include "struct_bytes.hpp"
+
+namespace fdcg {
+namespace {
+
+constexpr double kLargest = 1e12, kFastest = 1e6;
+
+struct Range {
+  const char* name;
+  double value, low, high;
+};
+
+fdcg_status check_range(const char* of, const Range& range, fdcg_error* error) {
+  if (range.value >= range.low && range.value <= range.high) return FDCG_OK;
+  return Message(error, FDCG_E_ARGUMENT)
+      .text(of)
+      .text(range.name)
+      .text(" is ")
+      .real(range.value)
+      .text(", allowed ")
+      .real(range.low)
+      .text(" to ")
+      .real(range.high);
+}
+
+// No axis has more than the two others together: checked of the diagonal and, for the rest, by leading minors.
+bool is_solid_inertia(const double (&i)[6]) {
+  constexpr double kSlack = 1e-12;  // the sums of a flat body are equal, to rounding
+  const double sum = i[0] + i[1] + i[2];
+  for (int k = 0; k < 3; ++k) {
+    if (!(i[k] > 0 && 2 * i[k] - sum <= kSlack * sum)) return false;
+  }
+  const Matrix m = tensor_of(i);
+  return i[0] * i[1] - i[3] * i[3] > 0 && dot(m.row[0], cross(m.row[1], m.row[2])) > 0;
+}
+
+fdcg_status check_config(const fdcg_body_config& config, fdcg_error* error) {
+  const Range ranges[] = {{"mass_kg", config.mass_kg, 1e-12, kLargest},
+                          {"linear_damping_per_s", config.linear_damping_per_s, 0, kLargest},
+                          {"angular_damping_per_s", config.angular_damping_per_s, 0, kLargest},
+                          {"sleep_after_s", config.sleep_after_s, 0, kLargest},
+                          {"sleep_speed_m_per_s", config.sleep_speed_m_per_s, 0, kLargest},
+                          {"sleep_turn_rad_per_s", config.sleep_turn_rad_per_s, 0, kLargest},
+                          {"wake_m_per_s2", config.wake_m_per_s2, 0, kLargest}};
+  for (const Range& range : ranges) {
+    if (const fdcg_status status = check_range("config.", range, error); status != FDCG_OK) return status;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Range vectors[] = {{"centre_m", config.centre_m[k], -kLargest, kLargest},
+                             {"gravity_m_per_s2", config.gravity_m_per_s2[k], -kFastest, kFastest},
+                             {"inertia_kg_m2", config.inertia_kg_m2[k], 1e-30, 1e30}};
+    for (const Range& range : vectors) {
+      if (const fdcg_status status = check_range("config.", range, error); status != FDCG_OK) return status;
+    }
+  }
+  if (is_solid_inertia(config.inertia_kg_m2)) return FDCG_OK;
+  return Message(error, FDCG_E_ARGUMENT)
+      .text("config.inertia_kg_m2 is no solid's: it must be positive definite, and no axis may have more than the two others");
+}
+
+// The unit quaternion; false where it is not within 1e-3 of one.
+bool unit_rotation(const double (&q)[4], double (&unit)[4]) {
+  const double length = root(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (int k = 0; k < 4; ++k)
+    unit[k] = q[k] / length;
+  return length >= 1 - 1e-3 && length <= 1 + 1e-3;
+}
+
+fdcg_status check_pose(const fdcg_pose& pose, fdcg_error* error) {
+  double unit[4];
+  if (!unit_rotation(pose.rotation_xyzw, unit))
+    return Message(error, FDCG_E_ARGUMENT).text("pose.rotation_xyzw is not within 1e-3 of unit length");
+  for (const double x : pose.translation_m) {
+    if (const fdcg_status status = check_range("pose.", {"translation_m", x, -kLargest, kLargest}, error); status != FDCG_OK)
+      return status;
+  }
+  return check_range("pose.", {"scale", pose.scale, 1e-9, 1e9}, error);
+}
+
+// The least principal moment: the first root of the characteristic polynomial, which Newton's method nears from below. Three
+// equal ones are the slowest: a third of what is left goes each time.
+double least_moment(const double (&i)[6]) {
+  constexpr uint32_t kIterations = 24;
+  const Matrix m = tensor_of(i);
+  const double trace = i[0] + i[1] + i[2], determinant = dot(m.row[0], cross(m.row[1], m.row[2]));
+  const double minors = i[0] * i[1] - i[3] * i[3] + i[0] * i[2] - i[4] * i[4] + i[1] * i[2] - i[5] * i[5];
+  double moment = 0;
+  for (uint32_t n = 0; n < kIterations; ++n) {
+    const double value = determinant - moment * (minors - moment * (trace - moment));
+    const double slope = minors - moment * (2 * trace - 3 * moment);
+    if (!(value > 0 && slope > 0)) break;
+    moment += value / slope;
+  }
+  return moment;
+}
+
+Vector spin_now(const fdcg_body& body) {
+  const Vector own = rotation_of(body.rotation_xyzw).transposed_times(vec(body.angular_momentum));
+  return solve(tensor_of(body.config.inertia_kg_m2), own);
+}
+
+}  // namespace
+}  // namespace fdcg
+
+using fdcg::Message;
+using fdcg::Vector;
+
+extern "C" void fdcg_init_body_config(fdcg_body_config* config, uint32_t struct_bytes) {
+  fdcg_body_config defaults = {};
+  defaults.mass_kg = 1;
+  for (int k = 0; k < 3; ++k)
+    defaults.inertia_kg_m2[k] = 0.4 * 0.1 * 0.1;
+  defaults.gravity_m_per_s2[2] = -9.80665;
+  defaults.sleep_after_s = 0.5;
+  defaults.sleep_speed_m_per_s = 1e-5;
+  defaults.sleep_turn_rad_per_s = 1e-4;
+  defaults.wake_m_per_s2 = 1e-3;
+  fdcg::fill_defaults(config, defaults, struct_bytes);
+}
+
+extern "C" fdcg_status fdcg_body_set_mass(fdcg_body_config* config, const fdcg_mass* mass, double density_kg_per_m3,
+                                          double scale, fdcg_error* error) {
+  if (config == nullptr || mass == nullptr) return Message(error, FDCG_E_ARGUMENT).text("config or mass: null pointer");
+  if (const fdcg_status status = fdcg::check_range("", {"scale", scale, 1e-9, 1e9}, error); status != FDCG_OK) return status;
+  if (const fdcg_status status = fdcg::check_range("", {"density_kg_per_m3", density_kg_per_m3, 0, 1e30}, error);
+      status != FDCG_OK) {
+    return status;
+  }
+  if (density_kg_per_m3 == 0 && mass->density_kg_per_m3 == 0) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("the file does not say what it weighs; give a density, or compile the mesh with --density or --mass");
+  }
+  const double density = density_kg_per_m3 != 0 ? density_kg_per_m3 : mass->density_kg_per_m3;
+  const double cube = scale * scale * scale;
+  config->mass_kg = (density_kg_per_m3 != 0 ? density * mass->volume_m3 : mass->mass_kg) * cube;
+  for (int k = 0; k < 3; ++k)
+    config->centre_m[k] = mass->centroid_m[k];
+  for (int k = 0; k < 6; ++k)
+    config->inertia_kg_m2[k] = density * mass->inertia_per_density_m5[k] * cube * scale * scale;
+  return FDCG_OK;
+}
+
+extern "C" fdcg_status fdcg_body_init(fdcg_body* body, const fdcg_body_config* config, const fdcg_pose* pose,
+                                      fdcg_error* error) {
+  if (body == nullptr || config == nullptr || pose == nullptr)
+    return Message(error, FDCG_E_ARGUMENT).text("body, config or pose: null pointer");
+  if (const fdcg_status status = fdcg::check_struct_bytes(config->struct_bytes, sizeof(fdcg_body_config), "config",
+                                                          "; start from fdcg_default_body_config()", error);
+      status != FDCG_OK) {
+    return status;
+  }
+  fdcg_body_config room;
+  const fdcg_body_config& whole = fdcg::in_full(*config, &room, fdcg_init_body_config);
+  fdcg_status status = fdcg::check_config(whole, error);
+  if (status == FDCG_OK) status = fdcg::check_pose(*pose, error);
+  if (status != FDCG_OK) return status;
+  fdcg_body made = {};
+  made.config = whole;
+  made.scale = pose->scale;
+  fdcg::unit_rotation(pose->rotation_xyzw, made.rotation_xyzw);
+  const Vector arm = fdcg::rotation_of(made.rotation_xyzw) * (fdcg::vec(whole.centre_m) * pose->scale);
+  fdcg::put(fdcg::vec(pose->translation_m) + arm, made.centre_m);
+  *body = made;
+  return FDCG_OK;
+}
+
+extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double velocity_m_per_s[3],
+                                            const double angular_rad_per_s[3], fdcg_error* error) {
+  using namespace fdcg;
+  for (int k = 0; k < 3; ++k) {
+    const Range ranges[] = {{"velocity_m_per_s", velocity_m_per_s[k], -kFastest, kFastest},
+                            {"angular_rad_per_s", angular_rad_per_s[k], -kFastest, kFastest}};
+    for (const Range& range : ranges) {
+      if (const fdcg_status status = check_range("", range, error); status != FDCG_OK) return status;
+    }
+  }
+  const Matrix rotation = rotation_of(body->rotation_xyzw);
+  const Vector spin = rotation.transposed_times({angular_rad_per_s[0], angular_rad_per_s[1], angular_rad_per_s[2]});
+  put({velocity_m_per_s[0], velocity_m_per_s[1], velocity_m_per_s[2]}, body->velocity_m_per_s);
+  put(rotation * (tensor_of(body->config.inertia_kg_m2) * spin), body->angular_momentum);
+  put(spin, body->spin_rad_per_s);
+  body->has_given = 0;
+  body->is_asleep = 0;
+  body->quiet_s = 0;
+  return FDCG_OK;
+}
+
+extern "C" fdcg_pose fdcg_body_pose(const fdcg_body* body) {
+  fdcg_pose pose = {};
+  for (int k = 0; k < 4; ++k)
+    pose.rotation_xyzw[k] = body->rotation_xyzw[k];
+  const Vector arm = fdcg::rotation_of(body->rotation_xyzw) * (fdcg::vec(body->config.centre_m) * body->scale);
+  fdcg::put(fdcg::vec(body->centre_m) - arm, pose.translation_m);
+  pose.scale = body->scale;
+  return pose;
+}
+
+extern "C" void fdcg_body_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]) {
+  const Vector spin = fdcg::rotation_of(body->rotation_xyzw) * fdcg::spin_now(*body);
+  for (int k = 0; k < 3; ++k)
+    angular_rad_per_s[k] = fdcg::component(spin, k);
+}
+
+extern "C" double fdcg_body_kinetic_energy_j(const fdcg_body* body) {
+  const Vector velocity = fdcg::vec(body->velocity_m_per_s), spin = fdcg::spin_now(*body);
+  return (body->config.mass_kg * dot(velocity, velocity) + dot(spin, fdcg::tensor_of(body->config.inertia_kg_m2) * spin)) / 2;
+}
+
+extern "C" uint32_t fdcg_body_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s) {
+  const double least = fdcg::least_moment(body->config.inertia_kg_m2);
+  const double steps =
+      tick_s * fdcg::root(stiffness_n_per_m * (1 / body->config.mass_kg + reach_m * reach_m / least));  // at 1: half of 2
+  if (!(steps <= FDCG_BODY_MAX_SUBSTEPS)) return 0;
+  const auto whole = static_cast<uint32_t>(steps);
+  return whole < steps || whole == 0 ? whole + 1 : whole;
+}

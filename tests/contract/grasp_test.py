@@ -1,0 +1,360 @@
+# SPDX-License-Identifier: Apache-2.0
+"""fdcg grasp: what it says of grasps that can be worked out by hand, of random ones against CVXOPT, and of wrong input."""
+import json
+import math
+import os
+import random
+import pathlib
+import re
+import subprocess
+import unittest
+
+import jsonschema
+import numpy
+
+import grasp_reference as reference
+from support import CUBE, FDCG, ROOT, Case
+
+SCHEMA = json.loads((ROOT / "schemas" / "grasp-report.schema.json").read_text())
+CENTRED_CUBE = re.sub(r"(?m)^([01]) ([01]) ([01])$", lambda m: " ".join(str(2 * int(c) - 1) for c in m.groups()), CUBE)  # side 2 m
+
+
+def octahedron_sphere(rounds=3):
+    """A ball of triangles, radius 1, corners on the axes."""
+    points = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    faces = [(x, y, z) if (x + y + z) % 2 == 0 else (x, z, y) for x in (0, 1) for y in (2, 3) for z in (4, 5)]
+    for _ in range(rounds):
+        middles, finer = {}, []
+
+        def middle(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middles:
+                m = [(p + q) / 2 for p, q in zip(points[a], points[b])]
+                points.append(tuple(c / math.hypot(*m) for c in m))
+                middles[key] = len(points) - 1
+            return middles[key]
+
+        for a, b, c in faces:
+            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            finer += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+        faces = finer
+    rows = [" ".join(map(repr, p)) for p in points] + [f"3 {a} {b} {c}" for a, b, c in faces]
+    return f"OFF\n{len(points)} {len(faces)} 0\n" + "\n".join(rows) + "\n"
+
+
+def contact(*point, **more):
+    return {"point": list(point), **more}
+
+
+class GraspCase(Case):
+    def judge(self, mesh, contacts, *options, code=None):
+        """The report; any exit code but a failure's."""
+        self.write("contacts.json", json.dumps({"contacts": contacts}))
+        where = mesh if mesh.startswith("/") else self.path(mesh)
+        report_file = self.path("report.json")
+        command = ("grasp", where, "--contacts", self.path("contacts.json"), "--json", "-o", report_file, *options)
+        done = subprocess.run((FDCG, *command), stdin=subprocess.DEVNULL, capture_output=True, timeout=120, check=False)
+        self.assertIn(done.returncode, (0, 1) if code is None else (code,), done.stderr)
+        report = json.loads((self.folder / "report.json").read_text())
+        jsonschema.validate(report, SCHEMA)
+        return report
+
+
+class ByHand(GraspCase):
+    def setUp(self):
+        super().setUp()
+        self.write("cube.off", CENTRED_CUBE)
+        self.two = [contact(1, 0, 0), contact(-1, 0, 0)]
+        self.six = [contact(*(s * e for e in row)) for row in ((1, 0, 0), (0, 1, 0), (0, 0, 1)) for s in (1, -1)]
+
+    def test_two_hard_fingers_turn_about_their_line_and_soft_ones_do_not(self):
+        hard = self.judge("cube.off", self.two, "--mu", "0.5", "--torque-scale", "1", code=1)
+        self.assertEqual(("no-closure", True), (hard["closure"]["verdict"], hard["closure"]["is_flat"]))
+        weakest = hard["closure"]["weakest"]
+        self.assertAlmostEqual(1, abs(weakest["torque_nm"][0]), 9)
+        self.assertEqual(0, hard["epsilon"]["value"])
+        soft = self.judge("cube.off", self.two, "--mu", "0.5", "--torque-scale", "1", "--torsion", "0.1", code=0)
+        self.assertEqual("closure", soft["closure"]["verdict"])
+        self.assertAlmostEqual(0.1, soft["epsilon"]["value"], 9)  # the moment about the line is the weakest
+        self.assertAlmostEqual(1, abs(soft["epsilon"]["weakest"]["torque_nm"][0]), 6)
+
+    def test_two_fingers_hold_twice_mu_times_their_press(self):
+        for mu in (0.1, 0.5, 1.2):
+            report = self.judge("cube.off", self.two, "--mu", str(mu), "--cap", "10", "--load", "0,0,-1", code=1)
+            margin = report["margin"]
+            self.assertAlmostEqual(20 * mu, margin["load_factor"], 7)
+            self.assertAlmostEqual(20 * mu, margin["upper"], 7)
+            for force in margin["contacts"]:
+                self.assertAlmostEqual(10, force["press_n"], 7)
+                self.assertAlmostEqual(1, force["used"], 7)
+                self.assertAlmostEqual(0.5, force["carried"], 7)
+                self.assertAlmostEqual(mu * 10, force["tangential_n"][2], 6)
+                self.assertAlmostEqual(0, force["load_factor_without"], 9)
+
+    def test_a_load_through_a_fingers_normal_is_held_up_to_its_cap(self):
+        margin = self.judge("cube.off", self.two, "--mu", "0.5", "--cap", "10", "--load", "-3,0,0", code=1)["margin"]
+        self.assertAlmostEqual(10 / 3, margin["load_factor"], 9)
+        self.assertAlmostEqual(0, margin["contacts"][0]["press_n"], 6)
+
+    def test_a_torque_about_the_line_needs_soft_fingers(self):
+        twist = ("--mu", "0.5", "--cap", "10", "--load", "0,0,0,0.3,0,0")
+        self.assertEqual(0, self.judge("cube.off", self.two, *twist, code=1)["margin"]["load_factor"])
+        soft = self.judge("cube.off", self.two, *twist, "--torsion", "0.02", code=0)["margin"]
+        self.assertAlmostEqual(2 * 10 * 0.02 / 0.3, soft["load_factor"], 8)
+        self.assertAlmostEqual(-0.3 * soft["load_factor"] / 2, -abs(soft["contacts"][0]["moment_nm"]), 7)
+
+    def test_six_contacts_without_friction_hold_no_turning(self):
+        report = self.judge("cube.off", self.six, "--mu", "0", code=1)
+        self.assertEqual(("no-closure", True), (report["closure"]["verdict"], report["closure"]["is_flat"]))
+
+    def test_six_contacts_with_friction(self):
+        # u = (1,..,1) / sqrt 6 has support c / sqrt 6, c = 1 for mu 1/2 and torque scale 1 here; nothing is lower
+        report = self.judge("cube.off", self.six, "--mu", "0.5", "--torque-scale", "1", "--epsilon", "together", code=0)
+        self.assertAlmostEqual(1 / math.sqrt(6), report["epsilon"]["value"], 8)
+        self.assertLess(report["epsilon"]["value"] - report["epsilon"]["lower"], 1e-5)
+
+    def test_frictionless_contacts_in_general_place_are_a_polytope(self):
+        # seven or more normals can close; fewer never (Somoff 1900)
+        rng = random.Random(1900)
+        closed = 0
+        for count in (6, 7, 12):
+            for _ in range(6):
+                contacts = []
+                for _ in range(count):
+                    axis, sign = rng.randrange(3), rng.choice((1, -1))
+                    point = [rng.uniform(-0.9, 0.9) for _ in range(3)]
+                    point[axis] = sign
+                    contacts.append(contact(*point))
+                report = self.judge("cube.off", contacts, "--mu", "0")
+                closed += report["closure"]["verdict"] == "closure"
+                if count == 6:
+                    self.assertEqual("no-closure", report["closure"]["verdict"])
+        self.assertGreater(closed, 1)
+
+    def test_three_fingers_on_an_equator_close_with_any_friction(self):
+        self.write("sphere.off", octahedron_sphere(1))
+        turned = [contact(math.cos(a), math.sin(a), 0, normal=[-math.cos(a), -math.sin(a), 0]) for a in (0, 2 * math.pi / 3, 4 * math.pi / 3)]
+        for mu in (0.05, 0.5):
+            self.assertEqual("closure", self.judge("sphere.off", turned, "--mu", str(mu), code=0)["closure"]["verdict"])
+        report = self.judge("sphere.off", turned, "--mu", "0", code=1)
+        self.assertEqual("no-closure", report["closure"]["verdict"])
+
+    def test_fingers_on_one_side_never_close(self):
+        report = self.judge("cube.off", [contact(1, y, z) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], "--mu", "0.9", code=1)
+        self.assertEqual(("no-closure", False), (report["closure"]["verdict"], report["closure"]["is_flat"]))
+        self.assertLess(report["closure"]["upper"], -0.1)
+
+    def test_a_cone_that_just_does_not_reach_is_told_from_one_that_just_does(self):
+        # fingers on neighbouring faces, normals at right angles: their line is at 45 degrees to both, so mu = 1 is the limit
+        pair = [contact(1, 0, 0), contact(0, 1, 0)]
+        for mu, verdict in ((1 - 1e-6, "no-closure"), (1 + 1e-6, "closure")):
+            report = self.judge("cube.off", pair, "--mu", str(mu), "--torsion", "0.3")
+            self.assertEqual(verdict, report["closure"]["verdict"], (mu, report["closure"]))
+        self.assertEqual("marginal", self.judge("cube.off", pair, "--mu", "1", "--torsion", "0.3", code=1)["closure"]["verdict"])
+
+    def test_effort_of_each_is_more_than_of_all_together(self):
+        together = self.judge("cube.off", self.two, "--mu", "0.5", "--torsion", "0.1", "--torque-scale", "1")["epsilon"]
+        each = self.judge("cube.off", self.two, "--mu", "0.5", "--torsion", "0.1", "--torque-scale", "1", "--epsilon", "each")["epsilon"]
+        self.assertAlmostEqual(0.1, together["value"], 9)
+        # a push along the line spares one of the two: that of a tenth of the twist costs nothing and makes it longer
+        self.assertAlmostEqual(0.2 / math.sqrt(1.01), each["value"], 9)
+
+    def test_centre_and_scale_are_the_volumes_unless_given(self):
+        shifted = "\n".join(f"{float(l.split()[0]) + 5} {l.split()[1]} {l.split()[2]}" if 1 < i < 10 else l
+                            for i, l in enumerate(CENTRED_CUBE.splitlines())) + "\n"
+        self.write("moved.off", shifted)
+        about = self.judge("moved.off", [contact(6, 0, 0)], "--mu", "1", "--scale", "0.5", code=1)["object"]
+        for axis, expected in enumerate((2.5, 0, 0)):
+            self.assertAlmostEqual(expected, about["centre_m"][axis], 12)
+        self.assertAlmostEqual(math.sqrt(3) / 2, about["torque_scale_m"], 12)
+        about = self.judge("moved.off", [contact(6, 0, 0)], "--mu", "1", "--centre", "1,2,3", "--torque-scale", "7", code=1)["object"]
+        self.assertEqual(([1, 2, 3], 7), (about["centre_m"], about["torque_scale_m"]))
+
+    def test_points_go_to_the_surface_and_normals_come_from_it(self):
+        report = self.judge("cube.off", [contact(1.3, 0.2, 0.1), contact(0.2, 0.3, 0.6), contact(1, 1, 0.2)], "--mu", "1")
+        first, inside, edge = report["contacts"]
+        for got, expected in ((first["point_m"], (1, 0.2, 0.1)), (first["inward"], (-1, 0, 0)), (inside["point_m"], (0.2, 0.3, 1)),
+                              (inside["inward"], (0, 0, -1))):
+            for g, e in zip(got, expected):
+                self.assertAlmostEqual(e, g, 12)
+        self.assertAlmostEqual(0.3, first["distance_m"], 12)
+        self.assertEqual((False, False, True), (first["is_on_edge"], inside["is_on_edge"], edge["is_on_edge"]))
+        self.assertEqual(3, len(report["warnings"]))
+
+    def test_mesh_and_graph_give_the_same_report(self):
+        self.fdcg("compile", self.path("cube.off"), "-o", self.path("cube.fdcg"), "-q")
+        reports = [self.judge(name, self.six, "--mu", "0.3", "--grip", "5") for name in ("cube.off", "cube.fdcg")]
+        for report in reports:
+            del report["object"]["file"], report["object"]["centre_from"]
+        self.assertEqual(*reports)
+
+
+class AgainstCvxopt(GraspCase):
+    """Quick: FDCG_GRASP_TRIALS sets how many random grasps, 1000 for the whole bar (half an hour)."""
+
+    def random_contacts(self, rng):
+        contacts = []
+        mu, soft = rng.uniform(0.05, 1), rng.choice((0, 0, rng.uniform(0.01, 0.3)))
+        for _ in range(rng.randint(3, 7)):
+            point = numpy.array([rng.gauss(0, 1) for _ in range(3)])
+            point /= numpy.linalg.norm(point)
+            normal = -point + 0.3 * numpy.array([rng.gauss(0, 1) for _ in range(3)])
+            contacts.append(contact(*point, normal=list(normal), mu=mu * rng.uniform(0.8, 1.2), torsion=soft, cap=rng.uniform(1, 20)))
+        return contacts
+
+    def check_closure(self, maps, report):
+        depth, span = reference.closure_depth(maps)
+        closure = report["closure"]
+        if span < 1e-8 or depth is None or abs(depth) < 1e-7:
+            return False  # too near to call for a solver of tolerances
+        self.assertEqual("closure" if depth > 0 else "no-closure", closure["verdict"], (depth, span, closure))
+        return depth > 0
+
+    def check_epsilon(self, maps, report, rng):
+        found = report["epsilon"]
+        scale = report["object"]["torque_scale_m"]
+        weakest = numpy.concatenate((found["weakest"]["force_n"], numpy.array(found["weakest"]["torque_nm"]) / scale))
+        self.assertAlmostEqual(1, numpy.linalg.norm(weakest), 9)
+        self.assertAlmostEqual(found["value"], reference.support(maps, -weakest), 9)  # the value is met
+        starts = [-weakest + 0.3 * numpy.array([rng.gauss(0, 1) for _ in range(6)])]
+        starts += [numpy.array([rng.gauss(0, 1) for _ in range(6)]) for _ in range(4)]
+        solved = reference.epsilon(maps, starts)  # and nothing else is lower
+        self.assertGreater(solved, found["value"] - 1e-6)
+        self.assertGreaterEqual(found["value"], found["lower"])
+        return solved - found["value"]
+
+    def check_margin(self, maps, report):
+        margin, scale = report["margin"], report["object"]["torque_scale_m"]
+        load = numpy.concatenate((margin["load"]["force_n"], numpy.array(margin["load"]["torque_nm"]) / scale))
+        caps = [c["cap_n"] for c in report["contacts"]]
+        solved = reference.load_factor(maps, load, caps, margin["grip_n"])
+        self.assertLess(abs(margin["load_factor"] - solved), 1e-6 * max(1, solved))
+        total = margin["load_factor"] * load  # what the forces told of leave unbalanced
+        for contact_, force in zip(report["contacts"], margin["contacts"]):
+            normal = numpy.array(contact_["inward"])
+            push = force["press_n"] * normal + force["tangential_n"]
+            arm = numpy.array(contact_["point_m"]) - report["object"]["centre_m"]
+            total = total + numpy.concatenate((push, (numpy.cross(arm, push) + force["moment_nm"] * normal) / scale))
+            friction = numpy.hypot(numpy.linalg.norm(force["tangential_n"]) / contact_["mu"],
+                                   force["moment_nm"] / contact_["torsion_m"] if contact_["torsion_m"] else 0)
+            self.assertLessEqual(friction, force["press_n"] * (1 + 1e-9) + 1e-12)
+            self.assertLessEqual(force["press_n"], contact_["cap_n"] * (1 + 1e-9))
+        self.assertLess(numpy.linalg.norm(total), 1e-6)
+        self.assertAlmostEqual(1, sum(f["carried"] for f in margin["contacts"]), 6)
+
+    def test_random_grasps(self):
+        trials = int(os.environ.get("FDCG_GRASP_TRIALS", "40"))
+        rng = random.Random(2004)
+        self.write("sphere.off", octahedron_sphere())
+        closed, worst = 0, 0.0
+        for trial in range(trials):
+            load = ",".join(str(rng.gauss(0, 1)) for _ in range(6))
+            with self.subTest(trial=trial):
+                report = self.judge("sphere.off", self.random_contacts(rng), "--grip", str(rng.uniform(2, 30)), "--load", load)
+                maps = reference.wrench_maps(report)
+                if not self.check_closure(maps, report):
+                    continue
+                closed += 1
+                self.assertTrue(report["epsilon"]["is_tight"], report["epsilon"])
+                worst = max(worst, abs(self.check_epsilon(maps, report, rng)))
+                self.check_margin(maps, report)
+        self.assertGreater(closed, trials // 8)
+        print(f"{closed} of {trials} grasps close; epsilon within {worst:.2e} of CVXOPT's descents")
+
+
+class Input(GraspCase):
+    def setUp(self):
+        super().setUp()
+        self.cube = self.write("cube.off", CENTRED_CUBE)
+        self.fingers = self.write("fingers.csv", "x,y,z\n1,0,0\n-1,0,0\n")
+
+    def test_csv_and_json_say_the_same(self):
+        csv = self.write("c.csv", "name, x, y, z, mu, torsion, cap, nx, ny, nz\r\nthumb, 1, 0, 0, 0.5, 0.1, 7, -2, 0, 0\n\nindex,-1,0,0,0.4,,,,,\n")
+        both = [contact(1, 0, 0, name="thumb", mu=0.5, torsion=0.1, cap=7, normal=[-2, 0, 0]), contact(-1, 0, 0, name="index", mu=0.4)]
+        from_json = self.judge("cube.off", both)
+        done = self.fdcg("grasp", self.cube, "--contacts", csv, "--json", code=0)
+        self.assertEqual(from_json, json.loads(done.stdout))
+        self.write("list.json", json.dumps(both))
+        done = self.fdcg("grasp", self.cube, "--contacts", self.path("list.json"), "--json", code=0)
+        self.assertEqual(from_json, json.loads(done.stdout))
+
+    def test_wrong_contacts_are_code_3_and_named(self):
+        for text, words in (
+            ("", ("empty",)),
+            ("x,y\n1,2\n", ("line 1", "x, y, z")),
+            ("x,y,z,tortion\n1,2,3,4\n", ("'tortion'", "'torsion'")),
+            ("x,y,z,x\n1,2,3,4\n", ("twice",)),
+            ("x,y,z,nx\n1,2,3,4\n", ("nx, ny, nz",)),
+            ("x,y,z\n1,2\n", ("line 2", "2 fields", "3")),
+            ("x,y,z\n1,2,nan\n", ("line 2", "z 'nan'")),
+            ("x,y,z\n1,2,\n", ("line 2", "z ''")),
+            ("x,y,z\n", ("no contacts",)),
+            ("x,y,z,nx,ny,nz\n1,0,0,0,0,0\n", ("contact 0", "no direction")),
+            ("[]", ("no contacts",)),
+            ("[1]", ("contact 0",)),
+            ("{\"points\": []}", ("points", "contacts")),
+            ("{\"contacts\": 3}", ("contacts",)),
+            ("[{\"point\": [1, 2]}]", ("contact 0", "point")),
+            ("[{\"point\": [1, 2, \"3\"]}]", ("contact 0", "point")),
+            ("[{\"mu\": 1}]", ("contact 0", "point")),
+            ("[{\"point\": [1, 2, 3], \"nu\": 1}]", ("nu", "'mu'")),
+            ("[{\"point\": [1, 2, 3], \"name\": 1}]", ("name", "text")),
+            ("[{\"point\": [1, 2, 3]}", ("JSON",)),
+        ):
+            with self.subTest(text=text):
+                done = self.fdcg("grasp", self.cube, "--contacts", self.write("bad", text), "--mu", "1", code=3)
+                self.assert_one_line(done, "bad", *words)
+                self.assertEqual(b"", done.stdout)
+        self.assert_one_line(self.fdcg("grasp", self.cube, "--contacts", self.path("none"), "--mu", "1", code=3), "none")
+
+    def test_wrong_usage_is_code_2_and_one_line(self):
+        here = ("grasp", self.cube, "--contacts", self.fingers)
+        for arguments, words in (
+            (("grasp", self.cube), ("--contacts",)),
+            (here, ("contact 0", "--mu")),
+            ((*here, "--mu", "-1"), ("--mu", "from 0 up")),
+            ((*here, "--mu", "101"), ("contact 0", "mu 101", "100")),
+            ((*here, "--mu", "1", "--torsion", "x"), ("--torsion",)),
+            ((*here, "--mu", "1", "--grip", "0"), ("--grip", "above 0")),
+            ((*here, "--mu", "1", "--load", "1,2"), ("--load", "2 numbers", "3 or 6")),
+            ((*here, "--mu", "1", "--load", "1,2,3", "--mass", "1"), ("--load", "--mass")),
+            ((*here, "--mu", "1", "--load", "0,0,0"), ("load",)),
+            ((*here, "--mu", "1", "--centre", "0,0"), ("--centre",)),
+            ((*here, "--mu", "1", "--torque-scale", "1e-4"), ("contact 0", "torque scale")),
+            ((*here, "--mu", "1", "--epsilon", "all"), ("together, each",)),
+            ((*here, "--mu", "1", "--units", "furlong"), ("m, mm, cm, in",)),
+        ):
+            with self.subTest(arguments=arguments):
+                done = self.fdcg(*arguments, code=2)
+                self.assert_one_line(done, *words)
+                self.assertEqual(b"", done.stdout)
+
+    def test_objects_that_cannot_serve(self):
+        done = self.fdcg("grasp", self.path("none.off"), "--contacts", self.fingers, "--mu", "1", code=3)
+        self.assert_one_line(done, "none.off")
+        opened = self.write("open.off", CENTRED_CUBE.replace("8 6 0", "8 5 0").replace("4 3 0 4 7\n", ""))
+        self.assert_one_line(self.fdcg("grasp", opened, "--contacts", self.fingers, "--mu", "1", code=2), "open.off", "--centre")
+        across = self.write("across.csv", "x,y,z\n0,1,0\n0,-1,0\n")
+        self.fdcg("grasp", opened, "--contacts", across, "--mu", "1", "--torsion", "0.1", "--centre", "0,0,0", code=0)
+        twisted = self.write("twisted.off", CENTRED_CUBE.replace("4 0 3 2 1", "4 1 2 3 0"))
+        done = self.fdcg("grasp", twisted, "--contacts", self.fingers, "--mu", "1", code=1)
+        self.assertIn(b"winding-inconsistent", done.stderr)
+        damaged = bytearray(pathlib.Path(self.compiled_cube()).read_bytes())
+        damaged[len(damaged) // 2] ^= 1
+        done = self.fdcg("grasp", self.write("damaged.fdcg", bytes(damaged)), "--contacts", self.fingers, "--mu", "1", code=3)
+        self.assert_one_line(done, "damaged.fdcg")
+
+    def test_the_readme_shows_what_comes_out(self):
+        section = (ROOT / "README.md").read_text().split("**Grasp**")[1].split("\n**")[0]
+        blocks = re.findall(r"```\n(.*?)```", section, re.S)
+        contacts, command, promised = blocks[0], blocks[1].strip().split(), blocks[2]
+        small = "\n".join(" ".join(str(float(c) * 0.05) for c in l.split()) if 1 < i < 10 else l
+                          for i, l in enumerate(CENTRED_CUBE.splitlines())) + "\n"
+        self.write("cube.off", small)
+        self.write("fingers.csv", contacts)
+        done = self.fdcg(*command[1:], cwd=self.folder, code=0)
+        self.assertEqual(promised, done.stdout.decode())
+
+
+if __name__ == "__main__":
+    unittest.main()

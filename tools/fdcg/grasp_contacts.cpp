@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grasp_contacts.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "../common/nearest.hpp"
+#include "../common/one_line.hpp"
+#include "command.hpp"
+#include "mesh_options.hpp"
+
+namespace fdcg::tools {
+namespace {
+
+using Json = nlohmann::json;
+using Contacts = std::vector<NamedContact>;
+
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+
+// Says what is wrong with which contact; caught where the file's name is known.
+struct Wrong {
+  std::string message;
+};
+
+// The finite number that a text is, or a message.
+double finite_number(const std::string& text, const std::string& what) {
+  const auto value =
+      parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+  if (!value) throw Wrong{what + " '" + text + "' is no finite number"};
+  return *value;
+}
+
+void set_normal(NamedContact& contact, const bake::Vec3& normal) {
+  const double length = std::hypot(normal.x, normal.y, normal.z);
+  if (!(length > 0 && std::isfinite(length)))
+    throw Wrong{contact.name + ": the normal has no direction; it points into the object"};
+  contact.inward = bake::Vec3{normal.x / length, normal.y / length, normal.z / length};
+}
+
+// ---- JSON ----------------------------------------------------------------------------------------------------------------
+
+double number_of(const Json& value, const std::string& what) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) throw Wrong{what + " is no finite number: " + value.dump()};
+  return value.get<double>();
+}
+
+bake::Vec3 vector_of(const Json& value, const std::string& what) {
+  if (!value.is_array() || value.size() != 3) throw Wrong{what + " is not [x, y, z]: " + value.dump()};
+  return {number_of(value[0], what), number_of(value[1], what), number_of(value[2], what)};
+}
+
+NamedContact contact_of(const Json& json, std::size_t index) {
+  NamedContact contact;
+  contact.name = "contact " + std::to_string(index);
+  const std::string where = contact.name + ": ";
+  if (!json.is_object()) throw Wrong{where + "is no object: " + json.dump()};
+  if (!json.contains("point")) throw Wrong{where + "has no \"point\": [x, y, z] in metres"};
+  std::optional<bake::Vec3> normal;
+  for (const auto& [key, value] : json.items()) {
+    const std::string what = where + "\"" + key + "\"";
+    if (key == "point")
+      contact.point_m = vector_of(value, what);
+    else if (key == "normal")
+      normal = vector_of(value, what);
+    else if (key == "mu")
+      contact.mu = number_of(value, what);
+    else if (key == "torsion")
+      contact.torsion_m = number_of(value, what);
+    else if (key == "cap")
+      contact.cap_n = number_of(value, what);
+    else if (key == "name" && value.is_string())
+      contact.name = one_line(value.get<std::string>());
+    else
+      throw Wrong{what + (key == "name" ? " is no text" : " is no member of a contact") +
+                  (key == "name" ? "" : did_you_mean(key, {"point", "normal", "mu", "torsion", "cap", "name"}))};
+  }
+  if (normal) set_normal(contact, *normal);
+  return contact;
+}
+
+Contacts parse_json(const std::string& text) {
+  const Json document = Json::parse(text);
+  const bool is_object = document.is_object();
+  if (is_object) {
+    for (const auto& [key, value] : document.items()) {
+      if (key != "contacts") throw Wrong{"\"" + key + "\" is no member of a contacts file" + did_you_mean(key, {"contacts"})};
+    }
+    if (!document.contains("contacts") || !document["contacts"].is_array()) throw Wrong{"there is no array \"contacts\""};
+  }
+  Contacts contacts;
+  for (const Json& one : is_object ? document["contacts"] : document)
+    contacts.push_back(contact_of(one, contacts.size()));
+  return contacts;
+}
+
+// ---- CSV -----------------------------------------------------------------------------------------------------------------
+
+// A line's fields, without blanks around them.
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields;
+  std::size_t start = 0;
+  while (start <= line.size()) {
+    const std::size_t comma = std::min(line.find(',', start), line.size());
+    std::string field = line.substr(start, comma - start);
+    const std::size_t first = field.find_first_not_of(" \t\r"), last = field.find_last_not_of(" \t\r");
+    fields.push_back(first == std::string::npos ? "" : field.substr(first, last - first + 1));
+    start = comma + 1;
+  }
+  return fields;
+}
+
+void check_header(const std::vector<std::string>& header) {
+  const std::vector<std::string> known{"x", "y", "z", "mu", "torsion", "cap", "nx", "ny", "nz", "name"};
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const auto& column = header[i];
+    if (std::find(known.begin(), known.end(), column) == known.end())
+      throw Wrong{"line 1: '" + one_line(column) + "' is no column of a contacts file" + did_you_mean(column, known)};
+    if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i), column) !=
+        header.begin() + static_cast<std::ptrdiff_t>(i))
+      throw Wrong{"line 1: the column '" + column + "' comes twice"};
+  }
+  const auto has = [&](const char* column) { return std::find(header.begin(), header.end(), column) != header.end(); };
+  if (!has("x") || !has("y") || !has("z")) throw Wrong{"line 1: the header names x, y, z and more (metres), not these"};
+  if (has("nx") != has("ny") || has("nx") != has("nz")) throw Wrong{"line 1: of nx, ny, nz either all are there or none"};
+}
+
+NamedContact contact_of_line(const std::vector<std::string>& header, const std::vector<std::string>& fields,
+                             const std::string& where, std::size_t index) {
+  NamedContact contact;
+  contact.name = "contact " + std::to_string(index);
+  if (fields.size() != header.size())
+    throw Wrong{where + std::to_string(fields.size()) + " fields, the header has " + std::to_string(header.size())};
+  bake::Vec3 normal{};
+  bool has_normal = false;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const std::string &column = header[i], &field = fields[i];
+    const bool may_be_empty = column != "x" && column != "y" && column != "z";
+    if (field.empty() && may_be_empty) continue;
+    if (column == "name") {
+      contact.name = one_line(field);
+      continue;
+    }
+    const double value = finite_number(one_line(field), where + column);
+    if (column == "x") contact.point_m.x = value;
+    if (column == "y") contact.point_m.y = value;
+    if (column == "z") contact.point_m.z = value;
+    if (column == "mu") contact.mu = value;
+    if (column == "torsion") contact.torsion_m = value;
+    if (column == "cap") contact.cap_n = value;
+    if (column == "nx") normal.x = value, has_normal = true;
+    if (column == "ny") normal.y = value, has_normal = true;
+    if (column == "nz") normal.z = value, has_normal = true;
+  }
+  if (has_normal) set_normal(contact, normal);
+  return contact;
+}
+
+Contacts parse_csv(const std::string& text) {
+  Contacts contacts;
+  std::vector<std::string> header;
+  std::size_t line_number = 0;
+  for (std::size_t start = 0; start < text.size();) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    const std::string line = text.substr(start, end - start);
+    start = end + 1;
+    ++line_number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (header.empty()) {
+      header = fields_of(line);
+      check_header(header);
+      continue;
+    }
+    contacts.push_back(contact_of_line(header, fields_of(line), "line " + std::to_string(line_number) + ": ", contacts.size()));
+  }
+  return contacts;
+}
+
+}  // namespace
+
+bake::Result<Contacts> parse_contacts(const std::string& text, const std::string& path) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  try {
+    if (first == std::string::npos) throw Wrong{"the file is empty; it lists contacts as JSON or CSV"};
+    const bool is_json = text[first] == '{' || text[first] == '[';
+    Contacts contacts = is_json ? parse_json(text) : parse_csv(text);
+    if (contacts.empty()) throw Wrong{"there are no contacts in it"};
+    return contacts;
+  } catch (const Wrong& wrong) {
+    return bake::Failure{kFile, path + ": " + one_line(wrong.message)};
+  } catch (const Json::exception& error) {
+    return bake::Failure{kFile, path + ": no JSON: " + one_line(error.what())};
+  }
+}
+
+bake::Result<Contacts> read_contacts(const std::string& path) {
+  std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
+  if (file == nullptr) return bake::Failure{kFile, path + ": cannot be opened"};
+  std::string text(kMostBytes + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file));
+  const bool failed = std::ferror(file) != 0;
+  if (file != stdin) std::fclose(file);
+  if (failed) return bake::Failure{kFile, path + ": cannot be read"};
+  if (text.size() > kMostBytes) return bake::Failure{kFile, path + ": more than 16 MiB is no list of contacts"};
+  return parse_contacts(text, path);
+}
+
+}  // namespace fdcg::tools

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What fdcg grasp found, and how it is told.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fdcg/grasp.hpp"
+#include "grasp_contacts.hpp"
+#include "grasp_object.hpp"
+
+namespace fdcg::tools {
+
+struct GraspReport {
+  std::string object;  // the file
+  std::uint32_t faces = 0;
+  std::string centre_from;        // "volume", "file" or "option"
+  std::string torque_scale_from;  // "size" or "option"
+  std::vector<NamedContact> asked;
+  std::vector<SurfacePoint> found;  // one for each
+  grasp::Grasp grasp;
+  grasp::Closure closure;
+  grasp::Effort effort = grasp::Effort::together;
+  grasp::Epsilon epsilon;
+  grasp::Wrench load;                   // of the margin
+  std::string load_text;                // where it is from
+  std::optional<double> grip_n;         // all contacts together
+  std::optional<grasp::Margin> margin;  // none: neither a grip nor caps are given
+  std::vector<std::string> warnings;
+};
+
+// schemas/grasp-report.schema.json
+std::string grasp_report_json(const GraspReport& report);
+std::string grasp_report_text(const GraspReport& report);
+
+}  // namespace fdcg::tools
