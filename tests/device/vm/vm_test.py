@@ -45,8 +45,9 @@ class VmCase(unittest.TestCase):
                 self.kernel = image.fetch_kernel(FOLDER / "kernels", self.flavour)
             image.need("qemu-system-x86_64")
             image.run(os.environ["FDCG"], "compile", CUBE, "-o", folder / "cube.fdcg")
-            image.build_initramfs(self.kernel, [os.environ["FDCG_VM_RIG"], os.environ["FDCG_SERVO"]],
-                                  {"etc/cube.fdcg": folder / "cube.fdcg", "etc/fdcg-reference.json": PROFILE}, INIT, self.initramfs)
+            files = {"etc/cube.fdcg": folder / "cube.fdcg", "etc/fdcg-reference.json": PROFILE}
+            programs = [os.environ["FDCG_VM_RIG"], os.environ["FDCG_SERVO"]]
+            image.build_initramfs(self.kernel, programs, files, INIT, self.initramfs)
         except image.Missing as missing:
             if os.environ.get("FDCG_VM_REQUIRED"):
                 self.fail(str(missing))
