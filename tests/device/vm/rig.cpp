@@ -57,9 +57,9 @@ Rig::~Rig() {
 }
 
 void Rig::run_until(Nanoseconds moment) {
+  const itimerspec alarm{{}, as_timespec(moment)};
+  timerfd_settime(alarm_, TFD_TIMER_ABSTIME, &alarm, nullptr);
   while (now_ns() < moment) {
-    const itimerspec alarm{{}, as_timespec(moment)};
-    timerfd_settime(alarm_, TFD_TIMER_ABSTIME, &alarm, nullptr);
     pollfd ready[] = {{device.fd(), POLLIN, 0}, {ticker_, POLLIN, 0}, {host.fd(), POLLIN, 0}, {alarm_, POLLIN, 0}};
     if (poll(ready, 4, -1) < 0) continue;
     if (ready[1].revents != 0) {

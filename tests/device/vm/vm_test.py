@@ -111,6 +111,7 @@ class TwoProcessors(VmCase):
 
 class RealTimeKernel(VmCase):
     flavour = "rt-amd64"
+    mode = machine.TIMED_FASTER  # its own work at 8 kHz nearly fills a period otherwise
 
     def test_ten_seconds_at_1_and_8_khz(self):
         self.assert_passes(2 * 6, self.boot("timing rate=1000", "timing rate=8000"))
