@@ -13,6 +13,7 @@
 namespace fdcg::vm {
 namespace {
 
+constexpr int kUntimedPatience = 10;  // where the machine around the guest takes the time that it takes
 constexpr double kFeltN = 0.05;  // a force that is surely one
 constexpr Nanoseconds kFeelLimit = 6 * kSecond, kArmPause = 200 * kMillisecond, kEndLimit = 8 * kSecond;
 
@@ -74,7 +75,7 @@ void Rig::run_until(Nanoseconds moment) {
 }
 
 bool Rig::run_until(const Condition& condition, Nanoseconds limit) {
-  const Nanoseconds end = now_ns() + limit;
+  const Nanoseconds end = now_ns() + (options.is_timed ? 1 : kUntimedPatience) * limit;
   while (!condition() && now_ns() < end)
     run_for(period());
   return condition();

