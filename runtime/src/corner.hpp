@@ -146,16 +146,21 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
 
 // HIP is in front of the face that is nearest: free, but for rounding. Where it stands on a concave edge of that face at the
 // corner and behind the face across, edge and faces are as near as one another, and any of them may have been found: then it is
-// the edge's to say.
+// the edge's to say. So are the two walls of a narrow slit that it stands between: one of them may hold it.
 template <class Real>
-inline Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner) {
+[[gnu::noinline]] Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     if (node.corner(k) != corner && node.corner(node.next(k)) != corner) continue;
     const ConnectionRef<Real> connection = walk.graph.connection(node.connection(k));
-    if (connection.type() != FDCG_CONCAVE || node.voronoi_plane(k).distance(walk.hip) < -walk.hip_bound) continue;
+    if (connection.type() != FDCG_CONCAVE) continue;
     walk.spend(kEdgeWork);
+    const bool is_between_walls = node.voronoi_plane(k).distance(walk.hip) < -walk.hip_bound;
     for (uint32_t end = 0; end < 2; ++end) {
-      if (walk.side(walk.graph.node(connection.node(end))) < 0) return {FDCG_EDGE, node.connection(k)};
+      const Feature face = {FDCG_FACE, connection.node(end)};
+      const NodeRef<Real> wall = walk.graph.node(face.index);
+      if (walk.side(wall) >= 0) continue;
+      if (!is_between_walls) return {FDCG_EDGE, node.connection(k)};
+      if (wall.voronoi_plane(connection.side(end)).distance(walk.hip) < 0) return face;
     }
   }
   return kFree;

@@ -37,7 +37,7 @@ template <class Real>
 [[gnu::noinline]] bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
   const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
-  Sweep<Real> sweep(walk.graph, walk.god_object, to, {carried->left_state, carried->left_feature}, work_left);
+  Sweep<Real> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature}, work_left);
   const bool is_done = sweep.run_in_order(&first, &carried->next_leaf);
   carried->fraction = first.fraction;
   carried->node = first.node;
@@ -100,10 +100,11 @@ template <class Real>
   return norm1(start) > kFar * extent ? to : start;
 }
 
-// From free space, or from the surface that was just left: places the contact on what the way to the HIP meets, or at the HIP.
-// A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work ran out, else 0.
+// From free space, or from the surface that was just left, on which the god-object `stood`: places the contact on what the way
+// to the HIP meets, or at the HIP. A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work
+// ran out, else 0.
 template <class Real>
-[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, FreeSpace* space) {
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
   fdcg_carried_sweep* carried = space->carried;
   space->ball->radius2 = 0;
   if (carried->is_carried != 0) {
@@ -127,7 +128,7 @@ template <class Real>
     return 0;
   }
   walk.god_object = from;
-  Sweep<Real> sweep(walk.graph, from, to, left, &space->work_left);
+  Sweep<Real> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
   if (sweep.run(&first)) {
     arrive(walk, sweep, to, first);

@@ -100,7 +100,7 @@ template <class Real>
 Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided, FreeSpace* space) {
   Progress progress = {0, 0};
   if (walk.active == kFree) {
-    progress.flags = sweep_to_hip(walk, kFree, space);
+    progress.flags = sweep_to_hip(walk, kFree, walk.god_object, space);
     if (walk.active == kFree) return progress;
     ++progress.transitions;
     start = walk.active;
@@ -121,8 +121,9 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
       if (trail.has_come_nearer()) space->carried->in_place = 0;
+      const Vec3<Real> stood = walk.god_object;
       step_clear_of(walk, at);
-      progress.flags |= sweep_to_hip(walk, at, space);
+      progress.flags |= sweep_to_hip(walk, at, stood, space);
       if (walk.active == kFree) return progress;
       ++progress.transitions;
     }

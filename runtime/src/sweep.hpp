@@ -21,13 +21,15 @@ struct FirstHit {
   Feature feature = kFree;  // the node, or the connection that the way meets exactly
 };
 
-// Sweeps from -> to, leaving out the faces that meet at `left`, on which the way starts.
-// Watertight: a node is entered where the line passes its edges on the inner side, by exact signs that two neighbours share.
+// Sweeps from -> to, leaving out the faces that meet at `left`, on which the way starts; `stood`: where the god-object was
+// before it stepped clear of them. Watertight: a node is entered where the line passes its edges on the inner side, by exact
+// signs that two neighbours share.
 template <class Real>
 class Sweep {
  public:
-  Sweep(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to, Feature left, uint32_t* work_left)
+  Sweep(const GraphView<Real>& graph, Vec3<Real> stood, Vec3<Real> from, Vec3<Real> to, Feature left, uint32_t* work_left)
       : graph_(graph),
+        stood_(stood),
         from_(from),
         to_(to),
         way_(to_ - from_),
@@ -274,7 +276,7 @@ class Sweep {
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
       if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
     }
-    if (!faces_what_was_left(node)) return;
+    if (!(side(node, stood_, from_bound_) >= 0) && !faces_what_was_left(node)) return;
     best_.fraction = 0;
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
@@ -431,7 +433,7 @@ class Sweep {
   }
 
   const GraphView<Real>& graph_;
-  Vec3<Real> from_, to_, way_;
+  Vec3<Real> stood_, from_, to_, way_;
   Real from_bound_, to_bound_;
   Feature left_;
   uint32_t* work_left_;

@@ -184,9 +184,19 @@ class ByHand(GraspCase):
     def test_mesh_and_graph_give_the_same_report(self):
         self.fdcg("compile", self.path("cube.off"), "-o", self.path("cube.fdcg"), "-q")
         reports = [self.judge(name, self.six, "--mu", "0.3", "--grip", "5") for name in ("cube.off", "cube.fdcg")]
+        self.fdcg("compile", self.path("cube.off"), "-o", self.path("bare.fdcg"), "-q", "--without", "mass")
+        reports.append(self.judge("bare.fdcg", self.six, "--mu", "0.3", "--grip", "5"))
         for report in reports:
-            del report["object"]["file"], report["object"]["centre_from"]
-        self.assertEqual(*reports)
+            del report["object"]["file"]
+        self.assertEqual(reports[0], reports[1])
+        self.assertEqual(reports[0], reports[2])
+
+    def test_a_files_mass_is_what_pulls(self):
+        self.fdcg("compile", self.path("cube.off"), "-o", self.path("cube.fdcg"), "-q", "--mass", "3")
+        for options, kilograms in (((), 3), (("--mass", "2"), 2)):
+            margin = self.judge("cube.fdcg", self.two, "--mu", "0.5", "--grip", "100", *options, code=1)["margin"]
+            self.assertAlmostEqual(-9.80665 * kilograms, margin["load"]["force_n"][2], 12)
+            self.assertAlmostEqual(100 * 0.5 / (9.80665 * kilograms), margin["load_factor"], 8)
 
 
 class AgainstCvxopt(GraspCase):

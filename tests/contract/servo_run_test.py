@@ -205,6 +205,16 @@ class Run(ServoCase):
         self.assertGreater(device["ticks"], 200)
         self.run_scene(scene, "--log", log, codes=(3,))  # would overwrite what it plays
 
+    def test_a_device_of_unknown_limits_is_read_but_never_armed(self):
+        log = self.session("1")
+        profile = json.loads((ROOT / "runtime/device/profiles/fdcg-reference.json").read_text())
+        del profile["limits"]
+        scene = self.scene(devices=[{"name": "hand", "source": "recorded", "recording": os.path.basename(log), "profile": profile}])
+        done = self.run_scene(scene, "--arm", "--no-log")
+        self.assertIn(b"limits.force_n", done.stderr)
+        self.assertIn(b"hand: not armed: the profile leaves a limit unknown", done.stdout)
+        self.assertNotIn(b"hand: armed", done.stdout)
+
     def test_wrong_usage(self):
         scene = self.scene()
         for arguments, words in (((), ("scene",)), ((scene, "--for", "0"), ("--for",)), ((scene, "--hid", "x"), ("--hid",)),

@@ -101,7 +101,6 @@ class Session {
     seen_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       looks_[i].name = host.device(static_cast<int>(i)).name;
-      looks_[i].source = host.device(static_cast<int>(i)).source;
       name_width_ = std::max(name_width_, looks_[i].name.size());
       seen_[i].wants_arming = arguments.arm;
     }
@@ -188,15 +187,18 @@ void Session::show_status() {
 void Session::arm_where_wanted(std::size_t device) {
   Seen& seen = seen_[device];
   const dev::TickOutput& last = looks_[device].status.last;
-  const std::uint64_t* const disarmed = looks_[device].status.counters.disarmed;
-  const bool was_armed = std::any_of(disarmed, disarmed + dev::kFaults, [](std::uint64_t count) { return count != 0; });
-  if (was_armed || last.phase != dev::Phase::kDisarmed || last.fault == dev::Fault::kUnknownLimit) seen.wants_arming = false;
   const bool is_there =
       looks_[device].connection.connection == dev::Connection::kOpen && looks_[device].status.counters.ticks > 0;
-  if (!seen.wants_arming || !is_there || seconds() < next_arming_s_) return;
-  host_.arm(static_cast<int>(device));
+  if (!seen.wants_arming || !is_there) return;
   if (!seen.was_asked) seen.asked_s = seconds();
   seen.was_asked = true;
+  const std::uint64_t* const disarmed = looks_[device].status.counters.disarmed;
+  const bool was_armed = std::any_of(disarmed, disarmed + dev::kFaults, [](std::uint64_t count) { return count != 0; });
+  if (was_armed || last.phase != dev::Phase::kDisarmed || last.fault == dev::Fault::kUnknownLimit) {
+    seen.wants_arming = false;
+  } else if (seconds() >= next_arming_s_) {
+    host_.arm(static_cast<int>(device));
+  }
 }
 
 void Session::notice_connection(std::size_t device) {

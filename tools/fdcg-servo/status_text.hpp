@@ -12,7 +12,6 @@ namespace fdcg::servo {
 // Of one device at one moment.
 struct DeviceLook {
   std::string name;
-  dev::DeviceSource source = dev::DeviceSource::kHid;
   dev::ConnectionReport connection;
   dev::DeviceStatus status;
   double rate_hz = 0;  // of good reports since the last line

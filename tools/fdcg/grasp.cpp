@@ -96,14 +96,14 @@ int set_frame(const GraspArguments& arguments, const GraspObject& object, GraspR
   return kClean;
 }
 
-int set_load(const GraspArguments& arguments, GraspReport& report) {
+int set_load(const GraspArguments& arguments, const GraspObject& object, GraspReport& report) {
   constexpr double kStandardGravity = 9.80665;  // m/s^2
   if (arguments.load) {
     report.load = *arguments.load;
     report.load_text = "option";
   } else {
     const Vec3 g = arguments.gravity_m_per_s2.value_or(Vec3{0, 0, -kStandardGravity});
-    const double mass = arguments.mass_kg.value_or(1);
+    const double mass = arguments.mass_kg.value_or(object.mass_kg().value_or(1));
     report.load.force_n = {mass * g.x, mass * g.y, mass * g.z};
     report.load_text = "the weight of " + number(mass) + " kg";
   }
@@ -133,7 +133,7 @@ int run_grasp(const GraspArguments& arguments) {
   report.asked = *contacts;
   if (const int code = set_frame(arguments, *object, report); code != kClean) return code;
   if (const int code = place_contacts(arguments, *object, report); code != kClean) return code;
-  if (const int code = set_load(arguments, report); code != kClean) return code;
+  if (const int code = set_load(arguments, *object, report); code != kClean) return code;
   if (const auto problem = grasp::problem_of(report.grasp)) return fail(kUsage, arguments.contacts + ": " + *problem);
   report.closure = grasp::force_closure(report.grasp);
   report.effort = arguments.effort;
@@ -185,8 +185,8 @@ void add_load_options(CLI::App& command, GraspArguments& arguments) {
   CLI::Option* const load = command.add_option_function<std::string>(
       "--load", parse_load, "Force and torque about the centre that pull at the object; default: gravity");
   load->type_name("FX,FY,FZ[,TX,TY,TZ]");
-  add_number(command, "--mass", arguments.mass_kg, false, "The object's mass; default: 1, so that the load factor is in kg",
-             "KG");
+  add_number(command, "--mass", arguments.mass_kg, false,
+             "The object's mass; default: the FDCG file's, else 1, so that the load factor is in kg", "KG");
   add_vector(command, "--gravity", arguments.gravity_m_per_s2, "Its acceleration; default: 0,0,-9.80665");
   load->excludes("--mass")->excludes("--gravity");
 }

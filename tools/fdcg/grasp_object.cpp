@@ -96,6 +96,12 @@ void GraspObject::take(const fdcg_graph& graph) {
     const Vec3 normal{node.normal[0], node.normal[1], node.normal[2]};
     normals_.push_back(plus({}, 1 / std::sqrt(dot(normal, normal)), normal));  // f32 files hold it to seven digits
   }
+  fdcg_mass mass{};
+  fdcg_error error{};
+  if (fdcg_get_mass(&graph, &mass, &error) == FDCG_OK) {
+    stored_centroid_m_ = Vec3{mass.centroid_m[0], mass.centroid_m[1], mass.centroid_m[2]};
+    if (mass.mass_kg > 0) mass_kg_ = mass.mass_kg;
+  }
   const Vec3 across = plus(placed(header.bounds_max), -1, placed(header.bounds_min));
   size_m_ = std::sqrt(dot(across, across));
   is_closed_ = header.connection_type_count[FDCG_BOUNDARY] == 0;
@@ -142,6 +148,7 @@ SurfacePoint GraspObject::nearest(const Vec3& point_m) const {
 }
 
 std::optional<Vec3> GraspObject::centroid_m() const {
+  if (stored_centroid_m_) return stored_centroid_m_;
   if (!is_closed_) return std::nullopt;
   const Vec3 base = corners_.front();  // near the object: nothing is lost far from the frame's origin
   double volume6 = 0;

@@ -33,6 +33,8 @@ class GraspObject {
   [[nodiscard]] SurfacePoint nearest(const bake::Vec3& point_m) const;
   // Of the enclosed volume; none where the surface is open or encloses none.
   [[nodiscard]] std::optional<bake::Vec3> centroid_m() const;
+  // As the FDCG file says it (compile --density, --mass).
+  [[nodiscard]] std::optional<double> mass_kg() const { return mass_kg_; }
   [[nodiscard]] double farthest_from(const bake::Vec3& centre_m) const;  // the largest distance of a corner
   [[nodiscard]] std::uint32_t face_count() const { return static_cast<std::uint32_t>(normals_.size()); }
   [[nodiscard]] double size_m() const { return size_m_; }  // the diagonal of its box
@@ -42,7 +44,9 @@ class GraspObject {
 
   std::vector<bake::Vec3> corners_;
   std::vector<std::uint32_t> face_first_, face_corners_;
-  std::vector<bake::Vec3> normals_;  // outward
+  std::vector<bake::Vec3> normals_;              // outward
+  std::optional<bake::Vec3> stored_centroid_m_;  // exact; not in a file without mass properties
+  std::optional<double> mass_kg_;
   double size_m_ = 0;
   bool is_closed_ = false;
 };

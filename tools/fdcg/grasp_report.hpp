@@ -15,7 +15,7 @@ namespace fdcg::tools {
 struct GraspReport {
   std::string object;  // the file
   std::uint32_t faces = 0;
-  std::string centre_from;        // "volume", "file" or "option"
+  std::string centre_from;        // "volume" or "option"
   std::string torque_scale_from;  // "size" or "option"
   std::vector<NamedContact> asked;
   std::vector<SurfacePoint> found;  // one for each
