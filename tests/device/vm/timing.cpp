@@ -35,10 +35,12 @@ void run_timing(const RigOptions& options, int seconds, Verdicts& verdicts) {
   const std::uint64_t sent = record.sent, answered = record.answered, missed_ticks = rig.missed_ticks;
   const std::size_t trips = record.round_trips_ns.size();
   const bool has_force = record.force_n > 0 && record.misled == 0;
+  rig.refresh_status();
+  const std::string after = rig.host.status_line();  // what is late while the host ends is late for nobody
   const bool is_ended = rig.end_host();
 
-  const std::uint64_t late = count_of(rig.host.status_line(), "late") - count_of(before, "late");
-  const std::uint64_t lost = count_of(rig.host.status_line(), "lost") - count_of(before, "lost");
+  const std::uint64_t late = count_of(after, "late") - count_of(before, "late");
+  const std::uint64_t lost = count_of(after, "lost") - count_of(before, "lost");
   std::vector<std::uint32_t> round_trips(record.round_trips_ns.begin(),
                                          record.round_trips_ns.begin() + static_cast<long>(trips));
   std::sort(round_trips.begin(), round_trips.end());
