@@ -34,15 +34,22 @@ Expectation expect_of(Rig& rig, int missing) {
   return expected;
 }
 
-// Right after a good report.
-void begin_on_report(Rig& rig) {
-  const std::uint64_t sent = rig.device.record.sent;
-  rig.run_until([&] { return rig.device.record.sent > sent; }, kSecond);
+// Right after a good report, which it returns.
+Bytes begin_on_report(Rig& rig) {
+  Bytes last;
+  rig.device.set_wire([&](const Bytes& report) {
+    last = report;
+    rig.device.send(report);
+  });
+  rig.run_until([&] { return !last.empty(); }, kSecond);
+  rig.device.clear_wire();
+  return last;
 }
 
 // Each of `count` reports goes through `wire` instead of the cable.
-Expectation burst(Rig& rig, int count, const Device::Wire& wire) {
-  begin_on_report(rig);
+Expectation burst(Rig& rig, int count, const Device::Wire& wire, Bytes* last_good = nullptr) {
+  const Bytes last = begin_on_report(rig);
+  if (last_good != nullptr) *last_good = last;
   const Expectation expected = expect_of(rig, count);
   rig.device.record.watch(expected.known);
   int left = count;
@@ -115,15 +122,11 @@ Expectation strike_garbled(Rig& rig) {
 
 // Instead of new ones, or besides them: then nothing is missing.
 Expectation strike_repeated(Rig& rig) {
-  Bytes last;
-  rig.device.set_wire([&](const Bytes& report) {
-    last = report;
-    rig.device.send(report);
-  });
-  begin_on_report(rig);
-  rig.device.clear_wire();
   if (rig.random_between(0, 1) == 0) {
-    return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes&) { rig.device.send(last); });
+    Bytes last;
+    const int count = burst_length(rig, kLongestWithOldNumbers);
+    return burst(
+        rig, count, [&](const Bytes&) { rig.device.send(last); }, &last);
   }
   const Nanoseconds end = now_ns() + rig.random_between(1, 40) * rig.period();
   rig.device.set_wire([&](const Bytes& report) {
