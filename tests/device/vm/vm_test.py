@@ -109,7 +109,7 @@ class Races(VmCase):
     mode = machine.RACING
 
     def test_every_fault(self):
-        console = self.boot("faults timed=0 times=3", "faults way=usb timed=0 times=3")
+        console = self.boot("faults timed=0 times=2", "faults way=usb timed=0 times=2")
         self.assert_passes(2 * len(REPORTS + ENDS), console)
 
 
