@@ -276,10 +276,16 @@ class Sweep {
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
       if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
     }
-    if (!(side(node, stood_, from_bound_) >= 0) && !faces_what_was_left(node)) return;
+    if (!was_before_clearing(node) && !faces_what_was_left(node)) return;
     best_.fraction = 0;
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
+  }
+
+  // Whether it was the step clear of the face that is left which took the way's beginning behind the node.
+  [[nodiscard]] bool was_before_clearing(NodeRef<Real> node) const {
+    if (left_.state != FDCG_FACE || !(dot(graph_.node(left_.index).normal(), node.normal()) < 0)) return false;
+    return side(node, stood_, from_bound_) >= 0;
   }
 
   // Whether the face or edge that the way leaves and the node look at each other, corner by corner: if the former lies in front
