@@ -14,7 +14,7 @@ namespace fdcg::vm {
 namespace {
 
 constexpr int kUntimedPatience = 10;  // where the machine around the guest takes the time that it takes
-constexpr double kFeltN = 0.05;  // a force that is surely one
+constexpr double kFeltN = 0.05;       // a force that is surely one
 constexpr Nanoseconds kFeelLimit = 6 * kSecond, kArmPause = 200 * kMillisecond, kEndLimit = 8 * kSecond;
 
 std::unique_ptr<Port> make_port(const RigOptions& options) {
