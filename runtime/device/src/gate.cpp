@@ -108,7 +108,8 @@ void Gate::begin(const DeviceLimits& limits, int axis_count, double rate_hz, dou
   }
   period_s_ = 1 / rate_hz;
   if (most_force_n > 0) limits_.force_n = std::min(limits_.force_n, most_force_n);
-  if (!is_known(limits.device_watchdog_s)) limits_.force_n = std::min(limits_.force_n, kForceWithoutWatchdogN);
+  const bool has_watchdog = is_known(limits.device_watchdog_s) && limits.device_watchdog_s <= kLongestWatchdogS;
+  if (!has_watchdog) limits_.force_n = std::min(limits_.force_n, kForceWithoutWatchdogN);
 }
 
 GatedForce Gate::step(const GateInput& input) {

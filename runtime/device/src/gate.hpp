@@ -23,7 +23,8 @@ inline constexpr double kRampS = 0.5;                // from zero to full after 
 inline constexpr double kSilenceS = 0.010;           // without a good report: disarmed
 inline constexpr double kWriterStuckS = 0.005;       // in one write: disarmed
 inline constexpr double kArmForceShare = 0.05;       // of force_n: arming is granted only below it
-inline constexpr double kForceWithoutWatchdogN = 1;  // the most for a device that does not drop its force by itself
+inline constexpr double kForceWithoutWatchdogN = 1;  // the most for a device that does not drop its force by itself ...
+inline constexpr double kLongestWatchdogS = 0.1;     // ... within this
 
 // Why there is no force. Part of the log and the status: never renumber.
 enum class Fault : std::uint8_t {
