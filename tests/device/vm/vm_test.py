@@ -98,7 +98,7 @@ class FaultsUsb(VmCase):
 
 class SameConsole(VmCase):
     def test_two_runs_print_the_same_bytes(self):
-        scenarios = ["timing rate=8000 seconds=1", "faults way=usb times=2 only=garbled,stalled,unplugged,asleep,killed"]
+        scenarios = ["timing rate=1000 seconds=2", "faults way=usb times=2 only=garbled,stalled,unplugged,asleep,killed"]
         first = self.boot(*scenarios)
         self.assertEqual(first, self.boot(*scenarios))
 
