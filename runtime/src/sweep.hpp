@@ -294,7 +294,8 @@ class Sweep {
   [[nodiscard]] bool faces_what_was_left(NodeRef<Real> node) const {
     if (left_.state == FDCG_FACE) {
       const NodeRef<Real> face = graph_.node(left_.index);
-      return reaches_before(face, node) && !reaches_behind(node, face);
+      const bool is_opposite = dot(face.normal(), node.normal()) < 0;  // then rounding of a wall's plane does not matter
+      return reaches_before(face, node) && !reaches_behind(node, face, is_opposite ? from_bound_ : Real(0));
     }
     if (left_.state != FDCG_EDGE) return false;  // a corner is where it is
     const ConnectionRef<Real> connection = graph_.connection(left_.index);
@@ -329,9 +330,9 @@ class Sweep {
     }
     return false;
   }
-  [[nodiscard]] bool reaches_behind(NodeRef<Real> plane, NodeRef<Real> node) const {
+  [[nodiscard]] bool reaches_behind(NodeRef<Real> plane, NodeRef<Real> node, Real but_for) const {
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (side_of_corner(plane, node.corner(k)) < 0) return true;
+      if (side_of_corner(plane, node.corner(k)) < -but_for) return true;
     }
     return false;
   }

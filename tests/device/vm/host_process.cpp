@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace fdcg::vm {
@@ -88,6 +89,10 @@ void HostProcess::take_line(const std::string& line) {
   }
   words_.push_back(line);
   if (words_.size() > kKeptWords) words_.pop_front();
+}
+
+std::uint64_t count_of(const std::string& status_line, const std::string& name) {
+  return nlohmann::json::parse(status_line).at(nlohmann::json::json_pointer("/devices/0/" + name)).get<std::uint64_t>();
 }
 
 }  // namespace fdcg::vm

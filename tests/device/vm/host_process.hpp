@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -30,9 +29,8 @@ class HostProcess {
   int fd() const { return output_; }
   void receive();
 
-  // The newest status line, null before there was one or where it is no JSON; how many there were. Only read when asked for:
-  // it would hold up the device. What else the host said, newest last.
-  nlohmann::json status() const { return nlohmann::json::parse(status_line_, nullptr, false); }
+  // The newest status line, null before there was one; how many there were; what else the host said, newest last.
+  const std::string& status_line() const { return status_line_; }
   std::uint64_t status_count() const { return status_count_; }
   const std::deque<std::string>& words() const { return words_; }
 
@@ -46,5 +44,9 @@ class HostProcess {
   std::uint64_t status_count_ = 0;
   std::deque<std::string> words_;
 };
+
+// A counter of the first device in a status line: "late", "rejected/crc". Throws where there is none. Reading a line takes
+// longer than a tick of the device.
+std::uint64_t count_of(const std::string& status_line, const std::string& name);
 
 }  // namespace fdcg::vm

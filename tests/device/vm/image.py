@@ -4,6 +4,7 @@ libraries, and the modules of HID and USB. Nothing here needs root."""
 import lzma
 import os
 import pathlib
+import platform
 import re
 import shutil
 import stat
@@ -28,43 +29,53 @@ def need(program):
 
 
 def run(*command, **options):
-    return subprocess.run([str(word) for word in command], check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options).stdout
+    words = [str(word) for word in command]
+    return subprocess.run(words, check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options).stdout
 
 
-def apt_options(folder):
-    """Package lists of our own, for machines that keep none."""
+def own_lists(folder):
+    """Options for apt with package lists of our own, newly fetched: for machines that keep none, or old ones."""
     lists, cache = folder / "apt" / "lists", folder / "apt" / "cache"
     (lists / "partial").mkdir(parents=True, exist_ok=True)
     (cache / "archives" / "partial").mkdir(parents=True, exist_ok=True)
-    return ["-o", f"Dir::State::Lists={lists}", "-o", f"Dir::Cache={cache}", "-o", "APT::Sandbox::User="]
+    options = ["-o", f"Dir::State::Lists={lists}", "-o", f"Dir::Cache={cache}"]
+    run(need("apt-get"), *options, "-o", "APT::Sandbox::User=", "update")
+    return options
+
+
+def download_kernel(unpacked, flavour, options):
+    """False: apt knows no such package."""
+    shown = run(need("apt-cache"), *options, "depends", f"linux-image-{flavour}").decode()
+    names = re.findall(r"Depends: (linux-image-\d\S+)", shown)
+    if not names:
+        return False
+    shutil.rmtree(unpacked, ignore_errors=True)
+    unpacked.mkdir()
+    run(need("apt-get"), *options, "-o", "APT::Sandbox::User=", "download", names[0], cwd=unpacked)
+    package = next(unpacked.glob("*.deb"))
+    run(need("dpkg"), "-x", package, unpacked)
+    package.unlink()
+    run(need("depmod"), "-b", unpacked, kernel_version(unpacked))
+    return True
 
 
 def fetch_kernel(folder, flavour):
-    """The folder of an unpacked linux-image package that `linux-image-FLAVOUR` names today; from apt where it is not there yet."""
+    """The folder of an unpacked package: that of the kernel which linux-image-FLAVOUR names when it is first asked for."""
+    if platform.machine() != "x86_64":
+        raise Missing(f"no kernel: the virtual machine is an amd64, this machine's programs are for {platform.machine()}")
     unpacked = folder / flavour
     if (unpacked / "complete").exists():
         return unpacked
     folder.mkdir(parents=True, exist_ok=True)
-    try:
-        for options in ([], apt_options(folder)):
-            if options:
-                run(need("apt-get"), *options, "update")
-            shown = run(need("apt-cache"), *options, "depends", f"linux-image-{flavour}").decode()
-            names = re.findall(r"Depends: (linux-image-\d\S+)", shown)
-            if not names:
-                continue
-            shutil.rmtree(unpacked, ignore_errors=True)
-            unpacked.mkdir()
-            run(need("apt-get"), *options, "-o", "APT::Sandbox::User=", "download", names[0], cwd=unpacked)
-            package = next(unpacked.glob("*.deb"))
-            run(need("dpkg"), "-x", package, unpacked)
-            package.unlink()
-            run(need("depmod"), "-b", unpacked, kernel_version(unpacked))
-            (unpacked / "complete").touch()
-            return unpacked
-    except subprocess.CalledProcessError as error:
-        raise Missing(f"no kernel: `{' '.join(error.cmd)}` says {error.stderr.decode(errors='replace').strip()[-300:]}")
-    raise Missing(f"no kernel: apt knows no package that linux-image-{flavour} depends on; is Debian's main in its sources?")
+    why = f"apt knows no package that linux-image-{flavour} depends on; is Debian's main in its sources?"
+    for options in (lambda: [], lambda: own_lists(folder)):
+        try:
+            if download_kernel(unpacked, flavour, options()):
+                (unpacked / "complete").touch()
+                return unpacked
+        except subprocess.CalledProcessError as error:
+            why = f"`{' '.join(error.cmd)}` says {error.stderr.decode(errors='replace').strip()[-300:]}"
+    raise Missing(f"no kernel: {why}")
 
 
 def kernel_version(unpacked):

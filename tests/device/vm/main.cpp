@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "scenarios.hpp"
+#include "udev_stand_in.hpp"
 
 namespace fdcg::vm {
 namespace {
@@ -20,6 +21,14 @@ using Settings = std::map<std::string, std::string>;
 
 const Settings kDefaults = {{"way", "uhid"}, {"backend", "hidraw"}, {"rate", "1000"}, {"seconds", "10"},
                             {"times", "20"}, {"only", ""},          {"seed", "1"},    {"timed", "1"}};
+
+void take_priority() {
+  sched_param parameters{};
+  parameters.sched_priority = kDevicePriority;
+  if (sched_setscheduler(0, SCHED_FIFO, &parameters) || mlockall(MCL_CURRENT | MCL_FUTURE))
+    throw std::runtime_error("no real-time priority, or no locked memory");
+  std::signal(SIGPIPE, SIG_IGN);
+}
 
 void run_scenario(const std::string& name, Settings& settings, Verdicts& verdicts) {
   RigOptions options;
@@ -57,13 +66,10 @@ void run_all(const std::vector<std::string>& given, Verdicts& verdicts) {
 }  // namespace fdcg::vm
 
 int main(int count, char** arguments) {
-  sched_param parameters{};
-  parameters.sched_priority = fdcg::vm::kDevicePriority;
-  if (sched_setscheduler(0, SCHED_FIFO, &parameters)) std::puts("vm_rig: no real-time priority");
-  mlockall(MCL_CURRENT | MCL_FUTURE);
-  std::signal(SIGPIPE, SIG_IGN);
   fdcg::vm::Verdicts verdicts;
   try {
+    fdcg::vm::start_udev_stand_in();
+    fdcg::vm::take_priority();
     fdcg::vm::run_all({arguments + 1, arguments + count}, verdicts);
   } catch (const std::exception& error) {
     std::printf("vm_rig: %s\n", error.what());

@@ -3,6 +3,7 @@
 // here. The kernel sends requests (URBs) with a number each; a request stays with us until the device has something to say to
 // it, so holding back an interrupt OUT request is a device that answers NAK.
 #include <arpa/inet.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -23,7 +25,8 @@ constexpr std::uint32_t kSubmit = 1, kUnlink = 2, kSubmitted = 3, kUnlinked = 4;
 constexpr int kHighSpeed = 3;                                                     // enum usb_device_speed
 constexpr int kHubPort = 0;                                                       // the first high-speed port of vhci_hcd
 constexpr int kPacketBytes = 64;
-constexpr char kAttach[] = "/sys/devices/platform/vhci_hcd.0/attach";
+constexpr int kControllerPriority = 95;  // above the device and the host
+constexpr char kAttach[] = "/sys/devices/platform/vhci_hcd.0/attach", kStatus[] = "/sys/devices/platform/vhci_hcd.0/status";
 
 // usbip_header of the kernel's Documentation/usb/usbip_protocol.rst; every number big-endian.
 struct Header {
@@ -48,18 +51,13 @@ class UsbPort final : public Port {
   void plug() override {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) throw std::runtime_error("no socket pair for the USB device");
-    // an unplugged device's port takes a moment to become free
-    const std::string words = std::to_string(kHubPort) + ' ' + std::to_string(ends[1]) + " 65537 " + std::to_string(kHighSpeed);
-    bool is_attached = false;
-    for (int attempt = 0; attempt < 1000 && !is_attached; ++attempt) {
-      std::ofstream attach(kAttach);
-      attach << words << std::flush;
-      is_attached = attach.good();
-      if (!is_attached) usleep(1000);
-    }
-    close(ends[1]);  // the kernel has its own reference
-    if (!is_attached) throw std::runtime_error(std::string(kAttach) + " refuses the device");
+    await_free_port();
+    std::ofstream attach(kAttach);
+    attach << kHubPort << ' ' << ends[1] << " 65537 " << kHighSpeed << std::flush;  // 65537: bus 1, device 1
+    close(ends[1]);                                                                 // the kernel has its own reference
+    if (!attach) throw std::runtime_error(std::string(kAttach) + " refuses the device");
     fd_ = ends[0];
+    hurry_controller();
     waiting_in_.clear();
     waiting_out_.clear();
     fresh_.reset();
@@ -103,6 +101,36 @@ class UsbPort final : public Port {
   }
 
  private:
+  // What was unplugged takes a moment to be forgotten.
+  static void await_free_port() {
+    constexpr int kFree = 4;  // VDEV_ST_NULL
+    for (int attempt = 0; attempt < 5000; ++attempt) {
+      std::ifstream in(kStatus);
+      std::string line;
+      std::getline(in, line);  // names of the columns
+      std::string hub;
+      int port = -1, state = -1;
+      while (port != kHubPort && in >> hub >> port >> state)
+        std::getline(in, line);
+      if (port == kHubPort && state == kFree) return;
+      usleep(1000);
+    }
+    throw std::runtime_error(std::string(kStatus) + ": the port does not become free");
+  }
+
+  // A real host controller interrupts whatever runs; vhci_hcd has two threads of ordinary priority, which would wait for any
+  // program that writes a file.
+  static void hurry_controller() {
+    sched_param parameters{};
+    parameters.sched_priority = kControllerPriority;
+    for (const auto& process : std::filesystem::directory_iterator("/proc")) {
+      std::string name;
+      std::getline(std::ifstream(process.path() / "comm"), name);
+      if (name == "vhci_rx" || name == "vhci_tx")
+        sched_setscheduler(std::stoi(process.path().filename()), SCHED_FIFO, &parameters);
+    }
+  }
+
   // False: the next message is not there in full yet.
   bool handle_message(PortUser& user) {
     Header header;

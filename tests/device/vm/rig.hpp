@@ -44,9 +44,6 @@ class Rig {
   bool feel();
   Nanoseconds period() const { return kSecond / options.rate_hz; }
   Nanoseconds random_between(Nanoseconds least, Nanoseconds most);
-  // What the host says of its device, in its newest status.
-  std::uint64_t host_counter(const std::string& name) const;
-  std::uint64_t host_rejected(const std::string& verdict) const;
   bool host_says_log_failed();
   // A status that was written from now on has come.
   bool refresh_status(Nanoseconds limit = kSecond);

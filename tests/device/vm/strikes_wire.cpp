@@ -34,15 +34,22 @@ Expectation expect_of(Rig& rig, int missing) {
   return expected;
 }
 
-// Right after a good report.
-void begin_on_report(Rig& rig) {
-  const std::uint64_t sent = rig.device.record.sent;
-  rig.run_until([&] { return rig.device.record.sent > sent; }, kSecond);
+// Right after a good report, which it returns.
+Bytes begin_on_report(Rig& rig) {
+  Bytes last;
+  rig.device.set_wire([&](const Bytes& report) {
+    last = report;
+    rig.device.send(report);
+  });
+  rig.run_until([&] { return !last.empty(); }, kSecond);
+  rig.device.clear_wire();
+  return last;
 }
 
 // Each of `count` reports goes through `wire` instead of the cable.
-Expectation burst(Rig& rig, int count, const Device::Wire& wire) {
-  begin_on_report(rig);
+Expectation burst(Rig& rig, int count, const Device::Wire& wire, Bytes* last_good = nullptr) {
+  const Bytes last = begin_on_report(rig);
+  if (last_good != nullptr) *last_good = last;
   const Expectation expected = expect_of(rig, count);
   rig.device.record.watch(expected.known);
   int left = count;
@@ -115,15 +122,11 @@ Expectation strike_garbled(Rig& rig) {
 
 // Instead of new ones, or besides them: then nothing is missing.
 Expectation strike_repeated(Rig& rig) {
-  Bytes last;
-  rig.device.set_wire([&](const Bytes& report) {
-    last = report;
-    rig.device.send(report);
-  });
-  begin_on_report(rig);
-  rig.device.clear_wire();
   if (rig.random_between(0, 1) == 0) {
-    return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes&) { rig.device.send(last); });
+    Bytes last;
+    const int count = burst_length(rig, kLongestWithOldNumbers);
+    return burst(
+        rig, count, [&](const Bytes&) { rig.device.send(last); }, &last);
   }
   const Nanoseconds end = now_ns() + rig.random_between(1, 40) * rig.period();
   rig.device.set_wire([&](const Bytes& report) {
@@ -143,12 +146,12 @@ Expectation strike_out_of_order(Rig& rig) {
     past.push_back(report);
     rig.device.send(report);
   });
-  rig.run_for((kLongestWithOldNumbers + 5) * rig.period());
+  rig.run_until([&] { return past.size() >= kLongestWithOldNumbers + 5; }, kSecond);
   rig.device.clear_wire();
   if (rig.random_between(0, 1) == 0) {
     return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes&) {
       rig.device.send(past.front());
-      past.pop_front();
+      if (past.size() > 1) past.pop_front();
     });
   }
   // two out of every three are late by a report: the last of them is in time
@@ -166,9 +169,9 @@ Expectation strike_out_of_order(Rig& rig) {
   return {};
 }
 
-// Held up on the way, all of them, and then let go at once; or made long ago by their own time.
+// Held up on the way by a queue, from which they come late but in order; or made long ago by their own time.
 Expectation strike_stale(Rig& rig) {
-  if (rig.random_between(0, 1) == 0) {
+  if (rig.random_between(0, 2) == 0) {
     return burst(rig, burst_length(rig, kLongestWithOldNumbers), [&](const Bytes& report) {
       Bytes older = report;
       put32(older, 5, get32(older, 5) - static_cast<std::uint32_t>(rig.random_between(20'000, 200'000)));
@@ -176,15 +179,14 @@ Expectation strike_stale(Rig& rig) {
       rig.device.send(older);
     });
   }
-  std::vector<Bytes> held;
-  const int count = static_cast<int>(rig.random_between(13, kLongest));
-  Expectation expected = burst(rig, count, [&](const Bytes& report) {
-    held.push_back(report);
-    if (held.size() == static_cast<std::size_t>(count))
-      for (const Bytes& each : held)
-        rig.device.send(each);
+  const auto delay = static_cast<std::size_t>(rig.random_between(7, 40));
+  std::deque<Bytes> queue;
+  return burst(rig, static_cast<int>(delay) + static_cast<int>(rig.random_between(10, 40)), [&](const Bytes& report) {
+    queue.push_back(report);
+    if (queue.size() <= delay) return;
+    rig.device.send(queue.front());
+    queue.pop_front();
   });
-  return expected;
 }
 
 // No number, or none that is finite, in one axis or more; the CRC is right.
