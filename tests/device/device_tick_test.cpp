@@ -83,9 +83,14 @@ struct Rig {
     report(x, y, z);
     return tick();
   }
+  // As many reports as arming wants.
+  void begin_at(double x, double y, double z) {
+    for (int i = 0; i < kSamplesToArm; ++i)
+      at(x, y, z);
+  }
   // Armed above the cube, the ramp done, then pressed `depth_m` into its top.
   void press(double depth_m) {
-    at(0.1, 0.1, 0.505);
+    begin_at(0.1, 0.1, 0.505);
     input.arm = true;
     for (int i = 0; i < 600; ++i)
       at(0.1, 0.1, 0.505);
@@ -116,7 +121,7 @@ TEST_CASE("the mapping turns, scales and moves the hand, and turns the force bac
   mapping.offset_m[0] = 0.1;
   Rig rig(mapping);
   const auto hand = [&](double depth) { return 0.5 * (0.5 - depth); };  // device's y for a height of 0.5 - depth
-  rig.at(0.05, hand(-0.01), 0);
+  rig.begin_at(0.05, hand(-0.01), 0);
   rig.input.arm = true;
   for (int i = 0; i < 600; ++i)
     rig.at(0.05, hand(-0.01), 0);
@@ -187,9 +192,24 @@ TEST_CASE("a device's own fault disarms, and a disarming is counted once, by its
   CHECK(rig.device.counters.disarmed[static_cast<int>(Fault::kReadFailed)] == 0);
 }
 
+TEST_CASE("arming is refused until the device has sent a few good reports, each time that it is opened") {
+  Rig rig;
+  for (int opening = 0; opening < 2; ++opening) {
+    rig.input.begins = true;
+    for (int i = 1; i <= kSamplesToArm; ++i) {
+      rig.input.arm = true;
+      rig.at(0.1, 0.1, 0.505);
+      CHECK(rig.output.arming_refused == (i < kSamplesToArm));
+      CHECK(rig.output.force.is_enabled() == (i == kSamplesToArm));
+    }
+    rig.input.disarm = true;
+    rig.at(0.1, 0.1, 0.505);
+  }
+}
+
 TEST_CASE("arming is refused while a finger is pressed into something") {
   Rig rig;
-  rig.at(0.1, 0.1, 0.505);
+  rig.begin_at(0.1, 0.1, 0.505);
   rig.at(0.1, 0.1, 0.498);
   rig.input.arm = true;
   rig.at(0.1, 0.1, 0.498);

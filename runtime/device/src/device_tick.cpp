@@ -113,6 +113,7 @@ void device_tick(DeviceState& device, const TickInput& input, TickOutput* output
   *output = TickOutput();
   if (input.begins) {
     device.judge = ReportJudge();
+    device.samples = 0;
     device.has_place = false;
     device.last_good_ns = 0;
   }
@@ -123,6 +124,7 @@ void device_tick(DeviceState& device, const TickInput& input, TickOutput* output
   GateInput gate;
   if (output->has_sample) {
     device.sample = sample;
+    device.samples = std::min(device.samples + 1, kSamplesToArm);
     gate.has_sample = true;
     gate.device_fault = sample.has_fault;
     gate.is_tip_valid = tip_pose(device.setup.profile.kinematics, device.setup.profile.axis_count, sample.axis, &gate.tip);
@@ -141,7 +143,7 @@ void device_tick(DeviceState& device, const TickInput& input, TickOutput* output
   std::copy_n(device.wanted_n, 3, output->wanted_force_n);
 
   gate.now_ns = input.now_ns;
-  gate.arm = input.arm;
+  gate.arm = input.arm && device.samples == kSamplesToArm;
   gate.disarm = input.disarm;
   gate.read_failed = input.read == ReadStatus::kLost;
   gate.write_failed = input.write_failed;
@@ -151,7 +153,7 @@ void device_tick(DeviceState& device, const TickInput& input, TickOutput* output
   output->force = device.gate.step(gate);
   output->phase = device.gate.phase();
   output->fault = device.gate.fault();
-  output->arming_refused = device.gate.arming_refused();
+  output->arming_refused = device.gate.arming_refused() || (input.arm && !gate.arm);
   if (phase_before != Phase::kDisarmed && output->phase == Phase::kDisarmed) {
     ++device.counters.disarmed[static_cast<int>(output->fault)];
   }

@@ -17,6 +17,8 @@ namespace fdcg::dev {
 
 inline constexpr int kMaxDrain = 64;    // reports in one tick: what hidraw keeps
 inline constexpr int kMaxContacts = 8;  // of one device
+inline constexpr int kSamplesToArm = 8;  // good reports since the device was opened: by then it has taken an output that asks for no
+                                         // force, which many want before the first that does
 inline constexpr int kMaxDriven = 16;   // objects that something moves
 
 struct RawReport {
@@ -86,6 +88,7 @@ struct DeviceState {
   Gate gate;
   ReportJudge judge;
   TickCounters counters;
+  int samples = 0;         // good reports since the device was opened, up to kSamplesToArm
   bool has_place = false;  // fingers stand where the tip was last seen
   std::uint64_t last_good_ns = 0;
   // as of the last good report
