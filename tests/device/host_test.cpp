@@ -5,7 +5,9 @@
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 #include <fstream>
 
@@ -20,16 +22,28 @@ using namespace fdcg::dev::test;
 
 namespace {
 
-const std::string& cube_file() {
-  static const std::string path = [] {
+// A graph in the folder for temporary files, of this process: tests run side by side.
+class CubeFile {
+ public:
+  CubeFile() : path_(std::filesystem::temp_directory_path() / ("fdcg_host_test_" + std::to_string(getpid()) + ".fdcg")) {
     const auto compiled = fdcg::bake::compile(fdcg::test::cube(), {});
     REQUIRE(compiled);
-    const std::string name = "host_test_cube.fdcg";
-    std::ofstream file(name, std::ios::binary);
+    std::ofstream file(path_, std::ios::binary);
     file.write(reinterpret_cast<const char*>(compiled->bytes.data()), static_cast<std::streamsize>(compiled->bytes.size()));
-    return name;
-  }();
-  return path;
+  }
+  ~CubeFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string cube_file() {
+  static const CubeFile file;
+  return file.path();
 }
 
 constexpr std::uint64_t kPatienceNs = 60'000'000'000;  // for a machine that is busy with other things
