@@ -241,7 +241,10 @@ int run_session(const ReplayArguments& arguments, const std::string& given) {
 }
 
 int run_replay(const ReplayArguments& arguments) {
-  if (arguments.trajectory.empty()) return fail(kUsage, "--trajectory is required (see 'fdcg-servo replay --help')");
+  if (arguments.trajectory.empty()) {
+    return fail(kUsage, "--trajectory is required: '" + arguments.graph +
+                            "' is no session's log, and a graph needs a path (see 'fdcg-servo replay --help')");
+  }
   if (!arguments.graphs.empty() || !arguments.rewritten.empty()) {
     return fail(kUsage, "--graphs and --write are for a session's log, and '" + arguments.graph + "' is none");
   }
