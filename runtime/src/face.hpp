@@ -17,26 +17,30 @@ struct Crossing {
   Real fraction = 1;
 };
 
-// Whether `to` is past the corner at which side k starts: before the start of that side and beyond the end of the one before.
+// Whether `to` is past the corner at which side k starts: before that side's start and beyond the end of the side before.
 template <class Real>
-[[gnu::noinline]] bool is_past_corner(const GraphView<Real>& graph, NodeRef<Real> node, uint32_t k, Vec3<Real> to) {
+[[gnu::noinline]] bool is_past_corner(NodeRef<Real> node, uint32_t k, Vec3<Real> to) {
   const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());
-  const Vec3<Real> from_corner = to - graph.corner_point(node.corner(k));
-  const uint32_t before = node.previous(k);
-  const Real along = dot(from_corner, graph.edge(node, k).direction), along_before = dot(from_corner, graph.edge(node, before).direction);
-  return (node.which(k) == 0 ? along : -along) < -rounding && (node.which(before) == 0 ? along_before : -along_before) > rounding;
+  const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
+  const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
+    const Real along = dot(from_corner, node.graph().edge(node, side).direction);
+    return sign * (node.which(side) == 0 ? along : -along) > rounding;
+  };
+  return is_ahead(k, -1) && is_ahead(node.previous(k), 1);
 }
 
-// Looks at the sides from the first on beyond whose plane the move ends, or near it.
+// Looks at the sides from the first on beyond whose plane the move ends. Or near it, by `bound` of rounding: towards the tip of
+// a face like a needle its two planes are one but for that, and a move might slide past the tip between them.
 template <class Real>
-[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to,
+                                                     Real bound) {
   Crossing<Real> first;
   for (; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
-    if (!(s1 >= -bound)) continue;
     if (!(s1 >= 0)) {
-      if (first.local_side == FDCG_NONE && (is_past_corner(graph, node, k, to) || is_past_corner(graph, node, node.next(k), to))) first = {k, Real(1)};
+      const bool is_near = s1 >= -bound && first.local_side == FDCG_NONE;
+      if (is_near && (is_past_corner(node, k, to) || is_past_corner(node, node.next(k), to))) first = {k, 1};
       continue;
     }
     const Real s0 = plane.distance(from);
@@ -49,9 +53,9 @@ template <class Real>
 }
 
 template <class Real>
-FDCG_HOT Crossing<Real> first_crossing(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {
-    if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, graph, node, from, to, bound);
+    if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to, bound);
   }
   return {};
 }
@@ -69,11 +73,11 @@ struct FaceMove {
   Crossing<Real> crossing;
 };
 
-// `reach`: from the HIP to the god-object, more exactly than the two can say.
+// `bound`: plane_rounding_bound of the HIP. `reach`: from the HIP to the god-object, more exactly than the two can say.
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
 template <class Real>
-FDCG_HOT FaceMove<Real> move_on_face(const GraphView<Real>& graph, Real bound, NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real side,
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real bound, Real side,
                                      Vec3<Real> god_object, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
   if (!(side < 0)) return {Kind::leaves, god_object, {}};
@@ -85,7 +89,7 @@ FDCG_HOT FaceMove<Real> move_on_face(const GraphView<Real>& graph, Real bound, N
   const Real shrink = slip.gap > 0 ? slip.gap / root(gap2) : Real(0);
   const Vec3<Real> surface_point = hip + normal * depth;
   const Vec3<Real> target = surface_point + offset * shrink;
-  const Crossing<Real> crossing = first_crossing(graph, node, god_object, target, bound);
+  const Crossing<Real> crossing = first_crossing(node, god_object, target, bound);
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
@@ -163,7 +167,7 @@ inline Decision face_rule(Walk<Real>& walk) {
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
   const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.lost;
-  return carry_out(walk, move_on_face(walk.graph, walk.hip_bound, node, walk.friction, walk.hip, walk.side(node), walk.god_object, reach));
+  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, reach));
 }
 
 }  // namespace fdcg

@@ -318,7 +318,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     FaceMove<Real> move;
     if (is_on_face) {
       const NodeRef<Real> node = graph.node(contact->feature);
-      move = move_on_face(graph, bound, node, friction, hip, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
+      move = move_on_face(node, friction, hip, bound, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
     }
     if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
