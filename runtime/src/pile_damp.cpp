@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dampers of a pile's touches. One after the other, each takes its part of the relative velocity away at once, as an
-// implicit step of its own: v / (1 + c h / m) at the mass m that it moves. Such a step only takes energy, so any row of them
-// does, however stiff, and none needs a shorter step.
+// implicit step of its own: v / (1 + x + x x / 2), x = c h / m, at the mass m that it moves. Such a step only takes energy, so
+// any row of them does, however stiff, and none needs a shorter step.
 #include "pile_memory.hpp"
 #include "scene_tick.hpp"
 
 namespace fdcg {
 namespace {
+
+// Of damping_ratio, where a contact sticks: many together then do not swing, whatever their masses sideways.
+constexpr double kSideways = 2;
 
 // Velocity that a unit impulse along u at `arm` from the centre of mass gives to that place.
 World answer(const PileMember* member, World at, World u) {
@@ -34,14 +37,38 @@ void give(PileMember* member, World at, World impulse) {
 
 // What an implicit damper of this ratio to the critical one gives against a speed along a direction.
 double damper_impulse(double speed, double ratio, double stiffness, double mass, double step_s) {
-  const double c = 2 * ratio * root(stiffness * mass) * step_s;
-  return -speed * (c * mass / (mass + c));
+  const double x = 2 * ratio * step_s * root(stiffness / mass), taken = x + x * x / 2;
+  return -speed * mass * (taken / (1 + taken));
 }
 
 double static_mu(const Meeting& meeting, const PileMember& owner, const PileTouch& touch) {
   const fdcg_params& other =
       touch.on == kGround ? meeting.pile.ground_params : meeting.object(meeting.pile.members()[touch.on]).params;
   return root(meeting.object(owner).params.mu_static * other.mu_static);
+}
+
+// How much of `more`, 0 to 1, may be added to `held` without going beyond `limit` in length.
+double share_within(World held, World more, double limit) {
+  const World all = held + more;
+  if (dot(all, all) <= limit * limit) return 1;
+  const double a = dot(more, more), b = dot(held, more), c = dot(held, held) - limit * limit;
+  if (!(a > 0) || c > 0 || !(limit > 0)) return 0;
+  return smaller(1, larger(0, (root(b * b - a * c) - b) / a));
+}
+
+// Of a touch that sticks and gives `along` as its damper's push: with the spring's it stays in the cone.
+World sideways_impulse(const Meeting& meeting, const PileMember& owner, const PileMember* other, const PileTouch& touch,
+                       double along) {
+  const World at = touch.god_object, n = touch.normal;
+  const World velocity = velocity_at(meeting, &owner, at) - velocity_at(meeting, other, at);
+  const World across = velocity - n * dot(velocity, n);
+  const double slide = norm(across), h = meeting.step_s;
+  const double mass = slide > 0 ? mass_along(&owner, other, at, across * (1 / slide)) : 0;
+  if (mass == 0) return {0, 0, 0};
+  const double ratio = kSideways * meeting.pile.config.damping_ratio;
+  const World wanted = across * (damper_impulse(slide, ratio, touch.stiffness_n_per_m, mass, h) / slide);
+  const World held = (touch.force_n - n * touch.load_n) * h;
+  return wanted * share_within(held, wanted, static_mu(meeting, owner, touch) * (touch.load_n * h + along));
 }
 
 }  // namespace
@@ -59,8 +86,7 @@ void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch) {
   const World at = touch->god_object, n = touch->normal;
   const double h = meeting.step_s, mass = mass_along(owner, other, at, n);
   if (mass == 0) return;
-  World velocity = velocity_at(meeting, owner, at) - velocity_at(meeting, other, at);
-  const double speed = dot(velocity, n);
+  const double speed = dot(velocity_at(meeting, owner, at) - velocity_at(meeting, other, at), n);
   const double ratio = speed < 0 ? config.damping_ratio : config.leaving_ratio;
   // never a pull: at most all of the spring's push is held back
   const double along = larger(damper_impulse(speed, ratio, touch->stiffness_n_per_m, mass, h), -touch->load_n * h);
@@ -68,18 +94,10 @@ void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch) {
   give(owner, at, impulse);
   give(other, at, impulse * -1.0);
   if (touch->contact.slipping == 0) {
-    velocity = velocity_at(meeting, owner, at) - velocity_at(meeting, other, at);
-    const World across = velocity - n * dot(velocity, n);
-    const double slide = norm(across), side_n = norm(touch->force_n - n * touch->load_n);
-    const double left = static_mu(meeting, *owner, *touch) * (touch->load_n * h + along) - side_n * h;  // of the cone
-    const double side_mass = slide > 0 ? mass_along(owner, other, at, across * (1 / slide)) : 0;
-    if (left > 0 && side_mass > 0) {
-      const double wanted = damper_impulse(slide, config.damping_ratio, touch->stiffness_n_per_m, side_mass, h);
-      const World sideways = across * (larger(wanted, -left) / slide);
-      give(owner, at, sideways);
-      give(other, at, sideways * -1.0);
-      impulse = impulse + sideways;
-    }
+    const World sideways = sideways_impulse(meeting, *owner, other, *touch, along);
+    give(owner, at, sideways);
+    give(other, at, sideways * -1.0);
+    impulse = impulse + sideways;
   }
   touch->damper_n = impulse * (1 / h);
 }

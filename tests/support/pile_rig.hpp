@@ -73,7 +73,7 @@ class PileRig {
   }
   // Its index among bodies().
   std::size_t add_body(std::size_t shape, double mass_kg, const fdcg_params& params, const fdcg_pose& pose,
-                       const fdcg_body_config& like = fdcg_default_body_config()) {
+                       const fdcg_body_config& like = fdcg_default_body_config(), std::uint32_t most_points = 20) {
     const fdcg_graph& graph = shapes_.at(shape).graph;
     fdcg_scene_body body = {};
     body.object = scene_.add(graph, params, pose);
@@ -85,7 +85,7 @@ class PileRig {
     expect(fdcg_body_init(&body.body, &config, &pose, &error_));
     double points[32][3];
     std::uint32_t count = 0;
-    expect(fdcg_pick_points(&graph, points, 32, &count, &error_));
+    expect(fdcg_pick_points(&graph, points, most_points, &count, &error_));
     expect(fdcg_pile_add(pile_, scene_.get(), body.object, points, count, &error_));
     bodies_.push_back(body);
     return bodies_.size() - 1;
@@ -114,6 +114,7 @@ class PileRig {
     return list;
   }
   [[nodiscard]] SceneRig& scene() { return scene_; }
+  [[nodiscard]] std::vector<std::uint64_t>& memory() { return memory_; }
   [[nodiscard]] fdcg_pile* pile() const { return pile_; }
   [[nodiscard]] const fdcg_graph& graph(std::size_t shape) const { return shapes_.at(shape).graph; }
 

@@ -6,16 +6,16 @@
  *   void* memory = malloc(fdcg_pile_bytes(&config));                       or a static array: the pile never asks for more
  *   fdcg_pile_create(memory, bytes, &config, &pile, &error);
  *   fdcg_pile_set_ground(pile, normal, 0, &params, &error);                the half-space below normal . x = 0
- *   fdcg_pick_points(&graph, points, 32, &count, &error);                  where a body touches: its outermost corners
+ *   fdcg_pick_points(&graph, points, 20, &count, &error);                  where a body touches: corners, edges
  *   fdcg_pile_add(pile, scene, object, points, count, &error);             a body; 0 points: it is only touched
  *   each tick:  fdcg_scene_step_pile(scene, pile, bodies, body_count, substeps, 0.001, reactions, reaction_count, &error);
  *               instead of fdcg_scene_step_bodies
  *
  * A body touches with its points: each is a contact point with a friction-cone god-object in the frame of what it touches, the
  * same step that a finger makes (fdcg.h), so what rests does not creep. Where two bodies meet, the points of each are asked of
- * the other. A pair of bodies that meet edge on edge, with no point of either inside the other, is not felt: give points along
- * such edges. A member of the pile that is not among the bodies of a step is fixed, or moved by fdcg_scene_set_pose alone; then
- * it carries along what lies on it.
+ * the other. Where an edge crosses an edge between the points of both, nothing is felt: so points stand along edges too. A
+ * member of the pile that is not among the bodies of a step is fixed, or moved by fdcg_scene_set_pose alone; then it carries
+ * along what lies on it.
  *
  * What acts between two: the parameters of both objects (fdcg_scene_add_object) together. Friction: the root of the product of
  * both coefficients, static and dynamic alike. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
@@ -23,9 +23,9 @@
  * holds while fewer than 16 touches pull at a body in one direction. The other parameters (edge_friction, ...) are those of the
  * object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by damping_ratio of the critical value for
  * the mass that this contact moves, of the way back out by leaving_ratio of it, so that what falls does not bounce; of what
- * sticks, sideways, by damping_ratio. Each damper is solved implicitly after the other: none adds energy at any step. A contact
- * never pulls, and what a damper adds sideways stays inside the cone. Slipping is damped by friction alone: the god-object's
- * cone is measured by the spring, whose push is the load wherever the approach is over.
+ * sticks, sideways, by twice damping_ratio. Each damper is solved implicitly after the other: none adds energy at any step.
+ * A contact never pulls, and what a damper adds sideways stays inside the cone. Slipping is damped by friction alone: the
+ * god-object's cone is measured by the spring, whose push is the load wherever the approach is over.
  *
  * Cost: two bodies far apart cost nothing between looks (1 to 2 ns an object, when they have used up the distance last seen);
  * near one another, some 10 ns a point that is out of the other's box; a touch some 0.2 us on a graph, 60 ns on the ground.
@@ -80,11 +80,14 @@ fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, fdcg_object_
 /* An object that left the scene leaves by itself. */
 fdcg_status fdcg_pile_remove(fdcg_pile* pile, fdcg_object_id object, fdcg_error* error);
 
-/* Points for a graph's body, up to `capacity` (1 to 1,024), in the object's frame: for each of 64 * capacity directions spread
- * over the sphere the corner farthest that way, each corner once, in the order found. All corners of a box's hull are found
- * with a capacity of 8, those of other hulls but for very pointed ones among very many; where there are more, the thinning is
- * even in direction. Each is drawn in by 1/1024 of its way from their mean: boxes that lie flush, corner over corner, then
- * stand on one another. Reads the graph's corners 64 * capacity times: 20 ms for 10^4 corners and 32 points; for set-up. */
+/* Points for a graph's body, in the object's frame, `capacity` (1 to 256) of them or fewer. First corners: for each of
+ * 64 * capacity directions spread over the sphere the one farthest that way, each once, in the order found: all corners of a
+ * box's hull, and of others but the most pointed among very many; where there are more than `capacity`, the thinning is even in
+ * direction. In the room that is left, points along the edges (those whose faces turn by more than 26 degrees), each where the
+ * pieces are the longest; a box at 8 has its corners, at 20 the middles of its edges too, which two boxes turned against each
+ * other need. Each is drawn in by 1/1024 of its way from the corners' mean: boxes that lie flush, edge over edge, then stand on
+ * one another. For set-up: reads the graph's corners 64 * capacity times (20 ms for 10^4 corners and 32 points); 12 KB of
+ * stack. */
 fdcg_status fdcg_pick_points(const fdcg_graph* graph, double (*points_m)[3], uint32_t capacity, uint32_t* count,
                              fdcg_error* error);
 
