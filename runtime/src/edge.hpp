@@ -92,7 +92,9 @@ inline Decision edge_rule(Walk<Real>& walk) {
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
   const Vec3<Real> across = walk.hip - (line.start + line.direction * foot);
-  if (walk.friction.has_terms()) stand_on_edge(walk, connection, across);
+  if constexpr (FDCG_WITH_TERMS) {
+    if (walk.friction.terms != nullptr) stand_on_edge(walk, connection, across);
+  }
   const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, across));
   if (slip.is_rest) return rest();
   const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + slip.gap : foot - slip.gap);

@@ -28,14 +28,14 @@ struct Friction {
   bool is_slipping;                // dynamic friction holds
   FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
 
-  [[nodiscard]] bool has_terms() const { return FDCG_WITH_TERMS && terms != nullptr; }
-
   // `gap2` is the squared distance of the god-object from the surface point, `load` the depth that presses it on. Slipping
   // starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on
   // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
   // the rounding of its own place. Squares, so that rest costs no root.
   Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
-    if (has_terms()) return slip_with_terms(god_object, gap2, load);
+    if constexpr (FDCG_WITH_TERMS) {
+      if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
+    }
     constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {

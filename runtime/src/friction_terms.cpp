@@ -8,6 +8,9 @@
 // and b = reach fall / T: with b <= lag / T + 1/4 that is -e / 3 at worst, and never larger than e.
 #include "friction_terms.hpp"
 
+#include "config.hpp"
+
+#if FDCG_WITH_TERMS
 namespace fdcg {
 namespace {
 
@@ -136,6 +139,7 @@ Steepness steepness_of(const fdcg_params& params, const fdcg_material& material)
 }
 
 }  // namespace fdcg
+#endif
 
 extern "C" fdcg_material fdcg_combine_materials(const fdcg_material* surface, const fdcg_material* finger) {
   const double a = surface->stiffness_n_per_m, b = finger->stiffness_n_per_m;

@@ -46,6 +46,7 @@ fdcg_status check_ranges(const Owner& owner, const Range* ranges, uint32_t count
   return FDCG_OK;
 }
 
+#if FDCG_WITH_TERMS
 fdcg_status check_material(const Owner& owner, const fdcg_material& material, double least_stiffness, fdcg_error* error) {
   const Range ranges[] = {{"mu_dynamic", material.mu_dynamic, 0, kLargest},
                           {"mu_static", material.mu_static, material.mu_dynamic, kLargest},
@@ -78,12 +79,6 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
         .text(", allowed are sums of fdcg_term: 0 to ")
         .number(FDCG_TERM_ALL);
   }
-  if (!FDCG_WITH_TERMS && params.terms != 0) {
-    return Message(error, FDCG_E_ARGUMENT)
-        .text("params.terms is ")
-        .number(params.terms)
-        .text(", but this library was built without them; build it with FDCG_WITH_TERMS");
-  }
   const Range ranges[] = {{"stribeck_m_per_s", has(FDCG_TERM_STRIBECK) ? params.stribeck_m_per_s : 1, kLeast, kLargest},
                           {"viscous_s_per_m", has(FDCG_TERM_VISCOUS) ? params.viscous_s_per_m : 0, 0, kLargest},
                           {"presliding_n_per_m", has(FDCG_TERM_PRESLIDING) ? params.presliding_n_per_m : 1, kLeast, kLargest},
@@ -103,6 +98,15 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
   }
   return status;
 }
+#else
+fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
+  if (params.terms == 0) return FDCG_OK;
+  return Message(error, FDCG_E_ARGUMENT)
+      .text("params.terms is ")
+      .number(params.terms)
+      .text(", but this library was built without them; build it with FDCG_WITH_TERMS");
+}
+#endif
 
 }  // namespace
 }  // namespace fdcg

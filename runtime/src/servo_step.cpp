@@ -300,10 +300,10 @@ template <class Real>
   result->flags = progress.flags;
   result->transitions = progress.transitions;
   const bool is_free = walk.active == kFree;
-  if (walk.friction.has_terms()) {
+  if (walk.friction.terms == nullptr) {
+    if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
+  } else if constexpr (FDCG_WITH_TERMS) {
     respond_with_terms(walk, contact, result);
-  } else if (!is_free) {
-    respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
   }
   store(walk.god_object, contact->god_object);
   contact->state = walk.active.state;
@@ -358,7 +358,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     store(hip, contact->god_object);  // free: a contact that is not has no such ball
     store(hip, contact->hip);
   } else if (FDCG_WITH_TERMS && params.terms != 0) {
-    return step_with_terms<Real>(raw, params, hip, contact, result);
+    if constexpr (FDCG_WITH_TERMS) return step_with_terms<Real>(raw, params, hip, contact, result);
   } else {
     const GraphView<Real> graph(raw);
     const Real bound = plane_rounding_bound(graph, hip);
