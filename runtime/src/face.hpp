@@ -166,6 +166,9 @@ template <class Real>
 inline Decision face_rule(Walk<Real>& walk) {
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
+  if constexpr (FDCG_WITH_TERMS) {
+    if (walk.friction.terms != nullptr) walk.friction.terms->stand_on_face(walk.active.index);
+  }
   const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.lost;
   return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, reach));
 }
