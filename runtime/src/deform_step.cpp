@@ -121,6 +121,7 @@ bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, 
   contact->seat_state = FDCG_FREE;
   contact->seat_feature = FDCG_NONE;
   contact->slipping = 0;
+  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
   contact->sweep.in_place = 0;
   put<Real>(contact, caught.place);
   return true;
