@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies that a scene's fingers push.
-#include "body_math.hpp"
+#include "body_scene.hpp"
 #include "message.hpp"
 
 namespace fdcg {
-namespace {
-
-// The scene's torque is about the origin of the object's frame, the body's about its centre of mass.
-void push(fdcg_body* body, const fdcg_reaction& reaction, double dt_s) {
-  const fdcg_pose pose = fdcg_body_pose(body);
-  const Vector force = vec(reaction.force_n);
-  const Vector arm = vec(body->centre_m) - vec(pose.translation_m);
-  double torque[3];
-  put(vec(reaction.torque_n_m) - cross(arm, force), torque);
-  fdcg_body_step(body, reaction.force_n, torque, dt_s);
+fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction) {
+  const fdcg_pose pose = fdcg_body_pose(&body);
+  const Vector arm = vec(body.centre_m) - vec(pose.translation_m);
+  fdcg_reaction moved = reaction;
+  put(vec(reaction.torque_n_m) - cross(arm, vec(reaction.force_n)), moved.torque_n_m);
+  return moved;
 }
 
-fdcg_status check(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
-                  const fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error) {
+fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_reaction& push, double dt_s, fdcg_error* error) {
+  const bool was_asleep = body->body.is_asleep != 0;
+  fdcg_body_step(&body->body, push.force_n, push.torque_n_m, dt_s);
+  if (was_asleep && body->body.is_asleep != 0) return FDCG_OK;  // it has not moved
+  const fdcg_pose pose = fdcg_body_pose(&body->body);
+  return fdcg_scene_set_pose(scene, body->object, &pose, error);
+}
+
+fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
+                         const fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error) {
   if (scene == nullptr || bodies == nullptr || reactions == nullptr)
     return Message(error, FDCG_E_ARGUMENT).text("scene, bodies or reactions: null pointer");
   if (substeps == 0 || substeps > FDCG_BODY_MAX_SUBSTEPS) {
@@ -41,22 +45,18 @@ fdcg_status check(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32
   return FDCG_OK;
 }
 
-}  // namespace
 }  // namespace fdcg
 
 extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count,
                                               uint32_t substeps, double tick_s, fdcg_reaction* reactions,
                                               uint32_t reaction_count, fdcg_error* error) {
-  fdcg_status status = fdcg::check(scene, bodies, body_count, substeps, reactions, reaction_count, error);
+  fdcg_status status = fdcg::check_bodies(scene, bodies, body_count, substeps, reactions, reaction_count, error);
   for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
     fdcg_scene_step(scene);
     fdcg_scene_reactions(scene, reactions, reaction_count);
     for (uint32_t i = 0; status == FDCG_OK && i < body_count; ++i) {
-      const bool was_asleep = bodies[i].body.is_asleep != 0;
-      fdcg::push(&bodies[i].body, reactions[bodies[i].object.index], tick_s / substeps);
-      if (was_asleep && bodies[i].body.is_asleep != 0) continue;  // it has not moved
-      const fdcg_pose pose = fdcg_body_pose(&bodies[i].body);
-      status = fdcg_scene_set_pose(scene, bodies[i].object, &pose, error);
+      const fdcg_reaction push = fdcg::about_centre(bodies[i].body, reactions[bodies[i].object.index]);
+      status = fdcg::move_body(scene, bodies + i, push, tick_s / substeps, error);
     }
   }
   return status;

@@ -85,6 +85,7 @@ class NodeRef {
   }
 
   [[nodiscard]] const unsigned char* block() const { return block_; }
+  [[nodiscard]] const GraphView<Real>& graph() const { return *graph_; }
 
  private:
   // Out of line: every rule asks for planes, and each would hold a copy. Not as a return value: four floats come back two to a

@@ -120,8 +120,8 @@ static inline fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m,
  * m, none less than 1e-4 of the largest, and no field set that the kind does not name. The step does not check. */
 fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_error* error);
 
-/* Moves the contact to the HIP of this tick and says what the hand should feel: fdcg_step for a surface. Of *params all is
- * used but edge_friction for the rims and edges of solids, on which nothing rests, and disabled_skips. */
+/* Moves the contact to the HIP of this tick and says what the hand should feel: fdcg_step for a surface. Of *params neither
+ * disabled_skips nor `terms` count: friction is that of the two coefficients. */
 void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* contact,
                        const double hip_object_m[3], fdcg_result* result);
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who is near whom in a pile: bounding spheres, looked at only when the distances last seen can have been used up.
+#include "pile_memory.hpp"
+#include "reach.hpp"
+#include "scene_tick.hpp"
+
+namespace fdcg {
+namespace {
+
+// Nearer than this share of a member's own radius is near: a look in as many steps as it takes to use the rest up.
+constexpr double kNearShare = 0.25;
+constexpr double kRounding = 64 * DBL_EPSILON;
+
+}  // namespace
+
+void find_near(const Meeting& meeting, PileMember* member) {
+  fdcg_pile& pile = meeting.pile;
+  if (member->look == pile.look && pile.travel_m < member->limit_m) return;
+  const Object& own = meeting.object(*member);
+  const double radius = member->radius_m * own.now.scale, ahead = radius * kNearShare;
+  const double rounding = kRounding * (norm1(own.now.centre) + radius + meeting.scene.farthest);
+  double nearest_far = HUGE_VAL;
+  member->near_count = 0;
+  for (uint32_t i = 0; i < pile.member_end; ++i) {
+    const PileMember& other = pile.members()[i];
+    if (&other == member || other.is_used == 0 || other.is_enabled == 0) continue;
+    const Object& object = meeting.object(other);
+    const double gap = norm(object.now.centre - own.now.centre) - object.now.radius - radius - rounding;
+    // what both moved in this very step is part of the way that is swept
+    const double moved = norm(object.now.centre - object.last.centre) + norm(own.now.centre - own.last.centre);
+    if (gap - moved > ahead) {
+      nearest_far = smaller(nearest_far, gap);
+    } else if (member->near_count++ < PileMember::kMostNear) {
+      member->near[member->near_count - 1] = i;
+    }
+  }
+  member->look = pile.look;
+  member->limit_m = (pile.travel_m + nearest_far / 2) * (1 - kRounding);
+  ++pile.counts.looks;
+}
+
+bool can_have_met(const Meeting& meeting, const Object& object, World from_world, World to_world, World* from, World* to) {
+  const Pose &now = object.now, &before = object.last;
+  const double radius = larger(now.radius, before.radius);
+  if (!(way_distance2(from_world - before.centre, to_world - now.centre) <= radius * radius)) return false;
+  const bool may_skip = meeting.scene.skips(FDCG_SKIP_ROTATION);
+  *from = before.to_object(from_world, may_skip);
+  *to = now.to_object(to_world, may_skip);
+  return way_meets_box(*from - object.bounds.centre, *to - object.bounds.centre, object.bounds.half);
+}
+
+}  // namespace fdcg

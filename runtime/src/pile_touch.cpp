@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// One touch of a pile: the god-object's step, and the spring between it and the point.
+#include "friction.hpp"
+#include "pile_memory.hpp"
+#include "struct_bytes.hpp"
+
+namespace fdcg {
+namespace {
+
+// Of the mass that a contact moves over the square of the step: a quarter of what one spring could have in all, so that 16 may
+// pull at one body.
+constexpr double kMostStiffness = 0.25;
+
+double mixed(double a, double b) {
+  return root(a * b);
+}
+double in_series(double a, double b) {
+  return a + b > 0 ? a * (b / (a + b)) : 0;
+}
+
+// Where the god-object and the spring are, and along what the load is measured.
+void place(PileTouch* touch, World god_object, World point, World normal, bool has_normal) {
+  const World spring = god_object - point;
+  const double length = norm(spring);
+  touch->god_object = god_object;
+  touch->has_normal = has_normal || length > 0;
+  touch->normal = has_normal ? normal : (length > 0 ? spring * (1 / length) : World{0, 0, 0});
+}
+
+void press(const Meeting& meeting, const PileMember& owner, World point, double own_stiffness, double other_stiffness,
+           bool was_pressing, PileTouch* touch) {
+  if (!was_pressing) {
+    const PileMember* const other = touch->on == kGround ? nullptr : meeting.pile.members() + touch->on;
+    double mass = touch->has_normal != 0 ? mass_along(&owner, other, touch->god_object, touch->normal) : 0;
+    if (mass == 0) mass = meeting.bodies[owner.body].body.config.mass_kg / 4;  // asleep, or the very first instant: as a cube's
+    const double most = kMostStiffness * mass / (meeting.step_s * meeting.step_s);
+    const double wanted = in_series(own_stiffness, other_stiffness);
+    touch->stiffness_n_per_m = wanted < most ? wanted : most;
+  }
+  touch->force_n = (touch->god_object - point) * touch->stiffness_n_per_m;
+  touch->load_n = dot(touch->force_n, touch->normal);
+}
+
+// The rules of contact-model sections 4 and 5 on one plane that has no edge.
+bool step_on_ground(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
+  const fdcg_pile& pile = meeting.pile;
+  fdcg_contact& contact = touch->contact;
+  const bool was_pressing = !is_new && touch->is_pressing != 0;
+  const World n = pile.ground_normal;
+  const double depth = pile.ground_offset_m - dot(n, way.to);
+  const fdcg_params& own = meeting.object(owner).params;
+  World god_object = was_pressing ? vec(contact.god_object) : way.to;
+  if (!(depth > 0)) return false;
+  if (!was_pressing) {
+    contact = {};
+    const double before = pile.ground_offset_m - dot(n, way.from);
+    // the point of entry; what began below it begins straight above
+    god_object = before <= 0 ? way.from + (way.to - way.from) * (before / (before - depth)) : way.to + n * depth;
+  }
+  const World surface_point = way.to + n * depth, off = god_object - surface_point;
+  const World gap = off - n * dot(off, n);
+  Friction<double> friction = {mixed(own.mu_static, pile.ground_params.mu_static),
+                               mixed(own.mu_dynamic, pile.ground_params.mu_dynamic), true, contact.slipping != 0};
+  const double gap2 = dot(gap, gap);
+  const Slip<double> slip = friction.slip(god_object, gap2, depth);
+  if (!slip.is_rest) god_object = surface_point + gap * (slip.gap / root(gap2));
+  put(god_object, contact.god_object);
+  contact.state = FDCG_FACE;
+  contact.slipping = friction.is_slipping ? 1 : 0;
+  touch->is_pressing = 1;
+  place(touch, god_object, way.to, n, true);
+  press(meeting, owner, way.to, own.stiffness_n_per_m, pile.ground_params.stiffness_n_per_m, was_pressing, touch);
+  return true;
+}
+
+fdcg_params mixed_params(const fdcg_params& own, const fdcg_params& on) {
+  fdcg_params params = on;
+  params.mu_static = mixed(own.mu_static, on.mu_static);
+  params.mu_dynamic = mixed(own.mu_dynamic, on.mu_dynamic);
+  params.stiffness_n_per_m = 0;  // the spring is this file's affair
+  params.damping_n_s_per_m = 0;
+  return params;
+}
+
+World turned(const Pose& pose, World v) {
+  return {dot(pose.row[0], v), dot(pose.row[1], v), dot(pose.row[2], v)};
+}
+
+bool step_on_object(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
+  const Object& on = meeting.object(meeting.pile.members()[touch->on]);
+  const fdcg_params& own = meeting.object(owner).params;
+  const fdcg_params params = mixed_params(own, on.params);
+  const bool may_skip = meeting.scene.skips(FDCG_SKIP_ROTATION);
+  const bool was_pressing = !is_new && touch->is_pressing != 0;
+  fdcg_contact& contact = touch->contact;
+  fdcg_result result;
+  double local[3];
+  World from, to;
+  const bool can_have = can_have_met(meeting, on, way.from, way.to, &from, &to);
+  if (is_new) {
+    if (!can_have) return false;
+    contact = {};
+    put(from, local);
+    fdcg_step(on.graph, &params, &contact, local, &result);
+  }
+  to = on.now.to_object(way.to, may_skip);
+  put(to, local);
+  fdcg_step(on.graph, &params, &contact, local, &result);
+  touch->is_pressing = result.state != FDCG_FREE ? 1 : 0;
+  touch->force_n = touch->damper_n = {0, 0, 0};
+  touch->load_n = 0;
+  if (touch->is_pressing == 0) return can_have || (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
+  const World spring = on.now.turned_to_world(vec(result.god_object_m) - to, may_skip);
+  const bool is_face = result.state == FDCG_FACE;
+  const World normal = is_face ? turned(on.now, vec(fdcg_get_node(on.graph, result.feature).normal)) : World{0, 0, 0};
+  place(touch, way.to + spring, way.to, normal, is_face);
+  press(meeting, owner, way.to, own.stiffness_n_per_m, on.params.stiffness_n_per_m, was_pressing, touch);
+  return true;
+}
+
+}  // namespace
+
+bool step_touch(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
+  ++meeting.pile.counts.steps;
+  return touch->on == kGround ? step_on_ground(meeting, owner, way, is_new, touch)
+                              : step_on_object(meeting, owner, way, is_new, touch);
+}
+
+}  // namespace fdcg
