@@ -16,6 +16,7 @@
 #include "free_space.hpp"
 #include "hooks.hpp"
 #include "leave.hpp"
+#include "response.hpp"
 #include "struct_bytes.hpp"
 #include "yield.hpp"
 
@@ -213,14 +214,6 @@ inline void store(Vec3<Real> from, double (&to)[3]) {
   to[0] = from.x;
   to[1] = from.y;
   to[2] = from.z;
-}
-
-// Where damping takes from the spring: the speed along it, times the coefficient. Newtons per metre, >= 0 in all.
-inline double damped(const fdcg_params& params, double stiffness, Vec3<double> spring, Vec3<double> moved) {
-  const double length2 = dot(spring, spring);
-  if (!(length2 > 0)) return stiffness;
-  const double left = stiffness - params.damping_n_s_per_m * (dot(moved, spring) / length2) / params.tick_s;
-  return left > 0 ? left : 0;  // never a pull
 }
 
 inline void say_where(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
