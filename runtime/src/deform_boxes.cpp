@@ -85,8 +85,9 @@ bool set_lanes(fdcg_box8* record, uint32_t lanes, const TreeBox (&boxes)[FDCG_TR
   for (int axis = 0; axis < 3; ++axis) {
     const double origin = record->origin[axis], reach = kCells * double{tree_cell(record->exponent[axis])};
     const double size = all.high[axis] - all.low[axis];
+    const bool is_none = record->exponent[axis] < kLeastExponent;  // of zeros
     const bool is_large = record->exponent[axis] > kLeastExponent && size * kMuchTooLarge < reach;
-    if (is_large || all.low[axis] < origin || all.high[axis] > origin + reach) {
+    if (is_none || is_large || all.low[axis] < origin || all.high[axis] > origin + reach) {
       lay_grid(record, axis, all.low[axis], all.high[axis]);
       has_new_grid = true;
     }

@@ -152,7 +152,8 @@ template <class Real>
   fdcg_deform& deform = upkeep.deform();
   constexpr uint32_t kLastTick = 0xFFFFFFF0u;
   deform.has_moved = 0;
-  deform.travel += root(deform.way2) * (1 + 0x1p-20);
+  deform.tick_travel = root(deform.way2) * (1 + 0x1p-20);
+  deform.travel += deform.tick_travel;
   deform.way2 = 0;
   ++deform.tick;
   if (deform.tick < kLastTick) return;

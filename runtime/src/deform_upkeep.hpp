@@ -25,6 +25,7 @@ struct fdcg_deform {
   fdcg_box8* boxes;
   uint8_t* stale;  // by leaf, a bit for each node of it
   uint8_t* loose;  // by record, a bit for each box that may be larger than it must
+  uint32_t* tight_tick;  // by record: in which boxes were last made tight
   uint32_t* leaf_first;  // corner c is in the leaves leaf_first[c] .. leaf_first[c + 1] - 1
   uint32_t* leaves;      // leaf << FDCG_LEAF_NODES | a bit for each of its nodes that the corner belongs to
   fdcg::BoxTree tree;
@@ -34,18 +35,28 @@ struct fdcg_deform {
   uint32_t reserved;
   double per_tree_unit;
   double travel;  // the sum over all ticks of the largest way of a corner, rounded up; local
-  double way2;    // the largest of the tick to come, squared
+  double tick_travel;  // of the present tick
+  double way2;         // the largest way of the tick to come, squared
   double low[3], high[3];  // local: where corners may be moved
 };
 
 namespace fdcg {
 
-// Where a corner was before the tick that it last moved in.
+// Where a corner was before the tick that it last moved in; and where it may go without leaving new marks. While `is_marked`, its
+// triangles are stale, its leaves' boxes are loose, and all of them hold all that lies between `low` and `high`. What takes a
+// mark off, or makes a box smaller, resets it: so a corner that nobody looks at is marked once, however often it moves.
 template <class Real>
 struct Before {
   Real point[3];
   uint32_t tick;
+  uint32_t is_marked;
+  float low[3], high[3];  // tree units
 };
+
+inline float float_above(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? nextafterf(f, HUGE_VALF) : f;
+}
 
 inline fdcg_deform& deform_of(const fdcg_graph& graph) {
   return *reinterpret_cast<fdcg_deform*>(const_cast<fdcg_graph*>(&graph));
@@ -107,12 +118,22 @@ class Upkeep {
 
   // ---- hierarchy
 
-  void tighten(int level, uint32_t record) const {
-    if (__builtin_expect(d_->loose[d_->tree.first[level] + record] != 0, false)) make_tight(level, record);
+  // Makes those of a record's boxes tight that are loose and in `lanes`; where they are again, not before some ticks have passed.
+  // False: nothing was done.
+  [[nodiscard]] bool has_tightened(int level, uint32_t record, uint32_t lanes) const {
+    constexpr uint32_t kTicksBetween = 8;
+    const uint32_t at = d_->tree.first[level] + record, due = d_->loose[at] & lanes;
+    if (__builtin_expect(due == 0, true) || d_->tick - d_->tight_tick[at] < kTicksBetween) return false;
+    make_tight(level, record, due);
+    d_->tight_tick[at] = d_->tick;
+    return true;
   }
+  // Marks what depends on a corner's place, which has moved by no more than `way` along each axis.
+  void mark(uint32_t c, double way) const;
   // Makes a level's box, and those around it, hold more, and marks them as loose. Level 0: a leaf's.
   void hold(int level, uint32_t index, const TreeBox& box) const;
   [[nodiscard]] Vec3<double> in_tree(Vec3<Real> p) const { return widen(p) * d_->per_tree_unit; }
+  void make_tight(int level, uint32_t record, uint32_t due) const;
   [[nodiscard]] TreeBox leaf_box(uint32_t leaf, bool* may_shrink) const;
 
  private:
@@ -135,7 +156,6 @@ class Upkeep {
     return d_->connections[side.link >> 1].side[1 - (side.link & 1)];
   }
   [[nodiscard]] Vec3<double> leaving(uint32_t n, uint32_t k) const;
-  void make_tight(int level, uint32_t record) const;
 
   fdcg_deform* d_;
 };
@@ -170,6 +190,8 @@ template <class Real>
   const Plane<Real> plane = plane_with_normal<Real>(normal, a, b, c);
   here.plane = {{plane.normal.x, plane.normal.y, plane.normal.z}, plane.offset};
   here.flags = 0;
+  for (const fdcg_side& side : here.sides)
+    before(side.corner).is_marked = 0;
   d_->stale[n / FDCG_LEAF_NODES] = static_cast<uint8_t>(d_->stale[n / FDCG_LEAF_NODES] & ~(1u << n % FDCG_LEAF_NODES));
 }
 
@@ -297,7 +319,7 @@ template <class Real>
 // What a leaf's box must hold: its corners, and where those of the tick at hand or to come have been. Such a box may shrink
 // later.
 template <class Real>
-inline TreeBox Upkeep<Real>::leaf_box(uint32_t leaf, bool* may_shrink) const {
+[[gnu::noinline]] TreeBox Upkeep<Real>::leaf_box(uint32_t leaf, bool* may_shrink) const {
   TreeBox box = TreeBox::none();
   const uint32_t first = leaf * FDCG_LEAF_NODES, left = d_->header.node_count - first;
   const uint32_t count = left < FDCG_LEAF_NODES ? left : FDCG_LEAF_NODES;
@@ -305,7 +327,8 @@ inline TreeBox Upkeep<Real>::leaf_box(uint32_t leaf, bool* may_shrink) const {
   for (uint32_t n = first; n < first + count; ++n) {
     for (const fdcg_side& side : node(n).sides) {
       box.add(TreeBox::of(in_tree(point(side.corner))));
-      const Before<Real>& was = before(side.corner);
+      Before<Real>& was = before(side.corner);
+      was.is_marked = 0;
       if (was.tick - d_->tick > 1) continue;  // neither the present tick nor the next
       box.add(TreeBox::of(in_tree(vec(was.point))));
       *may_shrink = true;
@@ -314,9 +337,9 @@ inline TreeBox Upkeep<Real>::leaf_box(uint32_t leaf, bool* may_shrink) const {
   return box;
 }
 
-// The boxes that are loose anew, from what is below; the others as they are.
+// The boxes that are due anew, from what is below; the others as they are.
 template <class Real>
-[[gnu::noinline]] void Upkeep<Real>::make_tight(int level, uint32_t index) const {
+[[gnu::noinline]] void Upkeep<Real>::make_tight(int level, uint32_t index, uint32_t due) const {
   const BoxTree& tree = d_->tree;
   fdcg_box8& record = d_->boxes[tree.first[level] + index];
   uint8_t& loose = d_->loose[tree.first[level] + index];
@@ -327,16 +350,53 @@ template <class Real>
     const auto j = static_cast<uint32_t>(__builtin_ctz(left));
     const uint32_t below = index * FDCG_TREE_WAYS + j;
     bool may_shrink = false;
-    boxes[j] = (loose >> j & 1) == 0 ? lane_of(record, j)
-               : level == 0          ? leaf_box(below, &may_shrink)
-                                     : around(d_->boxes[tree.first[level - 1] + below], tree.lanes(level - 1, below));
+    boxes[j] = (due >> j & 1) == 0 ? lane_of(record, j)
+               : level == 0        ? leaf_box(below, &may_shrink)
+                                   : around(d_->boxes[tree.first[level - 1] + below], tree.lanes(level - 1, below));
     still_loose |= uint32_t{may_shrink} << j;
   }
   const bool has_new_grid = set_lanes(&record, lanes, boxes);
-  loose = static_cast<uint8_t>(still_loose);
+  loose = static_cast<uint8_t>((loose & ~due) | still_loose);
   if (level + 1 == tree.levels) return;
   if (has_new_grid) hold(level + 1, index, around(record, lanes));  // rounded outwards on other places
   d_->loose[tree.first[level + 1] + index / FDCG_TREE_WAYS] |= static_cast<uint8_t>(1u << index % FDCG_TREE_WAYS);
+}
+
+template <class Real>
+[[gnu::noinline]] void Upkeep<Real>::mark(uint32_t c, double way) const {
+  constexpr double kWaysAhead = 32, kMostRoom = 0.5;  // of the box
+  const Vec3<double> at = in_tree(point(c));
+  Before<Real>& own = before(c);
+  TreeBox shared = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
+  const uint32_t* const end = d_->leaves + d_->leaf_first[c + 1];
+  for (const uint32_t* entry = d_->leaves + d_->leaf_first[c]; entry < end; ++entry) {
+    const uint32_t leaf = *entry >> FDCG_LEAF_NODES;
+    d_->stale[leaf] = static_cast<uint8_t>(d_->stale[leaf] | (*entry & ((1u << FDCG_LEAF_NODES) - 1)));
+    const fdcg_box8& record = d_->boxes[d_->tree.first[0] + leaf / FDCG_TREE_WAYS];
+    TreeBox added = TreeBox::of(at);
+    if (!holds_point(record, leaf % FDCG_TREE_WAYS, at)) {
+      const TreeBox lane = lane_of(record, leaf % FDCG_TREE_WAYS);
+      double size = 0;
+      for (int k = 0; k < 3; ++k)
+        size = greater_of(size, lane.high[k] - lane.low[k]);
+      const double room = lesser_of(kWaysAhead * way, kMostRoom * size);
+      for (int k = 0; k < 3; ++k) {
+        added.low[k] -= room;
+        added.high[k] += room;
+      }
+    }
+    hold(0, leaf, added);
+    const TreeBox lane = lane_of(record, leaf % FDCG_TREE_WAYS);
+    for (int k = 0; k < 3; ++k) {
+      shared.low[k] = greater_of(shared.low[k], lane.low[k]);
+      shared.high[k] = lesser_of(shared.high[k], lane.high[k]);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    own.low[k] = float_above(shared.low[k]);
+    own.high[k] = -float_above(-shared.high[k]);
+  }
+  own.is_marked = 1;
 }
 
 // Up to the first box that holds what is new and is loose already: so are and do those around it.

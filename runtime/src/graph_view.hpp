@@ -235,12 +235,23 @@ struct GraphView {
   [[nodiscard]] CornerRef<Real> corner(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return vec(corners[index].point); }
 
-  // A record of the hierarchy.
-  [[nodiscard]] const fdcg_box8& boxes(const BoxTree& tree, int level, uint32_t record) const {
+  // A HIP's way in a tick, and the surface's in it: what a clear ball is worth looking for.
+  [[nodiscard]] Real with_way_of_surface(Real way) const {
 #if FDCG_DEFORMABLE
-    upkeep.tighten(level, record);
+    return way + static_cast<Real>(upkeep.deform().tick_travel);
+#else
+    return way;
 #endif
-    return hierarchy[tree.first[level] + record];
+  }
+
+  // Whether boxes of a record of the hierarchy, a bit in `lanes` each, have become tighter than they were: worth a second look.
+  [[nodiscard]] bool has_tightened([[maybe_unused]] int level, [[maybe_unused]] uint32_t record,
+                                   [[maybe_unused]] uint32_t lanes) const {
+#if FDCG_DEFORMABLE
+    return upkeep.has_tightened(level, record, lanes);
+#else
+    return false;
+#endif
   }
 
   // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs. Written number by
