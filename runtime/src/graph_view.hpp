@@ -88,6 +88,21 @@ class NodeRef {
     return derived;
   }
 
+  // Whether a point is inside of side k's Voronoi plane by more than `bound`; false: it may be. Only where that is told sooner
+  // than by the plane.
+  [[nodiscard]] bool surely_holds([[maybe_unused]] uint32_t k, [[maybe_unused]] Vec3<Real> x,
+                                  [[maybe_unused]] Real bound) const {
+#if FDCG_DEFORMABLE
+    const Vec3<Real> start = graph_->corner_point(corner(k)), along = graph_->corner_point(corner(next(k))) - start;
+    const Vec3<Real> off = x - start;
+    const Real beyond = dot(cross(along, normal()), off);  // times the side's length: in winding order
+    const Real rounding = 64 * RealLimits<Real>::kEpsilon * (norm1(x) + extent());
+    return beyond < -(2 * bound + rounding) * norm1(along);
+#else
+    return false;
+#endif
+  }
+
   [[nodiscard]] const unsigned char* block() const { return block_; }
   [[nodiscard]] const GraphView<Real>& graph() const { return *graph_; }
 

@@ -22,6 +22,7 @@ using fdcg::bake::Precision;
 namespace {
 
 constexpr int kSquares = 224;  // along a side
+constexpr double kMostTick_ns = 60000;  // a tick that takes longer was interrupted
 constexpr double kMostMark_ns = 20, kMostTimes = 3;
 
 enum class Way { slides, hovers };
@@ -104,6 +105,7 @@ Times run(const Case& c, int ticks) {
   fdcg_contact rigid = {};
   const Stopwatch watch;
   std::vector<float> steps, rigid_steps;
+  int interrupted = 0;
   double mark_ns = 0, marks = 0, touched = 0, sum = 0, rigid_sum = 0;
   for (int tick = 0; tick < ticks; ++tick) {
     const auto hip = hip_at(c.way, tick);
@@ -118,6 +120,10 @@ Times run(const Case& c, int ticks) {
     const std::uint64_t end = Stopwatch::now();
     touched += result.state != FDCG_FREE;
     if (tick < ticks / 10) continue;  // caches and boxes settle
+    if (watch.nanoseconds(begin, end) > kMostTick_ns) {
+      ++interrupted;
+      continue;
+    }
     rigid_steps.push_back(static_cast<float>(watch.nanoseconds(begin, after_rigid)));
     steps.push_back(static_cast<float>(watch.nanoseconds(marked, end)));
     mark_ns += watch.nanoseconds(after_rigid, marked);
@@ -127,6 +133,7 @@ Times run(const Case& c, int ticks) {
   }
   const auto count = static_cast<double>(steps.size());
   const Percentiles own(std::move(steps)), its(std::move(rigid_steps));
+  if (interrupted > ticks / 20) std::printf("%d of %d ticks were interrupted: the machine is busy\n", interrupted, ticks);
   return {mark_ns / marks, sum / count, rigid_sum / count, own.at(0.5), own.at(0.999), its.at(0.5), touched / ticks};
 }
 
