@@ -48,10 +48,15 @@ inline PlaceInTriangle foot_in(const Vec3<double> (&p)[3], Vec3<double> x) {
   return uu >= vv ? PlaceInTriangle{share(dot(off, u), uu), 0} : PlaceInTriangle{0, share(dot(off, v), vv)};
 }
 
-// The share of the way from `from` to `to` where the foot of x stands, 0 to 1.
-inline double share_along(Vec3<double> from, Vec3<double> to, Vec3<double> x) {
-  const Vec3<double> along = to - from;
-  return share(dot(x - from, along), dot(along, along));
+// The share of the way from end 0 to end 1 where the foot of x stands, 0 to 1.
+inline double share_along(const Vec3<double> (&end)[2], Vec3<double> x) {
+  const Vec3<double> along = end[1] - end[0];
+  return share(dot(x - end[0], along), dot(along, along));
+}
+
+// At 0 and 1 the ends themselves, without rounding.
+inline Vec3<double> point_along(const Vec3<double> (&end)[2], double share) {
+  return share < 1 ? end[0] + (end[1] - end[0]) * share : end[1];
 }
 
 // Whether triangle v b c, counter-clockwise seen from its front, passes over x while v moves to w.
