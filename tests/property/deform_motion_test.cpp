@@ -189,7 +189,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     const bool is_still = random.chance(0.3);
     for (std::uint32_t m = 0; m < moving && !random.chance(0.02); ++m) {
       const bool is_near = random.chance(0.5);
-      const std::size_t v = is_near ? sheet.vertex_near(hip[0] + random.uniform(-0.1, 0.1), hip[1] + random.uniform(-0.1, 0.1))
+      const std::size_t v = is_near ? sheet.vertex_near(hip[0] + random.uniform(-4, 4) / n, hip[1] + random.uniform(-4, 4) / n)
                                     : random.below(static_cast<std::uint32_t>(sheet.vertex_count()));
       sheet.lift(v, random.uniform(-0.2, 0.2));
     }
@@ -219,7 +219,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     touched += result.state != FDCG_FREE;
     freed += result.state == FDCG_FREE && last_state != FDCG_FREE;
     last_state = result.state;
-    if (i % 64 == 0 && steps <= 1000000) REQUIRE(off_feature(sheet.mesh.updated(), contact.contact) <= 8 * kEpsilon * extent);
+    if (i % 64 == 0 && steps <= 100000) REQUIRE(off_feature(sheet.mesh.updated(), contact.contact) <= 8 * kEpsilon * extent);
     if (i % (steps / 32) == 0) {
       REQUIRE(off_feature(sheet.mesh.updated(), contact.contact) <= 8 * kEpsilon * extent);
       REQUIRE(bytes_of(sheet.mesh.updated()) == sheet.bytes_anew());
@@ -228,9 +228,9 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
   std::ostringstream said;
   said << caught << " caught, " << touched << " in touch, " << freed << " freed of " << steps;
   INFO(said.str());
-  CHECK(caught > steps / 200);
+  CHECK(caught > steps / 500);
   CHECK(touched > steps / 10);
-  CHECK(freed > steps / 200);
+  CHECK(freed > steps / 500);
 }
 
 TEST_CASE("triangles squeezed to lines and points let nothing through, and come back") {
