@@ -12,13 +12,13 @@ namespace {
 constexpr double kSideways = 2;
 
 // Velocity that a unit impulse along u at `arm` from the centre of mass gives to that place.
-World answer(const PileMember* member, World at, World u) {
+FDCG_HOT World answer(const PileMember* member, World at, World u) {
   if (member == nullptr || member->is_awake == 0) return {0, 0, 0};
   const World arm = at - member->centre_m;
   return u * member->lightness_per_kg + cross(member->inverse_inertia * cross(arm, u), arm);
 }
 
-World velocity_at(const Meeting& meeting, const PileMember* member, World at) {
+FDCG_HOT World velocity_at(const Meeting& meeting, const PileMember* member, World at) {
   if (member == nullptr) return {0, 0, 0};
   if (member->is_awake != 0) return member->velocity_m_per_s + cross(member->spin_rad_per_s, at - member->centre_m);
   if (member->is_moving == 0) return {0, 0, 0};
@@ -26,7 +26,7 @@ World velocity_at(const Meeting& meeting, const PileMember* member, World at) {
   return (at - object.last.to_world(object.now.to_object(at, true), true)) * (1 / meeting.step_s);
 }
 
-void give(PileMember* member, World at, World impulse) {
+FDCG_HOT void give(PileMember* member, World at, World impulse) {
   if (member == nullptr || member->is_awake == 0) return;
   const World twist = cross(at - member->centre_m, impulse);
   member->velocity_m_per_s = member->velocity_m_per_s + impulse * member->lightness_per_kg;

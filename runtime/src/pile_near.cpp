@@ -15,6 +15,10 @@ constexpr double kRounding = 64 * DBL_EPSILON;
 
 void find_near(const Meeting& meeting, PileMember* member) {
   fdcg_pile& pile = meeting.pile;
+  if (!pile.skips(FDCG_PILE_SKIP_FAR)) {
+    member->near_count = PileMember::kMostNear + 1;
+    return;
+  }
   if (member->look == pile.look && pile.travel_m < member->limit_m) return;
   const Object& own = meeting.object(*member);
   const double radius = member->radius_m * own.now.scale, ahead = radius * kNearShare;
@@ -37,6 +41,16 @@ void find_near(const Meeting& meeting, PileMember* member) {
   member->look = pile.look;
   member->limit_m = (pile.travel_m + nearest_far / 2) * (1 - kRounding);
   ++pile.counts.looks;
+}
+
+Cull cull_of(const Meeting& meeting, const PileMember& owner, const PileMember& other) {
+  const Object &own = meeting.object(owner), &object = meeting.object(other);
+  const double scale = object.now.scale, far = 3 * object.now.radius;
+  double moved = owner.move_m + owner.turn * owner.radius_m * own.now.scale + other.move_m + other.turn * far;
+  // beyond that far from it, the other's turn moves its frame by more; and where a size changes there is no bound
+  if (moved > far || object.last.scale != scale || own.last.scale != own.now.scale) moved = HUGE_VAL;
+  const double grown = moved + kRounding * (norm1(own.now.centre) + norm1(object.now.translation) + object.now.radius);
+  return {&object.now, object.bounds.centre * scale, object.bounds.half * scale + World{grown, grown, grown}};
 }
 
 bool can_have_met(const Meeting& meeting, const Object& object, World from_world, World to_world, World* from, World* to) {

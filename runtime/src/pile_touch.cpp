@@ -96,9 +96,8 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   fdcg_result result;
   double local[3];
   World from, to;
-  const bool can_have = can_have_met(meeting, on, way.from, way.to, &from, &to);
   if (is_new) {
-    if (!can_have) return false;
+    if (!can_have_met(meeting, on, way.from, way.to, &from, &to)) return false;
     contact = {};
     put(from, local);
     fdcg_step(on.graph, &params, &contact, local, &result);
@@ -109,7 +108,9 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   touch->is_pressing = result.state != FDCG_FREE ? 1 : 0;
   touch->force_n = touch->damper_n = {0, 0, 0};
   touch->load_n = 0;
-  if (touch->is_pressing == 0) return can_have || (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
+  if (touch->is_pressing == 0) {
+    return (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 || can_have_met(meeting, on, way.from, way.to, &from, &to);
+  }
   const World spring = on.now.turned_to_world(vec(result.god_object_m) - to, may_skip);
   const bool is_face = result.state == FDCG_FACE;
   const World normal = is_face ? turned(on.now, vec(fdcg_get_node(on.graph, result.feature).normal)) : World{0, 0, 0};

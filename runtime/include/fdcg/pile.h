@@ -44,6 +44,13 @@ extern "C" {
 /* Lives in memory of the caller's; holds no pointer, so a copy of the whole is a snapshot. Goes with one scene. */
 typedef struct fdcg_pile fdcg_pile;
 
+/* What a pile leaves undone where it cannot matter. Each can be switched off: every motion stays the same, bit for bit. */
+typedef enum fdcg_pile_skip {
+  FDCG_PILE_SKIP_FAR = 1,   /* between looks only the objects near by are asked */
+  FDCG_PILE_SKIP_STILL = 2, /* touches between two that have not moved keep their forces */
+  FDCG_PILE_SKIP_ALL = 3
+} fdcg_pile_skip;
+
 typedef struct fdcg_pile_config {
   uint32_t struct_bytes;    /* the caller's sizeof(fdcg_pile_config); fdcg_default_pile_config sets it */
   uint32_t object_capacity; /* 1 to 1,000,000: the scene's objects of smaller index can be in the pile */
@@ -51,6 +58,8 @@ typedef struct fdcg_pile_config {
   uint32_t touch_capacity;  /* 1 to 1,000,000: points on, or within the box of, something, at once */
   double damping_ratio;     /* 0 to 1,000; 1: critical for each contact by itself */
   double leaving_ratio;     /* the same for the way out */
+  uint32_t disabled_skips;  /* fdcg_pile_skip bits that are off; 0: skip all that can be skipped */
+  uint32_t reserved;        /* 0 */
 } fdcg_pile_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 128 points, 128 touches, ratios 1 and 4; some 100 KB. */
