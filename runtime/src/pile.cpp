@@ -270,6 +270,7 @@ extern "C" uint32_t fdcg_pile_touches(const fdcg_pile* pile, fdcg_pile_touch* to
         put(touch.god_object, to.god_object_m);
         put(touch.normal, to.normal);
         to.load_n = touch.load_n;
+        to.stiffness_n_per_m = touch.stiffness_n_per_m;
         to.point = p;
         to.state = touch.contact.state;
         to.feature = touch.contact.feature;

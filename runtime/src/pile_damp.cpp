@@ -2,6 +2,8 @@
 // The dampers of a pile's touches. One after the other, each takes its part of the relative velocity away at once, as an
 // implicit step of its own: v / (1 + x + x x / 2), x = c h / m, at the mass m that it moves. Such a step only takes energy, so
 // any row of them does, however stiff, and none needs a shorter step.
+#include <initializer_list>
+
 #include "pile_memory.hpp"
 #include "scene_tick.hpp"
 
@@ -47,6 +49,12 @@ double static_mu(const Meeting& meeting, const PileMember& owner, const PileTouc
   return root(meeting.object(owner).params.mu_static * other.mu_static);
 }
 
+// The mass that a push along the unit `direction` at `at` meets: of both, as they can move.
+double mass_along(const PileMember* a, const PileMember* b, World at, World direction) {
+  const double inverse = dot(direction, answer(a, at, direction)) + dot(direction, answer(b, at, direction));
+  return inverse > 0 ? 1 / inverse : 0;
+}
+
 // How much of `more`, 0 to 1, may be added to `held` without going beyond `limit` in length.
 double share_within(World held, World more, double limit) {
   const World all = held + more;
@@ -73,9 +81,11 @@ World sideways_impulse(const Meeting& meeting, const PileMember& owner, const Pi
 
 }  // namespace
 
-double mass_along(const PileMember* a, const PileMember* b, World at, World direction) {
-  const double inverse = dot(direction, answer(a, at, direction)) + dot(direction, answer(b, at, direction));
-  return inverse > 0 ? 1 / inverse : 0;
+double looseness_at(const PileMember* a, const PileMember* b, World at) {
+  double sum = 0;
+  for (const World& u : {World{1, 0, 0}, World{0, 1, 0}, World{0, 0, 1}})
+    sum += dot(u, answer(a, at, u)) + dot(u, answer(b, at, u));
+  return sum;
 }
 
 void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch) {

@@ -140,7 +140,8 @@ bool step_touch(const Meeting& meeting, const PileMember& owner, const PointWay&
 
 // pile_damp.cpp: what the touch's damper gives in this step.
 void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch);
-// The mass that a push along the unit `direction` at `at` meets: of both, as they can move.
-double mass_along(const PileMember* a, const PileMember* b, World at, World direction);
+// Velocity that a unit impulse at `at` gives to that place of both against each other, along its own direction; for the x, y
+// and z directions added up: no direction has more. 1/kg.
+double looseness_at(const PileMember* a, const PileMember* b, World at);
 
 }  // namespace fdcg

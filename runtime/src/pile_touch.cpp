@@ -7,9 +7,9 @@
 namespace fdcg {
 namespace {
 
-// Of the mass that a contact moves over the square of the step: a quarter of what one spring could have in all, so that 16 may
-// pull at one body.
-constexpr double kMostStiffness = 0.25;
+// Times the step squared and how easily the place moves, over all three directions: what stability can bear is 4 for all
+// springs that pull in one way, so 32 of them may.
+constexpr double kMostStiffness = 0.125;
 
 double mixed(double a, double b) {
   return root(a * b);
@@ -31,9 +31,10 @@ void press(const Meeting& meeting, const PileMember& owner, World point, double 
            bool was_pressing, PileTouch* touch) {
   if (!was_pressing) {
     const PileMember* const other = touch->on == kGround ? nullptr : meeting.pile.members() + touch->on;
-    double mass = touch->has_normal != 0 ? mass_along(&owner, other, touch->god_object, touch->normal) : 0;
-    if (mass == 0) mass = meeting.bodies[owner.body].body.config.mass_kg / 4;  // asleep, or the very first instant: as a cube's
-    const double most = kMostStiffness * mass / (meeting.step_s * meeting.step_s);
+    double looseness = looseness_at(&owner, other, touch->god_object);
+    // asleep: as a cube's corner
+    if (looseness == 0) looseness = 12 / meeting.bodies[owner.body].body.config.mass_kg;
+    const double most = kMostStiffness / (looseness * meeting.step_s * meeting.step_s);
     const double wanted = in_series(own_stiffness, other_stiffness);
     touch->stiffness_n_per_m = wanted < most ? wanted : most;
   }

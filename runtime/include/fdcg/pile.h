@@ -19,13 +19,14 @@
  *
  * What acts between two: the parameters of both objects (fdcg_scene_add_object) together. Friction: the root of the product of
  * both coefficients, static and dynamic alike. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
- * stiffer than a quarter of the mass that the contact moves over the square of the step, so that no pile runs away: that bound
- * holds while fewer than 16 touches pull at a body in one direction. The other parameters (edge_friction, ...) are those of the
- * object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by damping_ratio of the critical value for
- * the mass that this contact moves, of the way back out by leaving_ratio of it, so that what falls does not bounce; of what
- * sticks, sideways, by twice damping_ratio. Each damper is solved implicitly after the other: none adds energy at any step.
- * A contact never pulls, and what a damper adds sideways stays inside the cone. Slipping is damped by friction alone: the
- * god-object's cone is measured by the spring, whose push is the load wherever the approach is over.
+ * stiffer than an eighth of the bound of the step, 1 / (8 h^2 w), where w says how easily the place moves (1/kg, over three
+ * directions): so no pile runs away while fewer than 32 touches pull at two bodies that meet. The other parameters
+ * (edge_friction, ...) are those of the object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by
+ * damping_ratio of the critical value for the mass that this contact moves, of the way back out by leaving_ratio of it, so that
+ * what falls does not bounce; of what sticks, sideways, by twice damping_ratio. Each damper is solved implicitly after the
+ * other: none adds energy at any step. A contact never pulls, and what a damper adds sideways stays inside the cone. Slipping
+ * is damped by friction alone: the god-object's cone is measured by the spring, whose push is the load wherever the approach is
+ * over.
  *
  * Cost: two bodies far apart cost nothing between looks (1 to 2 ns an object, when they have used up the distance last seen);
  * near one another, some 10 ns a point that is out of the other's box; a touch some 0.2 us on a graph, 60 ns on the ground.
@@ -115,6 +116,7 @@ typedef struct fdcg_pile_touch {
   double god_object_m[3]; /* world */
   double normal[3];       /* world, unit, along which the load is measured */
   double load_n;          /* of the spring */
+  double stiffness_n_per_m;
   uint32_t point;
   uint32_t state; /* fdcg_state, on what it touches */
   uint32_t feature;
