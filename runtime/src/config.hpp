@@ -30,6 +30,12 @@
 #define FDCG_WITH_MESSAGES 1
 #endif
 
+// fdcg_params.terms: the friction curve, materials. Without them the library is some 10 kB smaller, and fdcg_check_params
+// refuses them.
+#ifndef FDCG_WITH_TERMS
+#define FDCG_WITH_TERMS 1
+#endif
+
 // FDCG_ASSERT: our own faults are looked for, in the step too. CMake sets it in debug builds.
 #ifndef FDCG_WITH_ASSERTS
 #define FDCG_WITH_ASSERTS 0

@@ -49,6 +49,20 @@ inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Ve
   return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
 }
 
+// Of `across` = -(load_a n_a + load_b n_b) the sum of the loads is as above, and their difference the same with n_a - n_b.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void stand_on_edge(Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
+  const uint32_t a = connection.node(0), b = connection.node(1);
+  double share = 0.5;
+  if (b != FDCG_NONE) {
+    const Vec3<double> n_a = widen(walk.graph.node(a).normal()), n_b = widen(walk.graph.node(b).normal());
+    const Vec3<double> sum = n_a + n_b, difference = n_a - n_b, p = widen(across);
+    const double both = dot(sum, p) * dot(difference, difference), more = dot(difference, p) * dot(sum, sum);
+    if (both < 0) share = more < both ? 1 : more > -both ? 0 : (1 + more / both) / 2;
+  }
+  walk.friction.terms->stand_on_edge(a, b, share);
+}
+
 // Behind one face of a convex edge, over it and not over the other, and yet in front of the other's plane: that is no place,
 // but for corners off a small face's plane, which far from it is anywhere. The face below decides.
 template <class Real>
@@ -78,6 +92,9 @@ inline Decision edge_rule(Walk<Real>& walk) {
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
   const Vec3<Real> across = walk.hip - (line.start + line.direction * foot);
+  if constexpr (FDCG_WITH_TERMS) {
+    if (walk.friction.terms != nullptr) stand_on_edge(walk, connection, across);
+  }
   const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, across));
   if (slip.is_rest) return rest();
   const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + slip.gap : foot - slip.gap);

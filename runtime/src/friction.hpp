@@ -3,6 +3,8 @@
 // to the surface point is within the friction coefficient times the load that presses it on. No angle is ever computed.
 #pragma once
 
+#include "config.hpp"
+#include "friction_terms.hpp"
 #include "vec.hpp"
 
 namespace fdcg {
@@ -22,14 +24,18 @@ struct Slip {
 template <class Real>
 struct Friction {
   Real mu_static, mu_dynamic;
-  bool has_wedge;    // concave edges: contact-model section 6
-  bool is_slipping;  // dynamic friction holds
+  bool has_wedge;                  // concave edges: contact-model section 6
+  bool is_slipping;                // dynamic friction holds
+  FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
 
   // `gap2` is the squared distance of the god-object from the surface point, `load` the depth that presses it on. Slipping
   // starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on
   // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
   // the rounding of its own place. Squares, so that rest costs no root.
   Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
+    if constexpr (FDCG_WITH_TERMS) {
+      if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
+    }
     constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {
@@ -39,6 +45,12 @@ struct Friction {
     }
     const Real rounding = RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
     return {!is_slipping || gap2 <= square(gap + rounding), gap};
+  }
+
+  [[gnu::noinline, gnu::cold]] Slip<Real> slip_with_terms(Vec3<Real> god_object, Real gap2, Real load) {
+    const TermSlip slip =
+        terms->slip({god_object.x, god_object.y, god_object.z}, gap2, load, RealLimits<Real>::kEpsilon, &is_slipping);
+    return {slip.is_rest, static_cast<Real>(slip.gap)};
   }
 };
 

@@ -16,7 +16,9 @@
 #include "free_space.hpp"
 #include "hooks.hpp"
 #include "leave.hpp"
+#include "response.hpp"
 #include "struct_bytes.hpp"
+#include "yield.hpp"
 
 namespace fdcg {
 namespace {
@@ -214,14 +216,6 @@ inline void store(Vec3<Real> from, double (&to)[3]) {
   to[2] = from.z;
 }
 
-// Where damping takes from the spring: the speed along it, times the coefficient. Newtons per metre, >= 0 in all.
-inline double damped(const fdcg_params& params, double stiffness, Vec3<double> spring, Vec3<double> moved) {
-  const double length2 = dot(spring, spring);
-  if (!(length2 > 0)) return stiffness;
-  const double left = stiffness - params.damping_n_s_per_m * (dot(moved, spring) / length2) / params.tick_s;
-  return left > 0 ? left : 0;  // never a pull
-}
-
 inline void say_where(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
   store((vec(contact.god_object) + vec(header.origin)) * header.metres_per_unit, result->god_object_m);
   result->state = contact.state;
@@ -238,6 +232,7 @@ inline void start(Vec3<Real> hip, fdcg_contact* contact) {
   contact->state = contact->seat_state = FDCG_FREE;
   contact->feature = contact->seat_feature = FDCG_NONE;
   contact->slipping = 0;
+  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
   contact->sweep.is_carried = 0;
   contact->clear_ball.radius2 = 0;
   contact->clear_ball.wait = contact->clear_ball.next_wait = 0;
@@ -246,19 +241,39 @@ inline void start(Vec3<Real> hip, fdcg_contact* contact) {
 template <class Real>
 inline Friction<Real> friction_of(const fdcg_params& params, const fdcg_contact& contact) {
   return {static_cast<Real>(params.mu_static), static_cast<Real>(params.mu_dynamic), params.edge_friction == FDCG_EDGE_WEDGE,
-          contact.slipping != 0};
+          contact.slipping != 0, nullptr};
 }
 
-// F = k (GO - HIP), damped along the same line (contact-model section 8). Call before the contact learns of the new HIP.
-template <class Real>
-inline void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, Vec3<Real> hip,
-                    Vec3<Real> god_object, fdcg_result* result) {
-  const Vec3<double> local_hip = widen(hip), spring = widen(god_object) - local_hip;
-  double newtons_per_metre = params.stiffness_n_per_m;
+// The force of so much spring, damped along the same line. Call before the contact learns of the new HIP.
+inline void push(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, double newtons_per_metre,
+                 Vec3<double> local_hip, Vec3<double> spring, fdcg_result* result) {
   if (params.damping_n_s_per_m > 0) {
     newtons_per_metre = damped(params, newtons_per_metre, spring, local_hip - vec(contact.hip));
   }
   store(spring * (newtons_per_metre * header.metres_per_unit), result->force_n);
+}
+
+// F = k (GO - HIP) (contact-model section 8).
+template <class Real>
+inline void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, Vec3<Real> hip,
+                    Vec3<Real> god_object, fdcg_result* result) {
+  const Vec3<double> local_hip = widen(hip);
+  push(header, params, contact, params.stiffness_n_per_m, local_hip, widen(god_object) - local_hip, result);
+}
+
+// The same with terms of friction.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void respond_with_terms(const Walk<Real>& walk, fdcg_contact* contact, fdcg_result* result) {
+  FrictionTerms& terms = *walk.friction.terms;
+  const fdcg_params& params = *terms.params;
+  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
+  if (walk.active == kFree) return;
+  if (terms.has_last) terms.go_on_to(widen(walk.god_object));
+  if (terms.has(FDCG_TERM_LAG)) contact->slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
+  const double stiffness = settle(walk, {contact->state, contact->feature}, vec(contact->god_object));
+  if (terms.has_springs()) contact->stiffness_n_per_m = stiffness;
+  const Vec3<double> hip = widen(walk.hip), spring = widen(walk.god_object) - hip + terms.yielded;
+  push(*walk.graph.header, params, *contact, stiffness, hip, spring, result);
 }
 
 // The long way: drives the rules from where the contact stands. `move` is null, or what its face has already made of it.
@@ -278,7 +293,11 @@ template <class Real>
   result->flags = progress.flags;
   result->transitions = progress.transitions;
   const bool is_free = walk.active == kFree;
-  if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
+  if (walk.friction.terms == nullptr) {
+    if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
+  } else if constexpr (FDCG_WITH_TERMS) {
+    respond_with_terms(walk, contact, result);
+  }
   store(walk.god_object, contact->god_object);
   contact->state = walk.active.state;
   contact->feature = walk.active.index;
@@ -286,6 +305,28 @@ template <class Real>
   contact->seat_feature = walk.seat.index;
   const bool is_undecided = contact->sweep.is_carried != 0;  // contact may be regained
   contact->slipping = (!is_free || is_undecided) && walk.friction.is_slipping ? 1 : 0;
+}
+
+// A tick of a contact that has started, with terms of friction: all of it goes the long way.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void step_with_terms(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
+                                                  fdcg_contact* contact, fdcg_result* result) {
+  const GraphView<Real> graph(raw);
+  FrictionTerms terms = terms_of(params, raw, *contact);
+  Friction<Real> friction = friction_of<Real>(params, *contact);
+  friction.terms = &terms;
+  walk_to_hip<Real>({graph,
+                     friction,
+                     hip,
+                     plane_rounding_bound(graph, hip),
+                     narrow<Real>(contact->god_object),
+                     {contact->state, contact->feature},
+                     {contact->seat_state, contact->seat_feature},
+                     kRuleWork},
+                    nullptr, params, contact, result);
+  store(hip, contact->hip);
+  say_where(*raw.header, *contact, result);
+  store(vec(result->god_object_m) + terms.yielded * raw.header->metres_per_unit, result->god_object_m);
 }
 
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most: nothing else is set up for it.
@@ -309,6 +350,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   } else if (is_in_clear_ball(contact->clear_ball, local_hip) && (params.disabled_skips & FDCG_STEP_SKIP_CLEAR_BALL) == 0) {
     store(hip, contact->god_object);  // free: a contact that is not has no such ball
     store(hip, contact->hip);
+  } else if (FDCG_WITH_TERMS && params.terms != 0) {
+    if constexpr (FDCG_WITH_TERMS) return step_with_terms<Real>(raw, params, hip, contact, result);
   } else {
     const GraphView<Real> graph(raw);
     const Real bound = plane_rounding_bound(graph, hip);
@@ -318,7 +361,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     FaceMove<Real> move;
     if (is_on_face) {
       const NodeRef<Real> node = graph.node(contact->feature);
-      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
+      move = move_on_face(node, friction, hip, bound, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
     }
     if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
@@ -345,6 +388,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
 }  // namespace
 }  // namespace fdcg
 
+#if !FDCG_DEFORMABLE  // deform_step.cpp takes this file in, and has an entry of its own
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
@@ -352,3 +396,4 @@ extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fd
   fdcg::with_real_of(*graph->header,
                      [&](auto real) { fdcg::step<decltype(real)>(*graph, all_params, contact, hip_object_m, result); });
 }
+#endif

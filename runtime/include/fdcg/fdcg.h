@@ -110,6 +110,10 @@ typedef struct fdcg_graph {
   uint64_t info_bytes;
   void* mapping; /* what fdcg_close unmaps; NULL for fdcg_open_memory */
   uint64_t mapping_bytes;
+  const uint16_t* node_materials; /* NULL, and so is the next: not in the file; else header->node_count entries */
+  const char* material_names;     /* material_count texts, each ends in '\0' */
+  uint32_t material_count;
+  uint32_t reserved;
 } fdcg_graph;
 
 /* Views `bytes` bytes at `data` (a multiple of 8) as a graph. Nothing is copied. On failure *graph is zeroed.
@@ -180,6 +184,12 @@ typedef struct fdcg_mass {
  */
 fdcg_status fdcg_get_mass(const fdcg_graph* graph, fdcg_mass* mass, fdcg_error* error);
 
+/* The materials of the mesh file, by the names that it gives them (OBJ usemtl, glTF material). A face without one, or in a file
+ * without materials, has FDCG_NONE. */
+uint32_t fdcg_node_material(const fdcg_graph* graph, uint32_t node);        /* node: below the header's count */
+const char* fdcg_material_name(const fdcg_graph* graph, uint32_t material); /* NULL: there is no such material */
+uint32_t fdcg_find_material(const fdcg_graph* graph, const char* name);     /* FDCG_NONE: there is no such name */
+
 /* The checksum of the format: `bytes` bytes at `data`. Any change of one byte changes it (schemas/fdcg-v1.md). */
 uint64_t fdcg_checksum(const void* data, uint64_t bytes);
 
@@ -197,19 +207,77 @@ typedef enum fdcg_step_skip {
   FDCG_STEP_SKIP_ALL = 1
 } fdcg_step_skip;
 
-typedef struct fdcg_params {
-  uint32_t struct_bytes;    /* the caller's sizeof(fdcg_params); fdcg_default_params sets it */
-  uint32_t edge_friction;   /* fdcg_edge_friction */
+/* Friction beyond two coefficients and one stiffness: which of the fields below count. 0: none, at no cost.
+ *
+ * The curve (Melder 2004, figure 1). A slipping god-object's cone has the coefficient
+ *   mu(v) = mu_dynamic + (mu_static - mu_dynamic) / (1 + (v / stribeck_m_per_s)^2) + viscous_s_per_m v
+ * where v is its way in the tick over tick_s, in metres of the object a second (in a scene: of the world); the step solves for
+ * mu and v together. Stribeck: mu(0) is mu_static, so that mu has no jump anywhere; without that term it falls from mu_static
+ * to mu_dynamic where slip begins. Lag: mu follows a speed that comes after v by friction_lag_s (of first order), so the hold
+ * comes back after a slide as its memory fades. Presliding: a contact that holds yields along the surface like a spring of
+ * presliding_n_per_m in series with the stiffness, and comes back: the god-object that is reported moves, by at most
+ * mu_static load / presliding_n_per_m, about the place that is remembered, which at rest does not; it may then stand beyond the
+ * rim of its face by as much, but not behind a concave edge. All this holds on faces and, by the load that edge_friction says,
+ * on edges; at a vertex the god-object rests only where the surface alone holds it, and slides on along a face or an edge else.
+ *
+ * A curve that falls steeply has several solutions: sticking and slipping at once. It has one, continuous in all that goes in,
+ * and a slide at steady speed settles on it, while
+ *   (0.65 (mu_static - mu_dynamic) / stribeck_m_per_s - viscous_s_per_m) depth_m <= friction_lag_s + tick_s / 4
+ * (0.65: 3 sqrt(3) / 8; with presliding the depth counts 1 + stiffness / presliding_n_per_m times), which fdcg_check_params
+ * asks for at curve_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any. Passive
+ * whatever the numbers: a slip only ever takes the god-object nearer to the HIP.
+ *
+ * Materials: `materials` says what a node's material (fdcg_node_material) is like, in place of mu_static, mu_dynamic and
+ * stiffness_n_per_m, which hold for nodes without one and for materials beyond the table. On a concave edge each face's
+ * coefficient counts by the load that it bears, and the softer face's stiffness holds; at a vertex that of the feature before.
+ * A stiffness that rises under a pressed contact would push the hand: it falls at once and rises only by as much as sliding
+ * loses meanwhile; a new contact has its own.
+ *
+ * Finger: what touches, combined with what is touched (fdcg_combine_materials). */
+typedef enum fdcg_term {
+  FDCG_TERM_STRIBECK = 1,
+  FDCG_TERM_VISCOUS = 2,
+  FDCG_TERM_PRESLIDING = 4,
+  FDCG_TERM_LAG = 8,
+  FDCG_TERM_MATERIALS = 16,
+  FDCG_TERM_FINGER = 32,
+  FDCG_TERM_ALL = 63
+} fdcg_term;
+
+typedef struct fdcg_material {
   double mu_static;         /* >= mu_dynamic */
   double mu_dynamic;        /* >= 0 */
   double stiffness_n_per_m; /* >= 0 */
-  double damping_n_s_per_m; /* >= 0; acts along the spring's direction and never pulls. 0: off */
-  double tick_s;            /* time between ticks; read only where damping is on */
-  uint32_t disabled_skips;  /* fdcg_step_skip: those not to be made. 0: none */
-  uint32_t reserved;        /* 0 */
+} fdcg_material;
+
+/* Of two materials in contact: coefficients by their geometric mean (so that a frictionless one stays so, equal ones stay as
+ * they are, and mu_static >= mu_dynamic), stiffness as of two springs in series. */
+fdcg_material fdcg_combine_materials(const fdcg_material* surface, const fdcg_material* finger);
+
+typedef struct fdcg_params {
+  uint32_t struct_bytes;          /* the caller's sizeof(fdcg_params); fdcg_default_params sets it */
+  uint32_t edge_friction;         /* fdcg_edge_friction */
+  double mu_static;               /* >= mu_dynamic */
+  double mu_dynamic;              /* >= 0 */
+  double stiffness_n_per_m;       /* >= 0 */
+  double damping_n_s_per_m;       /* >= 0; acts along the spring's direction and never pulls. 0: off */
+  double tick_s;                  /* time between ticks; read only where damping or a term of the curve is on */
+  uint32_t disabled_skips;        /* fdcg_step_skip: those not to be made. 0: none */
+  uint32_t terms;                 /* fdcg_term: which of the following count. 0: none */
+  double stribeck_m_per_s;        /* > 0: where half of the fall from mu_static to mu_dynamic is done */
+  double viscous_s_per_m;         /* >= 0 */
+  double presliding_n_per_m;      /* > 0 */
+  double friction_lag_s;          /* >= 0 */
+  double curve_depth_m;           /* > 0: down to it the curve is as written */
+  fdcg_material finger;           /* its stiffness > 0 */
+  const fdcg_material* materials; /* by material; outlives the params. NULL where there are none */
+  uint32_t material_count;
+  uint32_t reserved[sizeof(void*) == 8 ? 1 : 2]; /* 0 */
 } fdcg_params;
 
-/* Sets the first `struct_bytes` bytes of *params: mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge. */
+/* Sets the first `struct_bytes` bytes of *params: mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge, no terms;
+ * for those: Stribeck 0.05 m/s, viscous 0.1 s/m, presliding 100,000 N/m, lag 0.03 s, depth 0.01 m, a finger of mu 1 and
+ * 10,000 N/m, no materials. */
 void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes);
 static inline fdcg_params fdcg_default_params(void) {
   fdcg_params params;
@@ -248,7 +316,8 @@ typedef struct fdcg_clear_ball {
 /* One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Positions are local to
  * the graph (see format.h), so that nothing is lost far from the world's origin. */
 typedef struct fdcg_contact {
-  double god_object[3]; /* in Free: the HIP, or while a sweep is carried over the point where it started */
+  double god_object[3]; /* without presliding's yielding. In Free: the HIP, or while a sweep is carried over the point where it
+                           started */
   double hip[3];        /* of the last tick with a finite HIP */
   uint32_t started;     /* 0 before the first tick */
   uint32_t state;       /* fdcg_state */
@@ -261,6 +330,8 @@ typedef struct fdcg_contact {
   uint64_t sweep_bound_ticks;      /* ... because of FDCG_SWEEP_WORK */
   fdcg_carried_sweep sweep;
   fdcg_clear_ball clear_ball;
+  double slip_m_per_s;      /* the speed that friction knows of, where it lags; else 0 */
+  double stiffness_n_per_m; /* where materials or presliding count: what holds now. 0: a new contact */
 } fdcg_contact;
 
 typedef enum fdcg_result_flag {
