@@ -43,12 +43,6 @@ double damper_impulse(double speed, double ratio, double stiffness, double mass,
   return -speed * mass * (taken / (1 + taken));
 }
 
-double static_mu(const Meeting& meeting, const PileMember& owner, const PileTouch& touch) {
-  const fdcg_params& other =
-      touch.on == kGround ? meeting.pile.ground_params : meeting.object(meeting.pile.members()[touch.on]).params;
-  return root(meeting.object(owner).params.mu_static * other.mu_static);
-}
-
 // The mass that a push along the unit `direction` at `at` meets: of both, as they can move.
 double mass_along(const PileMember* a, const PileMember* b, World at, World direction) {
   const double inverse = dot(direction, answer(a, at, direction)) + dot(direction, answer(b, at, direction));
@@ -76,7 +70,7 @@ World sideways_impulse(const Meeting& meeting, const PileMember& owner, const Pi
   const double ratio = kSideways * meeting.pile.config.damping_ratio;
   const World wanted = across * (damper_impulse(slide, ratio, touch.stiffness_n_per_m, mass, h) / slide);
   const World held = (touch.force_n - n * touch.load_n) * h;
-  return wanted * share_within(held, wanted, static_mu(meeting, owner, touch) * (touch.load_n * h + along));
+  return wanted * share_within(held, wanted, touch.mu_static * (touch.load_n * h + along));
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ struct PileTouch {
   uint32_t has_normal;
   double stiffness_n_per_m;  // for as long as it presses
   double load_n;
+  double mu_static;
   World god_object, normal;
   World force_n;         // of the spring, on the point's body
   World damper_n;        // mean over the step

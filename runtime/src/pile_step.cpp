@@ -70,6 +70,7 @@ void begin(const Meeting& meeting) {
     member.move_m = has_moved ? norm(object.now.centre - object.last.centre) : 0;
     member.turn = has_moved ? turn_between(object.last, object.now) : 0;
     farthest_moved = larger(farthest_moved, member.move_m);
+    if (object.bounds.is_endless && member.turn > 0) ++pile.look;  // that moves it by any length
     member.is_awake = member.has_touched = 0;
     if (member.body == FDCG_NONE) continue;
     const fdcg_body& body = meeting.bodies[member.body].body;

@@ -241,3 +241,64 @@ TEST_CASE("piles that cannot be are refused, with the field, its value and its l
   CHECK(fdcg_scene_step_pile(rig.scene().get(), rig.pile(), &body, 1, 1, std::nan(""), &reaction, 1, &error) ==
         FDCG_E_ARGUMENT);
 }
+
+TEST_CASE("a block on a plane that is a surface sticks and slides as on the ground, and a ball carries what is laid on it") {
+  for (const double share : {0.998, 1.002}) {
+    PileRig rig;
+    fdcg_error error;
+    const double mu = 0.5, angle = std::atan(mu * share);
+    const fdcg_surface plane = fdcg_make_plane();
+    const fdcg_params params = friction(mu, mu);
+    const fdcg_pose pose = posed({0, 0, 0}, {0, 1, 0}, angle);
+    fdcg_object_id slope;
+    REQUIRE(fdcg_scene_add_surface(rig.scene().get(), &plane, &params, &pose, &slope, &error) == FDCG_OK);
+    REQUIRE(fdcg_pile_add(rig.pile(), rig.scene().get(), slope, nullptr, 0, &error) == FDCG_OK);
+    fdcg_body_config awake = fdcg_default_body_config();
+    awake.sleep_after_s = 0;
+    const auto block = rig.box(0.08, 0.08, 0.01);
+    rig.add_body(block, kMass_kg, params, posed({0.006 * std::sin(angle), 0, 0.006 * std::cos(angle)}, {0, 1, 0}, angle), awake,
+                 8);
+    rig.ticks(600);
+    const Place at = rig.centre(0);
+    rig.ticks(300);
+    CAPTURE(share, norm(rig.centre(0) - at));
+    CHECK(rig.touches().size() == 4);
+    CHECK(rig.touches()[0].normal[0] == Approx(std::sin(angle)));
+    CHECK((norm(rig.centre(0) - at) < 1e-9) == (share < 1));
+    CHECK((norm(rig.centre(0) - at) > 1e-5) == (share > 1));
+  }
+  PileRig rig;
+  fdcg_error error;
+  const fdcg_surface ball = fdcg_make_sphere(1);
+  const fdcg_params params = friction(0.6, 0.5);
+  const fdcg_pose pose = fdcg_identity_pose();
+  fdcg_object_id hill;
+  REQUIRE(fdcg_scene_add_surface(rig.scene().get(), &ball, &params, &pose, &hill, &error) == FDCG_OK);
+  REQUIRE(fdcg_pile_add(rig.pile(), rig.scene().get(), hill, nullptr, 0, &error) == FDCG_OK);
+  rig.add_body(rig.box(0.04, 0.04, 0.01), kMass_kg, params, posed({0, 0, 1.006}));
+  rig.ticks(2000);
+  CHECK(rig.body(0).is_asleep == 1);
+  CHECK(rig.centre(0)[2] == Approx(1.005).margin(1e-3));
+}
+
+TEST_CASE("what two objects are made of counts together: friction by the geometric mean, springs in series") {
+  PileRig rig;
+  fdcg_body_config awake = fdcg_default_body_config();
+  awake.sleep_after_s = 0;
+  rig.ground({0, 0, 1}, 0, friction(0.9, 0.8, 600));
+  rig.add_body(rig.box(0.08, 0.08, 0.01), kMass_kg, friction(0.4, 0.2, 300), posed({0, 0, 0.006}), awake, 8);
+  rig.ticks(1000);
+  for (const fdcg_pile_touch& touch : rig.touches())
+    CHECK(touch.stiffness_n_per_m == Approx(200));
+  for (int tick = 1; tick <= 600; ++tick) {
+    rig.body(0).config.gravity_m_per_s2[0] =
+        0.54 * 9.80665 * std::min(1.0, tick / 500.0);  // sqrt(0.4 * 0.9) = 0.6, its upper edge's 0.55
+    rig.tick();
+  }
+  CHECK(std::abs(rig.velocity(0)[0]) < 1e-3);
+  rig.body(0).config.gravity_m_per_s2[0] = 0.61 * 9.80665;
+  rig.ticks(300);
+  const double before = rig.velocity(0)[0];
+  rig.ticks(100);
+  CHECK((rig.velocity(0)[0] - before) / 0.1 == Approx((0.61 - 0.4) * 9.80665).epsilon(1e-3));  // sqrt(0.2 * 0.8) = 0.4
+}

@@ -17,8 +17,9 @@
  * member of the pile that is not among the bodies of a step is fixed, or moved by fdcg_scene_set_pose alone; then it carries
  * along what lies on it.
  *
- * What acts between two: the parameters of both objects (fdcg_scene_add_object) together. Friction: the root of the product of
- * both coefficients, static and dynamic alike. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
+ * What acts between two: the parameters of both objects (fdcg_scene_add_object) together, as fdcg_combine_materials has it: of
+ * the object touched those of the face's material where its terms say so (FDCG_TERM_MATERIALS), of the point's object the
+ * general ones. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
  * stiffer than an eighth of the bound of the step, 1 / (8 h^2 w), where w says how easily the place moves (1/kg, over three
  * directions): so no pile runs away while fewer than 32 touches pull at two bodies that meet. The other parameters
  * (edge_friction, ...) are those of the object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by
@@ -26,7 +27,8 @@
  * what falls does not bounce; of what sticks, sideways, by twice damping_ratio. Each damper is solved implicitly after the
  * other: none adds energy at any step. A contact never pulls, and what a damper adds sideways stays inside the cone. Slipping
  * is damped by friction alone: the god-object's cone is measured by the spring, whose push is the load wherever the approach is
- * over.
+ * over. Each point has its own cone: where static friction is above dynamic, a body on several points gives way when the least
+ * loaded of them does; where they are equal, all of them bear what they can before it slides.
  *
  * Cost: two bodies far apart cost nothing between looks (1 to 2 ns an object, when they have used up the distance last seen);
  * near one another, some 10 ns a point that is out of the other's box; a touch some 0.2 us on a graph, 60 ns on the ground.
