@@ -73,7 +73,7 @@ inline double bounded_ratio(double a, double b) {
 // Keeps what lies between two parallel planes, x in -half to half; the pieces are `low` and low + 1.
 inline void cut_slab(double x, double way, double half, uint32_t low, Span* span) {
   if (way == 0) {
-    if (!(absolute(x) <= half)) *span = kNoSpan;
+    if (!(absolute(x) < half)) *span = kNoSpan;  // along a plane nothing is entered
     return;
   }
   const double minus = bounded_ratio(-half - x, way), plus = bounded_ratio(half - x, way);
@@ -258,7 +258,7 @@ Move next_move(const Piece& piece, const Spot& spot, const Press& press, double 
 // the surface again. `per_slope` is the one before that move, near enough to invert the new one. False where it is too much.
 template <class Piece, class Spot>
 bool set_right(const Piece& piece, const Spot& spot, const Press& press, double mu, double per_slope, Point* god_object) {
-  constexpr double kMost = 0x1p-16, kCurved = 0.25;
+  constexpr double kMost = 0x1p-16, kCurved = 2;
   const double held = mu * press.load, per_pull2 = 1 / press.pull2;
   const double half = (press.pull2 - held * held) * per_pull2 * 0.5, part = half * (1 + half * 0.5);  // of the pull
   const Point turned = piece.turn(spot, press.across);

@@ -216,7 +216,8 @@ struct ConeSurface {
       base *= share, lift *= share, load = distance;
     }
     const Slip<double> slip = walk.friction.slip(walk.god_object, across * across, load);
-    if (slip.is_rest) return rest();
+    const bool is_placed = absolute(absolute(across) - slip.gap) <= pull_rounding(walk);
+    if (slip.is_rest || is_placed) return rest();
     Arc stop;
     if (!stop_on_circle(reach, base, lift, load > 0 ? slip.gap / load : 0, &stop)) stop = {0, 1};
     const Point towards = {walk.hip.x / reach, walk.hip.y / reach, 0};
