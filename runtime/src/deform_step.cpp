@@ -185,7 +185,6 @@ extern "C" void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params,
                                  const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
   const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
-  fdcg::with_real_of(deform->header, [&](auto real) {
-    fdcg::step_on<decltype(real)>(deform, all_params, contact, hip_object_m, result);
-  });
+  fdcg::with_real_of(deform->header,
+                     [&](auto real) { fdcg::step_on<decltype(real)>(deform, all_params, contact, hip_object_m, result); });
 }
