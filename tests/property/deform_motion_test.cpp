@@ -186,7 +186,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
   const fdcg_params params = contact_params(0.5, 0.3);
   const auto moving = static_cast<std::uint32_t>(sheet.vertex_count() / 100) + 1;
   Hip hip = {0.013, 0.021, 0.3};
-  std::uint64_t caught = 0, touched = 0, freed = 0;
+  std::uint64_t caught = 0, touched = 0, freed = 0, bound = 0, longest_bound = 0;
   std::uint32_t last_state = FDCG_FREE;
   for (std::uint64_t i = 0; i < steps; ++i) {
     const bool is_still = random.chance(0.3);
@@ -219,6 +219,8 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
       const double off = result.god_object_m[2] - sheet.height_at(result.god_object_m[0], result.god_object_m[1]);
       REQUIRE(std::fabs(off) <= 64 * kEpsilon * extent);
     }
+    bound = (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 ? bound + 1 : 0;  // ticks in a row
+    longest_bound = std::max(longest_bound, bound);
     caught += (result.flags & FDCG_DEFORM_CAUGHT) != 0;
     touched += result.state != FDCG_FREE;
     freed += result.state == FDCG_FREE && last_state != FDCG_FREE;
@@ -230,11 +232,12 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     }
   }
   std::ostringstream said;
-  said << caught << " caught, " << touched << " in touch, " << freed << " freed of " << steps;
+  said << caught << " caught, " << touched << " in touch, " << freed << " freed, " << longest_bound << " bound in a row, of " << steps;
   INFO(said.str());
-  CHECK(caught > steps / 500);
+  CHECK(caught > steps / 5000);
   CHECK(touched > steps / 10);
   CHECK(freed > steps / 500);
+  CHECK(longest_bound < 100);
 }
 
 TEST_CASE("triangles squeezed to lines and points let nothing through, and come back") {
