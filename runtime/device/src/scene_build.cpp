@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_build.hpp"
+#include "scene_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,6 @@ namespace {
 
 constexpr std::uint32_t kMostTouches = 8;  // objects that one contact can feel at once
 constexpr double kTurn = 6.283185307179586;
-
-std::string place_of(const HostConfig& config, std::size_t object) {
-  return config.scene_file + ": objects[" + std::to_string(object) + "] '" + config.objects[object].name + "': ";
-}
 
 // a after b.
 void multiply(const double a[4], const double b[4], double product[4]) {
@@ -69,11 +65,13 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
   setup.mapping = from.mapping;
   setup.contact_count = from.contact_count;
   std::copy(&from.contacts_m[0][0], &from.contacts_m[0][0] + kMaxContacts * 3, &setup.contacts_m[0][0]);
+  setup.grip = from.grip;
   setup.most_force_n = from.most_force_n;
   fdcg_error error{};
   if (fdcg_scene_create(scene->memory.data(), bytes, &capacities, &setup.scene, &error) != FDCG_OK) {
     return config.scene_file + ": devices[" + std::to_string(device) + "] '" + from.name + "': " + error.message;
   }
+  std::vector<fdcg_object_id> objects;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const ObjectConfig& object = config.objects[i];
     fdcg_params params = object.params;
@@ -82,13 +80,14 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
     if (fdcg_scene_add_object(setup.scene, &graphs.of_object(i), &params, &object.pose, &id, &error) != FDCG_OK) {
       return place_of(config, i) + error.message;
     }
-    if (object.motion.kind == MotionKind::kFixed) continue;
+    objects.push_back(id);
+    if (!is_moved(object.motion)) continue;
     if (setup.driven_count == kMaxDriven) {
       return place_of(config, i) + "more than " + std::to_string(kMaxDriven) + " objects have a motion; make it fixed";
     }
     setup.driven[setup.driven_count++] = id;
   }
-  return {};
+  return build_bodies(config, device, graphs, objects, scene);
 }
 
 fdcg_pose pose_at(const ObjectConfig& object, double seconds) {

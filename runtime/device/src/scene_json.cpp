@@ -23,16 +23,25 @@ constexpr double kOrthonormalTolerance = 1e-9;  // of a rotation matrix
 constexpr double kMostForce = 1000;             // N; no hand goes beyond
 constexpr std::size_t kMostSceneBytes = kMostJsonBytes;
 
-constexpr Keys kSceneKeys = {"fdcg_scene", "$schema", "notes", "objects", "devices", "loop", "log", "limits"};
+constexpr Keys kSceneKeys = {"fdcg_scene", "$schema", "notes",  "objects",          "devices",
+                             "loop",       "log",     "limits", "gravity_m_per_s2", "ground"};
 constexpr Keys kObjectKeys = {
     "name",          "file",   "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static", "mu_dynamic",
     "edge_friction", "motion", "notes"};
 constexpr Keys kPoseKeys = {"rotation_xyzw", "translation_m", "scale"};
-constexpr Keys kMotionKeys = {"kind", "axis", "rate_hz", "amplitude_m"};
-constexpr Keys kDeviceKeys = {"name",     "source",        "profile",    "serial",    "path", "mapping",
-                              "contacts", "force_limit_n", "simulation", "recording", "notes"};
+constexpr Keys kMotionKeys = {"kind",    "axis",
+                              "rate_hz", "amplitude_m",
+                              "mass_kg", "density_kg_per_m3",
+                              "points",  "linear_damping_per_s",
+                              "notes",   "angular_damping_per_s"};
+constexpr Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
+constexpr Keys kDeviceKeys = {"name",          "source",     "profile",   "serial", "path", "mapping", "contacts",
+                              "force_limit_n", "simulation", "recording", "notes",  "grip", "turn"};
 constexpr Keys kMappingKeys = {"scale", "rotation_xyzw", "rotation_matrix", "offset_m"};
-constexpr Keys kContactKeys = {"offset_m"};
+constexpr Keys kContactKeys = {"offset_m", "closed_m"};
+constexpr Keys kGripKeys = {"button", "seconds"};
+constexpr Keys kTurnKeys = {"button", "seconds", "rotation_xyzw"};
+constexpr Keys kScriptKeys = {"at_s", "place_m", "buttons", "notes"};
 constexpr Keys kSimulationKeys = {"rate_hz",
                                   "mass_kg",
                                   "damping_n_s_per_m",
@@ -46,6 +55,7 @@ constexpr Keys kSimulationKeys = {"rate_hz",
                                   "seed",
                                   "force_n",
                                   "watchdog_s",
+                                  "script",
                                   "float_axes",
                                   "faults"};
 constexpr Keys kFaultKeys = {"kind", "at_s", "for_s", "delay_s", "reports"};
@@ -101,6 +111,9 @@ class SceneParser {
       read_object(object);
     for (const JsonObject& device : scene.objects("devices", 1, kMaxDevices, kDeviceKeys))
       read_device(device);
+    if (scene.has("gravity_m_per_s2")) scene.numbers("gravity_m_per_s2", config_.gravity_m_per_s2, 3, {-1e4, 1e4});
+    if (scene.has("ground")) read_ground(scene.object("ground", kGroundKeys));
+    refuse_shared_bodies(scene);
     if (scene.has("loop")) read_loop(scene.object("loop", kLoopKeys));
     if (scene.has("log")) read_log(scene.object("log", kLogKeys));
     return file_.error();
@@ -108,7 +121,14 @@ class SceneParser {
 
  private:
   void read_object(const JsonObject& from);
+  void read_friction(const JsonObject& from, fdcg_params* params);
   void read_motion(const JsonObject& from, Motion* motion);
+  void read_body(const JsonObject& from, BodyConfig* body);
+  void read_ground(const JsonObject& from);
+  void refuse_shared_bodies(const JsonObject& scene);
+  void read_contacts(const JsonObject& from, DeviceConfig* device);
+  void read_button(const JsonObject& from, HeldButton* button);
+  void read_script(const JsonObject& from, SimulationConfig* simulation);
   void read_device(const JsonObject& from);
   void read_profile(const JsonObject& from, DeviceConfig* device);
   void read_recording(const JsonObject& from, DeviceConfig* device);
@@ -146,29 +166,65 @@ void SceneParser::read_object(const JsonObject& from) {
   }
   object.params = fdcg_default_params();
   fdcg_params& params = object.params;
-  params.stiffness_n_per_m = from.number_or("stiffness_n_per_m", params.stiffness_n_per_m, from_0(1e6, "N/m"));
   params.damping_n_s_per_m = from.number_or("damping_n_s_per_m", params.damping_n_s_per_m, from_0(1e6, "N s/m"));
-  params.mu_static = from.number_or("mu_static", params.mu_static, from_0(1e6, ""));
-  params.mu_dynamic = from.number_or("mu_dynamic", params.mu_dynamic, from_0(1e6, ""));
-  if (params.mu_static < params.mu_dynamic) {
-    from.fail("mu_static", "is " + shown_number(params.mu_static) + (from.has("mu_static") ? "" : " (the default)") +
-                               ", below mu_dynamic, " + shown_number(params.mu_dynamic) +
-                               (from.has("mu_dynamic") ? "" : " (the default)") + "; it must be at least that");
-  }
+  read_friction(from, &params);
   params.edge_friction = from.choice_or("edge_friction", 0, {"wedge", "paper"}) == 0 ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
   if (from.has("motion")) read_motion(from.object("motion", kMotionKeys), &object.motion);
-  const auto moves = [](const ObjectConfig& other) { return other.motion.kind != MotionKind::kFixed; };
+  const auto moves = [](const ObjectConfig& other) { return is_moved(other.motion); };
+  const auto is_body = [](const ObjectConfig& other) { return other.motion.kind == MotionKind::kBody; };
   if (moves(object) && std::count_if(config_.objects.begin(), config_.objects.end(), moves) == kMaxDriven) {
     from.fail("motion", "is one more than the " + std::to_string(kMaxDriven) + " that a scene may have; make an object fixed");
+  }
+  if (is_body(object) && std::count_if(config_.objects.begin(), config_.objects.end(), is_body) == kMaxBodies) {
+    from.fail("motion", "is one more body than the " + std::to_string(kMaxBodies) + " that a scene may have");
   }
   config_.objects.push_back(std::move(object));
 }
 
+void SceneParser::read_friction(const JsonObject& from, fdcg_params* params) {
+  params->stiffness_n_per_m = from.number_or("stiffness_n_per_m", params->stiffness_n_per_m, from_0(1e6, "N/m"));
+  params->mu_static = from.number_or("mu_static", params->mu_static, from_0(1e6, ""));
+  params->mu_dynamic = from.number_or("mu_dynamic", params->mu_dynamic, from_0(1e6, ""));
+  if (params->mu_static >= params->mu_dynamic) return;
+  from.fail("mu_static", "is " + shown_number(params->mu_static) + (from.has("mu_static") ? "" : " (the default)") +
+                             ", below mu_dynamic, " + shown_number(params->mu_dynamic) +
+                             (from.has("mu_dynamic") ? "" : " (the default)") + "; it must be at least that");
+}
+
+void SceneParser::read_body(const JsonObject& from, BodyConfig* body) {
+  from.allow_only({"kind", "mass_kg", "density_kg_per_m3", "points", "linear_damping_per_s", "angular_damping_per_s", "notes"},
+                  " of a body");
+  if (from.has("mass_kg")) body->mass_kg = from.number("mass_kg", above_0(1e6, "kg"));
+  if (from.has("density_kg_per_m3")) body->density_kg_per_m3 = from.number("density_kg_per_m3", above_0(1e6, "kg/m^3"));
+  if (body->mass_kg > 0 && body->density_kg_per_m3 > 0)
+    from.fail("mass_kg", "stands beside density_kg_per_m3; give one of them");
+  body->linear_damping_per_s = from.number_or("linear_damping_per_s", 0, from_0(1000, "1/s"));
+  body->angular_damping_per_s = from.number_or("angular_damping_per_s", 0, from_0(1000, "1/s"));
+  body->points = static_cast<int>(from.integer_or("points", body->points, 1, 256));
+}
+
+void SceneParser::read_ground(const JsonObject& from) {
+  GroundConfig& ground = config_.ground;
+  ground.is_there = true;
+  if (from.has("normal")) read_unit(from, "normal", ground.normal, 3, kUnitTolerance);
+  ground.offset_m = from.number_or("offset_m", 0, kLengths);
+  read_friction(from, &ground.params);
+}
+
+// Each device has a scene of its own, and there a body of its own: two would each lift another cube.
+void SceneParser::refuse_shared_bodies(const JsonObject& scene) {
+  const auto is_body = [](const ObjectConfig& object) { return object.motion.kind == MotionKind::kBody; };
+  if (config_.devices.size() <= 1 || std::none_of(config_.objects.begin(), config_.objects.end(), is_body)) return;
+  scene.fail("devices", "has " + std::to_string(config_.devices.size()) +
+                            " devices, and an object is a body; a scene with bodies has one device: give it more contacts");
+}
+
 void SceneParser::read_motion(const JsonObject& from, Motion* motion) {
-  motion->kind = static_cast<MotionKind>(from.choice("kind", {"fixed", "spin", "swing", "driven"}));
+  motion->kind = static_cast<MotionKind>(from.choice("kind", {"fixed", "spin", "swing", "driven", "body"}));
+  if (motion->kind == MotionKind::kBody) return read_body(from, &motion->body);
   const bool is_spin = motion->kind == MotionKind::kSpin, is_swing = motion->kind == MotionKind::kSwing;
   if (is_spin) from.allow_only({"kind", "axis", "rate_hz"}, " of a spin");
-  if (is_swing) from.allow_only(kMotionKeys, " of a swing");
+  if (is_swing) from.allow_only({"kind", "axis", "rate_hz", "amplitude_m"}, " of a swing");
   if (!is_spin && !is_swing) return from.allow_only({"kind"}, " of a motion that is neither spin nor swing");
   from.numbers("axis", motion->axis, 3, {-1e6, 1e6});
   const double length = norm(motion->axis, 3);
@@ -186,34 +242,59 @@ void SceneParser::read_device(const JsonObject& from) {
   refuse_twins(from, config_.devices, device.name);
   device.source = static_cast<DeviceSource>(from.choice_or("source", 0, {"hid", "simulated", "recorded"}));
   if (device.source == DeviceSource::kHid) {
-    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "profile", "serial", "path"},
-                    " of a hid device");
+    from.allow_only(
+        {"name", "source", "mapping", "contacts", "grip", "turn", "force_limit_n", "notes", "profile", "serial", "path"},
+        " of a hid device");
     read_profile(from, &device);
     device.serial = from.text_or("serial", "", kLongestName);
     device.path = from.text_or("path", "", kLongestPath);
   } else if (device.source == DeviceSource::kSimulated) {
-    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "simulation"},
+    from.allow_only({"name", "source", "mapping", "contacts", "grip", "turn", "force_limit_n", "notes", "simulation"},
                     " of a simulated device");
     if (from.has("simulation")) read_simulation(from.object("simulation", kSimulationKeys), &device.simulation);
     device.profile = simulated_profile(device.simulation);
   } else {
-    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "profile", "recording"},
+    from.allow_only({"name", "source", "mapping", "contacts", "grip", "turn", "force_limit_n", "notes", "profile", "recording"},
                     " of a recorded device");
     read_recording(from, &device);
   }
   if (from.has("mapping")) read_mapping(from.object("mapping", kMappingKeys), &device.mapping);
-  if (from.has("contacts")) {
-    const std::vector<JsonObject> contacts = from.objects("contacts", 1, kMaxContacts, kContactKeys);
-    device.contact_count = std::max<int>(1, static_cast<int>(contacts.size()));
-    for (std::size_t i = 0; i < contacts.size(); ++i)
-      contacts[i].numbers("offset_m", device.contacts_m[i], 3, kLengths);
-  }
+  read_contacts(from, &device);
   device.most_force_n = scene_force_n_;
   if (from.has("force_limit_n")) {
     const double own = from.number("force_limit_n", above_0(kMostForce, "N"));
     device.most_force_n = scene_force_n_ > 0 ? std::min(own, scene_force_n_) : own;
   }
   config_.devices.push_back(std::move(device));
+}
+
+void SceneParser::read_button(const JsonObject& from, HeldButton* button) {
+  button->mask = std::uint32_t{1} << from.integer("button", 0, kMaxButtons - 1);
+  button->seconds = from.number_or("seconds", button->seconds, {0.001, 1000, true, "s"});
+}
+
+void SceneParser::read_contacts(const JsonObject& from, DeviceConfig* device) {
+  Grip& grip = device->grip;
+  if (from.has("grip")) read_button(from.object("grip", kGripKeys), &grip.close);
+  if (from.has("turn")) {
+    const JsonObject turn = from.object("turn", kTurnKeys);
+    read_button(turn, &grip.turn);
+    // up to half a turn: of the two ways round the shorter, so that the way there is told by its end
+    if (read_unit(turn, "rotation_xyzw", grip.turn_xyzw, 4, kUnitTolerance) && grip.turn_xyzw[3] < 0) {
+      for (double& x : grip.turn_xyzw)
+        x = -x;
+    }
+  }
+  if (!from.has("contacts")) return;
+  const std::vector<JsonObject> contacts = from.objects("contacts", 1, kMaxContacts, kContactKeys);
+  device->contact_count = std::max<int>(1, static_cast<int>(contacts.size()));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts[i].numbers("offset_m", device->contacts_m[i], 3, kLengths);
+    std::copy_n(device->contacts_m[i], 3, grip.closed_m[i]);
+    if (!contacts[i].has("closed_m")) continue;
+    contacts[i].numbers("closed_m", grip.closed_m[i], 3, kLengths);
+    if (grip.close.mask == 0) contacts[i].fail("closed_m", "has no \"grip\" that would close it; name a button there");
+  }
 }
 
 void SceneParser::parse_profile_of(const JsonObject& from, const std::string& text, const std::string& name,
@@ -314,6 +395,7 @@ void SceneParser::read_simulation(const JsonObject& from, SimulationConfig* simu
   s.hand_stiffness_n_per_m = from.number_or("hand_stiffness_n_per_m", s.hand_stiffness_n_per_m, from_0(1e5, "N/m"));
   s.hand_damping_n_s_per_m = from.number_or("hand_damping_n_s_per_m", s.hand_damping_n_s_per_m, from_0(1000, "N s/m"));
   s.quantum_m = from.number_or("quantum_m", s.quantum_m, {1e-9, 0.01, true, "m"});
+  if (from.has("script")) read_script(from, &s);
   if (from.has("start_m")) from.numbers("start_m", s.start_m, 3, metres(10));
   if (from.has("amplitude_m")) from.numbers("amplitude_m", s.amplitude_m, 3, metres(10));
   if (from.has("frequency_hz")) from.numbers("frequency_hz", s.frequency_hz, 3, from_0(1000, "Hz"));
@@ -336,6 +418,28 @@ void SceneParser::read_simulation(const JsonObject& from, SimulationConfig* simu
       fault.fail("kind", "is not-finite, which counts cannot be; set float_axes to true");
     }
     s.faults.push_back(f);
+  }
+}
+
+void SceneParser::read_script(const JsonObject& from, SimulationConfig* simulation) {
+  for (const char* const key : {"start_m", "amplitude_m", "frequency_hz"})
+    if (from.has(key)) from.fail(key, "stands beside script, which says where the hand is; leave it out");
+  for (const JsonObject& step : from.objects("script", 1, SimulationConfig::kMaxScript, kScriptKeys)) {
+    ScriptStep s;
+    s.at_s = step.number("at_s", from_0(1e6, "s"));
+    step.numbers("place_m", s.place_m, 3, metres(10));
+    if (step.has("buttons")) {
+      for (const double button : step.numbers("buttons", 0, 8, {0, 7})) {
+        if (button != std::floor(button)) step.fail("buttons", "has " + shown_number(button) + "; buttons are 0 to 7");
+        s.buttons |= 1u << static_cast<int>(button);
+      }
+    }
+    constexpr double kLeastStepS = 0.001;
+    if (!simulation->script.empty() && !(s.at_s >= simulation->script.back().at_s + kLeastStepS)) {
+      step.fail("at_s", "is " + shown_number(s.at_s) + ", less than 1 ms after the step before it, " +
+                            shown_number(simulation->script.back().at_s) + "; times ascend");
+    }
+    simulation->script.push_back(s);
   }
 }
 

@@ -112,6 +112,11 @@ bool LogRing::put(const TickInput& input, const TickOutput& output) {
   return true;
 }
 
+bool LogRing::has_room() const {
+  const std::uint64_t used = head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire);
+  return capacity_ - used >= kEntryBytes + kMostTickBytes;
+}
+
 std::size_t LogRing::take(std::uint64_t* tick, std::uint8_t* payload) {
   const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
   if (tail == head_.load(std::memory_order_acquire)) return 0;

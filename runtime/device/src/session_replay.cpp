@@ -180,6 +180,9 @@ bool SessionReplay::has_strays() const {
 const HostConfig& SessionReplay::config() const {
   return impl_->config;
 }
+const fdcg_graph& SessionReplay::graph(std::size_t object) const {
+  return impl_->graphs.of_object(object);
+}
 const SessionReader& SessionReplay::reader() const {
   return impl_->reader;
 }

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session_csv.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace fdcg::servo {
+namespace {
+
+constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
+constexpr const char* kPhases[] = {"disarmed", "ramping", "armed", "fading"};
+constexpr const char* kCsvHeader =
+    "t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions,device,tick,phase,fault,sent_fx,sent_fy,sent_"
+    "fz";
+
+void append(std::string& line, double value) {
+  char digits[40];
+  line.append(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 17).ptr);
+  line += ',';
+}
+
+void append(std::string& line, const double (&values)[3]) {
+  for (const double value : values)
+    append(line, value);
+}
+
+// What the tip touches: of the contact with the largest force, the object that gives it the most.
+const fdcg_touch* strongest_touch(const dev::DeviceState& device) {
+  const fdcg_touch* best = nullptr;
+  double best_square = -1;
+  for (int i = 0; i < device.setup.contact_count; ++i) {
+    fdcg_finger_result finger{};
+    if (fdcg_scene_result(device.setup.scene, device.setup.fingers[i], &finger, nullptr) != FDCG_OK) continue;
+    for (std::uint32_t k = 0; k < finger.touch_count; ++k) {
+      const double* const f = finger.touches[k].force_n;
+      const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+      if (square <= best_square || finger.touches[k].state == FDCG_FREE) continue;
+      best = &finger.touches[k];
+      best_square = square;
+    }
+  }
+  return best;
+}
+
+std::string column_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ',' || c == '"'; }, '_');
+  return name;
+}
+
+// What presses on a face: the part of the force along its normal, the part in its plane, and the share of the friction cone
+// that is left (0: it slips). Where a touch is on no face of a graph there is no one normal, and the fields stay empty.
+struct Load {
+  bool is_known = false;
+  double along_n = 0, across_n = 0, margin = 0;
+};
+
+void turn(const double q[4], const double from[3], double to[3]) {
+  const double c[3] = {q[1] * from[2] - q[2] * from[1], q[2] * from[0] - q[0] * from[2], q[0] * from[1] - q[1] * from[0]};
+  to[0] = from[0] + 2 * (q[3] * c[0] + q[1] * c[2] - q[2] * c[1]);
+  to[1] = from[1] + 2 * (q[3] * c[1] + q[2] * c[0] - q[0] * c[2]);
+  to[2] = from[2] + 2 * (q[3] * c[2] + q[0] * c[1] - q[1] * c[0]);
+}
+
+// Where an object was in that tick.
+const double* rotation_of(const dev::HostConfig& config, const dev::ReplayedTick& tick, std::size_t object) {
+  std::size_t body = 0, moved = 0;
+  for (std::size_t i = 0; i < object; ++i) {
+    body += config.objects[i].motion.kind == dev::MotionKind::kBody;
+    moved += dev::is_moved(config.objects[i].motion);
+  }
+  const dev::ObjectConfig& of = config.objects[object];
+  if (of.motion.kind == dev::MotionKind::kBody) return tick.output->bodies[body].rotation_xyzw;
+  if (dev::is_moved(of.motion) && moved < tick.input->pose_count) return tick.input->poses[moved].rotation_xyzw;
+  return of.pose.rotation_xyzw;
+}
+
+Load load_of(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, const fdcg_touch& touch) {
+  Load load;
+  if (touch.state != FDCG_FACE) return load;
+  const std::size_t object = touch.object.index;
+  const fdcg_node_info face = fdcg_get_node(&replay.graph(object), touch.feature);
+  double normal[3];
+  turn(rotation_of(replay.config(), tick, object), face.normal, normal);
+  double square = 0;
+  for (int i = 0; i < 3; ++i)
+    load.along_n += touch.force_n[i] * normal[i];
+  for (int i = 0; i < 3; ++i) {
+    const double across = touch.force_n[i] - load.along_n * normal[i];
+    square += across * across;
+  }
+  load.is_known = load.along_n > 0;
+  load.across_n = std::sqrt(square);
+  const double mu = replay.config().objects[object].params.mu_static;
+  load.margin = mu > 0 ? 1 - load.across_n / (mu * load.along_n) : 0;
+  return load;
+}
+
+}  // namespace
+
+std::string session_csv_header(const dev::HostConfig& config) {
+  std::string line = kCsvHeader;
+  for (const dev::ObjectConfig& object : config.objects) {
+    if (object.motion.kind != dev::MotionKind::kBody) continue;
+    for (const char* const part : {"_x", "_y", "_z", "_qx", "_qy", "_qz", "_qw"})
+      line += "," + column_name(object.name) + part;
+  }
+  return line + "\n";
+}
+
+std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_ns) {
+  const dev::LoggedOutput& output = *tick.output;
+  const fdcg_touch* const touch = strongest_touch(*tick.state);
+  std::string line;
+  append(line, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
+  append(line, output.hip_world_m);
+  append(line, touch == nullptr ? output.hip_world_m : touch->god_object_m);
+  append(line, output.wanted_force_n);
+  line += touch == nullptr ? "free,-1,0,0,"
+                           : std::string(kStates[touch->state & 3]) + "," + std::to_string(touch->feature) + "," +
+                                 std::to_string(touch->slipping) + "," + std::to_string(touch->transitions) + ",";
+  line += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + kPhases[output.phase & 3] + "," +
+          dev::fault_name(static_cast<dev::Fault>(output.fault)) + ",";
+  append(line, output.force_n);
+  for (int i = 0; i < output.body_count; ++i) {
+    append(line, output.bodies[i].translation_m);
+    for (const double x : output.bodies[i].rotation_xyzw)
+      append(line, x);
+  }
+  line.back() = '\n';
+  return line;
+}
+
+std::string touches_csv_header() {
+  return "t,device,tick,contact,object,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,load,friction,margin\n";
+}
+
+std::string touches_csv_rows(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, std::uint64_t first_ns) {
+  const dev::DeviceSetup& setup = tick.state->setup;
+  std::string text;
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
+    fdcg_finger_result finger{};
+    if (fdcg_scene_result(setup.scene, setup.fingers[contact], &finger, nullptr) != FDCG_OK) continue;
+    for (std::uint32_t i = 0; i < finger.touch_count; ++i) {
+      const fdcg_touch& touch = finger.touches[i];
+      if (touch.state == FDCG_FREE) continue;
+      append(text, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
+      text += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + std::to_string(contact) + "," +
+              column_name(replay.config().objects[touch.object.index].name) + ",";
+      append(text, touch.god_object_m);
+      append(text, touch.force_n);
+      text += std::string(kStates[touch.state & 3]) + "," + std::to_string(touch.feature) + "," +
+              std::to_string(touch.slipping) + ",";
+      const Load load = load_of(replay, tick, touch);
+      if (!load.is_known) {
+        text += ",,\n";
+        continue;
+      }
+      append(text, load.along_n);
+      append(text, load.across_n);
+      append(text, load.margin);
+      text.back() = '\n';
+    }
+  }
+  return text;
+}
+
+}  // namespace fdcg::servo
