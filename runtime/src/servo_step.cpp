@@ -388,6 +388,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
 }  // namespace
 }  // namespace fdcg
 
+#if !FDCG_DEFORMABLE  // deform_step.cpp takes this file in, and has an entry of its own
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
@@ -395,3 +396,4 @@ extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fd
   fdcg::with_real_of(*graph->header,
                      [&](auto real) { fdcg::step<decltype(real)>(*graph, all_params, contact, hip_object_m, result); });
 }
+#endif
