@@ -49,8 +49,8 @@ std::string column_name(std::string name) {
   return name;
 }
 
-// What presses on a face: the part of the force along its normal, the part in its plane, and the share of the friction cone
-// that is left (0: it slips). Where a touch is on no face of a graph there is no one normal, and the fields stay empty.
+// What presses on a face or a sphere: the part of the force along its normal, the part in its plane, and the share of the
+// friction cone that is left (0: it slips). Elsewhere the fields stay empty.
 struct Load {
   bool is_known = false;
   double along_n = 0, across_n = 0, margin = 0;
@@ -64,25 +64,42 @@ void turn(const double q[4], const double from[3], double to[3]) {
 }
 
 // Where an object was in that tick.
-const double* rotation_of(const dev::HostConfig& config, const dev::ReplayedTick& tick, std::size_t object) {
+const fdcg_pose& tick_pose(const dev::HostConfig& config, const dev::ReplayedTick& tick, std::size_t object) {
   std::size_t body = 0, moved = 0;
   for (std::size_t i = 0; i < object; ++i) {
     body += config.objects[i].motion.kind == dev::MotionKind::kBody;
     moved += dev::is_moved(config.objects[i].motion);
   }
   const dev::ObjectConfig& of = config.objects[object];
-  if (of.motion.kind == dev::MotionKind::kBody) return tick.output->bodies[body].rotation_xyzw;
-  if (dev::is_moved(of.motion) && moved < tick.input->pose_count) return tick.input->poses[moved].rotation_xyzw;
-  return of.pose.rotation_xyzw;
+  if (of.motion.kind == dev::MotionKind::kBody) return tick.output->bodies[body];
+  if (dev::is_moved(of.motion) && moved < tick.input->pose_count) return tick.input->poses[moved];
+  return of.pose;
+}
+
+void normal_of_ball(const dev::ObjectConfig& ball, const fdcg_pose& pose, const double at_m[3], double normal[3]) {
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    normal[i] = (at_m[i] - pose.translation_m[i]) * (ball.surface.is_hollow != 0 ? -1 : 1);
+    square += normal[i] * normal[i];
+  }
+  const double length = std::sqrt(square);
+  for (int i = 0; i < 3; ++i)
+    normal[i] /= length > 0 ? length : 1;
 }
 
 Load load_of(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, const fdcg_touch& touch) {
   Load load;
-  if (touch.state != FDCG_FACE) return load;
   const std::size_t object = touch.object.index;
-  const fdcg_node_info face = fdcg_get_node(&replay.graph(object), touch.feature);
+  const dev::ObjectConfig& of = replay.config().objects[object];
   double normal[3];
-  turn(rotation_of(replay.config(), tick, object), face.normal, normal);
+  if (of.is_surface && of.surface.kind == FDCG_SURFACE_SPHERE) {
+    normal_of_ball(of, tick_pose(replay.config(), tick, object), touch.god_object_m, normal);
+  } else if (!of.is_surface && touch.state == FDCG_FACE) {
+    turn(tick_pose(replay.config(), tick, object).rotation_xyzw, fdcg_get_node(&replay.graph(object), touch.feature).normal,
+         normal);
+  } else {
+    return load;
+  }
   double square = 0;
   for (int i = 0; i < 3; ++i)
     load.along_n += touch.force_n[i] * normal[i];

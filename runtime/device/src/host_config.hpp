@@ -7,6 +7,7 @@
 
 #include "device_tick.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg/surface.h"
 #include "simulated_device.hpp"
 
 namespace fdcg::dev {
@@ -24,9 +25,9 @@ struct BodyConfig {
 // Of an object, as a function of the time since the host started.
 struct Motion {
   MotionKind kind = MotionKind::kFixed;
-  double axis[3] = {0, 0, 1};    // unit: of the spin, or the direction of the swing
-  double rate_hz = 0;            // turns or swings a second
-  double amplitude_m = 0;        // of the swing
+  double axis[3] = {0, 0, 1};  // unit: of the spin, or the direction of the swing
+  double rate_hz = 0;          // turns or swings a second
+  double amplitude_m = 0;      // of the swing
   BodyConfig body;
 };
 // Its pose is part of a tick's input.
@@ -35,9 +36,11 @@ inline bool is_moved(const Motion& motion) {
 }
 
 struct ObjectConfig {
-  std::string name, file;
+  std::string name, file;  // file: empty where it is a surface
+  bool is_surface = false;
+  fdcg_surface surface{};  // is_surface
   fdcg_pose pose;
-  fdcg_params params;            // tick_s is set from each device's rate
+  fdcg_params params;  // tick_s is set from each device's rate
   Motion motion;
 };
 
@@ -55,11 +58,11 @@ struct DeviceConfig {
   std::string name;
   DeviceSource source = DeviceSource::kHid;
   Profile profile;
-  std::string profile_text;      // its JSON, for the log
-  std::string serial, path;      // of the HID device; empty: the first that matches
-  std::string recording;         // kRecorded: a session's log
+  std::string profile_text;               // its JSON, for the log
+  std::string serial, path;               // of the HID device; empty: the first that matches
+  std::string recording;                  // kRecorded: a session's log
   bool is_recording_in_real_time = true;  // false: as fast as it is read (FastRun)
-  SimulationConfig simulation;   // kSimulated
+  SimulationConfig simulation;            // kSimulated
   Mapping mapping;
   int contact_count = 1;
   double contacts_m[kMaxContacts][3] = {};
@@ -83,8 +86,8 @@ struct HostConfig {
   double gravity_m_per_s2[3] = {0, 0, -9.80665};
   GroundConfig ground;
   LoopConfig loop;
-  std::string log_file;          // empty: none
-  double log_megabytes = 0;      // the log ends there; 0: no limit
+  std::string log_file;      // empty: none
+  double log_megabytes = 0;  // the log ends there; 0: no limit
 };
 
 }  // namespace fdcg::dev

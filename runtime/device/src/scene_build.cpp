@@ -23,6 +23,10 @@ void multiply(const double a[4], const double b[4], double product[4]) {
 std::string SceneGraphs::open(const HostConfig& config) {
   close();
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    if (config.objects[i].is_surface) {
+      graph_of_object_.push_back(kNone);
+      continue;
+    }
     const auto same_file = [&](const ObjectConfig& other) { return other.file == config.objects[i].file; };
     const auto first = static_cast<std::size_t>(std::find_if(config.objects.begin(), config.objects.end(), same_file) -
                                                 config.objects.begin());
@@ -77,7 +81,10 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
     fdcg_params params = object.params;
     params.tick_s = 1 / from.profile.rate_hz;
     fdcg_object_id id{};
-    if (fdcg_scene_add_object(setup.scene, &graphs.of_object(i), &params, &object.pose, &id, &error) != FDCG_OK) {
+    const fdcg_status status =
+        object.is_surface ? fdcg_scene_add_surface(setup.scene, &object.surface, &params, &object.pose, &id, &error)
+                          : fdcg_scene_add_object(setup.scene, &graphs.of_object(i), &params, &object.pose, &id, &error);
+    if (status != FDCG_OK) {
       return place_of(config, i) + error.message;
     }
     objects.push_back(id);

@@ -22,9 +22,11 @@ class SceneGraphs {
   // Opens and verifies every file. Empty: fine. Otherwise the object, its file, and what is wrong with it.
   std::string open(const HostConfig& config);
   void close();
+  // Of an object with a file.
   const fdcg_graph& of_object(std::size_t index) const { return graphs_[graph_of_object_[index]]; }
 
  private:
+  static constexpr std::size_t kNone = ~std::size_t{0};  // a surface
   std::vector<fdcg_graph> graphs_;
   std::vector<std::size_t> graph_of_object_;
 };

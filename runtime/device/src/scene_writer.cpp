@@ -16,11 +16,22 @@ Json list(const double (&values)[count]) {
   return Json(std::vector<double>(values, values + count));
 }
 
+Json surface_json(const fdcg_surface& surface) {
+  constexpr const char* kKinds[] = {"plane", "sphere", "cylinder", "capsule", "box", "cone", "torus", "ellipsoid"};
+  return {{"kind", kKinds[surface.kind]},         {"hollow", surface.is_hollow != 0},       {"radius_m", surface.radius_m},
+          {"top_radius_m", surface.top_radius_m}, {"tube_radius_m", surface.tube_radius_m}, {"length_m", surface.length_m},
+          {"half_m", list(surface.half_m)}};
+}
+
 Json object_json(const ObjectConfig& object) {
   constexpr const char* kKinds[] = {"fixed", "spin", "swing", "driven", "body"};
   Json json;
   json["name"] = object.name;
-  json["file"] = object.file;
+  if (object.is_surface) {
+    json["surface"] = surface_json(object.surface);
+  } else {
+    json["file"] = object.file;
+  }
   json["pose"]["rotation_xyzw"] = list(object.pose.rotation_xyzw);
   json["pose"]["translation_m"] = list(object.pose.translation_m);
   json["pose"]["scale"] = object.pose.scale;
