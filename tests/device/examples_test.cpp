@@ -144,6 +144,43 @@ TEST_CASE("with friction for half of its weight the cube stays on the ground, an
   CHECK(highest_m < 0.001);
 }
 
+TEST_CASE("a soft sheet dents under a finger, holds its god-object, and comes back") {
+  const Folder folder;
+  HostConfig config = read(kScenes + "press_sheet.json");
+  config.objects[0].file = FDCG_SHEET;
+  const DeviceStatus status = run(std::move(config), 8, folder.file("a.fdcglog"));
+  CHECK(status.last.phase == Phase::kArmed);
+  SessionReplay replay;
+  REQUIRE(replay.open(folder.file("a.fdcglog"), "") == "");
+  double deepest_m = 0, most_n = 0, held_z_m = 0, last_m = 1;
+  int pressed = 0, released = 0;
+  for (ReplayedTick tick; replay.next(&tick);) {
+    const SoftObject& sheet = *tick.state->setup.soft[0];
+    const double force_n =
+        std::hypot(tick.output->wanted_force_n[0], tick.output->wanted_force_n[1], tick.output->wanted_force_n[2]);
+    pressed += tick.output->state != FDCG_FREE;
+    if (tick.output->state == FDCG_FREE) {
+      released += pressed > 0;
+      REQUIRE(force_n == 0);
+    } else {
+      // it rides on the sheet, which has given way: well below where the sheet was
+      REQUIRE(tick.output->wanted_force_n[2] >= 0);
+      held_z_m = std::min(held_z_m, sheet.touch(0).god_object_m[2]);
+    }
+    deepest_m = std::max(deepest_m, sheet.deepest_m());
+    most_n = std::max(most_n, force_n);
+    last_m = sheet.deepest_m();
+  }
+  CHECK(replay.is_same());
+  WARN("dent " << deepest_m << " m under " << most_n << " N; at the end " << last_m << " m");
+  CHECK(pressed > 3000);
+  CHECK(released > 1000);
+  CHECK(deepest_m > 0.004);
+  CHECK(held_z_m < -0.004);
+  CHECK(most_n > 0.5);
+  CHECK(last_m < 1e-4);
+}
+
 TEST_CASE("a run without real time writes the same log every time") {
   const Folder folder;
   for (const char* const name : {"a.fdcglog", "b.fdcglog"}) {

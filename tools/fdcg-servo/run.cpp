@@ -335,12 +335,10 @@ int run_scene(const RunArguments& arguments) {
   if (arguments.no_log) config.log_file.clear();
   if (arguments.hid == "hidraw") config.loop.backend = dev::HidBackend::kHidraw;
   if (arguments.hid == "libusb") config.loop.backend = dev::HidBackend::kLibusb;
+  const StatusKind says = arguments.quiet ? StatusKind::kNone : arguments.status;
   if (arguments.fast) {
-    for (const std::string& warning : warnings)
-      std::fprintf(stderr, "fdcg-servo: warning: %s\n", warning.c_str());
-    const bool says = !arguments.quiet;
-    return run_fast(std::move(config), {arguments.for_s, arguments.arm, says && arguments.status == StatusKind::kText,
-                                        says && arguments.status == StatusKind::kJson});
+    return run_fast(std::move(config), warnings,
+                    {arguments.for_s, arguments.arm, says == StatusKind::kText, says == StatusKind::kJson});
   }
   const std::string log_file = config.log_file;
   dev::Host host;

@@ -21,7 +21,9 @@ void on_signal(int) {
 
 }  // namespace
 
-int run_fast(dev::HostConfig config, const FastRunArguments& arguments) {
+int run_fast(dev::HostConfig config, const std::vector<std::string>& warnings, const FastRunArguments& arguments) {
+  for (const std::string& warning : warnings)
+    std::fprintf(stderr, "fdcg-servo: warning: %s\n", warning.c_str());
   dev::FastRun run;
   if (const std::string problem = run.open(std::move(config)); !problem.empty()) return fail(kFile, problem);
   struct sigaction action {};

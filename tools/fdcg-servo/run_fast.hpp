@@ -2,6 +2,9 @@
 // fdcg-servo run --fast: simulated and recorded devices, on clocks of their own.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "host_config.hpp"
 
 namespace fdcg::servo {
@@ -12,7 +15,7 @@ struct FastRunArguments {
   bool says_text = true, says_json = false;  // at the end
 };
 
-// The exit code.
-int run_fast(dev::HostConfig config, const FastRunArguments& arguments);
+// The exit code. `warnings` are told first.
+int run_fast(dev::HostConfig config, const std::vector<std::string>& warnings, const FastRunArguments& arguments);
 
 }  // namespace fdcg::servo

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <vector>
 
 namespace fdcg::servo {
 namespace {
@@ -25,22 +26,36 @@ void append(std::string& line, const double (&values)[3]) {
     append(line, value);
 }
 
-// What the tip touches: of the contact with the largest force, the object that gives it the most.
-const fdcg_touch* strongest_touch(const dev::DeviceState& device) {
-  const fdcg_touch* best = nullptr;
-  double best_square = -1;
-  for (int i = 0; i < device.setup.contact_count; ++i) {
+// One touch of a contact: of the scene, or of a soft object. Null: none.
+struct Touch {
+  const fdcg_touch* of_scene = nullptr;
+  const dev::SoftTouch* of_soft = nullptr;
+  int contact = 0, soft = 0;
+  const double* force_n() const { return of_scene != nullptr ? of_scene->force_n : of_soft->force_n; }
+  const double (&god_object_m() const)[3] { return of_scene != nullptr ? of_scene->god_object_m : of_soft->god_object_m; }
+  std::uint32_t state() const { return of_scene != nullptr ? of_scene->state : of_soft->state; }
+};
+
+// Contact by contact, the scene's before the soft objects'.
+std::vector<Touch> touches_of(const dev::DeviceSetup& setup) {
+  std::vector<Touch> touches;
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result finger{};
-    if (fdcg_scene_result(device.setup.scene, device.setup.fingers[i], &finger, nullptr) != FDCG_OK) continue;
-    for (std::uint32_t k = 0; k < finger.touch_count; ++k) {
-      const double* const f = finger.touches[k].force_n;
-      const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-      if (square <= best_square || finger.touches[k].state == FDCG_FREE) continue;
-      best = &finger.touches[k];
-      best_square = square;
+    const bool is_there = fdcg_scene_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK;
+    for (std::uint32_t i = 0; is_there && i < finger.touch_count; ++i)
+      if (finger.touches[i].state != FDCG_FREE) touches.push_back({finger.touches + i, nullptr, contact, 0});
+    for (int soft = 0; soft < setup.soft_count; ++soft) {
+      const dev::SoftTouch& touch = setup.soft[soft]->touch(contact);
+      if (touch.state != FDCG_FREE) touches.push_back({nullptr, &touch, contact, soft});
     }
   }
-  return best;
+  return touches;
+}
+
+std::string state_columns(const Touch& touch) {
+  const std::uint32_t feature = touch.of_scene != nullptr ? touch.of_scene->feature : touch.of_soft->feature;
+  const std::uint32_t slipping = touch.of_scene != nullptr ? touch.of_scene->slipping : touch.of_soft->slipping;
+  return std::string(kStates[touch.state() & 3]) + "," + std::to_string(feature) + "," + std::to_string(slipping) + ",";
 }
 
 std::string column_name(std::string name) {
@@ -123,20 +138,29 @@ std::string session_csv_header(const dev::HostConfig& config) {
     for (const char* const part : {"_x", "_y", "_z", "_qx", "_qy", "_qz", "_qw"})
       line += "," + column_name(object.name) + part;
   }
+  for (const dev::ObjectConfig& object : config.objects)
+    if (object.motion.kind == dev::MotionKind::kSoft) line += "," + column_name(object.name) + "_dent";
   return line + "\n";
 }
 
+// Of the touch with the largest force: god-object, state and so on.
 std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_ns) {
   const dev::LoggedOutput& output = *tick.output;
-  const fdcg_touch* const touch = strongest_touch(*tick.state);
+  const std::vector<Touch> touches = touches_of(tick.state->setup);
+  const auto square = [](const Touch& touch) {
+    const double* const f = touch.force_n();
+    return f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+  };
+  const auto best =
+      std::max_element(touches.begin(), touches.end(), [&](const Touch& a, const Touch& b) { return square(a) < square(b); });
+  const bool is_free = best == touches.end();
   std::string line;
   append(line, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
   append(line, output.hip_world_m);
-  append(line, touch == nullptr ? output.hip_world_m : touch->god_object_m);
+  append(line, is_free ? output.hip_world_m : best->god_object_m());
   append(line, output.wanted_force_n);
-  line += touch == nullptr ? "free,-1,0,0,"
-                           : std::string(kStates[touch->state & 3]) + "," + std::to_string(touch->feature) + "," +
-                                 std::to_string(touch->slipping) + "," + std::to_string(touch->transitions) + ",";
+  line += is_free ? "free,-1,0," : state_columns(*best);
+  line += std::to_string(is_free || best->of_scene == nullptr ? 0 : best->of_scene->transitions) + ",";
   line += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + kPhases[output.phase & 3] + "," +
           dev::fault_name(static_cast<dev::Fault>(output.fault)) + ",";
   append(line, output.force_n);
@@ -145,6 +169,8 @@ std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_n
     for (const double x : output.bodies[i].rotation_xyzw)
       append(line, x);
   }
+  for (int i = 0; i < tick.state->setup.soft_count; ++i)
+    append(line, tick.state->setup.soft[i]->deepest_m());
   line.back() = '\n';
   return line;
 }
@@ -154,31 +180,30 @@ std::string touches_csv_header() {
 }
 
 std::string touches_csv_rows(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, std::uint64_t first_ns) {
-  const dev::DeviceSetup& setup = tick.state->setup;
+  const dev::HostConfig& config = replay.config();
+  std::vector<std::size_t> soft;
+  for (std::size_t i = 0; i < config.objects.size(); ++i)
+    if (config.objects[i].motion.kind == dev::MotionKind::kSoft) soft.push_back(i);
   std::string text;
-  for (int contact = 0; contact < setup.contact_count; ++contact) {
-    fdcg_finger_result finger{};
-    if (fdcg_scene_result(setup.scene, setup.fingers[contact], &finger, nullptr) != FDCG_OK) continue;
-    for (std::uint32_t i = 0; i < finger.touch_count; ++i) {
-      const fdcg_touch& touch = finger.touches[i];
-      if (touch.state == FDCG_FREE) continue;
-      append(text, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
-      text += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + std::to_string(contact) + "," +
-              column_name(replay.config().objects[touch.object.index].name) + ",";
-      append(text, touch.god_object_m);
-      append(text, touch.force_n);
-      text += std::string(kStates[touch.state & 3]) + "," + std::to_string(touch.feature) + "," +
-              std::to_string(touch.slipping) + ",";
-      const Load load = load_of(replay, tick, touch);
-      if (!load.is_known) {
-        text += ",,\n";
-        continue;
-      }
-      append(text, load.along_n);
-      append(text, load.across_n);
-      append(text, load.margin);
-      text.back() = '\n';
+  for (const Touch& touch : touches_of(tick.state->setup)) {
+    const std::size_t object =
+        touch.of_scene != nullptr ? touch.of_scene->object.index : soft[static_cast<std::size_t>(touch.soft)];
+    append(text, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
+    text += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + std::to_string(touch.contact) + "," +
+            column_name(config.objects[object].name) + ",";
+    append(text, touch.god_object_m());
+    for (int i = 0; i < 3; ++i)
+      append(text, touch.force_n()[i]);
+    text += state_columns(touch);
+    const Load load = touch.of_scene != nullptr ? load_of(replay, tick, *touch.of_scene) : Load();
+    if (!load.is_known) {
+      text += ",,\n";
+      continue;
     }
+    append(text, load.along_n);
+    append(text, load.across_n);
+    append(text, load.margin);
+    text.back() = '\n';
   }
   return text;
 }

@@ -99,6 +99,10 @@ void step_scene(DeviceState& device, const double tip_m[3]) {
     place(setup.scene, setup.fingers[contact], to_m[contact], nullptr);
     std::copy_n(to_m[contact], 3, device.places_m[contact]);
   }
+  for (int i = 0; i < setup.soft_count; ++i) {
+    if (!device.has_place) setup.soft[i]->release();
+    setup.soft[i]->step(to_m, 1 / setup.profile.rate_hz);
+  }
   device.has_place = true;
   if (has_bodies) {
     step_bodies(device, to_m);
@@ -106,6 +110,14 @@ void step_scene(DeviceState& device, const double tip_m[3]) {
     fdcg_scene_step(setup.scene);
   }
   std::copy_n(&to_m[0][0], 3 * setup.contact_count, &device.places_m[0][0]);
+}
+
+// The state that is told is that of the touch with the largest force.
+void note_touch(const double force_n[3], std::uint32_t state, double* largest, TickOutput* output) {
+  const double square = force_n[0] * force_n[0] + force_n[1] * force_n[1] + force_n[2] * force_n[2];
+  if (square < *largest) return;
+  *largest = square;
+  output->state = state;
 }
 
 // Moves the fingers to the tip, steps the scene, sums what they feel. World's frame.
@@ -121,12 +133,16 @@ void feel(DeviceState& device, const TickInput& input, const double tip_m[3], Ti
     if (fdcg_scene_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
     for (int i = 0; i < 3; ++i)
       output->wanted_force_n[i] += felt.force_n[i];
-    for (std::uint32_t t = 0; t < felt.touch_count; ++t) {
-      const double* const f = felt.touches[t].force_n;
-      const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-      if (square < largest) continue;
-      largest = square;
-      output->state = felt.touches[t].state;
+    for (std::uint32_t t = 0; t < felt.touch_count; ++t)
+      note_touch(felt.touches[t].force_n, felt.touches[t].state, &largest, output);
+  }
+  for (int soft = 0; soft < setup.soft_count; ++soft) {
+    for (int contact = 0; contact < setup.contact_count; ++contact) {
+      const SoftTouch& touch = setup.soft[soft]->touch(contact);
+      if (touch.state == FDCG_FREE) continue;
+      for (int i = 0; i < 3; ++i)
+        output->wanted_force_n[i] += touch.force_n[i];
+      note_touch(touch.force_n, touch.state, &largest, output);
     }
   }
 }

@@ -15,6 +15,7 @@
 #include "grip.hpp"
 #include "profile.hpp"
 #include "report_codec.hpp"
+#include "soft.hpp"
 #include "transport.hpp"
 
 namespace fdcg::dev {
@@ -22,8 +23,9 @@ namespace fdcg::dev {
 inline constexpr int kMaxDrain = 64;     // reports in one tick: what hidraw keeps
 inline constexpr int kSamplesToArm = 8;  // good reports since the device was opened: by then it has taken an output that asks
                                          // for no force, which many want before the first that does
-inline constexpr int kMaxDriven = 16;  // objects that something moves
-inline constexpr int kMaxBodies = 16;  // objects that move by what acts on them
+inline constexpr int kMaxDriven = 16;    // objects that something moves
+inline constexpr int kMaxSoft = 4;       // objects that give way
+inline constexpr int kMaxBodies = 16;    // objects that move by what acts on them
 
 struct RawReport {
   std::uint64_t host_ns = 0;
@@ -56,7 +58,7 @@ struct TickOutput {
   double wanted_force_n[3] = {};  // world, before the gate
   Sample sample;
   std::uint32_t body_count = 0;
-  fdcg_pose bodies[kMaxBodies];  // world, after the tick; in the order of DeviceSetup::bodies
+  fdcg_pose bodies[kMaxBodies] = {};  // world, after the tick; in the order of DeviceSetup::bodies
 };
 
 struct TickCounters {
@@ -95,6 +97,8 @@ struct DeviceSetup {
   fdcg_pile* pile = nullptr;   // with the ground and all objects; null where there are no bodies
   fdcg_reaction* reactions = nullptr;
   std::uint32_t reaction_count = 0;
+  int soft_count = 0;
+  SoftObject* soft[kMaxSoft] = {};  // in the DeviceScene's memory too; the scene itself has them disabled
 };
 
 // All that a device's loop remembers from tick to tick, but for the scene's memory.

@@ -9,11 +9,13 @@
 #include "fdcg/fdcg.h"
 #include "fdcg/surface.h"
 #include "simulated_device.hpp"
+#include "soft.hpp"
 
 namespace fdcg::dev {
 
 // kDriven: by the caller, fdcg_host_set_pose. kBody: by what acts on it (fdcg/body.h).
-enum class MotionKind { kFixed, kSpin, kSwing, kDriven, kBody };
+// kSoft: it stays, and gives way (soft.hpp).
+enum class MotionKind { kFixed, kSpin, kSwing, kDriven, kBody, kSoft };
 
 // Of kBody. Weighed by the first of mass and density that is above 0, or by the graph's file.
 struct BodyConfig {
@@ -29,6 +31,7 @@ struct Motion {
   double rate_hz = 0;          // turns or swings a second
   double amplitude_m = 0;      // of the swing
   BodyConfig body;
+  SoftConfig soft;
 };
 // Its pose is part of a tick's input.
 inline bool is_moved(const Motion& motion) {

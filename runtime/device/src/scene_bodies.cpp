@@ -103,6 +103,7 @@ class Builder {
     if (points == 0) return {};
     if (!make_pile(static_cast<std::uint32_t>(points))) return config_.scene_file + ": its bodies: " + error_.message;
     for (std::size_t i = 0; i < config_.objects.size(); ++i) {
+      if (config_.objects[i].motion.kind == MotionKind::kSoft) continue;  // bodies go through it
       const std::string problem = is_body(config_.objects[i]) ? add_body(i) : add_fixed(i);
       if (!problem.empty()) return place_of(config_, i) + problem;
     }

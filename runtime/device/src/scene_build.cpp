@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_bodies.hpp"
+#include "words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,24 @@ void multiply(const double a[4], const double b[4], double product[4]) {
   product[1] = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
   product[2] = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];
   product[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
+}
+
+// Empty, or why it cannot be.
+std::string add_soft(const ObjectConfig& object, const DeviceConfig& device, const fdcg_graph& graph, const fdcg_params& params,
+                     DeviceScene* scene) {
+  const SoftConfig& soft = object.motion.soft;
+  // All contacts may press on one corner: it must not come back farther in a tick than it went.
+  const double most = soft.damping_n_s_per_m * device.profile.rate_hz + soft.stiffness_n_per_m;
+  const double pressed = params.stiffness_n_per_m * device.contact_count;
+  if (!(pressed <= most)) {
+    return "a corner takes up " + shown_number(most) + " N/m in a tick, and " + std::to_string(device.contact_count) +
+           " contacts press with " + shown_number(pressed) + "; raise the motion's damping_n_s_per_m to " +
+           shown_number(std::ceil(pressed / device.profile.rate_hz)) + " or lower the object's stiffness_n_per_m";
+  }
+  scene->soft.push_back(std::make_unique<SoftObject>());
+  std::string problem = scene->soft.back()->begin(graph, soft, params, object.pose, device.contact_count);
+  if (problem.empty()) scene->setup.soft[scene->setup.soft_count++] = scene->soft.back().get();
+  return problem;
 }
 
 }  // namespace
@@ -65,6 +84,7 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
 
   DeviceSetup& setup = scene->setup;
   setup = DeviceSetup{};
+  scene->soft.clear();
   setup.profile = from.profile;
   setup.mapping = from.mapping;
   setup.contact_count = from.contact_count;
@@ -88,6 +108,11 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
       return place_of(config, i) + error.message;
     }
     objects.push_back(id);
+    if (object.motion.kind == MotionKind::kSoft) {
+      fdcg_scene_enable_object(setup.scene, id, 0, nullptr);  // felt as it is now, not as it was made
+      const std::string problem = add_soft(object, from, graphs.of_object(i), params, scene);
+      if (!problem.empty()) return place_of(config, i) + problem;
+    }
     if (!is_moved(object.motion)) continue;
     if (setup.driven_count == kMaxDriven) {
       return place_of(config, i) + "more than " + std::to_string(kMaxDriven) + " objects have a motion; make it fixed";

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,12 +37,14 @@ struct DeviceScene {
   std::vector<std::uint64_t> memory, pile_memory;
   std::vector<fdcg_scene_body> bodies;
   std::vector<fdcg_reaction> reactions;
+  std::vector<std::unique_ptr<SoftObject>> soft;
   DeviceSetup setup;  // fingers are added by begin_device; driven: the objects with a motion, in the scene's order
 };
 // `graphs` must outlive *scene. Empty: fine. Otherwise what the runtime refuses.
 std::string build_device_scene(const HostConfig& config, std::size_t device, const SceneGraphs& graphs, DeviceScene* scene);
 
-// Where a moved object is so long after the host started. Of MotionKind::kDriven, kFixed and kBody: its first pose. No heap.
+// Where a moved object is so long after the host started. Of MotionKind::kDriven, kFixed, kBody and kSoft: its first pose. No
+// heap.
 fdcg_pose pose_at(const ObjectConfig& object, double seconds);
 
 }  // namespace fdcg::dev

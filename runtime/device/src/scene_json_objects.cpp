@@ -10,11 +10,20 @@ namespace {
 constexpr double kUnitAsItIs = 1e-12;
 constexpr Keys kSurfaceKeys = {"kind", "radius_m", "top_radius_m", "tube_radius_m", "length_m", "half_m", "hollow"};
 constexpr Keys kPoseKeys = {"rotation_xyzw", "translation_m", "scale"};
-constexpr Keys kMotionKeys = {"kind",    "axis",
-                              "rate_hz", "amplitude_m",
-                              "mass_kg", "density_kg_per_m3",
-                              "points",  "linear_damping_per_s",
-                              "notes",   "angular_damping_per_s"};
+constexpr Keys kMotionKeys = {"kind",
+                              "axis",
+                              "rate_hz",
+                              "amplitude_m",
+                              "mass_kg",
+                              "density_kg_per_m3",
+                              "points",
+                              "linear_damping_per_s",
+                              "notes",
+                              "angular_damping_per_s",
+                              "stiffness_n_per_m",
+                              "tension_n_per_m",
+                              "damping_n_s_per_m",
+                              "depth_m"};
 
 }  // namespace
 
@@ -45,6 +54,11 @@ void SceneParser::read_object(const JsonObject& from) {
   const auto is_body = [](const ObjectConfig& other) { return other.motion.kind == MotionKind::kBody; };
   if (moves(object) && std::count_if(config_.objects.begin(), config_.objects.end(), moves) == kMaxDriven) {
     from.fail("motion", "is one more than the " + std::to_string(kMaxDriven) + " that a scene may have; make an object fixed");
+  }
+  const auto is_soft = [](const ObjectConfig& other) { return other.motion.kind == MotionKind::kSoft; };
+  if (is_soft(object) && object.is_surface) from.fail("motion", "is soft, which a surface cannot be; give a file");
+  if (is_soft(object) && std::count_if(config_.objects.begin(), config_.objects.end(), is_soft) == kMaxSoft) {
+    from.fail("motion", "is one more soft object than the " + std::to_string(kMaxSoft) + " that a scene may have");
   }
   if (is_body(object) && std::count_if(config_.objects.begin(), config_.objects.end(), is_body) == kMaxBodies) {
     from.fail("motion", "is one more body than the " + std::to_string(kMaxBodies) + " that a scene may have");
@@ -91,6 +105,14 @@ void SceneParser::read_body(const JsonObject& from, BodyConfig* body) {
   body->points = static_cast<int>(from.integer_or("points", body->points, 1, 256));
 }
 
+void SceneParser::read_soft(const JsonObject& from, SoftConfig* soft) {
+  from.allow_only({"kind", "stiffness_n_per_m", "tension_n_per_m", "damping_n_s_per_m", "depth_m", "notes"}, " of a soft one");
+  soft->stiffness_n_per_m = from.number_or("stiffness_n_per_m", soft->stiffness_n_per_m, {1e-6, 1e6, true, "N/m"});
+  soft->tension_n_per_m = from.number_or("tension_n_per_m", soft->tension_n_per_m, from_0(1e6, "N/m"));
+  soft->damping_n_s_per_m = from.number_or("damping_n_s_per_m", soft->damping_n_s_per_m, {1e-6, 1e6, true, "N s/m"});
+  soft->depth_m = from.number_or("depth_m", soft->depth_m, {1e-6, 1e3, true, "m"});
+}
+
 void SceneParser::read_ground(const JsonObject& from) {
   GroundConfig& ground = config_.ground;
   ground.is_there = true;
@@ -107,8 +129,9 @@ void SceneParser::refuse_shared_bodies(const JsonObject& scene) {
 }
 
 void SceneParser::read_motion(const JsonObject& from, Motion* motion) {
-  motion->kind = static_cast<MotionKind>(from.choice("kind", {"fixed", "spin", "swing", "driven", "body"}));
+  motion->kind = static_cast<MotionKind>(from.choice("kind", {"fixed", "spin", "swing", "driven", "body", "soft"}));
   if (motion->kind == MotionKind::kBody) return read_body(from, &motion->body);
+  if (motion->kind == MotionKind::kSoft) return read_soft(from, &motion->soft);
   const bool is_spin = motion->kind == MotionKind::kSpin, is_swing = motion->kind == MotionKind::kSwing;
   if (is_spin) from.allow_only({"kind", "axis", "rate_hz"}, " of a spin");
   if (is_swing) from.allow_only({"kind", "axis", "rate_hz", "amplitude_m"}, " of a swing");

@@ -46,6 +46,7 @@ class SceneParser {
   void read_friction(const JsonObject& from, fdcg_params* params);
   void read_motion(const JsonObject& from, Motion* motion);
   void read_body(const JsonObject& from, BodyConfig* body);
+  void read_soft(const JsonObject& from, SoftConfig* soft);
   void read_ground(const JsonObject& from);
   void refuse_shared_bodies(const JsonObject& scene);
   void read_contacts(const JsonObject& from, DeviceConfig* device);

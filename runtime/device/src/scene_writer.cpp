@@ -24,7 +24,7 @@ Json surface_json(const fdcg_surface& surface) {
 }
 
 Json object_json(const ObjectConfig& object) {
-  constexpr const char* kKinds[] = {"fixed", "spin", "swing", "driven", "body"};
+  constexpr const char* kKinds[] = {"fixed", "spin", "swing", "driven", "body", "soft"};
   Json json;
   json["name"] = object.name;
   if (object.is_surface) {
@@ -47,6 +47,12 @@ Json object_json(const ObjectConfig& object) {
     json["motion"]["rate_hz"] = motion.rate_hz;
   }
   if (motion.kind == MotionKind::kSwing) json["motion"]["amplitude_m"] = motion.amplitude_m;
+  if (motion.kind == MotionKind::kSoft) {
+    json["motion"]["stiffness_n_per_m"] = motion.soft.stiffness_n_per_m;
+    json["motion"]["tension_n_per_m"] = motion.soft.tension_n_per_m;
+    json["motion"]["damping_n_s_per_m"] = motion.soft.damping_n_s_per_m;
+    json["motion"]["depth_m"] = motion.soft.depth_m;
+  }
   if (motion.kind != MotionKind::kBody) return json;
   const BodyConfig& body = motion.body;
   if (body.mass_kg > 0) json["motion"]["mass_kg"] = body.mass_kg;
