@@ -109,7 +109,13 @@ bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed,
   }
   tick.finger.idle_steps = 0;
   slot.step = tick.finger.step + 1;
-  step_contact(object, contact, way.to, result);
+  if (scene.step_soft == nullptr) {
+    step_contact(object, contact, way.to, result);
+  } else {
+    const auto finger = static_cast<uint32_t>(&tick.finger - scene.fingers());
+    const auto index = static_cast<uint32_t>(&slot - tick.slots);
+    scene.step_soft(&tick.scene, finger, index, {slot.object, object.generation}, contact, way.to, result);
+  }
   const bool has_swept = norm1(vec(contact->god_object) - vec(contact->hip)) == 0;
   slot.is_held = result->state != FDCG_FREE || (result->flags & FDCG_RESULT_SWEEP_BOUND) != 0 || !has_swept;
   return slot.is_held != 0;
