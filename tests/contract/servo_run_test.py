@@ -434,14 +434,14 @@ class Examples(ServoCase):
                 rewritten = self.path("again.fdcglog")
                 self.servo("replay", log, "-o", self.path("a.csv"), "--touches", self.path("t.csv"), "--write", rewritten)
                 self.assertEqual(pathlib.Path(log).read_bytes(), pathlib.Path(rewritten).read_bytes())
-                rows = list(csv.DictReader(open(self.path("a.csv"), encoding="utf-8")))
+                rows = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("a.csv")).read_text())))
                 self.assertEqual(8000, len(rows))
                 values = [float(row[column]) for row in rows]
                 self.assertGreater(max(values) - values[0], 0.004)
-                touches = list(csv.DictReader(open(self.path("t.csv"), encoding="utf-8")))
+                touches = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("t.csv")).read_text())))
                 self.assertEqual({str(i) for i in range(contacts)}, {touch["contact"] for touch in touches})
                 held = [touch for touch in touches if 2.1 < float(touch["t"]) < 5.7 and name != "press_sheet"]
-                self.assertTrue(all(touch["slip"] == "0" and 0 < float(touch["margin"]) < 1 for touch in held))
+                self.assertTrue(all(touch["slip"] == "0" and 0 < float(touch["margin"]) <= 1 for touch in held))
 
     def test_only_devices_without_real_time_run_fast(self):
         hid = [{"name": "hand", "profile": "fdcg-reference"}]

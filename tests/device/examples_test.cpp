@@ -51,9 +51,13 @@ void to_body(const fdcg_pose& pose, const double world_m[3], double body_m[3]) {
   body_m[2] = v[2] + 2 * (q[3] * c[2] + q[1] * c[0] - q[0] * c[1]);
 }
 
+constexpr double kStill = 1e-6;  // m/s
+constexpr double kSize = 0.03;   // m: of what is held, from its middle
+
 struct Held {
   double highest_m = 0, drift_m = 0, end_m = 0, least_force_n = 1e9;
-  int slipping = 0;
+  double last_look_s = 0;  // at the drift
+  int slipping = 0, looks = 0;
   fdcg_pose last;
 };
 
@@ -63,7 +67,7 @@ Held replay(const std::string& log, double from_s, double to_s) {
   REQUIRE(replay.open(log, "") == "");
   Held held;
   double first_m[kMaxContacts][3] = {};
-  bool has_first = false;
+  bool has_first[kMaxContacts] = {};
   std::uint64_t first_ns = 0;
   for (ReplayedTick tick; replay.next(&tick);) {
     if (first_ns == 0) first_ns = tick.input->now_ns;
@@ -83,13 +87,19 @@ Held replay(const std::string& log, double from_s, double to_s) {
       REQUIRE(touch.state == FDCG_FACE);
       held.slipping += touch.slipping;
       held.least_force_n = std::min(held.least_force_n, std::hypot(touch.force_n[0], touch.force_n[1], touch.force_n[2]));
+      // A touch is told with the pose before the last substep: the two can be compared where the body is at rest.
+      const fdcg_body& body = tick.state->setup.bodies[0].body;
+      const double *const v = body.velocity_m_per_s, *const turn = body.spin_rad_per_s;
+      if (std::hypot(v[0], v[1], v[2]) > kStill || std::hypot(turn[0], turn[1], turn[2]) * kSize > kStill) continue;
+      ++held.looks;
+      held.last_look_s = time_s;
       double at_m[3];
-      to_body(fdcg_pose(held.last), touch.god_object_m, at_m);
-      if (!has_first) std::copy_n(at_m, 3, first_m[contact]);
+      to_body(held.last, touch.god_object_m, at_m);
+      if (!has_first[contact]) std::copy_n(at_m, 3, first_m[contact]);
+      has_first[contact] = true;
       for (int i = 0; i < 3; ++i)
         held.drift_m = std::max(held.drift_m, std::fabs(at_m[i] - first_m[contact][i]));
     }
-    has_first = true;
   }
   CHECK(replay.is_same());
   return held;
@@ -103,12 +113,14 @@ TEST_CASE("two fingers lift a cube, turn it by a quarter and put it down, withou
   CHECK(status.counters.ticks == 8000);
   CHECK(status.counters.bodies_lost == 0);
   CHECK(status.last.phase == Phase::kArmed);
-  const Held held = replay(folder.file("a.fdcglog"), 2.1, 5.7);
+  const Held held = replay(folder.file("a.fdcglog"), 2, 6.1);
   CHECK(held.highest_m > 0.07);
   CHECK(std::fabs(held.end_m) < 0.0005);  // as deep in the ground as its springs carry it
   CHECK(held.slipping == 0);
   CHECK(held.least_force_n > 2.9);
-  WARN("drift of the god-objects on the cube in 3.6 s: " << held.drift_m << " m");
+  WARN("drift of the god-objects on the cube in 4.1 s: " << held.drift_m << " m, at " << held.looks << " looks");
+  CHECK(held.looks > 300);
+  CHECK(held.last_look_s > 4.5);
   CHECK(held.drift_m < 1e-9);
   CHECK(held.last.rotation_xyzw[2] == Approx(std::sqrt(0.5)).margin(1e-4));
   CHECK(held.last.rotation_xyzw[3] == Approx(std::sqrt(0.5)).margin(1e-4));
@@ -119,11 +131,13 @@ TEST_CASE("three fingers hold a ball and turn it by a third, without slipping") 
   const DeviceStatus status = run(read(kScenes + "hold_sphere.json"), 8, folder.file("a.fdcglog"));
   CHECK(status.counters.ticks == 8000);
   CHECK(status.last.phase == Phase::kArmed);
-  const Held held = replay(folder.file("a.fdcglog"), 2.1, 5.9);
+  const Held held = replay(folder.file("a.fdcglog"), 2, 6.2);
   CHECK(held.highest_m > 0.1);
   CHECK(held.slipping == 0);
   CHECK(held.least_force_n > 1.5);
-  WARN("drift of the god-objects on the ball in 3.8 s: " << held.drift_m << " m");
+  WARN("drift of the god-objects on the ball in 4.2 s: " << held.drift_m << " m, at " << held.looks << " looks");
+  CHECK(held.looks > 300);
+  CHECK(held.last_look_s > 4.5);
   CHECK(held.drift_m < 1e-9);
   CHECK(held.last.rotation_xyzw[2] == Approx(std::sqrt(0.75)).margin(1e-3));
   CHECK(std::fabs(held.end_m - 0.03) < 0.002);
@@ -164,7 +178,7 @@ TEST_CASE("a soft sheet dents under a finger, holds its god-object, and comes ba
       REQUIRE(force_n == 0);
     } else {
       // it rides on the sheet, which has given way: well below where the sheet was
-      REQUIRE(tick.output->wanted_force_n[2] >= 0);
+      REQUIRE(tick.output->wanted_force_n[2] > -0.1);  // a steep side of the dent may pull it down a little
       held_z_m = std::min(held_z_m, sheet.touch(0).god_object_m[2]);
     }
     deepest_m = std::max(deepest_m, sheet.deepest_m());

@@ -54,7 +54,8 @@ void SceneParser::read_device(const JsonObject& from) {
     if (from.has("simulation")) read_simulation(from.object("simulation", kSimulationKeys), &device.simulation);
     device.profile = simulated_profile(device.simulation);
   } else {
-    from.allow_only({"name", "source", "mapping", "contacts", "grip", "turn", "force_limit_n", "notes", "profile", "recording"},
+    from.allow_only({"name", "source", "mapping", "contacts", "grip", "turn", "force_limit_n", "notes", "profile", "recording",
+                     "simulation"},
                     " of a recorded device");
     read_recording(from, &device);
   }
@@ -109,6 +110,7 @@ void SceneParser::parse_profile_of(const JsonObject& from, const std::string& te
     warnings_->push_back("device " + in_quotes(device->name) + ": " + warning);
 }
 
+// A built-in one by its name, a file, or in place.
 void SceneParser::read_profile(const JsonObject& from, DeviceConfig* device) {
   if (from.is_object("profile")) return parse_profile_of(from, from.json("profile"), "it", device);
   const std::string name = from.text("profile", kLongestPath);
@@ -132,9 +134,15 @@ void SceneParser::read_profile(const JsonObject& from, DeviceConfig* device) {
   parse_profile_of(from, text, path, device);
 }
 
+// The profile is the one that the recorded device had, unless the scene gives another.
 void SceneParser::read_recording(const JsonObject& from, DeviceConfig* device) {
   device->recording = beside(file_name_, from.text("recording", kLongestPath));
   if (from.has("profile")) return read_profile(from, device);
+  if (from.has("simulation")) {  // of a device that was simulated when it was recorded: so a log of its recording says all
+    read_simulation(from.object("simulation", kSimulationKeys), &device->simulation);
+    device->profile = simulated_profile(device->simulation);
+    return;
+  }
   if (file_.has_failed()) return;
   if (!options_.reads_files) return from.fail("recording", "names a file, and none is read here");
   SessionReader reader;
@@ -154,6 +162,7 @@ void SceneParser::read_recording(const JsonObject& from, DeviceConfig* device) {
   }
   device->profile = recorded.devices[index].profile;
   device->profile_text = recorded.devices[index].profile_text;
+  device->simulation = recorded.devices[index].simulation;
 }
 
 void SceneParser::read_mapping(const JsonObject& from, Mapping* mapping) {

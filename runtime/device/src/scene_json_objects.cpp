@@ -121,6 +121,7 @@ void SceneParser::read_ground(const JsonObject& from) {
   read_friction(from, &ground.params);
 }
 
+// Each device has a scene of its own, and there a body of its own: two would each lift another cube.
 void SceneParser::refuse_shared_bodies(const JsonObject& scene) {
   const auto is_body = [](const ObjectConfig& object) { return object.motion.kind == MotionKind::kBody; };
   if (config_.devices.size() <= 1 || std::none_of(config_.objects.begin(), config_.objects.end(), is_body)) return;
