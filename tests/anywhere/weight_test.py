@@ -9,7 +9,7 @@ import unittest
 
 from anywhere import ROOT, RUNTIME, AnywhereCase, qemu
 
-SUPPORT = {"body", "body_scene", "body_step", "hooks", "map_file_none", "map_file_posix", "mass", "message", "params", "pile",
+SUPPORT = {"body", "body_scene", "body_step", "hooks", "map_file_none", "map_file_posix", "mass", "materials", "message", "params", "pile",
            "pile_damp", "pile_near", "pile_points", "pile_step", "pile_touch", "records",
            "verify", "version"}
 

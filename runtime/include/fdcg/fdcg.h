@@ -110,8 +110,8 @@ typedef struct fdcg_graph {
   uint64_t info_bytes;
   void* mapping; /* what fdcg_close unmaps; NULL for fdcg_open_memory */
   uint64_t mapping_bytes;
-  const uint16_t* node_materials; /* NULL, and so is the next: not in the file; else header->node_count entries */
-  const char* material_names;     /* material_count texts, each ends in '\0' */
+  const uint16_t* node_materials;        /* NULL: not in the file; else header->node_count entries */
+  const fdcg_material_record* materials; /* NULL: none; else material_count entries */
   uint32_t material_count;
   uint32_t reserved;
 } fdcg_graph;
