@@ -167,7 +167,9 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
     faces.mesh = std::move(cut.mesh);
     faces.topology = std::move(cut.topology);
   } else {
-    const MergeOptions how{options.merge, options.coplanar, quantum, cut.polygon.empty() ? nullptr : &cut.polygon};
+    const bool keeps_polygons = !cut.polygon.empty() && !options.triangles;
+    const MergeOptions how{options.merge && !options.triangles, options.coplanar, quantum,
+                           keeps_polygons ? &cut.polygon : nullptr};
     faces = merge_regions(std::move(cut.mesh), std::move(cut.topology), std::move(faces.edges), std::move(faces.regions), how);
   }
   input.face_of_source = trace_sources(soup.face_count(), source_face, cut.polygon, faces.face_of_triangle);

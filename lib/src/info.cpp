@@ -58,7 +58,8 @@ Json options_json(const CompileOptions& options) {
   json["precision"] = options.precision == Precision::f32 ? "f32" : "f64";
   json["coplanar"] = name_of(options.coplanar.kind);
   if (options.coplanar.kind == Coplanar::Kind::angle) json["coplanar_angle_rad"] = options.coplanar.angle_rad;
-  json["merge"] = options.merge;
+  json["merge"] = options.merge && !options.triangles;
+  if (options.triangles) json["triangles"] = true;
   json["weld"] = name_of(options.weld.kind);
   if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
   json["orient"] = options.orient;

@@ -87,7 +87,7 @@ template <class Real>
       continue;
     }
     float distance2[FDCG_TREE_WAYS];
-    squared_distances(graph.hierarchy[tree.first[next.level] + next.index], point, distance2);
+    squared_distances(graph.boxes(tree, next.level, next.index), point, distance2);
     uint32_t near = 0;
     for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)
       near |= uint32_t{distance2[j] < clear2} << j;

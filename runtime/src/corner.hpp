@@ -146,14 +146,18 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
 
 // HIP is in front of the face that is nearest: free, but for rounding. Where it stands on a concave edge of that face at the
 // corner and behind the face across, edge and faces are as near as one another, and any of them may have been found: then it is
-// the edge's to say. So are the two walls of a narrow slit that it stands between: one of them may hold it.
+// the edge's to say, unless it stands before the edge's end: the edge would hand the god-object back to the corner. So are the
+// two walls of a narrow slit that it stands between: one of them may hold it.
 template <class Real>
-[[gnu::noinline]] Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner) {
+[[gnu::noinline]] Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner, Vec3<Real> t) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {
-    if (node.corner(k) != corner && node.corner(node.next(k)) != corner) continue;
+    const bool starts_here = node.corner(k) == corner;
+    if (!starts_here && node.corner(node.next(k)) != corner) continue;
     const ConnectionRef<Real> connection = walk.graph.connection(node.connection(k));
     if (connection.type() != FDCG_CONCAVE) continue;
     walk.spend(kEdgeWork);
+    const Real along = dot(walk.graph.edge(node, k).direction, t);
+    if (starts_here == (node.which(k) == 0) ? along < 0 : along > 0) continue;
     const bool is_between_walls = node.voronoi_plane(k).distance(walk.hip) < -walk.hip_bound;
     for (uint32_t end = 0; end < 2; ++end) {
       const Feature face = {FDCG_FACE, connection.node(end)};
@@ -176,7 +180,7 @@ inline Decision corner_rule(Walk<Real>& walk) {
   const Steepest<Real> best = has_tree ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
   if (best.feature.state == FDCG_FACE) {
     const NodeRef<Real> node = walk.graph.node(best.feature.index);
-    return go_to(walk.side(node) < 0 ? best.feature : edge_that_holds(walk, node, walk.active.index));
+    return go_to(walk.side(node) < 0 ? best.feature : edge_that_holds(walk, node, walk.active.index, t));
   }
   if (best.feature.state == FDCG_EDGE) {
     const ConnectionRef<Real> connection = walk.graph.connection(best.feature.index);

@@ -17,14 +17,32 @@ struct Crossing {
   Real fraction = 1;
 };
 
-// Looks at the sides from the first on beyond whose plane the move ends.
+// Whether `to` is past the corner at which side k starts: before that side's start and beyond the end of the side before.
 template <class Real>
-[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+[[gnu::noinline]] bool is_past_corner(NodeRef<Real> node, uint32_t k, Vec3<Real> to) {
+  const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());
+  const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
+  const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
+    const Real along = dot(from_corner, node.graph().edge(node, side).direction);
+    return sign * (node.which(side) == 0 ? along : -along) > rounding;
+  };
+  return is_ahead(k, -1) && is_ahead(node.previous(k), 1);
+}
+
+// Looks at the sides from the first on beyond whose plane the move ends. Or near it, by `bound` of rounding: towards the tip of
+// a face like a needle its two planes are one but for that, and a move might slide past the tip between them.
+template <class Real>
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to,
+                                                     Real bound) {
   Crossing<Real> first;
   for (; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
-    if (!(s1 >= 0)) continue;
+    if (!(s1 >= 0)) {
+      const bool is_near = s1 >= -bound && first.local_side == FDCG_NONE;
+      if (is_near && (is_past_corner(node, k, to) || is_past_corner(node, node.next(k), to))) first = {k, 1};
+      continue;
+    }
     const Real s0 = plane.distance(from);
     if (!(s1 > s0)) continue;
     const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());  // an offset may have cancelled to 0
@@ -35,9 +53,9 @@ template <class Real>
 }
 
 template <class Real>
-FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to) {
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {
-    if (node.voronoi_plane(k).distance(to) >= 0) return first_crossing_from(k, node, from, to);
+    if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to, bound);
   }
   return {};
 }
@@ -55,11 +73,11 @@ struct FaceMove {
   Crossing<Real> crossing;
 };
 
-// `reach`: from the HIP to the god-object, more exactly than the two can say.
+// `bound`: plane_rounding_bound of the HIP. `reach`: from the HIP to the god-object, more exactly than the two can say.
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
 template <class Real>
-FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real side,
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real bound, Real side,
                                      Vec3<Real> god_object, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
   if (!(side < 0)) return {Kind::leaves, god_object, {}};
@@ -71,7 +89,7 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& frictio
   const Real shrink = slip.gap > 0 ? slip.gap / root(gap2) : Real(0);
   const Vec3<Real> surface_point = hip + normal * depth;
   const Vec3<Real> target = surface_point + offset * shrink;
-  const Crossing<Real> crossing = first_crossing(node, god_object, target);
+  const Crossing<Real> crossing = first_crossing(node, god_object, target, bound);
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
@@ -152,7 +170,7 @@ inline Decision face_rule(Walk<Real>& walk) {
     if (walk.friction.terms != nullptr) walk.friction.terms->stand_on_face(walk.active.index);
   }
   const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.lost;
-  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.side(node), walk.god_object, reach));
+  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, reach));
 }
 
 }  // namespace fdcg

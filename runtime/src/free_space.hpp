@@ -47,7 +47,8 @@ template <class Real>
   carried->is_carried = 0;
   const Vec3<Real> from = walk.god_object;
   arrive(walk, sweep, to, first);
-  const bool is_where_it_was = first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
+  const bool is_held = norm1(walk.hip - to) <= walk.hip_bound;  // a hand that has gone on may be let go by both
+  const bool is_where_it_was = is_held && first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
   carried->in_place = is_where_it_was ? carried->in_place + 1 : 0;
   return true;
 }

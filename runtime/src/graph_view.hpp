@@ -1,44 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // A graph with its records typed: what the step reads, and the few expressions that every rule shares. Rules see nodes,
 // connections, edges and corners; where their numbers lie in the file, and which of them are derived, is known here alone.
+//
+// The step is compiled twice: for graphs as they are, and (FDCG_DEFORMABLE, deform_step.cpp) for those whose corners move. There
+// a number that depends on a corner's place is brought up to date before it is handed out, here, so that no rule can see an old
+// one. The two views are in inline namespaces of their own, and so must be every class with members that look at a graph; a
+// function that is given one of them is told apart by that.
 #pragma once
 
+#include "box_tree.hpp"
 #include "derive.hpp"
 #include "exact_orient.hpp"
 #include "fdcg/fdcg.h"
+#include "record_types.hpp"
 #include "vec.hpp"
 
+#ifndef FDCG_DEFORMABLE
+#define FDCG_DEFORMABLE 0
+#endif
+#if FDCG_DEFORMABLE
+#include "deform_upkeep.hpp"
+#define FDCG_VIEW deformable
+#else
+#define FDCG_VIEW rigid
+#endif
+
 namespace fdcg {
-
-template <class Real>
-struct Records;
-template <>
-struct Records<double> {
-  using Plane = fdcg_plane_f64;
-  using Node = fdcg_node_f64;
-  using Edge = fdcg_edge_f64;
-  using Corner = fdcg_corner_f64;
-  using FanBox = fdcg_fan_box_f64;
-};
-template <>
-struct Records<float> {
-  using Plane = fdcg_plane_f32;
-  using Node = fdcg_node_f32;
-  using Edge = fdcg_edge_f32;
-  using Corner = fdcg_corner_f32;
-  using FanBox = fdcg_fan_box_f32;
-};
-
-// Where a node's Voronoi planes start in its block, and where the block ends: after its sides, zeros up to a multiple of Real.
-template <class Real>
-constexpr uint32_t planes_at(uint32_t side_count) {
-  constexpr uint32_t kSidesAt = offsetof(typename Records<Real>::Node, sides);
-  return (kSidesAt + side_count * uint32_t{sizeof(fdcg_side)} + sizeof(Real) - 1) / sizeof(Real) * sizeof(Real);
-}
-template <class Real>
-constexpr uint32_t node_bytes(uint32_t side_count, bool has_planes) {
-  return planes_at<Real>(side_count) + (has_planes ? side_count * uint32_t{sizeof(typename Records<Real>::Plane)} : 0u);
-}
+inline namespace FDCG_VIEW {
 
 template <class Real>
 struct GraphView;
@@ -49,16 +37,32 @@ class NodeRef {
   using Record = typename Records<Real>::Node;
 
  public:
-  NodeRef(const GraphView<Real>& graph, const unsigned char* block) : graph_(&graph), block_(block) {}
+#if FDCG_DEFORMABLE
+  NodeRef(const GraphView<Real>& graph, const unsigned char* block, uint32_t index)
+      : graph_(&graph), block_(block), index_(index) {}
+#else
+  NodeRef(const GraphView<Real>& graph, const unsigned char* block, uint32_t) : graph_(&graph), block_(block) {}
+#endif
 
   [[nodiscard]] uint32_t side_count() const { return record().side_count; }
   // The graph's, which bounds the rounding of what is stored of a node.
   [[nodiscard]] Real extent() const { return static_cast<Real>(graph_->header->extent); }
   // Its corners lie off its plane, by up to header.max_deviation.
-  [[nodiscard]] bool is_inexact() const { return (record().flags & FDCG_NODE_INEXACT) != 0; }
-  [[nodiscard]] uint16_t flags() const { return record().flags; }
-  [[nodiscard]] Vec3<Real> normal() const { return vec(record().plane.normal); }
-  [[nodiscard]] Plane<Real> plane() const { return {normal(), record().plane.offset}; }
+  [[nodiscard]] bool is_inexact() const { return (up_to_date().flags & FDCG_NODE_INEXACT) != 0; }
+  [[nodiscard]] uint16_t flags() const { return up_to_date().flags; }
+  [[nodiscard]] Vec3<Real> normal() const { return vec(up_to_date().plane.normal); }
+  [[nodiscard]] Plane<Real> plane() const {
+    const Record& record = up_to_date();
+    return {vec(record.plane.normal), record.plane.offset};
+  }
+  // Of an exactly planar node: the first three span its plane.
+  [[nodiscard]] uint32_t spanning_corner(uint32_t k) const {
+#if FDCG_DEFORMABLE
+    return graph_->upkeep.spanning_corner(index_, k);
+#else
+    return corner(k);
+#endif
+  }
 
   [[nodiscard]] const fdcg_side& side(uint32_t k) const {
     return reinterpret_cast<const fdcg_side*>(block_ + offsetof(Record, sides))[k];
@@ -85,18 +89,33 @@ class NodeRef {
   }
 
   [[nodiscard]] const unsigned char* block() const { return block_; }
+  [[nodiscard]] const GraphView<Real>& graph() const { return *graph_; }
 
  private:
   // Out of line: every rule asks for planes, and each would hold a copy. Not as a return value: four floats come back two to a
   // register, by way of memory, and wait there for one another.
   [[gnu::noinline]] void derive_plane(uint32_t k, Plane<Real>* plane) const {
     const Edge<Real> edge = graph_->edge(*this, k);
+#if FDCG_DEFORMABLE
+    *plane = {};
+    if (bounds_nothing(edge.direction, normal(), edge.length)) return;
+#endif
     *plane = derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
   }
   [[nodiscard]] const Record& record() const { return *reinterpret_cast<const Record*>(block_); }
+  // The record with its plane.
+  [[nodiscard]] const Record& up_to_date() const {
+#if FDCG_DEFORMABLE
+    graph_->upkeep.bring_up_to_date(index_);
+#endif
+    return record();
+  }
 
   const GraphView<Real>* graph_;
   const unsigned char* block_;
+#if FDCG_DEFORMABLE
+  uint32_t index_;
+#endif
 };
 
 // One connection, by value.
@@ -105,7 +124,14 @@ class ConnectionRef {
  public:
   ConnectionRef(const GraphView<Real>& graph, uint32_t index) : graph_(&graph), record_(&graph.connections[index]) {}
 
-  [[nodiscard]] uint8_t type() const { return record_->type; }  // fdcg_connection_type
+  // fdcg_connection_type
+  [[nodiscard]] uint8_t type() const {
+#if FDCG_DEFORMABLE
+    return graph_->upkeep.type(static_cast<uint32_t>(record_ - graph_->connections));
+#else
+    return record_->type;
+#endif
+  }
   // k = 1: FDCG_NONE on a boundary.
   [[nodiscard]] uint32_t node(uint32_t k) const { return k == 0 ? record_->node : first().across(record_->side[0]); }
   [[nodiscard]] uint32_t side(uint32_t k) const { return record_->side[k]; }  // which side of node(k) this is
@@ -137,6 +163,9 @@ class CornerRef {
   // About of unit length: the side on which a point is, not how far, may be asked of it.
   [[nodiscard]] Vec3<Real> normal() const {
     constexpr Real kUnit = Real(1) / FDCG_NORMAL_SCALE;
+#if FDCG_DEFORMABLE
+    graph_->upkeep.bring_normal_up_to_date(static_cast<uint32_t>(record_ - graph_->corners));
+#endif
     return Vec3<Real>{Real(record_->normal[0]), Real(record_->normal[1]), Real(record_->normal[2])} * kUnit;
   }
   // Its fan is stored: more than FDCG_BUSY_FAN entries.
@@ -171,6 +200,9 @@ struct GraphView {
   const uint32_t* fans;
   const FanBox* fan_boxes;
   const fdcg_box8* hierarchy;
+#if FDCG_DEFORMABLE
+  Upkeep<Real> upkeep;
+#endif
 
   static constexpr uint32_t kLineBytes = 64;  // of most machines' caches; a wrong size costs prefetches, nothing else
   static constexpr uint32_t kPrefetchedSides = 3;
@@ -187,15 +219,29 @@ struct GraphView {
         busy_corners(graph.busy_corners),
         fans(graph.fans),
         fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
-        hierarchy(graph.hierarchy) {}
+        hierarchy(graph.hierarchy)
+#if FDCG_DEFORMABLE
+        ,
+        upkeep(deform_of(graph))
+#endif
+  {
+  }
 
   [[nodiscard]] NodeRef<Real> node(uint32_t index) const {
     const uint64_t at = node_offsets == nullptr ? index * block_bytes : node_offsets[index] * uint64_t{sizeof(Real)};
-    return {*this, nodes + at};
+    return {*this, nodes + at, index};
   }
   [[nodiscard]] ConnectionRef<Real> connection(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] CornerRef<Real> corner(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return vec(corners[index].point); }
+
+  // A record of the hierarchy.
+  [[nodiscard]] const fdcg_box8& boxes(const BoxTree& tree, int level, uint32_t record) const {
+#if FDCG_DEFORMABLE
+    upkeep.tighten(level, record);
+#endif
+    return hierarchy[tree.first[level] + record];
+  }
 
   // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs. Written number by
   // number where it is to be: a copy would wait for the numbers to be stored.
@@ -203,7 +249,11 @@ struct GraphView {
     const uint32_t end[2] = {node.corner(k), node.corner(node.next(k))};
     const Corner& from = corners[end[node.which(k)]];
     if (edges == nullptr) {
+#if FDCG_DEFORMABLE
+      *edge = derive_edge_or_point(vec(from.point), corner_point(end[1 - node.which(k)]));
+#else
       *edge = derive_edge(vec(from.point), corner_point(end[1 - node.which(k)]));
+#endif
       return;
     }
     const auto& stored = edges[node.connection(k)];
@@ -282,7 +332,7 @@ template <class Real>
 [[gnu::noinline]] int exact_side_sign(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, uint32_t* work_left) {
   Vec3<double> corner[3];
   for (uint32_t k = 0; k < 3; ++k) {
-    const Vec3<Real> v = graph.corner_point(node.corner(k));
+    const Vec3<Real> v = graph.corner_point(node.spanning_corner(k));
     if (v.x == x.x && v.y == x.y && v.z == x.z) return 0;  // at an apex of 10^4 faces worth 10^4 exact signs
     corner[k] = widen(v);
   }
@@ -302,4 +352,5 @@ FDCG_HOT Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Rea
   return distance < 0 ? distance : -RealLimits<Real>::kSignOnly;
 }
 
+}  // namespace FDCG_VIEW
 }  // namespace fdcg

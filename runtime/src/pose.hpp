@@ -13,7 +13,8 @@ using World = Vec3<double>;
 // move a point near it.
 struct Bounds {
   World centre, half;
-  double radius;  // of the sphere around centre
+  double radius;            // of the sphere around centre
+  bool is_endless = false;  // all that is below z = 0: the rest says nothing
 
   explicit Bounds(const fdcg_header& header) {
     constexpr double kGrowth = 0x1p-16;
@@ -29,6 +30,23 @@ struct Bounds {
     half = half + World{grow, grow, grow};
     radius = norm(half) * (1 + kGrowth);
   }
+  // Of what lies within `half_size` around the origin.
+  static Bounds around_origin(World half_size) {
+    constexpr double kGrowth = 0x1p-16;
+    const double grow = norm(half_size) * kGrowth;
+    Bounds bounds = {};
+    bounds.half = half_size + World{grow, grow, grow};
+    bounds.radius = norm(bounds.half) * (1 + kGrowth);
+    return bounds;
+  }
+  static Bounds endless() {
+    Bounds bounds = {};
+    bounds.radius = kEndless_m;
+    bounds.is_endless = true;
+    return bounds;
+  }
+  // Stands for the radius of what has none: farther than any HIP, and its square a number.
+  static constexpr double kEndless_m = 1e110;
   Bounds() = default;
 };
 

@@ -149,6 +149,32 @@ void start(fdcg_scene* scene, Finger* finger, World hip) {
 
 }  // namespace
 
+fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
+                       fdcg_object_id* object, fdcg_error* error) {
+  if (object == nullptr) return refuse(error, "object: null pointer");
+  fdcg_status status = fdcg_check_params(params, error);
+  fdcg_pose checked;
+  if (status == FDCG_OK) status = checked_pose(pose, &checked, error);
+  if (status != FDCG_OK) return status;
+  Object* const added =
+      unused(scene->objects(), &scene->first_free_object, scene->config.object_capacity, "config.object_capacity", error);
+  if (added == nullptr) return FDCG_E_ARGUMENT;
+  added->graph = shape.graph;
+  added->step_surface = shape.step_surface;
+  added->surface = shape.surface;
+  added->bounds = shape.bounds;
+  fdcg_params room;
+  added->params = in_full(*params, &room, fdcg_init_params);
+  added->asked = checked;
+  added->is_used = added->is_enabled = 1;
+  if (++added->generation == 0) added->generation = 1;
+  const uint32_t index = static_cast<uint32_t>(added - scene->objects());
+  if (index >= scene->object_end) scene->object_end = index + 1;
+  put_in_place(scene, added);
+  *object = {index, added->generation};
+  return FDCG_OK;
+}
+
 Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error) {
   return find(scene->fingers(), scene->finger_end, id, "finger: not in the scene, or removed", error);
 }
@@ -203,26 +229,10 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
 extern "C" fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph* graph, const fdcg_params* params,
                                              const fdcg_pose* pose, fdcg_object_id* object, fdcg_error* error) {
   if (graph == nullptr || graph->header == nullptr) return refuse(error, "graph: null pointer, or not open");
-  if (object == nullptr) return refuse(error, "object: null pointer");
-  fdcg_status status = fdcg_check_params(params, error);
-  fdcg_pose checked;
-  if (status == FDCG_OK) status = checked_pose(pose, &checked, error);
-  if (status != FDCG_OK) return status;
-  Object* const added =
-      unused(scene->objects(), &scene->first_free_object, scene->config.object_capacity, "config.object_capacity", error);
-  if (added == nullptr) return FDCG_E_ARGUMENT;
-  added->graph = graph;
-  fdcg_params room;
-  added->params = in_full(*params, &room, fdcg_init_params);
-  added->bounds = Bounds(*graph->header);
-  added->asked = checked;
-  added->is_used = added->is_enabled = 1;
-  if (++added->generation == 0) added->generation = 1;
-  const uint32_t index = static_cast<uint32_t>(added - scene->objects());
-  if (index >= scene->object_end) scene->object_end = index + 1;
-  put_in_place(scene, added);
-  *object = {index, added->generation};
-  return FDCG_OK;
+  Object shape = {};
+  shape.graph = graph;
+  shape.bounds = Bounds(*graph->header);
+  return add_object(scene, shape, params, pose, object, error);
 }
 
 extern "C" fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {

@@ -3,13 +3,24 @@
 #include "scene_tick.hpp"
 
 namespace fdcg {
+namespace {
+
+LocalWay local_way(const Tick& tick, const Object& object) {
+  const bool may_skip = tick.scene.skips(FDCG_SKIP_ROTATION);
+  return {tick.pose_before(object).to_object(tick.finger.last, may_skip), object.now.to_object(tick.hip, may_skip)};
+}
+
+}  // namespace
 
 bool can_have_met(const Tick& tick, const Object& object, LocalWay* way) {
   const Pose &now = object.now, &before = tick.pose_before(object);
+  if (object.bounds.is_endless) {
+    *way = local_way(tick, object);
+    return smaller(way->from.z, way->to.z) <= 0;
+  }
   const double radius = larger(now.radius, before.radius);
   if (!(way_distance2(tick.finger.last - before.centre, tick.hip - now.centre) <= radius * radius)) return false;
-  const bool may_skip = tick.scene.skips(FDCG_SKIP_ROTATION);
-  *way = {before.to_object(tick.finger.last, may_skip), now.to_object(tick.hip, may_skip)};
+  *way = local_way(tick, object);
   return way_meets_box(way->from - object.bounds.centre, way->to - object.bounds.centre, object.bounds.half);
 }
 
@@ -28,6 +39,12 @@ struct Approach {
 };
 
 Approach approach(const Tick& tick, const Object& object) {
+  if (object.bounds.is_endless) {
+    LocalWay way;
+    const bool is_in_reach = can_have_met(tick, object, &way);
+    const double height = way.to.z * object.now.scale;
+    return {is_in_reach, -height, height};
+  }
   const Pose& now = object.now;
   const double outside = norm(tick.hip - now.centre) - now.radius;
   LocalWay way;

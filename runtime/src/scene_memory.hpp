@@ -7,6 +7,7 @@
 // Found by offsets from the start, so that a copy of the whole is a scene again.
 #pragma once
 
+#include "fdcg/surface.h"
 #include "pose.hpp"
 
 namespace fdcg {
@@ -16,8 +17,13 @@ inline constexpr double kNoReach = -1e300;
 // The scan's arrays are looked at in runs of this many, a length that compilers make vectors of without being asked twice.
 inline constexpr uint32_t kRun = 16;
 
+// fdcg_surface_step, by its address: who adds no surface does not link it.
+using SurfaceStep = void(const fdcg_surface*, const fdcg_params*, fdcg_contact*, const double[3], fdcg_result*);
+
 struct Object {
-  const fdcg_graph* graph;
+  const fdcg_graph* graph;    // null: it is the surface
+  SurfaceStep* step_surface;  // null: it is the graph
+  fdcg_surface surface;
   fdcg_params params;
   Bounds bounds;
   fdcg_pose asked;  // the latest set
@@ -61,7 +67,7 @@ struct fdcg_scene {
   fdcg_scene_config config;
   uint64_t objects_at, scan_at, changing_at, fingers_at, slots_at, contacts_at, touches_at;  // offsets
   uint32_t object_end, finger_end;                                                           // indices in use lie below
-  uint32_t first_free_object, first_free_finger;  // no index below is free
+  uint32_t first_free_object, first_free_finger;                                             // no index below is free
   uint32_t changing_count;
   uint32_t tick;
   uint32_t look;  // changes when objects come, go or change their size: then every finger looks anew
@@ -104,6 +110,10 @@ namespace fdcg {
 // scene_step.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a way,
 // the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
+
+// scene.cpp: adds an object that is like `shape` in graph, surface and bounds.
+fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
+                       fdcg_object_id* object, fdcg_error* error);
 
 // scene.cpp: null, with the reason in *error, unless the finger is in the scene.
 Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);

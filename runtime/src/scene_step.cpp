@@ -4,7 +4,8 @@
 //   out of reach     the finger's own way since its last look and the objects' largest since then have not used up the distance
 //                    that it saw: nothing to do
 //   look             the distance to every object; the near ones get the finger's free slots
-//   near             sphere and box say that the tick's way may have met it: fdcg_step, in the object's frame
+//   near             sphere and box say that the tick's way may have met it: fdcg_step or fdcg_surface_step, in the object's
+//                    frame
 //   touched          fdcg_step
 //
 // Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
@@ -31,6 +32,23 @@ void settle_changing(fdcg_scene& scene) {
   scene.changing_count = still_changing;
 }
 
+// No sphere holds it, and a turn moves it by any length: fingers then look anew.
+void settle_endless(fdcg_scene& scene, uint32_t index) {
+  const Object& object = scene.objects()[index];
+  const Pose &now = object.now, &last = object.last;
+  const World moved = now.translation - last.translation;
+  scene.tick_travel = larger(scene.tick_travel, norm(moved));
+  for (int k = 0; k < 3; ++k) {
+    if (norm1(now.row[k] - last.row[k]) == 0) continue;
+    ++scene.look;
+    break;
+  }
+  for (uint32_t array = 0; array < 3; ++array)
+    scene.scan(array)[index] = 0;
+  scene.scan(3)[index] = object.is_used != 0 && object.is_enabled != 0 ? Bounds::kEndless_m : kNoReach;
+  scene.farthest = larger(scene.farthest, norm1(now.translation));
+}
+
 }  // namespace
 
 void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
@@ -39,6 +57,7 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
   if (latest.scale != object.now.scale) ++scene.look;
   object.last = has_way ? object.now : latest;
   object.now = latest;
+  if (object.bounds.is_endless) return settle_endless(scene, index);
   scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
   const double moved = norm(latest.centre - object.last.centre);
   const double in_scan[4] = {
@@ -70,6 +89,7 @@ void store(World from, double (&to)[3]) {
 void step_contact(const Object& object, fdcg_contact* contact, World at, fdcg_result* result) {
   double local[3];
   store(at, local);
+  if (object.step_surface != nullptr) return object.step_surface(&object.surface, &object.params, contact, local, result);
   fdcg_step(object.graph, &object.params, contact, local, result);
 }
 

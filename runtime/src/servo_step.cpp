@@ -16,6 +16,7 @@
 #include "free_space.hpp"
 #include "hooks.hpp"
 #include "leave.hpp"
+#include "response.hpp"
 #include "struct_bytes.hpp"
 #include "yield.hpp"
 
@@ -215,14 +216,6 @@ inline void store(Vec3<Real> from, double (&to)[3]) {
   to[2] = from.z;
 }
 
-// Where damping takes from the spring: the speed along it, times the coefficient. Newtons per metre, >= 0 in all.
-inline double damped(const fdcg_params& params, double stiffness, Vec3<double> spring, Vec3<double> moved) {
-  const double length2 = dot(spring, spring);
-  if (!(length2 > 0)) return stiffness;
-  const double left = stiffness - params.damping_n_s_per_m * (dot(moved, spring) / length2) / params.tick_s;
-  return left > 0 ? left : 0;  // never a pull
-}
-
 inline void say_where(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
   store((vec(contact.god_object) + vec(header.origin)) * header.metres_per_unit, result->god_object_m);
   result->state = contact.state;
@@ -368,7 +361,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     FaceMove<Real> move;
     if (is_on_face) {
       const NodeRef<Real> node = graph.node(contact->feature);
-      move = move_on_face(node, friction, hip, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
+      move = move_on_face(node, friction, hip, bound, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
     }
     if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
@@ -395,6 +388,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
 }  // namespace
 }  // namespace fdcg
 
+#if !FDCG_DEFORMABLE  // deform_step.cpp takes this file in, and has an entry of its own
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
@@ -402,3 +396,4 @@ extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fd
   fdcg::with_real_of(*graph->header,
                      [&](auto real) { fdcg::step<decltype(real)>(*graph, all_params, contact, hip_object_m, result); });
 }
+#endif

@@ -11,6 +11,7 @@
 #include "work.hpp"
 
 namespace fdcg {
+inline namespace FDCG_VIEW {
 
 // What a way met first. The result does not depend on the order in which nodes are looked at: of two met at one fraction the
 // lower one counts.
@@ -157,7 +158,7 @@ class Sweep {
 
   uint32_t touch(const BoxTree& tree, int level, uint32_t record, float (&entry)[FDCG_TREE_WAYS]) const {
     spend(work_left_, kBoxWork);
-    const fdcg_box8& boxes = graph_.hierarchy[tree.first[level] + record];
+    const fdcg_box8& boxes = graph_.boxes(tree, level, record);
     return touched_boxes(boxes, in_tree_, tree_fraction(best_.fraction), entry) & tree.lanes(level, record);
   }
 
@@ -450,4 +451,5 @@ class Sweep {
   FirstHit<Real> best_;
 };
 
+}  // namespace FDCG_VIEW
 }  // namespace fdcg

@@ -8,6 +8,7 @@
 #include "work.hpp"
 
 namespace fdcg {
+inline namespace FDCG_VIEW {
 
 // Where the god-object is: free, or on a node, a connection or a corner.
 struct Feature {
@@ -106,4 +107,5 @@ template <class Real>
   return edge;
 }
 
+}  // namespace FDCG_VIEW
 }  // namespace fdcg

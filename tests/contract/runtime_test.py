@@ -45,7 +45,7 @@ class Embedding(Case):
         self.assertEqual(b"0 0 250\n", self.run_program(program, graph).stdout)
 
     def test_each_header_compiles_alone(self):
-        for header in ("fdcg/format.h", "fdcg/fdcg.h", "fdcg/scene.h", "fdcg/body.h", "fdcg/pile.h"):
+        for header in ("fdcg/format.h", "fdcg/fdcg.h", "fdcg/scene.h", "fdcg/body.h", "fdcg/deform.h", "fdcg/pile.h", "fdcg/surface.h"):
             for compiler, language in ((CC, "c"), (CC, "c++")):
                 source = self.write("alone." + language, f'#include "{header}"\n#include "{header}"\n')
                 standard = "-std=c11" if language == "c" else "-std=c++20"

@@ -253,6 +253,8 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
           "within ANGLE degrees")
       ->type_name("exact|quantum|ANGLE");
   command.add_flag("--merge,!--no-merge", arguments->options.merge, "Merge coplanar faces into convex polygons; default: yes");
+  command.add_flag("--triangles", arguments->options.triangles,
+                   "Make every face triangles and merge nothing: for a mesh that is to be deformed (fdcg/deform.h)");
   const auto parse_planes = [arguments](const std::string& text) {
     require_choice("--planes", text, {"stored", "derived"});
     arguments->options.store_planes = text == "stored";

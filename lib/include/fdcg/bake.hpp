@@ -301,6 +301,7 @@ struct CompileOptions {
   Precision precision = Precision::f64;
   Coplanar coplanar;
   bool merge = true;
+  bool triangles = false;  // every node one triangle, as deform.h wants them; merges nothing, whatever `merge` says
   Weld weld;
   bool orient = false;
   bool store_planes = true;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace fdcg::test {
 namespace {
@@ -177,23 +178,40 @@ void Judge::look_at_feature(Tick& tick, Verdicts& v) const {
   if (off > kMostOffSurface_eps * tick.rounding) tick.faults |= bit(Fault::off_surface);
 }
 
+double Judge::in_front_of_node(std::uint32_t node, const Hip& x) const {
+  return signed_distance(specimen_.nodes[node].normal, specimen_.nodes[node].offset, x);
+}
+
+double Judge::in_front_of_edge(const EdgeShape& edge, const Hip& x) const {
+  const double a = in_front_of_node(edge.node[0], x);
+  const double b = edge.node[1] == FDCG_NONE ? a : in_front_of_node(edge.node[1], x);
+  return edge.type == FDCG_CONCAVE ? std::min(a, b) : std::max(a, b);
+}
+
+// At a groove's end the groove holds, by its friction too, whatever the corner's normal says: it points away from all faces
+// together.
+double Judge::in_front_of_corner(std::uint32_t corner, const Hip& x, double rounding) const {
+  const Hip from_corner = difference(x, specimen_.corners[corner].point);
+  double front = dot(from_corner, specimen_.corners[corner].normal);
+  if (front <= kMostPull_eps * rounding) return front;
+  const fdcg_graph& graph = specimen_.graph();
+  std::vector<std::uint32_t> fan(fdcg_get_fan(&graph, corner, nullptr, 0));
+  fdcg_get_fan(&graph, corner, fan.data(), static_cast<std::uint32_t>(fan.size()));
+  for (const std::uint32_t entry : fan) {
+    const EdgeShape& edge = specimen_.edges[entry >> 1];
+    const double along = dot(from_corner, edge.direction) * ((entry & 1) == 0 ? 1 : -1);
+    if (edge.type != FDCG_CONCAVE || along < -kMostOffSurface_eps * rounding) continue;
+    front = std::min(front, in_front_of_edge(edge, x));
+  }
+  return front;
+}
+
 // How far the HIP is in front of what holds it.
 void Judge::look_at_pull(Tick& tick, Verdicts& v) const {
-  const auto in_front = [&](std::uint32_t node) {
-    return signed_distance(specimen_.nodes[node].normal, specimen_.nodes[node].offset, tick.hip);
-  };
-  double front = 0;
-  if (tick.after.state == FDCG_FACE) {
-    front = in_front(tick.after.feature);
-  } else if (tick.after.state == FDCG_EDGE) {
-    const EdgeShape& edge = specimen_.edges[tick.after.feature];
-    const double a = in_front(edge.node[0]);
-    const double b = edge.node[1] == FDCG_NONE ? a : in_front(edge.node[1]);
-    front = edge.type == FDCG_CONCAVE ? std::min(a, b) : std::max(a, b);
-  } else {
-    const CornerShape& corner = specimen_.corners[tick.after.feature];
-    front = dot(difference(tick.hip, corner.point), corner.normal);
-  }
+  const std::uint32_t feature = tick.after.feature;
+  double front = tick.after.state == FDCG_FACE   ? in_front_of_node(feature, tick.hip)
+                 : tick.after.state == FDCG_EDGE ? in_front_of_edge(specimen_.edges[feature], tick.hip)
+                                                 : in_front_of_corner(feature, tick.hip, tick.rounding);
   front -= deviation_;
   if (front <= 0) return;
   v.worst_pull_eps = std::max(v.worst_pull_eps, front / tick.rounding);

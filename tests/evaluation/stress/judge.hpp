@@ -77,6 +77,9 @@ class Judge {
   void look_at_growth(Tick& tick, Verdicts& v) const;
   [[nodiscard]] double slab_around(const Hip& x) const;
   void look_at_feature(Tick& tick, Verdicts& v) const;
+  [[nodiscard]] double in_front_of_node(std::uint32_t node, const Hip& x) const;
+  [[nodiscard]] double in_front_of_edge(const EdgeShape& edge, const Hip& x) const;
+  [[nodiscard]] double in_front_of_corner(std::uint32_t corner, const Hip& x, double rounding) const;
   void look_at_pull(Tick& tick, Verdicts& v) const;
   void look_at_rest(Tick& tick, Verdicts& v) const;
   void look_at_way(Tick& tick);

@@ -153,13 +153,13 @@ Body plates(Random& random, Precision precision) {
 Body busy_corners(Random& random, Precision precision) {
   switch (random.below(4)) {
     case 0:
-      return placed(cone(10'000), random, precision);
+      return placed(triangulated(cone(10'000)), random, precision);
     case 1:
-      return placed(cone_pit(10'000), random, precision);
+      return placed(triangulated(cone_pit(10'000)), random, precision);
     case 2:
-      return placed(fan_block(10'000, 0, 0.5, -0.5), random, precision);
+      return placed(triangulated(fan_block(10'000, 0, 0.5, -0.5)), random, precision);
     default:
-      return placed(fan_block(10'000, 1e-3, 0, 0), random, precision);
+      return placed(triangulated(fan_block(10'000, 1e-3, 0, 0)), random, precision);
   }
 }
 Body concave_corners(Random& random, Precision precision) {

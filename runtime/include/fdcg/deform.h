@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * A deformable mesh: the caller moves its vertices, fingers feel it where it is. In one screen:
+ *
+ *   fdcg_graph graph;  fdcg_open_file("sheet.fdcg", ...);              compiled with --triangles: every node one triangle
+ *   void* memory = malloc(fdcg_deform_bytes(&graph));                  or a static array: it never asks for more
+ *   fdcg_deform_create(memory, bytes, &graph, &config, &deform, &error);
+ *   for each vertex of the mesh:  fdcg_deform_find(deform, vertex_m[v], &corner_of[v], &error);
+ *   fdcg_deform_contact contact = {0};
+ *   each tick:  fdcg_deform_move(deform, corner_of[v], position_m, &error);        for each vertex that moves
+ *               fdcg_deform_step(deform, &params, &contact, hip_object_m, &result);   ->  result.force_n
+ *
+ * What depends on the corners' places - planes, edges, types, corner normals, boxes - is brought up to date when a step looks at
+ * it, and not before: a tick costs what it moves and what it touches, whatever the mesh. Types are exact signs, planes have the
+ * bits that fdcg compile gives them; nothing old is ever looked at.
+ *
+ * A god-object in contact rides on its feature: at the same place of its triangle, edge or corner. A free HIP that a face passes
+ * over is caught by it, however far the vertices moved in the tick, and whether or not the HIP moves: each triangle's way from
+ * where the last tick left it is three tetrahedra (its corners move in the order of their numbers), and exact signs say whether
+ * the HIP lay in one. There is no crack between the ways of two neighbours. Then the HIP's own way is swept on the mesh as it
+ * now is.
+ *
+ * What it does not see: parts of the mesh that move through one another, and a part that moves over a god-object in contact with
+ * another part. A contact should be stepped at least once between two ticks' moves: of a motion that it missed it sees only
+ * where it ended, and FDCG_DEFORM_MISSED is set.
+ *
+ * Any triangle may be squeezed to a line or a point, and comes back: while it has no area it takes the plane of the neighbour
+ * across its longest side, and no god-object stays on it. Two faces that lie on one another exactly are a fold: their edge keeps
+ * the type that it had when a step last looked at it.
+ *
+ * Threads: one at a time. Steps write too (what they bring up to date).
+ *
+ * Cost: fdcg_deform_move some 15 to 20 ns. A step as fdcg_step's, and for each triangle that it looks at for the first time
+ * since it moved some 70 ns, for a box of triangles that moved some 100 ns. A free HIP not in a clear ball looks once a tick for
+ * faces that passed over it: at the boxes around it and the triangles that moved in them. Work of that kind is not carried
+ * over to later ticks; it is bounded by the number of triangles that moved near the HIP. Memory, for each triangle: some 130
+ * bytes (f64), 90 (f32).
+ */
+#ifndef FDCG_DEFORM_H
+#define FDCG_DEFORM_H
+
+#include "fdcg/fdcg.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A corner of a deformable mesh has at most this many edges. */
+#define FDCG_DEFORM_MOST_FAN 256u
+
+/* Lives in memory of the caller's, where it was created: not to be copied or moved. It points to the graph, which must outlive
+ * it. There is nothing to destroy. */
+typedef struct fdcg_deform fdcg_deform;
+
+typedef struct fdcg_deform_config {
+  uint32_t struct_bytes; /* the caller's sizeof(fdcg_deform_config); fdcg_default_deform_config sets it */
+  uint32_t reserved;     /* 0 */
+  double margin_m;       /* >= 0: how far beyond the graph's bounds, along each axis, a vertex may be moved. It adds to the extent,
+                            which scales rounding */
+} fdcg_deform_config;
+
+/* Sets the first `struct_bytes` bytes of *config: a margin of twice the graph's largest coordinate difference, asked for by -1. */
+void fdcg_init_deform_config(fdcg_deform_config* config, uint32_t struct_bytes);
+static inline fdcg_deform_config fdcg_default_deform_config(void) {
+  fdcg_deform_config config;
+  fdcg_init_deform_config(&config, (uint32_t)sizeof config);
+  return config;
+}
+
+/* What fdcg_deform_create needs; 0 if the graph cannot be deformed (fdcg_deform_create says why). */
+uint64_t fdcg_deform_bytes(const fdcg_graph* graph);
+
+/* At `memory`, a multiple of 8, with every vertex where the graph has it. FDCG_E_GRAPH unless every node is a triangle and no
+ * corner has more than FDCG_DEFORM_MOST_FAN edges. `error` may be NULL, here and below. Cost: linear in the graph. */
+fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fdcg_graph* graph, const fdcg_deform_config* config,
+                               fdcg_deform** deform, fdcg_error* error);
+
+/* The corner at a place: of those nearer than 2^-20 of the extent the nearest, of equally near ones the lowest. FDCG_E_ABSENT
+ * where there is none. Ask before vertices move: a mesh's vertex has the place that its file says, in metres in the object's
+ * frame. Vertices that the compiler welded are one corner. Cost: the boxes around the place. */
+fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_object_m[3], uint32_t* corner, fdcg_error* error);
+
+/* Moves a corner. FDCG_E_ARGUMENT, and it stays where it was, for a place that is NaN or beyond the margin, or a number that no
+ * corner has. Moved more than once between two steps it counts as moved straight from the first place to the last. */
+fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3], fdcg_error* error);
+
+/* Where a corner is: the place it was moved to, rounded to the file's precision. FDCG_E_ARGUMENT for a number that none has. */
+fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3], fdcg_error* error);
+
+/* One contact point on one deformable mesh. All zero: not yet started. Copy it freely. */
+typedef struct fdcg_deform_contact {
+  fdcg_contact contact;
+  double travel;     /* of the mesh, when the contact was last stepped */
+  uint32_t tick;     /* likewise */
+  uint32_t reserved; /* 0 */
+} fdcg_deform_contact;
+
+/* In fdcg_result.flags, beside fdcg_result_flag: the vertices have moved more than once since this contact's last step. */
+#define FDCG_DEFORM_MISSED 0x10000u
+/* ... : a face passed over the free HIP, and has caught it. */
+#define FDCG_DEFORM_CAUGHT 0x20000u
+
+/* As fdcg_step, on the mesh as it is now. The first step after vertices have moved begins a tick. */
+void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_deform_contact* contact,
+                      const double hip_object_m[3], fdcg_result* result);
+
+/* The whole mesh brought up to date, to look at: fdcg_get_node and its like. Good until a vertex is moved. Not for fdcg_step
+ * where a triangle has no area. Not to be closed. Cost: linear in what has moved since the last step or call saw it, but for a
+ * look at each connection and corner. */
+const fdcg_graph* fdcg_deform_graph(fdcg_deform* deform);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* FDCG_DEFORM_H */

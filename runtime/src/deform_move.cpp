@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moving a deformable mesh's corners, and finding them. A move writes the new place, and marks what depends on it: nothing is
+// computed here.
+#include "config.hpp"
+#include "deform_upkeep.hpp"
+#include "message.hpp"
+
+namespace fdcg {
+namespace {
+
+[[gnu::cold, gnu::noinline]] fdcg_status refuse_place(const fdcg_deform& deform, uint32_t corner, const double position_m[3],
+                                                      fdcg_error* error) {
+  const fdcg_header& header = deform.header;
+  if (position_m == nullptr) return Message(error, FDCG_E_ARGUMENT).text("position: null pointer");
+  Message message(error, FDCG_E_ARGUMENT);
+  message.text("corner ").number(corner).text(": position ");
+  for (int k = 0; k < 3; ++k) {
+    const double low = (deform.low[k] + header.origin[k]) * header.metres_per_unit;
+    const double high = (deform.high[k] + header.origin[k]) * header.metres_per_unit;
+    if (position_m[k] >= low && position_m[k] <= high) continue;
+    message.number(static_cast<uint64_t>(k)).text(" is ").real(position_m[k]).text(" m, allowed ").real(low).text(" to ");
+    return message.real(high).text("; create the deformable mesh with a larger margin_m");
+  }
+  return message.text("is at the very end of what the margin_m allows");
+}
+
+[[gnu::cold, gnu::noinline]] fdcg_status refuse_corner(const fdcg_deform& deform, uint32_t corner, fdcg_error* error) {
+  return Message(error, FDCG_E_ARGUMENT)
+      .text("corner is ")
+      .number(corner)
+      .text(", the mesh has ")
+      .number(deform.header.corner_count)
+      .text("; fdcg_deform_find gives a vertex's corner");
+}
+
+inline double zero_below(double least, double x) {
+  return absolute(x) < least ? 0 : x;
+}
+
+// In the graph's frame; what the step takes for zero is zero here too. False for what is no number or outside.
+inline bool to_local(const fdcg_deform& deform, const double position_m[3], Vec3<double>* local) {
+  constexpr double kLeastShare = 0x1p-70;
+  const fdcg_header& header = deform.header;
+  Vec3<double> p = {position_m[0], position_m[1], position_m[2]};
+  if (header.metres_per_unit != 1)
+    p = {p.x / header.metres_per_unit, p.y / header.metres_per_unit, p.z / header.metres_per_unit};
+  p = p - vec(header.origin);
+  const int is_inside = static_cast<int>(p.x >= deform.low[0]) & static_cast<int>(p.x <= deform.high[0]) &
+                        static_cast<int>(p.y >= deform.low[1]) & static_cast<int>(p.y <= deform.high[1]) &
+                        static_cast<int>(p.z >= deform.low[2]) & static_cast<int>(p.z <= deform.high[2]);
+  const double least = kLeastShare * header.extent;
+  *local = {zero_below(least, p.x), zero_below(least, p.y), zero_below(least, p.z)};
+  return is_inside != 0;
+}
+
+// A corner's place where the graph has it, or where it was rounded to: no further out than it was asked for.
+template <class Real>
+inline Vec3<Real> rounded_to(Vec3<double> p) {
+  return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)};
+}
+
+template <class Real>
+inline void move(fdcg_deform* deform, uint32_t c, Vec3<double> local) {
+  const Upkeep<Real> upkeep(*deform);
+  const Vec3<Real> to = rounded_to<Real>(local), from = upkeep.point(c);
+  if (to.x == from.x && to.y == from.y && to.z == from.z) return;
+  auto& record = upkeep.corner(c);
+  Before<Real>& before = upkeep.before(c);
+  const uint32_t coming = deform->tick + 1;
+  if (before.tick != coming) {
+    before.tick = coming;
+    before.point[0] = from.x, before.point[1] = from.y, before.point[2] = from.z;
+  }
+  record.point[0] = to.x, record.point[1] = to.y, record.point[2] = to.z;
+  deform->has_moved = 1;
+  const Vec3<double> way = widen(to) - widen(vec(before.point));
+  const double way2 = dot(way, way);
+  if (way2 > deform->way2) deform->way2 = way2;
+  const Vec3<double> in_tree = upkeep.in_tree(to);
+  const uint32_t* const end = deform->leaves + deform->leaf_first[c + 1];
+  for (const uint32_t* at = deform->leaves + deform->leaf_first[c]; at < end; ++at) {
+    const uint32_t leaf = *at >> FDCG_LEAF_NODES, record_index = leaf / FDCG_TREE_WAYS, lane = leaf % FDCG_TREE_WAYS;
+    deform->stale[leaf] = static_cast<uint8_t>(deform->stale[leaf] | (*at & ((1u << FDCG_LEAF_NODES) - 1)));
+    const uint32_t r = deform->tree.first[0] + record_index;
+    if ((deform->loose[r] >> lane & 1) != 0 && holds_point(deform->boxes[r], lane, in_tree)) continue;
+    upkeep.hold(0, leaf, TreeBox::of(in_tree));
+  }
+}
+
+// The corner nearest to a place among the leaves whose boxes reach within `reach` of it.
+template <class Real>
+uint32_t find(const fdcg_deform& deform, Vec3<double> at, double reach) {
+  const Upkeep<Real> upkeep(const_cast<fdcg_deform&>(deform));
+  const BoxTree& tree = deform.tree;
+  const Vec3<double> p = at * deform.per_tree_unit;
+  const double off = reach * deform.per_tree_unit;
+  const TreeBox near = {{p.x - off, p.y - off, p.z - off}, {p.x + off, p.y + off, p.z + off}};
+  uint32_t nearest = FDCG_NONE;
+  double nearest2 = reach * reach;
+  struct Item {
+    uint32_t index;
+    int level;
+  } stack[(FDCG_TREE_WAYS - 1) * kMostTreeLevels + 1];
+  int waiting = 0;
+  stack[waiting++] = {0, tree.levels - 1};
+  while (waiting > 0) {
+    const Item item = stack[--waiting];
+    const fdcg_box8& record = deform.boxes[tree.first[item.level] + item.index];
+    const uint32_t lanes = tree.lanes(item.level, item.index);
+    for (uint32_t j = 0; lanes >> j != 0; ++j) {
+      const TreeBox box = lane_of(record, j);
+      int is_apart = 0;
+      for (int k = 0; k < 3; ++k)
+        is_apart |= (box.high[k] < near.low[k]) | (box.low[k] > near.high[k]);
+      if (is_apart != 0) continue;
+      const uint32_t below = item.index * FDCG_TREE_WAYS + j;
+      if (item.level > 0) {
+        stack[waiting++] = {below, item.level - 1};
+        continue;
+      }
+      const uint32_t first = below * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
+      for (uint32_t n = first; n < end && n < deform.header.node_count; ++n) {
+        for (const fdcg_side& side : upkeep.node(n).sides) {
+          const Vec3<double> gap = widen(upkeep.point(side.corner)) - at;
+          const double gap2 = dot(gap, gap);
+          if (gap2 > nearest2 || (gap2 == nearest2 && side.corner >= nearest)) continue;
+          nearest = side.corner;
+          nearest2 = gap2;
+        }
+      }
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+}  // namespace fdcg
+
+extern "C" fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3],
+                                        fdcg_error* error) {
+  fdcg::Vec3<double> local;
+  if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, corner, error);
+  if (position_object_m == nullptr || !fdcg::to_local(*deform, position_object_m, &local))
+    return fdcg::refuse_place(*deform, corner, position_object_m, error);
+  fdcg::with_real_of(deform->header, [&](auto real) { fdcg::move<decltype(real)>(deform, corner, local); });
+  return FDCG_OK;
+}
+
+extern "C" fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3],
+                                         fdcg_error* error) {
+  using fdcg::widen;
+  if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, corner, error);
+  fdcg::with_real_of(deform->header, [&](auto real) {
+    const fdcg::Upkeep<decltype(real)> upkeep(const_cast<fdcg_deform&>(*deform));
+    const fdcg::Vec3<double> p =
+        (widen(upkeep.point(corner)) + fdcg::vec(deform->header.origin)) * deform->header.metres_per_unit;
+    position_object_m[0] = p.x, position_object_m[1] = p.y, position_object_m[2] = p.z;
+  });
+  return FDCG_OK;
+}
+
+extern "C" fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_object_m[3], uint32_t* corner,
+                                        fdcg_error* error) {
+  constexpr double kNear = 0x1p-20;  // of the extent: more than the rounding of a float or of a change of units
+  if (corner == nullptr || position_object_m == nullptr)
+    return fdcg::Message(error, FDCG_E_ARGUMENT).text("position or corner: null pointer");
+  *corner = FDCG_NONE;
+  fdcg::Vec3<double> local;
+  if (!fdcg::to_local(*deform, position_object_m, &local)) return fdcg::refuse_place(*deform, 0, position_object_m, error);
+  const double reach = kNear * deform->header.extent;
+  *corner = fdcg::with_real_of(deform->header,
+                               [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
+  if (*corner != FDCG_NONE) return FDCG_OK;
+  return fdcg::Message(error, FDCG_E_ABSENT)
+      .text("no corner within ")
+      .real(reach * deform->header.metres_per_unit)
+      .text(" m of ")
+      .real(position_object_m[0])
+      .text(", ")
+      .real(position_object_m[1])
+      .text(", ")
+      .real(position_object_m[2])
+      .text("; positions are metres in the object's frame: the file's coordinates times the unit scale");
+}

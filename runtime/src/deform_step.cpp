@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// The step on a deformable mesh: servo_step.cpp once more, seen through a view that brings up to date what it hands out, after
+// the contact has taken part in the mesh's motion.
+#define FDCG_DEFORMABLE 1
+#include "deform_motion.hpp"
+#include "servo_step.cpp"  // NOLINT(bugprone-suspicious-include): the same source, on the other view
+
+namespace fdcg {
+namespace {
+
+inline Vec3<double> place_of(const fdcg_contact& contact) {
+  return vec(contact.god_object);
+}
+
+template <class Real>
+inline void put(fdcg_contact* contact, Vec3<double> place) {
+  store(Vec3<Real>{static_cast<Real>(place.x), static_cast<Real>(place.y), static_cast<Real>(place.z)}, contact->god_object);
+}
+
+// The ends of a connection's edge, before or after the tick.
+template <class Real>
+inline void ends_of(const Upkeep<Real>& upkeep, uint32_t connection, bool is_before, Vec3<double> (&end)[2]) {
+  const fdcg_connection& record = upkeep.deform().connections[connection];
+  const fdcg_side* const sides = upkeep.node(record.node).sides;
+  for (uint32_t e = 0; e < 2; ++e) {
+    const uint32_t c = sides[(record.side[0] + e) % 3].corner;
+    end[e] = widen(is_before ? upkeep.old_point(c) : upkeep.point(c));
+  }
+}
+
+template <class Real>
+inline bool has_edge(const Upkeep<Real>& upkeep, uint32_t n, uint32_t connection) {
+  for (const fdcg_side& side : upkeep.node(n).sides) {
+    if (side.link >> 1 == connection) return true;
+  }
+  return false;
+}
+template <class Real>
+inline bool has_corner(const Upkeep<Real>& upkeep, uint32_t n, uint32_t corner) {
+  for (const fdcg_side& side : upkeep.node(n).sides) {
+    if (side.corner == corner) return true;
+  }
+  return false;
+}
+
+// `saw_before`: the contact was stepped on the mesh as it was before the tick; else all that is known is where it is now.
+template <class Real>
+void ride_on_edge(const Upkeep<Real>& upkeep, uint32_t connection, bool saw_before, fdcg_contact* contact) {
+  Vec3<double> old_end[2], end[2];
+  ends_of(upkeep, connection, saw_before, old_end);
+  ends_of(upkeep, connection, false, end);
+  const auto is_same = [](Vec3<double> a, Vec3<double> b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  if (saw_before && is_same(old_end[0], end[0]) && is_same(old_end[1], end[1])) return;
+  const double share = share_along(old_end[0], old_end[1], place_of(*contact));
+  put<Real>(contact, end[0] + (end[1] - end[0]) * share);
+}
+
+template <class Real>
+void ride_on_face(const Upkeep<Real>& upkeep, uint32_t n, bool saw_before, fdcg_contact* contact) {
+  Vec3<double> old_point[3], point[3];
+  bool has_moved = !saw_before;
+  for (uint32_t k = 0; k < 3; ++k) {
+    const uint32_t c = upkeep.node(n).sides[k].corner;
+    old_point[k] = widen(saw_before ? upkeep.old_point(c) : upkeep.point(c));
+    point[k] = widen(upkeep.point(c));
+    has_moved = has_moved || upkeep.has_moved(c);
+  }
+  if (has_moved) put<Real>(contact, point_at(foot_in(old_point, place_of(*contact)), point));
+}
+
+// Where it was on its triangle, edge or corner it still is. One that was seated on a rim stays on the rim.
+template <class Real>
+void ride(const Upkeep<Real>& upkeep, bool saw_before, fdcg_contact* contact) {
+  Feature on = {contact->state, contact->feature};
+  const Feature seat = {contact->seat_state, contact->seat_feature};
+  const bool is_on_seat = (seat.state == FDCG_EDGE && has_edge(upkeep, on.index, seat.index)) ||
+                          (seat.state == FDCG_VERTEX && has_corner(upkeep, on.index, seat.index));
+  if (on.state == FDCG_FACE && is_on_seat) on = seat;
+  if (on.state == FDCG_FACE) {
+    ride_on_face(upkeep, on.index, saw_before, contact);
+  } else if (on.state == FDCG_EDGE) {
+    ride_on_edge(upkeep, on.index, saw_before, contact);
+  } else {
+    put<Real>(contact, widen(upkeep.point(on.index)));
+  }
+}
+
+// No face stays on a line: a god-object on a triangle without area goes on to the rim, where it is.
+template <class Real>
+void leave_sliver(const Upkeep<Real>& upkeep, fdcg_contact* contact) {
+  if (contact->state != FDCG_FACE || !upkeep.is_sliver(contact->feature)) return;
+  const fdcg_side& side = upkeep.node(contact->feature).sides[upkeep.longest_side(contact->feature)];
+  const uint32_t connection = side.link >> 1;
+  Vec3<double> end[2];
+  ends_of(upkeep, connection, false, end);
+  const double share = share_along(end[0], end[1], place_of(*contact));
+  contact->state = contact->seat_state = FDCG_EDGE;
+  contact->feature = contact->seat_feature = connection;
+  put<Real>(contact, end[0] + (end[1] - end[0]) * share);
+}
+
+// What is left of a clear ball when no face has come nearer than `travel`. False: the god-object is not in it any more.
+inline bool keep_ball(double travel, fdcg_contact* contact) {
+  fdcg_clear_ball& ball = contact->clear_ball;
+  constexpr double kKept = 1 - 16 * RealLimits<double>::kEpsilon;
+  const double radius = ball.radius2 > 0 ? root(ball.radius2) * kKept - travel : 0;
+  const Vec3<double> gap = place_of(*contact) - vec(ball.centre);
+  ball.radius2 = radius > 0 && dot(gap, gap) < radius * radius ? radius * radius : 0;
+  return ball.radius2 > 0;
+}
+
+// A contact in free space. A sweep that was carried over begins anew, on the mesh as it is. Returns whether a face caught it.
+template <class Real>
+bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, fdcg_contact* contact) {
+  contact->sweep.is_carried = 0;
+  if (keep_ball(travel, contact) || !saw_before) return false;
+  const Catch caught = catch_of(upkeep, narrow<Real>(contact->god_object));
+  if (caught.node == FDCG_NONE) return false;
+  contact->state = FDCG_FACE;
+  contact->feature = caught.node;
+  contact->seat_state = FDCG_FREE;
+  contact->seat_feature = FDCG_NONE;
+  contact->slipping = 0;
+  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
+  contact->sweep.in_place = 0;
+  put<Real>(contact, caught.place);
+  return true;
+}
+
+// The motion of the present tick. Returns what it adds to the result's flags.
+template <class Real>
+[[gnu::noinline]] uint32_t take_part(const Upkeep<Real>& upkeep, fdcg_deform_contact* contact) {
+  const fdcg_deform& deform = upkeep.deform();
+  const bool is_started = contact->contact.started != 0, saw_before = contact->tick + 1 == deform.tick;
+  const double travel = (deform.travel - contact->travel) * (1 + 4 * RealLimits<double>::kEpsilon) +
+                        4 * RealLimits<double>::kEpsilon * deform.travel;
+  contact->tick = deform.tick;
+  contact->travel = deform.travel;
+  if (!is_started) return 0;
+  uint32_t flags = saw_before ? 0 : FDCG_DEFORM_MISSED;
+  if (contact->contact.state != FDCG_FREE) {
+    ride(upkeep, saw_before, &contact->contact);
+  } else if (wait_for_faces(upkeep, travel, saw_before, &contact->contact)) {
+    flags |= FDCG_DEFORM_CAUGHT;
+  }
+  return flags;
+}
+
+// What was moved since the last step is the motion of a new tick.
+template <class Real>
+[[gnu::noinline]] void begin_tick(const Upkeep<Real>& upkeep) {
+  fdcg_deform& deform = upkeep.deform();
+  constexpr uint32_t kLastTick = 0xFFFFFFF0u;
+  deform.has_moved = 0;
+  deform.travel += root(deform.way2) * (1 + 0x1p-20);
+  deform.way2 = 0;
+  ++deform.tick;
+  if (deform.tick < kLastTick) return;
+  for (uint32_t c = 0; c < deform.header.corner_count; ++c) {  // once in some fifty days: the numbers begin anew
+    Before<Real>& before = upkeep.before(c);
+    before.tick = before.tick == deform.tick ? 2 : 0;
+  }
+  deform.tick = 2;
+}
+
+template <class Real>
+void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact* contact, const double hip_object_m[3],
+             fdcg_result* result) {
+  const Upkeep<Real> upkeep(*deform);
+  if (deform->has_moved != 0) begin_tick(upkeep);
+  uint32_t flags = 0;
+  if (contact->tick != deform->tick) flags = take_part(upkeep, contact);
+  if (contact->contact.state == FDCG_FACE) leave_sliver(upkeep, &contact->contact);
+  step<Real>(deform->graph, params, &contact->contact, hip_object_m, result);
+  if (contact->contact.state == FDCG_FACE && upkeep.is_sliver(contact->contact.feature)) {
+    leave_sliver(upkeep, &contact->contact);
+    say_where(deform->header, contact->contact, result);
+  }
+  result->flags |= flags;
+}
+
+}  // namespace
+}  // namespace fdcg
+
+extern "C" void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_deform_contact* contact,
+                                 const double hip_object_m[3], fdcg_result* result) {
+  fdcg_params room;
+  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
+  fdcg::with_real_of(deform->header, [&](auto real) {
+    fdcg::step_on<decltype(real)>(deform, all_params, contact, hip_object_m, result);
+  });
+}

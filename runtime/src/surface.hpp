@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the surfaces without a mesh have in common: the contact within one step, the way through free space, friction on a plane
+// and the slide over a curved piece. surface_round.hpp, surface_torus.hpp, surface_box.hpp and surface_cone.hpp hold the
+// shapes; surface_step.cpp drives them. Each shape has
+//
+//   bool is_outside(x)                  in free space, the surface included; one expression wherever it is asked
+//   Entry enter(from, to, begins_outside)    what a way meets first from its front; `from` may be on the surface
+//   Decision rule(walk)                 the rules of contact-model sections 5 to 7 at walk.active
+//   Point normal(feature, x)            away from the material
+//   static bool kIsConvex               the solid, or the cavity, is convex
+//   double sign                         1 solid, -1 hollow
+#pragma once
+
+#include "fdcg/surface.h"
+#include "walk.hpp"
+
+namespace fdcg {
+
+using Point = Vec3<double>;
+
+inline constexpr double kEps = RealLimits<double>::kEpsilon;
+
+inline double squared(Point a) {
+  return dot(a, a);
+}
+// Distance from the z axis.
+inline double from_axis(Point p) {
+  return root(p.x * p.x + p.y * p.y);
+}
+
+// One contact within one step.
+struct SurfaceWalk {
+  Friction<double> friction;
+  Point hip, god_object;
+  Feature active;
+  uint32_t moves_left;
+};
+
+// What a way through free space met first.
+struct Entry {
+  bool is_met;
+  Point point;  // on the surface
+  Feature feature;
+};
+inline constexpr Entry kNoEntry = {false, {0, 0, 0}, kFree};
+
+// ---- ways ---------------------------------------------------------------------------------------------------------------
+
+// The part of a straight line that is inside a convex body, by t in from + way * t, and the pieces through which it enters and
+// leaves. Empty unless in < out.
+struct Span {
+  double in, out;
+  uint32_t piece_in, piece_out;
+
+  [[nodiscard]] bool is_empty() const { return !(in < out); }
+  void cut_before(double t, uint32_t piece) {
+    if (t > in) in = t, piece_in = piece;
+  }
+  void cut_after(double t, uint32_t piece) {
+    if (t < out) out = t, piece_out = piece;
+  }
+};
+inline constexpr double kNever = 1e300;
+inline constexpr Span kWholeLine = {-kNever, kNever, 0, 0};
+inline constexpr Span kNoSpan = {kNever, -kNever, 0, 0};
+
+// a / b, or kNever in its sign where that would be larger.
+inline double bounded_ratio(double a, double b) {
+  const bool is_number = absolute(b) >= 1 || absolute(a) < absolute(b) * kNever;
+  return is_number ? a / b : ((a < 0) == (b < 0) ? kNever : -kNever);
+}
+
+// Keeps what lies between two parallel planes, x in -half to half; the pieces are `low` and low + 1.
+inline void cut_slab(double x, double way, double half, uint32_t low, Span* span) {
+  if (way == 0) {
+    if (!(absolute(x) <= half)) *span = kNoSpan;
+    return;
+  }
+  const double minus = bounded_ratio(-half - x, way), plus = bounded_ratio(half - x, way);
+  span->cut_before(way > 0 ? minus : plus, way > 0 ? low : low + 1);
+  span->cut_after(way > 0 ? plus : minus, way > 0 ? low + 1 : low);
+}
+
+// What lies in a ball around the origin, from the line's middle in it: nothing cancels.
+[[gnu::noinline]] inline Span ball_span(Point from, Point way, double radius) {
+  const double length2 = squared(way);
+  if (!(length2 > 0)) return kNoSpan;
+  const double middle = bounded_ratio(-dot(from, way), length2);
+  const double left2 = radius * radius - squared(from + way * middle);
+  if (!(left2 > 0)) return kNoSpan;
+  const double half = root(bounded_ratio(left2, length2));
+  return {middle - half, middle + half, 0, 0};
+}
+
+struct Way {
+  Point from, to;
+};
+
+// A way that begins or ends far off, cut to what is near: out there numbers are coarser than the surface. Nothing is cut off
+// that lies within four extents of the origin.
+[[gnu::noinline]] inline Way near_part(Point from, Point to, double extent) {
+  constexpr double kFar = 16, kKept = 4;  // extents
+  const double from1 = norm1(from), to1 = norm1(to);
+  if (from1 <= kFar * extent && to1 <= kFar * extent) return {from, to};
+  const Point way = to - from;
+  const double length = norm(way);
+  if (!(length > 0)) return {from, to};
+  const Point along = way * (1 / length);
+  const Point base = from1 < to1 ? from : to;  // the nearer end, where numbers are finer
+  const Point middle = base - along * dot(base, along);
+  const double before = dot(from, along), after = dot(to, along);
+  Way near = {from, to};
+  if (before < -kKept * extent) near.from = middle - along * (after < -kKept * extent ? -after : kKept * extent);
+  if (after > kKept * extent) near.to = middle + along * (before > kKept * extent ? before : kKept * extent);
+  return near;
+}
+
+// What a way meets first of a convex solid, or of the wall of a convex cavity. Where the signs at both ends say that it must
+// have met something, it does, whatever rounding makes of the way between. Shape: span(from, way), land(piece, point).
+template <class Shape>
+[[gnu::noinline]] Entry enter_convex(const Shape& shape, Point from, Point to, bool begins_outside) {
+  const bool ends_outside = shape.is_outside(to);
+  const bool is_solid = shape.sign > 0;
+  if (is_solid ? !begins_outside : ends_outside) return kNoEntry;
+  const Way near = near_part(from, to, shape.extent);
+  const Point way = near.to - near.from;
+  const Span span = shape.span(near.from, way);
+  if (span.is_empty()) return ends_outside || !begins_outside ? kNoEntry : shape.land(shape.piece_near(to), to);
+  if (is_solid) {
+    const bool is_on_way = span.in <= 1 && span.out > 0;
+    if (!is_on_way) return ends_outside ? kNoEntry : shape.land(shape.piece_near(to), to);
+    return shape.land(span.piece_in, near.from + way * (span.in > 0 ? span.in : 0));
+  }
+  if (!begins_outside && !(span.in > 0 && span.out < 1)) return kNoEntry;  // within the wall
+  const double out = span.out < 0 ? 0 : (span.out > 1 ? 1 : span.out);
+  return shape.land(span.piece_out, near.from + way * out);
+}
+
+// ---- planes -------------------------------------------------------------------------------------------------------------
+
+enum class Slid { kRests, kSlides, kLeaves, kCrosses, kIsCut };
+
+// The god-object on a plane, which the HIP is `load` below; `across` is the part in the plane of the way from the HIP to the
+// god-object. Where it slides, *shrink is what becomes of that part.
+inline Slid slide_on_plane(SurfaceWalk& walk, Point across, double load, double* shrink) {
+  if (!(load > 0)) return Slid::kLeaves;
+  const double across2 = squared(across);
+  const Slip<double> slip = walk.friction.slip(walk.god_object, across2, load);
+  if (slip.is_rest) return Slid::kRests;
+  *shrink = slip.gap > 0 ? slip.gap / root(across2) : 0;
+  return Slid::kSlides;
+}
+
+// ---- circles ------------------------------------------------------------------------------------------------------------
+
+// Where on a circle friction stops a slide: the HIP, `reach` off the axis, pulls with reach * sin(angle) and presses with
+// base - lift * cos(angle); angle is that from the HIP to the god-object and shrinks. Stops where the pull is mu times the
+// load. False where no load is left before.
+struct Arc {
+  double sine, cosine;
+};
+inline bool stop_on_circle(double reach, double base, double lift, double mu, Arc* stop) {
+  const double drop = mu * lift, size = root(reach * reach + drop * drop);
+  double sine = mu * base / size;
+  if (!(sine >= -1)) return false;
+  sine = sine < 1 ? sine : 1;
+  const double cosine = root((1 - sine) * (1 + sine));
+  *stop = {(sine * reach - cosine * drop) / size, (cosine * reach + sine * drop) / size};
+  return stop->sine >= 0 && base - lift * stop->cosine > 0;
+}
+
+// What rounding, of the god-object's place and of the normal there, makes of a pull. Less is no reason to place it anew.
+inline double pull_rounding(const SurfaceWalk& walk) {
+  return 4 * kEps * (norm1(walk.god_object) + norm1(walk.hip));
+}
+
+// ---- curved pieces ------------------------------------------------------------------------------------------------------
+
+// The way of steepest descent over a curved piece, to where friction stops it: pull = mu * load, both of them parts of the
+// spring's force where the god-object then is. Each move is a Newton step of that equation, along the direction that the
+// descent has in the middle of the move (from the piece's curvature), so that the way is right to second order; no move turns
+// the normal by more than a quarter of a radian. Piece:
+//
+//   Spot spot(x, hip)          the normal there, and what `turn` wants to know
+//   Point turn(spot, e)        how the normal changes along the tangent e
+//   Point project(p, spot)     the surface near p
+//   bool bends_alike(spot, x)       false where the curvature at x may be quite another
+//   bool cross(from, &to, &next)    whether the piece ends on the way; `to` is put on its end, `next` is what is there
+template <class Piece>
+Slid slide_on_piece(const Piece& piece, SurfaceWalk& walk, Feature* next) {
+  constexpr double kLargestTurn = 0.25, kLeastSlope = 0x1p-20;
+  const Point start = walk.god_object - walk.hip;
+  const double start2 = squared(start) + norm1(start) * pull_rounding(walk);  // but for the rounding of a place
+  double mu = -1, longest = kNever;
+  bool has_moved = false;
+  for (; walk.moves_left > 0; --walk.moves_left) {
+    const auto spot = piece.spot(walk.god_object, walk.hip);
+    const Point gap = walk.god_object - walk.hip;
+    const double load = dot(gap, spot.normal);
+    if (!(load > 0)) return Slid::kLeaves;
+    const Point across = gap - spot.normal * load;
+    const double pull2 = squared(across);
+    if (mu < 0) {
+      const Slip<double> slip = walk.friction.slip(walk.god_object, pull2, load);
+      if (slip.is_rest) return Slid::kRests;
+      mu = slip.gap / load;
+    }
+    const double pull = root(pull2), excess = pull - mu * load;
+    const double rounding = pull_rounding(walk);
+    const bool is_placed = absolute(excess) <= (has_moved ? rounding / 16 : rounding);
+    if (is_placed || !(pull > rounding)) return Slid::kRests;
+    const double per_pull = 1 / pull;
+    const Point along = across * -per_pull;
+    const Point turn = piece.turn(spot, along);
+    const double bend = norm1(turn), curvature = dot(along, turn);
+    // Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of.
+    if (!has_moved && absolute(excess) <= rounding + 4 * kEps * norm1(walk.god_object) * bend * (load + pull))
+      return Slid::kRests;
+    const double slope = 1 - curvature * (load + mu * pull);  // of the excess, along the way
+    if (excess < 0 && !(slope > kLeastSlope)) return Slid::kRests;
+    const bool is_steep = slope > kLeastSlope;
+    double length = is_steep ? excess / slope : 0;
+    // What a Newton step leaves, from above: of second order in its length, and the pull beside it that a turn brings.
+    const double beside = norm1(turn - along * curvature) * load * absolute(length), kept = mu * load;
+    const double left = length * length * (per_pull + bend * (1 + bend * (load + pull)));
+    const bool is_last = is_steep && 8 * (left + (beside < kept ? beside * beside / kept : beside)) <= rounding;
+    if (!is_steep || !(absolute(length) * bend <= kLargestTurn)) length = (excess < 0 ? -kLargestTurn : kLargestTurn) / bend;
+    if (length > longest) length = longest;
+    Point move = along * length;
+    const double half = length / 2, ahead = pull - (1 - curvature * load) * half;  // of the pull, in the middle of the move
+    if (!is_last && length > 0 && ahead > pull / 4 && bend * load * half < ahead)
+      move = (along * pull - (along - turn * load) * half) * (length / ahead);
+    Point to = piece.project(walk.god_object + move, spot);
+    if (squared(to - walk.hip) > start2) {  // only rounding, or a piece that bends sharply ahead
+      if (!(absolute(length) > rounding)) return Slid::kRests;
+      longest = absolute(length) / 4;
+      continue;
+    }
+    const bool has_crossed = piece.cross(walk.god_object, &to, next);
+    walk.god_object = to;
+    has_moved = true;
+    if (has_crossed) return Slid::kCrosses;
+    if (is_last && piece.bends_alike(spot, to)) return Slid::kRests;
+  }
+  return Slid::kIsCut;
+}
+
+// What the rules make of a slide; a piece that ends goes on at `next`.
+inline Decision decide(Slid slid, Feature next) {
+  if (slid == Slid::kLeaves) return go_to(kFree);
+  return slid == Slid::kCrosses ? go_to(next) : rest();
+}
+
+}  // namespace fdcg

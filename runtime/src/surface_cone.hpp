@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cylinder, cone and frustum: a side between two rims, a disc at each end that is not an apex.
+#pragma once
+
+#include "surface.hpp"
+
+namespace fdcg {
+
+struct ConeSurface {
+  static constexpr bool kIsConvex = true;
+  static constexpr uint32_t kSide = 0;  // the discs are 1 and 2: 1 + end
+  double sign, extent, half;
+  double radius[2];         // at -half and at half
+  double length;            // of the side, from rim to rim
+  double along_r, along_z;  // the side's unit direction from -half to half, in a plane of the axis: distance from it, height
+
+  struct Spot {
+    Point normal;
+    Point outward;  // unit, from the axis
+    double turn;    // of the normal, for a unit's way around the axis
+  };
+
+  explicit ConeSurface(const fdcg_surface& s) : sign(s.is_hollow != 0 ? -1 : 1), half(s.length_m / 2) {
+    radius[0] = s.radius_m;
+    radius[1] = s.kind == FDCG_SURFACE_CYLINDER ? s.radius_m : s.top_radius_m;
+    const double grows = radius[1] - radius[0], rises = s.length_m;
+    length = grows == 0 ? rises : root(grows * grows + rises * rises);
+    along_r = grows / length;
+    along_z = rises / length;
+    const double widest = radius[0] > radius[1] ? radius[0] : radius[1];
+    extent = root(widest * widest + half * half);
+  }
+  // The side's normal in a plane of the axis is (along_z, -along_r) * sign.
+  [[nodiscard]] double above_side(double off, double z) const { return along_z * (off - radius[0]) - along_r * (z + half); }
+  [[nodiscard]] bool is_outside(Point x) const {
+    const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
+    return sign > 0 ? side >= 0 || disc >= 0 : side <= 0 && disc <= 0;
+  }
+  // Between the discs' planes, and there where x^2 + y^2 is below the square of the side's radius at that height.
+  [[nodiscard]] Span span(Point from, Point way) const {
+    Span span = kWholeLine;
+    cut_slab(from.z, way.z, half, 1, &span);
+    if (span.is_empty()) return kNoSpan;
+    const double grows = along_r / along_z, wide = (radius[0] + radius[1]) / 2 + grows * from.z, widens = grows * way.z;
+    const double flat2 = way.x * way.x + way.y * way.y;
+    const double a = flat2 - widens * widens, b = from.x * way.x + from.y * way.y - wide * widens;
+    const double c = from.x * from.x + from.y * from.y - wide * wide, left = b * b - a * c;
+    if (!(absolute(a) > kEps * (flat2 + widens * widens))) {  // along a line of the side
+      if (b > 0) span.cut_after(bounded_ratio(-c, 2 * b), kSide);
+      if (b < 0) span.cut_before(bounded_ratio(-c, 2 * b), kSide);
+      return b != 0 || c < 0 ? span : kNoSpan;
+    }
+    if (!(left > 0)) return a > 0 ? kNoSpan : span;
+    const double q = -(b + (b < 0 ? -root(left) : root(left)));
+    const double r = bounded_ratio(q, a), s = bounded_ratio(c, q), low = r < s ? r : s, high = r < s ? s : r;
+    if (a > 0) {
+      span.cut_before(low, kSide);
+      span.cut_after(high, kSide);
+      return span;
+    }
+    Span before = span, after = span;  // the way passes through both halves of the double cone; one is within the planes
+    before.cut_after(low, kSide);
+    after.cut_before(high, kSide);
+    return before.out - before.in > after.out - after.in ? before : after;
+  }
+  [[nodiscard]] uint32_t piece_near(Point x) const {
+    const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
+    return side > disc ? kSide : (x.z > 0 ? 2 : 1);
+  }
+  [[nodiscard]] Entry land(uint32_t piece, Point at) const {
+    const double off = from_axis(at);
+    const Point outward = off > 0 ? Point{at.x / off, at.y / off, 0} : Point{1, 0, 0};
+    if (piece == kSide) return {true, on_side(outward, side_parameter(off, at.z)), {FDCG_FACE, kSide}};
+    const double most = radius[piece - 1], z = piece == 1 ? -half : half;
+    if (most == 0) return {true, {0, 0, z}, {FDCG_VERTEX, piece - 1}};
+    if (off <= most) return {true, {at.x, at.y, z}, {FDCG_FACE, piece}};
+    return {true, {outward.x * most, outward.y * most, z}, {FDCG_FACE, piece}};
+  }
+  [[nodiscard]] Entry enter(Point from, Point to, bool begins_outside) const {
+    return enter_convex(*this, from, to, begins_outside);
+  }
+
+  // ---- the side, as a piece to slide on
+
+  [[nodiscard]] double side_parameter(double off, double z) const { return along_r * (off - radius[0]) + along_z * (z + half); }
+  [[nodiscard]] Point on_side(Point outward, double u) const {
+    if (!(u > 0)) return rim_point(outward, 0);
+    if (!(u < length)) return rim_point(outward, 1);
+    const double off = radius[0] + u * along_r;
+    return {outward.x * off, outward.y * off, u * along_z - half};
+  }
+  [[nodiscard]] Point rim_point(Point outward, uint32_t end) const {
+    return {outward.x * radius[end], outward.y * radius[end], end == 0 ? -half : half};
+  }
+  // At an apex the plane of the axis is that of the HIP.
+  [[nodiscard]] static Point outward_at(Point x, Point hip) {
+    const double off = from_axis(x);
+    if (off > 0) return {x.x / off, x.y / off, 0};
+    const double hip_off = from_axis(hip);
+    return hip_off > 0 ? Point{hip.x / hip_off, hip.y / hip_off, 0} : Point{1, 0, 0};
+  }
+  [[nodiscard]] Spot spot(Point x, Point hip) const {
+    const Point outward = outward_at(x, hip);
+    const double off = dot(x, outward), side = sign * along_z;
+    return {{outward.x * side, outward.y * side, -sign * along_r}, outward, off > kEps * extent ? side / off : 0};
+  }
+  [[nodiscard]] Point turn(const Spot& spot, Point e) const {
+    const Point round = {-spot.outward.y, spot.outward.x, 0};
+    return round * (dot(e, round) * spot.turn);
+  }
+  // On the side's line through the axis's plane of p, beyond its ends too.
+  [[nodiscard]] Point project(Point p, const Spot& spot) const {
+    const double off = from_axis(p);
+    const Point outward = off > 0 ? Point{p.x / off, p.y / off, 0} : spot.outward;
+    const double u = side_parameter(off, p.z), at = radius[0] + u * along_r;
+    if (at < 0) return on_side(outward, u);  // beyond an apex
+    return {outward.x * at, outward.y * at, u * along_z - half};
+  }
+  [[nodiscard]] bool bends_alike(const Spot&, Point) const { return true; }
+  bool cross(Point from, Point* to, Feature* next) const {
+    if (absolute(to->z) < half) return false;
+    const uint32_t end = to->z > 0 ? 1 : 0;
+    const double left = end == 0 ? half + from.z : half - from.z, went = absolute(to->z - from.z);
+    const Point at = left > 0 && went > left ? from + (*to - from) * (left / went) : *to;
+    *to = rim_point(outward_at(at, *to), end);
+    *next = rim_feature(end);
+    return true;
+  }
+  [[nodiscard]] Feature rim_feature(uint32_t end) const { return {radius[end] > 0 ? FDCG_EDGE : FDCG_VERTEX, end}; }
+
+  // ---- rules
+
+  Decision rule(SurfaceWalk& walk) const {
+    if (walk.active.state == FDCG_EDGE) return rim_rule(walk);
+    if (walk.active.state == FDCG_VERTEX) return apex_rule(walk);
+    if (walk.active.index != kSide) return disc_rule(walk);
+    Feature next;
+    return decide(slide_on_piece(*this, walk, &next), next);
+  }
+  Decision disc_rule(SurfaceWalk& walk) const {
+    const uint32_t end = walk.active.index - 1;
+    const Point from = walk.god_object, hip = walk.hip;
+    const Point across = {from.x - hip.x, from.y - hip.y, 0};
+    double shrink = 0;
+    const Slid slid = slide_on_plane(walk, across, sign * (end == 0 ? half + hip.z : half - hip.z), &shrink);
+    if (slid != Slid::kSlides) return decide(slid, kFree);
+    const Point to = {hip.x + across.x * shrink, hip.y + across.y * shrink, from.z};
+    if (from_axis(to) <= radius[end]) {
+      walk.god_object = to;
+      return rest();
+    }
+    const Span within = ball_span({from.x, from.y, 0}, {to.x - from.x, to.y - from.y, 0}, radius[end]);
+    const double t = within.out > 0 && within.out < 1 ? within.out : (within.out > 0 ? 1 : 0);
+    walk.god_object = rim_point(outward_at(from + (to - from) * t, to), end);
+    return go_to(rim_feature(end));
+  }
+  // The HIP against a rim's two faces, in the plane of the axis through the god-object. `beyond` is how far it lies past the
+  // rim, seen from the face.
+  struct RimSides {
+    double side, disc;  // signed distances to the faces
+    double beyond_side, beyond_disc;
+  };
+  [[nodiscard]] RimSides rim_sides(uint32_t end, double off, double z) const {
+    const double out = off - radius[end], up = end == 0 ? z + half : z - half, towards = end == 0 ? -1 : 1;
+    return {sign * (along_z * out - along_r * up), sign * towards * up, towards * (along_r * out + along_z * up), out};
+  }
+  // Contact-model section 6, round a circle.
+  Decision rim_rule(SurfaceWalk& walk) const {
+    const uint32_t end = walk.active.index;
+    const Point outward = outward_at(walk.god_object, walk.hip);
+    const double off = dot(walk.hip, outward);
+    const RimSides at = rim_sides(end, off, walk.hip.z);
+    const bool is_behind_side = at.side < 0, is_behind_disc = at.disc < 0;
+    if (sign > 0 ? !is_behind_side || !is_behind_disc : !is_behind_side && !is_behind_disc) return go_to(kFree);
+    const bool may_be_side = is_behind_side && at.beyond_side < 0, may_be_disc = is_behind_disc && at.beyond_disc < 0;
+    if (may_be_side && !(may_be_disc && at.beyond_disc < at.beyond_side)) return go_to({FDCG_FACE, kSide});
+    if (may_be_disc) return go_to({FDCG_FACE, 1 + end});
+    if (sign > 0) return rest();
+    return slide_on_rim(walk, end, outward, off);
+  }
+  // The loads of both faces together are base - lift * cos(angle), by contact-model section 6.
+  Decision slide_on_rim(SurfaceWalk& walk, uint32_t end, Point outward, double off) const {
+    const Point round = {-outward.y, outward.x, 0};
+    const double reach = from_axis(walk.hip), across = dot(walk.hip, round);
+    const double up = end == 0 ? walk.hip.z + half : walk.hip.z - half, out = off - radius[end];
+    const double sum_r = -along_z, sum_z = along_r + (end == 0 ? 1 : -1);  // of the two normals, into the cavity
+    const double per_load = -2 / (sum_r * sum_r + sum_z * sum_z);
+    double base = per_load * (sum_z * up - sum_r * radius[end]), lift = -per_load * sum_r * reach;
+    double load = per_load * (sum_r * out + sum_z * up);
+    if (!walk.friction.has_wedge) {
+      const double distance = root(out * out + up * up), share = load > 0 ? distance / load : 0;
+      base *= share, lift *= share, load = distance;
+    }
+    const Slip<double> slip = walk.friction.slip(walk.god_object, across * across, load);
+    if (slip.is_rest) return rest();
+    Arc stop;
+    if (!stop_on_circle(reach, base, lift, load > 0 ? slip.gap / load : 0, &stop)) stop = {0, 1};
+    const Point towards = {walk.hip.x / reach, walk.hip.y / reach, 0};
+    const double turn = across > 0 ? -stop.sine : stop.sine;  // the god-object is to the right of the HIP, or to the left
+    walk.god_object =
+        rim_point({towards.x * stop.cosine - towards.y * turn, towards.y * stop.cosine + towards.x * turn, 0}, end);
+    return rest();
+  }
+  // Contact-model section 7: the steepest line of the side is the one in the HIP's plane.
+  Decision apex_rule(SurfaceWalk& walk) const {
+    const uint32_t end = walk.active.index;
+    const RimSides at = rim_sides(end, from_axis(walk.hip), walk.hip.z);
+    if (at.side >= 0) return go_to(kFree);
+    if (at.beyond_side < 0) return go_to({FDCG_FACE, kSide});
+    return sign > 0 ? go_to(kFree) : rest();
+  }
+  [[nodiscard]] Point normal(Feature feature, Point x) const {
+    const Point side = spot(x, x).normal, up = {0, 0, 1};
+    if (feature.state == FDCG_FACE && feature.index == kSide) return side;
+    if (feature.state == FDCG_VERTEX) return up * (feature.index == 0 ? -sign : sign);
+    const bool is_low = feature.state == FDCG_FACE ? feature.index == 1 : feature.index == 0;
+    const Point disc = up * (is_low ? -sign : sign);
+    if (feature.state == FDCG_FACE) return disc;
+    const Point sum = side + disc;
+    return sum * (1 / norm(sum));
+  }
+};
+
+}  // namespace fdcg

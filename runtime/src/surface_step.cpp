@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// The step on a surface without a mesh: the same states, friction and response as servo_step.cpp, with shapes in place of a
+// graph's features.
+#include "response.hpp"
+#include "struct_bytes.hpp"
+#include "surface_box.hpp"
+#include "surface_cone.hpp"
+#include "surface_round.hpp"
+#include "surface_torus.hpp"
+
+namespace fdcg {
+namespace {
+
+constexpr uint32_t kMostTransitions = 24;  // of one tick; two or three are usual
+constexpr double kLeastShare = 0x1p-70;    // of the extent: a coordinate below it is zero, and no square is denormal
+
+struct Progress {
+  uint32_t transitions, flags;
+};
+
+// From free space, or from the surface that was just left: the contact is placed on what the way to the HIP meets, or at the
+// HIP.
+template <class Shape>
+void sweep(const Shape& shape, SurfaceWalk& walk, bool begins_outside) {
+  const Entry entry = shape.enter(walk.god_object, walk.hip, begins_outside);
+  walk.god_object = entry.is_met ? entry.point : walk.hip;
+  walk.active = entry.is_met ? entry.feature : kFree;
+}
+
+// Drives the rules until one rests.
+template <class Shape>
+Progress move_god_object(const Shape& shape, SurfaceWalk& walk) {
+  Progress progress = {0, 0};
+  if (walk.active == kFree) {
+    sweep(shape, walk, shape.is_outside(walk.god_object));
+    if (walk.active == kFree) return progress;
+    ++progress.transitions;
+  }
+  for (; progress.transitions < kMostTransitions; ++progress.transitions) {
+    const Decision decision = shape.rule(walk);
+    if (decision.is_rest()) {
+      if (walk.moves_left == 0) progress.flags = FDCG_RESULT_TRANSITION_BOUND;
+      return progress;
+    }
+    if (!(decision.next() == kFree)) {
+      walk.active = decision.next();
+      continue;
+    }
+    const bool is_convex_solid = Shape::kIsConvex && shape.sign > 0;  // what leaves it cannot meet it
+    // In front of a tangent plane and yet in the solid: by rounding alone. Free, it would fall through.
+    if (is_convex_solid && !shape.is_outside(walk.hip)) return progress;
+    ++progress.transitions;
+    if (is_convex_solid) {
+      walk.god_object = walk.hip;
+      walk.active = kFree;
+    } else {
+      sweep(shape, walk, true);
+    }
+    if (walk.active == kFree) return progress;
+  }
+  progress.flags = FDCG_RESULT_TRANSITION_BOUND;
+  return progress;
+}
+
+// Calls `work` with the shape.
+template <class Work>
+auto with_shape(const fdcg_surface& surface, Work work) {
+  switch (surface.kind) {
+    case FDCG_SURFACE_SPHERE:
+      return work(Sphere(surface));
+    case FDCG_SURFACE_CYLINDER:
+    case FDCG_SURFACE_CONE:
+      return work(ConeSurface(surface));
+    case FDCG_SURFACE_CAPSULE:
+      return work(Capsule(surface));
+    case FDCG_SURFACE_BOX:
+      return work(BoxSurface(surface));
+    case FDCG_SURFACE_TORUS:
+      return work(Torus(surface));
+    case FDCG_SURFACE_ELLIPSOID:
+      return work(Ellipsoid(surface));
+    default:
+      return work(PlaneSurface(surface));
+  }
+}
+
+bool is_usable_place(const double p[3]) {
+  constexpr double kFar = RealLimits<double>::kFar;
+  return absolute(p[0]) <= kFar && absolute(p[1]) <= kFar && absolute(p[2]) <= kFar;
+}
+
+Point place_of(const double p[3], double extent) {
+  const double least = kLeastShare * extent;
+  return {absolute(p[0]) < least ? 0 : p[0], absolute(p[1]) < least ? 0 : p[1], absolute(p[2]) < least ? 0 : p[2]};
+}
+
+void store(Point from, double (&to)[3]) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
+
+void start(Point hip, fdcg_contact* contact) {
+  store(hip, contact->hip);
+  store(hip, contact->god_object);
+  contact->started = 1;
+  contact->state = contact->seat_state = FDCG_FREE;
+  contact->feature = contact->seat_feature = FDCG_NONE;
+  contact->slipping = 0;
+}
+
+void respond(const fdcg_params& params, const fdcg_contact& contact, const SurfaceWalk& walk, fdcg_result* result) {
+  const Point spring = walk.god_object - walk.hip;
+  double newtons_per_metre = params.stiffness_n_per_m;
+  if (params.damping_n_s_per_m > 0) newtons_per_metre = damped(params, newtons_per_metre, spring, walk.hip - vec(contact.hip));
+  store(spring * newtons_per_metre, result->force_n);
+}
+
+template <class Shape>
+void step(const Shape& shape, const fdcg_params& params, fdcg_contact* contact, Point hip, fdcg_result* result) {
+  if (contact->started == 0) {
+    start(hip, contact);
+    return;
+  }
+  SurfaceWalk walk = {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, contact->slipping != 0},
+                      hip,
+                      vec(contact->god_object),
+                      {contact->state, contact->feature},
+                      FDCG_SURFACE_MAX_MOVES};
+  const Progress progress = move_god_object(shape, walk);
+  result->transitions = progress.transitions;
+  result->flags = progress.flags;
+  contact->transition_bound_ticks += progress.flags != 0 ? 1 : 0;
+  const bool is_free = walk.active == kFree;
+  if (!is_free) respond(params, *contact, walk, result);
+  store(walk.god_object, contact->god_object);
+  store(hip, contact->hip);
+  contact->state = walk.active.state;
+  contact->feature = walk.active.index;
+  contact->slipping = !is_free && walk.friction.is_slipping ? 1 : 0;
+}
+
+}  // namespace
+}  // namespace fdcg
+
+extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* contact,
+                                  const double hip_object_m[3], fdcg_result* result) {
+  using namespace fdcg;
+  *result = {};
+  if (is_usable_place(hip_object_m)) {
+    fdcg_params room;
+    const fdcg_params& all_params = in_full(*params, &room, fdcg_init_params);
+    with_shape(*surface,
+               [&](const auto& shape) { step(shape, all_params, contact, place_of(hip_object_m, shape.extent), result); });
+  } else {
+    ++contact->non_finite_ticks;
+    result->flags = FDCG_RESULT_NON_FINITE;
+  }
+  store(vec(contact->god_object), result->god_object_m);
+  result->state = contact->state;
+  result->feature = contact->state == FDCG_FREE ? FDCG_NONE : contact->feature;  // a contact of zeros is free, and on nothing
+  result->slipping = contact->slipping;
+}
+
+extern "C" void fdcg_surface_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]) {
+  using namespace fdcg;
+  Point n = {0, 0, 0};
+  if (result->state != FDCG_FREE) {
+    const Feature feature = {result->state, result->feature};
+    with_shape(*surface, [&](const auto& shape) { n = shape.normal(feature, vec(result->god_object_m)); });
+  }
+  normal[0] = n.x;
+  normal[1] = n.y;
+  normal[2] = n.z;
+}

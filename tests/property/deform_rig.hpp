@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// A compiled mesh that can be deformed, in memory of its own, with the corner of each vertex of its soup.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "contact_rig.hpp"
+#include "fdcg/deform.h"
+
+namespace fdcg::test {
+
+inline bake::CompileOptions triangle_options(bake::Precision precision = bake::Precision::f64) {
+  bake::CompileOptions options;
+  options.triangles = true;
+  options.precision = precision;
+  return options;
+}
+
+class DeformableMesh {
+ public:
+  explicit DeformableMesh(const bake::PolygonSoup& soup, const bake::CompileOptions& options = triangle_options(),
+                          double margin_m = 0)
+      : compiled_(soup, options), points_(soup.points) {
+    const std::uint64_t bytes = fdcg_deform_bytes(&compiled_.view());
+    REQUIRE(bytes > 0);
+    memory_.resize(bytes / 8 + 1);
+    fdcg_deform_config config = fdcg_default_deform_config();
+    config.margin_m = margin_m;
+    fdcg_error error;
+    const fdcg_status status = fdcg_deform_create(memory_.data(), bytes, &compiled_.view(), &config, &deform_, &error);
+    INFO(error.message);
+    REQUIRE(status == FDCG_OK);
+    corner_of_.resize(points_.size());
+    for (std::size_t v = 0; v < points_.size(); ++v) {
+      const double at[3] = {points_[v].x, points_[v].y, points_[v].z};
+      REQUIRE(fdcg_deform_find(deform_, at, &corner_of_[v], &error) == FDCG_OK);
+    }
+  }
+  DeformableMesh(const DeformableMesh&) = delete;
+  DeformableMesh& operator=(const DeformableMesh&) = delete;
+
+  void move(std::size_t vertex, const bake::Vec3& to) {
+    const double at[3] = {to.x, to.y, to.z};
+    fdcg_error error;
+    const fdcg_status status = fdcg_deform_move(deform_, corner_of_[vertex], at, &error);
+    if (status != FDCG_OK) FAIL(error.message);
+    points_[vertex] = to;
+  }
+  fdcg_result step(const fdcg_params& params, fdcg_deform_contact* contact, const Hip& hip) {
+    fdcg_result result;
+    fdcg_deform_step(deform_, &params, contact, hip.data(), &result);
+    return result;
+  }
+
+  [[nodiscard]] fdcg_deform* deform() { return deform_; }
+  [[nodiscard]] const fdcg_graph& compiled() const { return compiled_.view(); }
+  [[nodiscard]] const fdcg_graph& updated() { return *fdcg_deform_graph(deform_); }
+  [[nodiscard]] std::uint32_t corner_of(std::size_t vertex) const { return corner_of_[vertex]; }
+  [[nodiscard]] const std::vector<bake::Vec3>& points() const { return points_; }
+
+ private:
+  CompiledMesh compiled_;
+  std::vector<bake::Vec3> points_;  // where they were moved to
+  std::vector<std::uint64_t> memory_;
+  std::vector<std::uint32_t> corner_of_;
+  fdcg_deform* deform_ = nullptr;
+};
+
+}  // namespace fdcg::test
