@@ -209,6 +209,9 @@ typedef enum fdcg_step_skip {
 
 /* Friction beyond two coefficients and one stiffness: which of the fields below count. 0: none, at no cost.
  *
+ * All of it is for graphs; a surface (surface.h) has the two coefficients and the stiffness alone, combined with a finger's in
+ * a scene.
+ *
  * The curve (Melder 2004, figure 1). A slipping god-object's cone has the coefficient
  *   mu(v) = mu_dynamic + (mu_static - mu_dynamic) / (1 + (v / stribeck_m_per_s)^2) + viscous_s_per_m v
  * where v is its way in the tick over tick_s, in metres of the object a second (in a scene: of the world); the step solves for
@@ -224,7 +227,8 @@ typedef enum fdcg_step_skip {
  * and a slide at steady speed settles on it, while
  *   (0.65 (mu_static - mu_dynamic) / stribeck_m_per_s - viscous_s_per_m) depth_m <= friction_lag_s + tick_s / 4
  * (0.65: 3 sqrt(3) / 8; with presliding the depth counts 1 + stiffness / presliding_n_per_m times), which fdcg_check_params
- * asks for at curve_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any. Passive
+ * asks for at curve_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any; so it does
+ * where a finger's material makes the curve steeper. Passive
  * whatever the numbers: a slip only ever takes the god-object nearer to the HIP.
  *
  * Materials: `materials` says what a node's material (fdcg_node_material) is like, in place of mu_static, mu_dynamic and
