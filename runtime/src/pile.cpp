@@ -42,7 +42,9 @@ fdcg_status checked_config(const fdcg_pile_config* given, fdcg_pile_config* conf
                           {"config.point_capacity", double(config->point_capacity), 1, kMost},
                           {"config.touch_capacity", double(config->touch_capacity), 1, kMost},
                           {"config.damping_ratio", config->damping_ratio, 0, kMostRatio},
-                          {"config.leaving_ratio", config->leaving_ratio, 0, kMostRatio}};
+                          {"config.leaving_ratio", config->leaving_ratio, 0, kMostRatio},
+                          {"config.disabled_skips", double(config->disabled_skips), 0, FDCG_PILE_SKIP_ALL},
+                          {"config.reserved", double(config->reserved), 0, 0}};
   for (const Range& range : ranges) {
     if (status == FDCG_OK) status = check_range(range.name, range.value, range.low, range.high, error);
   }
@@ -193,6 +195,7 @@ extern "C" fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal
     pile->ground_offset_m = offset_m;
   }
   pile->has_ground = params != nullptr ? 1 : 0;
+  ++pile->look;
   drop_everywhere(*pile, [](const PileTouch& touch) { return touch.on == kGround; });
   return FDCG_OK;
 }
@@ -237,7 +240,7 @@ extern "C" fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, f
     if (away > member.radius_m) member.radius_m = away;
   }
   if (object.index >= pile->member_end) pile->member_end = object.index + 1;
-  member.look = pile->look++;  // of before: none yet
+  member.look = member.seen_look = pile->look++;  // of before: none yet
   return FDCG_OK;
 }
 
@@ -267,6 +270,7 @@ extern "C" uint32_t fdcg_pile_touches(const fdcg_pile* pile, fdcg_pile_touch* to
         put(touch.god_object, to.god_object_m);
         put(touch.normal, to.normal);
         to.load_n = touch.load_n;
+        to.stiffness_n_per_m = touch.stiffness_n_per_m;
         to.point = p;
         to.state = touch.contact.state;
         to.feature = touch.contact.feature;

@@ -2,6 +2,8 @@
 // The dampers of a pile's touches. One after the other, each takes its part of the relative velocity away at once, as an
 // implicit step of its own: v / (1 + x + x x / 2), x = c h / m, at the mass m that it moves. Such a step only takes energy, so
 // any row of them does, however stiff, and none needs a shorter step.
+#include <initializer_list>
+
 #include "pile_memory.hpp"
 #include "scene_tick.hpp"
 
@@ -12,13 +14,13 @@ namespace {
 constexpr double kSideways = 2;
 
 // Velocity that a unit impulse along u at `arm` from the centre of mass gives to that place.
-World answer(const PileMember* member, World at, World u) {
+FDCG_HOT World answer(const PileMember* member, World at, World u) {
   if (member == nullptr || member->is_awake == 0) return {0, 0, 0};
   const World arm = at - member->centre_m;
   return u * member->lightness_per_kg + cross(member->inverse_inertia * cross(arm, u), arm);
 }
 
-World velocity_at(const Meeting& meeting, const PileMember* member, World at) {
+FDCG_HOT World velocity_at(const Meeting& meeting, const PileMember* member, World at) {
   if (member == nullptr) return {0, 0, 0};
   if (member->is_awake != 0) return member->velocity_m_per_s + cross(member->spin_rad_per_s, at - member->centre_m);
   if (member->is_moving == 0) return {0, 0, 0};
@@ -26,7 +28,7 @@ World velocity_at(const Meeting& meeting, const PileMember* member, World at) {
   return (at - object.last.to_world(object.now.to_object(at, true), true)) * (1 / meeting.step_s);
 }
 
-void give(PileMember* member, World at, World impulse) {
+FDCG_HOT void give(PileMember* member, World at, World impulse) {
   if (member == nullptr || member->is_awake == 0) return;
   const World twist = cross(at - member->centre_m, impulse);
   member->velocity_m_per_s = member->velocity_m_per_s + impulse * member->lightness_per_kg;
@@ -41,10 +43,10 @@ double damper_impulse(double speed, double ratio, double stiffness, double mass,
   return -speed * mass * (taken / (1 + taken));
 }
 
-double static_mu(const Meeting& meeting, const PileMember& owner, const PileTouch& touch) {
-  const fdcg_params& other =
-      touch.on == kGround ? meeting.pile.ground_params : meeting.object(meeting.pile.members()[touch.on]).params;
-  return root(meeting.object(owner).params.mu_static * other.mu_static);
+// The mass that a push along the unit `direction` at `at` meets: of both, as they can move.
+double mass_along(const PileMember* a, const PileMember* b, World at, World direction) {
+  const double inverse = dot(direction, answer(a, at, direction)) + dot(direction, answer(b, at, direction));
+  return inverse > 0 ? 1 / inverse : 0;
 }
 
 // How much of `more`, 0 to 1, may be added to `held` without going beyond `limit` in length.
@@ -68,14 +70,16 @@ World sideways_impulse(const Meeting& meeting, const PileMember& owner, const Pi
   const double ratio = kSideways * meeting.pile.config.damping_ratio;
   const World wanted = across * (damper_impulse(slide, ratio, touch.stiffness_n_per_m, mass, h) / slide);
   const World held = (touch.force_n - n * touch.load_n) * h;
-  return wanted * share_within(held, wanted, static_mu(meeting, owner, touch) * (touch.load_n * h + along));
+  return wanted * share_within(held, wanted, touch.mu_static * (touch.load_n * h + along));
 }
 
 }  // namespace
 
-double mass_along(const PileMember* a, const PileMember* b, World at, World direction) {
-  const double inverse = dot(direction, answer(a, at, direction)) + dot(direction, answer(b, at, direction));
-  return inverse > 0 ? 1 / inverse : 0;
+double looseness_at(const PileMember* a, const PileMember* b, World at) {
+  double sum = 0;
+  for (const World& u : {World{1, 0, 0}, World{0, 1, 0}, World{0, 0, 1}})
+    sum += dot(u, answer(a, at, u)) + dot(u, answer(b, at, u));
+  return sum;
 }
 
 void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch) {

@@ -28,6 +28,7 @@ struct PileTouch {
   uint32_t has_normal;
   double stiffness_n_per_m;  // for as long as it presses
   double load_n;
+  double mu_static;
   World god_object, normal;
   World force_n;         // of the spring, on the point's body
   World damper_n;        // mean over the step
@@ -49,13 +50,16 @@ struct PileMember {
   uint32_t near[kMostNear];
   // in this substep
   uint32_t body;                                     // index among the bodies, or FDCG_NONE
-  uint32_t is_moving;                                // its pose has just changed
+  uint32_t is_moving;                                // its pose has just changed, or something in the pile has come or gone
+  uint32_t seen_look;                                // fdcg_pile.look of the last substep
   uint32_t is_awake;                                 // a body that the dampers move
   uint32_t has_touched;                              // a damper has changed its velocity
   World centre_m, velocity_m_per_s, spin_rad_per_s;  // of mass; in the world
   World kick_n_m_s;                                  // what dampers gave to its angular momentum
   Matrix inverse_inertia;                            // world
   double lightness_per_kg;
+  double move_m,
+      turn;  // of its bounds' centre in this step; and the most that a point moves besides, over its distance from there
   World force_n, torque_n_m;  // of the touches' springs; about the centre of mass
 };
 
@@ -76,6 +80,7 @@ struct fdcg_pile {
   fdcg_params ground_params;
   fdcg_pile_counts counts;
 
+  bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
   template <class T>
   T* at(uint64_t offset) {
     return reinterpret_cast<T*>(reinterpret_cast<char*>(this) + offset);
@@ -108,6 +113,20 @@ struct Meeting {
   [[nodiscard]] Object& object(const PileMember& member) const { return scene.objects()[member.object.index]; }
 };
 
+// Points that cannot have met an object in this step, told by where they are now: its box in the world's measure, grown by as
+// far as the two can have moved against each other.
+struct Cull {
+  const Pose* pose;
+  World centre, half;
+
+  [[nodiscard]] bool may_have_met(World point) const {
+    const World t = point - pose->translation;
+    const World off = pose->row[0] * t.x + pose->row[1] * t.y + pose->row[2] * t.z - centre;
+    return absolute(off.x) <= half.x && absolute(off.y) <= half.y && absolute(off.z) <= half.z;
+  }
+};
+Cull cull_of(const Meeting& meeting, const PileMember& owner, const PileMember& other);
+
 // pile_near.cpp: which members could be touched by this member's points; a look at all where it must. Ascending, at most
 // PileMember::kMostNear; near_count is larger where the caller must ask every member.
 void find_near(const Meeting& meeting, PileMember* member);
@@ -122,7 +141,8 @@ bool step_touch(const Meeting& meeting, const PileMember& owner, const PointWay&
 
 // pile_damp.cpp: what the touch's damper gives in this step.
 void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch);
-// The mass that a push along the unit `direction` at `at` meets: of both, as they can move.
-double mass_along(const PileMember* a, const PileMember* b, World at, World direction);
+// Velocity that a unit impulse at `at` gives to that place of both against each other, along its own direction; for the x, y
+// and z directions added up: no direction has more. 1/kg.
+double looseness_at(const PileMember* a, const PileMember* b, World at);
 
 }  // namespace fdcg

@@ -11,10 +11,20 @@ namespace {
 constexpr double kNearShare = 0.25;
 constexpr double kRounding = 64 * DBL_EPSILON;
 
+// A lower bound of a place's distance from an object.
+double distance(const Object& object, World at) {
+  if (!object.bounds.is_endless) return norm(object.now.centre - at) - object.now.radius;
+  return object.now.to_object(at, true).z * object.now.scale;
+}
+
 }  // namespace
 
 void find_near(const Meeting& meeting, PileMember* member) {
   fdcg_pile& pile = meeting.pile;
+  if (!pile.skips(FDCG_PILE_SKIP_FAR)) {
+    member->near_count = PileMember::kMostNear + 1;
+    return;
+  }
   if (member->look == pile.look && pile.travel_m < member->limit_m) return;
   const Object& own = meeting.object(*member);
   const double radius = member->radius_m * own.now.scale, ahead = radius * kNearShare;
@@ -25,7 +35,7 @@ void find_near(const Meeting& meeting, PileMember* member) {
     const PileMember& other = pile.members()[i];
     if (&other == member || other.is_used == 0 || other.is_enabled == 0) continue;
     const Object& object = meeting.object(other);
-    const double gap = norm(object.now.centre - own.now.centre) - object.now.radius - radius - rounding;
+    const double gap = distance(object, own.now.centre) - radius - rounding;
     // what both moved in this very step is part of the way that is swept
     const double moved = norm(object.now.centre - object.last.centre) + norm(own.now.centre - own.last.centre);
     if (gap - moved > ahead) {
@@ -39,13 +49,28 @@ void find_near(const Meeting& meeting, PileMember* member) {
   ++pile.counts.looks;
 }
 
+Cull cull_of(const Meeting& meeting, const PileMember& owner, const PileMember& other) {
+  const Object &own = meeting.object(owner), &object = meeting.object(other);
+  const double scale = object.now.scale, far = 3 * object.now.radius;
+  double moved = owner.move_m + owner.turn * owner.radius_m * own.now.scale + other.move_m + other.turn * far;
+  // beyond that far from it, the other's turn moves its frame by more; and where a size changes there is no bound
+  if (moved > far || object.last.scale != scale || own.last.scale != own.now.scale) moved = HUGE_VAL;
+  const bool is_endless = object.bounds.is_endless;
+  const double size = norm1(own.now.centre) + norm1(object.now.translation) + (is_endless ? 0 : object.now.radius);
+  const double grown = moved + kRounding * size;
+  if (is_endless) return {&object.now, {0, 0, 0}, {HUGE_VAL, HUGE_VAL, grown}};
+  return {&object.now, object.bounds.centre * scale, object.bounds.half * scale + World{grown, grown, grown}};
+}
+
 bool can_have_met(const Meeting& meeting, const Object& object, World from_world, World to_world, World* from, World* to) {
   const Pose &now = object.now, &before = object.last;
-  const double radius = larger(now.radius, before.radius);
-  if (!(way_distance2(from_world - before.centre, to_world - now.centre) <= radius * radius)) return false;
   const bool may_skip = meeting.scene.skips(FDCG_SKIP_ROTATION);
+  const double radius = larger(now.radius, before.radius);
+  if (!object.bounds.is_endless && !(way_distance2(from_world - before.centre, to_world - now.centre) <= radius * radius))
+    return false;
   *from = before.to_object(from_world, may_skip);
   *to = now.to_object(to_world, may_skip);
+  if (object.bounds.is_endless) return smaller(from->z, to->z) <= 0;
   return way_meets_box(*from - object.bounds.centre, *to - object.bounds.centre, object.bounds.half);
 }
 

@@ -16,6 +16,16 @@ bool is_same(const Pose& a, const Pose& b) {
   return norm1(a.translation - b.translation) == 0 && a.scale == b.scale;
 }
 
+// The most that a unit vector moves: by no more than the rotation's change in the Frobenius norm over the root of 2.
+double turn_between(const Pose& from, const Pose& to) {
+  double turned2 = 0;
+  for (int k = 0; k < 3; ++k) {
+    const World change = to.row[k] - from.row[k];
+    turned2 += dot(change, change);
+  }
+  return root(0.5 * turned2) * (1 + 0x1p-20);
+}
+
 void find_bodies(fdcg_pile& pile, const fdcg_scene_body* bodies, uint32_t body_count) {
   for (uint32_t m = 0; m < pile.member_end; ++m)
     pile.members()[m].body = FDCG_NONE;
@@ -54,8 +64,13 @@ void begin(const Meeting& meeting) {
     }
     if (object.is_enabled == 0 && member.is_enabled != 0) let_go(pile, m);
     member.is_enabled = object.is_enabled;
-    member.is_moving = is_same(object.now, object.last) ? 0 : 1;
-    if (member.is_moving != 0) farthest_moved = larger(farthest_moved, norm(object.now.centre - object.last.centre));
+    const bool has_moved = object.is_changing != 0 && !is_same(object.now, object.last);
+    member.is_moving = has_moved || member.seen_look != pile.look ? 1 : 0;
+    member.seen_look = pile.look;
+    member.move_m = has_moved ? norm(object.now.centre - object.last.centre) : 0;
+    member.turn = has_moved ? turn_between(object.last, object.now) : 0;
+    farthest_moved = larger(farthest_moved, member.move_m);
+    if (object.bounds.is_endless && member.turn > 0) ++pile.look;  // that moves it by any length
     member.is_awake = member.has_touched = 0;
     if (member.body == FDCG_NONE) continue;
     const fdcg_body& body = meeting.bodies[member.body].body;
@@ -65,6 +80,14 @@ void begin(const Meeting& meeting) {
     if (member.is_awake != 0) set_motion(body, &member);
   }
   pile.travel_m = (pile.travel_m + farthest_moved) * (1 + 2 * DBL_EPSILON);
+}
+
+// Whether what is between the two can be otherwise than in the last substep.
+bool is_astir(const fdcg_pile& pile, const PileMember& member) {
+  return member.is_moving != 0 || !pile.skips(FDCG_PILE_SKIP_STILL);
+}
+bool is_astir(const fdcg_pile& pile, const PileMember& member, uint32_t on) {
+  return is_astir(pile, member) || (on != kGround && pile.members()[on].is_moving != 0);
 }
 
 bool has_touch(const fdcg_pile& pile, const PilePoint& point, uint32_t on) {
@@ -77,22 +100,15 @@ bool has_touch(const fdcg_pile& pile, const PilePoint& point, uint32_t on) {
 // Takes a touch from those not in use, if the point's way of this step meets what is there.
 void try_new_touch(const Meeting& meeting, PileMember* owner, PilePoint* point, const PointWay& way, uint32_t on) {
   fdcg_pile& pile = meeting.pile;
-  if (has_touch(pile, *point, on)) return;
-  World from, to;
-  if (on == kGround ? !(dot(pile.ground_normal, way.to) < pile.ground_offset_m)
-                    : !can_have_met(meeting, meeting.object(pile.members()[on]), way.from, way.to, &from, &to)) {
-    return;
-  }
   const uint32_t index = pile.free_touch;
-  if (index == FDCG_NONE) {
-    ++pile.counts.crowded;
-    return;
-  }
-  PileTouch& touch = pile.touches()[index];
-  const uint32_t next_free = touch.next;
+  PileTouch room;
+  PileTouch& touch = index != FDCG_NONE ? pile.touches()[index] : room;
+  const uint32_t next_free = index != FDCG_NONE ? touch.next : FDCG_NONE;
   touch = {};
   touch.on = on;
-  if (!step_touch(meeting, *owner, way, true, &touch)) {
+  const bool meets = step_touch(meeting, *owner, way, true, &touch);
+  if (meets && index == FDCG_NONE) ++pile.counts.crowded;
+  if (!meets || index == FDCG_NONE) {
     touch.next = next_free;
     return;
   }
@@ -108,8 +124,7 @@ void step_touches(const Meeting& meeting, PileMember* owner, PilePoint* point, c
   uint32_t* link = &point->touch;
   while (*link != FDCG_NONE) {
     PileTouch& touch = pile.touches()[*link];
-    const bool is_moving = owner->is_moving != 0 || (touch.on != kGround && pile.members()[touch.on].is_moving != 0);
-    if (!is_moving || step_touch(meeting, *owner, way, false, &touch)) {
+    if (!is_astir(pile, *owner, touch.on) || step_touch(meeting, *owner, way, false, &touch)) {
       link = &touch.next;
       continue;
     }
@@ -121,32 +136,49 @@ void step_touches(const Meeting& meeting, PileMember* owner, PilePoint* point, c
   }
 }
 
-void step_points(const Meeting& meeting, PileMember* owner, bool is_near_ground) {
+PointWay way_of(const Object& object, const PilePoint& point) {
+  const World at = vec(point.at);
+  return {object.last.to_world(at, true), object.now.to_world(at, true)};
+}
+
+void meet_ground(const Meeting& meeting, PileMember* owner) {
   fdcg_pile& pile = meeting.pile;
   const Object& object = meeting.object(*owner);
-  const bool asks_all = owner->near_count > PileMember::kMostNear;
-  const uint32_t near_count = asks_all ? pile.member_end : owner->near_count;
   for (uint32_t p = 0; p < owner->point_count; ++p) {
     PilePoint& point = pile.points()[owner->first_point + p];
-    const World at = vec(point.at);
-    const PointWay way = {object.last.to_world(at, true), object.now.to_world(at, true)};
-    if (point.touch != FDCG_NONE) step_touches(meeting, owner, &point, way);
-    if (is_near_ground && owner->is_moving != 0) try_new_touch(meeting, owner, &point, way, kGround);
-    for (uint32_t i = 0; i < near_count; ++i) {
-      const uint32_t on = asks_all ? i : owner->near[i];
-      const PileMember& other = pile.members()[on];
-      if (&other == owner || other.is_used == 0 || other.is_enabled == 0) continue;
-      if (owner->is_moving != 0 || other.is_moving != 0) try_new_touch(meeting, owner, &point, way, on);
-    }
+    const World now = object.now.to_world(vec(point.at), true);
+    if (dot(pile.ground_normal, now) < pile.ground_offset_m && !has_touch(pile, point, kGround))
+      try_new_touch(meeting, owner, &point, way_of(object, point), kGround);
   }
 }
 
-bool has_moving_near(const fdcg_pile& pile, const PileMember& member) {
-  if (member.near_count > PileMember::kMostNear) return true;
-  for (uint32_t i = 0; i < member.near_count; ++i) {
-    if (pile.members()[member.near[i]].is_moving != 0) return true;
+void meet_member(const Meeting& meeting, PileMember* owner, uint32_t on) {
+  fdcg_pile& pile = meeting.pile;
+  const Object& object = meeting.object(*owner);
+  const Cull cull = cull_of(meeting, *owner, pile.members()[on]);
+  for (uint32_t p = 0; p < owner->point_count; ++p) {
+    PilePoint& point = pile.points()[owner->first_point + p];
+    if (cull.may_have_met(object.now.to_world(vec(point.at), true)) && !has_touch(pile, point, on))
+      try_new_touch(meeting, owner, &point, way_of(object, point), on);
   }
-  return false;
+}
+
+void step_points(const Meeting& meeting, PileMember* owner, bool is_near_ground) {
+  fdcg_pile& pile = meeting.pile;
+  const Object& object = meeting.object(*owner);
+  for (uint32_t p = 0; p < owner->point_count && owner->touch_count > 0; ++p) {
+    PilePoint& point = pile.points()[owner->first_point + p];
+    if (point.touch != FDCG_NONE) step_touches(meeting, owner, &point, way_of(object, point));
+  }
+  if (is_near_ground && is_astir(pile, *owner)) meet_ground(meeting, owner);
+  const bool asks_all = owner->near_count > PileMember::kMostNear;
+  const uint32_t near_count = asks_all ? pile.member_end : owner->near_count;
+  for (uint32_t i = 0; i < near_count; ++i) {
+    const uint32_t on = asks_all ? i : owner->near[i];
+    const PileMember& other = pile.members()[on];
+    if (&other == owner || other.is_used == 0 || other.is_enabled == 0) continue;
+    if (is_astir(pile, *owner, on)) meet_member(meeting, owner, on);
+  }
 }
 
 bool is_near_ground(const Meeting& meeting, const PileMember& member) {
@@ -170,6 +202,17 @@ void for_each_touch(fdcg_pile& pile, PileMember* member, Act act) {
   }
 }
 
+// Whether the member, or anybody near it or touched by it, is astir.
+bool has_to_step(fdcg_pile& pile, PileMember* member, bool is_near_ground) {
+  if (member->near_count == 0 && !is_near_ground && member->touch_count == 0) return false;
+  if (is_astir(pile, *member) || member->near_count > PileMember::kMostNear) return true;
+  bool has = false;
+  for (uint32_t i = 0; i < member->near_count; ++i)
+    has = has || pile.members()[member->near[i]].is_moving != 0;
+  for_each_touch(pile, member, [&](PileTouch* touch) { has = has || is_astir(pile, *member, touch->on); });
+  return has;
+}
+
 void add_push(PileMember* to, World at, World force) {
   if (to == nullptr || to->body == FDCG_NONE) return;
   to->force_n = to->force_n + force;
@@ -184,8 +227,7 @@ void meet(const Meeting& meeting) {
     if (!has_points_to_step(member)) continue;
     find_near(meeting, &member);
     const bool near_ground = is_near_ground(meeting, member);
-    const bool has_partner = member.near_count > 0 || near_ground || member.touch_count > 0;
-    if (has_partner && (member.is_moving != 0 || has_moving_near(pile, member))) step_points(meeting, &member, near_ground);
+    if (has_to_step(pile, &member, near_ground)) step_points(meeting, &member, near_ground);
     for_each_touch(pile, &member, [&](PileTouch* touch) {
       if (touch->is_pressing == 0) return;
       add_push(&member, touch->god_object, touch->force_n);

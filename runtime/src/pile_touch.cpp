@@ -7,16 +7,9 @@
 namespace fdcg {
 namespace {
 
-// Of the mass that a contact moves over the square of the step: a quarter of what one spring could have in all, so that 16 may
-// pull at one body.
-constexpr double kMostStiffness = 0.25;
-
-double mixed(double a, double b) {
-  return root(a * b);
-}
-double in_series(double a, double b) {
-  return a + b > 0 ? a * (b / (a + b)) : 0;
-}
+// Times the step squared and how easily the place moves, over all three directions: what stability can bear is 4 for all
+// springs that pull in one way, so 32 of them may.
+constexpr double kMostStiffness = 0.125;
 
 // Where the god-object and the spring are, and along what the load is measured.
 void place(PileTouch* touch, World god_object, World point, World normal, bool has_normal) {
@@ -27,18 +20,24 @@ void place(PileTouch* touch, World god_object, World point, World normal, bool h
   touch->normal = has_normal ? normal : (length > 0 ? spring * (1 / length) : World{0, 0, 0});
 }
 
-void press(const Meeting& meeting, const PileMember& owner, World point, double own_stiffness, double other_stiffness,
-           bool was_pressing, PileTouch* touch) {
+// The spring between god-object and point. `pair` is what acts between the two: mu_static and stiffness are asked.
+void press(const Meeting& meeting, const PileMember& owner, World point, const fdcg_material& pair, bool was_pressing,
+           PileTouch* touch) {
   if (!was_pressing) {
     const PileMember* const other = touch->on == kGround ? nullptr : meeting.pile.members() + touch->on;
-    double mass = touch->has_normal != 0 ? mass_along(&owner, other, touch->god_object, touch->normal) : 0;
-    if (mass == 0) mass = meeting.bodies[owner.body].body.config.mass_kg / 4;  // asleep, or the very first instant: as a cube's
-    const double most = kMostStiffness * mass / (meeting.step_s * meeting.step_s);
-    const double wanted = in_series(own_stiffness, other_stiffness);
-    touch->stiffness_n_per_m = wanted < most ? wanted : most;
+    double looseness = looseness_at(&owner, other, touch->god_object);
+    // asleep: as a cube's corner
+    if (looseness == 0) looseness = 12 / meeting.bodies[owner.body].body.config.mass_kg;
+    const double most = kMostStiffness / (looseness * meeting.step_s * meeting.step_s);
+    touch->stiffness_n_per_m = pair.stiffness_n_per_m < most ? pair.stiffness_n_per_m : most;
   }
+  touch->mu_static = pair.mu_static;
   touch->force_n = (touch->god_object - point) * touch->stiffness_n_per_m;
   touch->load_n = dot(touch->force_n, touch->normal);
+}
+
+fdcg_material material_of(const fdcg_params& params) {
+  return {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
 }
 
 // The rules of contact-model sections 4 and 5 on one plane that has no edge.
@@ -48,7 +47,8 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
   const bool was_pressing = !is_new && touch->is_pressing != 0;
   const World n = pile.ground_normal;
   const double depth = pile.ground_offset_m - dot(n, way.to);
-  const fdcg_params& own = meeting.object(owner).params;
+  const fdcg_material own = material_of(meeting.object(owner).params), ground = material_of(pile.ground_params);
+  const fdcg_material pair = fdcg_combine_materials(&own, &ground);
   World god_object = was_pressing ? vec(contact.god_object) : way.to;
   if (!(depth > 0)) return false;
   if (!was_pressing) {
@@ -59,8 +59,7 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
   }
   const World surface_point = way.to + n * depth, off = god_object - surface_point;
   const World gap = off - n * dot(off, n);
-  Friction<double> friction = {mixed(own.mu_static, pile.ground_params.mu_static),
-                               mixed(own.mu_dynamic, pile.ground_params.mu_dynamic), true, contact.slipping != 0};
+  Friction<double> friction = {pair.mu_static, pair.mu_dynamic, true, contact.slipping != 0};
   const double gap2 = dot(gap, gap);
   const Slip<double> slip = friction.slip(god_object, gap2, depth);
   if (!slip.is_rest) god_object = surface_point + gap * (slip.gap / root(gap2));
@@ -69,52 +68,86 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
   contact.slipping = friction.is_slipping ? 1 : 0;
   touch->is_pressing = 1;
   place(touch, god_object, way.to, n, true);
-  press(meeting, owner, way.to, own.stiffness_n_per_m, pile.ground_params.stiffness_n_per_m, was_pressing, touch);
+  press(meeting, owner, way.to, pair, was_pressing, touch);
   return true;
 }
 
-fdcg_params mixed_params(const fdcg_params& own, const fdcg_params& on) {
-  fdcg_params params = on;
-  params.mu_static = mixed(own.mu_static, on.mu_static);
-  params.mu_dynamic = mixed(own.mu_dynamic, on.mu_dynamic);
-  params.stiffness_n_per_m = 0;  // the spring is this file's affair
-  params.damping_n_s_per_m = 0;
+// What the step is told. Where faces have materials it mixes them itself, as with a finger of the point's material.
+fdcg_params pair_params(const Meeting& meeting, const Object& on, const fdcg_material& own) {
+  fdcg_params params = on.params;
+  const fdcg_material whole = material_of(on.params), pair = fdcg_combine_materials(&whole, &own);
+  params.damping_n_s_per_m = 0;  // the force is this file's affair
+  params.tick_s = meeting.step_s;
+  params.terms &= ~uint32_t{FDCG_TERM_FINGER};
+  if ((params.terms & FDCG_TERM_MATERIALS) != 0) {
+    params.terms |= FDCG_TERM_FINGER;
+    params.finger = own;
+    return params;
+  }
+  params.mu_static = pair.mu_static;
+  params.mu_dynamic = pair.mu_dynamic;
+  params.stiffness_n_per_m = pair.stiffness_n_per_m;
   return params;
+}
+
+// Of the face that was met, where faces have materials.
+fdcg_material pair_at(const Object& on, const fdcg_material& own, const fdcg_result& result) {
+  fdcg_material face = material_of(on.params);
+  if ((on.params.terms & FDCG_TERM_MATERIALS) != 0 && on.graph != nullptr && on.graph->node_materials != nullptr &&
+      result.state == FDCG_FACE) {
+    const uint32_t material = on.graph->node_materials[result.feature];
+    if (material < on.params.material_count) face = on.params.materials[material];
+  }
+  return fdcg_combine_materials(&face, &own);
+}
+
+void step_contact(const Object& on, const fdcg_params& params, World hip, fdcg_contact* contact, fdcg_result* result) {
+  double local[3];
+  put(hip, local);
+  if (on.step_surface != nullptr) return on.step_surface(&on.surface, &params, contact, local, result);
+  fdcg_step(on.graph, &params, contact, local, result);
 }
 
 World turned(const Pose& pose, World v) {
   return {dot(pose.row[0], v), dot(pose.row[1], v), dot(pose.row[2], v)};
 }
 
+// World, unit; zero where the object says none: on a graph's edges and corners.
+World normal_at(const Object& on, const fdcg_result& result) {
+  double normal[3] = {0, 0, 0};
+  if (on.surface_normal != nullptr) {
+    on.surface_normal(&on.surface, &result, normal);
+    return turned(on.now, vec(normal));
+  }
+  if (result.state != FDCG_FACE) return {0, 0, 0};
+  return turned(on.now, vec(fdcg_get_node(on.graph, result.feature).normal));
+}
+
 bool step_on_object(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
   const Object& on = meeting.object(meeting.pile.members()[touch->on]);
-  const fdcg_params& own = meeting.object(owner).params;
-  const fdcg_params params = mixed_params(own, on.params);
+  const fdcg_material own = material_of(meeting.object(owner).params);
+  const fdcg_params params = pair_params(meeting, on, own);
   const bool may_skip = meeting.scene.skips(FDCG_SKIP_ROTATION);
   const bool was_pressing = !is_new && touch->is_pressing != 0;
   fdcg_contact& contact = touch->contact;
   fdcg_result result;
-  double local[3];
   World from, to;
-  const bool can_have = can_have_met(meeting, on, way.from, way.to, &from, &to);
   if (is_new) {
-    if (!can_have) return false;
+    if (!can_have_met(meeting, on, way.from, way.to, &from, &to)) return false;
     contact = {};
-    put(from, local);
-    fdcg_step(on.graph, &params, &contact, local, &result);
+    step_contact(on, params, from, &contact, &result);
   }
   to = on.now.to_object(way.to, may_skip);
-  put(to, local);
-  fdcg_step(on.graph, &params, &contact, local, &result);
+  step_contact(on, params, to, &contact, &result);
   touch->is_pressing = result.state != FDCG_FREE ? 1 : 0;
   touch->force_n = touch->damper_n = {0, 0, 0};
   touch->load_n = 0;
-  if (touch->is_pressing == 0) return can_have || (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
-  const World spring = on.now.turned_to_world(vec(result.god_object_m) - to, may_skip);
-  const bool is_face = result.state == FDCG_FACE;
-  const World normal = is_face ? turned(on.now, vec(fdcg_get_node(on.graph, result.feature).normal)) : World{0, 0, 0};
-  place(touch, way.to + spring, way.to, normal, is_face);
-  press(meeting, owner, way.to, own.stiffness_n_per_m, on.params.stiffness_n_per_m, was_pressing, touch);
+  if (touch->is_pressing == 0) {
+    return (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 || can_have_met(meeting, on, way.from, way.to, &from, &to);
+  }
+  const World spring = on.now.turned_to_world(vec(result.god_object_m) - to, may_skip), normal = normal_at(on, result);
+  place(touch, way.to + spring, way.to, normal, norm1(normal) > 0);
+  press(meeting, owner, way.to, pair_at(on, own, result), was_pressing, touch);
   return true;
 }
 

@@ -161,6 +161,7 @@ fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params
   if (added == nullptr) return FDCG_E_ARGUMENT;
   added->graph = shape.graph;
   added->step_surface = shape.step_surface;
+  added->surface_normal = shape.surface_normal;
   added->surface = shape.surface;
   added->bounds = shape.bounds;
   fdcg_params room;

@@ -17,12 +17,14 @@ inline constexpr double kNoReach = -1e300;
 // The scan's arrays are looked at in runs of this many, a length that compilers make vectors of without being asked twice.
 inline constexpr uint32_t kRun = 16;
 
-// fdcg_surface_step, by its address: who adds no surface does not link it.
+// fdcg_surface_step and fdcg_surface_normal, by their addresses: who adds no surface does not link them.
 using SurfaceStep = void(const fdcg_surface*, const fdcg_params*, fdcg_contact*, const double[3], fdcg_result*);
+using SurfaceNormal = void(const fdcg_surface*, const fdcg_result*, double[3]);
 
 struct Object {
   const fdcg_graph* graph;    // null: it is the surface
-  SurfaceStep* step_surface;  // null: it is the graph
+  SurfaceStep* step_surface;  // null: it is the graph, and so is the next
+  SurfaceNormal* surface_normal;
   fdcg_surface surface;
   fdcg_params params;
   Bounds bounds;

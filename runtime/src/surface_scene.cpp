@@ -38,6 +38,7 @@ extern "C" fdcg_status fdcg_scene_add_surface(fdcg_scene* scene, const fdcg_surf
   fdcg_surface room;
   shape.surface = fdcg::in_full(*surface, &room, fdcg_init_surface);
   shape.step_surface = fdcg_surface_step;
+  shape.surface_normal = fdcg_surface_normal;
   shape.bounds = fdcg::bounds_of(shape.surface);
   return fdcg::add_object(scene, shape, params, pose, object, error);
 }

@@ -9,6 +9,7 @@
 
 #include "fdcg/bake.hpp"
 #include "fdcg/pile.h"
+#include "fdcg/surface.h"
 #include "meshes.hpp"
 #include "scene_rig.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "../bench/heap_count.hpp"
 #include "fdcg/bake.hpp"
-#include "fdcg/scene.h"
+#include "fdcg/pile.h"
 #include "meshes.hpp"
 #include "random.hpp"
 #include "sealed_bytes.hpp"
@@ -107,4 +107,50 @@ TEST_CASE("a scene is created in its caller's memory, filled, moved, stepped and
         }) == 0);
   CHECK(refused == 0);
   CHECK(touched > 100);
+}
+
+TEST_CASE("a pile is created in its caller's memory, filled, stepped and emptied without the heap") {
+  AlignedBytes file = compiled(cube(), bake::Precision::f64);
+  fdcg_graph graph;
+  REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);
+  const fdcg_scene_config scene_config = fdcg_default_scene_config();
+  const fdcg_pile_config config = fdcg_default_pile_config();
+  std::vector<double> scene_memory(fdcg_scene_bytes(&scene_config) / sizeof(double) + 1);
+  std::vector<double> memory(fdcg_pile_bytes(&config) / sizeof(double) + 1);
+  int refused = 0;
+  std::uint32_t touched = 0;
+  CHECK(heap_calls_of([&] {
+          fdcg_scene* scene = nullptr;
+          fdcg_pile* pile = nullptr;
+          fdcg_error error;
+          refused += fdcg_scene_create(scene_memory.data(), scene_memory.size() * sizeof(double), &scene_config, &scene,
+                                       &error) != FDCG_OK;
+          refused += fdcg_pile_create(memory.data(), memory.size() * sizeof(double), &config, &pile, &error) != FDCG_OK;
+          const fdcg_params params = fdcg_default_params();
+          const double up[3] = {0, 0, 1};
+          refused += fdcg_pile_set_ground(pile, up, 0, &params, &error) != FDCG_OK;
+          double points[20][3];
+          std::uint32_t count = 0;
+          refused += fdcg_pick_points(&graph, points, 20, &count, &error) != FDCG_OK;
+          fdcg_scene_body bodies[4] = {};
+          fdcg_body_config body = fdcg_default_body_config();
+          for (double& moment : body.inertia_kg_m2)
+            moment = &moment < body.inertia_kg_m2 + 3 ? 1.0 / 6 : 0;
+          fdcg_pose pose = fdcg_identity_pose();
+          for (int i = 0; i < 4; ++i) {
+            pose.translation_m[0] = 0.2 * i;
+            pose.translation_m[2] = 0.6 + 1.1 * i;
+            refused += fdcg_scene_add_object(scene, &graph, &params, &pose, &bodies[i].object, &error) != FDCG_OK;
+            refused += fdcg_body_init(&bodies[i].body, &body, &pose, &error) != FDCG_OK;
+            refused += fdcg_pile_add(pile, scene, bodies[i].object, points, count, &error) != FDCG_OK;
+          }
+          fdcg_reaction reactions[4];
+          for (int tick = 0; tick < 1000; ++tick) {
+            refused += fdcg_scene_step_pile(scene, pile, bodies, 4, 1, 1e-3, reactions, 4, &error) != FDCG_OK;
+            touched += fdcg_pile_touches(pile, nullptr, 0);
+          }
+          refused += fdcg_pile_remove(pile, bodies[0].object, &error) != FDCG_OK;
+        }) == 0);
+  CHECK(refused == 0);
+  CHECK(touched > 1000);
 }

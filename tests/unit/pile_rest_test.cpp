@@ -64,6 +64,18 @@ class Ramp {
   double angle_rad_ = 0;
 };
 
+// Kinetic, of height, and of the springs' loads.
+double energy_j(PileRig& rig) {
+  double sum = 0;
+  for (std::size_t i = 0; i < rig.bodies().size(); ++i) {
+    const fdcg_body& body = rig.body(i);
+    sum += fdcg_body_kinetic_energy_j(&body) + body.config.mass_kg * kGravity * rig.centre(i)[2];
+  }
+  for (const fdcg_pile_touch& touch : rig.touches())
+    sum += touch.load_n * touch.load_n / (2 * touch.stiffness_n_per_m);
+  return sum;
+}
+
 }  // namespace
 
 TEST_CASE("a block on a ramp sticks below atan(mu) and slides above, over a grid of friction and angle") {
@@ -197,6 +209,53 @@ TEST_CASE("boxes stacked flush and askew stay where they settle, asleep") {
       CHECK(rig.body(i).is_asleep == 1);
       CHECK(rig.centre(i)[2] == Approx(kSide * (i + 0.5)).margin(0.002));
       CHECK(std::abs(rig.centre(i)[0]) < 0.004);
+    }
+  }
+}
+
+TEST_CASE("a heap of all sorts of bodies thrown on a slope and the ground comes to rest, gains no energy and sleeps") {
+  for (const std::uint32_t substeps : {1U, 4U}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      fdcg_pile_config config = fdcg_default_pile_config();
+      config.point_capacity = config.touch_capacity = 400;
+      PileRig rig(config);
+      Random random(seed);
+      const fdcg_params params = friction(0.6, 0.4, 2000);
+      const std::size_t shapes[] = {rig.box(0.04, 0.04, 0.04),
+                                    rig.box(0.12, 0.02, 0.02),
+                                    rig.box(0.08, 0.08, 0.01),
+                                    rig.shape(scaled(ico_sphere(2), 0.025)),
+                                    rig.shape(scaled(l_prism(), 0.02)),
+                                    rig.shape(scaled(spiky_sphere(2, 0.5, 3), 0.02)),
+                                    rig.shape(scaled(cone(8), 0.02)),
+                                    rig.shape(scaled(torus(24, 12), 0.025)),
+                                    rig.shape(scaled(corner_pit(), 0.02))};
+      rig.ground({0, 0, 1}, 0, params);
+      rig.add_fixed(rig.box(0.3, 0.3, 0.02), params, posed({0, 0, 0.05}, {0, 1, 0}, 0.3));
+      for (std::size_t i = 0; i < std::size(shapes); ++i) {
+        const Place at = {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0.15 + 0.07 * static_cast<double>(i)};
+        const auto body =
+            rig.add_body(shapes[i], random.uniform(0.02, 0.1), params, posed(at, direction(random), random.uniform(0, 6)));
+        const Place velocity = direction(random), spin = direction(random) * 20;
+        fdcg_error error;
+        REQUIRE(fdcg_body_set_motion(&rig.body(body), velocity.data(), spin.data(), &error) == FDCG_OK);
+      }
+      const double start = energy_j(rig);
+      double most = 0, last = start;
+      for (int tick = 0; tick < 6000; ++tick) {
+        rig.tick(substeps);
+        const double now = energy_j(rig);
+        most = std::max(most, now - last);
+        last = now;
+      }
+      CAPTURE(substeps, seed, start, last);
+      CHECK(most < 2e-3 * start);  // at the start of a contact, whose spring has been pressed in by then
+      CHECK(last < 0.1 * start);
+      for (std::size_t i = 0; i < std::size(shapes); ++i) {
+        CAPTURE(i, rig.velocity(i)[0], rig.velocity(i)[2]);
+        CHECK(rig.body(i).is_asleep == 1);
+        CHECK(rig.centre(i)[2] > 0.002);
+      }
     }
   }
 }

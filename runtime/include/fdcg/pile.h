@@ -17,15 +17,18 @@
  * member of the pile that is not among the bodies of a step is fixed, or moved by fdcg_scene_set_pose alone; then it carries
  * along what lies on it.
  *
- * What acts between two: the parameters of both objects (fdcg_scene_add_object) together. Friction: the root of the product of
- * both coefficients, static and dynamic alike. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
- * stiffer than a quarter of the mass that the contact moves over the square of the step, so that no pile runs away: that bound
- * holds while fewer than 16 touches pull at a body in one direction. The other parameters (edge_friction, ...) are those of the
- * object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by damping_ratio of the critical value for
- * the mass that this contact moves, of the way back out by leaving_ratio of it, so that what falls does not bounce; of what
- * sticks, sideways, by twice damping_ratio. Each damper is solved implicitly after the other: none adds energy at any step.
- * A contact never pulls, and what a damper adds sideways stays inside the cone. Slipping is damped by friction alone: the
- * god-object's cone is measured by the spring, whose push is the load wherever the approach is over.
+ * What acts between two: the parameters of both objects (fdcg_scene_add_object) together, as fdcg_combine_materials has it: of
+ * the object touched those of the face's material where its terms say so (FDCG_TERM_MATERIALS), of the point's object the
+ * general ones. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
+ * stiffer than an eighth of the bound of the step, 1 / (8 h^2 w), where w says how easily the place moves (1/kg, over three
+ * directions): so no pile runs away while fewer than 32 touches pull at two bodies that meet. The other parameters
+ * (edge_friction, ...) are those of the object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by
+ * damping_ratio of the critical value for the mass that this contact moves, of the way back out by leaving_ratio of it, so that
+ * what falls does not bounce; of what sticks, sideways, by twice damping_ratio. Each damper is solved implicitly after the
+ * other: none adds energy at any step. A contact never pulls, and what a damper adds sideways stays inside the cone. Slipping
+ * is damped by friction alone: the god-object's cone is measured by the spring, whose push is the load wherever the approach is
+ * over. Each point has its own cone: where static friction is above dynamic, a body on several points gives way when the least
+ * loaded of them does; where they are equal, all of them bear what they can before it slides.
  *
  * Cost: two bodies far apart cost nothing between looks (1 to 2 ns an object, when they have used up the distance last seen);
  * near one another, some 10 ns a point that is out of the other's box; a touch some 0.2 us on a graph, 60 ns on the ground.
@@ -44,6 +47,13 @@ extern "C" {
 /* Lives in memory of the caller's; holds no pointer, so a copy of the whole is a snapshot. Goes with one scene. */
 typedef struct fdcg_pile fdcg_pile;
 
+/* What a pile leaves undone where it cannot matter. Each can be switched off: every motion stays the same, bit for bit. */
+typedef enum fdcg_pile_skip {
+  FDCG_PILE_SKIP_FAR = 1,   /* between looks only the objects near by are asked */
+  FDCG_PILE_SKIP_STILL = 2, /* touches between two that have not moved keep their forces */
+  FDCG_PILE_SKIP_ALL = 3
+} fdcg_pile_skip;
+
 typedef struct fdcg_pile_config {
   uint32_t struct_bytes;    /* the caller's sizeof(fdcg_pile_config); fdcg_default_pile_config sets it */
   uint32_t object_capacity; /* 1 to 1,000,000: the scene's objects of smaller index can be in the pile */
@@ -51,6 +61,8 @@ typedef struct fdcg_pile_config {
   uint32_t touch_capacity;  /* 1 to 1,000,000: points on, or within the box of, something, at once */
   double damping_ratio;     /* 0 to 1,000; 1: critical for each contact by itself */
   double leaving_ratio;     /* the same for the way out */
+  uint32_t disabled_skips;  /* fdcg_pile_skip bits that are off; 0: skip all that can be skipped */
+  uint32_t reserved;        /* 0 */
 } fdcg_pile_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 128 points, 128 touches, ratios 1 and 4; some 100 KB. */
@@ -106,6 +118,7 @@ typedef struct fdcg_pile_touch {
   double god_object_m[3]; /* world */
   double normal[3];       /* world, unit, along which the load is measured */
   double load_n;          /* of the spring */
+  double stiffness_n_per_m;
   uint32_t point;
   uint32_t state; /* fdcg_state, on what it touches */
   uint32_t feature;
