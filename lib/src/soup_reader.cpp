@@ -63,7 +63,10 @@ bool MaterialList::begin(PolygonSoup& soup, std::string_view name) {
   }
   const auto known = index_of_.find(text);
   if (known == index_of_.end() && soup.materials.size() >= PolygonSoup::kNoMaterial) return false;
-  if (known == index_of_.end()) soup.materials.push_back(text);
+  if (known == index_of_.end()) {
+    if (soup.materials.empty()) soup.face_material.resize(soup.face_count(), PolygonSoup::kNoMaterial);
+    soup.materials.push_back(text);
+  }
   current_ = known != index_of_.end() ? known->second : static_cast<std::uint16_t>(soup.materials.size() - 1);
   index_of_.emplace(std::move(text), current_);
   return true;

@@ -307,8 +307,10 @@ TEST_CASE("stiffness falls at once, rises by what sliding loses, and never pushe
   CHECK(hard_to_soft[500] == Approx(2000 * depth));
   CHECK(std::count_if(hard_to_soft.begin(), hard_to_soft.end(),
                       [&](double f) { return f < 1999 * depth && f > 401 * depth; }) == 0);
-  const std::vector<double> slippery = slide(0, -1, 0.001, 2000);
-  CHECK(slippery.back() == Approx(400 * depth));  // nothing pays for more
+  // Without friction nothing pays for more but the sampling's term, 10^-6 of the energy a tick here.
+  const std::vector<double> slippery = slide(0, -0.001, 1e-5, 20000);
+  CHECK(slippery.back() > 400 * depth);
+  CHECK(slippery.back() < 410 * depth);
 }
 
 TEST_CASE("with any materials and terms, what is stored grows by the hand's work alone") {

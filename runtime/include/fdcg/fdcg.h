@@ -235,7 +235,7 @@ typedef enum fdcg_step_skip {
  * stiffness_n_per_m, which hold for nodes without one and for materials beyond the table. On a concave edge each face's
  * coefficient counts by the load that it bears, and the softer face's stiffness holds; at a vertex that of the feature before.
  * A stiffness that rises under a pressed contact would push the hand: it falls at once and rises only by as much as sliding
- * loses meanwhile; a new contact has its own.
+ * loses meanwhile, the sampling's term k |dx|^2 / 2 included; a new contact has its own.
  *
  * Finger: what touches, combined with what is touched (fdcg_combine_materials). */
 typedef enum fdcg_term {
