@@ -47,7 +47,7 @@ fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* co
                           {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
                           {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
                           {"config.disabled_skips", config->disabled_skips, 0, FDCG_SKIP_ALL},
-                          {"config.reserved", config->reserved, 0, 0}};
+                          {"config.has_soft_fingers", config->has_soft_fingers, 0, 1}};
   for (const Range& range : ranges) {
     if (range.value < range.low || range.value > range.high)
       return refuse(error, range.name, range.value, range.low, range.high);
@@ -74,6 +74,8 @@ uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
   scene->slots_at = place(slots, sizeof(Slot));
   scene->contacts_at = place(slots, sizeof(fdcg_contact));
   scene->touches_at = place(slots, sizeof(fdcg_touch));
+  scene->soft_fingers_at = place(config.has_soft_fingers != 0 ? fingers : 0, sizeof(SoftFinger));
+  scene->soft_touches_at = place(config.has_soft_fingers != 0 ? slots : 0, sizeof(SoftTouch));
   return end;
 }
 
@@ -218,7 +220,7 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
   if (bytes < layout.bytes) {
     return Message(error, FDCG_E_ARGUMENT).text("bytes is ").number(bytes).text(", this config needs ").number(layout.bytes);
   }
-  // Slots, contacts and touches are set when a finger comes into use.
+  // Slots, contacts, touches and what is soft are set when a finger comes into use.
   memset(memory, 0, layout.slots_at);
   memcpy(memory, &layout, sizeof layout);
   *scene = static_cast<fdcg_scene*>(memory);
@@ -288,6 +290,11 @@ extern "C" fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip
   added->is_used = 1;
   start(scene, added, {hip_world_m[0], hip_world_m[1], hip_world_m[2]});
   const auto index = static_cast<uint32_t>(added - scene->fingers());
+  if (scene->config.has_soft_fingers != 0) {
+    scene->soft_fingers()[index] = {0, {{0, 0, 0}, 1}};
+    for (uint32_t s = 0; s < scene->config.touches_per_finger; ++s)
+      scene->soft_touches(index)[s] = {};
+  }
   if (index >= scene->finger_end) scene->finger_end = index + 1;
   *finger = {index, added->generation};
   return FDCG_OK;
@@ -365,6 +372,14 @@ extern "C" void fdcg_scene_reactions(const fdcg_scene* scene, fdcg_reaction* rea
         sum.force_n[k] += add[k];
         sum.torque_n_m[k] += add[k + 3];
       }
+    }
+    for (uint32_t slot = 0; scene->step_soft != nullptr && slot < scene->config.touches_per_finger; ++slot) {
+      const SoftTouch* const soft = soft_touch(*scene, f, slot);
+      if (soft == nullptr || soft->object.index >= count) continue;
+      fdcg_reaction& sum = reactions[soft->object.index];
+      sum.torque_n_m[0] -= soft->torque_n_m.x;
+      sum.torque_n_m[1] -= soft->torque_n_m.y;
+      sum.torque_n_m[2] -= soft->torque_n_m.z;
     }
   }
 }

@@ -2,13 +2,14 @@
 // What a scene's memory holds:
 //
 //   fdcg_scene | Object[objects] | the scan's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
-//   | fdcg_contact[fingers][touches] | fdcg_touch[fingers][touches]
+//   | fdcg_contact[fingers][touches] | fdcg_touch[fingers][touches] | SoftFinger[fingers] | SoftTouch[fingers][touches]
 //
 // Found by offsets from the start, so that a copy of the whole is a scene again.
 #pragma once
 
 #include "fdcg/surface.h"
 #include "pose.hpp"
+#include "soft_finger.hpp"
 
 namespace fdcg {
 
@@ -76,6 +77,8 @@ struct fdcg_scene {
   uint32_t tick;
   uint32_t look;  // changes when objects come, go or change their size: then every finger looks anew
   uint32_t reserved;
+  fdcg::SoftStep* step_soft;  // null: no finger ever was soft
+  uint64_t soft_fingers_at, soft_touches_at;
   double tick_travel;  // the largest move of any object in this tick
   double travel;       // the sum of those, rounded up
   double farthest;     // the largest |x| + |y| + |z| of any object's place: scales rounding
@@ -107,6 +110,14 @@ struct fdcg_scene {
     return at<fdcg_touch>(touches_at) + finger * uint64_t{config.touches_per_finger};
   }
   bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
+  // Where config.has_soft_fingers says so.
+  fdcg::SoftFinger* soft_fingers() { return at<fdcg::SoftFinger>(soft_fingers_at); }
+  fdcg::SoftTouch* soft_touches(uint32_t finger) {
+    return at<fdcg::SoftTouch>(soft_touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
+  const fdcg::SoftTouch* soft_touches(uint32_t finger) const {
+    return at<fdcg::SoftTouch>(soft_touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
 };
 
 namespace fdcg {
@@ -121,6 +132,14 @@ fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params
 
 // scene.cpp: null, with the reason in *error, unless the finger is in the scene.
 Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);
+
+// The torque in the world that a finger's slot gives to the finger, or null where there is none.
+inline const SoftTouch* soft_touch(const fdcg_scene& scene, uint32_t finger, uint32_t slot) {
+  if (scene.step_soft == nullptr || (scene.fingers()[finger].flags & FDCG_FINGER_NON_FINITE) != 0) return nullptr;
+  const SoftTouch* const touch = scene.soft_touches(finger) + slot;
+  const Slot& held = scene.at<Slot>(scene.slots_at)[finger * uint64_t{scene.config.touches_per_finger} + slot];
+  return touch->is_on != 0 && held.is_held != 0 && held.object == touch->object.index ? touch : nullptr;
+}
 
 // A HIP further away is no place: the squares of distances in the step stay finite below it.
 inline constexpr double kFarthestPlace_m = 1e100;

@@ -73,7 +73,7 @@ inline double bounded_ratio(double a, double b) {
 // Keeps what lies between two parallel planes, x in -half to half; the pieces are `low` and low + 1.
 inline void cut_slab(double x, double way, double half, uint32_t low, Span* span) {
   if (way == 0) {
-    if (!(absolute(x) <= half)) *span = kNoSpan;
+    if (!(absolute(x) < half)) *span = kNoSpan;  // along a plane nothing is entered
     return;
   }
   const double minus = bounded_ratio(-half - x, way), plus = bounded_ratio(half - x, way);
@@ -176,71 +176,151 @@ inline double pull_rounding(const SurfaceWalk& walk) {
 
 // ---- curved pieces ------------------------------------------------------------------------------------------------------
 
+// 1 / sqrt(1 + e), and without the latency of root and division where e is small: a move's, or only rounding.
+inline double inverse_root_near_1(double e) {
+  constexpr double kSmall = 0x1p-10, kSmaller = 0x1p-18, kTiny = 0x1p-27;
+  const double size = absolute(e);
+  if (size < kTiny) return 1 - e * 0.5;
+  if (size < kSmaller) return 1 - e * (0.5 - e * 0.375);
+  if (size < kSmall) return 1 - e * (0.5 - e * (0.375 - e * (0.3125 - e * (0.2734375 - e * 0.24609375))));
+  return 1 / root(1 + e);
+}
+
+// The Newton step to where there is no pull, of a surface that the HIP is not too deep in: (1 - load S) step = -across, where S
+// says how the normal turns (its trace and determinant are the sum and the product of the principal curvatures). False where
+// the god-object is not near a minimum.
+template <class Piece, class Spot>
+bool step_to_minimum(const Piece& piece, const Spot& spot, Point across, Point turned, double load, Point* step) {
+  constexpr double kLeast = 0x1p-10;
+  const double sum = piece.curvature_sum(spot), product = piece.curvature_product(spot);
+  const double trace = 2 - load * sum, determinant = 1 - load * (sum - load * product);
+  if (!(trace > 0 && determinant > kLeast * (1 + load * load * absolute(product)))) return false;
+  *step = (across * (1 - load * sum) + turned * load) * (-1 / determinant);
+  return true;
+}
+
+// The spring's force at a place, by the stiffness: the part along the normal, and the one across it.
+struct Press {
+  Point across;
+  double load, pull2;  // |across|^2
+};
+
+// One move of a slide.
+struct Move {
+  Point step;
+  double per_slope;  // by how much the excess falls, inverted; 0: not known
+  bool is_last;      // what it leaves is below rounding
+  bool has_none;     // friction holds the god-object after all
+};
+
+// A god-object is placed where its pull is that of friction but for this share. Half of it is left for rounding.
+inline constexpr double kPlaced = 0x1p-41;
+
+template <class Piece, class Spot>
+Move next_move(const Piece& piece, const Spot& spot, const Press& press, double mu, double rounding, bool has_moved) {
+  constexpr double kLargestTurn = 0.25, kLeastSlope = 0x1p-20;
+  const double load = press.load, pull = root(press.pull2), per_pull2 = 1 / press.pull2, held = mu * load;
+  const Point across = press.across, turned = piece.turn(spot, across);
+  const double turn1 = norm1(turned), per_pull = pull * per_pull2, bend = turn1 * per_pull, bent = bend * (load + pull);
+  const double excess = pull - held;
+  // Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of.
+  const double doubt = has_moved ? rounding * 0.0625 : rounding + 4 * kEps * norm1(spot.at) * bent + kPlaced * pull;
+  if (absolute(excess) <= doubt) return {{0, 0, 0}, 0, true, true};
+  Point step;
+  if (mu == 0 && step_to_minimum(piece, spot, across, turned, load, &step) && norm1(step) * bend <= kLargestTurn) {
+    const double length = norm1(step);
+    return {step, 0, 8 * length * length * (per_pull + bend * (1 + bent)) <= rounding, false};
+  }
+  const double curvature = dot(across, turned) * per_pull2, flat = 1 - curvature * load, curved = curvature * pull;
+  const double slope = flat - curved * mu;  // of the excess, along the way
+  if (!(slope > kLeastSlope)) {
+    if (excess < 0) return {{0, 0, 0}, 0, true, true};
+    return {across * (-kLargestTurn / turn1), 0, false, false};
+  }
+  // The length in units of the pull. The move is along a circle with this curvature, brought back onto it from its tangent; in
+  // its middle the descent has another direction, since the load turns the pull. To second order the excess falls by
+  // slope * length + bow * length^2.
+  const Point aside = turned - across * curvature;
+  const double per_slope = 1 / slope, first = excess * per_pull * per_slope;
+  const double bow = 0.5 * mu * curved - squared(aside) * per_pull2 * (load * (load + 0.5 * mu * pull));
+  const double b = first * (bow * per_slope);
+  const double length = absolute(b) < 0.125 ? first * (1 - b * (1 - b * (2 - 5 * b))) : first, size = absolute(length);
+  if (!(size * turn1 <= kLargestTurn)) {
+    return {across * ((excess < 0 ? kLargestTurn : -kLargestTurn) / turn1), 0, false, false};
+  }
+  const double half = flat * length * 0.5;
+  const double turn =
+      norm1(aside) * load * size < pull && absolute(half) < 0.75 ? load * length * length * 0.5 * (1 + half) : 0;
+  return {across * -length - aside * turn, per_slope, false, false};
+}
+
+// The last of a slide, where a move has left so little that the surface is a plane: without a root, and without looking for
+// the surface again. `per_slope` is the one before that move, near enough to invert the new one. False where it is too much.
+template <class Piece, class Spot>
+bool set_right(const Piece& piece, const Spot& spot, const Press& press, double mu, double per_slope, Point* god_object) {
+  constexpr double kMost = 0x1p-16, kCurved = 2;
+  const double held = mu * press.load, per_pull2 = 1 / press.pull2;
+  const double half = (press.pull2 - held * held) * per_pull2 * 0.5, part = half * (1 + half * 0.5);  // of the pull
+  const Point turned = piece.turn(spot, press.across);
+  const double bent = dot(press.across, turned) * per_pull2 * (press.load + mu * held);
+  const double inverse = per_slope * (2 - (1 - bent) * per_slope), length = part * inverse;
+  const double size2 = length * length, turn1 = norm1(turned), pressed = turn1 * press.load;
+  const double off_slope = (1 - bent) * per_slope - 1;
+  const double second = turn1 + pressed * pressed * per_pull2;  // with size2: what is left out of the excess, by the pull
+  if (!(absolute(length) <= kMost && 8 * off_slope * off_slope * absolute(length) <= kPlaced)) return false;
+  if (!(size2 * turn1 * held <= kCurved * kEps * norm1(spot.at) && 8 * size2 * second <= kPlaced)) return false;
+  *god_object = spot.at - press.across * length;
+  return true;
+}
+
 // The way of steepest descent over a curved piece, to where friction stops it: pull = mu * load, both of them parts of the
 // spring's force where the god-object then is. Each move is a Newton step of that equation, along the direction that the
 // descent has in the middle of the move (from the piece's curvature), so that the way is right to second order; no move turns
 // the normal by more than a quarter of a radian. Piece:
 //
-//   Spot spot(x, hip)          the normal there, and what `turn` wants to know
-//   Point turn(spot, e)        how the normal changes along the tangent e
-//   Point project(p, spot)     the surface near p
-//   bool bends_alike(spot, x)       false where the curvature at x may be quite another
-//   bool cross(from, &to, &next)    whether the piece ends on the way; `to` is put on its end, `next` is what is there
+//   Spot spot(x, hip)            a place on it: `at`, `normal`, and what the others want to know
+//   Spot project(p, spot)        the place near p, which is near the spot
+//   Point turn(spot, v)          how the normal changes along the tangent v; linear in it
+//   curvature_sum, _product      of the spot's principal curvatures
+//   bool bends_alike(spot, spot) false where the curvature may be quite another
+//   bool cross(from, &to, &next) whether the piece ends on the way; to->at is put on its end, `next` is what is there
 template <class Piece>
 Slid slide_on_piece(const Piece& piece, SurfaceWalk& walk, Feature* next) {
-  constexpr double kLargestTurn = 0.25, kLeastSlope = 0x1p-20;
   const Point start = walk.god_object - walk.hip;
-  const double start2 = squared(start) + norm1(start) * pull_rounding(walk);  // but for the rounding of a place
-  double mu = -1, longest = kNever;
-  bool has_moved = false;
-  for (; walk.moves_left > 0; --walk.moves_left) {
-    const auto spot = piece.spot(walk.god_object, walk.hip);
-    const Point gap = walk.god_object - walk.hip;
+  const double rounding = pull_rounding(walk);
+  const double start2 = squared(start) + norm1(start) * rounding;  // but for the rounding of a place
+  auto spot = piece.spot(walk.god_object, walk.hip);
+  double mu = -1, share = 1, per_slope = 0;
+  for (bool has_moved = false; walk.moves_left > 0; --walk.moves_left) {
+    const Point gap = spot.at - walk.hip;
     const double load = dot(gap, spot.normal);
     if (!(load > 0)) return Slid::kLeaves;
     const Point across = gap - spot.normal * load;
-    const double pull2 = squared(across);
+    const Press press = {across, load, squared(across)};
     if (mu < 0) {
-      const Slip<double> slip = walk.friction.slip(walk.god_object, pull2, load);
+      const Slip<double> slip = walk.friction.slip(walk.god_object, press.pull2, load);
       if (slip.is_rest) return Slid::kRests;
-      mu = slip.gap / load;
+      mu = walk.friction.mu_dynamic;
     }
-    const double pull = root(pull2), excess = pull - mu * load;
-    const double rounding = pull_rounding(walk);
-    const bool is_placed = absolute(excess) <= (has_moved ? rounding / 16 : rounding);
-    if (is_placed || !(pull > rounding)) return Slid::kRests;
-    const double per_pull = 1 / pull;
-    const Point along = across * -per_pull;
-    const Point turn = piece.turn(spot, along);
-    const double bend = norm1(turn), curvature = dot(along, turn);
-    // Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of.
-    if (!has_moved && absolute(excess) <= rounding + 4 * kEps * norm1(walk.god_object) * bend * (load + pull))
-      return Slid::kRests;
-    const double slope = 1 - curvature * (load + mu * pull);  // of the excess, along the way
-    if (excess < 0 && !(slope > kLeastSlope)) return Slid::kRests;
-    const bool is_steep = slope > kLeastSlope;
-    double length = is_steep ? excess / slope : 0;
-    // What a Newton step leaves, from above: of second order in its length, and the pull beside it that a turn brings.
-    const double beside = norm1(turn - along * curvature) * load * absolute(length), kept = mu * load;
-    const double left = length * length * (per_pull + bend * (1 + bend * (load + pull)));
-    const bool is_last = is_steep && 8 * (left + (beside < kept ? beside * beside / kept : beside)) <= rounding;
-    if (!is_steep || !(absolute(length) * bend <= kLargestTurn)) length = (excess < 0 ? -kLargestTurn : kLargestTurn) / bend;
-    if (length > longest) length = longest;
-    Point move = along * length;
-    const double half = length / 2, ahead = pull - (1 - curvature * load) * half;  // of the pull, in the middle of the move
-    if (!is_last && length > 0 && ahead > pull / 4 && bend * load * half < ahead)
-      move = (along * pull - (along - turn * load) * half) * (length / ahead);
-    Point to = piece.project(walk.god_object + move, spot);
-    if (squared(to - walk.hip) > start2) {  // only rounding, or a piece that bends sharply ahead
-      if (!(absolute(length) > rounding)) return Slid::kRests;
-      longest = absolute(length) / 4;
+    if (!(press.pull2 > rounding * rounding)) return Slid::kRests;
+    if (per_slope > 0 && set_right(piece, spot, press, mu, per_slope, &walk.god_object)) return Slid::kRests;
+    const Move move = next_move(piece, spot, press, mu, rounding, has_moved);
+    if (move.has_none) return Slid::kRests;
+    auto to = piece.project(spot.at + move.step * share, spot);
+    if (squared(to.at - walk.hip) > start2) {  // a piece that bends sharply ahead
+      share = share * 0.25;
+      if (!(norm1(move.step) * share > rounding)) return Slid::kRests;
       continue;
     }
-    const bool has_crossed = piece.cross(walk.god_object, &to, next);
-    walk.god_object = to;
-    has_moved = true;
+    const bool has_crossed = piece.cross(spot, &to, next);
+    walk.god_object = to.at;
     if (has_crossed) return Slid::kCrosses;
-    if (is_last && piece.bends_alike(spot, to)) return Slid::kRests;
+    const bool is_smooth = piece.bends_alike(spot, to);
+    if (move.is_last && share == 1 && is_smooth) return Slid::kRests;
+    per_slope = share == 1 && is_smooth ? move.per_slope : 0;
+    share = share < 0.25 ? share * 4 : 1;
+    has_moved = true;
+    spot = to;
   }
   return Slid::kIsCut;
 }

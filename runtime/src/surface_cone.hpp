@@ -11,13 +11,14 @@ struct ConeSurface {
   static constexpr uint32_t kSide = 0;  // the discs are 1 and 2: 1 + end
   double sign, extent, half;
   double radius[2];         // at -half and at half
+  double per_radius;        // of a cylinder
   double length;            // of the side, from rim to rim
   double along_r, along_z;  // the side's unit direction from -half to half, in a plane of the axis: distance from it, height
 
   struct Spot {
-    Point normal;
-    Point outward;  // unit, from the axis
-    double turn;    // of the normal, for a unit's way around the axis
+    Point at, normal;
+    Point outward;        // unit, from the axis
+    double off, per_off;  // distance from the axis, and its inverse; both 0 at an apex
   };
 
   explicit ConeSurface(const fdcg_surface& s) : sign(s.is_hollow != 0 ? -1 : 1), half(s.length_m / 2) {
@@ -25,8 +26,9 @@ struct ConeSurface {
     radius[1] = s.kind == FDCG_SURFACE_CYLINDER ? s.radius_m : s.top_radius_m;
     const double grows = radius[1] - radius[0], rises = s.length_m;
     length = grows == 0 ? rises : root(grows * grows + rises * rises);
-    along_r = grows / length;
-    along_z = rises / length;
+    per_radius = 1 / (radius[0] > 0 ? radius[0] : radius[1]);
+    along_r = grows == 0 ? 0 : grows / length;
+    along_z = grows == 0 ? 1 : rises / length;
     const double widest = radius[0] > radius[1] ? radius[0] : radius[1];
     extent = root(widest * widest + half * half);
   }
@@ -99,30 +101,52 @@ struct ConeSurface {
     const double hip_off = from_axis(hip);
     return hip_off > 0 ? Point{hip.x / hip_off, hip.y / hip_off, 0} : Point{1, 0, 0};
   }
+  // The side's normal in a plane of the axis that has this direction.
+  [[nodiscard]] Point normal_of(Point outward) const {
+    const double out = sign * along_z;
+    return {outward.x * out, outward.y * out, -sign * along_r};
+  }
   [[nodiscard]] Spot spot(Point x, Point hip) const {
-    const Point outward = outward_at(x, hip);
-    const double off = dot(x, outward), side = sign * along_z;
-    return {{outward.x * side, outward.y * side, -sign * along_r}, outward, off > kEps * extent ? side / off : 0};
+    if (along_r == 0) {  // a cylinder, of which the distance is known but for rounding
+      const Point near = {x.x * per_radius, x.y * per_radius, 0};
+      const Point outward = near * inverse_root_near_1(squared(near) - 1);
+      return {x, normal_of(outward), outward, radius[0], per_radius};
+    }
+    const double off = from_axis(x);
+    if (!(off > kEps * extent)) {
+      const Point outward = outward_at(x, hip);
+      return {x, normal_of(outward), outward, 0, 0};
+    }
+    const double per_off = 1 / off;
+    const Point outward = {x.x * per_off, x.y * per_off, 0};
+    return {x, normal_of(outward), outward, off, per_off};
   }
-  [[nodiscard]] Point turn(const Spot& spot, Point e) const {
+  // On the side's line through the axis's plane of p, beyond its ends too, but not beyond an apex.
+  [[nodiscard]] Spot project(Point p, const Spot& spot) const {
+    const double off2 = p.x * p.x + p.y * p.y;
+    if (!(off2 > kEps * extent * kEps * extent)) return on_line(spot.outward, root(off2), p.z);
+    const double per_off =
+        spot.off > 0 ? spot.per_off * inverse_root_near_1(off2 * spot.per_off * spot.per_off - 1) : 1 / root(off2);
+    return on_line({p.x * per_off, p.y * per_off, 0}, off2 * per_off, p.z);
+  }
+  [[nodiscard]] Spot on_line(Point outward, double off, double z) const {
+    const double u = side_parameter(off, z), at_off = radius[0] + u * along_r;
+    if (!(at_off > kEps * extent)) return {rim_point(outward, u > 0 ? 1 : 0), normal_of(outward), outward, 0, 0};
+    return {{outward.x * at_off, outward.y * at_off, u * along_z - half}, normal_of(outward), outward, at_off, 1 / at_off};
+  }
+  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
     const Point round = {-spot.outward.y, spot.outward.x, 0};
-    return round * (dot(e, round) * spot.turn);
+    return round * ((v.x * round.x + v.y * round.y) * curvature_sum(spot));
   }
-  // On the side's line through the axis's plane of p, beyond its ends too.
-  [[nodiscard]] Point project(Point p, const Spot& spot) const {
-    const double off = from_axis(p);
-    const Point outward = off > 0 ? Point{p.x / off, p.y / off, 0} : spot.outward;
-    const double u = side_parameter(off, p.z), at = radius[0] + u * along_r;
-    if (at < 0) return on_side(outward, u);  // beyond an apex
-    return {outward.x * at, outward.y * at, u * along_z - half};
-  }
-  [[nodiscard]] bool bends_alike(const Spot&, Point) const { return true; }
-  bool cross(Point from, Point* to, Feature* next) const {
-    if (absolute(to->z) < half) return false;
-    const uint32_t end = to->z > 0 ? 1 : 0;
-    const double left = end == 0 ? half + from.z : half - from.z, went = absolute(to->z - from.z);
-    const Point at = left > 0 && went > left ? from + (*to - from) * (left / went) : *to;
-    *to = rim_point(outward_at(at, *to), end);
+  [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * along_z * spot.per_off; }
+  [[nodiscard]] static double curvature_product(const Spot&) { return 0; }
+  [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
+  bool cross(const Spot& from, Spot* to, Feature* next) const {
+    if (absolute(to->at.z) < half) return false;
+    const uint32_t end = to->at.z > 0 ? 1 : 0;
+    const double left = end == 0 ? half + from.at.z : half - from.at.z, went = absolute(to->at.z - from.at.z);
+    const Point at = left > 0 && went > left ? from.at + (to->at - from.at) * (left / went) : to->at;
+    to->at = rim_point(outward_at(at, to->outward), end);
     *next = rim_feature(end);
     return true;
   }
@@ -192,7 +216,8 @@ struct ConeSurface {
       base *= share, lift *= share, load = distance;
     }
     const Slip<double> slip = walk.friction.slip(walk.god_object, across * across, load);
-    if (slip.is_rest) return rest();
+    const bool is_placed = absolute(absolute(across) - slip.gap) <= pull_rounding(walk);
+    if (slip.is_rest || is_placed) return rest();
     Arc stop;
     if (!stop_on_circle(reach, base, lift, load > 0 ? slip.gap / load : 0, &stop)) stop = {0, 1};
     const Point towards = {walk.hip.x / reach, walk.hip.y / reach, 0};

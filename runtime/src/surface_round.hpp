@@ -45,39 +45,48 @@ struct Sphere {
   [[nodiscard]] Entry enter(Point from, Point to, bool begins_outside) const {
     return enter_convex(*this, from, to, begins_outside);
   }
+  // x is on the sphere but for rounding.
+  [[nodiscard]] Point direction_of(Point x) const {
+    const double per_radius = 1 / radius;
+    const Point near = x * per_radius;
+    return near * inverse_root_near_1(squared(near) - 1);
+  }
   // The descent is a great circle towards the HIP: its end has a closed form.
   Decision rule(SurfaceWalk& walk) const {
-    const Point up = walk.god_object * (1 / norm(walk.god_object));
+    const Point up = direction_of(walk.god_object);
     const double height = dot(walk.hip, up), load = sign * (radius - height);
     if (!(load > 0)) return go_to(kFree);
     const Point towards = walk.hip - up * height;
     const double pull2 = squared(towards);
     const Slip<double> slip = walk.friction.slip(walk.god_object, pull2, load);
     if (slip.is_rest) return rest();
-    const double pull = root(pull2), reach = root(height * height + pull2), mu = slip.gap / load;
+    const double pull = root(pull2), reach = root(height * height + pull2), mu = walk.friction.mu_dynamic;
     if (!(pull - mu * load > pull_rounding(walk))) return rest();
     Arc stop;
     if (!stop_on_circle(reach, sign * radius, sign * reach, mu, &stop)) return go_to(kFree);
-    const double sine = pull / reach, cosine = height / reach;
-    const Point ahead = towards * (radius * (sine * stop.cosine - cosine * stop.sine) / pull);
-    walk.god_object = up * (radius * (cosine * stop.cosine + sine * stop.sine)) + ahead;
+    const double scale = radius / reach, ahead = scale * (stop.cosine - height * stop.sine / pull);  // in units of the pull
+    walk.god_object = up * (scale * (height * stop.cosine + pull * stop.sine)) + towards * ahead;
     return rest();
   }
-  [[nodiscard]] Point normal(Feature, Point x) const { return x * (sign / norm(x)); }
+  [[nodiscard]] Point normal(Feature, Point x) const { return direction_of(x) * sign; }
 };
 
 // What is within `radius` of a segment of the z axis.
 struct Capsule {
   static constexpr bool kIsConvex = true;
-  double sign, radius, half, extent;
+  double sign, radius, per_radius, half, extent;
 
   struct Spot {
-    Point normal;
+    Point at, normal;
     bool is_on_side;
   };
 
   explicit Capsule(const fdcg_surface& s)
-      : sign(s.is_hollow != 0 ? -1 : 1), radius(s.radius_m), half(s.length_m / 2), extent(radius + half) {}
+      : sign(s.is_hollow != 0 ? -1 : 1),
+        radius(s.radius_m),
+        per_radius(1 / radius),
+        half(s.length_m / 2),
+        extent(radius + half) {}
   [[nodiscard]] double nearest_z(Point x) const { return x.z > half ? half : (x.z < -half ? -half : x.z); }
   [[nodiscard]] Point from_segment(Point x) const { return {x.x, x.y, x.z - nearest_z(x)}; }
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(from_segment(x)) - radius * radius) >= 0; }
@@ -113,22 +122,24 @@ struct Capsule {
     return enter_convex(*this, from, to, begins_outside);
   }
 
-  [[nodiscard]] Spot spot(Point x, Point) const {
-    const Point arm = from_segment(x);
-    return {arm * (sign / norm(arm)), absolute(x.z) <= half};
+  [[nodiscard]] Point outward(Point x) const {
+    const Point near = from_segment(x) * per_radius;
+    return near * inverse_root_near_1(squared(near) - 1);
   }
-  [[nodiscard]] Point turn(const Spot& spot, Point e) const {
-    Point along = e;
-    if (spot.is_on_side) along.z = 0;
-    return along * (sign / radius);
+  [[nodiscard]] Spot spot(Point x, Point) const { return {x, outward(x) * sign, absolute(x.z) <= half}; }
+  [[nodiscard]] Spot project(Point p, const Spot&) const {
+    const Point out = outward(p);
+    const double z = nearest_z(p);
+    return {{out.x * radius, out.y * radius, out.z * radius + z}, out * sign, absolute(p.z) <= half};
   }
-  [[nodiscard]] Point project(Point p, const Spot&) const {
-    const Point arm = from_segment(p);
-    const double stretch = radius / norm(arm);
-    return {arm.x * stretch, arm.y * stretch, arm.z * stretch + nearest_z(p)};
+  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
+    const Point along = {v.x, v.y, spot.is_on_side ? 0 : v.z};
+    return along * (sign * per_radius);
   }
-  [[nodiscard]] bool bends_alike(const Spot& spot, Point x) const { return spot.is_on_side == (absolute(x.z) <= half); }
-  bool cross(Point, Point*, Feature*) const { return false; }
+  [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * per_radius * (spot.is_on_side ? 1 : 2); }
+  [[nodiscard]] double curvature_product(const Spot& spot) const { return spot.is_on_side ? 0 : per_radius * per_radius; }
+  [[nodiscard]] static bool bends_alike(const Spot& a, const Spot& b) { return a.is_on_side == b.is_on_side; }
+  static bool cross(const Spot&, Spot*, Feature*) { return false; }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     const Slid slid = slide_on_piece(*this, walk, &none);
@@ -141,20 +152,23 @@ struct Capsule {
 struct Ellipsoid {
   static constexpr bool kIsConvex = true;
   double sign, extent;
-  Point half, inverse;  // semi-axes and their inverses
+  Point half, inverse, inverse2;  // semi-axes, their inverses and the squares of these
+  double per_volume2;             // the product of inverse2
 
   struct Spot {
-    Point normal;
+    Point at, normal;
     double steepness;  // |gradient| of the sum of (x / half)^2, halved
   };
 
   explicit Ellipsoid(const fdcg_surface& s)
       : sign(s.is_hollow != 0 ? -1 : 1), half(vec(s.half_m)), inverse{1 / half.x, 1 / half.y, 1 / half.z} {
+    inverse2 = scaled(inverse, inverse);
+    per_volume2 = inverse2.x * inverse2.y * inverse2.z;
     extent = half.x > half.y ? half.x : half.y;
     extent = half.z > extent ? half.z : extent;
   }
   static Point scaled(Point x, Point by) { return {x.x * by.x, x.y * by.y, x.z * by.z}; }
-  [[nodiscard]] Point gradient(Point x) const { return scaled(scaled(x, inverse), inverse); }
+  [[nodiscard]] Point gradient(Point x) const { return scaled(x, inverse2); }
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(scaled(x, inverse)) - 1) >= 0; }
   [[nodiscard]] Span span(Point from, Point way) const { return ball_span(scaled(from, inverse), scaled(way, inverse), 1); }
   [[nodiscard]] uint32_t piece_near(Point) const { return 0; }
@@ -169,22 +183,28 @@ struct Ellipsoid {
   [[nodiscard]] Spot spot(Point x, Point) const {
     const Point g = gradient(x);
     const double length = norm(g);
-    return {g * (sign / length), length};
-  }
-  [[nodiscard]] Point turn(const Spot& spot, Point e) const {
-    const Point bent = gradient(e);
-    return (bent - spot.normal * dot(bent, spot.normal)) * (sign / spot.steepness);
+    return {x, g * (sign / length), length};
   }
   // Along the gradient, then what is left along the ray: that is of second order, and exact to rounding.
-  [[nodiscard]] Point project(Point p, const Spot&) const {
+  [[nodiscard]] Spot project(Point p, const Spot&) const {
     const Point g = gradient(p);
-    const double over = dot(p, g) - 1;
-    const Point near = p - g * (over / (2 * squared(g)));
-    const double length = norm(scaled(near, inverse));
-    return near * (1 / length);
+    const Point near = p - g * ((dot(p, g) - 1) / (2 * squared(g)));
+    return spot(near * inverse_root_near_1(squared(scaled(near, inverse)) - 1), near);
   }
-  [[nodiscard]] bool bends_alike(const Spot&, Point) const { return true; }
-  bool cross(Point, Point*, Feature*) const { return false; }
+  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
+    const Point bent = gradient(v);
+    return (bent - spot.normal * dot(bent, spot.normal)) * (sign / spot.steepness);
+  }
+  [[nodiscard]] double curvature_sum(const Spot& spot) const {
+    const double along = dot(gradient(spot.normal), spot.normal);
+    return sign * (inverse2.x + inverse2.y + inverse2.z - along) / spot.steepness;
+  }
+  [[nodiscard]] double curvature_product(const Spot& spot) const {
+    const double steepness2 = spot.steepness * spot.steepness;
+    return per_volume2 / (steepness2 * steepness2);
+  }
+  [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
+  static bool cross(const Spot&, Spot*, Feature*) { return false; }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);

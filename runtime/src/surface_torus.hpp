@@ -93,16 +93,17 @@ inline Marks quadratic_marks(const Polynomial<2>& f) {
 
 struct Torus {
   static constexpr bool kIsConvex = false;
-  double sign, ring, tube, extent;
+  double sign, ring, tube, per_tube, extent;
 
   struct Spot {
-    Point normal;
-    Point outward;         // unit, from the axis
-    double per_ring_turn;  // how much a unit's way around the axis turns `outward`: 1 over the distance from the axis
+    Point at, normal;
+    Point outward;        // unit, from the axis
+    double off, per_off;  // distance from the axis, and its inverse
+    double out;           // how much of the normal is outward, as seen from the solid
   };
 
   explicit Torus(const fdcg_surface& s)
-      : sign(s.is_hollow != 0 ? -1 : 1), ring(s.radius_m), tube(s.tube_radius_m), extent(ring + tube) {}
+      : sign(s.is_hollow != 0 ? -1 : 1), ring(s.radius_m), tube(s.tube_radius_m), per_tube(1 / tube), extent(ring + tube) {}
 
   [[nodiscard]] bool is_outside(Point x) const {
     const double out = from_axis(x) - ring;
@@ -147,25 +148,38 @@ struct Torus {
   }
 
   [[nodiscard]] Spot spot(Point x, Point) const {
-    const double off = from_axis(x), per_off = 1 / off;
+    const double off = from_axis(x);
+    return spot_of(x, off, 1 / off, x, false);
+  }
+  [[nodiscard]] Spot project(Point p, const Spot& spot) const {
+    const double off2 = p.x * p.x + p.y * p.y, more = off2 * spot.per_off * spot.per_off - 1;
+    const double per_off = spot.per_off * inverse_root_near_1(more);
+    return spot_of(p, off2 * per_off, per_off, p, true);
+  }
+  // On the tube at x, or where x is brought onto it.
+  [[nodiscard]] Spot spot_of(Point x, double off, double per_off, Point at, bool is_moved) const {
     const Point outward = {x.x * per_off, x.y * per_off, 0};
-    const double out = off - ring, per_length = sign / root(out * out + x.z * x.z);
-    return {{outward.x * (out * per_length), outward.y * (out * per_length), x.z * per_length}, outward, per_off};
+    const double out = (off - ring) * per_tube, up = x.z * per_tube;
+    const double stretch = inverse_root_near_1(out * out + up * up - 1);
+    const double unit_out = out * stretch, unit_up = up * stretch;
+    if (is_moved) {
+      off = ring + tube * unit_out;
+      per_off = 1 / off;
+      at = {outward.x * off, outward.y * off, tube * unit_up};
+    }
+    const double signed_out = sign * unit_out;
+    return {at, {outward.x * signed_out, outward.y * signed_out, sign * unit_up}, outward, off, per_off, unit_out};
   }
   // Around the tube by 1 / tube, around the axis by what the normal has of `outward`.
-  [[nodiscard]] Point turn(const Spot& spot, Point e) const {
+  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
     const Point round = {-spot.outward.y, spot.outward.x, 0};
-    const double on_ring = dot(e, round);
-    const Point on_tube = e - round * on_ring;
-    return on_tube * (sign / tube) + round * (on_ring * dot(spot.normal, spot.outward) * spot.per_ring_turn);
+    const double on_ring = v.x * round.x + v.y * round.y;
+    return (v - round * on_ring) * (sign * per_tube) + round * (on_ring * sign * spot.out * spot.per_off);
   }
-  [[nodiscard]] Point project(Point p, const Spot&) const {
-    const double off = from_axis(p), out = off - ring;
-    const double stretch = tube / root(out * out + p.z * p.z), grow = (ring + out * stretch) / off;
-    return {p.x * grow, p.y * grow, p.z * stretch};
-  }
-  [[nodiscard]] bool bends_alike(const Spot&, Point) const { return true; }
-  bool cross(Point, Point*, Feature*) const { return false; }
+  [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * (per_tube + spot.out * spot.per_off); }
+  [[nodiscard]] double curvature_product(const Spot& spot) const { return per_tube * spot.out * spot.per_off; }
+  [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
+  static bool cross(const Spot&, Spot*, Feature*) { return false; }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);

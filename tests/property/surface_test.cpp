@@ -76,8 +76,8 @@ class Judge {
     const LongPlace normal = wide(contact_.normal());
     const Long load = dot(spring, normal);
     const Long rounding = 16 * kEps * std::max<Long>(extent_, length(hip));
-    REQUIRE(load >= -rounding);  // never pulls
-    if (felt.state != FDCG_FACE || felt.flags != 0) return;
+    REQUIRE(load >= -rounding);                                                              // never pulls
+    if (felt.state != FDCG_FACE || felt.flags != 0 || length(hip) > 1000 * extent_) return;  // of a far HIP nothing is left
     const Long pull = length(minus(spring, {normal[0] * load, normal[1] * load, normal[2] * load}));
     REQUIRE(pull <= contact_.params().mu_static * load + 8 * rounding);
     if (felt.slipping == 0) return;
