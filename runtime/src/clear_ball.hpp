@@ -48,6 +48,15 @@ inline float squared_leaf_distance(const GraphView<Real>& graph, uint32_t leaf, 
   return distance * distance;
 }
 
+// Which of a record's boxes are nearer than that, a bit each.
+inline uint32_t nearer_boxes(const fdcg_box8& boxes, const float (&point)[3], float clear2, float (&distance2)[FDCG_TREE_WAYS]) {
+  squared_distances(boxes, point, distance2);
+  uint32_t near = 0;
+  for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)
+    near |= uint32_t{distance2[j] < clear2} << j;
+  return near;
+}
+
 // The radius of a ball around `at` that no face reaches into, by more than the rounding of a sweep inside it: such a sweep
 // finds nothing. 0 where it would be below `way`. Cost: at most kMostClearVisits records and leaves, a handful where nothing is
 // near.
@@ -87,11 +96,11 @@ template <class Real>
       continue;
     }
     float distance2[FDCG_TREE_WAYS];
-    squared_distances(graph.boxes(tree, next.level, next.index), point, distance2);
-    uint32_t near = 0;
-    for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)
-      near |= uint32_t{distance2[j] < clear2} << j;
-    waiting.push(next, near & tree.lanes(next.level, next.index), distance2);
+    const fdcg_box8& boxes = graph.hierarchy[tree.first[next.level] + next.index];
+    const uint32_t lanes = tree.lanes(next.level, next.index);
+    uint32_t near = nearer_boxes(boxes, point, clear2, distance2) & lanes;
+    if (graph.has_tightened(next.level, next.index, near)) near = nearer_boxes(boxes, point, clear2, distance2) & lanes;
+    waiting.push(next, near, distance2);
   }
   const Real radius = static_cast<Real>(root(clear2)) * kKept - margin;
   return radius > length ? radius * unit : Real(0);

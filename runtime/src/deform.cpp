@@ -51,7 +51,7 @@ fdcg_status check_graph(const fdcg_graph* graph, fdcg_error* error) {
 
 // Where each part stands, and how many bytes they take.
 struct Layout {
-  uint64_t nodes, corners, before, connections, busy_corners, boxes, stale, loose, leaf_first, leaves, bytes;
+  uint64_t nodes, corners, before, connections, busy_corners, boxes, stale, loose, tight_tick, leaf_first, leaves, bytes;
 
   explicit Layout(const fdcg_header& header) : bytes(sizeof(fdcg_deform)) {
     const bool is_f64 = header.real_bytes == sizeof(double);
@@ -64,6 +64,7 @@ struct Layout {
     boxes = place(tree.records, sizeof(fdcg_box8));
     stale = place(tree.leaves, 1);
     loose = place(tree.records, 1);
+    tight_tick = place(tree.records, sizeof(uint32_t));
     leaf_first = place(header.corner_count + uint64_t{1}, sizeof(uint32_t));
     leaves = place(header.node_count * uint64_t{3}, sizeof(uint32_t));
   }
@@ -199,7 +200,7 @@ void bring_all_up_to_date(fdcg_deform* deform) {
     upkeep.bring_normal_up_to_date(c);
   for (int level = 0; level < deform->tree.levels; ++level) {
     for (uint32_t i = 0; i < deform->tree.size[level]; ++i)
-      upkeep.tighten(level, i);
+      upkeep.make_tight(level, i, deform->loose[deform->tree.first[level] + i]);
   }
 }
 
@@ -212,6 +213,7 @@ void place_parts(void* memory, const Layout& layout, const fdcg_graph& graph, fd
   deform->boxes = reinterpret_cast<fdcg_box8*>(start + layout.boxes);
   deform->stale = start + layout.stale;
   deform->loose = start + layout.loose;
+  deform->tight_tick = reinterpret_cast<uint32_t*>(start + layout.tight_tick);
   deform->leaf_first = reinterpret_cast<uint32_t*>(start + layout.leaf_first);
   deform->leaves = reinterpret_cast<uint32_t*>(start + layout.leaves);
   auto* const busy_corners = reinterpret_cast<fdcg_busy_corner*>(start + layout.busy_corners);
@@ -240,6 +242,7 @@ void fill_in(const fdcg_graph& graph, fdcg_deform* deform) {
   list_leaves<Real>(deform);
   fill_boxes<Real>(deform);
   memset(deform->loose, 0, deform->tree.records);
+  memset(deform->tight_tick, 0, deform->tree.records * sizeof *deform->tight_tick);
   memset(deform->stale, (1 << FDCG_LEAF_NODES) - 1, deform->tree.leaves);
   bring_all_up_to_date<Real>(deform);
 }

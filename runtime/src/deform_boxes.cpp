@@ -54,12 +54,27 @@ bool put_on_grid(fdcg_box8* record, int axis, uint32_t j, double low, double hig
   return true;
 }
 
+// The first and the last cell border of a record's boxes.
+void reach_of(const fdcg_box8& record, uint32_t lanes, int axis, uint8_t* low, uint8_t* high) {
+  *low = 255;
+  *high = 0;
+  for (uint32_t j = 0; lanes >> j != 0; ++j) {  // lanes begin with the first
+    if (record.low[axis][j] < *low) *low = record.low[axis][j];
+    if (record.high[axis][j] > *high) *high = record.high[axis][j];
+  }
+}
+
 }  // namespace
 
 TreeBox around(const fdcg_box8& record, uint32_t lanes) {
-  TreeBox box = TreeBox::none();
-  for (uint32_t left = lanes; left != 0; left &= left - 1)
-    box.add(lane_of(record, static_cast<uint32_t>(__builtin_ctz(left))));
+  TreeBox box;
+  for (int k = 0; k < 3; ++k) {
+    uint8_t low, high;
+    reach_of(record, lanes, k, &low, &high);
+    const double origin = record.origin[k], cell = tree_cell(record.exponent[k]);
+    box.low[k] = origin + cell * low;
+    box.high[k] = origin + cell * high;
+  }
   return box;
 }
 
@@ -76,17 +91,16 @@ bool set_lane(fdcg_box8* record, uint32_t lanes, uint32_t j, const TreeBox& box)
   return set_lanes(record, lanes, boxes);
 }
 
+// The coarser grid is laid where the old one does not reach; a finer one by has_finer_grid alone.
 bool set_lanes(fdcg_box8* record, uint32_t lanes, const TreeBox (&boxes)[FDCG_TREE_WAYS]) {
-  constexpr double kMuchTooLarge = 16;
-  TreeBox all = TreeBox::none();
-  for (uint32_t left = lanes; left != 0; left &= left - 1)
+  TreeBox all = boxes[__builtin_ctz(lanes)];
+  for (uint32_t left = lanes & (lanes - 1); left != 0; left &= left - 1)
     all.add(boxes[__builtin_ctz(left)]);
   bool has_new_grid = false;
   for (int axis = 0; axis < 3; ++axis) {
     const double origin = record->origin[axis], reach = kCells * double{tree_cell(record->exponent[axis])};
-    const double size = all.high[axis] - all.low[axis];
-    const bool is_large = record->exponent[axis] > kLeastExponent && size * kMuchTooLarge < reach;
-    if (is_large || all.low[axis] < origin || all.high[axis] > origin + reach) {
+    const bool is_none = record->exponent[axis] < kLeastExponent;  // of zeros
+    if (is_none || all.low[axis] < origin || all.high[axis] > origin + reach) {
       lay_grid(record, axis, all.low[axis], all.high[axis]);
       has_new_grid = true;
     }
@@ -94,6 +108,25 @@ bool set_lanes(fdcg_box8* record, uint32_t lanes, const TreeBox (&boxes)[FDCG_TR
       const auto j = static_cast<uint32_t>(__builtin_ctz(left));
       (void)put_on_grid(record, axis, j, boxes[j].low[axis], boxes[j].high[axis]);
     }
+  }
+  return has_new_grid;
+}
+
+bool has_finer_grid(fdcg_box8* record, uint32_t lanes) {
+  constexpr int kMuchTooLarge = 16;
+  bool has_new_grid = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    uint8_t low, high;
+    reach_of(*record, lanes, axis, &low, &high);
+    if (record->exponent[axis] <= kLeastExponent || (high - low) * kMuchTooLarge >= kCells) continue;
+    const fdcg_box8 old = *record;
+    const double origin = old.origin[axis], cell = tree_cell(old.exponent[axis]);
+    lay_grid(record, axis, origin + cell * low, origin + cell * high);
+    for (uint32_t left = lanes; left != 0; left &= left - 1) {
+      const auto j = static_cast<uint32_t>(__builtin_ctz(left));
+      (void)put_on_grid(record, axis, j, origin + cell * old.low[axis][j], origin + cell * old.high[axis][j]);
+    }
+    has_new_grid = has_new_grid || record->exponent[axis] != old.exponent[axis];
   }
   return has_new_grid;
 }

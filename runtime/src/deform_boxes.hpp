@@ -58,7 +58,10 @@ TreeBox around(const fdcg_box8& record, uint32_t lanes);
 // returned.
 bool set_lane(fdcg_box8* record, uint32_t lanes, uint32_t j, const TreeBox& box);
 
-// Sets all boxes of `lanes`, rounded outwards. True: on a new grid, since the old one is too small or much too large.
+// Sets all boxes of `lanes`, rounded outwards. True: on a new grid, since the old one does not reach.
 bool set_lanes(fdcg_box8* record, uint32_t lanes, const TreeBox (&boxes)[FDCG_TREE_WAYS]);
+
+// Lays a grid anew that is much larger than the boxes on it. True: it did; boxes may reach further by the new grid's rounding.
+bool has_finer_grid(fdcg_box8* record, uint32_t lanes);
 
 }  // namespace fdcg

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "deform_upkeep.hpp"
+#include "tree_rounding.hpp"
 
 namespace fdcg {
 
@@ -47,10 +48,15 @@ inline PlaceInTriangle foot_in(const Vec3<double> (&p)[3], Vec3<double> x) {
   return uu >= vv ? PlaceInTriangle{share(dot(off, u), uu), 0} : PlaceInTriangle{0, share(dot(off, v), vv)};
 }
 
-// The share of the way from `from` to `to` where the foot of x stands, 0 to 1.
-inline double share_along(Vec3<double> from, Vec3<double> to, Vec3<double> x) {
-  const Vec3<double> along = to - from;
-  return share(dot(x - from, along), dot(along, along));
+// The share of the way from end 0 to end 1 where the foot of x stands, 0 to 1.
+inline double share_along(const Vec3<double> (&end)[2], Vec3<double> x) {
+  const Vec3<double> along = end[1] - end[0];
+  return share(dot(x - end[0], along), dot(along, along));
+}
+
+// At 0 and 1 the ends themselves, without rounding.
+inline Vec3<double> point_along(const Vec3<double> (&end)[2], double share) {
+  return share < 1 ? end[0] + (end[1] - end[0]) * share : end[1];
 }
 
 // Whether triangle v b c, counter-clockwise seen from its front, passes over x while v moves to w.
@@ -124,12 +130,24 @@ inline void try_to_catch(const Upkeep<Real>& upkeep, uint32_t n, Vec3<double> x,
   if (when < first->when || (when == first->when && n < first->node)) *first = {n, when, point_at(place, t.point)};
 }
 
+// Which of a record's boxes hold a point or are as near as that, a bit each.
+inline uint32_t near_boxes(const fdcg_box8& record, const float (&point)[3], float near2) {
+  float distance2[FDCG_TREE_WAYS];
+  squared_distances(record, point, distance2);
+  uint32_t near = 0;
+  for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)
+    near |= uint32_t{distance2[j] <= near2} << j;
+  return near;
+}
+
 // Cost: the boxes that hold the point, and the triangles in them.
 template <class Real>
 [[gnu::noinline]] Catch catch_of(const Upkeep<Real>& upkeep, Vec3<Real> at) {
   const fdcg_deform& deform = upkeep.deform();
   const BoxTree& tree = deform.tree;
   const Vec3<double> x = widen(at), p = upkeep.in_tree(at);
+  const float point[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  const auto rounding = static_cast<float>(tree_rounding(2 * norm1(p), 0.0)), near2 = rounding * rounding;
   struct Item {
     uint32_t index;
     int level;
@@ -139,12 +157,12 @@ template <class Real>
   Catch first;
   while (waiting > 0) {
     const Item item = stack[--waiting];
-    upkeep.tighten(item.level, item.index);
     const fdcg_box8& record = deform.boxes[tree.first[item.level] + item.index];
     const uint32_t lanes = tree.lanes(item.level, item.index);
-    for (uint32_t j = 0; lanes >> j != 0; ++j) {
-      if (!holds_point(record, j, p)) continue;
-      const uint32_t below = item.index * FDCG_TREE_WAYS + j;
+    uint32_t held = near_boxes(record, point, near2) & lanes;
+    if (held != 0 && upkeep.has_tightened(item.level, item.index, held)) held &= near_boxes(record, point, near2);
+    for (; held != 0; held &= held - 1) {
+      const uint32_t below = item.index * FDCG_TREE_WAYS + static_cast<uint32_t>(__builtin_ctz(held));
       if (item.level > 0) {
         stack[waiting++] = {below, item.level - 1};
         continue;

@@ -76,15 +76,12 @@ inline void move(fdcg_deform* deform, uint32_t c, Vec3<double> local) {
   const Vec3<double> way = widen(to) - widen(vec(before.point));
   const double way2 = dot(way, way);
   if (way2 > deform->way2) deform->way2 = way2;
-  const Vec3<double> in_tree = upkeep.in_tree(to);
-  const uint32_t* const end = deform->leaves + deform->leaf_first[c + 1];
-  for (const uint32_t* at = deform->leaves + deform->leaf_first[c]; at < end; ++at) {
-    const uint32_t leaf = *at >> FDCG_LEAF_NODES, record_index = leaf / FDCG_TREE_WAYS, lane = leaf % FDCG_TREE_WAYS;
-    deform->stale[leaf] = static_cast<uint8_t>(deform->stale[leaf] | (*at & ((1u << FDCG_LEAF_NODES) - 1)));
-    const uint32_t r = deform->tree.first[0] + record_index;
-    if ((deform->loose[r] >> lane & 1) != 0 && holds_point(deform->boxes[r], lane, in_tree)) continue;
-    upkeep.hold(0, leaf, TreeBox::of(in_tree));
-  }
+  const Vec3<double> at = upkeep.in_tree(to);
+  const int is_marked = static_cast<int>(before.is_marked != 0) & static_cast<int>(at.x >= double{before.low[0]}) &
+                        static_cast<int>(at.x <= double{before.high[0]}) & static_cast<int>(at.y >= double{before.low[1]}) &
+                        static_cast<int>(at.y <= double{before.high[1]}) & static_cast<int>(at.z >= double{before.low[2]}) &
+                        static_cast<int>(at.z <= double{before.high[2]});
+  if (__builtin_expect(is_marked == 0, false)) upkeep.mark(c, root(way2) * deform->per_tree_unit);
 }
 
 // The corner nearest to a place among the leaves whose boxes reach within `reach` of it.

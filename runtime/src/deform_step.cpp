@@ -29,18 +29,18 @@ inline void ends_of(const Upkeep<Real>& upkeep, uint32_t connection, bool is_bef
 }
 
 template <class Real>
-inline bool has_edge(const Upkeep<Real>& upkeep, uint32_t n, uint32_t connection) {
+inline bool is_on_rim(const Upkeep<Real>& upkeep, uint32_t n, Feature seat) {
   for (const fdcg_side& side : upkeep.node(n).sides) {
-    if (side.link >> 1 == connection) return true;
+    if (seat.state == FDCG_EDGE && side.link >> 1 == seat.index) return true;
+    if (seat.state == FDCG_VERTEX && side.corner == seat.index) return true;
   }
   return false;
 }
 template <class Real>
-inline bool has_corner(const Upkeep<Real>& upkeep, uint32_t n, uint32_t corner) {
-  for (const fdcg_side& side : upkeep.node(n).sides) {
-    if (side.corner == corner) return true;
-  }
-  return false;
+inline bool is_end(const Upkeep<Real>& upkeep, uint32_t connection, uint32_t corner) {
+  const fdcg_connection& record = upkeep.deform().connections[connection];
+  const fdcg_side* const sides = upkeep.node(record.node).sides;
+  return sides[record.side[0]].corner == corner || sides[(record.side[0] + 1) % 3].corner == corner;
 }
 
 // `saw_before`: the contact was stepped on the mesh as it was before the tick; else all that is known is where it is now.
@@ -51,8 +51,7 @@ void ride_on_edge(const Upkeep<Real>& upkeep, uint32_t connection, bool saw_befo
   ends_of(upkeep, connection, false, end);
   const auto is_same = [](Vec3<double> a, Vec3<double> b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
   if (saw_before && is_same(old_end[0], end[0]) && is_same(old_end[1], end[1])) return;
-  const double share = share_along(old_end[0], old_end[1], place_of(*contact));
-  put<Real>(contact, end[0] + (end[1] - end[0]) * share);
+  put<Real>(contact, point_along(end, share_along(old_end, place_of(*contact))));
 }
 
 template <class Real>
@@ -68,14 +67,13 @@ void ride_on_face(const Upkeep<Real>& upkeep, uint32_t n, bool saw_before, fdcg_
   if (has_moved) put<Real>(contact, point_at(foot_in(old_point, place_of(*contact)), point));
 }
 
-// Where it was on its triangle, edge or corner it still is. One that was seated on a rim stays on the rim.
+// Where it was on its triangle, edge or corner it still is. One that was seated on a rim or in a corner stays there.
 template <class Real>
 void ride(const Upkeep<Real>& upkeep, bool saw_before, fdcg_contact* contact) {
   Feature on = {contact->state, contact->feature};
   const Feature seat = {contact->seat_state, contact->seat_feature};
-  const bool is_on_seat = (seat.state == FDCG_EDGE && has_edge(upkeep, on.index, seat.index)) ||
-                          (seat.state == FDCG_VERTEX && has_corner(upkeep, on.index, seat.index));
-  if (on.state == FDCG_FACE && is_on_seat) on = seat;
+  if (on.state == FDCG_FACE && is_on_rim(upkeep, on.index, seat)) on = seat;
+  if (on.state == FDCG_EDGE && seat.state == FDCG_VERTEX && is_end(upkeep, on.index, seat.index)) on = seat;
   if (on.state == FDCG_FACE) {
     ride_on_face(upkeep, on.index, saw_before, contact);
   } else if (on.state == FDCG_EDGE) {
@@ -93,10 +91,10 @@ void leave_sliver(const Upkeep<Real>& upkeep, fdcg_contact* contact) {
   const uint32_t connection = side.link >> 1;
   Vec3<double> end[2];
   ends_of(upkeep, connection, false, end);
-  const double share = share_along(end[0], end[1], place_of(*contact));
+  const double share = share_along(end, place_of(*contact));
   contact->state = contact->seat_state = FDCG_EDGE;
   contact->feature = contact->seat_feature = connection;
-  put<Real>(contact, end[0] + (end[1] - end[0]) * share);
+  put<Real>(contact, point_along(end, share));
 }
 
 // What is left of a clear ball when no face has come nearer than `travel`. False: the god-object is not in it any more.
@@ -152,7 +150,8 @@ template <class Real>
   fdcg_deform& deform = upkeep.deform();
   constexpr uint32_t kLastTick = 0xFFFFFFF0u;
   deform.has_moved = 0;
-  deform.travel += root(deform.way2) * (1 + 0x1p-20);
+  deform.tick_travel = root(deform.way2) * (1 + 0x1p-20);
+  deform.travel += deform.tick_travel;
   deform.way2 = 0;
   ++deform.tick;
   if (deform.tick < kLastTick) return;

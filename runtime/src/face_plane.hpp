@@ -15,7 +15,7 @@ struct Split {
 };
 
 // a - b exactly (Knuth).
-inline Split exact_difference(double a, double b) {
+FDCG_HOT Split exact_difference(double a, double b) {
   const double value = a - b;
   const double b_part = a - value;
   const double a_part = value + b_part;
@@ -23,7 +23,7 @@ inline Split exact_difference(double a, double b) {
 }
 
 // a * b exactly (Dekker), barring underflow.
-inline Split exact_product(double a, double b) {
+FDCG_HOT Split exact_product(double a, double b) {
   constexpr double kSplitter = 134217729;  // 2^27 + 1
   const double ca = kSplitter * a, cb = kSplitter * b;
   const double a_high = ca - (ca - a), b_high = cb - (cb - b);
@@ -33,7 +33,7 @@ inline Split exact_product(double a, double b) {
 }
 
 // a * d - b * c of split numbers, with a relative error of some 2^-100 of the two products.
-inline double cross_component(const Split& a, const Split& b, const Split& c, const Split& d) {
+FDCG_HOT double cross_component(const Split& a, const Split& b, const Split& c, const Split& d) {
   const Split ad = exact_product(a.value, d.value), bc = exact_product(b.value, c.value);
   const Split sum = exact_difference(ad.value, bc.value);
   const double rests = (a.value * d.rest + a.rest * d.value) - (b.value * c.rest + b.rest * c.value);

@@ -70,7 +70,7 @@ inline bool is_in_new_ball(const GraphView<Real>& graph, Vec3<Real> from, Vec3<R
     --ball->wait;
     return false;
   }
-  const Real way = norm(to - from), radius = clear_radius(graph, to, way);
+  const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way);
   if (!(radius > way)) {
     ball->wait = ball->next_wait;
     ball->next_wait = ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait;

@@ -88,6 +88,21 @@ class NodeRef {
     return derived;
   }
 
+  // Whether a point is inside of side k's Voronoi plane by more than `bound`; false: it may be. Only where that is told sooner
+  // than by the plane.
+  [[nodiscard]] bool surely_holds([[maybe_unused]] uint32_t k, [[maybe_unused]] Vec3<Real> x,
+                                  [[maybe_unused]] Real bound) const {
+#if FDCG_DEFORMABLE
+    const Vec3<Real> start = graph_->corner_point(corner(k)), along = graph_->corner_point(corner(next(k))) - start;
+    const Vec3<Real> off = x - start;
+    const Real beyond = dot(cross(along, normal()), off);  // times the side's length: in winding order
+    const Real rounding = 64 * RealLimits<Real>::kEpsilon * (norm1(x) + extent());
+    return beyond < -(2 * bound + rounding) * norm1(along);
+#else
+    return false;
+#endif
+  }
+
   [[nodiscard]] const unsigned char* block() const { return block_; }
   [[nodiscard]] const GraphView<Real>& graph() const { return *graph_; }
 
@@ -235,12 +250,23 @@ struct GraphView {
   [[nodiscard]] CornerRef<Real> corner(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return vec(corners[index].point); }
 
-  // A record of the hierarchy.
-  [[nodiscard]] const fdcg_box8& boxes(const BoxTree& tree, int level, uint32_t record) const {
+  // A HIP's way in a tick, and the surface's in it: what a clear ball is worth looking for.
+  [[nodiscard]] Real with_way_of_surface(Real way) const {
 #if FDCG_DEFORMABLE
-    upkeep.tighten(level, record);
+    return way + static_cast<Real>(upkeep.deform().tick_travel);
+#else
+    return way;
 #endif
-    return hierarchy[tree.first[level] + record];
+  }
+
+  // Whether boxes of a record of the hierarchy, a bit in `lanes` each, have become tighter than they were: worth a second look.
+  [[nodiscard]] bool has_tightened([[maybe_unused]] int level, [[maybe_unused]] uint32_t record,
+                                   [[maybe_unused]] uint32_t lanes) const {
+#if FDCG_DEFORMABLE
+    return upkeep.has_tightened(level, record, lanes);
+#else
+    return false;
+#endif
   }
 
   // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs. Written number by

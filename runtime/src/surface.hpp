@@ -6,7 +6,7 @@
 //   bool is_outside(x)                  in free space, the surface included; one expression wherever it is asked
 //   Entry enter(from, to, begins_outside)    what a way meets first from its front; `from` may be on the surface
 //   Decision rule(walk)                 the rules of contact-model sections 5 to 7 at walk.active
-//   Point normal(feature, x)            away from the material
+//   Point normal(feature, x, hip)       away from the material; of the HIP a direction from x is enough, at an apex
 //   static bool kIsConvex               the solid, or the cavity, is convex
 //   double sign                         1 solid, -1 hollow
 #pragma once
@@ -224,12 +224,12 @@ Move next_move(const Piece& piece, const Spot& spot, const Press& press, double 
   const double turn1 = norm1(turned), per_pull = pull * per_pull2, bend = turn1 * per_pull, bent = bend * (load + pull);
   const double excess = pull - held;
   // Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of.
-  const double doubt = has_moved ? rounding * 0.0625 : rounding + 4 * kEps * norm1(spot.at) * bent + kPlaced * pull;
+  const double doubt = has_moved ? rounding * 0.0625 : 2 * rounding + 8 * kEps * norm1(spot.at) * bent + kPlaced * pull;
   if (absolute(excess) <= doubt) return {{0, 0, 0}, 0, true, true};
   Point step;
   if (mu == 0 && step_to_minimum(piece, spot, across, turned, load, &step) && norm1(step) * bend <= kLargestTurn) {
     const double length = norm1(step);
-    return {step, 0, 8 * length * length * (per_pull + bend * (1 + bent)) <= rounding, false};
+    return {step, 0, 1024 * length * length * (per_pull + bend * (1 + bent)) <= rounding, false};
   }
   const double curvature = dot(across, turned) * per_pull2, flat = 1 - curvature * load, curved = curvature * pull;
   const double slope = flat - curved * mu;  // of the excess, along the way

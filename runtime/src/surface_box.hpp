@@ -120,7 +120,7 @@ struct BoxSurface {
     // A solid's edge, beyond which the HIP is. A cavity's: there may be friction along it, or another wall.
     return sign > 0 ? go_to(kFree) : go_to(feature_of(walls(at, hip, walk.active)));
   }
-  [[nodiscard]] Point normal(Feature feature, Point x) const {
+  [[nodiscard]] Point normal(Feature feature, Point x, Point) const {
     const double at[3] = {x.x, x.y, x.z};
     double n[3];
     for (uint32_t k = 0; k < 3; ++k) {

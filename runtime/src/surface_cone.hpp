@@ -106,12 +106,15 @@ struct ConeSurface {
     const double out = sign * along_z;
     return {outward.x * out, outward.y * out, -sign * along_r};
   }
+  // Of a cylinder the distance from the axis is known: at x, or where x is brought to it.
+  [[nodiscard]] Spot on_cylinder(Point x, Point at, bool is_moved) const {
+    const Point near = {x.x * per_radius, x.y * per_radius, 0};
+    const Point outward = near * inverse_root_near_1(squared(near) - 1);
+    if (is_moved) at = {outward.x * radius[0], outward.y * radius[0], x.z};
+    return {at, normal_of(outward), outward, radius[0], per_radius};
+  }
   [[nodiscard]] Spot spot(Point x, Point hip) const {
-    if (along_r == 0) {  // a cylinder, of which the distance is known but for rounding
-      const Point near = {x.x * per_radius, x.y * per_radius, 0};
-      const Point outward = near * inverse_root_near_1(squared(near) - 1);
-      return {x, normal_of(outward), outward, radius[0], per_radius};
-    }
+    if (along_r == 0) return on_cylinder(x, x, false);
     const double off = from_axis(x);
     if (!(off > kEps * extent)) {
       const Point outward = outward_at(x, hip);
@@ -123,6 +126,7 @@ struct ConeSurface {
   }
   // On the side's line through the axis's plane of p, beyond its ends too, but not beyond an apex.
   [[nodiscard]] Spot project(Point p, const Spot& spot) const {
+    if (along_r == 0 && (p.x != 0 || p.y != 0)) return on_cylinder(p, p, true);
     const double off2 = p.x * p.x + p.y * p.y;
     if (!(off2 > kEps * extent * kEps * extent)) return on_line(spot.outward, root(off2), p.z);
     const double per_off =
@@ -234,8 +238,8 @@ struct ConeSurface {
     if (at.beyond_side < 0) return go_to({FDCG_FACE, kSide});
     return sign > 0 ? go_to(kFree) : rest();
   }
-  [[nodiscard]] Point normal(Feature feature, Point x) const {
-    const Point side = spot(x, x).normal, up = {0, 0, 1};
+  [[nodiscard]] Point normal(Feature feature, Point x, Point hip) const {
+    const Point side = spot(x, hip).normal, up = {0, 0, 1};
     if (feature.state == FDCG_FACE && feature.index == kSide) return side;
     if (feature.state == FDCG_VERTEX) return up * (feature.index == 0 ? -sign : sign);
     const bool is_low = feature.state == FDCG_FACE ? feature.index == 1 : feature.index == 0;

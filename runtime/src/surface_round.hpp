@@ -27,7 +27,7 @@ struct PlaneSurface {
     if (slid == Slid::kSlides) walk.god_object = {walk.hip.x + across.x * shrink, walk.hip.y + across.y * shrink, 0};
     return decide(slid, kFree);
   }
-  [[nodiscard]] Point normal(Feature, Point) const { return {0, 0, 1}; }
+  [[nodiscard]] Point normal(Feature, Point, Point) const { return {0, 0, 1}; }
 };
 
 struct Sphere {
@@ -68,7 +68,7 @@ struct Sphere {
     walk.god_object = up * (scale * (height * stop.cosine + pull * stop.sine)) + towards * ahead;
     return rest();
   }
-  [[nodiscard]] Point normal(Feature, Point x) const { return direction_of(x) * sign; }
+  [[nodiscard]] Point normal(Feature, Point x, Point) const { return direction_of(x) * sign; }
 };
 
 // What is within `radius` of a segment of the z axis.
@@ -146,7 +146,7 @@ struct Capsule {
     walk.active = feature_at(walk.god_object);
     return decide(slid, none);
   }
-  [[nodiscard]] Point normal(Feature, Point x) const { return spot(x, x).normal; }
+  [[nodiscard]] Point normal(Feature, Point x, Point) const { return spot(x, x).normal; }
 };
 
 struct Ellipsoid {
@@ -209,7 +209,7 @@ struct Ellipsoid {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);
   }
-  [[nodiscard]] Point normal(Feature, Point x) const { return spot(x, x).normal; }
+  [[nodiscard]] Point normal(Feature, Point x, Point) const { return spot(x, x).normal; }
 };
 
 }  // namespace fdcg

@@ -167,7 +167,8 @@ extern "C" void fdcg_surface_normal(const fdcg_surface* surface, const fdcg_resu
   Point n = {0, 0, 0};
   if (result->state != FDCG_FREE) {
     const Feature feature = {result->state, result->feature};
-    with_shape(*surface, [&](const auto& shape) { n = shape.normal(feature, vec(result->god_object_m)); });
+    const Point at = vec(result->god_object_m);
+    with_shape(*surface, [&](const auto& shape) { n = shape.normal(feature, at, at - vec(result->force_n)); });
   }
   normal[0] = n.x;
   normal[1] = n.y;

@@ -184,7 +184,7 @@ struct Torus {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);
   }
-  [[nodiscard]] Point normal(Feature, Point x) const { return spot(x, x).normal; }
+  [[nodiscard]] Point normal(Feature, Point x, Point) const { return spot(x, x).normal; }
 };
 
 }  // namespace fdcg

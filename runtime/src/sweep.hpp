@@ -158,8 +158,11 @@ class Sweep {
 
   uint32_t touch(const BoxTree& tree, int level, uint32_t record, float (&entry)[FDCG_TREE_WAYS]) const {
     spend(work_left_, kBoxWork);
-    const fdcg_box8& boxes = graph_.boxes(tree, level, record);
-    return touched_boxes(boxes, in_tree_, tree_fraction(best_.fraction), entry) & tree.lanes(level, record);
+    const fdcg_box8& boxes = graph_.hierarchy[tree.first[level] + record];
+    const float limit = tree_fraction(best_.fraction);
+    const uint32_t touched = touched_boxes(boxes, in_tree_, limit, entry) & tree.lanes(level, record);
+    if (graph_.has_tightened(level, record, touched)) return touched & touched_boxes(boxes, in_tree_, limit, entry);
+    return touched;
   }
 
   // A fraction of the whole way as one of the part of it that is near the tree.

@@ -67,7 +67,7 @@ double off_feature(const fdcg_graph& graph, const fdcg_contact& contact) {
 class Sheet {
  public:
   explicit Sheet(int n, bake::Precision precision = bake::Precision::f64)
-      : n_(n), rest_(plane_grid(n, n)), mesh(rest_, triangle_options(precision)) {
+      : n_(n), rest_(plane_grid(n, n)), options_(triangle_options(precision)), mesh(rest_, options_) {
     height_.assign(rest_.points.size(), 0.0F);
     vertex_.resize(static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(n + 1));
     for (std::size_t v = 0; v < rest_.points.size(); ++v)
@@ -82,39 +82,84 @@ class Sheet {
   }
 
   [[nodiscard]] std::size_t vertex_count() const { return height_.size(); }
+  // Puts a vertex exactly where its neighbour is, or exactly on the middle of the way there: its triangles lose their area.
+  // It follows the neighbour until it is lifted itself.
+  void squeeze(std::size_t v, std::size_t neighbour, bool is_half) {
+    std::erase_if(squeezed_, [v](const Squeezed& s) { return s.vertex == v; });
+    squeezed_.push_back({v, neighbour, is_half});
+    follow(squeezed_.back());
+  }
+  [[nodiscard]] std::size_t vertex_at(int i, int j) const { return vertex_[at(i, j)]; }
+  [[nodiscard]] int squares() const { return n_; }
+
+  // The numbers of a mesh made anew whose vertices are where this one's are.
+  [[nodiscard]] std::vector<unsigned char> bytes_anew() const {
+    DeformableMesh anew(rest_, options_);
+    for (std::size_t v = 0; v < rest_.points.size(); ++v)
+      anew.move(v, mesh.points()[v]);
+    return bytes_of(anew.updated());
+  }
   [[nodiscard]] double updated_extent() { return mesh.updated().header->extent; }
   [[nodiscard]] std::size_t vertex_near(double x, double y) const {
     return vertex_[at(std::min(cell(x + 0.5 / n_), n_), std::min(cell(y + 0.5 / n_), n_))];
   }
   void lift(std::size_t v, double z) {
     height_[v] = static_cast<float>(z);
+    std::erase_if(squeezed_, [v](const Squeezed& s) { return s.vertex == v; });
     mesh.move(v, {rest_.points[v].x, rest_.points[v].y, static_cast<double>(height_[v])});
+    for (const Squeezed& s : squeezed_) {
+      if (s.onto == v) follow(s);
+    }
   }
 
   // The surface's height at a place, but for rounding.
   [[nodiscard]] double height_at(double x, double y) const {
     double best = -1, height = 0;
-    for (const std::size_t f : of_cell_[static_cast<std::size_t>(cell(x) * n_ + cell(y))]) {
-      const bake::Vec3 &a = rest_.points[triangles_[f][0]], &b = rest_.points[triangles_[f][1]], &c = rest_.points[triangles_[f][2]];
+    const auto& points = mesh.points();
+    for (const std::size_t f : near_triangles(cell(x), cell(y))) {
+      const bake::Vec3 &a = points[triangles_[f][0]], &b = points[triangles_[f][1]], &c = points[triangles_[f][2]];
       const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+      if (area == 0) continue;
       const double u = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
       const double v = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
       const double inside = std::min({u, v, 1 - u - v});
       if (inside <= best) continue;
       best = inside;
-      height = (1 - u - v) * height_[triangles_[f][0]] + u * height_[triangles_[f][1]] + v * height_[triangles_[f][2]];
+      height = a.z + u * (b.z - a.z) + v * (c.z - a.z);
     }
     return height;
   }
 
  private:
+  struct Squeezed {
+    std::size_t vertex, onto;
+    bool is_half;
+  };
+
+  void follow(const Squeezed& s) {
+    const bake::Vec3 there = mesh.points()[s.onto];
+    mesh.move(s.vertex, s.is_half ? 0.5 * (rest_.points[s.vertex] + there) : there);
+  }
   [[nodiscard]] int cell(double x) const {
     return std::min(std::max(static_cast<int>(std::floor((x + 0.5) * n_)), 0), n_);
+  }
+  // Those of a square and the eight around it: no vertex moves further.
+  [[nodiscard]] std::vector<std::size_t> near_triangles(int i, int j) const {
+    std::vector<std::size_t> near;
+    for (int k = std::max(i - 1, 0); k <= std::min(i + 1, n_ - 1); ++k) {
+      for (int l = std::max(j - 1, 0); l <= std::min(j + 1, n_ - 1); ++l) {
+        const auto& here = of_cell_[static_cast<std::size_t>(k * n_ + l)];
+        near.insert(near.end(), here.begin(), here.end());
+      }
+    }
+    return near;
   }
   [[nodiscard]] std::size_t at(int i, int j) const { return static_cast<std::size_t>(i * (n_ + 1) + j); }
 
   int n_;
   bake::PolygonSoup rest_;
+  bake::CompileOptions options_;
+  std::vector<Squeezed> squeezed_;
   std::vector<float> height_;
   std::vector<std::size_t> vertex_;
   std::vector<Polygon> triangles_;
@@ -126,6 +171,7 @@ class Sheet {
 
 }  // namespace
 
+// FDCG_STEPS=10000000 FDCG_SHEET=224 is the long form: 10^5 faces.
 TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
   constexpr double kEpsilon = 2.2204460492503131e-16;
   const std::uint64_t steps = steps_or(60000);
@@ -143,7 +189,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     const bool is_still = random.chance(0.3);
     for (std::uint32_t m = 0; m < moving && !random.chance(0.02); ++m) {
       const bool is_near = random.chance(0.5);
-      const std::size_t v = is_near ? sheet.vertex_near(hip[0] + random.uniform(-0.1, 0.1), hip[1] + random.uniform(-0.1, 0.1))
+      const std::size_t v = is_near ? sheet.vertex_near(hip[0] + random.uniform(-4, 4) / n, hip[1] + random.uniform(-4, 4) / n)
                                     : random.below(static_cast<std::uint32_t>(sheet.vertex_count()));
       sheet.lift(v, random.uniform(-0.2, 0.2));
     }
@@ -173,12 +219,112 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     touched += result.state != FDCG_FREE;
     freed += result.state == FDCG_FREE && last_state != FDCG_FREE;
     last_state = result.state;
-    if (i % 64 == 0) REQUIRE(off_feature(sheet.mesh.updated(), contact.contact) <= 8 * kEpsilon * extent);
+    if (i % 64 == 0 && steps <= 100000) REQUIRE(off_feature(sheet.mesh.updated(), contact.contact) <= 8 * kEpsilon * extent);
+    if (i % (steps / 32) == 0) {
+      REQUIRE(off_feature(sheet.mesh.updated(), contact.contact) <= 8 * kEpsilon * extent);
+      REQUIRE(bytes_of(sheet.mesh.updated()) == sheet.bytes_anew());
+    }
   }
   std::ostringstream said;
   said << caught << " caught, " << touched << " in touch, " << freed << " freed of " << steps;
   INFO(said.str());
-  CHECK(caught > steps / 200);
+  CHECK(caught > steps / 500);
   CHECK(touched > steps / 10);
-  CHECK(freed > steps / 200);
+  CHECK(freed > steps / 500);
+}
+
+TEST_CASE("triangles squeezed to lines and points let nothing through, and come back") {
+  for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
+    const double epsilon = precision == bake::Precision::f64 ? 2.2204460492503131e-16 : 1.1920929e-7;
+    const std::uint64_t steps = steps_or(40000);
+    Sheet sheet(32, precision);  // places are dyadic: what is squeezed is exactly so
+    const double extent = sheet.updated_extent();
+    Random random(23);
+    fdcg_deform_contact contact = {};
+    const fdcg_params params = contact_params(0.5, 0.3);
+    Hip hip = {0.013, 0.021, 0.3};
+    std::uint64_t touched = 0, caught = 0, freed = 0;
+    std::uint32_t last_state = FDCG_FREE;
+    for (std::uint64_t i = 0; i < steps; ++i) {
+      // every third vertex is squeezed or let go; the others rise and sink
+      const int n = sheet.squares(), ci = static_cast<int>((hip[0] + 0.5) * n), cj = static_cast<int>((hip[1] + 0.5) * n);
+      for (int m = 0; m < 6; ++m) {
+        const int vi = ci + static_cast<int>(random.below(7)) - 3, vj = cj + static_cast<int>(random.below(7)) - 3;
+        if (vi < 1 || vj < 1 || vi >= n || vj >= n) continue;
+        const double z = std::ldexp(std::floor(random.uniform(-64, 64)), -10);
+        if (vi % 3 != 0 || vj % 3 != 0 || random.chance(0.2)) {
+          sheet.lift(sheet.vertex_at(vi, vj), z);
+        } else {
+          static constexpr int kTo[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+          const int* const to = kTo[random.below(4)];
+          sheet.squeeze(sheet.vertex_at(vi, vj), sheet.vertex_at(vi + to[0], vj + to[1]), random.chance(0.4));
+        }
+      }
+      for (int k = 0; k < 3 && !random.chance(0.3); ++k)
+        hip[static_cast<std::size_t>(k)] += random.uniform(-0.02, 0.02);
+      hip[0] = std::min(std::max(hip[0], -0.4), 0.4);
+      hip[1] = std::min(std::max(hip[1], -0.4), 0.4);
+      hip[2] = std::min(std::max(hip[2], -0.2), 0.3);
+      if (random.chance(0.1)) hip[2] = sheet.height_at(hip[0], hip[1]) + random.uniform(1e-9, 0.05);
+      const FpTrap trap(hip.data());
+      const fdcg_result result = sheet.mesh.step(params, &contact, hip);
+      const double above = hip[2] - sheet.height_at(hip[0], hip[1]);
+      INFO("step " << i << " hip " << hip[0] << " " << hip[1] << " " << hip[2] << " above " << above << " state " << result.state
+                   << " flags " << result.flags);
+      if ((result.flags & FDCG_RESULT_SWEEP_BOUND) == 0 && result.state == FDCG_FREE) REQUIRE(above >= -64 * epsilon * extent);
+      REQUIRE(std::isfinite(result.force_n[0] + result.force_n[1] + result.force_n[2]));
+      if (result.state != FDCG_FREE) {
+        const double off = result.god_object_m[2] - sheet.height_at(result.god_object_m[0], result.god_object_m[1]);
+        REQUIRE(std::fabs(off) <= 1e5 * epsilon * extent);  // walls of 80 degrees: a rounding in x is many in z
+      }
+      caught += (result.flags & FDCG_DEFORM_CAUGHT) != 0;
+      touched += result.state != FDCG_FREE;
+      freed += result.state == FDCG_FREE && last_state != FDCG_FREE;
+      last_state = result.state;
+    }
+    INFO(caught << " caught, " << touched << " in touch, " << freed << " freed of " << steps);
+    CHECK(caught > steps / 500);
+    CHECK(touched > steps / 10);
+    CHECK(freed > steps / 500);
+  }
+}
+
+TEST_CASE("a closed body that swells and shrinks over a finger never lets it in") {
+  for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
+    const std::uint64_t steps = steps_or(20000);
+    const bake::PolygonSoup rest = ico_sphere(2);
+    DeformableMesh mesh(rest, triangle_options(precision));
+    bake::PolygonSoup now = rest;
+    Random random(29);
+    HipWalk walk(rest, 31);
+    fdcg_deform_contact contact = {};
+    const fdcg_params params = contact_params(0.5, 0.3);
+    Hip hip = {0, 0, 3}, god_object = hip;
+    std::uint64_t caught = 0, touched = 0, judged = 0;
+    for (std::uint64_t i = 0; i < steps; ++i) {
+      if (random.chance(0.8)) {
+        for (int m = 0; m < 8; ++m) {  // along its ray: the body stays star-shaped, and crosses itself nowhere
+          const std::uint32_t v = random.below(static_cast<std::uint32_t>(rest.points.size()));
+          now.points[v] = random.uniform(0.6, 1.6) * rest.points[v];
+          mesh.move(v, now.points[v]);
+        }
+      }
+      if (i > 0 && random.chance(0.7)) hip = walk.next(god_object);
+      const FpTrap trap(hip.data());
+      const fdcg_result result = mesh.step(params, &contact, hip);
+      god_object = {result.god_object_m[0], result.god_object_m[1], result.god_object_m[2]};
+      caught += (result.flags & FDCG_DEFORM_CAUGHT) != 0;
+      touched += result.state != FDCG_FREE;
+      if (result.state != FDCG_FREE || (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0) continue;
+      ++judged;
+      if (winding_number(now, hip) < 0.9) continue;  // in between only within rounding of the surface
+      const double depth = distance(hip, closest_point(now, hip));
+      INFO("step " << i << " hip " << hip[0] << " " << hip[1] << " " << hip[2] << " inside by " << depth);
+      REQUIRE(depth <= (precision == bake::Precision::f64 ? 1e-14 : 1e-6));  // where the HIP is rounded to
+    }
+    INFO(caught << " caught, " << touched << " in touch, " << judged << " judged of " << steps);
+    CHECK(caught > steps / 500);
+    CHECK(touched > steps / 10);
+    CHECK(judged > steps / 10);
+  }
 }

@@ -68,4 +68,23 @@ class DeformableMesh {
   fdcg_deform* deform_ = nullptr;
 };
 
+// Every number of a graph that depends on its corners' places, as bytes.
+inline std::vector<unsigned char> bytes_of(const fdcg_graph& graph) {
+  std::vector<unsigned char> bytes;
+  const auto add = [&bytes](const auto& record) {
+    const auto* const from = reinterpret_cast<const unsigned char*>(&record);
+    bytes.insert(bytes.end(), from, from + sizeof record);
+  };
+  for (std::uint32_t n = 0; n < graph.header->node_count; ++n) {
+    add(fdcg_get_node(&graph, n));
+    for (std::uint32_t k = 0; k < 3; ++k)
+      add(fdcg_get_side(&graph, n, k));
+  }
+  for (std::uint32_t c = 0; c < graph.header->connection_count; ++c)
+    add(fdcg_get_connection(&graph, c));
+  for (std::uint32_t c = 0; c < graph.header->corner_count; ++c)
+    add(fdcg_get_corner(&graph, c));
+  return bytes;
+}
+
 }  // namespace fdcg::test

@@ -40,25 +40,6 @@ std::string said(const fdcg_result& r) {
   return text.str();
 }
 
-// Every number of a graph that depends on its corners' places, as bytes.
-std::vector<unsigned char> bytes_of(const fdcg_graph& graph) {
-  std::vector<unsigned char> bytes;
-  const auto add = [&bytes](const auto& record) {
-    const auto* const from = reinterpret_cast<const unsigned char*>(&record);
-    bytes.insert(bytes.end(), from, from + sizeof record);
-  };
-  for (std::uint32_t n = 0; n < graph.header->node_count; ++n) {
-    add(fdcg_get_node(&graph, n));
-    for (std::uint32_t k = 0; k < 3; ++k)
-      add(fdcg_get_side(&graph, n, k));
-  }
-  for (std::uint32_t c = 0; c < graph.header->connection_count; ++c)
-    add(fdcg_get_connection(&graph, c));
-  for (std::uint32_t c = 0; c < graph.header->corner_count; ++c)
-    add(fdcg_get_corner(&graph, c));
-  return bytes;
-}
-
 // Wobbles a share of the vertices about their places.
 void wobble(DeformableMesh& mesh, const bake::PolygonSoup& rest, double share, double amplitude, Random& random) {
   const auto count = static_cast<std::uint32_t>(rest.points.size());

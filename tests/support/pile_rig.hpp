@@ -55,8 +55,9 @@ class PileRig {
   }
 
   // Solid of any soup, compiled once for as many as use it. kg 0: not a body, but fixed.
-  std::size_t shape(const bake::PolygonSoup& soup) {
+  std::size_t shape(const bake::PolygonSoup& soup, bake::Precision precision = bake::Precision::f64) {
     bake::CompileOptions options;
+    options.precision = precision;
     options.density_kg_per_m3 = 1000;
     auto compiled = bake::compile(soup, options);
     if (!compiled || compiled->bytes.empty()) throw std::runtime_error("cannot compile " + soup.name);

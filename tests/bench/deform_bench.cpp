@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a deformable mesh costs beside a rigid one: a sheet of 100,352 triangles, of whose vertices a hundredth moves each tick,
+// and the same HIP on both. Prints a table; exits with 1 where a bar does not hold: a moved vertex 20 ns, a step three times the
+// rigid one's.
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "bench_graph.hpp"
+#include "fdcg/deform.h"
+#include "meshes.hpp"
+#include "random.hpp"
+#include "stopwatch.hpp"
+
+using namespace fdcg::test;
+using fdcg::bake::CompileOptions;
+using fdcg::bake::PolygonSoup;
+using fdcg::bake::Precision;
+
+namespace {
+
+constexpr int kSquares = 224;  // along a side
+constexpr double kMostTick_ns = 60000;  // a tick that takes longer was interrupted
+constexpr double kMostMark_ns = 20, kMostTimes = 3;
+
+enum class Way { slides, hovers };
+
+struct Case {
+  Precision precision;
+  bool is_scattered;  // the vertices that move: anywhere, or around the finger
+  Way way;
+  double height;  // by which they rise and sink
+};
+
+struct Motion {
+  std::uint32_t corner;
+  double to[3];
+};
+
+std::array<double, 3> hip_at(Way way, int tick) {
+  const double a = 0.0007 * tick;
+  const double x = 0.3 * std::cos(a), y = 0.3 * std::sin(1.3 * a);
+  if (tick == 0) return {x, y, 0.02};
+  return {x, y, way == Way::slides ? -0.004 : 0.012 + 0.004 * std::sin(0.01 * tick)};
+}
+
+std::vector<std::vector<Motion>> motions_of(const Case& c, const PolygonSoup& sheet, const std::vector<std::uint32_t>& corner_of,
+                                            int ticks) {
+  const std::size_t moving = sheet.points.size() / 100;
+  std::vector<std::vector<std::uint32_t>> by_place(kSquares * kSquares);
+  const auto square = [](double x) { return std::min(static_cast<int>((x + 0.5) * kSquares), kSquares - 1); };
+  for (std::size_t v = 0; v < sheet.points.size(); ++v)
+    by_place[static_cast<std::size_t>(square(sheet.points[v].x) * kSquares + square(sheet.points[v].y))].push_back(
+        static_cast<std::uint32_t>(v));
+  Random random(5);
+  std::vector<std::vector<Motion>> motions(static_cast<std::size_t>(ticks));
+  for (int tick = 0; tick < ticks; ++tick) {
+    const auto hip = hip_at(c.way, tick);
+    auto& now = motions[static_cast<std::size_t>(tick)];
+    const auto add = [&](std::uint32_t v) {
+      const auto& p = sheet.points[v];
+      now.push_back({corner_of[v], {p.x, p.y, c.height * std::sin(40 * p.x + 0.01 * tick) * std::cos(31 * p.y - 0.013 * tick)}});
+    };
+    if (c.is_scattered) {
+      for (std::size_t i = 0; i < moving; ++i)
+        add(random.below(static_cast<std::uint32_t>(sheet.points.size())));
+      continue;
+    }
+    const int half = static_cast<int>(std::sqrt(static_cast<double>(moving)) / 2), i = square(hip[0]), j = square(hip[1]);
+    for (int x = i - half; x <= i + half; ++x) {
+      for (int y = j - half; y <= j + half; ++y)
+        for (const std::uint32_t v : by_place[static_cast<std::size_t>(x * kSquares + y)])
+          add(v);
+    }
+  }
+  return motions;
+}
+
+struct Times {
+  double mark_ns, step_ns, rigid_ns, p50_ns, p999_ns, rigid_p50_ns;
+  double in_contact;
+};
+
+Times run(const Case& c, int ticks) {
+  const PolygonSoup sheet = plane_grid(kSquares, kSquares);
+  CompileOptions options;
+  options.precision = c.precision;
+  options.triangles = true;
+  const BenchGraph compiled(sheet, options);
+  const fdcg_graph& graph = compiled.view();
+  std::vector<std::uint64_t> memory(fdcg_deform_bytes(&graph) / 8 + 1);
+  const fdcg_deform_config config = fdcg_default_deform_config();
+  fdcg_deform* deform = nullptr;
+  if (fdcg_deform_create(memory.data(), memory.size() * 8, &graph, &config, &deform, nullptr) != FDCG_OK) std::abort();
+  std::vector<std::uint32_t> corner_of(sheet.points.size());
+  for (std::size_t v = 0; v < sheet.points.size(); ++v) {
+    const double at[3] = {sheet.points[v].x, sheet.points[v].y, sheet.points[v].z};
+    if (fdcg_deform_find(deform, at, &corner_of[v], nullptr) != FDCG_OK) std::abort();
+  }
+  const auto motions = motions_of(c, sheet, corner_of, ticks);
+  const fdcg_params params = fdcg_default_params();
+  fdcg_deform_contact contact = {};
+  fdcg_contact rigid = {};
+  const Stopwatch watch;
+  std::vector<float> steps, rigid_steps;
+  int interrupted = 0;
+  double mark_ns = 0, marks = 0, touched = 0, sum = 0, rigid_sum = 0;
+  for (int tick = 0; tick < ticks; ++tick) {
+    const auto hip = hip_at(c.way, tick);
+    fdcg_result result;
+    const std::uint64_t begin = Stopwatch::now();
+    fdcg_step(&graph, &params, &rigid, hip.data(), &result);
+    const std::uint64_t after_rigid = Stopwatch::now();
+    for (const Motion& motion : motions[static_cast<std::size_t>(tick)])
+      (void)fdcg_deform_move(deform, motion.corner, motion.to, nullptr);
+    const std::uint64_t marked = Stopwatch::now();
+    fdcg_deform_step(deform, &params, &contact, hip.data(), &result);
+    const std::uint64_t end = Stopwatch::now();
+    touched += result.state != FDCG_FREE;
+    if (tick < ticks / 10) continue;  // caches and boxes settle
+    if (watch.nanoseconds(begin, end) > kMostTick_ns) {
+      ++interrupted;
+      continue;
+    }
+    rigid_steps.push_back(static_cast<float>(watch.nanoseconds(begin, after_rigid)));
+    steps.push_back(static_cast<float>(watch.nanoseconds(marked, end)));
+    mark_ns += watch.nanoseconds(after_rigid, marked);
+    marks += static_cast<double>(motions[static_cast<std::size_t>(tick)].size());
+    sum += steps.back();
+    rigid_sum += rigid_steps.back();
+  }
+  const auto count = static_cast<double>(steps.size());
+  const Percentiles own(std::move(steps)), its(std::move(rigid_steps));
+  if (interrupted > ticks / 20) std::printf("%d of %d ticks were interrupted: the machine is busy\n", interrupted, ticks);
+  return {mark_ns / marks, sum / count, rigid_sum / count, own.at(0.5), own.at(0.999), its.at(0.5), touched / ticks};
+}
+
+}  // namespace
+
+// Arguments: ticks, and the number of the one case to be run.
+int main(int argc, char** argv) {
+  const int ticks = argc > 1 ? std::atoi(argv[1]) : 4000, only = argc > 2 ? std::atoi(argv[2]) : 0;
+  int number = 0;
+  std::printf("%-4s %-9s %-7s %7s %8s %10s %9s %7s %9s %9s %11s\n", "", "moving", "finger", "height", "mark ns", "rigid mean", "step mean",
+              "times", "rigid p50", "step p50", "step p99.9");
+  bool holds = true;
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    for (const bool is_scattered : {true, false}) {
+      for (const Way way : {Way::slides, Way::hovers}) {
+        for (const double height : {0.0005, 0.003}) {
+          if (++number != only && only != 0) continue;
+          const Times t = run({precision, is_scattered, way, height}, ticks);
+          const double times = t.step_ns / t.rigid_ns;
+          const bool is_within = t.mark_ns <= kMostMark_ns && times <= kMostTimes;
+          holds = holds && is_within;
+          std::printf("%-4s %-9s %-7s %7.4f %8.1f %10.1f %9.1f %7.2f %9.1f %9.1f %11.1f  contact %.2f%s\n",
+                      precision == Precision::f64 ? "f64" : "f32", is_scattered ? "anywhere" : "around",
+                      way == Way::slides ? "slides" : "hovers", height, t.mark_ns, t.rigid_ns, t.step_ns, times, t.rigid_p50_ns, t.p50_ns,
+                      t.p999_ns, t.in_contact, is_within ? "" : "  does not hold");
+        }
+      }
+    }
+  }
+  std::printf("bars: a mark %.0f ns, a step %.0f times the rigid one: %s\n", kMostMark_ns, kMostTimes, holds ? "hold" : "do not hold");
+  return holds ? 0 : 1;
+}
