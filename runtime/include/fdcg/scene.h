@@ -86,7 +86,7 @@ typedef struct fdcg_scene_config {
   uint32_t finger_capacity;    /* 1 to 10,000,000 */
   uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
   uint32_t disabled_skips;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
-  uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.2 KB a touch; else 0 */
+  uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
 } fdcg_scene_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 45 KB. */
