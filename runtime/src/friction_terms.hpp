@@ -46,6 +46,7 @@ struct FrictionTerms {
   [[nodiscard]] double fall(double speed, double stribeck) const;
 
  private:
+  double stribeck_at(double load) const;
   double solve(double gap, double reach, double from, double stribeck) const;
   fdcg_material material_of(uint32_t node) const;
 };
@@ -54,9 +55,9 @@ inline constexpr int kMostSolveSteps = 120;
 
 FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph& graph, const fdcg_contact& contact);
 
-// The steepest that the curve falls on this material, times the depth over which it must not: against what it must not pass.
+// The steepest that the curve falls on this material, and may, in seconds a metre.
 struct Steepness {
-  double fall_s, limit_s;
+  double fall, limit;
 };
 Steepness steepness_of(const fdcg_params& params, const fdcg_material& material);
 
