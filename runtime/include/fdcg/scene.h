@@ -12,13 +12,14 @@
  *               fdcg_scene_step(scene);
  *               fdcg_scene_result(scene, finger, &result, &error);        ->  result.force_n, in the world
  *
- * An object is a graph (any number of objects may share one), parameters, and a pose: rotation, translation, uniform scale. A
- * finger is one contact point; it has a contact (fdcg_contact) with each object that it touches, in that object's frame, so a
- * moving and turning object carries its god-objects. What is swept each tick is the relative motion: from where the HIP was in
- * the object's frame at the last tick, with the object's pose of that tick, straight to where it is now. An object that moves
- * onto a still finger is met as surely as the other way round. In a turn of w radians a tick the straight way cuts the arc by a
- * share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An object whose bounding sphere the
- * finger does not reach, measured from the moving centre of the sphere, is not met, however fast it spins.
+ * An object is a graph (any number of objects may share one) or a surface (surface.h), parameters, and a pose: rotation,
+ * translation, uniform scale. A finger is one contact point; it has a contact (fdcg_contact) with each object that it touches,
+ * in that object's frame, so a moving and turning object carries its god-objects. What is swept each tick is the relative
+ * motion: from where the HIP was in the object's frame at the last tick, with the object's pose of that tick, straight to where
+ * it is now. An object that moves onto a still finger is met as surely as the other way round. In a turn of w radians a tick
+ * the straight way cuts the arc by a share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An
+ * object whose bounding sphere the finger does not reach, measured from the moving centre of the sphere, is not met, however
+ * fast it spins.
  *
  * Lengths of the world in metres, forces in newtons. At a scale of s the god-object's distance in the world is s times the one
  * in the object, and stiffness and damping act on the distance in the world; friction does not depend on scale, and speeds of
@@ -28,7 +29,7 @@
  * then it looks at all of them (2 to 3 ns each: 2.5 us for 1,000), when its own way and the objects' largest together have used
  * up the distance that it last saw. An object that it can have met costs a fdcg_step and two changes of frame; so a finger's
  * step is at most one look and touches_per_finger such steps. Memory: a finger takes 0.2 KB and, for each of
- * touches_per_finger, 0.3 KB; an object 0.6 KB. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
+ * touches_per_finger, 0.3 KB; an object 0.7 KB. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
  * the capacities in the config.
  *
  * Threads: the scene holds no lock. fdcg_scene_step is fdcg_scene_advance, then fdcg_scene_step_finger for every finger. After
