@@ -16,6 +16,7 @@
 #include "graph.hpp"
 #include "info.hpp"
 #include "large_pages.hpp"
+#include "materials.hpp"
 #include "merge.hpp"
 #include "parallel.hpp"
 #include "quantum.hpp"
@@ -46,10 +47,10 @@ std::string contradiction_in(const CompileOptions& options) {
     return "the coplanar angle is " + said(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
   if (options.weld.kind == Weld::Kind::distance && !(options.weld.distance >= 0 && std::isfinite(options.weld.distance)))
     return "the weld distance is " + said(options.weld.distance) + "; it must be at least 0 and finite";
-  constexpr std::array<std::string_view, 4> kOptional{"hierarchy", "source-map", "info", "mass"};
+  constexpr std::array<std::string_view, 5> kOptional{"hierarchy", "source-map", "info", "mass", "materials"};
   for (const std::string& section : options.without) {
     if (std::find(kOptional.begin(), kOptional.end(), section) == kOptional.end())
-      return "the section '" + section + "' cannot be left out; hierarchy, source-map, info and mass can";
+      return "the section '" + section + "' cannot be left out; hierarchy, source-map, info, mass and materials can";
   }
   return mass_contradiction_in(options);
 }
@@ -157,6 +158,8 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
   faces.regions = find_regions(cut.mesh, cut.topology, faces.edges, {options.coplanar, quantum, options.precision});
   compiled.split_faces = count_split(cut, faces.regions);
+  const bool has_materials = !soup.materials.empty() && !options.without.contains("materials");
+  if (has_materials) split_by_material(soup, source_face, cut, faces.regions);
   auto mass = weigh(cut.mesh, cut.topology, faces.regions, options, jobs, compiled);
   if (!mass) return mass.error();
   input.mass = *mass;
@@ -171,6 +174,10 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   }
   input.face_of_source = trace_sources(soup.face_count(), source_face, cut.polygon, faces.face_of_triangle);
   compiled.merged_faces = count_sharing(input.face_of_source, faces.mesh.face_count());
+  if (has_materials) {
+    input.materials = soup.materials;
+    input.material_of_face = material_of_faces(soup, faces, input.face_of_source);
+  }
   if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
   const Graph graph =
       order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);

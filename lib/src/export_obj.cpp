@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wavefront OBJ: v and f, and an object for each part.
+// Wavefront OBJ: v and f, an object for each part, usemtl.
 #include "export.hpp"
 
 namespace fdcg::bake {
@@ -13,12 +13,22 @@ void write_obj(const PolygonSoup& soup, std::string& out) {
     out += '\n';
   }
   auto part = soup.parts.begin();
+  std::uint16_t material = PolygonSoup::kNoMaterial;
   for (std::size_t f = 0; f < soup.face_count(); ++f) {
     for (; part != soup.parts.end() && part->first_face <= f; ++part) {
       out += "o ";
       put_name(out, part->name);
       out += '\n';
     }
+    const std::uint16_t now = soup.face_material.empty() ? PolygonSoup::kNoMaterial : soup.face_material[f];
+    if (now != material && now != PolygonSoup::kNoMaterial) {
+      out += "usemtl ";
+      put_name(out, soup.materials[now]);
+      out += '\n';
+    } else if (now != material) {
+      out += "usemtl\n";
+    }
+    material = now;
     out += 'f';
     for (std::uint32_t c = soup.face_first[f]; c < soup.face_first[f + 1]; ++c) {
       out += ' ';

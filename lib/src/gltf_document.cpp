@@ -40,6 +40,7 @@ class Parser {
     document_.accessors.resize(count_of("accessors"));
     document_.views.resize(count_of("bufferViews"));
     document_.buffers.resize(count_of("buffers"));
+    read_materials();
     read_meshes();
     read_nodes();
     check_trees();
@@ -118,7 +119,25 @@ class Parser {
       check_indices(*indices, *primitive.indices);
     }
     if (const std::optional<Value> extensions = item.find("extensions")) read_draco(*extensions, primitive);
+    primitive.material = material_of(item);
     return primitive;
+  }
+
+  // Names alone, which no triangle needs: what is wrong with them refuses no file.
+  void read_materials() try {
+    const std::optional<Value> materials = root_.find("materials");
+    if (!materials) return;
+    document_.materials.resize(materials->size());
+    for (std::size_t m = 0; m < materials->size(); ++m)
+      document_.materials[m] = name_of(materials->item(m));
+  } catch (const Refusal&) {
+    return;
+  }
+  [[nodiscard]] Index material_of(const Value& primitive) const try {
+    const std::optional<Value> material = primitive.find("material");
+    return material ? material->index_of(document_.materials.size(), "materials") : kNone;
+  } catch (const Refusal&) {
+    return kNone;
   }
 
   void read_draco(const Value& extensions, Primitive& primitive) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the JSON of a glTF 2.0 file says about geometry, checked: every index that stands in here has its target. Parts that no
-// triangle needs (images, materials, animations, other accessors) are not looked at, whatever is wrong with them.
+// triangle needs (images, animations, other accessors) are not looked at, whatever is wrong with them; of materials the names.
 //
 // Places in messages are JSON paths: "meshes[2].primitives[0].attributes.POSITION".
 #pragma once
@@ -73,6 +73,7 @@ struct Primitive {
   std::optional<Index> draco_view;          // KHR_draco_mesh_compression
   std::uint32_t draco_positions = 0;        // unique id of the attribute
   bool has_targets = false;
+  std::uint32_t material = 0xFFFFFFFF;  // in Document::materials
 };
 
 struct Mesh {
@@ -101,6 +102,7 @@ struct Document {
   std::vector<View> views;
   std::vector<Accessor> accessors;
   std::vector<Mesh> meshes;
+  std::vector<std::string> materials;  // names, of those that have one
   std::vector<Node> nodes;
   std::vector<Matrix> matrices;
   std::vector<Index> roots;  // of the scene that is shown: the default one, else the first; without scenes, all roots

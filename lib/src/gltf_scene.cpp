@@ -49,6 +49,7 @@ class SceneBuilder {
       }
     }
     rounding_.finish(soup_);
+    materials_.finish(soup_);
     for (const auto& [what, count] : ignored_) {
       if (count > 0) soup_.ignored.push_back({what, count});
     }
@@ -146,12 +147,20 @@ class SceneBuilder {
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const std::size_t faces = soup_.face_count();
       charge(primitives_, 1);
+      begin_material(mesh.primitives[p].material);
       const std::uint32_t first_point = show(mesh.primitives[p], world);
       if (soup_.face_count() == faces) continue;
       soup_.parts.push_back(
           {name_or(node.name, "nodes", n) + "/" + name_or(mesh.name, "meshes", node.mesh) + "/primitive " + std::to_string(p),
            static_cast<std::uint32_t>(faces), first_point});
     }
+  }
+
+  // One without a name goes by its number.
+  void begin_material(Index material) {
+    std::string name = material == kNone ? std::string() : document_.materials[material];
+    if (material != kNone && name.empty()) name = name_or(name, "materials", material);
+    if (!materials_.begin(soup_, name)) ++count("materials beyond the 65,535th");
   }
 
   // Says where its points start.
@@ -325,6 +334,7 @@ class SceneBuilder {
   Budget primitives_{"primitives", kPrimitiveCost, kMaxCorners};
   std::map<std::string, std::uint64_t> ignored_;
   Rounding rounding_;
+  MaterialList materials_;
 };
 
 }  // namespace

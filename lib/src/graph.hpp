@@ -34,6 +34,11 @@ struct Graph {
   [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(points.size()); }
   [[nodiscard]] std::uint32_t node(std::uint32_t side) const { return node_of_side.empty() ? side / 3 : node_of_side[side]; }
   [[nodiscard]] std::uint32_t region_of(std::uint32_t node) const { return region.empty() ? kNone : region[node]; }
+  // Whether two nodes share a plane bit for bit.
+  [[nodiscard]] bool is_one_plane(std::uint32_t a, std::uint32_t b) const {
+    const std::uint32_t r = region_of(a), s = region_of(b);
+    return r != kNone && s != kNone && (r == s || (regions[r].whole != kNone && regions[r].whole == regions[s].whole));
+  }
   // The side that a node's loop takes to come in where `side` leaves.
   [[nodiscard]] std::uint32_t previous(std::uint32_t side) const {
     const std::uint32_t n = node(side);

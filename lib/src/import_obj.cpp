@@ -89,7 +89,9 @@ class ObjReader : TextSoupReader {
   void read_other(std::string_view keyword) {
     std::string* const name = keyword == "o" ? &object_ : keyword == "g" ? &group_ : keyword == "usemtl" ? &material_ : nullptr;
     if (name != nullptr) {
-      *name = readable_name(scan_.read_rest_of_line());
+      const std::string_view given = scan_.read_rest_of_line();
+      *name = readable_name(given);
+      if (name == &material_) set_material(given);
       is_new_part_ = true;
       return;
     }

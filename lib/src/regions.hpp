@@ -18,6 +18,9 @@ struct Region {
   Plane plane;              // at storage precision
   bool is_exact = false;    // all its corners are exactly coplanar
   Flat tier = Flat::exact;  // the loosest tier that was needed
+  // Cut from a region of several materials: pieces of one whole share this number, and the plane. kNone: it is whole.
+  std::uint32_t whole = kNone;
+  std::uint16_t material = PolygonSoup::kNoMaterial;
 };
 
 struct Regions {

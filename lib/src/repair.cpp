@@ -215,6 +215,9 @@ Result<Repaired> repair(const PolygonSoup& soup, const RepairOptions& options) {
   }
 
   move_parts(piece);
+  for (std::size_t f = 0; !soup.face_material.empty() && f < piece.source_face.size(); ++f)
+    piece.soup.face_material[f] = soup.face_material[piece.source_face[f]];
+  piece.soup.face_material.resize(soup.face_material.empty() ? 0 : piece.soup.face_count());
   if (piece.identity.kind == Weld::Kind::none && has_equal_points(piece.soup)) repaired.read_with = Weld::Kind::none;
   repaired.after = judged(piece.soup, repaired.read_with, options);
   repaired.soup = std::move(piece.soup);

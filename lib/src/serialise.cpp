@@ -16,6 +16,7 @@
 #include "fdcg/format.h"
 #include "hierarchy.hpp"
 #include "layout.hpp"
+#include "materials.hpp"
 #include "parallel.hpp"
 #include "planes.hpp"
 #include "vec.hpp"
@@ -90,6 +91,7 @@ class Writer {
     write_source_map();
     std::copy(input_.info.begin(), input_.info.end(), layout_.records<char>(file_, FDCG_SECTION_INFO).begin());
     if (input_.mass) layout_.records<fdcg_mass_record>(file_, FDCG_SECTION_MASS)[0] = *input_.mass;
+    write_materials();
     write_header();
     return file_;
   }
@@ -118,6 +120,10 @@ class Writer {
       layout_.add(FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), busy_corners_.size());
     }
     if (input_.mass) layout_.add(FDCG_SECTION_MASS, sizeof(fdcg_mass_record), 1);
+    if (!input_.materials.empty()) {
+      layout_.add(FDCG_SECTION_MATERIALS, sizeof(std::uint16_t), graph_.node_count());
+      layout_.add(FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), input_.materials.size());
+    }
     layout_.place();
   }
 
@@ -236,7 +242,7 @@ class Writer {
     const EdgeClass edge = graph_.edges[side];
     const std::uint32_t region = graph_.region_of(a);
     if (b == FDCG_NONE) return {FDCG_BOUNDARY, FDCG_FLAT_EXACT};
-    if (region == kNone || graph_.region_of(b) != region) return {edge.sign(), FDCG_FLAT_EXACT};
+    if (!graph_.is_one_plane(a, b)) return {edge.sign(), FDCG_FLAT_EXACT};
     if (edge.sign() == FDCG_COPLANAR) return {FDCG_COPLANAR, FDCG_FLAT_EXACT};
     const Flat tier = edge.flat() != Flat::no ? edge.flat() : graph_.regions[region].tier;
     return {FDCG_COPLANAR, tier == Flat::angle ? FDCG_FLAT_ANGLE : FDCG_FLAT_QUANTUM};
@@ -327,6 +333,14 @@ class Writer {
       const std::uint32_t face = input_.face_of_source.empty() ? i : input_.face_of_source[i];
       map[i] = face == kNone ? FDCG_NONE : graph_.node_of_face[face];
     }
+  }
+
+  void write_materials() {
+    const auto of_node = layout_.records<std::uint16_t>(file_, FDCG_SECTION_MATERIALS);
+    for (std::uint32_t face = 0; !of_node.empty() && face < graph_.node_of_face.size(); ++face)
+      of_node[graph_.node_of_face[face]] = input_.material_of_face[face];
+    std::transform(input_.materials.begin(), input_.materials.end(),
+                   layout_.records<fdcg_material_record>(file_, FDCG_SECTION_MATERIAL_NAMES).begin(), material_record);
   }
 
   void write_header() {

@@ -52,6 +52,50 @@ void SoupReader::begin_part(std::string name) {
   soup_.parts.push_back({std::move(name), static_cast<std::uint32_t>(soup_.face_count())});
 }
 
+bool MaterialList::begin(PolygonSoup& soup, std::string_view name) {
+  constexpr std::size_t kLongest = 1024;
+  fill(soup);
+  current_ = PolygonSoup::kNoMaterial;
+  if (name.empty()) return true;
+  std::string text(name.substr(0, kLongest));
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = '?';
+  }
+  const auto known = index_of_.find(text);
+  if (known == index_of_.end() && soup.materials.size() >= PolygonSoup::kNoMaterial) return false;
+  if (known == index_of_.end()) {
+    if (soup.materials.empty()) soup.face_material.resize(soup.face_count(), PolygonSoup::kNoMaterial);
+    soup.materials.push_back(text);
+  }
+  current_ = known != index_of_.end() ? known->second : static_cast<std::uint16_t>(soup.materials.size() - 1);
+  index_of_.emplace(std::move(text), current_);
+  return true;
+}
+
+void MaterialList::fill(PolygonSoup& soup) const {
+  if (!soup.materials.empty()) soup.face_material.resize(soup.face_count(), current_);
+}
+
+void MaterialList::finish(PolygonSoup& soup) {
+  fill(soup);
+  std::vector<std::uint16_t> now(soup.materials.size(), PolygonSoup::kNoMaterial);  // by first use; a name alone is none
+  std::vector<std::string> used;
+  for (std::uint16_t& material : soup.face_material) {
+    if (material == PolygonSoup::kNoMaterial) continue;
+    if (now[material] == PolygonSoup::kNoMaterial) {
+      now[material] = static_cast<std::uint16_t>(used.size());
+      used.push_back(std::move(soup.materials[material]));
+    }
+    material = now[material];
+  }
+  soup.materials = std::move(used);
+  if (soup.materials.empty()) soup.face_material.clear();
+}
+
+void SoupReader::set_material(std::string_view name) {
+  if (!materials_.begin(soup_, name)) ignore("materials beyond the 65,535th");
+}
+
 bool SoupReader::fail_big_face(std::uint64_t count) {
   const std::string place = soup_.face_line.size() == soup_.face_first.size()
                                 ? "line " + std::to_string(soup_.face_line.back()) + ": "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,6 +50,20 @@ inline constexpr std::uint32_t kMaxFaceCorners = 65'536;
 inline constexpr std::size_t kMaxCorners = 0xFFFFFF00u;
 inline constexpr std::size_t kMaxPoints = 0xFFFFFF00u;
 
+// Gathers which material each run of faces has.
+class MaterialList {
+ public:
+  // The faces from the soup's next one on. Names with control characters are cleaned. Returns false where it is one too many.
+  bool begin(PolygonSoup& soup, std::string_view name);
+  // To be called when all faces are there.
+  void finish(PolygonSoup& soup);
+
+ private:
+  void fill(PolygonSoup& soup) const;  // the faces since the last call have the material at hand
+  std::map<std::string, std::uint16_t, std::less<>> index_of_;
+  std::uint16_t current_ = PolygonSoup::kNoMaterial;
+};
+
 // Base of the readers. Their steps return false after fail(), which keeps the reason.
 class SoupReader {
  protected:
@@ -86,6 +101,9 @@ class SoupReader {
     return has_further_parts_;
   }
 
+  // The faces from the next one on are of this material, until the next call; an empty name is none.
+  void set_material(std::string_view name);
+
   // Tells the caller how far the reading has come, a hundred times at most.
   void advance(std::size_t offset) {
     if (offset >= next_report_) report(offset);
@@ -93,6 +111,7 @@ class SoupReader {
 
   Result<PolygonSoup> result(bool is_read) {
     if (!is_read) return std::move(failure_);
+    materials_.finish(soup_);
     return std::move(soup_);
   }
 
@@ -102,6 +121,7 @@ class SoupReader {
  private:
   void report(std::size_t offset);
 
+  MaterialList materials_;
   Failure failure_;
   std::size_t next_report_ = 0;
   bool has_further_parts_ = false;

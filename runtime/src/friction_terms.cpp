@@ -24,6 +24,14 @@ double smaller(double a, double b) {
   return a < b ? a : b;
 }
 
+// How steeply the curve may fall for one solution down to curve_depth_m, in seconds a metre.
+double steepest_allowed(const fdcg_params& params, const fdcg_material& material) {
+  const auto has = [&](uint32_t term) { return (params.terms & term) != 0; };
+  const double give = has(FDCG_TERM_PRESLIDING) ? 1 + material.stiffness_n_per_m / params.presliding_n_per_m : 1;
+  const double time_s = (has(FDCG_TERM_LAG) ? params.friction_lag_s : 0) + params.tick_s / 4;
+  return time_s / (give * params.curve_depth_m);
+}
+
 fdcg_material own_material(const fdcg_params& params) {
   return {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
 }
@@ -108,11 +116,18 @@ void FrictionTerms::go_on_to(Vec3<double> god_object) {
   has_last = true;
 }
 
+// No smaller than has one solution at this depth, whatever two materials come to.
+double FrictionTerms::stribeck_at(double load) const {
+  if (!has(FDCG_TERM_STRIBECK)) return 1;
+  const double limit = steepest_allowed(*params, material) + (has(FDCG_TERM_VISCOUS) ? params->viscous_s_per_m : 0);
+  const double least = kSteepest * (material.mu_static - material.mu_dynamic) / limit;
+  return larger(params->stribeck_m_per_s, least) / unit_m * larger(1, load * unit_m / params->curve_depth_m);
+}
+
 TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, double epsilon, bool* is_slipping) {
   go_on_to(god_object);
   const double reach = load * give(), gap = root(gap2), from = lagged + per_way * way;
-  const double depth = params->curve_depth_m / unit_m;
-  const double stribeck = params->stribeck_m_per_s / unit_m * larger(1, load / depth);
+  const double stribeck = stribeck_at(load);
   if (has(FDCG_TERM_STRIBECK)) {
     *is_slipping = gap > reach * mu(from, stribeck);
   } else {
@@ -131,11 +146,10 @@ TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, 
 
 Steepness steepness_of(const fdcg_params& params, const fdcg_material& material) {
   const auto has = [&](uint32_t term) { return (params.terms & term) != 0; };
-  const double give = has(FDCG_TERM_PRESLIDING) ? 1 + material.stiffness_n_per_m / params.presliding_n_per_m : 1;
   double fall = 0;
   if (has(FDCG_TERM_STRIBECK)) fall += kSteepest * (material.mu_static - material.mu_dynamic) / params.stribeck_m_per_s;
   if (has(FDCG_TERM_VISCOUS)) fall -= params.viscous_s_per_m;
-  return {fall * give * params.curve_depth_m, (has(FDCG_TERM_LAG) ? params.friction_lag_s : 0) + params.tick_s / 4};
+  return {fall, steepest_allowed(params, material)};
 }
 
 }  // namespace fdcg

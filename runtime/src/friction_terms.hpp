@@ -38,7 +38,7 @@ struct FrictionTerms {
   void stand_on_face(uint32_t node);
   // `share`: of the load that node a bears.
   void stand_on_edge(uint32_t a, uint32_t b, double share);
-  // Friction::slip with terms. Cost: some 150 instructions, at most kMostSolveSteps times 30.
+  // Friction::slip with terms. Cost: a few hundred instructions, at most kMostSolveSteps times some 50.
   TermSlip slip(Vec3<double> god_object, double gap2, double load, double epsilon, bool* is_slipping);
   void go_on_to(Vec3<double> god_object);
   // The coefficient at a speed, and how fast it falls there; `stribeck` is that of the depth at hand.
@@ -46,6 +46,7 @@ struct FrictionTerms {
   [[nodiscard]] double fall(double speed, double stribeck) const;
 
  private:
+  double stribeck_at(double load) const;
   double solve(double gap, double reach, double from, double stribeck) const;
   fdcg_material material_of(uint32_t node) const;
 };
@@ -54,9 +55,9 @@ inline constexpr int kMostSolveSteps = 120;
 
 FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph& graph, const fdcg_contact& contact);
 
-// The steepest that the curve falls on this material, times the depth over which it must not: against what it must not pass.
+// The steepest that the curve falls on this material, and may, in seconds a metre.
 struct Steepness {
-  double fall_s, limit_s;
+  double fall, limit;
 };
 Steepness steepness_of(const fdcg_params& params, const fdcg_material& material);
 

@@ -9,6 +9,7 @@
 #include "hooks.hpp"
 #include "map_file.hpp"
 #include "mass.hpp"
+#include "materials.hpp"
 #include "message.hpp"
 #include "sections.hpp"
 #include "verify.hpp"
@@ -157,6 +158,8 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners},
     {FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), sizeof(fdcg_busy_corner), Presence::of_busy_corners},
     {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional},
+    {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional},
+    {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional},
 };
 
 uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
@@ -187,6 +190,10 @@ uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found
       return header.busy_count;
     case FDCG_SECTION_MASS:
       return 1;
+    case FDCG_SECTION_MATERIALS:
+      return header.node_count;
+    case FDCG_SECTION_MATERIAL_NAMES:
+      return found <= FDCG_NO_MATERIAL ? found : FDCG_NO_MATERIAL;
     default:
       return found;
   }
@@ -260,6 +267,10 @@ fdcg_graph view(const void* data, const fdcg_header& header) {
   graph.hierarchy = static_cast<const fdcg_box8*>(section(FDCG_SECTION_HIERARCHY));
   graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
   graph.info = static_cast<const char*>(section(FDCG_SECTION_INFO));
+  graph.node_materials = static_cast<const uint16_t*>(section(FDCG_SECTION_MATERIALS));
+  graph.materials = static_cast<const fdcg_material_record*>(section(FDCG_SECTION_MATERIAL_NAMES));
+  if (graph.materials != nullptr)
+    graph.material_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_MATERIAL_NAMES)->record_count);
   if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;
   return graph;
 }
@@ -281,6 +292,10 @@ fdcg_status check_presence(const fdcg_header& header, fdcg_error* error) {
           .number(rule.id)
           .text(" contradicts the header, which has no use for it");
     }
+  }
+  if ((find_section(header, FDCG_SECTION_MATERIALS) == nullptr) !=
+      (find_section(header, FDCG_SECTION_MATERIAL_NAMES) == nullptr)) {
+    return Message(error, FDCG_E_LAYOUT).text("sections 13 and 14 (materials and their names) go together, one is missing");
   }
   if (header.node_count > kMaxNodesWithoutHierarchy && find_section(header, FDCG_SECTION_HIERARCHY) == nullptr) {
     return Message(error, FDCG_E_LAYOUT)
@@ -310,6 +325,7 @@ fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, f
   const fdcg_graph candidate = view(data, header);
   if (verify == FDCG_VERIFY_FULL) status = verify_graph(candidate, error);
   if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_mass(header, error);
+  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_materials(candidate, error);
   if (status == FDCG_OK) *graph = candidate;
   return status;
 }

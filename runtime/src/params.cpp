@@ -58,15 +58,15 @@ fdcg_status check_material(const Owner& owner, const fdcg_material& material, do
 fdcg_status check_steepness(const fdcg_params& params, const Owner& owner, const fdcg_material& material, fdcg_error* error) {
   const bool has_finger = (params.terms & FDCG_TERM_FINGER) != 0;
   const Steepness steep = steepness_of(params, has_finger ? fdcg_combine_materials(&material, &params.finger) : material);
-  if (steep.fall_s <= steep.limit_s) return FDCG_OK;
+  if (steep.fall <= steep.limit) return FDCG_OK;
   Message message(error, FDCG_E_ARGUMENT);
   message.text("the friction curve of ");
   return say(message, owner)
       .text(" falls by ")
-      .real(steep.fall_s)
-      .text(" s over curve_depth_m, allowed ")
-      .real(steep.limit_s)
-      .text(" s; raise stribeck_m_per_s or friction_lag_s (with its term), or lower curve_depth_m");
+      .real(steep.fall)
+      .text(" s/m, allowed down to curve_depth_m ")
+      .real(steep.limit)
+      .text(" s/m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower curve_depth_m");
 }
 
 fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {

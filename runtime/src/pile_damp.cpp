@@ -2,8 +2,6 @@
 // The dampers of a pile's touches. One after the other, each takes its part of the relative velocity away at once, as an
 // implicit step of its own: v / (1 + x + x x / 2), x = c h / m, at the mass m that it moves. Such a step only takes energy, so
 // any row of them does, however stiff, and none needs a shorter step.
-#include <initializer_list>
-
 #include "pile_memory.hpp"
 #include "scene_tick.hpp"
 
@@ -77,7 +75,8 @@ World sideways_impulse(const Meeting& meeting, const PileMember& owner, const Pi
 
 double looseness_at(const PileMember* a, const PileMember* b, World at) {
   double sum = 0;
-  for (const World& u : {World{1, 0, 0}, World{0, 1, 0}, World{0, 0, 1}})
+  const World axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const World& u : axes)
     sum += dot(u, answer(a, at, u)) + dot(u, answer(b, at, u));
   return sum;
 }

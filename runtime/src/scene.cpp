@@ -316,6 +316,22 @@ extern "C" fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id 
   return FDCG_OK;
 }
 
+extern "C" fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id id, const fdcg_material* material,
+                                                      fdcg_error* error) {
+  Finger* const finger = find_finger(scene, id, error);
+  if (finger == nullptr) return FDCG_E_ARGUMENT;
+  if (material != nullptr) {
+    fdcg_params params = fdcg_default_params();
+    params.terms = FDCG_TERM_FINGER;
+    params.finger = *material;
+    const fdcg_status status = fdcg_check_params(&params, error);
+    if (status != FDCG_OK) return status;
+    finger->material = *material;
+  }
+  finger->has_material = material != nullptr ? 1 : 0;
+  return FDCG_OK;
+}
+
 extern "C" fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id id, const double hip_world_m[3],
                                                fdcg_error* error) {
   Finger* const finger = find_finger(scene, id, error);

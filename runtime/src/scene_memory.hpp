@@ -61,6 +61,8 @@ struct Finger {
   uint32_t idle_steps;  // in a row, in which no slot's object was in reach
   World force;
   uint64_t non_finite_steps, crowded_steps, missed_ticks, looks;
+  fdcg_material material;
+  uint32_t has_material, reserved;
 };
 
 }  // namespace fdcg

@@ -51,6 +51,25 @@ void settle_endless(fdcg_scene& scene, uint32_t index) {
 
 }  // namespace
 
+fdcg_params params_met(const Object& object, const Finger& finger) {
+  fdcg_params params = object.params;
+  constexpr uint32_t kMixedInTheStep = FDCG_TERM_MATERIALS | FDCG_TERM_FINGER;
+  if (finger.has_material != 0 && object.step_surface == nullptr && (params.terms & kMixedInTheStep) != 0) {
+    params.finger = finger.material;
+    params.terms |= FDCG_TERM_FINGER;
+  } else if (finger.has_material != 0) {
+    const fdcg_material own = {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
+    const fdcg_material both = fdcg_combine_materials(&own, &finger.material);
+    params.mu_static = both.mu_static;
+    params.mu_dynamic = both.mu_dynamic;
+    params.stiffness_n_per_m = both.stiffness_n_per_m;
+  }
+  params.stribeck_m_per_s /= object.now.scale;
+  params.viscous_s_per_m *= object.now.scale;
+  params.curve_depth_m /= object.now.scale;
+  return params;
+}
+
 void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
   Object& object = scene.objects()[index];
   const Pose latest(object.asked, object.bounds);
@@ -86,11 +105,17 @@ void store(World from, double (&to)[3]) {
   to[2] = from.z;
 }
 
-void step_contact(const Object& object, fdcg_contact* contact, World at, fdcg_result* result) {
+void step_contact(const Object& object, const Finger& finger, fdcg_contact* contact, World at, fdcg_result* result) {
   double local[3];
   store(at, local);
-  if (object.step_surface != nullptr) return object.step_surface(&object.surface, &object.params, contact, local, result);
-  fdcg_step(object.graph, &object.params, contact, local, result);
+  fdcg_params room;
+  const fdcg_params* params = &object.params;
+  if ((finger.has_material | params->terms) != 0) {
+    room = params_met(object, finger);
+    params = &room;
+  }
+  if (object.step_surface != nullptr) return object.step_surface(&object.surface, params, contact, local, result);
+  fdcg_step(object.graph, params, contact, local, result);
 }
 
 // The slot's contact in this tick. Returns whether there is anything to feel or to carry over.
@@ -104,13 +129,13 @@ bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed,
     if (!can_have_met(tick, object, &way)) return false;
     if (slot.step != tick.finger.step || missed || !scene.skips(FDCG_SKIP_RENEWAL)) {
       *contact = {};
-      step_contact(object, contact, way.from, result);
+      step_contact(object, tick.finger, contact, way.from, result);
     }
   }
   tick.finger.idle_steps = 0;
   slot.step = tick.finger.step + 1;
   if (scene.step_soft == nullptr) {
-    step_contact(object, contact, way.to, result);
+    step_contact(object, tick.finger, contact, way.to, result);
   } else {
     const auto finger = static_cast<uint32_t>(&tick.finger - scene.fingers());
     const auto index = static_cast<uint32_t>(&slot - tick.slots);

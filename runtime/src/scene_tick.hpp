@@ -39,6 +39,9 @@ inline uint32_t own_bits(const fdcg_scene& scene, const Finger& finger) {
   return (static_cast<uint32_t>(&finger - scene.fingers()) * 0x9E3779B9u) >> 16;
 }
 
+// The object's parameters as this finger meets them: with its material, and speeds and depths in the object's metres.
+fdcg_params params_met(const Object& object, const Finger& finger);
+
 // Whether the finger can have met the object in this tick; *way is set where the sphere says so.
 bool can_have_met(const Tick& tick, const Object& object, LocalWay* way);
 

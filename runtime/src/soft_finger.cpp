@@ -112,9 +112,10 @@ void step_contact(const Object& object, const fdcg_params& params, World hip, fd
 }
 
 // The torque of what is left of the twist when the step is over: never beyond what the tangential force leaves of the limit.
-void take_torque(const Object& object, const SoftFinger& finger, const Turn& now, World gap, double tangent, SoftTouch* touch) {
+void take_torque(const Object& object, const fdcg_params& met, const SoftFinger& finger, const Turn& now, World gap,
+                 double tangent, SoftTouch* touch) {
   const Stretch stretch(gap, touch->normal, object.now.scale, finger.radius_m, tangent);
-  const double mu = touch->is_slipping != 0 ? object.params.mu_dynamic : object.params.mu_static;
+  const double mu = touch->is_slipping != 0 ? met.mu_dynamic : met.mu_static;
   const double most = mu * stretch.depth, left2 = most * most - stretch.tangential * stretch.tangential;
   const double limit = left2 > 0 ? root(left2) : 0;
   const bool is_beyond = absolute(stretch.twist) > limit * (1 + 0x1p-30);
@@ -125,7 +126,7 @@ void take_torque(const Object& object, const SoftFinger& finger, const Turn& now
   }
   const World axis = {dot(object.now.row[0], touch->normal), dot(object.now.row[1], touch->normal),
                       dot(object.now.row[2], touch->normal)};
-  touch->torque_n_m = axis * (-2 * held * finger.radius_m * finger.radius_m * object.params.stiffness_n_per_m);
+  touch->torque_n_m = axis * (-2 * held * finger.radius_m * finger.radius_m * met.stiffness_n_per_m);
 }
 
 void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_object_id id, fdcg_contact* contact, World hip,
@@ -136,7 +137,8 @@ void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_obj
   if (touch.object.index != id.index || touch.object.generation != id.generation) touch.is_on = 0;
   const bool was_on = touch.is_on != 0 && contact->state != FDCG_FREE && finger.radius_m > 0;
   const Turn now = relative(finger, object);
-  fdcg_params params = object.params;
+  const fdcg_params met = params_met(object, scene->fingers()[finger_index]);
+  fdcg_params params = met;
   double tangent = 0;
   if (was_on) {
     tangent = twist_of(now, touch.reference, touch.normal);
@@ -163,7 +165,7 @@ void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_obj
   touch.feature = result->feature;
   if (!was_on) touch.is_slipping = 0;
   if (is_elsewhere) touch.reference = reference_for(now, normal, tangent);
-  take_torque(object, finger, now, gap, tangent, &touch);
+  take_torque(object, met, finger, now, gap, tangent, &touch);
   if (params.terms == 0) result->slipping = touch.is_slipping;
 }
 

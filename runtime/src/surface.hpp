@@ -177,7 +177,7 @@ inline double pull_rounding(const SurfaceWalk& walk) {
 // ---- curved pieces ------------------------------------------------------------------------------------------------------
 
 // 1 / sqrt(1 + e), and without the latency of root and division where e is small: a move's, or only rounding.
-inline double inverse_root_near_1(double e) {
+FDCG_HOT double inverse_root_near_1(double e) {
   constexpr double kSmall = 0x1p-10, kSmaller = 0x1p-18, kTiny = 0x1p-27;
   const double size = absolute(e);
   if (size < kTiny) return 1 - e * 0.5;
@@ -190,7 +190,7 @@ inline double inverse_root_near_1(double e) {
 // says how the normal turns (its trace and determinant are the sum and the product of the principal curvatures). False where
 // the god-object is not near a minimum.
 template <class Piece, class Spot>
-bool step_to_minimum(const Piece& piece, const Spot& spot, Point across, Point turned, double load, Point* step) {
+FDCG_HOT bool step_to_minimum(const Piece& piece, const Spot& spot, Point across, Point turned, double load, Point* step) {
   constexpr double kLeast = 0x1p-10;
   const double sum = piece.curvature_sum(spot), product = piece.curvature_product(spot);
   const double trace = 2 - load * sum, determinant = 1 - load * (sum - load * product);
@@ -217,7 +217,7 @@ struct Move {
 inline constexpr double kPlaced = 0x1p-41;
 
 template <class Piece, class Spot>
-Move next_move(const Piece& piece, const Spot& spot, const Press& press, double mu, double rounding, bool has_moved) {
+FDCG_HOT Move next_move(const Piece& piece, const Spot& spot, const Press& press, double mu, double rounding, bool has_moved) {
   constexpr double kLargestTurn = 0.25, kLeastSlope = 0x1p-20;
   const double load = press.load, pull = root(press.pull2), per_pull2 = 1 / press.pull2, held = mu * load;
   const Point across = press.across, turned = piece.turn(spot, across);
@@ -257,7 +257,8 @@ Move next_move(const Piece& piece, const Spot& spot, const Press& press, double 
 // The last of a slide, where a move has left so little that the surface is a plane: without a root, and without looking for
 // the surface again. `per_slope` is the one before that move, near enough to invert the new one. False where it is too much.
 template <class Piece, class Spot>
-bool set_right(const Piece& piece, const Spot& spot, const Press& press, double mu, double per_slope, Point* god_object) {
+FDCG_HOT bool set_right(const Piece& piece, const Spot& spot, const Press& press, double mu, double per_slope,
+                        Point* god_object) {
   constexpr double kMost = 0x1p-16, kCurved = 2;
   const double held = mu * press.load, per_pull2 = 1 / press.pull2;
   const double half = (press.pull2 - held * held) * per_pull2 * 0.5, part = half * (1 + half * 0.5);  // of the pull

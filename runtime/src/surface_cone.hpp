@@ -107,13 +107,13 @@ struct ConeSurface {
     return {outward.x * out, outward.y * out, -sign * along_r};
   }
   // Of a cylinder the distance from the axis is known: at x, or where x is brought to it.
-  [[nodiscard]] Spot on_cylinder(Point x, Point at, bool is_moved) const {
+  [[nodiscard]] FDCG_HOT Spot on_cylinder(Point x, Point at, bool is_moved) const {
     const Point near = {x.x * per_radius, x.y * per_radius, 0};
     const Point outward = near * inverse_root_near_1(squared(near) - 1);
     if (is_moved) at = {outward.x * radius[0], outward.y * radius[0], x.z};
     return {at, normal_of(outward), outward, radius[0], per_radius};
   }
-  [[nodiscard]] Spot spot(Point x, Point hip) const {
+  [[nodiscard]] FDCG_HOT Spot spot(Point x, Point hip) const {
     if (along_r == 0) return on_cylinder(x, x, false);
     const double off = from_axis(x);
     if (!(off > kEps * extent)) {
@@ -125,7 +125,7 @@ struct ConeSurface {
     return {x, normal_of(outward), outward, off, per_off};
   }
   // On the side's line through the axis's plane of p, beyond its ends too, but not beyond an apex.
-  [[nodiscard]] Spot project(Point p, const Spot& spot) const {
+  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot& spot) const {
     if (along_r == 0 && (p.x != 0 || p.y != 0)) return on_cylinder(p, p, true);
     const double off2 = p.x * p.x + p.y * p.y;
     if (!(off2 > kEps * extent * kEps * extent)) return on_line(spot.outward, root(off2), p.z);
@@ -133,12 +133,12 @@ struct ConeSurface {
         spot.off > 0 ? spot.per_off * inverse_root_near_1(off2 * spot.per_off * spot.per_off - 1) : 1 / root(off2);
     return on_line({p.x * per_off, p.y * per_off, 0}, off2 * per_off, p.z);
   }
-  [[nodiscard]] Spot on_line(Point outward, double off, double z) const {
+  [[nodiscard]] FDCG_HOT Spot on_line(Point outward, double off, double z) const {
     const double u = side_parameter(off, z), at_off = radius[0] + u * along_r;
     if (!(at_off > kEps * extent)) return {rim_point(outward, u > 0 ? 1 : 0), normal_of(outward), outward, 0, 0};
     return {{outward.x * at_off, outward.y * at_off, u * along_z - half}, normal_of(outward), outward, at_off, 1 / at_off};
   }
-  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
+  [[nodiscard]] FDCG_HOT Point turn(const Spot& spot, Point v) const {
     const Point round = {-spot.outward.y, spot.outward.x, 0};
     return round * ((v.x * round.x + v.y * round.y) * curvature_sum(spot));
   }

@@ -126,13 +126,13 @@ struct Capsule {
     const Point near = from_segment(x) * per_radius;
     return near * inverse_root_near_1(squared(near) - 1);
   }
-  [[nodiscard]] Spot spot(Point x, Point) const { return {x, outward(x) * sign, absolute(x.z) <= half}; }
-  [[nodiscard]] Spot project(Point p, const Spot&) const {
+  [[nodiscard]] FDCG_HOT Spot spot(Point x, Point) const { return {x, outward(x) * sign, absolute(x.z) <= half}; }
+  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot&) const {
     const Point out = outward(p);
     const double z = nearest_z(p);
     return {{out.x * radius, out.y * radius, out.z * radius + z}, out * sign, absolute(p.z) <= half};
   }
-  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
+  [[nodiscard]] FDCG_HOT Point turn(const Spot& spot, Point v) const {
     const Point along = {v.x, v.y, spot.is_on_side ? 0 : v.z};
     return along * (sign * per_radius);
   }
@@ -180,18 +180,18 @@ struct Ellipsoid {
     return enter_convex(*this, from, to, begins_outside);
   }
 
-  [[nodiscard]] Spot spot(Point x, Point) const {
+  [[nodiscard]] FDCG_HOT Spot spot(Point x, Point) const {
     const Point g = gradient(x);
     const double length = norm(g);
     return {x, g * (sign / length), length};
   }
   // Along the gradient, then what is left along the ray: that is of second order, and exact to rounding.
-  [[nodiscard]] Spot project(Point p, const Spot&) const {
+  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot&) const {
     const Point g = gradient(p);
     const Point near = p - g * ((dot(p, g) - 1) / (2 * squared(g)));
     return spot(near * inverse_root_near_1(squared(scaled(near, inverse)) - 1), near);
   }
-  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
+  [[nodiscard]] FDCG_HOT Point turn(const Spot& spot, Point v) const {
     const Point bent = gradient(v);
     return (bent - spot.normal * dot(bent, spot.normal)) * (sign / spot.steepness);
   }

@@ -147,17 +147,17 @@ struct Torus {
     return distance > 0 && distance * distance > squared(way);
   }
 
-  [[nodiscard]] Spot spot(Point x, Point) const {
+  [[nodiscard]] FDCG_HOT Spot spot(Point x, Point) const {
     const double off = from_axis(x);
     return spot_of(x, off, 1 / off, x, false);
   }
-  [[nodiscard]] Spot project(Point p, const Spot& spot) const {
+  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot& spot) const {
     const double off2 = p.x * p.x + p.y * p.y, more = off2 * spot.per_off * spot.per_off - 1;
     const double per_off = spot.per_off * inverse_root_near_1(more);
     return spot_of(p, off2 * per_off, per_off, p, true);
   }
   // On the tube at x, or where x is brought onto it.
-  [[nodiscard]] Spot spot_of(Point x, double off, double per_off, Point at, bool is_moved) const {
+  [[nodiscard]] FDCG_HOT Spot spot_of(Point x, double off, double per_off, Point at, bool is_moved) const {
     const Point outward = {x.x * per_off, x.y * per_off, 0};
     const double out = (off - ring) * per_tube, up = x.z * per_tube;
     const double stretch = inverse_root_near_1(out * out + up * up - 1);
@@ -171,7 +171,7 @@ struct Torus {
     return {at, {outward.x * signed_out, outward.y * signed_out, sign * unit_up}, outward, off, per_off, unit_out};
   }
   // Around the tube by 1 / tube, around the axis by what the normal has of `outward`.
-  [[nodiscard]] Point turn(const Spot& spot, Point v) const {
+  [[nodiscard]] FDCG_HOT Point turn(const Spot& spot, Point v) const {
     const Point round = {-spot.outward.y, spot.outward.x, 0};
     const double on_ring = v.x * round.x + v.y * round.y;
     return (v - round * on_ring) * (sign * per_tube) + round * (on_ring * sign * spot.out * spot.per_off);

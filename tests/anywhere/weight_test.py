@@ -10,17 +10,17 @@ import unittest
 from anywhere import ROOT, RUNTIME, AnywhereCase, qemu
 
 SUPPORT = {"body", "body_scene", "body_step", "deform", "deform_boxes", "deform_move", "deform_step", "deform_upkeep",
-           "hooks", "map_file_none", "map_file_posix", "mass", "message", "params", "pile", "pile_damp", "pile_near", "pile_points",
+           "hooks", "map_file_none", "map_file_posix", "mass", "materials", "message", "params", "pile", "pile_damp", "pile_near", "pile_points",
            "pile_step", "pile_touch", "records", "soft_finger", "surface", "surface_scene", "surface_step",
            "verify", "version"}
 
 # Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
 # does not hold yet.
 KB = 1024
-X86_BOTH = {"bar": 48 * KB, "limit": 124 * KB}
-X86_F64 = {"bar": 48 * KB, "limit": 75 * KB}
-M7_F32 = {"bar": 20 * KB, "limit": 37 * KB}
-M7_F32_TERMS = {"bar": 20 * KB, "limit": 41 * KB}
+X86_BOTH = {"bar": 48 * KB, "limit": 128 * KB}
+X86_F64 = {"bar": 48 * KB, "limit": 79 * KB}
+M7_F32 = {"bar": 20 * KB, "limit": 39 * KB}
+M7_F32_TERMS = {"bar": 20 * KB, "limit": 44 * KB}
 
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
 # the C library's square root, and what GCC calls where the processor has no instruction (64-bit integers, doubles)

@@ -158,7 +158,27 @@ class Compile(Case):
         for name in ("hierarchy", "source-map", "info", "mass"):
             self.assertEqual({name}, everything - sections("--without", name))
         self.assertEqual({"hierarchy", "info"}, everything - sections("--without", "info", "--without", "hierarchy"))
+        self.assertNotIn("materials", everything)  # the mesh has none
         self.assertIsNone(about("--without", "info")["options"])
+
+    def test_materials_are_listed_by_name_and_can_be_left_out(self):
+        mesh = self.write("strip.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+                                       "f 1 2 5\nusemtl rubber\nf 1 5 4\nusemtl ice\nf 2 3 6 5\n")
+
+        def about(*options):
+            out = self.path("strip.fdcg")
+            self.fdcg("compile", mesh, "-q", "-o", out, *options)
+            return json.loads(self.fdcg("inspect", "--json", out).stdout), self.fdcg("inspect", out).stdout.decode()
+
+        told, text = about()
+        self.assertEqual({"list": [{"name": "rubber", "nodes": 1}, {"name": "ice", "nodes": 1}], "nodes_without": 1},
+                         told["materials"])
+        self.assertIn("materials    rubber (1 nodes), ice (1 nodes), none (1)", text)
+        self.assertLessEqual({"materials", "names"}, {s["name"] for s in told["sections"]})
+        told, text = about("--without", "materials")
+        self.assertNotIn("rubber", text)
+        self.assertIsNone(told["materials"])
+        self.assertEqual(1, told["nodes"])
 
     def test_merging_joins_coplanar_triangles(self):
         lines = CUBE.splitlines()

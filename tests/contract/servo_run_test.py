@@ -362,6 +362,14 @@ class Check(ServoCase):
             {"objects": [{**cube, "motion": {"kind": "spin"}}]}, {"objects": [{**cube, "motion": {"kind": "fixed", "rate_hz": 1}}]},
             {"objects": [{**cube, "edge_friction": "glue"}]}, {"devices": [{**hand, "profile": "fdcg-reference"}]},
             {"devices": [{"name": "hand"}]}, {"devices": [{"name": "hand", "source": "recorded"}]},
+            {"objects": [{**cube, "surface": {"kind": "sphere", "radius_m": 1}}]}, {"ground": {"mu_static": -1}},
+            {"objects": [{"name": "ball", "surface": {"kind": "ball"}}]}, {"gravity_m_per_s2": [0, 0]},
+            {"objects": [{**cube, "motion": {"kind": "body", "mass_kg": 1, "density_kg_per_m3": 1}}]},
+            {"objects": [{**cube, "motion": {"kind": "body", "mass_kg": 0}}]},
+            {"objects": [{**cube, "motion": {"kind": "soft", "depth_m": 0}}]},
+            {"devices": [{**hand, "turn": {"button": 0}}]}, {"devices": [{**hand, "grip": {"button": 32}}]},
+            {"devices": [{**hand, "simulation": {"script": [{"at_s": 0}]}}]},
+            {"devices": [{**hand, "simulation": {"script": []}}]},
             {"devices": [{**hand, "contacts": []}]}, {"devices": [{**hand, "force_limit_n": 0}]},
             {"devices": [{**hand, "simulation": {"rate_hz": 0}}]},
             {"devices": [{**hand, "simulation": {"faults": [{"kind": "fire", "at_s": 1}]}}]},
@@ -397,12 +405,61 @@ class Check(ServoCase):
 
     def test_what_is_neither_and_what_cannot_be_read(self):
         self.assertIn(b"neither a scene nor a device profile", self.servo("check", self.write("x.json", "{}"), code=1).stdout)
-        self.assertIn(b"JSON", self.servo("check", self.write("y.json", "[1,"), code=1).stdout)
-        self.assertIn(b"JSON", self.servo("check", self.write("z.json", ""), code=1).stdout)
+        for name, text in (("y.json", "[1,"), ("z.json", "")):
+            self.assertIn(b"JSON", self.servo("check", self.write(name, text), code=3).stderr)
         done = self.servo("check", str(EXAMPLE), self.path("missing.json"), code=3)
         self.assertIn(b"missing.json", done.stderr)
         self.assertIn(b": ok\n", done.stdout)
         self.assert_one_line(self.servo("check", code=2), "files")
+
+
+class Examples(ServoCase):
+    """Each from end to end on the command line, as tools/examples runs it; what they do: tests/device/examples_test.cpp."""
+
+    def test_each_runs_without_waiting_replays_and_is_told_as_csv(self):
+        scenes = EXAMPLE.parent
+        shutil.copy(scenes / "sheet.off", self.folder)
+        self.fdcg("compile", self.path("sheet.off"), "--triangles", "-o", self.path("sheet.fdcg"), "-q")
+        validator = jsonschema.Draft202012Validator(schema("servo-scene.schema.json"))
+        for name, column, contacts in (("lift_cube", "cube_z", 2), ("hold_sphere", "ball_z", 3), ("press_sheet", "sheet_dent", 1)):
+            with self.subTest(name):
+                scene = json.loads((scenes / f"{name}.json").read_text())
+                validator.validate(scene)
+                path, log = self.write(f"{name}.json", json.dumps(scene)), self.path(f"{name}.fdcglog")
+                self.servo("check", path)
+                done = self.run_scene(path, "--arm", "--for", "8", "--fast", "--log", log, "--status", "json", codes=(0,))
+                last = lines_of(done.stdout)[-1]
+                jsonschema.validate(last, schema("servo-status.schema.json"))
+                self.assertEqual(8000, last["devices"][0]["ticks"])
+                rewritten = self.path("again.fdcglog")
+                self.servo("replay", log, "-o", self.path("a.csv"), "--touches", self.path("t.csv"), "--write", rewritten)
+                self.assertEqual(pathlib.Path(log).read_bytes(), pathlib.Path(rewritten).read_bytes())
+                rows = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("a.csv")).read_text())))
+                self.assertEqual(8000, len(rows))
+                values = [float(row[column]) for row in rows]
+                self.assertGreater(max(values) - values[0], 0.004)
+                touches = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("t.csv")).read_text())))
+                self.assertEqual({str(i) for i in range(contacts)}, {touch["contact"] for touch in touches})
+                held = [touch for touch in touches if 2.1 < float(touch["t"]) < 5.7 and name != "press_sheet"]
+                self.assertTrue(all(touch["slip"] == "0" and 0 < float(touch["margin"]) <= 1 for touch in held))
+
+    def test_only_devices_without_real_time_run_fast(self):
+        hid = [{"name": "hand", "profile": "fdcg-reference"}]
+        done = self.servo("run", self.scene(devices=hid), "--fast", "--for", "1", code=3)
+        self.assert_one_line(done, "without --fast")
+        self.assert_one_line(self.servo("run", self.scene(), "--fast", "--no-log", "-q", code=1), "--for")
+
+    def test_a_recording_is_played_without_waiting(self):
+        log, again = self.path("a.fdcglog"), self.path("b.fdcglog")
+        self.run_scene(self.scene(), "--fast", "--for", "20", "--log", log, "-q", codes=(0,))
+        recorded = [{"name": "hand", "source": "recorded", "recording": "a.fdcglog"}]
+        before = time.monotonic()
+        self.run_scene(self.scene("b.json", devices=recorded), "--fast", "--log", again, "-q", codes=(0,))
+        self.assertLess(time.monotonic() - before, 15)
+        forces = [[(row["fx"], row["fy"], row["fz"]) for row in
+                   csv.DictReader(io.StringIO(self.servo("replay", file, "-o", "-").stdout.decode()))] for file in (log, again)]
+        self.assertEqual(20000, len(forces[0]))
+        self.assertEqual(forces[0], forces[1])
 
 
 class Devices(ServoCase):

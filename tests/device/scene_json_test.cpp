@@ -42,6 +42,26 @@ constexpr const char* kFull = R"({
   "limits": {"force_n": 3}
 })";
 
+// The keys of a grasp, none at its default.
+constexpr const char* kGrasp = R"({
+  "fdcg_scene": 1, "gravity_m_per_s2": [1, 2, -3],
+  "ground": {"normal": [0, 0.6, 0.8], "offset_m": -0.1, "stiffness_n_per_m": 4000, "mu_static": 0.9, "mu_dynamic": 0.8},
+  "objects": [
+    {"name": "cube", "file": "cube.fdcg", "motion": {"kind": "body", "density_kg_per_m3": 700, "points": 9,
+     "linear_damping_per_s": 0.1, "angular_damping_per_s": 0.2, "notes": "x"}},
+    {"name": "cone", "surface": {"kind": "cone", "radius_m": 0.1, "top_radius_m": 0.05, "length_m": 0.3},
+     "motion": {"kind": "body", "mass_kg": 2}},
+    {"name": "egg", "surface": {"kind": "ellipsoid", "half_m": [0.1, 0.2, 0.3], "hollow": true}},
+    {"name": "ring", "surface": {"kind": "torus", "radius_m": 0.1, "tube_radius_m": 0.02}},
+    {"name": "sheet", "file": "sheet.fdcg", "motion": {"kind": "soft", "stiffness_n_per_m": 6, "tension_n_per_m": 7,
+     "damping_n_s_per_m": 8, "depth_m": 0.01}}],
+  "devices": [
+    {"name": "left", "source": "simulated",
+     "contacts": [{"offset_m": [0.03, 0, 0], "closed_m": [0.01, 0.001, 0]}, {"offset_m": [-0.03, 0, 0]}],
+     "grip": {"button": 3, "seconds": 0.25}, "turn": {"button": 31, "seconds": 2, "rotation_xyzw": [0, 0, -0.6, -0.8]},
+     "simulation": {"script": [{"at_s": 0.5, "place_m": [0.1, 0, 0.2]}, {"at_s": 1, "place_m": [0, 0, 0.3], "buttons": [0, 7]}]}}]
+})";
+
 std::string refusal(const json& scene) {
   HostConfig config;
   return parse_scene(scene.dump(), "dir/s.json", &config);
@@ -185,6 +205,86 @@ TEST_CASE("a scene that is written reads back bit for bit, whatever its numbers"
     }
     back.log_file = config.log_file;
     REQUIRE(write_scene(back) == text);
+  }
+}
+
+TEST_CASE("bodies, surfaces, soft sheets, grips and scripts are read, and written the same") {
+  HostConfig config;
+  REQUIRE(parse_scene(kGrasp, "dir/s.json", &config) == "");
+  CHECK(config.gravity_m_per_s2[2] == -3);
+  CHECK(config.ground.is_there);
+  CHECK(config.ground.normal[1] == 0.6);
+  CHECK(config.ground.offset_m == -0.1);
+  CHECK(config.ground.params.stiffness_n_per_m == 4000);
+  CHECK(config.ground.params.mu_static == 0.9);
+  const BodyConfig& body = config.objects[0].motion.body;
+  CHECK(config.objects[0].motion.kind == MotionKind::kBody);
+  CHECK(!is_moved(config.objects[0].motion));
+  CHECK(body.density_kg_per_m3 == 700);
+  CHECK(body.points == 9);
+  CHECK(body.linear_damping_per_s == 0.1);
+  CHECK(body.angular_damping_per_s == 0.2);
+  CHECK(config.objects[1].is_surface);
+  CHECK(config.objects[1].file.empty());
+  CHECK(config.objects[1].surface.kind == FDCG_SURFACE_CONE);
+  CHECK(config.objects[1].surface.top_radius_m == 0.05);
+  CHECK(config.objects[1].motion.body.mass_kg == 2);
+  CHECK(config.objects[2].surface.half_m[1] == 0.2);
+  CHECK(config.objects[2].surface.is_hollow == 1);
+  CHECK(config.objects[3].surface.tube_radius_m == 0.02);
+  CHECK(config.objects[4].motion.soft.tension_n_per_m == 7);
+  CHECK(config.objects[4].motion.soft.depth_m == 0.01);
+  const DeviceConfig& left = config.devices[0];
+  CHECK(left.grip.close.mask == 8);
+  CHECK(left.grip.close.seconds == 0.25);
+  CHECK(left.grip.turn.mask == 0x80000000u);
+  CHECK(left.grip.turn_xyzw[2] == 0.6);  // the shorter way round
+  CHECK(left.grip.turn_xyzw[3] == 0.8);
+  CHECK(left.grip.closed_m[0][1] == 0.001);
+  CHECK(left.grip.closed_m[1][0] == -0.03);
+  REQUIRE(left.simulation.script.size() == 2);
+  CHECK(left.simulation.script[0].place_m[2] == 0.2);
+  CHECK(left.simulation.script[1].buttons == 0x81);
+  CHECK(left.profile.limits.workspace_max_m[0] == Approx(0.2));
+  CHECK(left.profile.limits.velocity_m_per_s == Approx(2 + 1.5 * 0.2 + 1.5 * 0.2));
+  const std::string text = write_scene(config);
+  HostConfig back;
+  REQUIRE(parse_scene(text, "log", &back) == "");
+  CHECK(write_scene(back) == text);
+}
+
+TEST_CASE("what is wrong with a grasp is told too") {
+  struct Wrong {
+    const char *pointer, *value;
+    std::vector<const char*> words;
+  };
+  const std::vector<Wrong> cases = {
+      {"/objects/0/surface", R"({"kind": "sphere", "radius_m": 1})", {"objects[0].file stands beside surface"}},
+      {"/objects/1/surface/radius_m", "1e-30", {"objects[1].surface.kind is refused", "radius"}},
+      {"/objects/1/motion", R"({"kind": "soft"})", {"objects[1].motion is soft", "give a file"}},
+      {"/objects/0/motion/mass_kg", "1", {"objects[0].motion.mass_kg stands beside density_kg_per_m3"}},
+      {"/objects/0/motion/points", "0", {"points is 0", "1 to 256"}},
+      {"/objects/0/motion/axis", "[1, 0, 0]", {"'axis'", "of a body"}},
+      {"/ground/normal", "[0, 0, 2]", {"ground.normal has length 2"}},
+      {"/devices/0/turn/rotation_xyzw", "[0, 0, 0, 0]", {"turn.rotation_xyzw has length 0"}},
+      {"/devices/0/grip/button", "32", {"grip.button is 32", "0 to 31"}},
+      {"/devices/0/grip", "", {"contacts[0].closed_m has no \"grip\""}},
+      {"/devices/0/simulation/start_m", "[0, 0, 0]", {"simulation.start_m stands beside script"}},
+      {"/devices/0/simulation/script/1/at_s", "0.5", {"script[1].at_s is 0.5", "times ascend"}},
+      {"/devices/0/simulation/script/1/buttons", "[1.5]", {"script[1].buttons has 1.5"}},
+  };
+  for (const Wrong& wrong : cases) {
+    json scene = json::parse(kGrasp);
+    if (*wrong.value == 0) {
+      scene["devices"][0].erase("grip");
+    } else {
+      scene[json::json_pointer(wrong.pointer)] = json::parse(wrong.value);
+    }
+    const std::string message = refusal(scene);
+    CAPTURE(wrong.pointer, message);
+    CHECK(message.rfind("dir/s.json: ", 0) == 0);
+    for (const char* const word : wrong.words)
+      CHECK(message.find(word) != std::string::npos);
   }
 }
 

@@ -33,6 +33,13 @@ LoggedOutput any_output(Random& random) {
   if (random() % 2 == 0) output.sample.sequence = static_cast<std::uint32_t>(random());
   if (random() % 2 == 0) output.sample.time_s = any_double(random);
   output.sample.has_fault = random() % 2;
+  if (random() % 2 == 0) output.body_count = static_cast<std::uint8_t>(random() % (kMaxBodies + 1));
+  for (int body = 0; body < output.body_count; ++body) {
+    for (double& x : output.bodies[body].translation_m)
+      x = any_double(random);
+    for (double& x : output.bodies[body].rotation_xyzw)
+      x = any_double(random);
+  }
   return output;
 }
 
@@ -98,6 +105,12 @@ TEST_CASE("bytes that are no tick are refused, and none is read beyond the end")
       REQUIRE(decode_tick_output(copy.data(), copy.size(), &output) <= copy.size());
     }
   }
+  LoggedOutput crowded;
+  crowded.body_count = kMaxBodies;
+  const std::size_t crowded_bytes = encode_tick_output(crowded, bytes);
+  CHECK(crowded_bytes <= kMostOutputBytes);
+  bytes[6] = kMaxBodies + 1;  // the first of the only part
+  CHECK(decode_tick_output(bytes, kMostTickBytes, &output) == 0);
   for (const std::size_t place : {16u, 17u, 18u, 19u}) {  // read, flags, poses, reports
     input = TickInput{};
     const std::size_t count = encode_tick_input(input, bytes);
@@ -115,6 +128,12 @@ TEST_CASE("the first field that differs is named with both values") {
   b.hip_world_m[0] = -0.0;  // equal, but not the same bits
   CHECK(first_difference(a, b) == "hip_world_m[0]: 0 in the log, -0 in the replay");
   b = a;
+  a.body_count = b.body_count = 3;
+  b.bodies[2].rotation_xyzw[3] = 1;
+  CHECK(first_difference(a, b) == "bodies[2].qw: 0 in the log, 1 in the replay");
+  b.body_count = 2;
+  CHECK(first_difference(a, b) == "body_count: 3 in the log, 2 in the replay");
+  b = a = LoggedOutput();
   a.phase = 2;
   CHECK(first_difference(a, b) == "phase: 2 in the log, 0 in the replay");
 }

@@ -48,6 +48,9 @@ inline void seal(AlignedBytes& file) {
 inline void touch_everywhere(const fdcg_graph& graph, std::uint32_t steps) {
   const fdcg_header& header = *graph.header;
   fdcg_params params = fdcg_default_params();
+  const fdcg_material materials[2] = {{0.9, 0.5, 400}, {0.1, 0.1, 3000}};
+  params.materials = materials;
+  params.material_count = 2;
   fdcg_contact contact = {};
   fdcg_result result;
   std::uint64_t random = 88172645463325252u;
@@ -61,6 +64,7 @@ inline void touch_everywhere(const fdcg_graph& graph, std::uint32_t steps) {
     }
     params.mu_static = params.mu_dynamic = i % 3 == 0 ? 0 : 0.4;
     params.edge_friction = i % 2;
+    params.terms = i / 16 % 2 == 0 ? 0 : FDCG_TERM_ALL;
     fdcg_step(&graph, &params, &contact, hip, &result);
   }
 }

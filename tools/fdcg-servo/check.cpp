@@ -17,6 +17,7 @@ struct Judgement {
   std::string what;     // "scene: 2 objects, 1 device"
   std::string problem;  // one line that begins with the file; empty: none
   std::vector<std::string> warnings;
+  bool is_unreadable = false;  // no JSON at all
 };
 
 std::string counted(std::size_t count, const char* what) {
@@ -47,14 +48,16 @@ Judgement judge_profile(const std::string& file, const std::string& text) {
   return judgement;
 }
 
-// By the key that says what it is. What has neither is no JSON at all, or is told of both.
+// By the key that says what it is. What has neither is no JSON at all (its scene says where), or is told of both.
 Judgement judge(const std::string& file, const std::string& text) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_discarded() && !json.contains("fdcg_scene")) {
     if (json.contains("fdcg_profile")) return judge_profile(file, text);
     return {"", file + ": neither a scene nor a device profile: \"fdcg_scene\": 1 or \"fdcg_profile\": 1 must say which", {}};
   }
-  return judge_scene(file, text);
+  Judgement judgement = judge_scene(file, text);
+  judgement.is_unreadable = json.is_discarded();
+  return judgement;
 }
 
 int check_files(const std::vector<std::string>& files) {
@@ -66,6 +69,10 @@ int check_files(const std::vector<std::string>& files) {
       continue;
     }
     const Judgement judgement = judge(file, text);
+    if (judgement.is_unreadable) {
+      code = fail(kFile, judgement.problem);
+      continue;
+    }
     if (!judgement.problem.empty()) {
       std::printf("%s\n", judgement.problem.c_str());
       code = std::max<int>(code, kFindings);
@@ -89,7 +96,7 @@ Examples:
 
 A file's first problem is told with its field, value and limit; the graphs of a scene are opened. Warnings do not fail.
 
-Exit codes: 0 every file is fine; 1 one is not; 2 wrong usage; 3 one cannot be read.)");
+Exit codes: 0 every file is fine; 1 one is not; 2 wrong usage; 3 one cannot be read or is no JSON.)");
   const auto files = std::make_shared<std::vector<std::string>>();
   command->add_option("files", *files, "Scenes and device profiles")->required()->type_name("FILE...");
   return {command, [files] { return check_files(*files); }};

@@ -37,7 +37,7 @@ struct ReplayArguments {
   fdcg_params params = fdcg_default_params();
   bool has_mu_dynamic = false;
   bool quiet = false;
-  std::string graphs, rewritten;  // of a session's log
+  std::string graphs, touches, rewritten;  // of a session's log
 };
 
 struct Tick {
@@ -237,7 +237,8 @@ int check_arguments(const ReplayArguments& arguments) {
 // `given`: the options of a graph's replay that stand on the command line.
 int run_session(const ReplayArguments& arguments, const std::string& given) {
   if (!given.empty()) return fail(kUsage, given + " is not for a session's log: the log has all that is replayed");
-  return replay_session({arguments.graph, arguments.graphs, arguments.log, arguments.rewritten, arguments.quiet});
+  return replay_session(
+      {arguments.graph, arguments.graphs, arguments.log, arguments.touches, arguments.rewritten, arguments.quiet});
 }
 
 int run_replay(const ReplayArguments& arguments) {
@@ -245,8 +246,8 @@ int run_replay(const ReplayArguments& arguments) {
     return fail(kUsage, "--trajectory is required: '" + arguments.graph +
                             "' is no session's log, and a graph needs a path (see 'fdcg-servo replay --help')");
   }
-  if (!arguments.graphs.empty() || !arguments.rewritten.empty()) {
-    return fail(kUsage, "--graphs and --write are for a session's log, and '" + arguments.graph + "' is none");
+  if (!arguments.graphs.empty() || !arguments.touches.empty() || !arguments.rewritten.empty()) {
+    return fail(kUsage, "--graphs, --touches and --write are for a session's log, and '" + arguments.graph + "' is none");
   }
   if (const int code = check_arguments(arguments); code != kClean) return code;
   std::optional<AtomicFile> log;
@@ -295,7 +296,7 @@ Examples:
   fdcg-servo replay bunny.fdcg --trajectory hip.csv -o - --mu-s 0 --mu-d 0 | head
   fdcg-servo replay bunny.fdcg --trajectory hip.csv --stiffness 2000 --edge-friction paper
 
-  fdcg-servo replay session.fdcglog -o session.csv
+  fdcg-servo replay session.fdcglog -o session.csv --touches touches.csv
 
 The trajectory's header names at least t, x, y and z: seconds, and metres in the object's frame. Replaying twice gives the
 same log, byte for byte. Without -o only the summary is printed.
@@ -323,6 +324,8 @@ output compared bit for bit. Exit code 1: an output differs, or the log lacks ti
       ->type_name("wedge|paper");
   command->add_option("--graphs", arguments->graphs, "Session's log: the folder of its graphs; default: where they were")
       ->type_name("FOLDER");
+  command->add_option("--touches", arguments->touches, "Session's log: a row for each touch of each contact to FILE (CSV)")
+      ->type_name("FILE");
   command->add_option("--write", arguments->rewritten, "Session's log: write it anew from the replay")->type_name("FILE");
   command->add_flag("-q,--quiet", arguments->quiet, "No summary");
   return {command, [arguments, command] {

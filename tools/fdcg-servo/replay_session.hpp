@@ -9,7 +9,7 @@ namespace fdcg::servo {
 struct ReplaySessionArguments {
   std::string session;
   std::string graphs;  // folder; empty: where they were
-  std::string csv, rewritten;
+  std::string csv, touches, rewritten;
   bool quiet = false;
 };
 int replay_session(const ReplaySessionArguments& arguments);  // the exit code

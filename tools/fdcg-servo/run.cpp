@@ -14,6 +14,7 @@
 #include "../common/terminal.hpp"
 #include "command.hpp"
 #include "host.hpp"
+#include "run_fast.hpp"
 #include "scene_json.hpp"
 #include "status_text.hpp"
 
@@ -32,7 +33,7 @@ enum class StatusKind { kText, kJson, kNone };
 
 struct RunArguments {
   std::string scene, log, hid;
-  bool no_log = false, arm = false, quiet = false;
+  bool no_log = false, arm = false, quiet = false, fast = false;
   double for_s = 0;           // 0: no end
   double status_every_s = 0;  // 0: the default
   StatusKind status = StatusKind::kText;
@@ -334,6 +335,11 @@ int run_scene(const RunArguments& arguments) {
   if (arguments.no_log) config.log_file.clear();
   if (arguments.hid == "hidraw") config.loop.backend = dev::HidBackend::kHidraw;
   if (arguments.hid == "libusb") config.loop.backend = dev::HidBackend::kLibusb;
+  const StatusKind says = arguments.quiet ? StatusKind::kNone : arguments.status;
+  if (arguments.fast) {
+    return run_fast(std::move(config), warnings,
+                    {arguments.for_s, arguments.arm, says == StatusKind::kText, says == StatusKind::kJson});
+  }
   const std::string log_file = config.log_file;
   dev::Host host;
   if (const std::string problem = host.open(std::move(config)); !problem.empty()) return fail(kFile, problem);
@@ -359,6 +365,7 @@ Command add_run(CLI::App& app) {
 Examples:
   fdcg-servo run scene.json
   fdcg-servo run scene.json --arm --for 60 --log session.fdcglog
+  fdcg-servo run scene.json --arm --for 60 --fast --log session.fdcglog
   fdcg-servo run scene.json --status json --status-every 0.1 | jq .devices[0].rate_hz
 
 Commands on standard input, a line each: arm, disarm, quit. Its end does not end the run; Ctrl-C does, with zero force.
@@ -369,6 +376,8 @@ program.)");
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("scene", arguments->scene, "Scene (schemas/servo-scene.schema.json)")->required()->type_name("SCENE");
   command->add_flag("--arm", arguments->arm, "Arm each device once, as soon as it is there and free of force");
+  command->add_flag("--fast", arguments->fast,
+                    "Simulated and recorded devices only: no waiting, each on a clock of its own; the same log every time");
   command->add_option("--for", arguments->for_s, "Stop after so long")->type_name("SECONDS")->check(CLI::Range(0.001, 1e9));
   command->add_option("--hid", arguments->hid, "hidapi's back end, in place of the scene's")
       ->type_name("hidraw|libusb")

@@ -266,12 +266,12 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
       ->type_name("stored|derived");
   const auto parse_without = [arguments](const std::vector<std::string>& names) {
     for (const std::string& name : names) {
-      require_choice("--without", name, {"hierarchy", "source-map", "info", "mass"});
+      require_choice("--without", name, {"hierarchy", "source-map", "info", "mass", "materials"});
       arguments->options.without.insert(name);
     }
   };
   command.add_option_function<std::vector<std::string>>("--without", parse_without, "Leave SECTION out; may be repeated")
-      ->type_name("hierarchy|source-map|info|mass")
+      ->type_name("hierarchy|source-map|info|mass|materials")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }

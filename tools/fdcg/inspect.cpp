@@ -49,8 +49,9 @@ class OpenGraph {
 };
 
 std::string section_name(std::uint32_t id) {
-  constexpr const char* kNames[] = {"nodes",     "node-offsets", "edges", "connections", "corners",      "fans",
-                                    "hierarchy", "source-map",   "info",  "fan-boxes",   "busy-corners", "mass"};
+  constexpr const char* kNames[] = {"nodes",        "node-offsets", "edges",      "connections", "corners",
+                                    "fans",         "hierarchy",    "source-map", "info",        "fan-boxes",
+                                    "busy-corners", "mass",         "materials",  "names"};
   if (id >= 1 && id <= std::size(kNames)) return kNames[id - 1];
   return "unknown-" + std::to_string(id);
 }
@@ -106,6 +107,18 @@ Json mass_of(const fdcg_graph& graph) {
           {"inertia_kg_m2", is_known ? tensor(mass.density_kg_per_m3) : Json(nullptr)}};
 }
 
+// By name, with the number of nodes; null where the file has none.
+Json materials_of(const fdcg_graph& graph) {
+  if (graph.node_materials == nullptr) return nullptr;
+  std::vector<std::uint32_t> nodes(graph.material_count + 1, 0);
+  for (std::uint32_t n = 0; n < graph.header->node_count; ++n)
+    ++nodes[std::min(fdcg_node_material(&graph, n), graph.material_count)];
+  Json list = Json::array();
+  for (std::uint32_t i = 0; i < graph.material_count; ++i)
+    list.push_back({{"name", fdcg_material_name(&graph, i)}, {"nodes", nodes[i]}});
+  return {{"list", list}, {"nodes_without", nodes.back()}};
+}
+
 Json description_of(const fdcg_graph& graph) {
   const fdcg_header& header = *graph.header;
   const std::uint32_t* const types = header.connection_type_count;
@@ -129,6 +142,7 @@ Json description_of(const fdcg_graph& graph) {
           {"max_deviation_m", header.max_deviation * header.metres_per_unit},
           {"mass", mass_of(graph)},
           {"no_mass", from_info("no_mass")},
+          {"materials", materials_of(graph)},
           {"sections", sections_of(header)},
           {"source",
            {{"file_sha256", source.contains("file_sha256") ? source["file_sha256"] : Json(nullptr)},
@@ -140,6 +154,13 @@ Json description_of(const fdcg_graph& graph) {
 
 std::string as_words(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string materials_text(const Json& materials) {
+  std::string text = "  materials    ";
+  for (const Json& material : materials["list"])
+    text += as_words(material["name"]) + " (" + material["nodes"].dump() + " nodes), ";
+  return text + "none (" + materials["nodes_without"].dump() + ")\n";
 }
 
 std::string mass_text(const Json& about) {
@@ -167,6 +188,7 @@ std::string description_text(const std::string& file, const Json& about) {
   text += "  unit         " + about["metres_per_unit"].dump() + " m\n";
   text += "  deviation    " + about["max_deviation_m"].dump() + " m at most between a corner and its node's plane\n";
   text += mass_text(about);
+  if (!about["materials"].is_null()) text += materials_text(about["materials"]);
   const Json& source = about["source"];
   text += "  source       " + count(source["vertices"]) + " vertices, " + count(source["faces"]) + " faces, SHA-256 " +
           (source["file_sha256"].is_null() ? "not recorded" : as_words(source["file_sha256"])) + "\n";

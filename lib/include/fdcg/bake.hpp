@@ -84,6 +84,7 @@ struct Part {
 // The faces of a mesh file as the file has them: nothing merged, moved, rounded or dropped.
 struct PolygonSoup {
   static constexpr std::uint32_t kInvalidVertex = 0xFFFFFFFFu;  // an index that the file has no vertex for
+  static constexpr std::uint16_t kNoMaterial = 0xFFFF;
 
   std::string name;  // the path as the user gave it, for messages
   Format format = Format::off;
@@ -99,6 +100,10 @@ struct PolygonSoup {
   double absolute_quantum = 0;  // decimal text: half a unit of the last digit printed, at most 1e-5 of the extent; else 0
   std::string sha256;           // of the file's bytes, 64 lower-case hex digits
   std::vector<Part> parts;      // ascending first_face; empty where the file names none
+  // OBJ's usemtl, glTF's materials, by name, in order of first use; empty where no face has one. A material of no name and one
+  // beyond the 65,535th are none.
+  std::vector<std::string> materials;
+  std::vector<std::uint16_t> face_material;  // of each face, or kNoMaterial; empty where there are no materials
   std::vector<Ignored> ignored;
   std::vector<std::string> other_files;  // further files that the mesh is from: a glTF file's buffers
 
@@ -300,7 +305,7 @@ struct CompileOptions {
   Weld weld;
   bool orient = false;
   bool store_planes = true;
-  std::set<std::string> without;  // optional sections left out: hierarchy, source-map, info, mass
+  std::set<std::string> without;  // optional sections left out: hierarchy, source-map, info, mass, materials
   // At most one of the two; 0: not known. With either, a mesh that encloses no solid is refused; without, its file has no mass
   // properties (Compiled::no_mass says why).
   double density_kg_per_m3 = 0;

@@ -22,10 +22,11 @@ void force_to_device(const Mapping& mapping, const double world_n[3], double dev
     device_n[i] = r[i] * world_n[0] + r[3 + i] * world_n[1] + r[6 + i] * world_n[2];
 }
 
-void contact_place(const DeviceSetup& setup, int contact, const double tip_m[3], double world_m[3]) {
-  double place_m[3];
+void contact_place(const DeviceSetup& setup, const GripState& grip, int contact, const double tip_m[3], double world_m[3]) {
+  double offset_m[3], place_m[3];
+  grip_offset(setup.grip, grip, contact, setup.contacts_m[contact], offset_m);
   for (int i = 0; i < 3; ++i)
-    place_m[i] = tip_m[i] + setup.contacts_m[contact][i];
+    place_m[i] = tip_m[i] + offset_m[i];
   to_world(setup.mapping, place_m, world_m);
 }
 
@@ -64,32 +65,84 @@ void count_tick(DeviceState& device, const TickInput& input, bool has_sample) {
   ++counters.ticks;
 }
 
+// Substeps, in which the fingers go in even steps to where they are now: what they hold is not struck once a tick.
+void step_bodies(DeviceState& device, const double (*to_m)[3]) {
+  const DeviceSetup& setup = device.setup;
+  const std::uint32_t count = setup.substeps;
+  const double substep_s = 1 / setup.profile.rate_hz / count;
+  for (std::uint32_t step = 1; step <= count; ++step) {
+    const double share = static_cast<double>(step) / count;
+    for (int contact = 0; contact < setup.contact_count; ++contact) {
+      const double* const from = device.places_m[contact];
+      double at_m[3];
+      for (int i = 0; i < 3; ++i)
+        at_m[i] = step == count ? to_m[contact][i] : from[i] + (to_m[contact][i] - from[i]) * share;
+      fdcg_scene_move_finger(setup.scene, setup.fingers[contact], at_m, nullptr);
+    }
+    const fdcg_status status = fdcg_scene_step_pile(setup.scene, setup.pile, setup.bodies, setup.body_count, 1, substep_s,
+                                                    setup.reactions, setup.reaction_count, nullptr);
+    if (status == FDCG_OK) continue;
+    device.counters.bodies_lost = 1;
+    return;
+  }
+}
+
+// The contacts to where tip and grip have them now, and the scene steps.
+void step_scene(DeviceState& device, const double tip_m[3]) {
+  const DeviceSetup& setup = device.setup;
+  const bool has_bodies = setup.body_count > 0 && device.counters.bodies_lost == 0;
+  double to_m[kMaxContacts][3];
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
+    contact_place(setup, device.grip, contact, tip_m, to_m[contact]);
+    if (device.has_place && has_bodies) continue;
+    const auto place = device.has_place ? fdcg_scene_move_finger : fdcg_scene_reset_finger;
+    place(setup.scene, setup.fingers[contact], to_m[contact], nullptr);
+    std::copy_n(to_m[contact], 3, device.places_m[contact]);
+  }
+  for (int i = 0; i < setup.soft_count; ++i) {
+    if (!device.has_place) setup.soft[i]->release();
+    setup.soft[i]->step(to_m, 1 / setup.profile.rate_hz);
+  }
+  device.has_place = true;
+  if (has_bodies) {
+    step_bodies(device, to_m);
+  } else {
+    fdcg_scene_step(setup.scene);
+  }
+  std::copy_n(&to_m[0][0], 3 * setup.contact_count, &device.places_m[0][0]);
+}
+
+// The state that is told is that of the touch with the largest force.
+void note_touch(const double force_n[3], std::uint32_t state, double* largest, TickOutput* output) {
+  const double square = force_n[0] * force_n[0] + force_n[1] * force_n[1] + force_n[2] * force_n[2];
+  if (square < *largest) return;
+  *largest = square;
+  output->state = state;
+}
+
 // Moves the fingers to the tip, steps the scene, sums what they feel. World's frame.
 void feel(DeviceState& device, const TickInput& input, const double tip_m[3], TickOutput* output) {
   const DeviceSetup& setup = device.setup;
   for (std::uint32_t i = 0; i < std::min<std::uint32_t>(input.pose_count, setup.driven_count); ++i) {
     fdcg_scene_set_pose(setup.scene, setup.driven[i], &input.poses[i], nullptr);  // a bad pose: the old one stays
   }
-  const auto place = device.has_place ? fdcg_scene_move_finger : fdcg_scene_reset_finger;
-  for (int contact = 0; contact < setup.contact_count; ++contact) {
-    double world_m[3];
-    contact_place(setup, contact, tip_m, world_m);
-    place(setup.scene, setup.fingers[contact], world_m, nullptr);
-  }
-  device.has_place = true;
-  fdcg_scene_step(setup.scene);
+  step_scene(device, tip_m);
   double largest = 0;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result felt;
     if (fdcg_scene_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
     for (int i = 0; i < 3; ++i)
       output->wanted_force_n[i] += felt.force_n[i];
-    for (std::uint32_t t = 0; t < felt.touch_count; ++t) {
-      const double* const f = felt.touches[t].force_n;
-      const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-      if (square < largest) continue;
-      largest = square;
-      output->state = felt.touches[t].state;
+    for (std::uint32_t t = 0; t < felt.touch_count; ++t)
+      note_touch(felt.touches[t].force_n, felt.touches[t].state, &largest, output);
+  }
+  for (int soft = 0; soft < setup.soft_count; ++soft) {
+    for (int contact = 0; contact < setup.contact_count; ++contact) {
+      const SoftTouch& touch = setup.soft[soft]->touch(contact);
+      if (touch.state == FDCG_FREE) continue;
+      for (int i = 0; i < 3; ++i)
+        output->wanted_force_n[i] += touch.force_n[i];
+      note_touch(touch.force_n, touch.state, &largest, output);
     }
   }
 }
@@ -103,7 +156,7 @@ bool begin_device(const DeviceSetup& setup, DeviceState* device, fdcg_error* err
   const double tip_m[3] = {0, 0, 0};
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     double world_m[3];
-    contact_place(setup, contact, tip_m, world_m);
+    contact_place(setup, device->grip, contact, tip_m, world_m);
     if (fdcg_scene_add_finger(setup.scene, world_m, &device->setup.fingers[contact], error) != FDCG_OK) return false;
   }
   return true;
@@ -128,6 +181,7 @@ void device_tick(DeviceState& device, const TickInput& input, TickOutput* output
     gate.has_sample = true;
     gate.device_fault = sample.has_fault;
     gate.is_tip_valid = tip_pose(device.setup.profile.kinematics, device.setup.profile.axis_count, sample.axis, &gate.tip);
+    move_grip(device.setup.grip, sample.buttons, 1 / device.setup.profile.rate_hz, &device.grip);
     if (gate.is_tip_valid) {
       feel(device, input, gate.tip.position_m, output);
       to_world(device.setup.mapping, gate.tip.position_m, device.tip_world_m);
@@ -141,6 +195,9 @@ void device_tick(DeviceState& device, const TickInput& input, TickOutput* output
   output->state = device.state;
   std::copy_n(device.tip_world_m, 3, output->hip_world_m);
   std::copy_n(device.wanted_n, 3, output->wanted_force_n);
+  output->body_count = device.setup.body_count;
+  for (std::uint32_t i = 0; i < output->body_count; ++i)
+    output->bodies[i] = fdcg_body_pose(&device.setup.bodies[i].body);
 
   gate.now_ns = input.now_ns;
   gate.arm = input.arm && device.samples == kSamplesToArm;

@@ -3,23 +3,29 @@
 // The loop gathers a TickInput (every clock reading and every byte is in it), calls device_tick, hands the force to the writer
 // and the record to the log. So a session is replayed bit for bit by feeding the same inputs, and every fault can be tested
 // without a device. No heap, no lock, no clock.
+//
+// Bodies (fdcg/body.h) live in ticks: each tick with a good report moves them on by one period of the device, whatever the
+// clock says, and while no report comes they stand still. So a busy computer makes them slow, never wild.
 #pragma once
 
 #include <cstdint>
 
-#include "fdcg/fdcg.h"
+#include "fdcg/pile.h"
 #include "gate.hpp"
+#include "grip.hpp"
 #include "profile.hpp"
 #include "report_codec.hpp"
+#include "soft.hpp"
 #include "transport.hpp"
 
 namespace fdcg::dev {
 
-inline constexpr int kMaxDrain = 64;    // reports in one tick: what hidraw keeps
-inline constexpr int kMaxContacts = 8;  // of one device
-inline constexpr int kSamplesToArm = 8;  // good reports since the device was opened: by then it has taken an output that asks for no
-                                         // force, which many want before the first that does
-inline constexpr int kMaxDriven = 16;   // objects that something moves
+inline constexpr int kMaxDrain = 64;     // reports in one tick: what hidraw keeps
+inline constexpr int kSamplesToArm = 8;  // good reports since the device was opened: by then it has taken an output that asks
+                                         // for no force, which many want before the first that does
+inline constexpr int kMaxDriven = 16;    // objects that something moves
+inline constexpr int kMaxSoft = 4;       // objects that give way
+inline constexpr int kMaxBodies = 16;    // objects that move by what acts on them
 
 struct RawReport {
   std::uint64_t host_ns = 0;
@@ -51,6 +57,8 @@ struct TickOutput {
   double hip_world_m[3] = {};     // of the tip
   double wanted_force_n[3] = {};  // world, before the gate
   Sample sample;
+  std::uint32_t body_count = 0;
+  fdcg_pose bodies[kMaxBodies] = {};  // world, after the tick; in the order of DeviceSetup::bodies
 };
 
 struct TickCounters {
@@ -61,6 +69,7 @@ struct TickCounters {
   std::uint64_t rejected[kVerdicts] = {};
   std::uint64_t timeouts = 0;
   std::uint64_t disarmed[kFaults] = {};
+  std::uint64_t bodies_lost = 0;  // 1: the runtime refused to move a body (beyond 1e12 m), and all have stood still since
 };
 
 // World = R (scale * device) + offset. Forces are turned, not scaled: a stiffness of K in the world is felt as scale * K.
@@ -80,6 +89,16 @@ struct DeviceSetup {
   fdcg_finger_id fingers[kMaxContacts] = {};
   int driven_count = 0;
   fdcg_object_id driven[kMaxDriven] = {};
+  Grip grip;
+  // Bodies: all of it in the DeviceScene's memory, which changes with every tick as the scene's does.
+  fdcg_scene_body* bodies = nullptr;
+  std::uint32_t body_count = 0;
+  std::uint32_t substeps = 1;  // of a tick, 1 to FDCG_BODY_MAX_SUBSTEPS
+  fdcg_pile* pile = nullptr;   // with the ground and all objects; null where there are no bodies
+  fdcg_reaction* reactions = nullptr;
+  std::uint32_t reaction_count = 0;
+  int soft_count = 0;
+  SoftObject* soft[kMaxSoft] = {};  // in the DeviceScene's memory too; the scene itself has them disabled
 };
 
 // All that a device's loop remembers from tick to tick, but for the scene's memory.
@@ -91,6 +110,8 @@ struct DeviceState {
   int samples = 0;         // good reports since the device was opened, up to kSamplesToArm
   bool has_place = false;  // fingers stand where the tip was last seen
   std::uint64_t last_good_ns = 0;
+  GripState grip;
+  double places_m[kMaxContacts][3] = {};  // of the contacts, world, in the last tick
   // as of the last good report
   Sample sample;
   double tip_world_m[3] = {};

@@ -111,7 +111,7 @@ std::string Host::Impl::build_unit(std::size_t index) {
   parts.start_ns = shared->start_ns;
   for (std::size_t i = 0; i < shared->config.objects.size(); ++i) {
     const ObjectConfig& object = shared->config.objects[i];
-    if (object.motion.kind == MotionKind::kFixed) continue;
+    if (!is_moved(object.motion)) continue;
     parts.moving.push_back(&object);
     unit->moving.push_back(i);
   }

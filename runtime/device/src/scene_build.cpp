@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene_build.hpp"
+#include "scene_bodies.hpp"
+#include "words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +11,6 @@ namespace {
 constexpr std::uint32_t kMostTouches = 8;  // objects that one contact can feel at once
 constexpr double kTurn = 6.283185307179586;
 
-std::string place_of(const HostConfig& config, std::size_t object) {
-  return config.scene_file + ": objects[" + std::to_string(object) + "] '" + config.objects[object].name + "': ";
-}
-
 // a after b.
 void multiply(const double a[4], const double b[4], double product[4]) {
   product[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
@@ -22,11 +19,33 @@ void multiply(const double a[4], const double b[4], double product[4]) {
   product[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
 }
 
+// Empty, or why it cannot be.
+std::string add_soft(const ObjectConfig& object, const DeviceConfig& device, const fdcg_graph& graph, const fdcg_params& params,
+                     DeviceScene* scene) {
+  const SoftConfig& soft = object.motion.soft;
+  // All contacts may press on one corner: it must not come back farther in a tick than it went.
+  const double most = soft.damping_n_s_per_m * device.profile.rate_hz + soft.stiffness_n_per_m;
+  const double pressed = params.stiffness_n_per_m * device.contact_count;
+  if (!(pressed <= most)) {
+    return "a corner takes up " + shown_number(most) + " N/m in a tick, and " + std::to_string(device.contact_count) +
+           " contacts press with " + shown_number(pressed) + "; raise the motion's damping_n_s_per_m to " +
+           shown_number(std::ceil(pressed / device.profile.rate_hz)) + " or lower the object's stiffness_n_per_m";
+  }
+  scene->soft.push_back(std::make_unique<SoftObject>());
+  std::string problem = scene->soft.back()->begin(graph, soft, params, object.pose, device.contact_count);
+  if (problem.empty()) scene->setup.soft[scene->setup.soft_count++] = scene->soft.back().get();
+  return problem;
+}
+
 }  // namespace
 
 std::string SceneGraphs::open(const HostConfig& config) {
   close();
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    if (config.objects[i].is_surface) {
+      graph_of_object_.push_back(kNone);
+      continue;
+    }
     const auto same_file = [&](const ObjectConfig& other) { return other.file == config.objects[i].file; };
     const auto first = static_cast<std::size_t>(std::find_if(config.objects.begin(), config.objects.end(), same_file) -
                                                 config.objects.begin());
@@ -65,30 +84,42 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
 
   DeviceSetup& setup = scene->setup;
   setup = DeviceSetup{};
+  scene->soft.clear();
   setup.profile = from.profile;
   setup.mapping = from.mapping;
   setup.contact_count = from.contact_count;
   std::copy(&from.contacts_m[0][0], &from.contacts_m[0][0] + kMaxContacts * 3, &setup.contacts_m[0][0]);
+  setup.grip = from.grip;
   setup.most_force_n = from.most_force_n;
   fdcg_error error{};
   if (fdcg_scene_create(scene->memory.data(), bytes, &capacities, &setup.scene, &error) != FDCG_OK) {
     return config.scene_file + ": devices[" + std::to_string(device) + "] '" + from.name + "': " + error.message;
   }
+  std::vector<fdcg_object_id> objects;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const ObjectConfig& object = config.objects[i];
     fdcg_params params = object.params;
     params.tick_s = 1 / from.profile.rate_hz;
     fdcg_object_id id{};
-    if (fdcg_scene_add_object(setup.scene, &graphs.of_object(i), &params, &object.pose, &id, &error) != FDCG_OK) {
+    const fdcg_status status =
+        object.is_surface ? fdcg_scene_add_surface(setup.scene, &object.surface, &params, &object.pose, &id, &error)
+                          : fdcg_scene_add_object(setup.scene, &graphs.of_object(i), &params, &object.pose, &id, &error);
+    if (status != FDCG_OK) {
       return place_of(config, i) + error.message;
     }
-    if (object.motion.kind == MotionKind::kFixed) continue;
+    objects.push_back(id);
+    if (object.motion.kind == MotionKind::kSoft) {
+      fdcg_scene_enable_object(setup.scene, id, 0, nullptr);  // felt as it is now, not as it was made
+      const std::string problem = add_soft(object, from, graphs.of_object(i), params, scene);
+      if (!problem.empty()) return place_of(config, i) + problem;
+    }
+    if (!is_moved(object.motion)) continue;
     if (setup.driven_count == kMaxDriven) {
       return place_of(config, i) + "more than " + std::to_string(kMaxDriven) + " objects have a motion; make it fixed";
     }
     setup.driven[setup.driven_count++] = id;
   }
-  return {};
+  return build_bodies(config, device, graphs, objects, scene);
 }
 
 fdcg_pose pose_at(const ObjectConfig& object, double seconds) {

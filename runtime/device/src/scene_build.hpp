@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,22 +23,28 @@ class SceneGraphs {
   // Opens and verifies every file. Empty: fine. Otherwise the object, its file, and what is wrong with it.
   std::string open(const HostConfig& config);
   void close();
+  // Of an object with a file.
   const fdcg_graph& of_object(std::size_t index) const { return graphs_[graph_of_object_[index]]; }
 
  private:
+  static constexpr std::size_t kNone = ~std::size_t{0};  // a surface
   std::vector<fdcg_graph> graphs_;
   std::vector<std::size_t> graph_of_object_;
 };
 
 // One device's scene, in memory that is filled once and does not move.
 struct DeviceScene {
-  std::vector<std::uint64_t> memory;
+  std::vector<std::uint64_t> memory, pile_memory;
+  std::vector<fdcg_scene_body> bodies;
+  std::vector<fdcg_reaction> reactions;
+  std::vector<std::unique_ptr<SoftObject>> soft;
   DeviceSetup setup;  // fingers are added by begin_device; driven: the objects with a motion, in the scene's order
 };
 // `graphs` must outlive *scene. Empty: fine. Otherwise what the runtime refuses.
 std::string build_device_scene(const HostConfig& config, std::size_t device, const SceneGraphs& graphs, DeviceScene* scene);
 
-// Where a moved object is so long after the host started. Of MotionKind::kDriven and kFixed: its first pose. No heap.
+// Where a moved object is so long after the host started. Of MotionKind::kDriven, kFixed, kBody and kSoft: its first pose. No
+// heap.
 fdcg_pose pose_at(const ObjectConfig& object, double seconds);
 
 }  // namespace fdcg::dev

@@ -1,68 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_json.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "host.hpp"
-#include "json_reader.hpp"
-#include "profile_json.hpp"
-#include "session_reader.hpp"
-#include "simulated_device.hpp"
-#include "words.hpp"
+#include "scene_parser.hpp"
 
 namespace fdcg::dev {
 namespace {
 
 constexpr int kMostObjects = 1000;
-constexpr std::size_t kLongestName = 60, kLongestPath = 4000;
-constexpr double kUnitTolerance = 1e-3;  // of a quaternion, as fdcg_pose has it
-constexpr double kUnitAsItIs = 1e-12;
-constexpr double kOrthonormalTolerance = 1e-9;  // of a rotation matrix
-constexpr double kMostForce = 1000;             // N; no hand goes beyond
 constexpr std::size_t kMostSceneBytes = kMostJsonBytes;
-
-constexpr Keys kSceneKeys = {"fdcg_scene", "$schema", "notes", "objects", "devices", "loop", "log", "limits"};
+constexpr Keys kSceneKeys = {"fdcg_scene", "$schema", "notes",  "objects",          "devices",
+                             "loop",       "log",     "limits", "gravity_m_per_s2", "ground"};
 constexpr Keys kObjectKeys = {
-    "name",          "file",   "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static", "mu_dynamic",
-    "edge_friction", "motion", "notes"};
-constexpr Keys kPoseKeys = {"rotation_xyzw", "translation_m", "scale"};
-constexpr Keys kMotionKeys = {"kind", "axis", "rate_hz", "amplitude_m"};
-constexpr Keys kDeviceKeys = {"name",     "source",        "profile",    "serial",    "path", "mapping",
-                              "contacts", "force_limit_n", "simulation", "recording", "notes"};
-constexpr Keys kMappingKeys = {"scale", "rotation_xyzw", "rotation_matrix", "offset_m"};
-constexpr Keys kContactKeys = {"offset_m"};
-constexpr Keys kSimulationKeys = {"rate_hz",
-                                  "mass_kg",
-                                  "damping_n_s_per_m",
-                                  "hand_stiffness_n_per_m",
-                                  "hand_damping_n_s_per_m",
-                                  "quantum_m",
-                                  "start_m",
-                                  "amplitude_m",
-                                  "frequency_hz",
-                                  "real_time",
-                                  "seed",
-                                  "force_n",
-                                  "watchdog_s",
-                                  "float_axes",
-                                  "faults"};
-constexpr Keys kFaultKeys = {"kind", "at_s", "for_s", "delay_s", "reports"};
+    "name",       "file",          "surface", "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static",
+    "mu_dynamic", "edge_friction", "motion",  "notes"};
+constexpr Keys kDeviceKeys = {"name",          "source",     "profile",   "serial", "path", "mapping", "contacts",
+                              "force_limit_n", "simulation", "recording", "notes",  "grip", "turn"};
+constexpr Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
 constexpr Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend"};
 constexpr Keys kLogKeys = {"file", "limit_mb"};
 constexpr Keys kLimitsKeys = {"force_n"};
 
-constexpr NumberRange metres(double most) {
-  return {-most, most, true, "m"};
-}
-constexpr NumberRange from_0(double most, const char* unit) {
-  return {0, most, true, unit};
-}
-constexpr NumberRange above_0(double most, const char* unit) {
-  return {0, most, false, unit};
-}
-constexpr NumberRange kLengths = metres(1e6);
+}  // namespace
 
 std::string beside(const std::string& scene_file, const std::string& name) {
   const std::filesystem::path path(name);
@@ -76,7 +38,6 @@ double norm(const double* x, int count) {
   return std::sqrt(square);
 }
 
-// Length 1, exactly as far as doubles go; false with an error where it is not near it.
 bool read_unit(const JsonObject& from, const char* key, double* x, int count, double tolerance) {
   from.numbers(key, x, count, {-1e6, 1e6});
   const double length = norm(x, count);
@@ -86,257 +47,22 @@ bool read_unit(const JsonObject& from, const char* key, double* x, int count, do
   return false;
 }
 
-class SceneParser {
- public:
-  SceneParser(const std::string& file_name, HostConfig* config, std::vector<std::string>* warnings, const SceneOptions& options)
-      : file_(file_name), file_name_(file_name), config_(*config), warnings_(warnings), options_(options) {}
-
-  std::string parse(std::string_view text) {
-    const JsonObject scene = file_.parse(text, kSceneKeys);
-    scene.integer("fdcg_scene", 1, 1);
-    if (scene.has("limits")) {
-      scene_force_n_ = scene.object("limits", kLimitsKeys).number("force_n", above_0(kMostForce, "N"));
-    }
-    for (const JsonObject& object : scene.objects("objects", 0, kMostObjects, kObjectKeys))
-      read_object(object);
-    for (const JsonObject& device : scene.objects("devices", 1, kMaxDevices, kDeviceKeys))
-      read_device(device);
-    if (scene.has("loop")) read_loop(scene.object("loop", kLoopKeys));
-    if (scene.has("log")) read_log(scene.object("log", kLogKeys));
-    return file_.error();
+std::string SceneParser::parse(std::string_view text) {
+  const JsonObject scene = file_.parse(text, kSceneKeys);
+  scene.integer("fdcg_scene", 1, 1);
+  if (scene.has("limits")) {
+    scene_force_n_ = scene.object("limits", kLimitsKeys).number("force_n", above_0(kMostForce, "N"));
   }
-
- private:
-  void read_object(const JsonObject& from);
-  void read_motion(const JsonObject& from, Motion* motion);
-  void read_device(const JsonObject& from);
-  void read_profile(const JsonObject& from, DeviceConfig* device);
-  void read_recording(const JsonObject& from, DeviceConfig* device);
-  void read_mapping(const JsonObject& from, Mapping* mapping);
-  void read_simulation(const JsonObject& from, SimulationConfig* simulation);
-  void read_loop(const JsonObject& from);
-  void read_log(const JsonObject& from);
-  void parse_profile_of(const JsonObject& from, const std::string& text, const std::string& name, DeviceConfig* device);
-
-  template <class Named>
-  void refuse_twins(const JsonObject& from, const std::vector<Named>& others, const std::string& name) {
-    for (const Named& other : others)
-      if (other.name == name) from.fail("name", "is " + in_quotes(name) + ", which another one has too; names are unique");
-  }
-
-  JsonFile file_;
-  std::string file_name_;
-  HostConfig& config_;
-  std::vector<std::string>* warnings_;
-  const SceneOptions& options_;
-  double scene_force_n_ = 0;  // 0: none
-};
-
-void SceneParser::read_object(const JsonObject& from) {
-  ObjectConfig object;
-  object.name = from.text("name", kLongestName);
-  refuse_twins(from, config_.objects, object.name);
-  object.file = beside(file_name_, from.text("file", kLongestPath));
-  object.pose = fdcg_identity_pose();
-  if (from.has("pose")) {
-    const JsonObject pose = from.object("pose", kPoseKeys);
-    if (pose.has("rotation_xyzw")) read_unit(pose, "rotation_xyzw", object.pose.rotation_xyzw, 4, kUnitTolerance);
-    if (pose.has("translation_m")) pose.numbers("translation_m", object.pose.translation_m, 3, kLengths);
-    object.pose.scale = pose.number_or("scale", 1, {1e-9, 1e9});
-  }
-  object.params = fdcg_default_params();
-  fdcg_params& params = object.params;
-  params.stiffness_n_per_m = from.number_or("stiffness_n_per_m", params.stiffness_n_per_m, from_0(1e6, "N/m"));
-  params.damping_n_s_per_m = from.number_or("damping_n_s_per_m", params.damping_n_s_per_m, from_0(1e6, "N s/m"));
-  params.mu_static = from.number_or("mu_static", params.mu_static, from_0(1e6, ""));
-  params.mu_dynamic = from.number_or("mu_dynamic", params.mu_dynamic, from_0(1e6, ""));
-  if (params.mu_static < params.mu_dynamic) {
-    from.fail("mu_static", "is " + shown_number(params.mu_static) + (from.has("mu_static") ? "" : " (the default)") +
-                               ", below mu_dynamic, " + shown_number(params.mu_dynamic) +
-                               (from.has("mu_dynamic") ? "" : " (the default)") + "; it must be at least that");
-  }
-  params.edge_friction = from.choice_or("edge_friction", 0, {"wedge", "paper"}) == 0 ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
-  if (from.has("motion")) read_motion(from.object("motion", kMotionKeys), &object.motion);
-  const auto moves = [](const ObjectConfig& other) { return other.motion.kind != MotionKind::kFixed; };
-  if (moves(object) && std::count_if(config_.objects.begin(), config_.objects.end(), moves) == kMaxDriven) {
-    from.fail("motion", "is one more than the " + std::to_string(kMaxDriven) + " that a scene may have; make an object fixed");
-  }
-  config_.objects.push_back(std::move(object));
-}
-
-void SceneParser::read_motion(const JsonObject& from, Motion* motion) {
-  motion->kind = static_cast<MotionKind>(from.choice("kind", {"fixed", "spin", "swing", "driven"}));
-  const bool is_spin = motion->kind == MotionKind::kSpin, is_swing = motion->kind == MotionKind::kSwing;
-  if (is_spin) from.allow_only({"kind", "axis", "rate_hz"}, " of a spin");
-  if (is_swing) from.allow_only(kMotionKeys, " of a swing");
-  if (!is_spin && !is_swing) return from.allow_only({"kind"}, " of a motion that is neither spin nor swing");
-  from.numbers("axis", motion->axis, 3, {-1e6, 1e6});
-  const double length = norm(motion->axis, 3);
-  if (!(length > 1e-6)) from.fail("axis", "has length " + shown_number(length) + "; give a direction");
-  // one that is of length 1 stays as it is, so that it reads back the same
-  for (double& x : motion->axis)
-    x = std::fabs(length - 1) <= kUnitAsItIs ? x : x / length;
-  motion->rate_hz = from.number("rate_hz", {-100, 100, true, "Hz"});
-  if (is_swing) motion->amplitude_m = from.number("amplitude_m", from_0(1e6, "m"));
-}
-
-void SceneParser::read_device(const JsonObject& from) {
-  DeviceConfig device;
-  device.name = from.text("name", kLongestName);
-  refuse_twins(from, config_.devices, device.name);
-  device.source = static_cast<DeviceSource>(from.choice_or("source", 0, {"hid", "simulated", "recorded"}));
-  if (device.source == DeviceSource::kHid) {
-    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "profile", "serial", "path"},
-                    " of a hid device");
-    read_profile(from, &device);
-    device.serial = from.text_or("serial", "", kLongestName);
-    device.path = from.text_or("path", "", kLongestPath);
-  } else if (device.source == DeviceSource::kSimulated) {
-    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "simulation"},
-                    " of a simulated device");
-    if (from.has("simulation")) read_simulation(from.object("simulation", kSimulationKeys), &device.simulation);
-    device.profile = simulated_profile(device.simulation);
-  } else {
-    from.allow_only({"name", "source", "mapping", "contacts", "force_limit_n", "notes", "profile", "recording"},
-                    " of a recorded device");
-    read_recording(from, &device);
-  }
-  if (from.has("mapping")) read_mapping(from.object("mapping", kMappingKeys), &device.mapping);
-  if (from.has("contacts")) {
-    const std::vector<JsonObject> contacts = from.objects("contacts", 1, kMaxContacts, kContactKeys);
-    device.contact_count = std::max<int>(1, static_cast<int>(contacts.size()));
-    for (std::size_t i = 0; i < contacts.size(); ++i)
-      contacts[i].numbers("offset_m", device.contacts_m[i], 3, kLengths);
-  }
-  device.most_force_n = scene_force_n_;
-  if (from.has("force_limit_n")) {
-    const double own = from.number("force_limit_n", above_0(kMostForce, "N"));
-    device.most_force_n = scene_force_n_ > 0 ? std::min(own, scene_force_n_) : own;
-  }
-  config_.devices.push_back(std::move(device));
-}
-
-void SceneParser::parse_profile_of(const JsonObject& from, const std::string& text, const std::string& name,
-                                   DeviceConfig* device) {
-  std::vector<std::string> warnings;
-  if (const std::string error = parse_profile(text, name, &device->profile, &warnings); !error.empty()) {
-    return from.fail("profile", "is refused: " + error);
-  }
-  device->profile_text = text;
-  if (warnings_ == nullptr) return;
-  for (const std::string& warning : warnings)
-    warnings_->push_back("device " + in_quotes(device->name) + ": " + warning);
-}
-
-// A built-in one by its name, a file, or in place.
-void SceneParser::read_profile(const JsonObject& from, DeviceConfig* device) {
-  if (from.is_object("profile")) return parse_profile_of(from, from.json("profile"), "it", device);
-  const std::string name = from.text("profile", kLongestPath);
-  if (name.empty()) return;
-  if (const BuiltinProfile* const built_in = find_builtin_profile(name)) {
-    return parse_profile_of(from, std::string(built_in->text), "built-in " + name, device);
-  }
-  if (name.find_first_of("./\\") == std::string::npos) {
-    std::vector<std::string> names;
-    for (const BuiltinProfile& profile : builtin_profiles())
-      names.emplace_back(profile.name);
-    return from.fail("profile", "is " + in_quotes(name) + "; it must be a file's name (with .json) or one of the built-in " +
-                                    listed(names) + did_you_mean(name, names));
-  }
-  if (!options_.reads_files) return from.fail("profile", "names a file, and none is read here");
-  std::string text;
-  const std::string path = beside(file_name_, name);
-  if (const std::string error = read_text_file(path, kMostSceneBytes, &text); !error.empty()) {
-    return from.fail("profile", "is refused: " + error);
-  }
-  parse_profile_of(from, text, path, device);
-}
-
-// The profile is the one that the recorded device had, unless the scene gives another.
-void SceneParser::read_recording(const JsonObject& from, DeviceConfig* device) {
-  device->recording = beside(file_name_, from.text("recording", kLongestPath));
-  if (from.has("profile")) return read_profile(from, device);
-  if (file_.has_failed()) return;
-  if (!options_.reads_files) return from.fail("recording", "names a file, and none is read here");
-  SessionReader reader;
-  if (const std::string error = reader.open(device->recording); !error.empty()) {
-    return from.fail("recording", "is refused: " + error);
-  }
-  HostConfig recorded;
-  const std::string error = parse_scene(reader.header().scene, device->recording + " (its scene)", &recorded);
-  if (!error.empty()) return from.fail("recording", "is refused: " + error);
-  const std::size_t index = find_recorded_device(recorded, device->name);
-  if (index == recorded.devices.size()) {
-    std::vector<std::string> names;
-    for (const DeviceConfig& other : recorded.devices)
-      names.push_back(other.name);
-    return from.fail("recording", "has no device " + in_quotes(device->name) + " but " + listed(names) +
-                                      "; give this device the name of one of them");
-  }
-  device->profile = recorded.devices[index].profile;
-  device->profile_text = recorded.devices[index].profile_text;
-}
-
-void SceneParser::read_mapping(const JsonObject& from, Mapping* mapping) {
-  mapping->scale = from.number_or("scale", 1, {1e-6, 1e6});
-  if (from.has("offset_m")) from.numbers("offset_m", mapping->offset_m, 3, kLengths);
-  double* const r = mapping->rotation;
-  if (from.has("rotation_matrix")) {
-    if (from.has("rotation_xyzw")) from.fail("rotation_matrix", "stands beside rotation_xyzw; give one of them");
-    from.numbers("rotation_matrix", r, 9, {-1 - kOrthonormalTolerance, 1 + kOrthonormalTolerance});
-    double worst = std::fabs(r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
-                             r[2] * (r[3] * r[7] - r[4] * r[6]) - 1);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        worst = std::max(worst, std::fabs(r[3 * i] * r[3 * j] + r[3 * i + 1] * r[3 * j + 1] + r[3 * i + 2] * r[3 * j + 2] -
-                                          (i == j ? 1 : 0)));
-    if (!(worst <= kOrthonormalTolerance)) {
-      from.fail("rotation_matrix", "is off a rotation by " + shown_number(worst) + "; at most " +
-                                       shown_number(kOrthonormalTolerance) +
-                                       ": three rows of length 1, at right angles, "
-                                       "right-handed");
-    }
-  } else if (double q[4]; from.has("rotation_xyzw") && read_unit(from, "rotation_xyzw", q, 4, kUnitTolerance)) {
-    const double length = norm(q, 4);
-    const double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
-    const double rows[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
-                            2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-                            2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
-    std::copy(rows, rows + 9, r);
-  }
-}
-
-void SceneParser::read_simulation(const JsonObject& from, SimulationConfig* simulation) {
-  SimulationConfig& s = *simulation;
-  s.rate_hz = from.number_or("rate_hz", s.rate_hz, {1, 20000, true, "Hz"});
-  s.mass_kg = from.number_or("mass_kg", s.mass_kg, {0.001, 100, true, "kg"});
-  s.damping_n_s_per_m = from.number_or("damping_n_s_per_m", s.damping_n_s_per_m, from_0(1000, "N s/m"));
-  s.hand_stiffness_n_per_m = from.number_or("hand_stiffness_n_per_m", s.hand_stiffness_n_per_m, from_0(1e5, "N/m"));
-  s.hand_damping_n_s_per_m = from.number_or("hand_damping_n_s_per_m", s.hand_damping_n_s_per_m, from_0(1000, "N s/m"));
-  s.quantum_m = from.number_or("quantum_m", s.quantum_m, {1e-9, 0.01, true, "m"});
-  if (from.has("start_m")) from.numbers("start_m", s.start_m, 3, metres(10));
-  if (from.has("amplitude_m")) from.numbers("amplitude_m", s.amplitude_m, 3, metres(10));
-  if (from.has("frequency_hz")) from.numbers("frequency_hz", s.frequency_hz, 3, from_0(1000, "Hz"));
-  s.is_real_time = from.boolean_or("real_time", s.is_real_time);
-  s.seed = static_cast<std::uint64_t>(from.integer_or("seed", static_cast<std::int64_t>(s.seed), 0, 9007199254740992));
-  s.force_n = from.number_or("force_n", s.force_n, above_0(kMostForce, "N"));
-  s.watchdog_s = from.number_or("watchdog_s", s.watchdog_s, {0.001, 10, true, "s"});
-  s.has_float_axes = from.boolean_or("float_axes", s.has_float_axes);
-  if (!from.has("faults")) return;
-  for (const JsonObject& fault : from.objects("faults", 0, SimulationRecord::kMaxFaults, kFaultKeys)) {
-    SimulatedFault f;
-    f.kind = static_cast<SimulatedFaultKind>(
-        fault.choice("kind", {"unplug", "restart", "short", "long", "garbled", "unknown-id", "repeated", "out-of-order",
-                              "stale", "not-finite", "stall", "no-output", "device-fault"}));
-    f.at_s = fault.number("at_s", from_0(1e6, "s"));
-    f.for_s = fault.number_or("for_s", f.for_s, from_0(1e6, "s"));
-    f.delay_s = fault.number_or("delay_s", f.delay_s, from_0(1e3, "s"));
-    f.reports = static_cast<int>(fault.integer_or("reports", f.reports, 1, 1000000));
-    if (f.kind == SimulatedFaultKind::kNotFinite && !s.has_float_axes) {
-      fault.fail("kind", "is not-finite, which counts cannot be; set float_axes to true");
-    }
-    s.faults.push_back(f);
-  }
+  for (const JsonObject& object : scene.objects("objects", 0, kMostObjects, kObjectKeys))
+    read_object(object);
+  for (const JsonObject& device : scene.objects("devices", 1, kMaxDevices, kDeviceKeys))
+    read_device(device);
+  if (scene.has("gravity_m_per_s2")) scene.numbers("gravity_m_per_s2", config_.gravity_m_per_s2, 3, {-1e4, 1e4});
+  if (scene.has("ground")) read_ground(scene.object("ground", kGroundKeys));
+  refuse_shared_bodies(scene);
+  if (scene.has("loop")) read_loop(scene.object("loop", kLoopKeys));
+  if (scene.has("log")) read_log(scene.object("log", kLogKeys));
+  return file_.error();
 }
 
 void SceneParser::read_loop(const JsonObject& from) {
@@ -353,8 +79,6 @@ void SceneParser::read_log(const JsonObject& from) {
   config_.log_file = beside(file_name_, from.text("file", kLongestPath));
   config_.log_megabytes = from.number_or("limit_mb", 0, from_0(1e9, "MB"));
 }
-
-}  // namespace
 
 std::string parse_scene(std::string_view text, const std::string& file_name, HostConfig* config,
                         std::vector<std::string>* warnings, const SceneOptions& options) {

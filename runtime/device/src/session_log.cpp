@@ -40,7 +40,7 @@ std::string overwritten(const HostConfig& config) {
   if (S_ISDIR(log.st_mode)) return "is a folder";
   if (is_same_file(log, config.scene_file)) return "would overwrite the scene";
   for (const ObjectConfig& object : config.objects)
-    if (is_same_file(log, object.file)) return "would overwrite the graph of '" + object.name + "'";
+    if (!object.is_surface && is_same_file(log, object.file)) return "would overwrite the graph of '" + object.name + "'";
   for (const DeviceConfig& device : config.devices)
     if (is_same_file(log, device.recording)) return "would overwrite the recording that '" + device.name + "' plays";
   return {};
@@ -54,6 +54,10 @@ std::string describe(const HostConfig& config, SessionHeader* header) {
   HostConfig back;
   if (const std::string problem = parse_scene(header->scene, "its scene", &back); !problem.empty()) return problem;
   for (const ObjectConfig& object : config.objects) {
+    if (object.is_surface) {
+      header->graphs.push_back({});
+      continue;
+    }
     fdcg_graph graph{};
     fdcg_error error{};
     if (fdcg_open_file(object.file.c_str(), FDCG_VERIFY_TRUSTED, &graph, &error) != FDCG_OK) return error.message;
@@ -110,6 +114,11 @@ bool LogRing::put(const TickInput& input, const TickOutput& output) {
   copy_in(head + kEntryBytes, scratch_, bytes);
   head_.store(head + kEntryBytes + bytes, std::memory_order_release);
   return true;
+}
+
+bool LogRing::has_room() const {
+  const std::uint64_t used = head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire);
+  return capacity_ - used >= kEntryBytes + kMostTickBytes;
 }
 
 std::size_t LogRing::take(std::uint64_t* tick, std::uint8_t* payload) {

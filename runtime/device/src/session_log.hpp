@@ -23,6 +23,8 @@ class LogRing {
   static constexpr std::uint32_t kLeastBytes = 1 << 15;  // more than two ticks with all that a tick can hold
   // The servo thread's. False: the ring is full, and the tick is counted as dropped. No lock, no heap.
   bool put(const TickInput& input, const TickOutput& output);
+  // Whether the largest tick would find room now: for a thread that may wait.
+  bool has_room() const;
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
  private:

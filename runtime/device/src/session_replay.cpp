@@ -146,6 +146,7 @@ std::string SessionReplay::open(const std::string& path, const std::string& grap
   }
   for (std::size_t i = 0; i < header.graphs.size(); ++i) {
     ObjectConfig& object = impl_->config.objects[i];
+    if (object.is_surface) continue;
     const std::string problem = find_graph(path, graph_folder, header.graphs[i], &object.file);
     if (!problem.empty()) return path + ": object '" + object.name + "': " + problem;
   }
@@ -179,6 +180,9 @@ bool SessionReplay::has_strays() const {
 }
 const HostConfig& SessionReplay::config() const {
   return impl_->config;
+}
+const fdcg_graph& SessionReplay::graph(std::size_t object) const {
+  return impl_->graphs.of_object(object);
 }
 const SessionReader& SessionReplay::reader() const {
   return impl_->reader;

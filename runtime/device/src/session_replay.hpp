@@ -40,6 +40,7 @@ class SessionReplay {
   // is wrong with it.
   std::string open(const std::string& path, const std::string& graph_folder);
   const HostConfig& config() const;
+  const fdcg_graph& graph(std::size_t object) const;
   const SessionReader& reader() const;
   // Replays the log's next tick; those of a device that is over are passed by. False: the log has ended.
   bool next(ReplayedTick* tick);

@@ -29,6 +29,8 @@ class SimulatedBody {
  private:
   std::uint32_t clock_us() const;
   void step(double step_s);
+  void target(double now_s, int axis, double* place_m, double* speed_m_per_s) const;
+  std::size_t script_step(double now_s) const;
   void note_force();
 
   SimulationConfig config_;

@@ -67,6 +67,31 @@ void finish(ReportLayout* layout, unsigned id, unsigned bytes) {
   layout->crc.offset = layout->crc.bytes = static_cast<std::uint16_t>(bytes - 2);
 }
 
+constexpr double kRoomM = 0.1;  // for what forces do to the hand, beyond where it goes by itself
+
+// Where the hand's target goes along an axis, and how fast at most.
+struct HandRange {
+  double least_m = 0, most_m = 0, speed_m_per_s = 0;
+};
+HandRange hand_range(const SimulationConfig& config, int axis) {
+  if (config.script.empty()) {
+    const double swing_m = std::fabs(config.amplitude_m[axis]);
+    return {config.start_m[axis] - swing_m, config.start_m[axis] + swing_m,
+            kTwoPi * std::fabs(config.frequency_hz[axis]) * swing_m};
+  }
+  const double first_m = config.script[0].place_m[axis];
+  HandRange range{first_m, first_m, 0};
+  for (std::size_t i = 1; i < config.script.size(); ++i) {
+    const ScriptStep &from = config.script[i - 1], &to = config.script[i];
+    range.least_m = std::min(range.least_m, to.place_m[axis]);
+    range.most_m = std::max(range.most_m, to.place_m[axis]);
+    constexpr double kPeak = 1.5;  // of the speed, over the mean of a way from rest to rest
+    range.speed_m_per_s =
+        std::max(range.speed_m_per_s, kPeak * std::fabs(to.place_m[axis] - from.place_m[axis]) / (to.at_s - from.at_s));
+  }
+  return range;
+}
+
 }  // namespace
 
 Profile simulated_profile(const SimulationConfig& config) {
@@ -99,12 +124,11 @@ Profile simulated_profile(const SimulationConfig& config) {
   p.limits.velocity_m_per_s = 2;
   p.limits.device_watchdog_s = config.watchdog_s;
   for (int i = 0; i < 3; ++i) {
-    constexpr double kRoomM = 0.1;  // for what forces do to the hand, beyond where it goes by itself
-    const double swing_m = std::fabs(config.amplitude_m[i]);
     p.limits.effort[i] = config.force_n;
-    p.limits.velocity_m_per_s += kTwoPi * std::fabs(config.frequency_hz[i]) * swing_m;
-    p.limits.workspace_min_m[i] = config.start_m[i] - swing_m - kRoomM;
-    p.limits.workspace_max_m[i] = config.start_m[i] + swing_m + kRoomM;
+    const HandRange range = hand_range(config, i);
+    p.limits.velocity_m_per_s += range.speed_m_per_s;
+    p.limits.workspace_min_m[i] = range.least_m - kRoomM;
+    p.limits.workspace_max_m[i] = range.most_m + kRoomM;
   }
   return p;
 }
@@ -137,7 +161,8 @@ float SimulationRecord::most_force_between(std::uint64_t from_ns, std::uint64_t 
 }
 
 SimulatedBody::SimulatedBody(const SimulationConfig& config) : config_(config) {
-  std::copy(config.start_m, config.start_m + 3, position_m_);
+  const double* const start_m = config.script.empty() ? config.start_m : config.script[0].place_m;
+  std::copy(start_m, start_m + 3, position_m_);
   if (config_.record != nullptr) config_.record->forces.reserve(SimulationRecord::kMaxForces);
   power_up();
 }
@@ -164,6 +189,33 @@ std::uint32_t SimulatedBody::clock_us() const {
   return static_cast<std::uint32_t>((time_ns_ - boot_ns_) / 1000) + kClockAtBootUs;
 }
 
+// The last step whose time has come; 0 before the first.
+std::size_t SimulatedBody::script_step(double now_s) const {
+  const auto is_later = [](double time_s, const ScriptStep& step) { return time_s < step.at_s; };
+  const auto next = std::upper_bound(config_.script.begin(), config_.script.end(), now_s, is_later);
+  return next == config_.script.begin() ? 0 : static_cast<std::size_t>(next - config_.script.begin()) - 1;
+}
+
+// Of the hand.
+void SimulatedBody::target(double now_s, int axis, double* place_m, double* speed_m_per_s) const {
+  if (config_.script.empty()) {
+    const double omega = kTwoPi * config_.frequency_hz[axis], amplitude = config_.amplitude_m[axis];
+    *place_m = config_.start_m[axis] + amplitude * std::sin(omega * now_s);
+    *speed_m_per_s = amplitude * omega * std::cos(omega * now_s);
+    return;
+  }
+  const std::size_t step = script_step(now_s);
+  const ScriptStep& from = config_.script[step];
+  *place_m = from.place_m[axis];
+  *speed_m_per_s = 0;
+  if (step + 1 == config_.script.size() || now_s <= from.at_s) return;
+  const ScriptStep& to = config_.script[step + 1];
+  const double span_s = to.at_s - from.at_s, share = (now_s - from.at_s) / span_s;
+  const double way_m = to.place_m[axis] - from.place_m[axis];
+  *place_m += way_m * share * share * (3 - 2 * share);
+  *speed_m_per_s = way_m * 6 * share * (1 - share) / span_s;
+}
+
 // Backward Euler: stable whatever the spring and the mass, and its own damping, half the step times the spring, is small beside
 // the hand's.
 void SimulatedBody::step(double step_s) {
@@ -172,9 +224,8 @@ void SimulatedBody::step(double step_s) {
   const double stiffness = config_.hand_stiffness_n_per_m, hand = config_.hand_damping_n_s_per_m;
   const double now_s = static_cast<double>(time_ns_) * 1e-9 + step_s, inverse = step_s / config_.mass_kg;
   for (int i = 0; i < 3; ++i) {
-    const double omega = kTwoPi * config_.frequency_hz[i], amplitude = config_.amplitude_m[i];
-    const double target_m = config_.start_m[i] + amplitude * std::sin(omega * now_s);
-    const double target_m_per_s = amplitude * omega * std::cos(omega * now_s);
+    double target_m = 0, target_m_per_s = 0;
+    target(now_s, i, &target_m, &target_m_per_s);
     const double push = force_n[i] + stiffness * (target_m - position_m_[i]) + hand * target_m_per_s;
     velocity_m_per_s_[i] = (velocity_m_per_s_[i] + inverse * push) /
                            (1 + inverse * (config_.damping_n_s_per_m + hand) + inverse * step_s * stiffness);
@@ -228,7 +279,9 @@ void SimulatedBody::make_report(std::uint8_t* report) {
       std::memcpy(&counts[i], &metres, sizeof metres);
     }
   }
-  fdcg_fw_make_input(&fw_, clock_us(), counts, 0, report);
+  const double now_s = static_cast<double>(time_ns_) * 1e-9;
+  const std::uint32_t buttons = config_.script.empty() ? 0 : config_.script[script_step(now_s)].buttons;
+  fdcg_fw_make_input(&fw_, clock_us(), counts, static_cast<std::uint8_t>(buttons), report);
   if (config_.record != nullptr) ++config_.record->reports;
 }
 

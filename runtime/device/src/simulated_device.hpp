@@ -70,6 +70,14 @@ struct SimulationRecord {
   float most_force_between(std::uint64_t from_ns, std::uint64_t to_ns) const;
 };
 
+// Where the hand's target is at a time since the device was first opened, and what is pressed from then on. Between two steps
+// it goes from rest to rest; before the first and after the last it stays.
+struct ScriptStep {
+  double at_s = 0;
+  double place_m[3] = {};     // device's frame
+  std::uint32_t buttons = 0;  // bits 0 to 7
+};
+
 struct SimulationConfig {
   double rate_hz = 1000;
   double mass_kg = 0.1, damping_n_s_per_m = 0.5;
@@ -78,6 +86,8 @@ struct SimulationConfig {
   double start_m[3] = {};                // device's frame
   double amplitude_m[3] = {0, 0, 0.02};  // the hand's target swings about start_m
   double frequency_hz[3] = {1, 1, 0.5};
+  static constexpr int kMaxScript = 256;
+  std::vector<ScriptStep> script;  // in place of start and swing, which are then not read; times ascend
   // false: as fast as it is read. Reads with a time-out carry a clock of its own forward, and writes never block: for tests
   // that take their time from the reports, since a host's threads live in real time.
   bool is_real_time = true;

@@ -32,6 +32,7 @@ class Writer {
     at_ += bytes;
   }
   bool require(bool) { return true; }
+  void group(const char*, int) {}
   std::size_t bytes() const { return static_cast<std::size_t>(at_ - begin_); }
 
  private:
@@ -61,6 +62,7 @@ class Reader {
     at_ += bytes;
   }
   bool require(bool condition) { return is_good_ = is_good_ && condition; }
+  void group(const char*, int) {}
   std::size_t bytes() const { return is_good_ ? static_cast<std::size_t>(at_ - begin_) : 0; }
 
  private:
@@ -78,6 +80,9 @@ class Describer {
     std::uint64_t bits;
   };
   std::vector<Named> fields;
+  static bool require(bool condition) { return condition; }
+  // Names the fields that follow: "bodies[2].x".
+  void group(const char* name, int index) { group_ = std::string(name) + "[" + std::to_string(index) + "]."; }
   template <class T>
   void operator()(const char* name, const T& value) {
     char text[40];
@@ -86,8 +91,11 @@ class Describer {
     } else {
       std::snprintf(text, sizeof text, "%u", static_cast<unsigned>(value));
     }
-    fields.push_back({name, text, static_cast<std::uint64_t>(std::bit_cast<Bits<sizeof(T)>>(value))});
+    fields.push_back({group_ + name, text, static_cast<std::uint64_t>(std::bit_cast<Bits<sizeof(T)>>(value))});
   }
+
+ private:
+  std::string group_;
 };
 
 constexpr const char* kForceNames[] = {"force_n[0]", "force_n[1]", "force_n[2]"};
@@ -140,7 +148,22 @@ void visit_state(Archive& archive, Output& output) {
   archive("has_sample", output.has_sample);
 }
 
-enum Part : std::uint8_t { kForce = 1, kContact = 2, kPlace = 4, kSample = 8, kAllParts = 15 };
+constexpr const char* kBodyNames[] = {"x", "y", "z", "qx", "qy", "qz", "qw"};
+
+template <class Archive, class Output>
+void visit_bodies(Archive& archive, Output& output) {
+  archive("body_count", output.body_count);
+  if (!archive.require(output.body_count <= kMaxBodies)) return;
+  for (int body = 0; body < output.body_count; ++body) {
+    archive.group("bodies", body);
+    for (int i = 0; i < 3; ++i)
+      archive(kBodyNames[i], output.bodies[body].translation_m[i]);
+    for (int i = 0; i < 4; ++i)
+      archive(kBodyNames[3 + i], output.bodies[body].rotation_xyzw[i]);
+  }
+}
+
+enum Part : std::uint8_t { kForce = 1, kContact = 2, kPlace = 4, kSample = 8, kBodies = 16, kAllParts = 31 };
 
 template <class Archive, class Output>
 void visit_part(Archive& archive, Output& output, Part part) {
@@ -148,8 +171,9 @@ void visit_part(Archive& archive, Output& output, Part part) {
   if (part == kContact) visit_contact(archive, output);
   if (part == kPlace) visit_place(archive, output);
   if (part == kSample) visit_sample(archive, output);
+  if (part == kBodies) visit_bodies(archive, output);
 }
-constexpr Part kParts[] = {kForce, kContact, kPlace, kSample};
+constexpr Part kParts[] = {kForce, kContact, kPlace, kSample, kBodies};
 
 enum InputFlag : std::uint8_t { kArm = 1, kDisarm = 2, kBegins = 4, kWriteFailed = 8, kAllFlags = 15 };
 
@@ -186,6 +210,9 @@ LoggedOutput logged(const TickOutput& output) {
   std::copy(output.hip_world_m, output.hip_world_m + 3, plain.hip_world_m);
   std::copy(output.wanted_force_n, output.wanted_force_n + 3, plain.wanted_force_n);
   plain.sample = output.sample;
+  plain.body_count = static_cast<std::uint8_t>(output.body_count);
+  for (std::uint32_t i = 0; i < output.body_count; ++i)
+    plain.bodies[i] = output.bodies[i];
   return plain;
 }
 
@@ -273,6 +300,7 @@ std::string first_difference(const LoggedOutput& in_log, const LoggedOutput& in_
     for (const Part part : kParts)
       visit_part(sides[i], output, part);
   }
+  // bodies are the last part, after their count: where the counts differ, it is told before a list ends
   for (std::size_t i = 0; i < sides[0].fields.size(); ++i) {
     const Describer::Named &a = sides[0].fields[i], &b = sides[1].fields[i];
     if (a.bits != b.bits) return a.name + ": " + a.value + " in the log, " + b.value + " in the replay";

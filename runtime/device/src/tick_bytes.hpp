@@ -12,7 +12,8 @@
 namespace fdcg::dev {
 
 inline constexpr std::size_t kMostInputBytes = 32 + kMaxDriven * sizeof(fdcg_pose) + kMaxDrain * (10 + kMaxReportBytes);
-inline constexpr std::size_t kMostOutputBytes = 192;
+inline constexpr std::size_t kBodyBytes = 56;  // rotation and translation
+inline constexpr std::size_t kMostOutputBytes = 192 + 1 + kMaxBodies * kBodyBytes;
 inline constexpr std::size_t kMostTickBytes = kMostInputBytes + kMostOutputBytes;
 
 // A TickOutput as the log has it: only the gate makes a GatedForce, so what is read back has the numbers alone.
@@ -25,6 +26,8 @@ struct LoggedOutput {
   double hip_world_m[3] = {};
   double wanted_force_n[3] = {};
   Sample sample;
+  std::uint8_t body_count = 0;
+  fdcg_pose bodies[kMaxBodies] = {};  // but for their scales, which the scene has
 };
 LoggedOutput logged(const TickOutput& output);
 

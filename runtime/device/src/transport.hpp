@@ -28,6 +28,9 @@ class Transport {
   virtual void close() = 0;
   // Supervisor's, after a loss: true where there is nothing more to come (a recording's end), so that opening again is no use.
   virtual bool is_over() const { return false; }
+  // Of a device that is not in real time (a simulated or a recorded one, without real_time): its own clock, which only its
+  // reads and openings carry forward, from 0 at its first opening. Others: 0.
+  virtual std::uint64_t clock_ns() const { return 0; }
   // Reader's. Waits up to timeout_ms (0: not at all) for the oldest report not yet read. Allocates nothing while all is well.
   virtual ReadResult read(std::uint8_t* data, int capacity, int timeout_ms) = 0;
   // Writer's. May block (a device that does not take output: 5 s). False: the device did not take it, or is lost.

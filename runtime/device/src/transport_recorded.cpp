@@ -31,12 +31,14 @@ void sleep_until(std::uint64_t when_ns) {
 
 class RecordedTransport final : public Transport {
  public:
-  explicit RecordedTransport(const DeviceConfig& config) : path_(config.recording), name_(config.name) {}
+  explicit RecordedTransport(const DeviceConfig& config)
+      : path_(config.recording), name_(config.name), is_real_time_(config.is_recording_in_real_time) {}
 
   std::string open() override;
   void close() override { reports_.clear(); }
   bool is_over() const override { return is_over_; }
   ReadResult read(std::uint8_t* data, int capacity, int timeout_ms) override;
+  std::uint64_t clock_ns() const override { return is_real_time_ ? 0 : clock_ns_; }
   bool write(const std::uint8_t*, int) override { return true; }
   bool write_feature(const std::uint8_t*, int) override { return true; }
 
@@ -48,12 +50,21 @@ class RecordedTransport final : public Transport {
   };
   std::string load();
 
+  std::uint64_t time_ns() const { return is_real_time_ ? now_ns() : clock_ns_; }
+  void wait_until(std::uint64_t when_ns) {
+    if (is_real_time_) return sleep_until(when_ns);
+    clock_ns_ = std::max(clock_ns_, when_ns);
+  }
+
   std::string path_, name_;
+  const bool is_real_time_;
+  std::uint64_t clock_ns_ = 0;  // the reader's, where it is not in real time
   // All of it is read before the first report is asked for: the loop's thread touches no file.
   std::vector<Report> reports_;
   std::vector<std::uint8_t> bytes_;
   std::size_t next_ = 0;
-  std::uint64_t started_ns_ = 0;  // 0: not yet
+  std::uint64_t started_ns_ = 0;
+  bool has_started_ = false;
   std::atomic<bool> is_over_{false};
 };
 
@@ -84,7 +95,7 @@ std::string RecordedTransport::open() {
   reports_.clear();
   bytes_.clear();
   next_ = 0;
-  started_ns_ = 0;
+  has_started_ = false;
   return load();
 }
 
@@ -93,16 +104,17 @@ ReadResult RecordedTransport::read(std::uint8_t* data, int capacity, int timeout
     is_over_ = true;
     return {ReadStatus::kLost, 0};
   }
-  if (started_ns_ == 0) started_ns_ = now_ns();
+  if (!has_started_) started_ns_ = time_ns();
+  has_started_ = true;
   const Report& report = reports_[next_];
   const std::uint64_t due_ns = started_ns_ + (report.host_ns - std::min(report.host_ns, reports_[0].host_ns));
-  const std::uint64_t until_ns = now_ns() + static_cast<std::uint64_t>(std::max(timeout_ms, 0)) * kMillisecond_ns;
+  const std::uint64_t until_ns = time_ns() + static_cast<std::uint64_t>(std::max(timeout_ms, 0)) * kMillisecond_ns;
   if (due_ns > until_ns) {
-    if (timeout_ms > 0) sleep_until(until_ns);
+    if (timeout_ms > 0) wait_until(until_ns);
     return {ReadStatus::kTimeout, 0};
   }
-  if (timeout_ms > 0) sleep_until(due_ns);
-  if (now_ns() < due_ns) return {ReadStatus::kTimeout, 0};
+  if (timeout_ms > 0) wait_until(due_ns);
+  if (time_ns() < due_ns) return {ReadStatus::kTimeout, 0};
   ++next_;
   // what the log cut off is not there: a report that was too long is still too long
   const int length = std::min<int>(report.bytes, kMaxReportBytes);

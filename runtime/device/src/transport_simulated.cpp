@@ -62,6 +62,7 @@ class SimulatedTransport final : public Transport {
   void close() override;
   ReadResult read(std::uint8_t* data, int capacity, int timeout_ms) override;
   bool write(const std::uint8_t* data, int bytes) override;
+  std::uint64_t clock_ns() const override { return is_real_time_ ? 0 : now_ns(); }
   bool write_feature(const std::uint8_t*, int) override { return false; }  // its one feature report is read only
 
  private:

@@ -110,8 +110,8 @@ typedef struct fdcg_graph {
   uint64_t info_bytes;
   void* mapping; /* what fdcg_close unmaps; NULL for fdcg_open_memory */
   uint64_t mapping_bytes;
-  const uint16_t* node_materials; /* NULL, and so is the next: not in the file; else header->node_count entries */
-  const char* material_names;     /* material_count texts, each ends in '\0' */
+  const uint16_t* node_materials;        /* NULL: not in the file; else header->node_count entries */
+  const fdcg_material_record* materials; /* NULL: none; else material_count entries */
   uint32_t material_count;
   uint32_t reserved;
 } fdcg_graph;
@@ -209,6 +209,9 @@ typedef enum fdcg_step_skip {
 
 /* Friction beyond two coefficients and one stiffness: which of the fields below count. 0: none, at no cost.
  *
+ * All of it is for graphs; a surface (surface.h) has the two coefficients and the stiffness alone, combined with a finger's in
+ * a scene.
+ *
  * The curve (Melder 2004, figure 1). A slipping god-object's cone has the coefficient
  *   mu(v) = mu_dynamic + (mu_static - mu_dynamic) / (1 + (v / stribeck_m_per_s)^2) + viscous_s_per_m v
  * where v is its way in the tick over tick_s, in metres of the object a second (in a scene: of the world); the step solves for
@@ -224,14 +227,15 @@ typedef enum fdcg_step_skip {
  * and a slide at steady speed settles on it, while
  *   (0.65 (mu_static - mu_dynamic) / stribeck_m_per_s - viscous_s_per_m) depth_m <= friction_lag_s + tick_s / 4
  * (0.65: 3 sqrt(3) / 8; with presliding the depth counts 1 + stiffness / presliding_n_per_m times), which fdcg_check_params
- * asks for at curve_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any. Passive
+ * asks for at curve_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any; so it does
+ * where a finger's material makes the curve steeper. Passive
  * whatever the numbers: a slip only ever takes the god-object nearer to the HIP.
  *
  * Materials: `materials` says what a node's material (fdcg_node_material) is like, in place of mu_static, mu_dynamic and
  * stiffness_n_per_m, which hold for nodes without one and for materials beyond the table. On a concave edge each face's
  * coefficient counts by the load that it bears, and the softer face's stiffness holds; at a vertex that of the feature before.
  * A stiffness that rises under a pressed contact would push the hand: it falls at once and rises only by as much as sliding
- * loses meanwhile; a new contact has its own.
+ * loses meanwhile, the sampling's term k |dx|^2 / 2 included; a new contact has its own.
  *
  * Finger: what touches, combined with what is touched (fdcg_combine_materials). */
 typedef enum fdcg_term {
@@ -353,7 +357,8 @@ typedef struct fdcg_result {
 
 /* Moves the contact to the HIP of this tick, in metres in the object's frame, and says what the hand should feel.
  *
- * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 600, whatever the mesh. At most,
+ * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 600, whatever the mesh; with the
+ * friction curve some 1,500, with presliding 1,900. At most,
  * two budgets together (src/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the library
  * is compiled) let a tick run to some 75,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick with a valid
  * god-object. A budget is looked at between pieces of work, of which the largest is a node that the way meets within rounding:

@@ -112,6 +112,11 @@ class Scene {
     return fdcg_scene_reset_finger(scene_, finger, hip_world_m.data(), why) == FDCG_OK;
   }
 
+  // Null: nothing of its own.
+  bool set_material(fdcg_finger_id finger, const fdcg_material* material, fdcg_error* why = nullptr) noexcept {
+    return fdcg_scene_set_finger_material(scene_, finger, material, why) == FDCG_OK;
+  }
+
   void step() noexcept { fdcg_scene_step(scene_); }
   void advance() noexcept { fdcg_scene_advance(scene_); }
   bool step(fdcg_finger_id finger, fdcg_error* why = nullptr) noexcept {

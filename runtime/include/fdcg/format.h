@@ -36,7 +36,9 @@
   "\x89"           \
   "FDCG\r\n\x1a" /* 8 bytes; a text-mode copy or a 7-bit channel breaks it visibly */
 #define FDCG_ALIGNMENT 64u
-#define FDCG_NONE 0xFFFFFFFFu        /* "no node here": the far side of an open edge; a dropped source face */
+#define FDCG_NONE 0xFFFFFFFFu /* "no node here": the far side of an open edge; a dropped source face */
+#define FDCG_NO_MATERIAL 0xFFFFu
+#define FDCG_MATERIAL_NAME_BYTES 64u
 #define FDCG_LEAF_NODES 4u           /* nodes in one leaf of the hierarchy */
 #define FDCG_TREE_WAYS 8u            /* boxes in one record of the hierarchy */
 #define FDCG_MAX_SIDES 255u          /* sides of one node; fdcg compile cuts larger faces into nodes of at most 16 */
@@ -51,19 +53,21 @@ extern "C" {
 
 /* What a section holds. A reader skips ids that it does not know; a writer never reuses one. */
 enum fdcg_section_id {
-  FDCG_SECTION_NODES = 1,         /* node blocks, node_count of them, in Hilbert order of their centres */
-  FDCG_SECTION_NODE_OFFSETS = 2,  /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
-                                     are of one size, header.node_bytes */
-  FDCG_SECTION_EDGES = 3,         /* fdcg_edge_f64 or _f32, one a connection. Optional: derived from the corners */
-  FDCG_SECTION_CONNECTIONS = 4,   /* fdcg_connection, connection_count of them, by first use */
-  FDCG_SECTION_CORNERS = 5,       /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
-  FDCG_SECTION_FANS = 6,          /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
-  FDCG_SECTION_HIERARCHY = 7,     /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
-  FDCG_SECTION_SOURCE_MAP = 8,    /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
-  FDCG_SECTION_INFO = 9,          /* UTF-8 JSON: source, options, verdict. Optional */
-  FDCG_SECTION_FAN_BOXES = 10,    /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
-  FDCG_SECTION_BUSY_CORNERS = 11, /* fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
-  FDCG_SECTION_MASS = 12          /* fdcg_mass_record, one. Optional: of closed meshes that enclose a solid */
+  FDCG_SECTION_NODES = 1,          /* node blocks, node_count of them, in Hilbert order of their centres */
+  FDCG_SECTION_NODE_OFFSETS = 2,   /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
+                                      are of one size, header.node_bytes */
+  FDCG_SECTION_EDGES = 3,          /* fdcg_edge_f64 or _f32, one a connection. Optional: derived from the corners */
+  FDCG_SECTION_CONNECTIONS = 4,    /* fdcg_connection, connection_count of them, by first use */
+  FDCG_SECTION_CORNERS = 5,        /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
+  FDCG_SECTION_FANS = 6,           /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
+  FDCG_SECTION_HIERARCHY = 7,      /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
+  FDCG_SECTION_SOURCE_MAP = 8,     /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
+  FDCG_SECTION_INFO = 9,           /* UTF-8 JSON: source, options, verdict. Optional */
+  FDCG_SECTION_FAN_BOXES = 10,     /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
+  FDCG_SECTION_BUSY_CORNERS = 11,  /* fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
+  FDCG_SECTION_MASS = 12,          /* fdcg_mass_record, one. Optional: of closed meshes that enclose a solid */
+  FDCG_SECTION_MATERIALS = 13,     /* uint16_t: the material of each node, or FDCG_NO_MATERIAL. Optional, with the next */
+  FDCG_SECTION_MATERIAL_NAMES = 14 /* fdcg_material_record, one a material */
 };
 
 enum fdcg_connection_type { FDCG_CONVEX = 0, FDCG_CONCAVE = 1, FDCG_COPLANAR = 2, FDCG_BOUNDARY = 3 };
@@ -242,6 +246,12 @@ typedef struct fdcg_mass_record {
   double deviation; /* largest distance of a source corner from the plane of a node that took its face in, source units */
 } fdcg_mass_record;
 
+/* A material of the mesh file: UTF-8, ends in '\0' and is filled up with it. Names are told apart by all their bytes: of one
+ * that is too long the first 54 stand here, '~', and eight hex digits of its checksum. */
+typedef struct fdcg_material_record {
+  char name[FDCG_MATERIAL_NAME_BYTES];
+} fdcg_material_record;
+
 #ifdef __cplusplus
 }
 #define FDCG_STATIC_ASSERT(condition, text) static_assert(condition, text)
@@ -267,6 +277,7 @@ FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corne
 FDCG_STATIC_ASSERT(sizeof(fdcg_busy_corner) == 16, "busy corner: 16 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_box8) == 64, "eight boxes: 64 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_mass_record) == 104, "mass: 104 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_material_record) == 64, "material: 64 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_fan_box_f64) == 96 && sizeof(fdcg_fan_box_f32) == 48, "fan box: 96 or 48 bytes");
 
 #endif /* FDCG_FORMAT_H */

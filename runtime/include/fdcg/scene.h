@@ -12,22 +12,24 @@
  *               fdcg_scene_step(scene);
  *               fdcg_scene_result(scene, finger, &result, &error);        ->  result.force_n, in the world
  *
- * An object is a graph (any number of objects may share one), parameters, and a pose: rotation, translation, uniform scale. A
- * finger is one contact point; it has a contact (fdcg_contact) with each object that it touches, in that object's frame, so a
- * moving and turning object carries its god-objects. What is swept each tick is the relative motion: from where the HIP was in
- * the object's frame at the last tick, with the object's pose of that tick, straight to where it is now. An object that moves
- * onto a still finger is met as surely as the other way round. In a turn of w radians a tick the straight way cuts the arc by a
- * share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An object whose bounding sphere the
- * finger does not reach, measured from the moving centre of the sphere, is not met, however fast it spins.
+ * An object is a graph (any number of objects may share one) or a surface (surface.h), parameters, and a pose: rotation,
+ * translation, uniform scale. A finger is one contact point; it has a contact (fdcg_contact) with each object that it touches,
+ * in that object's frame, so a moving and turning object carries its god-objects. What is swept each tick is the relative
+ * motion: from where the HIP was in the object's frame at the last tick, with the object's pose of that tick, straight to where
+ * it is now. An object that moves onto a still finger is met as surely as the other way round. In a turn of w radians a tick
+ * the straight way cuts the arc by a share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An
+ * object whose bounding sphere the finger does not reach, measured from the moving centre of the sphere, is not met, however
+ * fast it spins.
  *
  * Lengths of the world in metres, forces in newtons. At a scale of s the god-object's distance in the world is s times the one
- * in the object, and stiffness and damping act on the distance in the world; friction does not depend on scale.
+ * in the object, and stiffness and damping act on the distance in the world; friction does not depend on scale, and speeds of
+ * its curve are those in the world.
  *
  * Cost: a free finger out of reach of every object costs a comparison (some 10 ns), however many objects there are. Now and
  * then it looks at all of them (2 to 3 ns each: 2.5 us for 1,000), when its own way and the objects' largest together have used
  * up the distance that it last saw. An object that it can have met costs a fdcg_step and two changes of frame; so a finger's
  * step is at most one look and touches_per_finger such steps. Memory: a finger takes 0.2 KB and, for each of
- * touches_per_finger, 0.3 KB; an object 0.6 KB. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
+ * touches_per_finger, 0.3 KB; an object 0.7 KB. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
  * the capacities in the config.
  *
  * Threads: the scene holds no lock. fdcg_scene_step is fdcg_scene_advance, then fdcg_scene_step_finger for every finger. After
@@ -85,7 +87,7 @@ typedef struct fdcg_scene_config {
   uint32_t finger_capacity;    /* 1 to 10,000,000 */
   uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
   uint32_t disabled_skips;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
-  uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.2 KB a touch; else 0 */
+  uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
 } fdcg_scene_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 45 KB. */
@@ -126,6 +128,11 @@ fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, f
 /* Where the HIP is in the next step. Not moved, it stays. Any number is taken: one that is not finite or beyond 1e100 is found
  * by the step, which then leaves the HIP where it was, gives no force and counts it. */
 fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
+
+/* What the finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the next
+ * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. */
+fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
+                                           fdcg_error* error);
 
 /* Lets go of everything and starts anew at a place: nothing on the way there is met. */
 fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);

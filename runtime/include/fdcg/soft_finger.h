@@ -2,7 +2,7 @@
 /*
  * Soft fingers: touches that resist being turned about their normal. In one screen:
  *
- *   config.has_soft_fingers = 1;                                     before fdcg_scene_create: 0.2 KB more a touch
+ *   config.has_soft_fingers = 1;                                     before fdcg_scene_create: 0.1 KB more a touch
  *   fdcg_scene_soften_finger(scene, finger, 0.004, &error);          a touch like a pad of 4 mm radius
  *   each tick:  fdcg_scene_turn_finger(scene, finger, rotation_xyzw, &error);   where the fingertip points, beside move_finger
  *               fdcg_scene_step(scene);                              or a tick of bodies (body.h, pile.h)
@@ -19,7 +19,7 @@
  * The object gets the opposite torque (fdcg_scene_reactions). Friction is that of the object's mu_static and mu_dynamic; for an
  * object with terms (fdcg_term) the tangential force keeps its own limit, and the torque gets what that leaves.
  *
- * Cost: a touch of a soft finger some 0.1 us more; other fingers none but a comparison a touch.
+ * Cost: a touch of a soft finger some 0.2 us more; other fingers none but a comparison a touch.
  */
 #ifndef FDCG_SOFT_FINGER_H
 #define FDCG_SOFT_FINGER_H

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session_csv.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace fdcg::servo {
+namespace {
+
+constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
+constexpr const char* kPhases[] = {"disarmed", "ramping", "armed", "fading"};
+constexpr const char* kCsvHeader =
+    "t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions,device,tick,phase,fault,sent_fx,sent_fy,sent_"
+    "fz";
+
+void append(std::string& line, double value) {
+  char digits[40];
+  line.append(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 17).ptr);
+  line += ',';
+}
+
+void append(std::string& line, const double (&values)[3]) {
+  for (const double value : values)
+    append(line, value);
+}
+
+// One touch of a contact: of the scene, or of a soft object. Null: none.
+struct Touch {
+  const fdcg_touch* of_scene = nullptr;
+  const dev::SoftTouch* of_soft = nullptr;
+  int contact = 0, soft = 0;
+  const double* force_n() const { return of_scene != nullptr ? of_scene->force_n : of_soft->force_n; }
+  const double (&god_object_m() const)[3] { return of_scene != nullptr ? of_scene->god_object_m : of_soft->god_object_m; }
+  std::uint32_t state() const { return of_scene != nullptr ? of_scene->state : of_soft->state; }
+};
+
+// Contact by contact, the scene's before the soft objects'.
+std::vector<Touch> touches_of(const dev::DeviceSetup& setup) {
+  std::vector<Touch> touches;
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
+    fdcg_finger_result finger{};
+    const bool is_there = fdcg_scene_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK;
+    for (std::uint32_t i = 0; is_there && i < finger.touch_count; ++i)
+      if (finger.touches[i].state != FDCG_FREE) touches.push_back({finger.touches + i, nullptr, contact, 0});
+    for (int soft = 0; soft < setup.soft_count; ++soft) {
+      const dev::SoftTouch& touch = setup.soft[soft]->touch(contact);
+      if (touch.state != FDCG_FREE) touches.push_back({nullptr, &touch, contact, soft});
+    }
+  }
+  return touches;
+}
+
+std::string state_columns(const Touch& touch) {
+  const std::uint32_t feature = touch.of_scene != nullptr ? touch.of_scene->feature : touch.of_soft->feature;
+  const std::uint32_t slipping = touch.of_scene != nullptr ? touch.of_scene->slipping : touch.of_soft->slipping;
+  return std::string(kStates[touch.state() & 3]) + "," + std::to_string(feature) + "," + std::to_string(slipping) + ",";
+}
+
+std::string column_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ',' || c == '"'; }, '_');
+  return name;
+}
+
+// What presses on a face or a sphere: the part of the force along its normal, the part in its plane, and the share of the
+// friction cone that is left (0: it slips). Elsewhere the fields stay empty.
+struct Load {
+  bool is_known = false;
+  double along_n = 0, across_n = 0, margin = 0;
+};
+
+void turn(const double q[4], const double from[3], double to[3]) {
+  const double c[3] = {q[1] * from[2] - q[2] * from[1], q[2] * from[0] - q[0] * from[2], q[0] * from[1] - q[1] * from[0]};
+  to[0] = from[0] + 2 * (q[3] * c[0] + q[1] * c[2] - q[2] * c[1]);
+  to[1] = from[1] + 2 * (q[3] * c[1] + q[2] * c[0] - q[0] * c[2]);
+  to[2] = from[2] + 2 * (q[3] * c[2] + q[0] * c[1] - q[1] * c[0]);
+}
+
+// Where an object was in that tick.
+const fdcg_pose& tick_pose(const dev::HostConfig& config, const dev::ReplayedTick& tick, std::size_t object) {
+  std::size_t body = 0, moved = 0;
+  for (std::size_t i = 0; i < object; ++i) {
+    body += config.objects[i].motion.kind == dev::MotionKind::kBody;
+    moved += dev::is_moved(config.objects[i].motion);
+  }
+  const dev::ObjectConfig& of = config.objects[object];
+  if (of.motion.kind == dev::MotionKind::kBody) return tick.output->bodies[body];
+  if (dev::is_moved(of.motion) && moved < tick.input->pose_count) return tick.input->poses[moved];
+  return of.pose;
+}
+
+void normal_of_ball(const dev::ObjectConfig& ball, const fdcg_pose& pose, const double at_m[3], double normal[3]) {
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    normal[i] = (at_m[i] - pose.translation_m[i]) * (ball.surface.is_hollow != 0 ? -1 : 1);
+    square += normal[i] * normal[i];
+  }
+  const double length = std::sqrt(square);
+  for (int i = 0; i < 3; ++i)
+    normal[i] /= length > 0 ? length : 1;
+}
+
+Load load_of(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, const fdcg_touch& touch) {
+  Load load;
+  const std::size_t object = touch.object.index;
+  const dev::ObjectConfig& of = replay.config().objects[object];
+  double normal[3];
+  if (of.is_surface && of.surface.kind == FDCG_SURFACE_SPHERE) {
+    normal_of_ball(of, tick_pose(replay.config(), tick, object), touch.god_object_m, normal);
+  } else if (!of.is_surface && touch.state == FDCG_FACE) {
+    turn(tick_pose(replay.config(), tick, object).rotation_xyzw, fdcg_get_node(&replay.graph(object), touch.feature).normal,
+         normal);
+  } else {
+    return load;
+  }
+  double square = 0;
+  for (int i = 0; i < 3; ++i)
+    load.along_n += touch.force_n[i] * normal[i];
+  for (int i = 0; i < 3; ++i) {
+    const double across = touch.force_n[i] - load.along_n * normal[i];
+    square += across * across;
+  }
+  load.is_known = load.along_n > 0;
+  load.across_n = std::sqrt(square);
+  const double mu = replay.config().objects[object].params.mu_static;
+  load.margin = mu > 0 ? 1 - load.across_n / (mu * load.along_n) : 0;
+  return load;
+}
+
+}  // namespace
+
+std::string session_csv_header(const dev::HostConfig& config) {
+  std::string line = kCsvHeader;
+  for (const dev::ObjectConfig& object : config.objects) {
+    if (object.motion.kind != dev::MotionKind::kBody) continue;
+    for (const char* const part : {"_x", "_y", "_z", "_qx", "_qy", "_qz", "_qw"})
+      line += "," + column_name(object.name) + part;
+  }
+  for (const dev::ObjectConfig& object : config.objects)
+    if (object.motion.kind == dev::MotionKind::kSoft) line += "," + column_name(object.name) + "_dent";
+  return line + "\n";
+}
+
+// Of the touch with the largest force: god-object, state and so on.
+std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_ns) {
+  const dev::LoggedOutput& output = *tick.output;
+  const std::vector<Touch> touches = touches_of(tick.state->setup);
+  const auto square = [](const Touch& touch) {
+    const double* const f = touch.force_n();
+    return f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+  };
+  const auto best =
+      std::max_element(touches.begin(), touches.end(), [&](const Touch& a, const Touch& b) { return square(a) < square(b); });
+  const bool is_free = best == touches.end();
+  std::string line;
+  append(line, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
+  append(line, output.hip_world_m);
+  append(line, is_free ? output.hip_world_m : best->god_object_m());
+  append(line, output.wanted_force_n);
+  line += is_free ? "free,-1,0," : state_columns(*best);
+  line += std::to_string(is_free || best->of_scene == nullptr ? 0 : best->of_scene->transitions) + ",";
+  line += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + kPhases[output.phase & 3] + "," +
+          dev::fault_name(static_cast<dev::Fault>(output.fault)) + ",";
+  append(line, output.force_n);
+  for (int i = 0; i < output.body_count; ++i) {
+    append(line, output.bodies[i].translation_m);
+    for (const double x : output.bodies[i].rotation_xyzw)
+      append(line, x);
+  }
+  for (int i = 0; i < tick.state->setup.soft_count; ++i)
+    append(line, tick.state->setup.soft[i]->deepest_m());
+  line.back() = '\n';
+  return line;
+}
+
+std::string touches_csv_header() {
+  return "t,device,tick,contact,object,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,load,friction,margin\n";
+}
+
+std::string touches_csv_rows(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, std::uint64_t first_ns) {
+  const dev::HostConfig& config = replay.config();
+  std::vector<std::size_t> soft;
+  for (std::size_t i = 0; i < config.objects.size(); ++i)
+    if (config.objects[i].motion.kind == dev::MotionKind::kSoft) soft.push_back(i);
+  std::string text;
+  for (const Touch& touch : touches_of(tick.state->setup)) {
+    const std::size_t object =
+        touch.of_scene != nullptr ? touch.of_scene->object.index : soft[static_cast<std::size_t>(touch.soft)];
+    append(text, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
+    text += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + std::to_string(touch.contact) + "," +
+            column_name(config.objects[object].name) + ",";
+    append(text, touch.god_object_m());
+    for (int i = 0; i < 3; ++i)
+      append(text, touch.force_n()[i]);
+    text += state_columns(touch);
+    const Load load = touch.of_scene != nullptr ? load_of(replay, tick, *touch.of_scene) : Load();
+    if (!load.is_known) {
+      text += ",,\n";
+      continue;
+    }
+    append(text, load.along_n);
+    append(text, load.across_n);
+    append(text, load.margin);
+    text.back() = '\n';
+  }
+  return text;
+}
+
+}  // namespace fdcg::servo
