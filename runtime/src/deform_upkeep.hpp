@@ -54,9 +54,12 @@ struct Before {
   uint32_t reserved[sizeof(Real) == sizeof(double) ? 2 : 1];  // to 64 bytes, a line of the cache (f32: 48)
 };
 
+// The least float that is not below x.
 inline float float_above(double x) {
   const auto f = static_cast<float>(x);
-  return static_cast<double>(f) < x ? nextafterf(f, HUGE_VALF) : f;
+  if (!(static_cast<double>(f) < x)) return f;
+  const uint32_t bits = __builtin_bit_cast(uint32_t, f);
+  return __builtin_bit_cast(float, f < 0 ? bits - 1 : bits + 1);
 }
 
 inline fdcg_deform& deform_of(const fdcg_graph& graph) {

@@ -3,8 +3,6 @@
 // expressions give, and a deformable graph computes them again.
 #pragma once
 
-#include <math.h>
-
 #include "derive.hpp"
 
 namespace fdcg {
@@ -48,9 +46,11 @@ inline double largest_of(Vec3<double> v) {
 // A power of two that brings `size` near 1.
 inline double scale_for(double size) {
   constexpr int kMost = 1000;  // its inverse is a number too
-  int exponent = 0;
-  (void)frexp(size, &exponent);
-  return ldexp(1.0, exponent > kMost ? -kMost : exponent < -kMost ? kMost : -exponent);
+  constexpr int kBias = 1023, kBits = 52;
+  // 2^(exponent - 1) <= size < 2^exponent; of a denormal number less than -kMost, which is all that counts.
+  const int exponent = static_cast<int>(__builtin_bit_cast(uint64_t, size) >> kBits & 0x7FF) - (kBias - 1);
+  const int scale = exponent > kMost ? -kMost : exponent < -kMost ? kMost : -exponent;
+  return __builtin_bit_cast(double, static_cast<uint64_t>(scale + kBias) << kBits);
 }
 
 // Products of four numbers of such a size neither underflow nor overflow.
