@@ -79,8 +79,8 @@ struct Layout {
 
 fdcg_status checked_config(const fdcg_deform_config* given, fdcg_deform_config* config, fdcg_error* error) {
   if (given == nullptr) return refuse(error, FDCG_E_ARGUMENT, "config: null pointer");
-  if (const fdcg_status status = check_struct_bytes(given->struct_bytes, sizeof *given, "config",
-                                                    "; start from fdcg_default_deform_config()", error);
+  if (const fdcg_status status =
+          check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_default_deform_config()", error);
       status != FDCG_OK) {
     return status;
   }
@@ -286,7 +286,8 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
   made->header = header;
   made->tree = fdcg::BoxTree(header.node_count);
   made->tick = 1;  // the corners' is 0: none has moved
-  made->node_bytes = header.real_bytes == sizeof(double) ? fdcg::node_bytes<double>(3, false) : fdcg::node_bytes<float>(3, false);
+  made->node_bytes =
+      header.real_bytes == sizeof(double) ? fdcg::node_bytes<double>(3, false) : fdcg::node_bytes<float>(3, false);
   made->header.node_bytes = made->node_bytes;
   made->per_tree_unit = 1 / fdcg::tree_unit(header.extent);
   memcpy(made->low, header.bounds_min, sizeof made->low);

@@ -54,8 +54,8 @@ inline bool holds_point(const fdcg_box8& record, uint32_t j, Vec3<double> p) {
 // The boxes with a bit in `lanes`, all together.
 TreeBox around(const fdcg_box8& record, uint32_t lanes);
 
-// Sets box j, rounded outwards. Where the grid does not reach, it is laid anew, the boxes of the other `lanes` grow, and true is
-// returned.
+// Sets box j, rounded outwards. Where the grid does not reach, it is laid anew, the boxes of the other `lanes` grow, and true
+// is returned.
 bool set_lane(fdcg_box8* record, uint32_t lanes, uint32_t j, const TreeBox& box);
 
 // Sets all boxes of `lanes`, rounded outwards. True: on a new grid, since the old one does not reach.

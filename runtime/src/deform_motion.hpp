@@ -2,10 +2,10 @@
 // What a deformable mesh's motion of one tick does to a contact: a god-object rides on its feature, a free one that a face
 // passes over is caught.
 //
-// A triangle's way: its corners move one after another, in the order of their numbers, each along a straight line; so do those of
-// its neighbours, and each such move sweeps one tetrahedron of every triangle at the corner. Tetrahedra of neighbours share a
-// face, bit for bit. A point is passed over where it lay in front of a triangle or on it, lies behind it after the move, and is
-// in the tetrahedron: four exact signs. A place on the border of two counts for both.
+// A triangle's way: its corners move one after another, in the order of their numbers, each along a straight line; so do those
+// of its neighbours, and each such move sweeps one tetrahedron of every triangle at the corner. Tetrahedra of neighbours share
+// a face, bit for bit. A point is passed over where it lay in front of a triangle or on it, lies behind it after the move, and
+// is in the tetrahedron: four exact signs. A place on the border of two counts for both.
 #pragma once
 
 #include "deform_upkeep.hpp"
@@ -95,7 +95,7 @@ inline bool passes_over(const MovedTriangle& t, Vec3<double> x, PlaceInTriangle*
 
 // How far into the tick the plane of a triangle reaches x, about: 0 to 1.
 inline double when_met(const MovedTriangle& t, Vec3<double> x) {
-  const auto distance = [&x](const Vec3<double> (&p)[3]) {
+  const auto distance = [&x](const Vec3<double>(&p)[3]) {
     const Vec3<double> normal = cross(p[1] - p[0], p[2] - p[0]);
     const double length = norm(normal);
     return length > 0 ? dot(normal, x - p[0]) / length : 0;

@@ -165,8 +165,7 @@ extern "C" fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double 
   fdcg::Vec3<double> local;
   if (!fdcg::to_local(*deform, position_object_m, &local)) return fdcg::refuse_place(*deform, 0, position_object_m, error);
   const double reach = kNear * deform->header.extent;
-  *corner = fdcg::with_real_of(deform->header,
-                               [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
+  *corner = fdcg::with_real_of(deform->header, [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
   if (*corner != FDCG_NONE) return FDCG_OK;
   return fdcg::Message(error, FDCG_E_ABSENT)
       .text("no corner within ")

@@ -135,6 +135,12 @@ template <class Real>
   contact->tick = deform.tick;
   contact->travel = deform.travel;
   if (!is_started) return 0;
+  constexpr uint32_t kMostHalvings = 24;
+  if (contact->contact.sweep.is_carried != 0) {
+    if (contact->halvings < kMostHalvings) ++contact->halvings;
+  } else if (contact->halvings > 0) {
+    --contact->halvings;
+  }
   uint32_t flags = saw_before ? 0 : FDCG_DEFORM_MISSED;
   if (contact->contact.state != FDCG_FREE) {
     ride(upkeep, saw_before, &contact->contact);
@@ -162,6 +168,17 @@ template <class Real>
   deform.tick = 2;
 }
 
+// Where to, on the way to the HIP: a sweep that ran out of work on a mesh that moves all the time would begin anew for ever,
+// and takes shorter ways until one can be looked at within a tick.
+inline void shorten(const fdcg_header& header, const fdcg_deform_contact& contact, const double hip_object_m[3],
+                    double (&to)[3]) {
+  const double share = 1 / static_cast<double>(uint32_t{1} << contact.halvings);
+  for (int k = 0; k < 3; ++k) {
+    const double from = (contact.contact.god_object[k] + header.origin[k]) * header.metres_per_unit;
+    to[k] = from + (hip_object_m[k] - from) * share;
+  }
+}
+
 template <class Real>
 void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact* contact, const double hip_object_m[3],
              fdcg_result* result) {
@@ -170,7 +187,15 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
   uint32_t flags = 0;
   if (contact->tick != deform->tick) flags = take_part(upkeep, contact);
   if (contact->contact.state == FDCG_FACE) leave_sliver(upkeep, &contact->contact);
-  step<Real>(deform->graph, params, &contact->contact, hip_object_m, result);
+  if (contact->contact.state != FDCG_FREE) contact->halvings = 0;
+  if (contact->halvings > 0) {
+    double to[3];
+    shorten(deform->header, *contact, hip_object_m, to);
+    step<Real>(deform->graph, params, &contact->contact, to, result);
+    flags |= FDCG_RESULT_SWEEP_BOUND;
+  } else {
+    step<Real>(deform->graph, params, &contact->contact, hip_object_m, result);
+  }
   if (contact->contact.state == FDCG_FACE && upkeep.is_sliver(contact->contact.feature)) {
     leave_sliver(upkeep, &contact->contact);
     say_where(deform->header, contact->contact, result);
@@ -185,7 +210,6 @@ extern "C" void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params,
                                  const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
   const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
-  fdcg::with_real_of(deform->header, [&](auto real) {
-    fdcg::step_on<decltype(real)>(deform, all_params, contact, hip_object_m, result);
-  });
+  fdcg::with_real_of(deform->header,
+                     [&](auto real) { fdcg::step_on<decltype(real)>(deform, all_params, contact, hip_object_m, result); });
 }

@@ -84,7 +84,8 @@ void Upkeep<Real>::compute_sliver(uint32_t n) const {
   const Vec3<double> along = widen(point(here.sides[(k + 1) % 3].corner)) - start;
   const Vec3<double> most_across = absolute(along.x) <= absolute(along.y) && absolute(along.x) <= absolute(along.z)
                                        ? Vec3<double>{1, 0, 0}
-                                       : absolute(along.y) <= absolute(along.z) ? Vec3<double>{0, 1, 0} : Vec3<double>{0, 0, 1};
+                                   : absolute(along.y) <= absolute(along.z) ? Vec3<double>{0, 1, 0}
+                                                                            : Vec3<double>{0, 0, 1};
   const Vec3<double> across = cross(along, most_across);
   const Vec3<double> normal = largest_of(across) > 0 ? unit_of(across) : Vec3<double>{0, 0, 1};
   const Plane<Real> plane = plane_with_normal<Real>(normal, start, start, start + along);
@@ -127,8 +128,7 @@ Vec3<double> Upkeep<Real>::leaving(uint32_t n, uint32_t k) const {
   const fdcg_side* const sides = node(n).sides;
   const Vec3<Real> here = point(sides[k].corner), there = point(sides[(k + 1) % 3].corner);
   const bool runs_along = (sides[k].link & 1) == 0;
-  const Vec3<double> e =
-      widen((runs_along ? derive_edge_or_point(here, there) : derive_edge_or_point(there, here)).direction);
+  const Vec3<double> e = widen((runs_along ? derive_edge_or_point(here, there) : derive_edge_or_point(there, here)).direction);
   return runs_along ? e : Vec3<double>{-e.x, -e.y, -e.z};
 }
 

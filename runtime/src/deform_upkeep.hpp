@@ -23,8 +23,8 @@ struct fdcg_deform {
   void* before;
   fdcg_connection* connections;
   fdcg_box8* boxes;
-  uint8_t* stale;  // by leaf, a bit for each node of it
-  uint8_t* loose;  // by record, a bit for each box that may be larger than it must
+  uint8_t* stale;        // by leaf, a bit for each node of it
+  uint8_t* loose;        // by record, a bit for each box that may be larger than it must
   uint32_t* tight_tick;  // by record: in which boxes were last made tight
   uint32_t* leaf_first;  // corner c is in the leaves leaf_first[c] .. leaf_first[c + 1] - 1
   uint32_t* leaves;      // leaf << FDCG_LEAF_NODES | a bit for each of its nodes that the corner belongs to
@@ -34,23 +34,23 @@ struct fdcg_deform {
   uint32_t has_moved;  // 1: since the last step. Such corners bear the number of the tick to come
   uint32_t reserved;
   double per_tree_unit;
-  double travel;  // the sum over all ticks of the largest way of a corner, rounded up; local
-  double tick_travel;  // of the present tick
-  double way2;         // the largest way of the tick to come, squared
+  double travel;           // the sum over all ticks of the largest way of a corner, rounded up; local
+  double tick_travel;      // of the present tick
+  double way2;             // the largest way of the tick to come, squared
   double low[3], high[3];  // local: where corners may be moved
 };
 
 namespace fdcg {
 
-// Where a corner was before the tick that it last moved in; and where it may go without leaving new marks. While `is_marked`, its
-// triangles are stale, its leaves' boxes are loose, and all of them hold all that lies between `low` and `high`. What takes a
-// mark off, or makes a box smaller, resets it: so a corner that nobody looks at is marked once, however often it moves.
+// Where a corner was before the tick that it last moved in; and where it may go without leaving new marks. While `is_marked`,
+// its triangles are stale, its leaves' boxes are loose, and all of them hold all that lies between `low` and `high`. What takes
+// a mark off, or makes a box smaller, resets it: so a corner that nobody looks at is marked once, however often it moves.
 template <class Real>
 struct Before {
   Real point[3];
   uint32_t tick;
   uint32_t is_marked;
-  float low[3], high[3];  // tree units
+  float low[3], high[3];                                      // tree units
   uint32_t reserved[sizeof(Real) == sizeof(double) ? 2 : 1];  // to 64 bytes, a line of the cache (f32: 48)
 };
 
@@ -119,8 +119,8 @@ class Upkeep {
 
   // ---- hierarchy
 
-  // Makes those of a record's boxes tight that are loose and in `lanes`; where they are again, not before some ticks have passed.
-  // False: nothing was done.
+  // Makes those of a record's boxes tight that are loose and in `lanes`; where they are again, not before some ticks have
+  // passed. False: nothing was done.
   [[nodiscard]] bool has_tightened(int level, uint32_t record, uint32_t lanes) const {
     constexpr uint32_t kTicksBetween = 8;
     const uint32_t at = d_->tree.first[level] + record, due = d_->loose[at] & lanes;

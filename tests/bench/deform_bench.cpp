@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a deformable mesh costs beside a rigid one: a sheet of 100,352 triangles, of whose vertices a hundredth moves each tick,
-// and the same HIP on both. Prints a table; exits with 1 where a bar does not hold: a moved vertex 20 ns, a step three times the
-// rigid one's.
+// and the same HIP on both. Prints a table; exits with 1 where a bar does not hold: a moved vertex 20 ns, a step three times
+// the rigid one's.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -21,7 +21,7 @@ using fdcg::bake::Precision;
 
 namespace {
 
-constexpr int kSquares = 224;  // along a side
+constexpr int kSquares = 224;           // along a side
 constexpr double kMostTick_ns = 60000;  // a tick that takes longer was interrupted
 constexpr double kMostMark_ns = 20, kMostTimes = 3;
 
@@ -46,8 +46,8 @@ std::array<double, 3> hip_at(Way way, int tick) {
   return {x, y, way == Way::slides ? -0.004 : 0.012 + 0.004 * std::sin(0.01 * tick)};
 }
 
-std::vector<std::vector<Motion>> motions_of(const Case& c, const PolygonSoup& sheet, const std::vector<std::uint32_t>& corner_of,
-                                            int ticks) {
+std::vector<std::vector<Motion>> motions_of(const Case& c, const PolygonSoup& sheet,
+                                            const std::vector<std::uint32_t>& corner_of, int ticks) {
   const std::size_t moving = sheet.points.size() / 100;
   std::vector<std::vector<std::uint32_t>> by_place(kSquares * kSquares);
   const auto square = [](double x) { return std::min(static_cast<int>((x + 0.5) * kSquares), kSquares - 1); };
@@ -61,7 +61,8 @@ std::vector<std::vector<Motion>> motions_of(const Case& c, const PolygonSoup& sh
     auto& now = motions[static_cast<std::size_t>(tick)];
     const auto add = [&](std::uint32_t v) {
       const auto& p = sheet.points[v];
-      now.push_back({corner_of[v], {p.x, p.y, c.height * std::sin(40 * p.x + 0.01 * tick) * std::cos(31 * p.y - 0.013 * tick)}});
+      now.push_back(
+          {corner_of[v], {p.x, p.y, c.height * std::sin(40 * p.x + 0.01 * tick) * std::cos(31 * p.y - 0.013 * tick)}});
     };
     if (c.is_scattered) {
       for (std::size_t i = 0; i < moving; ++i)
@@ -143,8 +144,8 @@ Times run(const Case& c, int ticks) {
 int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::atoi(argv[1]) : 4000, only = argc > 2 ? std::atoi(argv[2]) : 0;
   int number = 0;
-  std::printf("%-4s %-9s %-7s %7s %8s %10s %9s %7s %9s %9s %11s\n", "", "moving", "finger", "height", "mark ns", "rigid mean", "step mean",
-              "times", "rigid p50", "step p50", "step p99.9");
+  std::printf("%-4s %-9s %-7s %7s %8s %10s %9s %7s %9s %9s %11s\n", "", "moving", "finger", "height", "mark ns", "rigid mean",
+              "step mean", "times", "rigid p50", "step p50", "step p99.9");
   bool holds = true;
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     for (const bool is_scattered : {true, false}) {
@@ -157,12 +158,13 @@ int main(int argc, char** argv) {
           holds = holds && is_within;
           std::printf("%-4s %-9s %-7s %7.4f %8.1f %10.1f %9.1f %7.2f %9.1f %9.1f %11.1f  contact %.2f%s\n",
                       precision == Precision::f64 ? "f64" : "f32", is_scattered ? "anywhere" : "around",
-                      way == Way::slides ? "slides" : "hovers", height, t.mark_ns, t.rigid_ns, t.step_ns, times, t.rigid_p50_ns, t.p50_ns,
-                      t.p999_ns, t.in_contact, is_within ? "" : "  does not hold");
+                      way == Way::slides ? "slides" : "hovers", height, t.mark_ns, t.rigid_ns, t.step_ns, times, t.rigid_p50_ns,
+                      t.p50_ns, t.p999_ns, t.in_contact, is_within ? "" : "  does not hold");
         }
       }
     }
   }
-  std::printf("bars: a mark %.0f ns, a step %.0f times the rigid one: %s\n", kMostMark_ns, kMostTimes, holds ? "hold" : "do not hold");
+  std::printf("bars: a mark %.0f ns, a step %.0f times the rigid one: %s\n", kMostMark_ns, kMostTimes,
+              holds ? "hold" : "do not hold");
   return holds ? 0 : 1;
 }

@@ -97,7 +97,8 @@ TEST_CASE("lazy steps are those on a mesh computed anew as a whole, bit for bit"
   for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
     for (const bake::PolygonSoup& rest : {star_sphere(3, 0.2, 5), bumpy_patch(24, 0.1, 3), uv_sphere(48, 12)}) {
       INFO(rest.name);
-      DeformableMesh lazy(triangulated(rest), triangle_options(precision)), whole(triangulated(rest), triangle_options(precision));
+      DeformableMesh lazy(triangulated(rest), triangle_options(precision)),
+          whole(triangulated(rest), triangle_options(precision));
       Random motion(3), same_motion(3), choice(7);
       HipWalk walk(rest, 9);
       const fdcg_params params = contact_params(0.5, 0.3);
