@@ -36,7 +36,7 @@ set yrange [0:*]
 set ylabel 'force (N)' textcolor rgb ink
 if (is_sheet) {
   plot session using 1:(sqrt($8**2 + $9**2 + $10**2)) skip 1 with lines lw 1.4 lc rgb hip title 'on the finger', \
-       session using 1:(abs($8)) skip 1 with lines lw 1.4 lc rgb god title 'along the stroke'
+       session using 1:(abs($8)) skip 1 with lines lw 1.4 lc rgb god title 'sideways'
 } else {
   plot for [i = 1:contacts] touches using 1:($4 == i - 1 ? $15 : NaN) skip 1 with points pt 7 ps 0.2 lc rgb colour[i] \
          title sprintf('load of finger %d', i), \

@@ -25,7 +25,7 @@ bool is_finite(const double* x, int count) {
 // Null, or what of an accepted scene is out of order.
 const char* trouble_of(const HostConfig& config) {
   if (config.devices.empty() || config.devices.size() > kMaxDevices) return "the number of devices";
-  int moving = 0;
+  int moving = 0, bodies = 0;
   for (const ObjectConfig& object : config.objects) {
     fdcg_params params = object.params;
     params.tick_s = 0.001;
@@ -33,12 +33,18 @@ const char* trouble_of(const HostConfig& config) {
     if (fdcg_check_params(&params, &error) != FDCG_OK) return "an object's parameters";
     const fdcg_pose pose = pose_at(object, 12345.678);
     if (!is_finite(pose.rotation_xyzw, 4) || !is_finite(pose.translation_m, 3) || !(pose.scale > 0)) return "a pose";
-    moving += object.motion.kind != MotionKind::kFixed;
+    moving += is_moved(object.motion);
+    bodies += object.motion.kind == MotionKind::kBody;
+    if (object.is_surface && fdcg_check_surface(&object.surface, &error) != FDCG_OK) return "a surface";
   }
+  if (bodies > kMaxBodies || (bodies > 0 && config.devices.size() > 1)) return "the number of bodies";
+  if (!is_finite(config.gravity_m_per_s2, 3) || !is_finite(config.ground.normal, 3)) return "gravity or the ground";
   if (moving > kMaxDriven) return "the number of motions";
   for (const DeviceConfig& device : config.devices) {
     if (device.contact_count < 1 || device.contact_count > kMaxContacts) return "the number of contacts";
     if (!is_finite(&device.contacts_m[0][0], 3 * kMaxContacts)) return "a contact";
+    if (!is_finite(&device.grip.closed_m[0][0], 3 * kMaxContacts) || !is_finite(device.grip.turn_xyzw, 4)) return "a grip";
+    if (!(device.grip.close.seconds > 0) || !(device.grip.turn.seconds > 0)) return "a grip's seconds";
     if (!is_finite(device.mapping.rotation, 9) || !is_finite(device.mapping.offset_m, 3)) return "a mapping";
     if (!(device.mapping.scale > 0) || !(device.most_force_n >= 0) || !(device.profile.rate_hz > 0)) return "a device";
   }

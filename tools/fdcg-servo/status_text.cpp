@@ -65,6 +65,9 @@ Json device_json(const DeviceLook& look) {
   json["tip_m"] = vector_json(status.last.hip_world_m);
   json["wanted_force_n"] = vector_json(status.last.wanted_force_n);
   json["force_n"] = vector_json(status.last.force.force_n());
+  for (std::uint32_t i = 0; i < status.last.body_count; ++i)
+    json["bodies_m"].push_back(vector_json(status.last.bodies[i].translation_m));
+  if (counters.bodies_lost != 0) json["bodies_lost"] = true;
   json["ticks"] = counters.ticks;
   json["late"] = counters.late;
   json["lost"] = counters.lost;
@@ -184,6 +187,7 @@ std::string summary_text(const std::vector<DeviceLook>& looks) {
     text += "  write          " + times_text(status.write);
     if (status.write_failures != 0) text += "  writes failed  " + grouped(status.write_failures) + "\n";
     if (status.log_dropped != 0) text += "  not logged     " + grouped(status.log_dropped) + " ticks\n";
+    if (counters.bodies_lost != 0) text += "  bodies         lost: one flew beyond all bounds, and all stand still since\n";
     text += "  disarmed       " + disarmed_text(counters) + "\n";
   }
   return text;

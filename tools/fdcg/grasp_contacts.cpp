@@ -23,11 +23,17 @@ struct Wrong {
   std::string message;
 };
 
+// What the file holds, short enough for a message that says more.
+std::string shown(const std::string& text) {
+  constexpr std::size_t kLongest = 40;
+  return one_line(text.size() <= kLongest ? text : text.substr(0, kLongest) + "...");
+}
+
 // The finite number that a text is, or a message.
 double finite_number(const std::string& text, const std::string& what) {
   const auto value =
       parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
-  if (!value) throw Wrong{what + " '" + text + "' is no finite number"};
+  if (!value) throw Wrong{what + " '" + shown(text) + "' is no finite number"};
   return *value;
 }
 
@@ -41,12 +47,13 @@ void set_normal(NamedContact& contact, const bake::Vec3& normal) {
 // ---- JSON ----------------------------------------------------------------------------------------------------------------
 
 double number_of(const Json& value, const std::string& what) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) throw Wrong{what + " is no finite number: " + value.dump()};
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    throw Wrong{what + " is no finite number: " + shown(value.dump())};
   return value.get<double>();
 }
 
 bake::Vec3 vector_of(const Json& value, const std::string& what) {
-  if (!value.is_array() || value.size() != 3) throw Wrong{what + " is not [x, y, z]: " + value.dump()};
+  if (!value.is_array() || value.size() != 3) throw Wrong{what + " is not [x, y, z]: " + shown(value.dump())};
   return {number_of(value[0], what), number_of(value[1], what), number_of(value[2], what)};
 }
 
@@ -54,11 +61,11 @@ NamedContact contact_of(const Json& json, std::size_t index) {
   NamedContact contact;
   contact.name = "contact " + std::to_string(index);
   const std::string where = contact.name + ": ";
-  if (!json.is_object()) throw Wrong{where + "is no object: " + json.dump()};
+  if (!json.is_object()) throw Wrong{where + "is no object: " + shown(json.dump())};
   if (!json.contains("point")) throw Wrong{where + "has no \"point\": [x, y, z] in metres"};
   std::optional<bake::Vec3> normal;
   for (const auto& [key, value] : json.items()) {
-    const std::string what = where + "\"" + key + "\"";
+    const std::string what = where + "\"" + shown(key) + "\"";
     if (key == "point")
       contact.point_m = vector_of(value, what);
     else if (key == "normal")
@@ -84,7 +91,8 @@ Contacts parse_json(const std::string& text) {
   const bool is_object = document.is_object();
   if (is_object) {
     for (const auto& [key, value] : document.items()) {
-      if (key != "contacts") throw Wrong{"\"" + key + "\" is no member of a contacts file" + did_you_mean(key, {"contacts"})};
+      if (key != "contacts")
+        throw Wrong{"\"" + shown(key) + "\" is no member of a contacts file" + did_you_mean(key, {"contacts"})};
     }
     if (!document.contains("contacts") || !document["contacts"].is_array()) throw Wrong{"there is no array \"contacts\""};
   }
@@ -115,7 +123,7 @@ void check_header(const std::vector<std::string>& header) {
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto& column = header[i];
     if (std::find(known.begin(), known.end(), column) == known.end())
-      throw Wrong{"line 1: '" + one_line(column) + "' is no column of a contacts file" + did_you_mean(column, known)};
+      throw Wrong{"line 1: '" + shown(column) + "' is no column of a contacts file" + did_you_mean(column, known)};
     if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i), column) !=
         header.begin() + static_cast<std::ptrdiff_t>(i))
       throw Wrong{"line 1: the column '" + column + "' comes twice"};
@@ -141,7 +149,7 @@ NamedContact contact_of_line(const std::vector<std::string>& header, const std::
       contact.name = one_line(field);
       continue;
     }
-    const double value = finite_number(one_line(field), where + column);
+    const double value = finite_number(field, where + column);
     if (column == "x") contact.point_m.x = value;
     if (column == "y") contact.point_m.y = value;
     if (column == "z") contact.point_m.z = value;
