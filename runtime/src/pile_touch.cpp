@@ -2,6 +2,7 @@
 // One touch of a pile: the god-object's step, and the spring between it and the point.
 #include "friction.hpp"
 #include "pile_memory.hpp"
+#include "scene_tick.hpp"
 #include "struct_bytes.hpp"
 
 namespace fdcg {
@@ -79,7 +80,8 @@ fdcg_params pair_params(const Meeting& meeting, const Object& on, const fdcg_mat
   params.damping_n_s_per_m = 0;  // the force is this file's affair
   params.tick_s = meeting.step_s;
   params.terms &= ~uint32_t{FDCG_TERM_FINGER};
-  if ((params.terms & FDCG_TERM_MATERIALS) != 0) {
+  measure_in_object(on.now.scale, &params);
+  if ((params.terms & FDCG_TERM_MATERIALS) != 0 && on.step_surface == nullptr) {
     params.terms |= FDCG_TERM_FINGER;
     params.finger = own;
     return params;

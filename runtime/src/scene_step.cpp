@@ -64,9 +64,7 @@ fdcg_params params_met(const Object& object, const Finger& finger) {
     params.mu_dynamic = both.mu_dynamic;
     params.stiffness_n_per_m = both.stiffness_n_per_m;
   }
-  params.stribeck_m_per_s /= object.now.scale;
-  params.viscous_s_per_m *= object.now.scale;
-  params.curve_depth_m /= object.now.scale;
+  measure_in_object(object.now.scale, &params);
   return params;
 }
 

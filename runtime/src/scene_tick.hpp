@@ -39,6 +39,13 @@ inline uint32_t own_bits(const fdcg_scene& scene, const Finger& finger) {
   return (static_cast<uint32_t>(&finger - scene.fingers()) * 0x9E3779B9u) >> 16;
 }
 
+// The friction curve's speeds and depths, which are the world's, in the metres of an object of this scale.
+inline void measure_in_object(double scale, fdcg_params* params) {
+  params->stribeck_m_per_s /= scale;
+  params->viscous_s_per_m *= scale;
+  params->curve_depth_m /= scale;
+}
+
 // The object's parameters as this finger meets them: with its material, and speeds and depths in the object's metres.
 fdcg_params params_met(const Object& object, const Finger& finger);
 
