@@ -30,7 +30,7 @@
 #define FDCG_WITH_MESSAGES 1
 #endif
 
-// fdcg_params.terms: the friction curve, materials. Without them the library is some 10 kB smaller, and fdcg_check_params
+// fdcg_params.terms: the friction curve, materials. Without them the library is smaller (README.md), and fdcg_check_params
 // refuses them.
 #ifndef FDCG_WITH_TERMS
 #define FDCG_WITH_TERMS 1

@@ -35,7 +35,7 @@
  * all of it moves around the finger (tests/bench/deform_bench.cpp). A free HIP not in a clear ball looks once a tick for faces
  * that passed over it: at the boxes around it, and the triangles that moved in them; where the surface moves as far in a tick
  * as it is away, that is 0.3 to 1.2 us. This work, and what is brought up to date, is bounded by the number of triangles near
- * the HIP that moved, and is not carried over to later ticks. Memory, for each triangle: some 170 bytes (f64), 130 (f32).
+ * the HIP that moved, and is not carried over to later ticks. Memory, for each triangle: some 155 bytes (f64), 120 (f32).
  */
 #ifndef FDCG_DEFORM_H
 #define FDCG_DEFORM_H

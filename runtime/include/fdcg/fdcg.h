@@ -228,8 +228,8 @@ typedef enum fdcg_step_skip {
  *   (0.65 (mu_static - mu_dynamic) / stribeck_m_per_s - viscous_s_per_m) depth_m <= friction_lag_s + tick_s / 4
  * (0.65: 3 sqrt(3) / 8; with presliding the depth counts 1 + stiffness / presliding_n_per_m times), which fdcg_check_params
  * asks for at curve_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any; so it does
- * where a finger's material makes the curve steeper. Passive
- * whatever the numbers: a slip only ever takes the god-object nearer to the HIP.
+ * where a finger's material makes the curve steeper. The default numbers hold with FDCG_TERM_LAG; without it raise
+ * stribeck_m_per_s. Passive whatever the numbers: a slip only ever takes the god-object nearer to the HIP.
  *
  * Materials: `materials` says what a node's material (fdcg_node_material) is like, in place of mu_static, mu_dynamic and
  * stiffness_n_per_m, which hold for nodes without one and for materials beyond the table. On a concave edge each face's

@@ -90,7 +90,7 @@ typedef struct fdcg_scene_config {
   uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
 } fdcg_scene_config;
 
-/* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 45 KB. */
+/* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 57 KB. */
 void fdcg_init_scene_config(fdcg_scene_config* config, uint32_t struct_bytes);
 static inline fdcg_scene_config fdcg_default_scene_config(void) {
   fdcg_scene_config config;
@@ -130,7 +130,8 @@ fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, f
 fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
 
 /* What the finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the next
- * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. */
+ * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0, or where
+ * the library was built without FDCG_WITH_TERMS. */
 fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
                                            fdcg_error* error);
 
