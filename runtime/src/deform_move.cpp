@@ -8,18 +8,21 @@
 namespace fdcg {
 namespace {
 
+// `corner`: FDCG_NONE where one is looked for.
 [[gnu::cold, gnu::noinline]] fdcg_status refuse_place(const fdcg_deform& deform, uint32_t corner, const double position_m[3],
                                                       fdcg_error* error) {
   const fdcg_header& header = deform.header;
   if (position_m == nullptr) return Message(error, FDCG_E_ARGUMENT).text("position: null pointer");
   Message message(error, FDCG_E_ARGUMENT);
-  message.text("corner ").number(corner).text(": position ");
+  if (corner != FDCG_NONE) message.text("corner ").number(corner).text(": ");
+  message.text("position ");
   for (int k = 0; k < 3; ++k) {
     const double low = (deform.low[k] + header.origin[k]) * header.metres_per_unit;
     const double high = (deform.high[k] + header.origin[k]) * header.metres_per_unit;
     if (position_m[k] >= low && position_m[k] <= high) continue;
     message.number(static_cast<uint64_t>(k)).text(" is ").real(position_m[k]).text(" m, allowed ").real(low).text(" to ");
-    return message.real(high).text("; create the deformable mesh with a larger margin_m");
+    return message.real(high).text(corner != FDCG_NONE ? "; create the deformable mesh with a larger margin_m"
+                                                       : "; vertices are where the file says, in metres");
   }
   return message.text("is at the very end of what the margin_m allows");
 }
@@ -163,7 +166,8 @@ extern "C" fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double 
     return fdcg::Message(error, FDCG_E_ARGUMENT).text("position or corner: null pointer");
   *corner = FDCG_NONE;
   fdcg::Vec3<double> local;
-  if (!fdcg::to_local(*deform, position_object_m, &local)) return fdcg::refuse_place(*deform, 0, position_object_m, error);
+  if (!fdcg::to_local(*deform, position_object_m, &local))
+    return fdcg::refuse_place(*deform, FDCG_NONE, position_object_m, error);
   const double reach = kNear * deform->header.extent;
   *corner = fdcg::with_real_of(deform->header, [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
   if (*corner != FDCG_NONE) return FDCG_OK;
