@@ -152,6 +152,7 @@ class Upkeep {
   void compute_node(uint32_t n) const;
   void compute_sliver(uint32_t n) const;
   [[nodiscard]] Lender plane_lender(uint32_t n) const;
+  // Its corners are in one line, or so near one that it has no normal: a node that is none lends a plane of its own.
   [[nodiscard]] bool is_line(uint32_t n) const;
   // A corner of the node, or of its lender, that is off side k's line.
   [[nodiscard]] uint32_t apex(uint32_t n, uint32_t k) const;
