@@ -186,3 +186,25 @@ TEST_CASE("a HIP that is no number leaves a contact on a moving sheet valid") {
   CHECK(sheet.step(params, &contact, {0.013, 0.051, -0.05}).force_n[2] ==
         Approx(params.stiffness_n_per_m * 0.175).epsilon(1e-12));
 }
+
+// Beside the line from -(1, 1/3) to (1, 1/3) by the rounding of a third of their x: exact signs tell them off it, and the
+// products of their normals vanish. Each has the other across its longest side.
+TEST_CASE("two triangles too thin for a normal do not ask each other for a plane for ever") {
+  const double third = 1.0 / 3;
+  const bake::PolygonSoup rest =
+      make_soup("thin", {{1, third, 0}, {-1, -third, 0}, {0.5, -1, 0}, {-0.5, 1, 0}}, {{0, 1, 3}, {1, 0, 2}});
+  DeformableMesh sheet(rest);
+  const double x = std::ldexp(1.2345678901234567, -60);
+  sheet.move(2, {x, x * third, 0});
+  sheet.move(3, {-x, -x * third, 0});
+  const fdcg_params params = contact_params(0.5, 0.3);
+  fdcg_deform_contact contact = {};
+  (void)sheet.step(params, &contact, {0, 0, 0.1});
+  (void)sheet.step(params, &contact, {0, 0, -0.1});
+  (void)sheet.updated();
+  sheet.move(2, rest.points[2]);
+  sheet.move(3, rest.points[3]);
+  const fdcg_graph& again = sheet.updated();
+  for (std::uint32_t node = 0; node < 2; ++node)
+    CHECK(fdcg_get_node(&again, node).normal[2] == -1);  // wound clockwise, seen from above
+}
