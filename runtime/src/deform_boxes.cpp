@@ -13,7 +13,7 @@ constexpr double kHeadroom = 0.5;  // of a grid's size, to either side: corners 
 // So coarse that origin + cell * number is exactly a double, and so fine that it costs no box anything.
 double origin_below(double x) {
   constexpr double kPerUnit = 1 << 20;  // |x| < 8: 24 bits
-  return floor(x * kPerUnit) / kPerUnit;
+  return whole_below(x * kPerUnit) / kPerUnit;
 }
 
 // The grid of one axis: room on both sides, and cells as small as hold that.

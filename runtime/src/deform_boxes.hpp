@@ -9,6 +9,12 @@
 
 namespace fdcg {
 
+// The largest whole number not above x, |x| < 2^62. Not floor: a board's C library would have to bring it.
+inline double whole_below(double x) {
+  const auto whole = static_cast<double>(static_cast<int64_t>(x));
+  return whole > x ? whole - 1 : whole;
+}
+
 // In tree units. Whatever an fdcg_box8 says is exactly a double, and so is a corner's place in tree units.
 struct TreeBox {
   double low[3], high[3];

@@ -152,9 +152,9 @@ void Upkeep<Real>::bring_normal_up_to_date(uint32_t c) const {
     n = node(n).sides[incoming].across;
   }
   const Vec3<double> unit = unit_of(sum);
-  record.normal[0] = static_cast<int16_t>(floor(FDCG_NORMAL_SCALE * unit.x + 0.5));
-  record.normal[1] = static_cast<int16_t>(floor(FDCG_NORMAL_SCALE * unit.y + 0.5));
-  record.normal[2] = static_cast<int16_t>(floor(FDCG_NORMAL_SCALE * unit.z + 0.5));
+  record.normal[0] = static_cast<int16_t>(whole_below(FDCG_NORMAL_SCALE * unit.x + 0.5));
+  record.normal[1] = static_cast<int16_t>(whole_below(FDCG_NORMAL_SCALE * unit.y + 0.5));
+  record.normal[2] = static_cast<int16_t>(whole_below(FDCG_NORMAL_SCALE * unit.z + 0.5));
 }
 
 // What a leaf's box must hold: its corners, and where those of the tick at hand or to come have been. Such a box may shrink

@@ -212,7 +212,7 @@ class Firmware(ConsumerCase):
         self.need("arm-none-eabi-gcc", "qemu-system-arm", "ninja")
         for processor, toolchain in (("cortex-m7", "cortex-m7"), ("cortex-m4", "cortex-m4f")):
             prefix, folder = self.path("prefix-" + processor), self.path("build-" + processor)
-            library = self.cross_runtime(toolchain, "-DFDCG_WITH_F64=OFF")
+            library = self.cross_runtime(toolchain, "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_TERMS=OFF")
             self.run_program("cmake", "--install", os.path.dirname(os.path.dirname(library)), "--prefix", prefix)
             self.configure(FIRMWARE, folder, f"--toolchain={TOOLCHAINS / (toolchain + '.cmake')}", prefix=prefix,
                            environment={**os.environ, "PATH": os.path.join(self.prefix, "bin") + ":/usr/bin:/bin"})
