@@ -240,7 +240,8 @@ class Sweep {
       if (!is_grazing || !node.is_inexact()) return;
       const Real thick = (slab_ - from_bound_) + (from_bound_ + to_bound_) / 8;
       Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
-      Real end = start_side + thick < fall ? (start_side + thick) / fall : Real(1);
+      const bool is_below = start_side + thick < fall;  // at the way's end, or, along the node, all the way
+      Real end = !is_below ? Real(1) : fall != 0 ? (start_side + thick) / fall : Real(-1);
       if (!clip_to(node, 0, &begin, &end)) return;
       met_exactly = 0;
     }
