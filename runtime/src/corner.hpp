@@ -157,7 +157,7 @@ template <class Real>
     if (connection.type() != FDCG_CONCAVE) continue;
     walk.spend(kEdgeWork);
     const Real along = dot(walk.graph.edge(node, k).direction, t);
-    if (starts_here == (node.which(k) == 0) ? along < 0 : along > 0) continue;
+    if ((starts_here == (node.which(k) == 0) ? along : -along) < -walk.hip_bound) continue;
     const bool is_between_walls = node.voronoi_plane(k).distance(walk.hip) < -walk.hip_bound;
     for (uint32_t end = 0; end < 2; ++end) {
       const Feature face = {FDCG_FACE, connection.node(end)};

@@ -83,8 +83,9 @@ struct EdgeLine : Edge<Real> {
   [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };
 
-// Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. Taken, it
-// would cost more distance than a step may.
+// Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. A god-object
+// put there would lose more distance than a step may; it stays at u, and the corner's rule decides all the same: two edges of a
+// needle's tip would hand it to one another.
 template <class Real>
 [[gnu::noinline]] bool leads_back(const Walk<Real>& walk, const EdgeLine<Real>& line, uint32_t end, Real from_end) {
   if (from_end <= 8 * RealLimits<Real>::kEpsilon * static_cast<Real>(walk.graph.header->extent)) return false;
@@ -97,9 +98,10 @@ template <class Real>
 [[gnu::noinline]] Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
-    if (!(from_end <= line.end_tolerance) || leads_back(walk, line, end, from_end)) continue;
+    if (!(from_end <= line.end_tolerance)) continue;
     const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
-    walk.place(walk.graph.corner_point(vertex.index), vertex);
+    walk.place(leads_back(walk, line, end, from_end) ? line.start + line.direction * u : walk.graph.corner_point(vertex.index),
+               vertex);
     return vertex;
   }
   const Feature edge = {FDCG_EDGE, connection_index};

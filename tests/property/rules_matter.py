@@ -57,7 +57,7 @@ MUTANTS = [
     ("rest-untouched", "at rest the god-object is not placed anew", "friction.hpp",
      "return {!is_slipping || gap2 <= square(gap + rounding), gap};", "return {false, is_slipping ? gap : root(gap2)};"),
     ("lands-on-vertex", "a god-object that lands on an edge's end is on the vertex", "walk.hpp",
-     "if (!(from_end <= line.end_tolerance) || leads_back(walk, line, end, from_end)) continue;", "if (!(from_end < 0)) continue;"),
+     "if (!(from_end <= line.end_tolerance)) continue;", "if (!(from_end < 0)) continue;"),
     ("steeper-face", "behind both faces: the nearer plane", "edge.hpp",
      "s.voronoi[1] < s.voronoi[0]", "false"),
     ("open-corner", "an apex with a boundary edge is free", "corner.hpp",
