@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// One parser, a little over 400 lines: the rules of a glTF document, each with the message for what breaks it.
 #include "gltf_document.hpp"
 
 #include <algorithm>

@@ -17,13 +17,6 @@ namespace {
 constexpr double kSteepest = 0.6495190528383290;  // 3 sqrt(3) / 8: of 1 / (1 + x^2), at x = 1 / sqrt(3)
 constexpr double kStickAgain = 1 - 0x1p-20;       // as in friction.hpp, where sticking and slipping are two coefficients
 
-double larger(double a, double b) {
-  return a > b ? a : b;
-}
-double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-
 // How steeply the curve may fall for one solution down to curve_depth_m, in seconds a metre.
 double steepest_allowed(const fdcg_params& params, const fdcg_material& material) {
   const auto has = [&](uint32_t term) { return (params.terms & term) != 0; };

@@ -8,7 +8,6 @@ namespace fdcg {
 namespace {
 
 constexpr uint32_t kMost = 1000000;
-constexpr uint64_t kAlignment = 8;
 constexpr double kMostRatio = 1000, kFarthest_m = 1e12, kUnitTolerance = 1e-3;
 
 fdcg_status refuse(fdcg_error* error, const char* what) {
@@ -52,18 +51,13 @@ fdcg_status checked_config(const fdcg_pile_config* given, fdcg_pile_config* conf
 }
 
 uint64_t lay_out(const fdcg_pile_config& config, fdcg_pile* pile) {
-  uint64_t end = 0;
-  const auto place = [&](uint64_t count, uint64_t bytes) {
-    const uint64_t begin = end;
-    end += (count * bytes + kAlignment - 1) / kAlignment * kAlignment;
-    return begin;
-  };
-  place(1, sizeof(fdcg_pile));
+  MemoryLayout layout;
+  layout.place(1, sizeof(fdcg_pile));
   pile->config = config;
-  pile->members_at = place(config.object_capacity, sizeof(PileMember));
-  pile->points_at = place(config.point_capacity, sizeof(PilePoint));
-  pile->touches_at = place(config.touch_capacity, sizeof(PileTouch));
-  return end;
+  pile->members_at = layout.place(config.object_capacity, sizeof(PileMember));
+  pile->points_at = layout.place(config.point_capacity, sizeof(PilePoint));
+  pile->touches_at = layout.place(config.touch_capacity, sizeof(PileTouch));
+  return layout.bytes();
 }
 
 // The touches of a point that `is_gone` says so of go back to the free ones.
@@ -165,11 +159,8 @@ extern "C" fdcg_status fdcg_pile_create(void* memory, uint64_t bytes, const fdcg
   fdcg_pile layout = {};
   const fdcg_status status = checked_config(config, &layout.config, error);
   if (status != FDCG_OK) return status;
-  if (reinterpret_cast<uintptr_t>(memory) % kAlignment != 0)
-    return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
   layout.bytes = lay_out(layout.config, &layout);
-  if (bytes < layout.bytes)
-    return Message(error, FDCG_E_ARGUMENT).text("bytes is ").number(bytes).text(", this config needs ").number(layout.bytes);
+  if (const fdcg_status room = check_room(memory, bytes, layout.bytes, error); room != FDCG_OK) return room;
   memset(memory, 0, layout.touches_at);  // a touch is set when it comes into use
   memcpy(memory, &layout, sizeof layout);
   *pile = static_cast<fdcg_pile*>(memory);

@@ -81,20 +81,12 @@ struct fdcg_pile {
   fdcg_pile_counts counts;
 
   bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
-  template <class T>
-  T* at(uint64_t offset) {
-    return reinterpret_cast<T*>(reinterpret_cast<char*>(this) + offset);
-  }
-  template <class T>
-  const T* at(uint64_t offset) const {
-    return reinterpret_cast<const T*>(reinterpret_cast<const char*>(this) + offset);
-  }
-  fdcg::PileMember* members() { return at<fdcg::PileMember>(members_at); }
-  const fdcg::PileMember* members() const { return at<fdcg::PileMember>(members_at); }
-  fdcg::PilePoint* points() { return at<fdcg::PilePoint>(points_at); }
-  const fdcg::PilePoint* points() const { return at<fdcg::PilePoint>(points_at); }
-  fdcg::PileTouch* touches() { return at<fdcg::PileTouch>(touches_at); }
-  const fdcg::PileTouch* touches() const { return at<fdcg::PileTouch>(touches_at); }
+  fdcg::PileMember* members() { return fdcg::part_at<fdcg::PileMember>(this, members_at); }
+  const fdcg::PileMember* members() const { return fdcg::part_at<fdcg::PileMember>(this, members_at); }
+  fdcg::PilePoint* points() { return fdcg::part_at<fdcg::PilePoint>(this, points_at); }
+  const fdcg::PilePoint* points() const { return fdcg::part_at<fdcg::PilePoint>(this, points_at); }
+  fdcg::PileTouch* touches() { return fdcg::part_at<fdcg::PileTouch>(this, touches_at); }
+  const fdcg::PileTouch* touches() const { return fdcg::part_at<fdcg::PileTouch>(this, touches_at); }
 };
 
 namespace fdcg {

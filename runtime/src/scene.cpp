@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kLargestScale = 1e9, kFarthestTranslation_m = 1e12, kUnitTolerance = 1e-3;
 constexpr uint32_t kMostObjects = 1000000, kMostFingers = 10000000, kMostTouches = 32;
-constexpr uint64_t kAlignment = 8;
 
 fdcg_status refuse(fdcg_error* error, const char* what) {
   return Message(error, FDCG_E_ARGUMENT).text(what);
@@ -57,26 +56,21 @@ fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* co
 
 // Lays the arrays out in `scene` and returns how many bytes they take. A config in range cannot overflow 64 bits.
 uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
-  uint64_t end = 0;
-  const auto place = [&](uint64_t count, uint64_t bytes) {
-    const uint64_t begin = end;
-    end += (count * bytes + kAlignment - 1) / kAlignment * kAlignment;
-    return begin;
-  };
+  MemoryLayout layout;
   const uint64_t objects = config.object_capacity, fingers = config.finger_capacity,
                  slots = fingers * config.touches_per_finger;
-  place(1, sizeof(fdcg_scene));
-  scene->objects_at = place(objects, sizeof(Object));
+  layout.place(1, sizeof(fdcg_scene));
+  scene->objects_at = layout.place(objects, sizeof(Object));
   scene->config = config;
-  scene->scan_at = place(4 * scene->scan_length(), sizeof(double));
-  scene->changing_at = place(objects, sizeof(uint32_t));
-  scene->fingers_at = place(fingers, sizeof(Finger));
-  scene->slots_at = place(slots, sizeof(Slot));
-  scene->contacts_at = place(slots, sizeof(fdcg_contact));
-  scene->touches_at = place(slots, sizeof(fdcg_touch));
-  scene->soft_fingers_at = place(config.has_soft_fingers != 0 ? fingers : 0, sizeof(SoftFinger));
-  scene->soft_touches_at = place(config.has_soft_fingers != 0 ? slots : 0, sizeof(SoftTouch));
-  return end;
+  scene->scan_at = layout.place(4 * scene->scan_length(), sizeof(double));
+  scene->changing_at = layout.place(objects, sizeof(uint32_t));
+  scene->fingers_at = layout.place(fingers, sizeof(Finger));
+  scene->slots_at = layout.place(slots, sizeof(Slot));
+  scene->contacts_at = layout.place(slots, sizeof(fdcg_contact));
+  scene->touches_at = layout.place(slots, sizeof(fdcg_touch));
+  scene->soft_fingers_at = layout.place(config.has_soft_fingers != 0 ? fingers : 0, sizeof(SoftFinger));
+  scene->soft_touches_at = layout.place(config.has_soft_fingers != 0 ? slots : 0, sizeof(SoftTouch));
+  return layout.bytes();
 }
 
 // In range, its quaternion made unit. *pose may be `asked` itself.
@@ -214,12 +208,8 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
   fdcg_scene layout = {};
   const fdcg_status status = checked_config(config, &layout.config, error);
   if (status != FDCG_OK) return status;
-  if (reinterpret_cast<uintptr_t>(memory) % kAlignment != 0)
-    return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
   layout.bytes = lay_out(layout.config, &layout);
-  if (bytes < layout.bytes) {
-    return Message(error, FDCG_E_ARGUMENT).text("bytes is ").number(bytes).text(", this config needs ").number(layout.bytes);
-  }
+  if (const fdcg_status room = check_room(memory, bytes, layout.bytes, error); room != FDCG_OK) return room;
   // Slots, contacts, touches and what is soft are set when a finger comes into use.
   memset(memory, 0, layout.slots_at);
   memcpy(memory, &layout, sizeof layout);

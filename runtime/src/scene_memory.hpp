@@ -7,6 +7,7 @@
 // Found by offsets from the start, so that a copy of the whole is a scene again.
 #pragma once
 
+#include "caller_memory.hpp"
 #include "fdcg/surface.h"
 #include "pose.hpp"
 #include "soft_finger.hpp"
@@ -83,40 +84,36 @@ struct fdcg_scene {
   double travel;       // the sum of those, rounded up
   double farthest;     // the largest |x| + |y| + |z| of any object's place: scales rounding
 
-  template <class T>
-  T* at(uint64_t offset) {
-    return reinterpret_cast<T*>(reinterpret_cast<char*>(this) + offset);
-  }
-  template <class T>
-  const T* at(uint64_t offset) const {
-    return reinterpret_cast<const T*>(reinterpret_cast<const char*>(this) + offset);
-  }
-  fdcg::Object* objects() { return at<fdcg::Object>(objects_at); }
-  const fdcg::Object* objects() const { return at<fdcg::Object>(objects_at); }
+  fdcg::Object* objects() { return fdcg::part_at<fdcg::Object>(this, objects_at); }
+  const fdcg::Object* objects() const { return fdcg::part_at<fdcg::Object>(this, objects_at); }
   // Centre x, y, z and reach of every object, array after array: what a look reads. The reach is the bounding sphere's radius
   // and its move in this tick; kNoReach where there is nothing to meet.
-  double* scan(uint32_t array) { return at<double>(scan_at) + array * scan_length(); }
-  const double* scan(uint32_t array) const { return at<double>(scan_at) + array * scan_length(); }
+  double* scan(uint32_t array) { return fdcg::part_at<double>(this, scan_at) + array * scan_length(); }
+  const double* scan(uint32_t array) const { return fdcg::part_at<double>(this, scan_at) + array * scan_length(); }
   uint64_t scan_length() const { return (uint64_t{config.object_capacity} + fdcg::kRun - 1) / fdcg::kRun * fdcg::kRun; }
-  uint32_t* changing() { return at<uint32_t>(changing_at); }
-  fdcg::Finger* fingers() { return at<fdcg::Finger>(fingers_at); }
-  const fdcg::Finger* fingers() const { return at<fdcg::Finger>(fingers_at); }
-  fdcg::Slot* slots(uint32_t finger) { return at<fdcg::Slot>(slots_at) + finger * uint64_t{config.touches_per_finger}; }
-  fdcg_contact* contacts(uint32_t finger) {
-    return at<fdcg_contact>(contacts_at) + finger * uint64_t{config.touches_per_finger};
+  uint32_t* changing() { return fdcg::part_at<uint32_t>(this, changing_at); }
+  fdcg::Finger* fingers() { return fdcg::part_at<fdcg::Finger>(this, fingers_at); }
+  const fdcg::Finger* fingers() const { return fdcg::part_at<fdcg::Finger>(this, fingers_at); }
+  fdcg::Slot* slots(uint32_t finger) {
+    return fdcg::part_at<fdcg::Slot>(this, slots_at) + finger * uint64_t{config.touches_per_finger};
   }
-  fdcg_touch* touches(uint32_t finger) { return at<fdcg_touch>(touches_at) + finger * uint64_t{config.touches_per_finger}; }
+  fdcg_contact* contacts(uint32_t finger) {
+    return fdcg::part_at<fdcg_contact>(this, contacts_at) + finger * uint64_t{config.touches_per_finger};
+  }
+  fdcg_touch* touches(uint32_t finger) {
+    return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
   const fdcg_touch* touches(uint32_t finger) const {
-    return at<fdcg_touch>(touches_at) + finger * uint64_t{config.touches_per_finger};
+    return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
   }
   bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
   // Where config.has_soft_fingers says so.
-  fdcg::SoftFinger* soft_fingers() { return at<fdcg::SoftFinger>(soft_fingers_at); }
+  fdcg::SoftFinger* soft_fingers() { return fdcg::part_at<fdcg::SoftFinger>(this, soft_fingers_at); }
   fdcg::SoftTouch* soft_touches(uint32_t finger) {
-    return at<fdcg::SoftTouch>(soft_touches_at) + finger * uint64_t{config.touches_per_finger};
+    return fdcg::part_at<fdcg::SoftTouch>(this, soft_touches_at) + finger * uint64_t{config.touches_per_finger};
   }
   const fdcg::SoftTouch* soft_touches(uint32_t finger) const {
-    return at<fdcg::SoftTouch>(soft_touches_at) + finger * uint64_t{config.touches_per_finger};
+    return fdcg::part_at<fdcg::SoftTouch>(this, soft_touches_at) + finger * uint64_t{config.touches_per_finger};
   }
 };
 
@@ -137,7 +134,7 @@ Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);
 inline const SoftTouch* soft_touch(const fdcg_scene& scene, uint32_t finger, uint32_t slot) {
   if (scene.step_soft == nullptr || (scene.fingers()[finger].flags & FDCG_FINGER_NON_FINITE) != 0) return nullptr;
   const SoftTouch* const touch = scene.soft_touches(finger) + slot;
-  const Slot& held = scene.at<Slot>(scene.slots_at)[finger * uint64_t{scene.config.touches_per_finger} + slot];
+  const Slot& held = part_at<Slot>(&scene, scene.slots_at)[finger * uint64_t{scene.config.touches_per_finger} + slot];
   return touch->is_on != 0 && held.is_held != 0 && held.object == touch->object.index ? touch : nullptr;
 }
 

@@ -10,13 +10,6 @@ namespace fdcg {
 // What is held back of a distance in the world: more than the rounding of computing with it.
 inline constexpr double kHoldBack = 1 - 0x1p-30;
 
-inline double larger(double a, double b) {
-  return a > b ? a : b;
-}
-inline double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-
 // One finger's tick.
 struct Tick {
   fdcg_scene& scene;

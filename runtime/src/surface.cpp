@@ -41,10 +41,6 @@ fdcg_status refuse(const char* field, uint32_t value, const char* allowed, fdcg_
   return Message(error, FDCG_E_ARGUMENT).text(field).text(" is ").number(value).text(allowed);
 }
 
-double larger(double a, double b) {
-  return a > b ? a : b;
-}
-
 fdcg_status check_sizes(const fdcg_surface& s, fdcg_error* error) {
   const uint32_t fields = fields_of(s.kind);
   const bool is_cone = s.kind == FDCG_SURFACE_CONE;

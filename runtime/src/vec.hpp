@@ -52,6 +52,12 @@ inline double absolute(double a) {
 inline float absolute(float a) {
   return fabsf(a);
 }
+inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
+inline double smaller(double a, double b) {
+  return a < b ? a : b;
+}
 inline double root(double a) {
   return sqrt(a);
 }

@@ -15,18 +15,6 @@ using namespace fdcg::test;
 
 namespace {
 
-std::uint64_t steps_or(std::uint64_t standard) {
-  const char* const asked = std::getenv("FDCG_STEPS");
-  return asked != nullptr ? std::strtoull(asked, nullptr, 10) : standard;
-}
-
-bake::Vec3 operator+(const bake::Vec3& a, const bake::Vec3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-bake::Vec3 operator*(double s, const bake::Vec3& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-
 // How far the god-object is off the feature that it is on; local units.
 double off_feature(const fdcg_graph& graph, const fdcg_contact& contact) {
   const auto plane_off = [&contact](const double(&normal)[3], double offset) {
@@ -232,7 +220,8 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     }
   }
   std::ostringstream said;
-  said << caught << " caught, " << touched << " in touch, " << freed << " freed, " << longest_bound << " bound in a row, of " << steps;
+  said << caught << " caught, " << touched << " in touch, " << freed << " freed, " << longest_bound << " bound in a row, of "
+       << steps;
   INFO(said.str());
   CHECK(caught > steps / 5000);
   CHECK(touched > steps / 10);

@@ -1,15 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// A compiled mesh that can be deformed, in memory of its own, with the corner of each vertex of its soup.
+// What the tests of deformable meshes share: a compiled mesh that can be deformed, in memory of its own, with the corner of
+// each vertex of its soup; places added and scaled; how long to go on.
 #pragma once
 
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "contact_rig.hpp"
 #include "fdcg/deform.h"
 
 namespace fdcg::test {
+
+// FDCG_STEPS where it is set.
+inline std::uint64_t steps_or(std::uint64_t standard) {
+  const char* const asked = std::getenv("FDCG_STEPS");
+  return asked != nullptr ? std::strtoull(asked, nullptr, 10) : standard;
+}
+
+inline bake::Vec3 operator+(const bake::Vec3& a, const bake::Vec3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline bake::Vec3 operator*(double s, const bake::Vec3& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 
 inline bake::CompileOptions triangle_options(bake::Precision precision = bake::Precision::f64) {
   bake::CompileOptions options;

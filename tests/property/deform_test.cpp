@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deformable meshes: what is brought up to date lazily is what a computation of the whole gives, bit for bit.
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <string>
@@ -15,18 +14,6 @@ using namespace fdcg;
 using namespace fdcg::test;
 
 namespace {
-
-std::uint64_t steps_or(std::uint64_t standard) {
-  const char* const asked = std::getenv("FDCG_STEPS");
-  return asked != nullptr ? std::strtoull(asked, nullptr, 10) : standard;
-}
-
-bake::Vec3 operator+(const bake::Vec3& a, const bake::Vec3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-bake::Vec3 operator*(double s, const bake::Vec3& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
 
 bool are_same_bits(const fdcg_result& a, const fdcg_result& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;

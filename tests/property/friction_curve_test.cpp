@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The friction curve: what is felt at steady speed lies on it, it has one solution and no jump, nothing creeps while it holds,
-// and no term gives the hand work. The laws are written down here anew; the runtime's functions are not asked.
+// and no term gives the hand work. The laws are written down here anew; the runtime's functions are not asked. Over 400 lines,
+// since all of it holds the step against that one curve.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -406,7 +407,8 @@ TEST_CASE("a curve that would have two solutions is refused with the limit") {
   fdcg_params params = curve_params(FDCG_TERM_STRIBECK);
   fdcg_error error = {};
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  CHECK_THAT(error.message, Catch::Contains("falls by 3.247") && Catch::Contains("0.025 s/m") && Catch::Contains("raise stribeck_m_per_s"));
+  CHECK_THAT(error.message,
+             Catch::Contains("falls by 3.247") && Catch::Contains("0.025 s/m") && Catch::Contains("raise stribeck_m_per_s"));
   // Just inside and just outside of 0.65 (mu_s - mu_d) / v_s depth <= lag + tick / 4.
   params.terms |= FDCG_TERM_LAG;
   const double steepest = 3 * std::sqrt(3.0) / 8 * (0.7 - 0.45) * params.curve_depth_m;
