@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One touch of a pile: the god-object's step, and the spring between it and the point.
 #include "friction.hpp"
+#include "object_step.hpp"
 #include "pile_memory.hpp"
 #include "scene_tick.hpp"
 #include "struct_bytes.hpp"
@@ -103,26 +104,8 @@ fdcg_material pair_at(const Object& on, const fdcg_material& own, const fdcg_res
   return fdcg_combine_materials(&face, &own);
 }
 
-void step_contact(const Object& on, const fdcg_params& params, World hip, fdcg_contact* contact, fdcg_result* result) {
-  double local[3];
-  put(hip, local);
-  if (on.step_surface != nullptr) return on.step_surface(&on.surface, &params, contact, local, result);
-  fdcg_step(on.graph, &params, contact, local, result);
-}
-
 World turned(const Pose& pose, World v) {
   return {dot(pose.row[0], v), dot(pose.row[1], v), dot(pose.row[2], v)};
-}
-
-// World, unit; zero where the object says none: on a graph's edges and corners.
-World normal_at(const Object& on, const fdcg_result& result) {
-  double normal[3] = {0, 0, 0};
-  if (on.surface_normal != nullptr) {
-    on.surface_normal(&on.surface, &result, normal);
-    return turned(on.now, vec(normal));
-  }
-  if (result.state != FDCG_FACE) return {0, 0, 0};
-  return turned(on.now, vec(fdcg_get_node(on.graph, result.feature).normal));
 }
 
 bool step_on_object(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
@@ -137,17 +120,17 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   if (is_new) {
     if (!can_have_met(meeting, on, way.from, way.to, &from, &to)) return false;
     contact = {};
-    step_contact(on, params, from, &contact, &result);
+    step_on(on, params, from, &contact, &result);
   }
   to = on.now.to_object(way.to, may_skip);
-  step_contact(on, params, to, &contact, &result);
+  step_on(on, params, to, &contact, &result);
   touch->is_pressing = result.state != FDCG_FREE ? 1 : 0;
   touch->force_n = touch->damper_n = {0, 0, 0};
   touch->load_n = 0;
   if (touch->is_pressing == 0) {
     return (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 || can_have_met(meeting, on, way.from, way.to, &from, &to);
   }
-  const World spring = on.now.turned_to_world(vec(result.god_object_m) - to, may_skip), normal = normal_at(on, result);
+  const World spring = on.now.turned_to_world(vec(result.god_object_m) - to, may_skip), normal = turned(on.now, normal_on(on, result));
   place(touch, way.to + spring, way.to, normal, norm1(normal) > 0);
   press(meeting, owner, way.to, pair_at(on, own, result), was_pressing, touch);
   return true;

@@ -11,6 +11,7 @@
 // Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
 // the skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
 // section 4), so it can be made anew whenever it is wanted.
+#include "object_step.hpp"
 #include "scene_tick.hpp"
 
 namespace fdcg {
@@ -104,16 +105,13 @@ void store(World from, double (&to)[3]) {
 }
 
 void step_contact(const Object& object, const Finger& finger, fdcg_contact* contact, World at, fdcg_result* result) {
-  double local[3];
-  store(at, local);
   fdcg_params room;
   const fdcg_params* params = &object.params;
   if ((finger.has_material | params->terms) != 0) {
     room = params_met(object, finger);
     params = &room;
   }
-  if (object.step_surface != nullptr) return object.step_surface(&object.surface, params, contact, local, result);
-  fdcg_step(object.graph, params, contact, local, result);
+  step_on(object, *params, at, contact, result);
 }
 
 // The slot's contact in this tick. Returns whether there is anything to feel or to carry over.
