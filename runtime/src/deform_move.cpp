@@ -69,7 +69,7 @@ inline void move(fdcg_deform* deform, uint32_t c, Vec3<double> local) {
   if (to.x == from.x && to.y == from.y && to.z == from.z) return;
   auto& record = upkeep.corner(c);
   Before<Real>& before = upkeep.before(c);
-  const uint32_t coming = deform->tick + 1;
+  const uint64_t coming = deform->tick + 1;
   if (before.tick != coming) {
     before.tick = coming;
     before.point[0] = from.x, before.point[1] = from.y, before.point[2] = from.z;

@@ -228,6 +228,7 @@ void Upkeep<Real>::mark(uint32_t c, Vec3<double> way) const {
     }
     hold(0, leaf, added);
     const TreeBox lane = lane_of(record, leaf % FDCG_TREE_WAYS);
+    d_->watched.give_up(lane, d_->per_tree_unit);
     for (int k = 0; k < 3; ++k) {
       shared.low[k] = greater_of(shared.low[k], lane.low[k]);
       shared.high[k] = lesser_of(shared.high[k], lane.high[k]);
