@@ -132,8 +132,8 @@ class Upkeep {
     d_->tight_tick[at] = d_->tick;
     return true;
   }
-  // Marks what depends on a corner's place, which has moved by no more than `way` along each axis.
-  void mark(uint32_t c, double way) const;
+  // Marks what depends on a corner's place; it has moved by `way`, in tree units.
+  void mark(uint32_t c, Vec3<double> way) const;
   // Makes a level's box, and those around it, hold more, and marks them as loose. Level 0: a leaf's.
   void hold(int level, uint32_t index, const TreeBox& box) const;
   [[nodiscard]] Vec3<double> in_tree(Vec3<Real> p) const { return widen(p) * d_->per_tree_unit; }
