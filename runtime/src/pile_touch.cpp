@@ -81,7 +81,7 @@ fdcg_params pair_params(const Meeting& meeting, const Object& on, const fdcg_mat
   params.tick_s = meeting.step_s;
   params.terms &= ~uint32_t{FDCG_TERM_FINGER};
   measure_in_object(on.now.scale, &params);
-  if ((params.terms & FDCG_TERM_MATERIALS) != 0 && on.step_surface == nullptr) {
+  if ((params.terms & FDCG_TERM_MATERIALS) != 0 && on.graph != nullptr) {
     params.terms |= FDCG_TERM_FINGER;
     params.finger = own;
     return params;
@@ -103,13 +103,6 @@ fdcg_material pair_at(const Object& on, const fdcg_material& own, const fdcg_res
   return fdcg_combine_materials(&face, &own);
 }
 
-void step_contact(const Object& on, const fdcg_params& params, World hip, fdcg_contact* contact, fdcg_result* result) {
-  double local[3];
-  put(hip, local);
-  if (on.step_surface != nullptr) return on.step_surface(&on.surface, &params, contact, local, result);
-  fdcg_step(on.graph, &params, contact, local, result);
-}
-
 World turned(const Pose& pose, World v) {
   return {dot(pose.row[0], v), dot(pose.row[1], v), dot(pose.row[2], v)};
 }
@@ -117,8 +110,8 @@ World turned(const Pose& pose, World v) {
 // World, unit; zero where the object says none: on a graph's edges and corners.
 World normal_at(const Object& on, const fdcg_result& result) {
   double normal[3] = {0, 0, 0};
-  if (on.surface_normal != nullptr) {
-    on.surface_normal(&on.surface, &result, normal);
+  if (on.shape_normal != nullptr) {
+    on.shape_normal(on, &result, normal);
     return turned(on.now, vec(normal));
   }
   if (result.state != FDCG_FACE) return {0, 0, 0};
@@ -137,10 +130,10 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   if (is_new) {
     if (!can_have_met(meeting, on, way.from, way.to, &from, &to)) return false;
     contact = {};
-    step_contact(on, params, from, &contact, &result);
+    step_object(on, &params, &contact, from, &result);
   }
   to = on.now.to_object(way.to, may_skip);
-  step_contact(on, params, to, &contact, &result);
+  step_object(on, &params, &contact, to, &result);
   touch->is_pressing = result.state != FDCG_FREE ? 1 : 0;
   touch->force_n = touch->damper_n = {0, 0, 0};
   touch->load_n = 0;

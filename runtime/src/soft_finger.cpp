@@ -59,9 +59,9 @@ Turn reference_for(const Turn& now, World normal, double tangent) {
 }
 
 World normal_at(const Object& object, const fdcg_result& result, World gap) {
-  if (object.surface_normal != nullptr) {
+  if (object.shape_normal != nullptr) {
     double normal[3];
-    object.surface_normal(&object.surface, &result, normal);
+    object.shape_normal(object, &result, normal);
     return vec(normal);
   }
   if (result.state == FDCG_FACE) return vec(fdcg_get_node(object.graph, result.feature).normal);
@@ -105,12 +105,6 @@ void share_friction(const Stretch& stretch, double share, bool is_slipping, fdcg
   if (mu <= kMostMu) params->mu_static = params->mu_dynamic = mu;
 }
 
-void step_contact(const Object& object, const fdcg_params& params, World hip, fdcg_contact* contact, fdcg_result* result) {
-  const double local[3] = {hip.x, hip.y, hip.z};
-  if (object.step_surface != nullptr) return object.step_surface(&object.surface, &params, contact, local, result);
-  fdcg_step(object.graph, &params, contact, local, result);
-}
-
 // The torque of what is left of the twist when the step is over: never beyond what the tangential force leaves of the limit.
 void take_torque(const Object& object, const fdcg_params& met, const SoftFinger& finger, const Turn& now, World gap,
                  double tangent, SoftTouch* touch) {
@@ -152,7 +146,7 @@ void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_obj
       }
     }
   }
-  step_contact(object, params, hip, contact, result);
+  step_object(object, &params, contact, hip, result);
   touch.torque_n_m = {0, 0, 0};
   touch.is_on = result->state != FDCG_FREE && finger.radius_m > 0 ? 1 : 0;
   if (touch.is_on == 0) return;
