@@ -275,7 +275,7 @@ TEST_CASE("a deformable mesh is refused where there is no room for it, and by pi
   wrong.has_deforms = 2;
   CHECK(fdcg_scene_bytes(&wrong) == 0);
   const fdcg_scene_config small = fdcg_default_scene_config(), large = config_of();
-  CHECK(fdcg_scene_bytes(&large) - fdcg_scene_bytes(&small) == 8 * 4 * 16);
+  CHECK(fdcg_scene_bytes(&large) - fdcg_scene_bytes(&small) == 8 * 4 * (sizeof(fdcg_deform_contact) - sizeof(fdcg_contact)));
 }
 
 TEST_CASE("a deformable mesh removed and added again is felt anew") {

@@ -95,8 +95,9 @@ fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double
 typedef struct fdcg_deform_contact {
   fdcg_contact contact;
   double travel;     /* of the mesh, when the contact was last stepped */
-  uint32_t tick;     /* likewise */
+  uint64_t tick;     /* likewise */
   uint32_t halvings; /* a sweep that ran out of work cannot go on on a mesh that has moved: so often its way was halved since */
+  uint32_t ball;     /* where the mesh watches over the contact's clear ball, if it does */
 } fdcg_deform_contact;
 
 /* In fdcg_result.flags, beside fdcg_result_flag: the vertices have moved more than once since this contact's last step. */
