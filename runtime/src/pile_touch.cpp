@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One touch of a pile: the god-object's step, and the spring between it and the point.
 #include "friction.hpp"
-#include "object_step.hpp"
 #include "pile_memory.hpp"
 #include "scene_tick.hpp"
 #include "struct_bytes.hpp"
@@ -140,7 +139,7 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
 
 // Whether the step mixes the materials of faces and point itself.
 bool mixes_itself(const fdcg_params& params, const Object& on) {
-  return (params.terms & FDCG_TERM_MATERIALS) != 0 && on.step_surface == nullptr;
+  return (params.terms & FDCG_TERM_MATERIALS) != 0 && on.graph != nullptr;
 }
 
 // What the step is told. Where faces have materials it mixes them itself, as with a finger of the point's material.
@@ -178,10 +177,10 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   if (is_new) {
     if (!can_have_met(meeting, on, way.from, way.to, &from, &to)) return false;
     contact = {};
-    step_on(on, params, from, &contact, &result);
+    step_object(on, &params, &contact, from, &result);
   }
   to = on.now.to_object(way.to, may_skip);
-  step_on(on, params, to, &contact, &result);
+  step_object(on, &params, &contact, to, &result);
   touch->is_pressing = result.state != FDCG_FREE ? 1 : 0;
   touch->force_n = touch->damper_n = {0, 0, 0};
   touch->load_n = 0;
@@ -189,7 +188,7 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
     return (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 || can_have_met(meeting, on, way.from, way.to, &from, &to);
   }
   const World reach = vec(result.god_object_m) - to;
-  const World spring = on.now.turned_to_world(reach, may_skip), normal = turned(on.now, normal_on(on, result));
+  const World spring = on.now.turned_to_world(reach, may_skip), normal = turned(on.now, object_normal(on, result));
   place(touch, way.to + spring, way.to, normal, norm1(normal) > 0);
   Pair pair = {{params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, mixes_itself(params, on)};
 #if FDCG_WITH_TERMS

@@ -5,7 +5,6 @@
 #include "fdcg/soft_finger.h"
 
 #include "message.hpp"
-#include "object_step.hpp"
 #include "scene_tick.hpp"
 
 namespace fdcg {
@@ -60,7 +59,7 @@ Turn reference_for(const Turn& now, World normal, double tangent) {
 
 // Where the object says none, the spring's direction.
 World normal_at(const Object& object, const fdcg_result& result, World gap) {
-  if (object.surface_normal != nullptr || result.state == FDCG_FACE) return normal_on(object, result);
+  if (object.shape_normal != nullptr || result.state == FDCG_FACE) return object_normal(object, result);
   const double length = norm(gap);
   return length > 0 ? gap * (1 / length) : World{0, 0, 0};
 }
@@ -142,7 +141,7 @@ void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_obj
       }
     }
   }
-  step_on(object, params, hip, contact, result);
+  step_object(object, &params, contact, hip, result);
   touch.torque_n_m = {0, 0, 0};
   touch.is_on = result->state != FDCG_FREE && finger.radius_m > 0 ? 1 : 0;
   if (touch.is_on == 0) return;
