@@ -69,7 +69,7 @@ inline void move(fdcg_deform* deform, uint32_t c, Vec3<double> local) {
   if (to.x == from.x && to.y == from.y && to.z == from.z) return;
   auto& record = upkeep.corner(c);
   Before<Real>& before = upkeep.before(c);
-  const uint32_t coming = deform->tick + 1;
+  const uint64_t coming = deform->tick + 1;
   if (before.tick != coming) {
     before.tick = coming;
     before.point[0] = from.x, before.point[1] = from.y, before.point[2] = from.z;
@@ -84,7 +84,7 @@ inline void move(fdcg_deform* deform, uint32_t c, Vec3<double> local) {
                         static_cast<int>(at.x <= double{before.high[0]}) & static_cast<int>(at.y >= double{before.low[1]}) &
                         static_cast<int>(at.y <= double{before.high[1]}) & static_cast<int>(at.z >= double{before.low[2]}) &
                         static_cast<int>(at.z <= double{before.high[2]});
-  if (__builtin_expect(is_marked == 0, false)) upkeep.mark(c, root(way2) * deform->per_tree_unit);
+  if (__builtin_expect(is_marked == 0, false)) upkeep.mark(c, way * deform->per_tree_unit);
 }
 
 // The corner nearest to a place among the leaves whose boxes reach within `reach` of it.

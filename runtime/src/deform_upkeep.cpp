@@ -203,9 +203,10 @@ void Upkeep<Real>::make_tight(int level, uint32_t index, uint32_t due) const {
 }
 
 template <class Real>
-void Upkeep<Real>::mark(uint32_t c, double way) const {
+void Upkeep<Real>::mark(uint32_t c, Vec3<double> way) const {
   constexpr double kWaysAhead = 32, kMostRoom = 0.5;  // of the box
   const Vec3<double> at = in_tree(point(c));
+  const double ahead[3] = {kWaysAhead * absolute(way.x), kWaysAhead * absolute(way.y), kWaysAhead * absolute(way.z)};
   Before<Real>& own = before(c);
   TreeBox shared = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
   const uint32_t* const end = d_->leaves + d_->leaf_first[c + 1];
@@ -219,14 +220,15 @@ void Upkeep<Real>::mark(uint32_t c, double way) const {
       double size = 0;
       for (int k = 0; k < 3; ++k)
         size = greater_of(size, lane.high[k] - lane.low[k]);
-      const double room = lesser_of(kWaysAhead * way, kMostRoom * size);
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 3; ++k) {  // across its way none: leaves that lie side by side would come to overlap
+        const double room = lesser_of(ahead[k], kMostRoom * size);
         added.low[k] -= room;
         added.high[k] += room;
       }
     }
     hold(0, leaf, added);
     const TreeBox lane = lane_of(record, leaf % FDCG_TREE_WAYS);
+    d_->watched.give_up(lane, d_->per_tree_unit);
     for (int k = 0; k < 3; ++k) {
       shared.low[k] = greater_of(shared.low[k], lane.low[k]);
       shared.high[k] = lesser_of(shared.high[k], lane.high[k]);

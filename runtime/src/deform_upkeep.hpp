@@ -9,7 +9,7 @@
 // asked for, and so are types and corner normals: there is nothing of them to be old.
 #pragma once
 
-#include "deform_boxes.hpp"
+#include "deform_watch.hpp"
 #include "exact_orient.hpp"
 #include "face_plane.hpp"
 #include "fdcg/deform.h"
@@ -25,19 +25,19 @@ struct fdcg_deform {
   fdcg_box8* boxes;
   uint8_t* stale;        // by leaf, a bit for each node of it
   uint8_t* loose;        // by record, a bit for each box that may be larger than it must
-  uint32_t* tight_tick;  // by record: in which boxes were last made tight
+  uint32_t* tight_tick;  // by record: in which boxes were last made tight; the tick's lower half
   uint32_t* leaf_first;  // corner c is in the leaves leaf_first[c] .. leaf_first[c + 1] - 1
   uint32_t* leaves;      // leaf << FDCG_LEAF_NODES | a bit for each of its nodes that the corner belongs to
   fdcg::BoxTree tree;
-  uint32_t node_bytes;
-  uint32_t tick;       // counts the motions that steps have seen begin
+  uint64_t tick;       // counts the motions that steps have seen begin; comes to no end
   uint32_t has_moved;  // 1: since the last step. Such corners bear the number of the tick to come
-  uint32_t reserved;
+  uint32_t node_bytes;
   double per_tree_unit;
   double travel;           // the sum over all ticks of the largest way of a corner, rounded up; local
   double tick_travel;      // of the present tick
   double way2;             // the largest way of the tick to come, squared
   double low[3], high[3];  // local: where corners may be moved
+  fdcg::WatchedBalls watched;
 };
 
 namespace fdcg {
@@ -48,11 +48,11 @@ namespace fdcg {
 template <class Real>
 struct Before {
   Real point[3];
-  uint32_t tick;
   uint32_t is_marked;
-  float low[3], high[3];                                      // tree units
-  uint32_t reserved[sizeof(Real) == sizeof(double) ? 2 : 1];  // to 64 bytes, a line of the cache (f32: 48)
+  uint64_t tick;
+  float low[3], high[3];  // tree units
 };
+static_assert(sizeof(Before<double>) == 64 && sizeof(Before<float>) == 48, "a line of the cache");
 
 // The least float that is not below x.
 inline float float_above(double x) {
@@ -127,13 +127,14 @@ class Upkeep {
   [[nodiscard]] bool has_tightened(int level, uint32_t record, uint32_t lanes) const {
     constexpr uint32_t kTicksBetween = 8;
     const uint32_t at = d_->tree.first[level] + record, due = d_->loose[at] & lanes;
-    if (__builtin_expect(due == 0, true) || d_->tick - d_->tight_tick[at] < kTicksBetween) return false;
+    const auto now = static_cast<uint32_t>(d_->tick);
+    if (__builtin_expect(due == 0, true) || now - d_->tight_tick[at] < kTicksBetween) return false;
     make_tight(level, record, due);
-    d_->tight_tick[at] = d_->tick;
+    d_->tight_tick[at] = now;
     return true;
   }
-  // Marks what depends on a corner's place, which has moved by no more than `way` along each axis.
-  void mark(uint32_t c, double way) const;
+  // Marks what depends on a corner's place; it has moved by `way`, in tree units.
+  void mark(uint32_t c, Vec3<double> way) const;
   // Makes a level's box, and those around it, hold more, and marks them as loose. Level 0: a leaf's.
   void hold(int level, uint32_t index, const TreeBox& box) const;
   [[nodiscard]] Vec3<double> in_tree(Vec3<Real> p) const { return widen(p) * d_->per_tree_unit; }

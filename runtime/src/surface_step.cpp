@@ -62,9 +62,11 @@ Progress move_god_object(const Shape& shape, SurfaceWalk& walk) {
   return progress;
 }
 
-// Calls `work` with the shape.
+// Calls `work` with the shape, of a struct of any size.
 template <class Work>
-auto with_shape(const fdcg_surface& surface, Work work) {
+auto with_shape(const fdcg_surface& given, Work work) {
+  fdcg_surface room;
+  const fdcg_surface& surface = in_full(given, &room, fdcg_init_surface);
   switch (surface.kind) {
     case FDCG_SURFACE_SPHERE:
       return work(Sphere(surface));

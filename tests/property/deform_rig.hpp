@@ -33,6 +33,25 @@ inline bake::CompileOptions triangle_options(bake::Precision precision = bake::P
   return options;
 }
 
+// Every number of a graph that depends on its corners' places, as bytes.
+inline std::vector<unsigned char> bytes_of(const fdcg_graph& graph) {
+  std::vector<unsigned char> bytes;
+  const auto add = [&bytes](const auto& record) {
+    const auto* const from = reinterpret_cast<const unsigned char*>(&record);
+    bytes.insert(bytes.end(), from, from + sizeof record);
+  };
+  for (std::uint32_t n = 0; n < graph.header->node_count; ++n) {
+    add(fdcg_get_node(&graph, n));
+    for (std::uint32_t k = 0; k < 3; ++k)
+      add(fdcg_get_side(&graph, n, k));
+  }
+  for (std::uint32_t c = 0; c < graph.header->connection_count; ++c)
+    add(fdcg_get_connection(&graph, c));
+  for (std::uint32_t c = 0; c < graph.header->corner_count; ++c)
+    add(fdcg_get_corner(&graph, c));
+  return bytes;
+}
+
 class DeformableMesh {
  public:
   explicit DeformableMesh(const bake::PolygonSoup& soup, const bake::CompileOptions& options = triangle_options(),
@@ -72,6 +91,20 @@ class DeformableMesh {
   [[nodiscard]] fdcg_deform* deform() { return deform_; }
   [[nodiscard]] const fdcg_graph& compiled() const { return compiled_.view(); }
   [[nodiscard]] const fdcg_graph& updated() { return *fdcg_deform_graph(deform_); }
+  // The numbers of a mesh made anew from the same file, whose vertices are where this one's are.
+  [[nodiscard]] std::vector<unsigned char> bytes_anew() const {
+    std::vector<std::uint64_t> memory(memory_.size());
+    const fdcg_deform_config config = fdcg_default_deform_config();
+    fdcg_deform* anew = nullptr;
+    fdcg_error error;
+    if (fdcg_deform_create(memory.data(), memory.size() * 8, &compiled_.view(), &config, &anew, &error) != FDCG_OK)
+      FAIL(error.message);
+    for (std::size_t v = 0; v < points_.size(); ++v) {
+      const double at[3] = {points_[v].x, points_[v].y, points_[v].z};
+      if (fdcg_deform_move(anew, corner_of_[v], at, &error) != FDCG_OK) FAIL(error.message);
+    }
+    return bytes_of(*fdcg_deform_graph(anew));
+  }
   [[nodiscard]] std::uint32_t corner_of(std::size_t vertex) const { return corner_of_[vertex]; }
   [[nodiscard]] const std::vector<bake::Vec3>& points() const { return points_; }
 
@@ -82,24 +115,5 @@ class DeformableMesh {
   std::vector<std::uint32_t> corner_of_;
   fdcg_deform* deform_ = nullptr;
 };
-
-// Every number of a graph that depends on its corners' places, as bytes.
-inline std::vector<unsigned char> bytes_of(const fdcg_graph& graph) {
-  std::vector<unsigned char> bytes;
-  const auto add = [&bytes](const auto& record) {
-    const auto* const from = reinterpret_cast<const unsigned char*>(&record);
-    bytes.insert(bytes.end(), from, from + sizeof record);
-  };
-  for (std::uint32_t n = 0; n < graph.header->node_count; ++n) {
-    add(fdcg_get_node(&graph, n));
-    for (std::uint32_t k = 0; k < 3; ++k)
-      add(fdcg_get_side(&graph, n, k));
-  }
-  for (std::uint32_t c = 0; c < graph.header->connection_count; ++c)
-    add(fdcg_get_connection(&graph, c));
-  for (std::uint32_t c = 0; c < graph.header->corner_count; ++c)
-    add(fdcg_get_corner(&graph, c));
-  return bytes;
-}
 
 }  // namespace fdcg::test

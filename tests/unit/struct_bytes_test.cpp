@@ -11,6 +11,7 @@
 
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg/surface.h"
 #include "meshes.hpp"
 #include "sealed_bytes.hpp"
 
@@ -40,7 +41,11 @@ class LastBytes {
   LastBytes(const LastBytes&) = delete;
   LastBytes& operator=(const LastBytes&) = delete;
   ~LastBytes() { munmap(start_, 2 * page_); }
-  [[nodiscard]] fdcg_params* params() const { return reinterpret_cast<fdcg_params*>(at_); }
+  template <class Struct>
+  [[nodiscard]] Struct* as() const {
+    return reinterpret_cast<Struct*>(at_);
+  }
+  [[nodiscard]] fdcg_params* params() const { return as<fdcg_params>(); }
 
  private:
   std::size_t page_;
@@ -110,4 +115,34 @@ TEST_CASE("a newer, longer struct is given defaults where the library knows them
   CHECK(params->tick_s == 0.001);
   for (std::size_t i = sizeof(fdcg_params); i < sizeof longer; ++i)
     CHECK(longer[i] == (i < sizeof longer - 8 ? 0 : 0xA5));
+}
+
+TEST_CASE("a surface of an older, shorter struct is stepped on as the whole one, and its memory is not left") {
+  constexpr std::uint32_t kOlderBytes = offsetof(fdcg_surface, top_radius_m);  // no length yet: its default is 0
+  const LastBytes memory(kOlderBytes);
+  auto* const older = memory.as<fdcg_surface>();
+  fdcg_init_surface(older, kOlderBytes);
+  older->kind = FDCG_SURFACE_CAPSULE;
+  older->radius_m = 0.05;
+  fdcg_error error = {};
+  REQUIRE(fdcg_check_surface(older, &error) == FDCG_OK);
+  const fdcg_surface whole = fdcg_make_capsule(0.05, 0);
+  const fdcg_params params = fdcg_default_params();
+  fdcg_contact contacts[2] = {};
+  for (int tick = 0; tick < 60; ++tick) {
+    const double hip_m[3] = {0.001 * tick, 0.0005 * tick, tick == 0 ? 0.06 : 0.045};
+    fdcg_result felt[2] = {};
+    double normals[2][3];
+    fdcg_surface_step(older, &params, &contacts[0], hip_m, &felt[0]);
+    fdcg_surface_step(&whole, &params, &contacts[1], hip_m, &felt[1]);
+    fdcg_surface_normal(older, &felt[0], normals[0]);
+    fdcg_surface_normal(&whole, &felt[1], normals[1]);
+    if (tick > 0 && tick < 15) REQUIRE(felt[1].state == FDCG_FACE);
+    REQUIRE(std::memcmp(&felt[0], &felt[1], sizeof felt[0]) == 0);
+    REQUIRE(std::memcmp(normals[0], normals[1], sizeof normals[0]) == 0);
+  }
+  fdcg_mass masses[2];
+  REQUIRE(fdcg_surface_mass(older, &masses[0], &error) == FDCG_OK);
+  REQUIRE(fdcg_surface_mass(&whole, &masses[1], &error) == FDCG_OK);
+  CHECK(std::memcmp(&masses[0], &masses[1], sizeof masses[0]) == 0);
 }
