@@ -182,6 +182,12 @@ extern "C" fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal
     if (status != FDCG_OK) return status;
     fdcg_params room;
     pile->ground_params = in_full(*params, &room, fdcg_init_params);
+    pile->ground_params.terms &= FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
+    pile->ground_params.materials = nullptr;  // of faces, which it has not; and the pile's memory holds no pointer
+    pile->ground_params.material_count = 0;
+    pile->ground_params.terms &= FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
+    pile->ground_params.materials = nullptr;  // of faces, which it has not: nothing outside the pile's memory is kept
+    pile->ground_params.material_count = 0;
     pile->ground_normal = {up.x / length, up.y / length, up.z / length};
     pile->ground_offset_m = offset_m;
   }

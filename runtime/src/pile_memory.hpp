@@ -26,7 +26,8 @@ struct PileTouch {
   uint32_t on;    // member, or kGround
   uint32_t is_pressing;
   uint32_t has_normal;
-  double stiffness_n_per_m;  // for as long as it presses
+  double stiffness_n_per_m;  // for as long as it presses; where faces have materials, as the step has it
+  double most_stiffness;     // that its body bears, of when it began to press
   double load_n;
   double mu_static;
   World god_object, normal;

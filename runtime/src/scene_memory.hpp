@@ -136,6 +136,16 @@ inline void step_object(const Object& object, const fdcg_params* params, fdcg_co
   fdcg_step(object.graph, params, contact, local, result);
 }
 
+// Of an object where a step has just touched it; object's frame, unit. Zero where it has none: on a graph's edges and corners.
+inline World object_normal(const Object& object, const fdcg_result& result) {
+  if (object.shape_normal != nullptr) {
+    double normal[3];
+    object.shape_normal(object, &result, normal);
+    return vec(normal);
+  }
+  return result.state == FDCG_FACE ? vec(fdcg_get_node(object.graph, result.feature).normal) : World{0, 0, 0};
+}
+
 // scene.cpp: adds an object that is like `shape` in graph, surface or deformable mesh, and bounds.
 fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
                        fdcg_object_id* object, fdcg_error* error);

@@ -5,7 +5,6 @@
 #include "fdcg/soft_finger.h"
 
 #include "message.hpp"
-#include "scene_memory.hpp"
 #include "scene_tick.hpp"
 
 namespace fdcg {
@@ -58,13 +57,9 @@ Turn reference_for(const Turn& now, World normal, double tangent) {
   return unit(product(about(normal, -tangent), now));
 }
 
+// Where the object says none, the spring's direction.
 World normal_at(const Object& object, const fdcg_result& result, World gap) {
-  if (object.shape_normal != nullptr) {
-    double normal[3];
-    object.shape_normal(object, &result, normal);
-    return vec(normal);
-  }
-  if (result.state == FDCG_FACE) return vec(fdcg_get_node(object.graph, result.feature).normal);
+  if (object.shape_normal != nullptr || result.state == FDCG_FACE) return object_normal(object, result);
   const double length = norm(gap);
   return length > 0 ? gap * (1 / length) : World{0, 0, 0};
 }
