@@ -65,6 +65,11 @@ inline double zero_below(double least, double x) {
   return is_inside != 0;
 }
 
+template <class Real>
+inline void store_in(Real (&to)[3], Vec3<Real> from) {
+  to[0] = from.x, to[1] = from.y, to[2] = from.z;
+}
+
 // A corner's place where the graph has it, or where it was rounded to: no further out than it was asked for.
 template <class Real>
 inline Vec3<Real> rounded_to(Vec3<double> p) {
@@ -76,48 +81,31 @@ template <class Real>
   const Upkeep<Real> upkeep(*deform);
   const Vec3<Real> to = rounded_to<Real>(local), from = upkeep.point(c);
   if (to.x == from.x && to.y == from.y && to.z == from.z) return;
-  auto& record = upkeep.corner(c);
-  Before<Real>& before = upkeep.before(c);
+  Place<Real>& place = upkeep.place(c);
   const uint64_t coming = deform->tick + 1;
-  if (before.tick != coming) {
-    before.tick = coming;
-    before.point[0] = from.x, before.point[1] = from.y, before.point[2] = from.z;
+  if (place.tick != coming) {
+    place.tick = coming;
+    place.logged = deform->has_moved++;
+    store_in(upkeep.was(place).point, from);
   }
-  record.point[0] = to.x, record.point[1] = to.y, record.point[2] = to.z;
-  deform->has_moved = 1;
-  const Vec3<double> way = widen(to) - widen(vec(before.point));
+  store_in(place.point, to);
+  const Vec3<double> way = widen(to) - widen(vec(upkeep.was(place).point));
   const double way2 = dot(way, way);
   if (way2 > deform->way2) deform->way2 = way2;
   const Vec3<double> at = upkeep.in_tree(to);
-  const int is_marked = static_cast<int>(before.is_marked != 0) & static_cast<int>(at.x >= double{before.low[0]}) &
-                        static_cast<int>(at.x <= double{before.high[0]}) & static_cast<int>(at.y >= double{before.low[1]}) &
-                        static_cast<int>(at.y <= double{before.high[1]}) & static_cast<int>(at.z >= double{before.low[2]}) &
-                        static_cast<int>(at.z <= double{before.high[2]});
+  const int is_marked = static_cast<int>(place.is_marked != 0) & static_cast<int>(at.x >= double{place.low[0]}) &
+                        static_cast<int>(at.x <= double{place.high[0]}) & static_cast<int>(at.y >= double{place.low[1]}) &
+                        static_cast<int>(at.y <= double{place.high[1]}) & static_cast<int>(at.z >= double{place.low[2]}) &
+                        static_cast<int>(at.z <= double{place.high[2]});
   if (__builtin_expect(is_marked == 0, false)) upkeep.mark(c, way * deform->per_tree_unit);
-}
-
-// What a move writes to, called into the cache so much earlier that scattered corners are there when their turn comes.
-template <class Real>
-[[gnu::always_inline]] inline void prefetch(const Upkeep<Real>& upkeep, uint32_t c) {
-  const auto* const record = &upkeep.corner(c);
-  __builtin_prefetch(record, 1);
-  __builtin_prefetch(reinterpret_cast<const unsigned char*>(record) + sizeof record->point - 1, 1);
-  __builtin_prefetch(&upkeep.before(c), 1);
 }
 
 template <class Real>
 fdcg_status move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_m, uint64_t count,
                          fdcg_error* error) {
-  constexpr uint64_t kAhead = 12;  // moves: some hundred nanoseconds
   const Upkeep<Real> upkeep(*deform);
   const uint32_t corner_count = deform->header.corner_count;
-  const auto prefetch_of = [&](uint64_t i) __attribute__((always_inline)) {
-    if (i < count && corners[i] < corner_count) prefetch(upkeep, corners[i]);
-  };
-  for (uint64_t i = 0; i < kAhead; ++i)
-    prefetch_of(i);
   for (uint64_t i = 0; i < count; ++i) {
-    prefetch_of(i + kAhead);
     const double* const position_m = positions_m + 3 * i;
     Vec3<double> local;
     if (corners[i] >= corner_count) return refuse_corner(*deform, i, corners[i], error);

@@ -89,8 +89,7 @@ fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_ob
 fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3], fdcg_error* error);
 
 /* Moves many corners, each as fdcg_deform_move does: corners[i] to the three numbers at positions_object_m + 3 i. Stops at the
- * first that is refused, whose number the error says: those before it have been moved. Where they lie scattered over a mesh
- * larger than the cache this is the faster way. */
+ * first that is refused, whose number the error says: those before it have been moved. */
 fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
                                      uint64_t count, fdcg_error* error);
 
