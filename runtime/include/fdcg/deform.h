@@ -88,6 +88,11 @@ fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_ob
  * corner has. Moved more than once between two steps it counts as moved straight from the first place to the last. */
 fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3], fdcg_error* error);
 
+/* Moves many corners, each as fdcg_deform_move does: corners[i] to the three numbers at positions_object_m + 3 i. Stops at the
+ * first that is refused, whose number the error says: those before it have been moved. */
+fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
+                                     uint64_t count, fdcg_error* error);
+
 /* Where a corner is: the place it was moved to, rounded to the file's precision. FDCG_E_ARGUMENT for a number that none has. */
 fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3], fdcg_error* error);
 
