@@ -13,7 +13,7 @@ struct BoxSurface {
   double half[3];
 
   explicit BoxSurface(const fdcg_surface& s)
-      : sign(s.is_hollow != 0 ? -1 : 1), extent(norm(vec(s.half_m))), half{s.half_m[0], s.half_m[1], s.half_m[2]} {}
+      : sign(s.is_hollow != 0 ? -1 : 1), extent(norm1(vec(s.half_m))), half{s.half_m[0], s.half_m[1], s.half_m[2]} {}
 
   [[nodiscard]] bool is_outside(Point p) const {
     const double x = absolute(p.x) - half[0], y = absolute(p.y) - half[1], z = absolute(p.z) - half[2];
@@ -85,6 +85,7 @@ struct BoxSurface {
     return root(squared(vec(walls.load)));
   }
 
+  static bool slide_quickly(uint32_t, Touch&) { return false; }
   // Along the axes that no wall takes, to where friction stops it or the first end. Each round ends on one wall more.
   Decision rule(SurfaceWalk& walk) const {
     double at[3] = {walk.god_object.x, walk.god_object.y, walk.god_object.z};

@@ -2,7 +2,7 @@
 // The convex surfaces without an edge: plane, sphere, capsule, ellipsoid.
 #pragma once
 
-#include "surface.hpp"
+#include "surface_revolved.hpp"
 
 namespace fdcg {
 
@@ -20,15 +20,42 @@ struct PlaneSurface {
     const double t = from.z / (from.z - to.z);
     return {true, {from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t, 0}, kOnlyFace};
   }
-  Decision rule(SurfaceWalk& walk) const {
-    const Point across = {walk.god_object.x - walk.hip.x, walk.god_object.y - walk.hip.y, 0};
+  FDCG_HOT Slid slide(Touch& touch) const {
+    const Point hip = touch.hip, across = {touch.god_object.x - hip.x, touch.god_object.y - hip.y, 0};
     double shrink = 0;
-    const Slid slid = slide_on_plane(walk, across, -walk.hip.z, &shrink);
-    if (slid == Slid::kSlides) walk.god_object = {walk.hip.x + across.x * shrink, walk.hip.y + across.y * shrink, 0};
-    return decide(slid, kFree);
+    const Slid slid = slide_on_plane(touch, across, -hip.z, &shrink);
+    if (slid == Slid::kSlides) touch.god_object = {hip.x + across.x * shrink, hip.y + across.y * shrink, 0};
+    return slid;
   }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide(touch) != Slid::kLeaves; }
+  Decision rule(SurfaceWalk& walk) const { return decide(slide(walk), kFree); }
   [[nodiscard]] Point normal(Feature, Point, Point) const { return {0, 0, 1}; }
 };
+
+// On a ball whose centre is on the axis the descent is a great circle towards the HIP, and its end has a closed form: with the
+// angle between god-object and HIP, the HIP pulls with reach * sin(angle) and presses with sign * (radius - reach *
+// cos(angle)), and it stops where the pull is mu times the load. The stop's angle is the HIP's alone; the god-object says in
+// which plane.
+FDCG_HOT Slid slide_on_ball(Touch& touch, double centre_z, double radius, double sign) {
+  const Point at = {touch.god_object.x, touch.god_object.y, touch.god_object.z - centre_z};
+  const Point hip = {touch.hip.x, touch.hip.y, touch.hip.z - centre_z};
+  const double per_radius = 1 / radius, level = dot(hip, at), load = sign * (radius - level * per_radius);
+  if (!(load > 0)) return Slid::kLeaves;
+  const double pull2 = squared(hip - at * (level * per_radius * per_radius));
+  const Slip<double> slip = touch.friction.slip(touch.god_object, pull2, load);
+  const double mu = touch.friction.mu_dynamic, most = mu * load + pull_rounding(touch);
+  if (slip.is_rest || !(pull2 > most * most)) return Slid::kRests;
+  const double reach2 = squared(hip), per_reach2 = 1 / reach2, less = 1 / root(1 + mu * mu), share = mu * less;
+  const double free2 = reach2 - share * share * (radius * radius), rest = free2 > 0 ? root(free2) : 0;
+  // In units of the reach: the stop's sine and cosine.
+  const double sine = sign * share * (radius * less - rest), cosine = rest * less + share * share * radius;
+  if (!(sine >= 0 && sign * (radius - cosine) > 0)) return Slid::kLeaves;
+  const Point aside = at - hip * (level * per_reach2);
+  const double both2 = reach2 * squared(aside), per_both = root(both2) * (1 / both2);
+  const double up = radius * cosine * per_reach2, out = radius * sine * per_both;
+  touch.god_object = {hip.x * up + aside.x * out, hip.y * up + aside.y * out, hip.z * up + aside.z * out + centre_z};
+  return Slid::kRests;
+}
 
 struct Sphere {
   static constexpr bool kIsConvex = true;
@@ -45,30 +72,13 @@ struct Sphere {
   [[nodiscard]] Entry enter(Point from, Point to, bool begins_outside) const {
     return enter_convex(*this, from, to, begins_outside);
   }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide_on_ball(touch, 0, radius, sign) == Slid::kRests; }
+  Decision rule(SurfaceWalk& walk) const { return decide(slide_on_ball(walk, 0, radius, sign), kFree); }
   // x is on the sphere but for rounding.
-  [[nodiscard]] Point direction_of(Point x) const {
-    const double per_radius = 1 / radius;
-    const Point near = x * per_radius;
-    return near * inverse_root_near_1(squared(near) - 1);
+  [[nodiscard]] Point normal(Feature, Point x, Point) const {
+    const Point near = x * (1 / radius);
+    return near * (sign * inverse_root_near_1(squared(near) - 1));
   }
-  // The descent is a great circle towards the HIP: its end has a closed form.
-  Decision rule(SurfaceWalk& walk) const {
-    const Point up = direction_of(walk.god_object);
-    const double height = dot(walk.hip, up), load = sign * (radius - height);
-    if (!(load > 0)) return go_to(kFree);
-    const Point towards = walk.hip - up * height;
-    const double pull2 = squared(towards);
-    const Slip<double> slip = walk.friction.slip(walk.god_object, pull2, load);
-    if (slip.is_rest) return rest();
-    const double pull = root(pull2), reach = root(height * height + pull2), mu = walk.friction.mu_dynamic;
-    if (!(pull - mu * load > pull_rounding(walk))) return rest();
-    Arc stop;
-    if (!stop_on_circle(reach, sign * radius, sign * reach, mu, &stop)) return go_to(kFree);
-    const double scale = radius / reach, ahead = scale * (stop.cosine - height * stop.sine / pull);  // in units of the pull
-    walk.god_object = up * (scale * (height * stop.cosine + pull * stop.sine)) + towards * ahead;
-    return rest();
-  }
-  [[nodiscard]] Point normal(Feature, Point x, Point) const { return direction_of(x) * sign; }
 };
 
 // What is within `radius` of a segment of the z axis.
@@ -136,10 +146,21 @@ struct Capsule {
     const Point along = {v.x, v.y, spot.is_on_side ? 0 : v.z};
     return along * (sign * per_radius);
   }
+  [[nodiscard]] static double turn_rate(const Spot&, Point, double) { return 0; }
   [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * per_radius * (spot.is_on_side ? 1 : 2); }
   [[nodiscard]] double curvature_product(const Spot& spot) const { return spot.is_on_side ? 0 : per_radius * per_radius; }
   [[nodiscard]] static bool bends_alike(const Spot& a, const Spot& b) { return a.is_on_side == b.is_on_side; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
+  // Where it stays on the side, or on a cap.
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const {
+    const double z = touch.god_object.z;
+    if (absolute(z) <= half) return slide_round(LineProfile{sign, radius, half, 0, 1, per_radius}, touch);
+    Touch on_cap = touch;
+    const bool is_rest = slide_on_ball(on_cap, z > 0 ? half : -half, radius, sign) == Slid::kRests;
+    if (!is_rest || !(z > 0 ? on_cap.god_object.z > half : on_cap.god_object.z < -half)) return false;
+    touch = on_cap;
+    return true;
+  }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     const Slid slid = slide_on_piece(*this, walk, &none);
@@ -195,6 +216,9 @@ struct Ellipsoid {
     const Point bent = gradient(v);
     return (bent - spot.normal * dot(bent, spot.normal)) * (sign / spot.steepness);
   }
+  [[nodiscard]] FDCG_HOT double turn_rate(const Spot& spot, Point v, double along) const {
+    return -3 * sign * along * dot(gradient(v), spot.normal) / spot.steepness;
+  }
   [[nodiscard]] double curvature_sum(const Spot& spot) const {
     const double along = dot(gradient(spot.normal), spot.normal);
     return sign * (inverse2.x + inverse2.y + inverse2.z - along) / spot.steepness;
@@ -205,6 +229,7 @@ struct Ellipsoid {
   }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
+  static bool slide_quickly(uint32_t, Touch&) { return false; }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);

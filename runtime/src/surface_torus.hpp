@@ -2,6 +2,7 @@
 // The torus: the one surface here that is convex from neither side, so that what leaves it may meet it again.
 #pragma once
 
+#include "surface_revolved.hpp"
 #include "surface_round.hpp"
 
 namespace fdcg {
@@ -91,6 +92,27 @@ inline Marks quadratic_marks(const Polynomial<2>& f) {
   return 2;
 }
 
+// The tube's circle.
+struct TubeProfile {
+  double ring, raised, bend;
+
+  [[nodiscard]] static Outward outward(Point at, double off2) { return outward_of(at, off2); }
+  [[nodiscard]] FDCG_HOT Section section(double off, double z) const { return {ring, 0, (off - ring) * bend, z * bend}; }
+  [[nodiscard]] FDCG_HOT Section moved(const Section& from, double way) const {
+    const double tangent = way * bend, off_1 = from.n_r * from.n_r + from.n_z * from.n_z - 1;
+    const double cosine = inverse_root_of_turn(off_1 + tangent * tangent * (1 + off_1));
+    return {ring, 0, (from.n_r - tangent * from.n_z) * cosine, (from.n_z + tangent * from.n_r) * cosine};
+  }
+  [[nodiscard]] FDCG_HOT bool nearest(const Section& from, double off, double z, Section* to) const {
+    const double out = off - ring, distance2 = out * out + z * z;
+    if (!(distance2 > 0)) return false;
+    const double distance = root(distance2), scale = (raised > 0 ? 1 : -1) / distance;
+    *to = {ring, 0, out * scale, z * scale};
+    return from.n_r * to->n_r + from.n_z * to->n_z > 0.96875 && (raised > 0 ? distance < raised : distance > -raised);
+  }
+  [[nodiscard]] static bool is_within(double) { return true; }
+};
+
 struct Torus {
   static constexpr bool kIsConvex = false;
   double sign, ring, tube, per_tube, extent;
@@ -176,10 +198,17 @@ struct Torus {
     const double on_ring = v.x * round.x + v.y * round.y;
     return (v - round * on_ring) * (sign * per_tube) + round * (on_ring * sign * spot.out * spot.per_off);
   }
+  [[nodiscard]] FDCG_HOT double turn_rate(const Spot& spot, Point v, double) const {
+    const double on_ring = v.y * spot.outward.x - v.x * spot.outward.y;
+    return 3 * sign * (per_tube - spot.out * spot.per_off) * (on_ring * on_ring) * (dot(v, spot.outward) * spot.per_off);
+  }
   [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * (per_tube + spot.out * spot.per_off); }
   [[nodiscard]] double curvature_product(const Spot& spot) const { return per_tube * spot.out * spot.per_off; }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const {
+    return slide_round(TubeProfile{ring, sign * tube, sign * per_tube}, touch);
+  }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);
