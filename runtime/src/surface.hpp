@@ -5,6 +5,7 @@
 //
 //   bool is_outside(x)                  in free space, the surface included; one expression wherever it is asked
 //   Entry enter(from, to, begins_outside)    what a way meets first from its front; `from` may be on the surface
+//   bool is_clear(x, way)               in free space and farther than that from the surface
 //   Decision rule(walk)                 the rules of contact-model sections 5 to 7 at walk.active
 //   bool slide_quickly(face, touch)     on a face, what a tick most often is: the god-object rests, moved or not; false where
 //                                       the rules must say
@@ -49,6 +50,13 @@ struct Entry {
   Feature feature;
 };
 inline constexpr Entry kNoEntry = {false, {0, 0, 0}, kFree};
+
+// Whether what is at a squared distance from the middle of a ball, or of a tube, is farther than `way` from its surface, and
+// free.
+FDCG_HOT bool is_clear_of_ball(double sign, double distance2, double radius, double way) {
+  const double least = radius + sign * way;
+  return sign > 0 ? distance2 > least * least : least > 0 && distance2 < least * least;
+}
 
 // ---- ways ---------------------------------------------------------------------------------------------------------------
 
@@ -210,6 +218,13 @@ struct Press {
   Point across;
   double load, pull2;  // |across|^2
 };
+template <class Spot>
+FDCG_HOT Press press_at(const Spot& spot, Point hip) {
+  const Point gap = spot.at - hip;
+  const double load = dot(gap, spot.normal);
+  const Point across = gap - spot.normal * load;
+  return {across, load, squared(across)};
+}
 
 // How a surface bends along a pull.
 struct Bend {
@@ -294,7 +309,7 @@ FDCG_HOT bool set_right(const Piece& piece, const Spot& spot, const Press& press
   const double taken = load * bend.along, turned2 = load2 * bend.turn2, fall = pull2 - both * taken;
   const double excess = pull2 - mu * mu * load2, per_fall = 1 / fall, first = 0.5 * excess * per_fall;
   const double bow = pull2 - taken - both * (bend.along * bend.along + taken - turned2 + load * bend.rate);
-  const double length = first * (1 + 0.5 * first * (bow * per_fall)), size = absolute(length);
+  const double length = first + first * first * (0.5 * bow * per_fall), size = absolute(length);
   const double bent = 1 + both * both * turned2 * absolute(per_fall);
   if (!(fall > 0.125 * pull2 && 4 * size * size * size * (bent * bent) <= kPlaced)) return false;
   if (!(size * norm1(bend.turned) <= kMostTurn)) return false;
@@ -310,26 +325,23 @@ FDCG_HOT bool set_right(const Piece& piece, const Spot& spot, const Press& press
 //   Spot spot(x, hip)            a place on it: `at`, `normal`, and what the others want to know
 //   Spot project(p, spot)        the place near p, which is near the spot
 //   Point turn(spot, v)          how the normal changes along the tangent v; linear in it
-//   double turn_rate(spot, v, along)   how dot(v, turn(v)) changes along a geodesic in v's direction; `along` is dot(v,
-//   turn(v)) curvature_sum, _product      of the spot's principal curvatures bool bends_alike(spot, spot) false where the
-//   curvature may be quite another bool cross(from, &to, &next) whether the piece ends on the way; to->at is put on its end,
-//   `next` is what is there
+//   double turn_rate(spot, v, along)   how `along` = dot(v, turn(v)) changes on a geodesic along v
+//   curvature_sum, _product      of the spot's principal curvatures
+//   bool bends_alike(spot, spot) false where the curvature may be quite another
+//   bool cross(from, &to, &next) whether the piece ends on the way; to->at is put on its end, `next` is what is there
 template <class Piece>
 [[gnu::noinline]] Slid slide_on_piece(const Piece& piece, SurfaceWalk& walk, Feature* next) {
   const Point start = walk.god_object - walk.hip;
   const double rounding = pull_rounding(walk);
-  const double start2 = squared(start) + norm1(start) * rounding;  // but for the rounding of a place
+  const double start2 = squared(start) + 2 * norm1(start) * rounding;  // but for the rounding of both places
   auto spot = piece.spot(walk.god_object, walk.hip);
   double mu = -1, share = 1;
   bool is_near = false;
   for (bool has_moved = false; walk.moves_left > 0; --walk.moves_left) {
-    const Point gap = spot.at - walk.hip;
-    const double load = dot(gap, spot.normal);
-    if (!(load > 0)) return Slid::kLeaves;
-    const Point across = gap - spot.normal * load;
-    const Press press = {across, load, squared(across)};
+    const Press press = press_at(spot, walk.hip);
+    if (!(press.load > 0)) return Slid::kLeaves;
     if (mu < 0) {
-      const Slip<double> slip = walk.friction.slip(walk.god_object, press.pull2, load);
+      const Slip<double> slip = walk.friction.slip(walk.god_object, press.pull2, press.load);
       if (slip.is_rest) return Slid::kRests;
       mu = walk.friction.mu_dynamic;
     }
@@ -354,6 +366,24 @@ template <class Piece>
     spot = to;
   }
   return Slid::kIsCut;
+}
+
+// The same where one move and one correction do, as most often. True where the god-object rests, moved or not.
+template <class Piece>
+FDCG_HOT bool slide_in_one(const Piece& piece, Touch& touch) {
+  const double rounding = pull_rounding(touch), mu = touch.friction.mu_dynamic;
+  if (mu == 0) return false;  // takes more than one
+  const auto from = piece.spot(touch.god_object, touch.hip);
+  const Press press = press_at(from, touch.hip);
+  if (!(press.load > 0)) return false;
+  const Slip<double> slip = touch.friction.slip(touch.god_object, press.pull2, press.load);
+  if (slip.is_rest || !(press.pull2 > rounding * rounding)) return true;
+  const Move move = next_move(piece, from, press, mu, rounding, false);
+  if (move.has_none || !move.is_near) return move.has_none;
+  const auto to = piece.project(from.at + move.step, from);
+  const Press last = press_at(to, touch.hip);
+  const bool is_nearer = last.pull2 + last.load * last.load <= press.pull2 + press.load * press.load;
+  return is_nearer && last.load > 0 && set_right(piece, to, last, mu, &touch.god_object);
 }
 
 // What the rules make of a slide; a piece that ends goes on at `next`.

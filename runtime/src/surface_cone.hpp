@@ -37,6 +37,10 @@ struct ConeSurface {
     const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
     return sign > 0 ? side >= 0 || disc >= 0 : side <= 0 && disc <= 0;
   }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
+    return sign > 0 ? side > way || disc > way : side < -way && disc < -way;
+  }
   // Between the discs' planes, and there where x^2 + y^2 is below the square of the side's radius at that height.
   [[nodiscard]] Span span(Point from, Point way) const {
     Span span = kWholeLine;

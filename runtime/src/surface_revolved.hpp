@@ -27,6 +27,7 @@ inline Outward outward_of(Point at, double off2) {
 }
 // Profile:
 //
+//   bool kIsLine
 //   double raised, bend           the arc's radius and its inverse, negative where hollow; both 0 of a line
 //   Outward outward(at, off2)     of a place at the square of this distance from the axis
 //   Section section(off, z)       at a place; the normal may lack rounding of its length 1
@@ -37,6 +38,7 @@ inline Outward outward_of(Point at, double off2) {
 
 // A line that begins at (start_r, -half) in a unit direction and rises: of a cylinder, a cone.
 struct LineProfile {
+  static constexpr bool kIsLine = true;
   static constexpr double raised = 0, bend = 0;
   double sign, start_r, half, along_r, along_z;
   double per_start;  // of a cylinder
@@ -77,9 +79,10 @@ struct Tug {
   double load, round, along;
   double pull2;  // of the latter two
 };
-FDCG_HOT Tug tug_at(const Section& s, double raised, const Sight& hip) {
-  const double out = hip.out - s.base_r, up = hip.up - s.base_z;
-  const double load = raised - (s.n_r * out + s.n_z * up), along = s.n_z * out - s.n_r * up;
+template <class Profile>
+FDCG_HOT Tug tug_at(const Profile& profile, const Section& s, const Sight& hip) {
+  const double out = hip.out - s.base_r, up = hip.up - s.base_z, against = s.n_r * out + s.n_z * up;
+  const double load = Profile::kIsLine ? -against : profile.raised - against, along = s.n_z * out - s.n_r * up;
   return {load, -hip.round, along, hip.round * hip.round + along * along};
 }
 
@@ -108,25 +111,31 @@ struct RoundMove {
 
 // To where the course of the excess says that friction stops it, as next_move() has it; `both` is 1 + mu^2. What depends on the
 // pull's inverse comes last.
-FDCG_HOT RoundMove next_round_move(const Tug& tug, const Section& from, double per_off, double k2, double excess, double both) {
+template <class Profile>
+FDCG_HOT RoundMove next_round_move(const Profile& profile, const Tug& tug, const Section& from, double per_off, double excess,
+                                   double both) {
   constexpr double kLeast = 0.25;
-  const double load = tug.load, pull2 = tug.pull2, per_pull2 = 1 / pull2;
+  const double load = tug.load, pull2 = tug.pull2, per_pull2 = 1 / pull2, bothload = both * load;
   const double round2 = tug.round * tug.round, k1 = from.n_r * per_off, narrows = -from.n_z * per_off;
-  const double on_ring = k1 * round2, on_section = k2 * (tug.along * tug.along), bent = on_ring + on_section;
-  const double taken = load * bent, fall = pull2 - both * taken, turn2 = k1 * on_ring + k2 * on_section;
-  const double rate = 3 * narrows * tug.along * (k2 * round2 - on_ring);
-  const double turned = both * (load * load) * (bent * bent);
-  const double bow =
-      (pull2 - taken - both * (bent * bent + taken)) + both * load * (2 * load * turn2 - rate) - turned * per_pull2;
+  const double on_ring = k1 * round2, narrowing = narrows * tug.along, half = 0.5 * load;
+  double bent = on_ring, turn2 = k1 * on_ring, rate = -3 * narrowing * on_ring;
+  if constexpr (!Profile::kIsLine) {
+    const double on_section = profile.bend * (tug.along * tug.along);
+    bent = on_ring + on_section;
+    turn2 = turn2 + profile.bend * on_section;
+    rate = 3 * narrowing * (profile.bend * round2 - on_ring);
+  }
+  const double taken = load * bent, fall = pull2 - both * taken, turned = bothload * load * (bent * bent);
+  const double bow = (pull2 - taken - both * (bent * bent + taken)) + bothload * (2 * load * turn2 - rate) - turned * per_pull2;
   const double left = fall * fall - bow * excess;
   if (!(fall > kLeast * pull2 && bow > kLeast * pull2 && left > 0)) return {0, 0, 0, false};
-  const double length = (fall - root(left)) * (1 / bow), half = 0.5 * load, curvature = bent * per_pull2;
-  const double aside = half * (k1 - curvature) + narrows * tug.along;
-  const double along = half * (k2 - curvature) * tug.along - 0.5 * narrows * round2;
-  const double tangent = -(tug.round * per_off) * (length + aside * (length * length));
-  const double way = -(tug.along * length + along * (length * length)), turn = way * k2;
-  const double second = 0.25 * (1 - load * curvature) / ((pull2 - excess) * (1 - both * (load * curvature)));
-  return {tangent, way, second, tangent * tangent <= kMostTurn2 && turn * turn <= kMostTurn2};
+  const double length = (fall - root(left)) * (1 / bow), length2 = length * length, curvature = bent * per_pull2;
+  const double aside = half * (k1 - curvature) + narrowing;
+  const double more = half * (profile.bend - curvature) * tug.along - 0.5 * narrows * round2;
+  const double tangent = -(tug.round * per_off) * (length + aside * length2), way = -(tug.along * length + more * length2);
+  const double pressed = load * curvature, second = 0.25 * (1 - pressed) / ((pull2 - excess) * (1 - both * pressed));
+  const bool is_short = Profile::kIsLine || square(way * profile.bend) <= kMostTurn2;
+  return {tangent, way, second, tangent * tangent <= kMostTurn2 && is_short};
 }
 
 // Round by the move, and on by what is left of the excess there. False where that is too much.
@@ -137,16 +146,21 @@ FDCG_HOT bool go_round(const Profile& profile, const Section& from, const Outwar
   const Section to = profile.moved(from, move.way);
   const double tangent = move.tangent, cosine = inverse_root_of_turn(tangent * tangent) * (1 - 0.5 * outward.lack);
   const Sight sees = {(seen.out + tangent * seen.round) * cosine, (seen.round - tangent * seen.out) * cosine, touch.hip.z};
-  const Tug last = tug_at(to, profile.raised, sees);
-  const double off = to.base_r + profile.raised * to.n_r, z = to.base_z + profile.raised * to.n_z, both = 1 + mu2;
-  // The bend and the fall times the distance from the axis: one division for both.
-  const double load2 = last.load * last.load, excess = last.pull2 - mu2 * load2;
-  const double bent = to.n_r * (last.round * last.round) + (profile.bend * off) * (last.along * last.along);
+  const Tug last = tug_at(profile, to, sees);
+  // The place, and the bend and the fall times the distance from the axis: one division for both.
+  const double both = 1 + mu2, load2 = last.load * last.load, excess = last.pull2 - mu2 * load2;
+  double off = to.base_r, z = to.base_z, bent = to.n_r * (last.round * last.round), bends = absolute(to.n_r * outward.per_off);
+  if constexpr (!Profile::kIsLine) {
+    off = off + profile.raised * to.n_r;
+    z = z + profile.raised * to.n_z;
+    bent = bent + (profile.bend * off) * (last.along * last.along);
+    bends = bends + absolute(profile.bend);
+  }
   const double fall = last.pull2 * off - (both * last.load) * bent;
   // The second order of what is left: from where the move began it is known well enough.
   const double more = 1 + move.second * excess;
   const double set = (excess * (0.5 * off)) * more * (1 / fall), size = absolute(set);
-  const double pressed = both * last.load * (absolute(profile.bend) + absolute(to.n_r * outward.per_off));
+  const double pressed = both * last.load * bends;
   if (!(last.load > 0 && fall > 0 && size * size * (4 * size + 2 * pressed * pressed) <= kPlaced)) return false;
   if (!(size * pressed <= kMostSet && last.pull2 + load2 <= tug.pull2 + tug.load * tug.load)) return false;
   const double x = (outward.x - tangent * outward.y) * cosine, y = (outward.y + tangent * outward.x) * cosine;
@@ -168,18 +182,18 @@ FDCG_HOT bool slide_round(const Profile& profile, Touch& touch) {
   const Outward outward = profile.outward(at, off2);
   const Section from = profile.section(outward.off, at.z);
   const Sight seen = {(hip.x * at.x + hip.y * at.y) * outward.per_off, (hip.y * at.x - hip.x * at.y) * outward.per_off, hip.z};
-  const Tug tug = tug_at(from, profile.raised, seen);
+  const Tug tug = tug_at(profile, from, seen);
   if (!(tug.load > 0)) return false;
   const Slip<double> slip = touch.friction.slip(at, tug.pull2, tug.load);
   const double rounding = pull_rounding(touch);
   if (slip.is_rest || !(tug.pull2 > rounding * rounding)) return true;
   const double mu = touch.friction.mu_dynamic, mu2 = mu * mu, held = mu * tug.load;
-  if (mu == 0) return slide_to_nearest(profile, from, seen, touch);
   const double excess = tug.pull2 - held * held;
-  const double bent = absolute(from.n_r * outward.per_off) + absolute(profile.bend);
+  const double bent = absolute(from.n_r * outward.per_off) + (Profile::kIsLine ? 0 : absolute(profile.bend));
   const double doubt = 2 * rounding + 8 * kEps * norm1(at) * bent * (tug.load + held) + kPlaced * held;  // see next_move()
-  if (excess <= 2 * doubt * held) return true;
-  const RoundMove move = next_round_move(tug, from, outward.per_off, profile.bend, excess, 1 + mu2);
+  if (excess <= doubt * larger(doubt, 2 * held)) return true;
+  if (mu == 0) return slide_to_nearest(profile, from, seen, touch);
+  const RoundMove move = next_round_move(profile, tug, from, outward.per_off, excess, 1 + mu2);
   return move.is_short && go_round(profile, from, outward, seen, tug, move, mu2, touch);
 }
 

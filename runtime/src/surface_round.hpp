@@ -15,6 +15,7 @@ struct PlaneSurface {
 
   explicit PlaneSurface(const fdcg_surface&) {}
   [[nodiscard]] bool is_outside(Point x) const { return x.z >= 0; }
+  [[nodiscard]] static bool is_clear(Point x, double way) { return x.z > way; }
   [[nodiscard]] Entry enter(Point from, Point to, bool begins_outside) const {
     if (!begins_outside || is_outside(to)) return kNoEntry;
     const double t = from.z / (from.z - to.z);
@@ -43,7 +44,9 @@ FDCG_HOT Slid slide_on_ball(Touch& touch, double centre_z, double radius, double
   if (!(load > 0)) return Slid::kLeaves;
   const double pull2 = squared(hip - at * (level * per_radius * per_radius));
   const Slip<double> slip = touch.friction.slip(touch.god_object, pull2, load);
-  const double mu = touch.friction.mu_dynamic, most = mu * load + pull_rounding(touch);
+  const double mu = touch.friction.mu_dynamic, held = mu * load;
+  const double doubt = 8 * kEps * (norm1(touch.god_object) * per_radius) * (load + held);  // the rounding of a place, as a turn
+  const double most = held + pull_rounding(touch) + doubt;
   if (slip.is_rest || !(pull2 > most * most)) return Slid::kRests;
   const double reach2 = squared(hip), per_reach2 = 1 / reach2, less = 1 / root(1 + mu * mu), share = mu * less;
   const double free2 = reach2 - share * share * (radius * radius), rest = free2 > 0 ? root(free2) : 0;
@@ -63,6 +66,7 @@ struct Sphere {
 
   explicit Sphere(const fdcg_surface& s) : sign(s.is_hollow != 0 ? -1 : 1), radius(s.radius_m), extent(radius) {}
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(x) - radius * radius) >= 0; }
+  [[nodiscard]] bool is_clear(Point x, double way) const { return is_clear_of_ball(sign, squared(x), radius, way); }
   [[nodiscard]] Span span(Point from, Point way) const { return ball_span(from, way, radius); }
   [[nodiscard]] uint32_t piece_near(Point) const { return 0; }
   [[nodiscard]] Entry land(uint32_t, Point at) const {
@@ -100,6 +104,9 @@ struct Capsule {
   [[nodiscard]] double nearest_z(Point x) const { return x.z > half ? half : (x.z < -half ? -half : x.z); }
   [[nodiscard]] Point from_segment(Point x) const { return {x.x, x.y, x.z - nearest_z(x)}; }
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(from_segment(x)) - radius * radius) >= 0; }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    return is_clear_of_ball(sign, squared(from_segment(x)), radius, way);
+  }
   // The side's span and those of the caps' balls together: a convex body's.
   [[nodiscard]] Span span(Point from, Point way) const {
     Span all = kWholeLine;
@@ -178,7 +185,7 @@ struct Ellipsoid {
 
   struct Spot {
     Point at, normal;
-    double steepness;  // |gradient| of the sum of (x / half)^2, halved
+    double per_steepness;  // 1 / |gradient| of the sum of (x / half)^2, halved
   };
 
   explicit Ellipsoid(const fdcg_surface& s)
@@ -191,6 +198,9 @@ struct Ellipsoid {
   static Point scaled(Point x, Point by) { return {x.x * by.x, x.y * by.y, x.z * by.z}; }
   [[nodiscard]] Point gradient(Point x) const { return scaled(x, inverse2); }
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(scaled(x, inverse)) - 1) >= 0; }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    return is_clear_of_ball(sign, squared(scaled(x, inverse)), 1, way * larger(inverse.x, larger(inverse.y, inverse.z)));
+  }
   [[nodiscard]] Span span(Point from, Point way) const { return ball_span(scaled(from, inverse), scaled(way, inverse), 1); }
   [[nodiscard]] uint32_t piece_near(Point) const { return 0; }
   [[nodiscard]] Entry land(uint32_t, Point at) const {
@@ -203,33 +213,33 @@ struct Ellipsoid {
 
   [[nodiscard]] FDCG_HOT Spot spot(Point x, Point) const {
     const Point g = gradient(x);
-    const double length = norm(g);
-    return {x, g * (sign / length), length};
+    const double g2 = squared(g), per_length = root(g2) * (1 / g2);
+    return {x, g * (sign * per_length), per_length};
   }
-  // Along the gradient, then what is left along the ray: that is of second order, and exact to rounding.
-  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot&) const {
+  // Along the gradient, then what is left along the ray: that is of third order, and exact to rounding.
+  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot& spot) const {
     const Point g = gradient(p);
-    const Point near = p - g * ((dot(p, g) - 1) / (2 * squared(g)));
-    return spot(near * inverse_root_near_1(squared(scaled(near, inverse)) - 1), near);
+    const Point near = p - g * ((dot(p, g) - 1) * (0.5 * spot.per_steepness * spot.per_steepness));
+    return this->spot(near * inverse_root_near_1(squared(scaled(near, inverse)) - 1), near);
   }
   [[nodiscard]] FDCG_HOT Point turn(const Spot& spot, Point v) const {
     const Point bent = gradient(v);
-    return (bent - spot.normal * dot(bent, spot.normal)) * (sign / spot.steepness);
+    return (bent - spot.normal * dot(bent, spot.normal)) * (sign * spot.per_steepness);
   }
   [[nodiscard]] FDCG_HOT double turn_rate(const Spot& spot, Point v, double along) const {
-    return -3 * sign * along * dot(gradient(v), spot.normal) / spot.steepness;
+    return -3 * sign * spot.per_steepness * along * dot(gradient(v), spot.normal);
   }
   [[nodiscard]] double curvature_sum(const Spot& spot) const {
     const double along = dot(gradient(spot.normal), spot.normal);
-    return sign * (inverse2.x + inverse2.y + inverse2.z - along) / spot.steepness;
+    return sign * (inverse2.x + inverse2.y + inverse2.z - along) * spot.per_steepness;
   }
   [[nodiscard]] double curvature_product(const Spot& spot) const {
-    const double steepness2 = spot.steepness * spot.steepness;
-    return per_volume2 / (steepness2 * steepness2);
+    const double per_steepness2 = spot.per_steepness * spot.per_steepness;
+    return per_volume2 * (per_steepness2 * per_steepness2);
   }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
-  static bool slide_quickly(uint32_t, Touch&) { return false; }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide_in_one(*this, touch); }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);

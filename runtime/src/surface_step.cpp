@@ -108,10 +108,22 @@ FDCG_HOT void respond(const Tick& tick, const Touch& touch) {
   contact.slipping = touch.friction.is_slipping ? 1 : 0;
 }
 
+FDCG_HOT Touch touch_of(const Tick& tick, double extent) {
+  const fdcg_params& params = tick.params;
+  return {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, tick.contact->slipping != 0},
+          place_of(tick.hip_m, extent),
+          vec(tick.contact->god_object)};
+}
+
 template <class Shape>
-[[gnu::noinline]] void step_by_rules(const Shape& shape, const Touch& touch, const Tick& tick) {
+[[gnu::noinline]] void step_by_rules(const Tick& tick) {
   fdcg_contact& contact = *tick.contact;
-  SurfaceWalk walk = {touch, {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
+  const Shape shape(tick.surface);
+  SurfaceWalk walk = {touch_of(tick, shape.extent), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
+  if (contact.started == 0) {
+    start(walk.hip, &contact);
+    return;
+  }
   const Progress progress = move_god_object(shape, walk);
   tick.result->transitions = progress.transitions;
   tick.result->flags = progress.flags;
@@ -127,23 +139,25 @@ template <class Shape>
   }
 }
 
+// No less than a way's length, and all roundings of where it leads.
+FDCG_HOT double way_bound(Point way, double extent) {
+  return norm1(way) * (1 + 0x1p-20) + 16 * kEps * extent;
+}
+
+// What most ticks are, before the rules. All of it stays in registers: nothing here is handed to another function.
 template <class Shape>
 void step_on(const Tick& tick) {
-  const Shape shape(tick.surface);
-  const fdcg_params& params = tick.params;
   fdcg_contact& contact = *tick.contact;
-  const Point hip = place_of(tick.hip_m, shape.extent);
-  if (contact.started == 0) {
-    start(hip, &contact);
-    return;
-  }
-  Touch touch = {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, contact.slipping != 0},
-                 hip,
-                 vec(contact.god_object)};
-  if (contact.state == FDCG_FACE && shape.slide_quickly(contact.feature, touch)) {
+  const Shape shape(tick.surface);
+  Touch touch = touch_of(tick, shape.extent);
+  const Point way = touch.hip - touch.god_object;
+  if (contact.state == FDCG_FREE && contact.started != 0 && shape.is_clear(touch.hip, way_bound(way, shape.extent))) {
+    store(touch.hip, contact.god_object);
+    store(touch.hip, contact.hip);
+  } else if (contact.state == FDCG_FACE && shape.slide_quickly(contact.feature, touch)) {
     respond(tick, touch);
   } else {
-    step_by_rules(shape, touch, tick);
+    step_by_rules<Shape>(tick);
   }
 }
 

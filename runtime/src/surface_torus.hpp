@@ -94,6 +94,7 @@ inline Marks quadratic_marks(const Polynomial<2>& f) {
 
 // The tube's circle.
 struct TubeProfile {
+  static constexpr bool kIsLine = false;
   double ring, raised, bend;
 
   [[nodiscard]] static Outward outward(Point at, double off2) { return outward_of(at, off2); }
@@ -131,6 +132,10 @@ struct Torus {
     const double out = from_axis(x) - ring;
     return sign * (out * out + x.z * x.z - tube * tube) >= 0;
   }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    const double out = from_axis(x) - ring;
+    return is_clear_of_ball(sign, out * out + x.z * x.z, tube, way);
+  }
   // (|x|^2 + ring^2 - tube^2)^2 - 4 ring^2 (x^2 + y^2) along a way: negative within the tube.
   [[nodiscard]] Polynomial<4> along(Point from, Point way) const {
     const double a = squared(way), b = 2 * dot(from, way), c = squared(from) + (ring - tube) * (ring + tube);
@@ -156,13 +161,13 @@ struct Torus {
     const bool must_meet = begins_outside && !is_outside(to);
     const Way near = near_part(from, to, extent);
     const Point way = near.to - near.from;
-    if (!must_meet && is_clear(near.from, way)) return kNoEntry;
+    if (!must_meet && is_far_from(near.from, way)) return kNoEntry;
     const double t = first_fall(along(near.from, way), begins_outside);
     if (t <= 1) return land(near.from + way * t);
     return must_meet ? land(to) : kNoEntry;
   }
   // Whether the tube's surface is farther away than the way is long.
-  [[nodiscard]] bool is_clear(Point from, Point way) const {
+  [[nodiscard]] bool is_far_from(Point from, Point way) const {
     constexpr double kHeldBack = 1 - 0x1p-20;
     const double out = from_axis(from) - ring;
     const double distance = absolute(root(out * out + from.z * from.z) - tube) * kHeldBack - 8 * kEps * extent;
