@@ -43,4 +43,11 @@ inline Vector solve(const Matrix& m, Vector b) {
   return (bc * b.x + ca * b.y + ab * b.z) * inverse;
 }
 
+// Of a symmetrical one.
+inline Matrix inverse_of(const Matrix& m) {
+  const Vector bc = cross(m.row[1], m.row[2]), ca = cross(m.row[2], m.row[0]), ab = cross(m.row[0], m.row[1]);
+  const double inverse = 1 / dot(m.row[0], bc);
+  return {{bc * inverse, ca * inverse, ab * inverse}};
+}
+
 }  // namespace fdcg

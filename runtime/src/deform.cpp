@@ -51,14 +51,17 @@ fdcg_status check_graph(const fdcg_graph* graph, fdcg_error* error) {
 
 // Where each part stands, and how many bytes they take.
 struct Layout {
-  uint64_t nodes, corners, before, connections, busy_corners, boxes, stale, loose, tight_tick, leaf_first, leaves, bytes;
+  uint64_t nodes, corners, places, logs[2], connections, busy_corners, boxes, stale, loose, tight_tick, leaf_first, leaves,
+      bytes;
 
   explicit Layout(const fdcg_header& header) : bytes(sizeof(fdcg_deform)) {
     const bool is_f64 = header.real_bytes == sizeof(double);
     const BoxTree tree(header.node_count);
     nodes = place(header.node_count, is_f64 ? node_bytes<double>(3, false) : node_bytes<float>(3, false));
     corners = place(header.corner_count, is_f64 ? sizeof(fdcg_corner_f64) : sizeof(fdcg_corner_f32));
-    before = place(header.corner_count, is_f64 ? sizeof(Before<double>) : sizeof(Before<float>));
+    places = place(header.corner_count, is_f64 ? sizeof(Place<double>) : sizeof(Place<float>));
+    for (uint64_t& log : logs)
+      log = place(header.corner_count, is_f64 ? sizeof(Was<double>) : sizeof(Was<float>));
     connections = place(header.connection_count, sizeof(fdcg_connection));
     busy_corners = place(header.busy_count, sizeof(fdcg_busy_corner));
     boxes = place(tree.records, sizeof(fdcg_box8));
@@ -129,7 +132,10 @@ void copy_nodes(const fdcg_graph& graph, fdcg_deform* deform) {
   for (uint32_t n = 0; n < graph.header->node_count; ++n)
     memcpy(deform->nodes + n * uint64_t{deform->node_bytes}, from + n * uint64_t{graph.header->node_bytes}, deform->node_bytes);
   memcpy(deform->corners, graph.corners, graph.header->corner_count * sizeof(typename Records<Real>::Corner));
-  memset(deform->before, 0, graph.header->corner_count * sizeof(Before<Real>));
+  const Upkeep<Real> upkeep(*deform);
+  memset(deform->places, 0, graph.header->corner_count * sizeof(Place<Real>));
+  for (uint32_t c = 0; c < graph.header->corner_count; ++c)
+    memcpy(upkeep.place(c).point, upkeep.corner(c).point, sizeof upkeep.place(c).point);
 }
 
 // Which leaves hold a corner's nodes, and which of their nodes those are: counted, summed up, filled in.
@@ -208,7 +214,9 @@ void place_parts(void* memory, const Layout& layout, const fdcg_graph& graph, fd
   auto* const start = static_cast<unsigned char*>(memory);
   deform->nodes = start + layout.nodes;
   deform->corners = start + layout.corners;
-  deform->before = start + layout.before;
+  deform->places = start + layout.places;
+  for (int parity = 0; parity < 2; ++parity)
+    deform->logs[parity] = start + layout.logs[parity];
   deform->connections = reinterpret_cast<fdcg_connection*>(start + layout.connections);
   deform->boxes = reinterpret_cast<fdcg_box8*>(start + layout.boxes);
   deform->stale = start + layout.stale;

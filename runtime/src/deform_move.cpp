@@ -8,12 +8,19 @@
 namespace fdcg {
 namespace {
 
+// Which of several moves is refused; FDCG_NONE: there is but one.
+Message& say_which(Message& message, uint64_t move) {
+  if (move != FDCG_NONE) message.text("move ").number(move).text(": ");
+  return message;
+}
+
 // `corner`: FDCG_NONE where one is looked for.
-[[gnu::cold, gnu::noinline]] fdcg_status refuse_place(const fdcg_deform& deform, uint32_t corner, const double position_m[3],
-                                                      fdcg_error* error) {
+[[gnu::cold, gnu::noinline]] fdcg_status refuse_place(const fdcg_deform& deform, uint64_t move, uint32_t corner,
+                                                      const double position_m[3], fdcg_error* error) {
   const fdcg_header& header = deform.header;
   if (position_m == nullptr) return Message(error, FDCG_E_ARGUMENT).text("position: null pointer");
   Message message(error, FDCG_E_ARGUMENT);
+  say_which(message, move);
   if (corner != FDCG_NONE) message.text("corner ").number(corner).text(": ");
   message.text("position ");
   for (int k = 0; k < 3; ++k) {
@@ -27,8 +34,10 @@ namespace {
   return message.text("is at the very end of what the margin_m allows");
 }
 
-[[gnu::cold, gnu::noinline]] fdcg_status refuse_corner(const fdcg_deform& deform, uint32_t corner, fdcg_error* error) {
-  return Message(error, FDCG_E_ARGUMENT)
+[[gnu::cold, gnu::noinline]] fdcg_status refuse_corner(const fdcg_deform& deform, uint64_t move, uint32_t corner,
+                                                       fdcg_error* error) {
+  Message message(error, FDCG_E_ARGUMENT);
+  return say_which(message, move)
       .text("corner is ")
       .number(corner)
       .text(", the mesh has ")
@@ -41,7 +50,7 @@ inline double zero_below(double least, double x) {
 }
 
 // In the graph's frame; what the step takes for zero is zero here too. False for what is no number or outside.
-inline bool to_local(const fdcg_deform& deform, const double position_m[3], Vec3<double>* local) {
+[[gnu::always_inline]] inline bool to_local(const fdcg_deform& deform, const double position_m[3], Vec3<double>* local) {
   constexpr double kLeastShare = 0x1p-70;
   const fdcg_header& header = deform.header;
   Vec3<double> p = {position_m[0], position_m[1], position_m[2]};
@@ -56,6 +65,11 @@ inline bool to_local(const fdcg_deform& deform, const double position_m[3], Vec3
   return is_inside != 0;
 }
 
+template <class Real>
+inline void store_in(Real (&to)[3], Vec3<Real> from) {
+  to[0] = from.x, to[1] = from.y, to[2] = from.z;
+}
+
 // A corner's place where the graph has it, or where it was rounded to: no further out than it was asked for.
 template <class Real>
 inline Vec3<Real> rounded_to(Vec3<double> p) {
@@ -63,28 +77,42 @@ inline Vec3<Real> rounded_to(Vec3<double> p) {
 }
 
 template <class Real>
-inline void move(fdcg_deform* deform, uint32_t c, Vec3<double> local) {
+[[gnu::always_inline]] inline void move(fdcg_deform* deform, uint32_t c, Vec3<double> local) {
   const Upkeep<Real> upkeep(*deform);
   const Vec3<Real> to = rounded_to<Real>(local), from = upkeep.point(c);
   if (to.x == from.x && to.y == from.y && to.z == from.z) return;
-  auto& record = upkeep.corner(c);
-  Before<Real>& before = upkeep.before(c);
-  const uint32_t coming = deform->tick + 1;
-  if (before.tick != coming) {
-    before.tick = coming;
-    before.point[0] = from.x, before.point[1] = from.y, before.point[2] = from.z;
+  Place<Real>& place = upkeep.place(c);
+  const uint64_t coming = deform->tick + 1;
+  if (place.tick != coming) {
+    place.tick = coming;
+    place.logged = deform->has_moved++;
+    store_in(upkeep.was(place).point, from);
   }
-  record.point[0] = to.x, record.point[1] = to.y, record.point[2] = to.z;
-  deform->has_moved = 1;
-  const Vec3<double> way = widen(to) - widen(vec(before.point));
+  store_in(place.point, to);
+  const Vec3<double> way = widen(to) - widen(vec(upkeep.was(place).point));
   const double way2 = dot(way, way);
   if (way2 > deform->way2) deform->way2 = way2;
   const Vec3<double> at = upkeep.in_tree(to);
-  const int is_marked = static_cast<int>(before.is_marked != 0) & static_cast<int>(at.x >= double{before.low[0]}) &
-                        static_cast<int>(at.x <= double{before.high[0]}) & static_cast<int>(at.y >= double{before.low[1]}) &
-                        static_cast<int>(at.y <= double{before.high[1]}) & static_cast<int>(at.z >= double{before.low[2]}) &
-                        static_cast<int>(at.z <= double{before.high[2]});
+  const int is_marked = static_cast<int>(place.is_marked != 0) & static_cast<int>(at.x >= double{place.low[0]}) &
+                        static_cast<int>(at.x <= double{place.high[0]}) & static_cast<int>(at.y >= double{place.low[1]}) &
+                        static_cast<int>(at.y <= double{place.high[1]}) & static_cast<int>(at.z >= double{place.low[2]}) &
+                        static_cast<int>(at.z <= double{place.high[2]});
   if (__builtin_expect(is_marked == 0, false)) upkeep.mark(c, way * deform->per_tree_unit);
+}
+
+template <class Real>
+fdcg_status move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_m, uint64_t count,
+                         fdcg_error* error) {
+  const Upkeep<Real> upkeep(*deform);
+  const uint32_t corner_count = deform->header.corner_count;
+  for (uint64_t i = 0; i < count; ++i) {
+    const double* const position_m = positions_m + 3 * i;
+    Vec3<double> local;
+    if (corners[i] >= corner_count) return refuse_corner(*deform, i, corners[i], error);
+    if (!to_local(*deform, position_m, &local)) return refuse_place(*deform, i, corners[i], position_m, error);
+    move<Real>(deform, corners[i], local);
+  }
+  return FDCG_OK;
 }
 
 // The corner nearest to a place among the leaves whose boxes reach within `reach` of it.
@@ -139,17 +167,27 @@ uint32_t find(const fdcg_deform& deform, Vec3<double> at, double reach) {
 extern "C" fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3],
                                         fdcg_error* error) {
   fdcg::Vec3<double> local;
-  if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, corner, error);
+  if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, FDCG_NONE, corner, error);
   if (position_object_m == nullptr || !fdcg::to_local(*deform, position_object_m, &local))
-    return fdcg::refuse_place(*deform, corner, position_object_m, error);
+    return fdcg::refuse_place(*deform, FDCG_NONE, corner, position_object_m, error);
   fdcg::with_real_of(deform->header, [&](auto real) { fdcg::move<decltype(real)>(deform, corner, local); });
   return FDCG_OK;
+}
+
+extern "C" fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
+                                                uint64_t count, fdcg_error* error) {
+  if (count == 0) return FDCG_OK;
+  if (corners == nullptr || positions_object_m == nullptr)
+    return fdcg::Message(error, FDCG_E_ARGUMENT).text("corners or positions: null pointer");
+  return fdcg::with_real_of(deform->header, [&](auto real) {
+    return fdcg::move_corners<decltype(real)>(deform, corners, positions_object_m, count, error);
+  });
 }
 
 extern "C" fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3],
                                          fdcg_error* error) {
   using fdcg::widen;
-  if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, corner, error);
+  if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, FDCG_NONE, corner, error);
   fdcg::with_real_of(deform->header, [&](auto real) {
     const fdcg::Upkeep<decltype(real)> upkeep(const_cast<fdcg_deform&>(*deform));
     const fdcg::Vec3<double> p =
@@ -167,7 +205,7 @@ extern "C" fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double 
   *corner = FDCG_NONE;
   fdcg::Vec3<double> local;
   if (!fdcg::to_local(*deform, position_object_m, &local))
-    return fdcg::refuse_place(*deform, FDCG_NONE, position_object_m, error);
+    return fdcg::refuse_place(*deform, FDCG_NONE, FDCG_NONE, position_object_m, error);
   const double reach = kNear * deform->header.extent;
   *corner = fdcg::with_real_of(deform->header, [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
   if (*corner != FDCG_NONE) return FDCG_OK;

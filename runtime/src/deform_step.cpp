@@ -2,6 +2,7 @@
 // The step on a deformable mesh: servo_step.cpp once more, seen through a view that brings up to date what it hands out, after
 // the contact has taken part in the mesh's motion.
 #define FDCG_DEFORMABLE 1
+#include "deform_clear.hpp"
 #include "deform_motion.hpp"
 #include "servo_step.cpp"  // NOLINT(bugprone-suspicious-include): the same source, on the other view
 
@@ -107,11 +108,28 @@ inline bool keep_ball(double travel, fdcg_contact* contact) {
   return ball.radius2 > 0;
 }
 
+// Whether no face has come to the god-object since the contact's last step, nor to the way from it to the HIP, as far as clear
+// balls tell; `hip` null: there is none.
+enum class Clear { no, at_god_object, all_the_way };
+template <class Real>
+Clear clear_of_faces(const Upkeep<Real>& upkeep, double travel, const Vec3<double>* hip, fdcg_deform_contact* contact) {
+  fdcg_clear_ball& ball = contact->contact.clear_ball;
+  const bool is_watched = upkeep.deform().watched.holds(contact->ball, ball);
+  const bool is_clear = is_watched || keep_ball(travel, &contact->contact);
+  if (hip == nullptr) return is_clear ? Clear::at_god_object : Clear::no;
+  if ((is_clear && is_in_clear_ball(ball, *hip)) || find_quiet_ball(upkeep, *hip, contact)) return Clear::all_the_way;
+  return is_clear ? Clear::at_god_object : Clear::no;
+}
+
 // A contact in free space. A sweep that was carried over begins anew, on the mesh as it is. Returns whether a face caught it.
 template <class Real>
-bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, fdcg_contact* contact) {
+bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, const Vec3<double>* hip,
+                    fdcg_deform_contact* waiting) {
+  fdcg_contact* const contact = &waiting->contact;
   contact->sweep.is_carried = 0;
-  if (keep_ball(travel, contact) || !saw_before) return false;
+  const Clear clear = clear_of_faces(upkeep, travel, hip, waiting);
+  if (clear == Clear::all_the_way) waiting->halvings = 0;
+  if (clear != Clear::no || !saw_before) return false;
   const Catch caught = catch_of(upkeep, narrow<Real>(contact->god_object));
   if (caught.node == FDCG_NONE) return false;
   contact->state = FDCG_FACE;
@@ -127,7 +145,8 @@ bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, 
 
 // The motion of the present tick. Returns what it adds to the result's flags.
 template <class Real>
-[[gnu::noinline]] uint32_t take_part(const Upkeep<Real>& upkeep, fdcg_deform_contact* contact) {
+[[gnu::noinline]] uint32_t take_part(const Upkeep<Real>& upkeep, const fdcg_params& params, const double hip_object_m[3],
+                                     fdcg_deform_contact* contact) {
   const fdcg_deform& deform = upkeep.deform();
   const bool is_started = contact->contact.started != 0, saw_before = contact->tick + 1 == deform.tick;
   const double travel = (deform.travel - contact->travel) * (1 + 4 * RealLimits<double>::kEpsilon) +
@@ -144,8 +163,11 @@ template <class Real>
   uint32_t flags = saw_before ? 0 : FDCG_DEFORM_MISSED;
   if (contact->contact.state != FDCG_FREE) {
     ride(upkeep, saw_before, &contact->contact);
-  } else if (wait_for_faces(upkeep, travel, saw_before, &contact->contact)) {
-    flags |= FDCG_DEFORM_CAUGHT;
+  } else {
+    Vec3<double> hip;
+    const bool looks_for_balls = (params.disabled_skips & FDCG_STEP_SKIP_CLEAR_BALL) == 0 &&
+                                 to_local(deform.header, hip_object_m, RealLimits<Real>::kFar, &hip);
+    if (wait_for_faces(upkeep, travel, saw_before, looks_for_balls ? &hip : nullptr, contact)) flags |= FDCG_DEFORM_CAUGHT;
   }
   return flags;
 }
@@ -154,18 +176,11 @@ template <class Real>
 template <class Real>
 [[gnu::noinline]] void begin_tick(const Upkeep<Real>& upkeep) {
   fdcg_deform& deform = upkeep.deform();
-  constexpr uint32_t kLastTick = 0xFFFFFFF0u;
   deform.has_moved = 0;
   deform.tick_travel = root(deform.way2) * (1 + 0x1p-20);
   deform.travel += deform.tick_travel;
   deform.way2 = 0;
   ++deform.tick;
-  if (deform.tick < kLastTick) return;
-  for (uint32_t c = 0; c < deform.header.corner_count; ++c) {  // once in some fifty days: the numbers begin anew
-    Before<Real>& before = upkeep.before(c);
-    before.tick = before.tick == deform.tick ? 2 : 0;
-  }
-  deform.tick = 2;
 }
 
 // Where to, on the way to the HIP: a sweep that ran out of work on a mesh that moves all the time would begin anew for ever,
@@ -185,7 +200,7 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
   const Upkeep<Real> upkeep(*deform);
   if (deform->has_moved != 0) begin_tick(upkeep);
   uint32_t flags = 0;
-  if (contact->tick != deform->tick) flags = take_part(upkeep, contact);
+  if (contact->tick != deform->tick) flags = take_part(upkeep, params, hip_object_m, contact);
   if (contact->contact.state == FDCG_FACE) leave_sliver(upkeep, &contact->contact);
   if (contact->contact.state != FDCG_FREE) contact->halvings = 0;
   if (contact->halvings > 0) {

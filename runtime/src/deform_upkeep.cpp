@@ -20,8 +20,18 @@ bool Upkeep<Real>::is_line(uint32_t n) const {
 }
 
 template <class Real>
+void Upkeep<Real>::show_places(const Node& node) const {
+  for (const fdcg_side& side : node.sides) {
+    const Vec3<Real> at = point(side.corner);
+    auto& shown = corner(side.corner).point;
+    shown[0] = at.x, shown[1] = at.y, shown[2] = at.z;
+  }
+}
+
+template <class Real>
 void Upkeep<Real>::compute_node(uint32_t n) const {
   Node& here = node(n);
+  show_places(here);
   if (is_line(n)) {
     compute_sliver(n);
     return;
@@ -32,7 +42,7 @@ void Upkeep<Real>::compute_node(uint32_t n) const {
   here.plane = {{plane.normal.x, plane.normal.y, plane.normal.z}, plane.offset};
   here.flags = 0;
   for (const fdcg_side& side : here.sides)
-    before(side.corner).is_marked = 0;
+    place(side.corner).is_marked = 0;
   d_->stale[n / FDCG_LEAF_NODES] = static_cast<uint8_t>(d_->stale[n / FDCG_LEAF_NODES] & ~(1u << n % FDCG_LEAF_NODES));
 }
 
@@ -168,10 +178,10 @@ TreeBox Upkeep<Real>::leaf_box(uint32_t leaf, bool* may_shrink) const {
   for (uint32_t n = first; n < first + count; ++n) {
     for (const fdcg_side& side : node(n).sides) {
       box.add(TreeBox::of(in_tree(point(side.corner))));
-      Before<Real>& was = before(side.corner);
-      was.is_marked = 0;
-      if (was.tick - d_->tick > 1) continue;  // neither the present tick nor the next
-      box.add(TreeBox::of(in_tree(vec(was.point))));
+      Place<Real>& here = place(side.corner);
+      here.is_marked = 0;
+      if (here.tick - d_->tick > 1) continue;  // neither the present tick nor the next
+      box.add(TreeBox::of(in_tree(vec(was(here).point))));
       *may_shrink = true;
     }
   }
@@ -207,7 +217,7 @@ void Upkeep<Real>::mark(uint32_t c, Vec3<double> way) const {
   constexpr double kWaysAhead = 32, kMostRoom = 0.5;  // of the box
   const Vec3<double> at = in_tree(point(c));
   const double ahead[3] = {kWaysAhead * absolute(way.x), kWaysAhead * absolute(way.y), kWaysAhead * absolute(way.z)};
-  Before<Real>& own = before(c);
+  Place<Real>& own = place(c);
   TreeBox shared = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
   const uint32_t* const end = d_->leaves + d_->leaf_first[c + 1];
   for (const uint32_t* entry = d_->leaves + d_->leaf_first[c]; entry < end; ++entry) {
@@ -228,6 +238,7 @@ void Upkeep<Real>::mark(uint32_t c, Vec3<double> way) const {
     }
     hold(0, leaf, added);
     const TreeBox lane = lane_of(record, leaf % FDCG_TREE_WAYS);
+    d_->watched.give_up(lane, d_->per_tree_unit);
     for (int k = 0; k < 3; ++k) {
       shared.low[k] = greater_of(shared.low[k], lane.low[k]);
       shared.high[k] = lesser_of(shared.high[k], lane.high[k]);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a deformable mesh's memory holds, and how what depends on its corners' places is brought up to date:
 //
-//   fdcg_deform | node blocks | corners | Before[corners] | connections | busy corners | hierarchy
-//   | stale[leaves] | loose[records] | leaf_first[corners + 1] | leaves of corners
+//   fdcg_deform | node blocks | corners | Place[corners] | log of one tick[corners] | of the next | connections | busy corners
+//   | hierarchy | stale[leaves] | loose[records] | leaf_first[corners + 1] | leaves of corners
 //
 // A corner that moves leaves marks (deform.cpp): its triangles are stale, the boxes around them have grown and are loose. The
 // view (graph_view.hpp) asks here before it hands out a number. Voronoi planes and edges are derived anew whenever they are
-// asked for, and so are types and corner normals: there is nothing of them to be old.
+// asked for, and so are types and corner normals: there is nothing of them to be old. The corners' records have the places
+// where a plane was last computed from them: they are for those who look in from outside.
 #pragma once
 
-#include "deform_boxes.hpp"
+#include "deform_watch.hpp"
 #include "exact_orient.hpp"
 #include "face_plane.hpp"
 #include "fdcg/deform.h"
@@ -20,38 +21,47 @@ struct fdcg_deform {
   fdcg_header header;
   unsigned char* nodes;
   void* corners;
-  void* before;
+  void* places;
+  void* logs[2];  // where corners were that have moved: of even ticks, of odd ones
   fdcg_connection* connections;
   fdcg_box8* boxes;
   uint8_t* stale;        // by leaf, a bit for each node of it
   uint8_t* loose;        // by record, a bit for each box that may be larger than it must
-  uint32_t* tight_tick;  // by record: in which boxes were last made tight
+  uint32_t* tight_tick;  // by record: in which boxes were last made tight; the tick's lower half
   uint32_t* leaf_first;  // corner c is in the leaves leaf_first[c] .. leaf_first[c + 1] - 1
   uint32_t* leaves;      // leaf << FDCG_LEAF_NODES | a bit for each of its nodes that the corner belongs to
   fdcg::BoxTree tree;
+  uint64_t tick;       // counts the motions that steps have seen begin; comes to no end
+  uint32_t has_moved;  // how many corners, since the last step. They bear the number of the tick to come
   uint32_t node_bytes;
-  uint32_t tick;       // counts the motions that steps have seen begin
-  uint32_t has_moved;  // 1: since the last step. Such corners bear the number of the tick to come
-  uint32_t reserved;
   double per_tree_unit;
   double travel;           // the sum over all ticks of the largest way of a corner, rounded up; local
   double tick_travel;      // of the present tick
   double way2;             // the largest way of the tick to come, squared
   double low[3], high[3];  // local: where corners may be moved
+  fdcg::WatchedBalls watched;
 };
 
 namespace fdcg {
 
-// Where a corner was before the tick that it last moved in; and where it may go without leaving new marks. While `is_marked`,
-// its triangles are stale, its leaves' boxes are loose, and all of them hold all that lies between `low` and `high`. What takes
-// a mark off, or makes a box smaller, resets it: so a corner that nobody looks at is marked once, however often it moves.
+// Where a corner is, when it last moved, and where it may go without leaving new marks: all that a move looks at, in a line of
+// the cache. While `is_marked`, its triangles are stale, its leaves' boxes are loose, and all of them hold all that lies
+// between `low` and `high`. What takes a mark off, or makes a box smaller, resets it: so a corner that nobody looks at is
+// marked once, however often it moves.
 template <class Real>
-struct Before {
+struct Place {
   Real point[3];
-  uint32_t tick;
   uint32_t is_marked;
-  float low[3], high[3];                                      // tree units
-  uint32_t reserved[sizeof(Real) == sizeof(double) ? 2 : 1];  // to 64 bytes, a line of the cache (f32: 48)
+  uint32_t logged;  // where it was before that tick: in the tick's log
+  uint64_t tick;
+  float low[3], high[3];  // tree units
+};
+static_assert(sizeof(Place<double>) == 64 && sizeof(Place<float>) == 56);
+
+// An entry of a tick's log. Logs are as long as the mesh has corners, and none is in one twice.
+template <class Real>
+struct Was {
+  Real point[3];
 };
 
 // The least float that is not below x.
@@ -92,11 +102,15 @@ class Upkeep {
     return *reinterpret_cast<Node*>(d_->nodes + n * uint64_t{node_bytes<Real>(3, false)});
   }
   [[nodiscard]] Corner& corner(uint32_t c) const { return static_cast<Corner*>(d_->corners)[c]; }
-  [[nodiscard]] Before<Real>& before(uint32_t c) const { return static_cast<Before<Real>*>(d_->before)[c]; }
-  [[nodiscard]] Vec3<Real> point(uint32_t c) const { return vec(corner(c).point); }
+  [[nodiscard]] Place<Real>& place(uint32_t c) const { return static_cast<Place<Real>*>(d_->places)[c]; }
+  [[nodiscard]] Vec3<Real> point(uint32_t c) const { return vec(place(c).point); }
+  // Where a corner was before the tick that it last moved in; of this tick or the next, else nothing is known.
+  [[nodiscard]] Was<Real>& was(const Place<Real>& place) const {
+    return static_cast<Was<Real>*>(d_->logs[place.tick & 1])[place.logged];
+  }
   // Where the corner was before the present tick.
-  [[nodiscard]] Vec3<Real> old_point(uint32_t c) const { return has_moved(c) ? vec(before(c).point) : point(c); }
-  [[nodiscard]] bool has_moved(uint32_t c) const { return before(c).tick == d_->tick; }
+  [[nodiscard]] Vec3<Real> old_point(uint32_t c) const { return has_moved(c) ? vec(was(place(c)).point) : point(c); }
+  [[nodiscard]] bool has_moved(uint32_t c) const { return place(c).tick == d_->tick; }
 
   // ---- nodes
 
@@ -127,9 +141,10 @@ class Upkeep {
   [[nodiscard]] bool has_tightened(int level, uint32_t record, uint32_t lanes) const {
     constexpr uint32_t kTicksBetween = 8;
     const uint32_t at = d_->tree.first[level] + record, due = d_->loose[at] & lanes;
-    if (__builtin_expect(due == 0, true) || d_->tick - d_->tight_tick[at] < kTicksBetween) return false;
+    const auto now = static_cast<uint32_t>(d_->tick);
+    if (__builtin_expect(due == 0, true) || now - d_->tight_tick[at] < kTicksBetween) return false;
     make_tight(level, record, due);
-    d_->tight_tick[at] = d_->tick;
+    d_->tight_tick[at] = now;
     return true;
   }
   // Marks what depends on a corner's place; it has moved by `way`, in tree units.
@@ -150,6 +165,7 @@ class Upkeep {
   };
 
   void compute_node(uint32_t n) const;
+  void show_places(const Node& node) const;
   void compute_sliver(uint32_t n) const;
   [[nodiscard]] Lender plane_lender(uint32_t n) const;
   // Its corners are in one line, or so near one that it has no normal: a node that is none lends a plane of its own.

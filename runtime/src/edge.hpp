@@ -49,17 +49,12 @@ inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Ve
   return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
 }
 
-// Of `across` = -(load_a n_a + load_b n_b) the sum of the loads is as above, and their difference the same with n_a - n_b.
 template <class Real>
 [[gnu::noinline, gnu::cold]] void stand_on_edge(Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
   const uint32_t a = connection.node(0), b = connection.node(1);
   double share = 0.5;
-  if (b != FDCG_NONE) {
-    const Vec3<double> n_a = widen(walk.graph.node(a).normal()), n_b = widen(walk.graph.node(b).normal());
-    const Vec3<double> sum = n_a + n_b, difference = n_a - n_b, p = widen(across);
-    const double both = dot(sum, p) * dot(difference, difference), more = dot(difference, p) * dot(sum, sum);
-    if (both < 0) share = more < both ? 1 : more > -both ? 0 : (1 + more / both) / 2;
-  }
+  if (b != FDCG_NONE)
+    share = share_of_load(widen(walk.graph.node(a).normal()), widen(walk.graph.node(b).normal()), widen(across));
   walk.friction.terms->stand_on_edge(a, b, share);
 }
 

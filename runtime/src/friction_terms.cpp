@@ -31,11 +31,11 @@ fdcg_material own_material(const fdcg_params& params) {
 
 }  // namespace
 
-FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph& graph, const fdcg_contact& contact) {
+FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph* graph, const fdcg_contact& contact) {
   FrictionTerms terms = {};
   terms.params = &params;
-  terms.graph = &graph;
-  terms.unit_m = graph.header->metres_per_unit;
+  terms.graph = graph;
+  terms.unit_m = graph != nullptr ? graph->header->metres_per_unit : 1;
   terms.material = own_material(params);
   if (terms.has(FDCG_TERM_FINGER)) terms.material = fdcg_combine_materials(&terms.material, &params.finger);
   if (terms.has_springs()) terms.held_stiffness = contact.stiffness_n_per_m;

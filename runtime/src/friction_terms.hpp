@@ -16,8 +16,8 @@ struct TermSlip {
 
 struct FrictionTerms {
   const fdcg_params* params;
-  const fdcg_graph* graph;
-  fdcg_material material;  // of the feature that was asked last
+  const fdcg_graph* graph;  // null: the ground of a pile, which has no nodes
+  fdcg_material material;   // of the feature that was asked last
   double unit_m;
   double held_stiffness;  // of the contact, N/m; 0: a new one, or of no matter
   double lagged;          // what is left of the speed before this tick, units a second
@@ -53,7 +53,16 @@ struct FrictionTerms {
 
 inline constexpr int kMostSolveSteps = 120;
 
-FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph& graph, const fdcg_contact& contact);
+FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph* graph, const fdcg_contact& contact);
+
+// On an edge, `across` from the foot to the HIP is -(load_a n_a + load_b n_b) and something along the edge; load_a's share. The
+// sum of the loads is -2 S.across / S.S with S = n_a + n_b (contact-model section 6), their difference the same with n_a - n_b.
+inline double share_of_load(Vec3<double> n_a, Vec3<double> n_b, Vec3<double> across) {
+  const Vec3<double> sum = n_a + n_b, difference = n_a - n_b;
+  const double both = dot(sum, across) * dot(difference, difference), more = dot(difference, across) * dot(sum, sum);
+  if (!(both < 0)) return 0.5;
+  return more < both ? 1 : more > -both ? 0 : (1 + more / both) / 2;
+}
 
 // The steepest that the curve falls on this material, and may, in seconds a metre.
 struct Steepness {

@@ -172,7 +172,13 @@ class CornerRef {
  public:
   CornerRef(const GraphView<Real>& graph, uint32_t index) : graph_(&graph), record_(&graph.corners[index]) {}
 
-  [[nodiscard]] Vec3<Real> point() const { return vec(record_->point); }
+  [[nodiscard]] Vec3<Real> point() const {
+#if FDCG_DEFORMABLE
+    return graph_->corner_point(static_cast<uint32_t>(record_ - graph_->corners));
+#else
+    return vec(record_->point);
+#endif
+  }
   [[nodiscard]] bool is_open() const { return (record_->fan & FDCG_CORNER_OPEN) != 0; }
   [[nodiscard]] uint32_t fan_count() const { return is_busy() ? busy().fan_count : walked_count(); }
   // About of unit length: the side on which a point is, not how far, may be asked of it.
@@ -248,7 +254,13 @@ struct GraphView {
   }
   [[nodiscard]] ConnectionRef<Real> connection(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] CornerRef<Real> corner(uint32_t index) const { return {*this, index}; }
-  [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return vec(corners[index].point); }
+  [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const {
+#if FDCG_DEFORMABLE
+    return upkeep.point(index);
+#else
+    return vec(corners[index].point);
+#endif
+  }
 
   // A HIP's way in a tick, and the surface's in it: what a clear ball is worth looking for.
   [[nodiscard]] Real with_way_of_surface(Real way) const {
@@ -273,19 +285,19 @@ struct GraphView {
   // number where it is to be: a copy would wait for the numbers to be stored.
   void read_edge(NodeRef<Real> node, uint32_t k, Edge<Real>* edge) const {
     const uint32_t end[2] = {node.corner(k), node.corner(node.next(k))};
+#if FDCG_DEFORMABLE
+    *edge = derive_edge_or_point(corner_point(end[node.which(k)]), corner_point(end[1 - node.which(k)]));
+#else
     const Corner& from = corners[end[node.which(k)]];
     if (edges == nullptr) {
-#if FDCG_DEFORMABLE
-      *edge = derive_edge_or_point(vec(from.point), corner_point(end[1 - node.which(k)]));
-#else
       *edge = derive_edge(vec(from.point), corner_point(end[1 - node.which(k)]));
-#endif
       return;
     }
     const auto& stored = edges[node.connection(k)];
     edge->start.x = from.point[0], edge->start.y = from.point[1], edge->start.z = from.point[2];
     edge->direction.x = stored.direction[0], edge->direction.y = stored.direction[1], edge->direction.z = stored.direction[2];
     edge->length = stored.length;
+#endif
   }
   void read_edge(uint32_t connection_index, Edge<Real>* edge) const {
     const fdcg_connection& record = connections[connection_index];

@@ -182,6 +182,12 @@ extern "C" fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal
     if (status != FDCG_OK) return status;
     fdcg_params room;
     pile->ground_params = in_full(*params, &room, fdcg_init_params);
+    pile->ground_params.terms &= FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
+    pile->ground_params.materials = nullptr;  // of faces, which it has not; and the pile's memory holds no pointer
+    pile->ground_params.material_count = 0;
+    pile->ground_params.terms &= FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
+    pile->ground_params.materials = nullptr;  // of faces, which it has not: nothing outside the pile's memory is kept
+    pile->ground_params.material_count = 0;
     pile->ground_normal = {up.x / length, up.y / length, up.z / length};
     pile->ground_offset_m = offset_m;
   }
@@ -198,6 +204,8 @@ extern "C" fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, f
   const bool is_there = object.index < scene->object_end && scene->objects()[object.index].is_used != 0 &&
                         scene->objects()[object.index].generation == object.generation;
   if (!is_there) return refuse(error, "object: not in the scene, or removed");
+  if (scene->objects()[object.index].deform != nullptr)
+    return refuse(error, "object: is a deformable mesh, which bodies do not meet; leave it out of the pile");
   if (object.index >= pile->config.object_capacity) {
     return Message(error, FDCG_E_ARGUMENT)
         .text("object.index is ")

@@ -11,11 +11,17 @@ namespace {
 // Of damping_ratio, where a contact sticks: many together then do not swing, whatever their masses sideways.
 constexpr double kSideways = 2;
 
-// Velocity that a unit impulse along u at `arm` from the centre of mass gives to that place.
-FDCG_HOT World answer(const PileMember* member, World at, World u) {
-  if (member == nullptr || member->is_awake == 0) return {0, 0, 0};
-  const World arm = at - member->centre_m;
-  return u * member->lightness_per_kg + cross(member->inverse_inertia * cross(arm, u), arm);
+// What an impulse at a place does to a body, along one direction of unit length.
+struct Lever {
+  World twist;           // that a unit impulse gives, about the centre of mass; zero where the body cannot be moved
+  World spin_rad_per_s;  // that comes of it
+  double lightness_per_kg, answer_per_kg;  // speed that it gives to the centre, and to the place
+};
+
+FDCG_HOT Lever lever_at(const PileMember* member, World at, World direction) {
+  if (member == nullptr || member->is_awake == 0) return {{0, 0, 0}, {0, 0, 0}, 0, 0};
+  const World twist = cross(at - member->centre_m, direction), spin = member->inverse_inertia * twist;
+  return {twist, spin, member->lightness_per_kg, member->lightness_per_kg + dot(twist, spin)};
 }
 
 FDCG_HOT World velocity_at(const Meeting& meeting, const PileMember* member, World at) {
@@ -26,25 +32,19 @@ FDCG_HOT World velocity_at(const Meeting& meeting, const PileMember* member, Wor
   return (at - object.last.to_world(object.now.to_object(at, true), true)) * (1 / meeting.step_s);
 }
 
-FDCG_HOT void give(PileMember* member, World at, World impulse) {
-  if (member == nullptr || member->is_awake == 0) return;
-  const World twist = cross(at - member->centre_m, impulse);
-  member->velocity_m_per_s = member->velocity_m_per_s + impulse * member->lightness_per_kg;
-  member->spin_rad_per_s = member->spin_rad_per_s + member->inverse_inertia * twist;
-  member->kick_n_m_s = member->kick_n_m_s + twist;
+FDCG_HOT void give(PileMember* member, const Lever& lever, World direction, double impulse_n_s) {
+  if (lever.answer_per_kg == 0) return;
+  member->velocity_m_per_s = member->velocity_m_per_s + direction * (impulse_n_s * lever.lightness_per_kg);
+  member->spin_rad_per_s = member->spin_rad_per_s + lever.spin_rad_per_s * impulse_n_s;
+  member->kick_n_m_s = member->kick_n_m_s + lever.twist * impulse_n_s;
   member->has_touched = 1;
 }
 
-// What an implicit damper of this ratio to the critical one gives against a speed along a direction.
-double damper_impulse(double speed, double ratio, double stiffness, double mass, double step_s) {
-  const double x = 2 * ratio * step_s * root(stiffness / mass), taken = x + x * x / 2;
-  return -speed * mass * (taken / (1 + taken));
-}
-
-// The mass that a push along the unit `direction` at `at` meets: of both, as they can move.
-double mass_along(const PileMember* a, const PileMember* b, World at, World direction) {
-  const double inverse = dot(direction, answer(a, at, direction)) + dot(direction, answer(b, at, direction));
-  return inverse > 0 ? 1 / inverse : 0;
+// What an implicit damper of this ratio to the critical one gives against a speed along a direction in which a unit impulse
+// answers with so much speed.
+double damper_impulse(double speed, double ratio, double stiffness, double answer_per_kg, double step_s) {
+  const double x = 2 * ratio * step_s * root(stiffness * answer_per_kg), taken = x + x * x / 2;
+  return -speed * taken / ((1 + taken) * answer_per_kg);
 }
 
 // How much of `more`, 0 to 1, may be added to `held` without going beyond `limit` in length.
@@ -56,19 +56,37 @@ double share_within(World held, World more, double limit) {
   return smaller(1, larger(0, (root(b * b - a * c) - b) / a));
 }
 
-// Of a touch that sticks and gives `along` as its damper's push: with the spring's it stays in the cone.
-World sideways_impulse(const Meeting& meeting, const PileMember& owner, const PileMember* other, const PileTouch& touch,
-                       double along) {
-  const World at = touch.god_object, n = touch.normal;
-  const World velocity = velocity_at(meeting, &owner, at) - velocity_at(meeting, other, at);
+// The two that a touch is between: `other` is null for the ground.
+struct Between {
+  PileMember *owner, *other;
+  World at;
+
+  // Gives an impulse along a unit direction, to the one and back to the other.
+  void give_both(const Lever& own, const Lever& others, World direction, double impulse_n_s) const {
+    give(owner, own, direction, impulse_n_s);
+    give(other, others, direction, -impulse_n_s);
+  }
+  [[nodiscard]] World velocity(const Meeting& meeting) const {
+    return velocity_at(meeting, owner, at) - velocity_at(meeting, other, at);
+  }
+};
+
+// Of a touch that sticks and whose damper gives `along` the normal: with the spring's push it stays in the cone.
+World damp_sideways(const Meeting& meeting, const Between& between, const PileTouch& touch, double along) {
+  const World n = touch.normal, velocity = between.velocity(meeting);
   const World across = velocity - n * dot(velocity, n);
   const double slide = norm(across), h = meeting.step_s;
-  const double mass = slide > 0 ? mass_along(&owner, other, at, across * (1 / slide)) : 0;
-  if (mass == 0) return {0, 0, 0};
+  if (!(slide > 0)) return {0, 0, 0};
+  const World direction = across * (1 / slide);
+  const Lever own = lever_at(between.owner, between.at, direction), others = lever_at(between.other, between.at, direction);
+  const double answer = own.answer_per_kg + others.answer_per_kg;
+  if (!(answer > 0)) return {0, 0, 0};
   const double ratio = kSideways * meeting.pile.config.damping_ratio;
-  const World wanted = across * (damper_impulse(slide, ratio, touch.stiffness_n_per_m, mass, h) / slide);
+  const double wanted = damper_impulse(slide, ratio, touch.stiffness_n_per_m, answer, h);
   const World held = (touch.force_n - n * touch.load_n) * h;
-  return wanted * share_within(held, wanted, touch.mu_static * (touch.load_n * h + along));
+  const double given = wanted * share_within(held, direction * wanted, touch.mu_static * (touch.load_n * h + along));
+  between.give_both(own, others, direction, given);
+  return direction * given;
 }
 
 }  // namespace
@@ -77,7 +95,7 @@ double looseness_at(const PileMember* a, const PileMember* b, World at) {
   double sum = 0;
   const World axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (const World& u : axes)
-    sum += dot(u, answer(a, at, u)) + dot(u, answer(b, at, u));
+    sum += lever_at(a, at, u).answer_per_kg + lever_at(b, at, u).answer_per_kg;
   return sum;
 }
 
@@ -86,22 +104,18 @@ void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch) {
   if (touch->is_pressing == 0 || touch->has_normal == 0 || !(touch->load_n >= 0)) return;
   PileMember* const other = touch->on == kGround ? nullptr : meeting.pile.members() + touch->on;
   const fdcg_pile_config& config = meeting.pile.config;
-  const World at = touch->god_object, n = touch->normal;
-  const double h = meeting.step_s, mass = mass_along(owner, other, at, n);
-  if (mass == 0) return;
-  const double speed = dot(velocity_at(meeting, owner, at) - velocity_at(meeting, other, at), n);
+  const Between between = {owner, other, touch->god_object};
+  const World n = touch->normal;
+  const Lever own = lever_at(owner, between.at, n), others = lever_at(other, between.at, n);
+  const double h = meeting.step_s, answer = own.answer_per_kg + others.answer_per_kg;
+  if (!(answer > 0)) return;
+  const double speed = dot(between.velocity(meeting), n);
   const double ratio = speed < 0 ? config.damping_ratio : config.leaving_ratio;
   // never a pull: at most all of the spring's push is held back
-  const double along = larger(damper_impulse(speed, ratio, touch->stiffness_n_per_m, mass, h), -touch->load_n * h);
+  const double along = larger(damper_impulse(speed, ratio, touch->stiffness_n_per_m, answer, h), -touch->load_n * h);
+  between.give_both(own, others, n, along);
   World impulse = n * along;
-  give(owner, at, impulse);
-  give(other, at, impulse * -1.0);
-  if (touch->contact.slipping == 0) {
-    const World sideways = sideways_impulse(meeting, *owner, other, *touch, along);
-    give(owner, at, sideways);
-    give(other, at, sideways * -1.0);
-    impulse = impulse + sideways;
-  }
+  if (touch->contact.slipping == 0) impulse = impulse + damp_sideways(meeting, between, *touch, along);
   touch->damper_n = impulse * (1 / h);
 }
 

@@ -26,7 +26,8 @@ struct PileTouch {
   uint32_t on;    // member, or kGround
   uint32_t is_pressing;
   uint32_t has_normal;
-  double stiffness_n_per_m;  // for as long as it presses
+  double stiffness_n_per_m;  // for as long as it presses; where faces have materials, as the step has it
+  double most_stiffness;     // that its body bears, of when it began to press
   double load_n;
   double mu_static;
   World god_object, normal;
@@ -105,19 +106,27 @@ struct Meeting {
   [[nodiscard]] Object& object(const PileMember& member) const { return scene.objects()[member.object.index]; }
 };
 
-// Points that cannot have met an object in this step, told by where they are now: its box in the world's measure, grown by as
-// far as the two can have moved against each other.
+// Points of a member that cannot have met an object in this step, told by where they are now: its box in the world's measure,
+// grown by as far as the two can have moved against each other.
 struct Cull {
-  const Pose* pose;
-  World centre, half;
+  World row[3], shift;  // from the points' frame to the box's centre and axes
+  World half;
 
-  [[nodiscard]] bool may_have_met(World point) const {
-    const World t = point - pose->translation;
-    const World off = pose->row[0] * t.x + pose->row[1] * t.y + pose->row[2] * t.z - centre;
-    return absolute(off.x) <= half.x && absolute(off.y) <= half.y && absolute(off.z) <= half.z;
+  // `at`: in its member's frame.
+  [[nodiscard]] bool may_have_met(World at) const {
+    return absolute(dot(row[0], at) + shift.x) <= half.x && absolute(dot(row[1], at) + shift.y) <= half.y &&
+           absolute(dot(row[2], at) + shift.z) <= half.z;
   }
 };
 Cull cull_of(const Meeting& meeting, const PileMember& owner, const PileMember& other);
+// The same for the ground, which does not move: whether a point may be below it.
+struct GroundCull {
+  World along;  // the ground's normal in the points' frame
+  double above_m;
+
+  [[nodiscard]] bool may_have_met(World at) const { return dot(along, at) <= above_m; }
+};
+GroundCull ground_cull_of(const Meeting& meeting, const PileMember& owner);
 
 // pile_near.cpp: which members could be touched by this member's points; a look at all where it must. Ascending, at most
 // PileMember::kMostNear; near_count is larger where the caller must ask every member.

@@ -11,6 +11,11 @@ namespace {
 constexpr double kNearShare = 0.25;
 constexpr double kRounding = 64 * DBL_EPSILON;
 
+// At least the largest coordinate of any number that a point's place is computed from.
+double size_of(const PileMember& member, const Pose& pose) {
+  return norm1(pose.centre) + 2 * norm1(pose.translation) + member.radius_m * pose.scale;
+}
+
 // A lower bound of a place's distance from an object.
 double distance(const Object& object, World at) {
   if (!object.bounds.is_endless) return norm(object.now.centre - at) - object.now.radius;
@@ -56,10 +61,27 @@ Cull cull_of(const Meeting& meeting, const PileMember& owner, const PileMember& 
   // beyond that far from it, the other's turn moves its frame by more; and where a size changes there is no bound
   if (moved > far || object.last.scale != scale || own.last.scale != own.now.scale) moved = HUGE_VAL;
   const bool is_endless = object.bounds.is_endless;
-  const double size = norm1(own.now.centre) + norm1(object.now.translation) + (is_endless ? 0 : object.now.radius);
-  const double grown = moved + kRounding * size;
-  if (is_endless) return {&object.now, {0, 0, 0}, {HUGE_VAL, HUGE_VAL, grown}};
-  return {&object.now, object.bounds.centre * scale, object.bounds.half * scale + World{grown, grown, grown}};
+  const double grown = moved + kRounding * (size_of(owner, own.now) + norm1(object.now.translation) +
+                                            (is_endless ? 0 : norm1(object.bounds.centre) * scale + object.now.radius));
+  const World centre = is_endless ? World{0, 0, 0} : object.bounds.centre * scale;
+  const World half = is_endless ? World{HUGE_VAL, HUGE_VAL, grown} : object.bounds.half * scale + World{grown, grown, grown};
+  const World apart = own.now.translation - object.now.translation;
+  const Matrix turn = {{object.now.row[0], object.now.row[1], object.now.row[2]}};  // its columns are the box's axes
+  Cull cull = {{}, turn.transposed_times(apart) - centre, half};
+  for (int k = 0; k < 3; ++k) {
+    const World axis = {component(turn.row[0], k), component(turn.row[1], k), component(turn.row[2], k)};
+    cull.row[k] = (own.now.row[0] * axis.x + own.now.row[1] * axis.y + own.now.row[2] * axis.z) * own.now.scale;
+  }
+  return cull;
+}
+
+GroundCull ground_cull_of(const Meeting& meeting, const PileMember& owner) {
+  const fdcg_pile& pile = meeting.pile;
+  const Pose& now = meeting.object(owner).now;
+  const World n = pile.ground_normal;
+  const World along = (now.row[0] * n.x + now.row[1] * n.y + now.row[2] * n.z) * now.scale;
+  const double rounding = kRounding * (size_of(owner, now) + absolute(pile.ground_offset_m));
+  return {along, pile.ground_offset_m - dot(n, now.translation) + rounding};
 }
 
 bool can_have_met(const Meeting& meeting, const Object& object, World from_world, World to_world, World* from, World* to) {

@@ -39,9 +39,9 @@ void find_bodies(fdcg_pile& pile, const fdcg_scene_body* bodies, uint32_t body_c
 
 // What the dampers need to know of a body that moves.
 void set_motion(const fdcg_body& body, PileMember* member) {
-  const Matrix rotation = rotation_of(body.rotation_xyzw), own = tensor_of(body.config.inertia_kg_m2);
+  const Matrix rotation = rotation_of(body.rotation_xyzw), own = inverse_of(tensor_of(body.config.inertia_kg_m2));
   for (int k = 0; k < 3; ++k)  // symmetrical: rows are columns
-    member->inverse_inertia.row[k] = rotation * solve(own, rotation.row[k]);
+    member->inverse_inertia.row[k] = rotation * (own * rotation.row[k]);
   member->lightness_per_kg = 1 / body.config.mass_kg;
   member->velocity_m_per_s = vec(body.velocity_m_per_s);
   member->spin_rad_per_s = member->inverse_inertia * vec(body.angular_momentum);
@@ -144,11 +144,12 @@ PointWay way_of(const Object& object, const PilePoint& point) {
 void meet_ground(const Meeting& meeting, PileMember* owner) {
   fdcg_pile& pile = meeting.pile;
   const Object& object = meeting.object(*owner);
+  const GroundCull cull = ground_cull_of(meeting, *owner);
   for (uint32_t p = 0; p < owner->point_count; ++p) {
     PilePoint& point = pile.points()[owner->first_point + p];
-    const World now = object.now.to_world(vec(point.at), true);
-    if (dot(pile.ground_normal, now) < pile.ground_offset_m && !has_touch(pile, point, kGround))
-      try_new_touch(meeting, owner, &point, way_of(object, point), kGround);
+    if (!cull.may_have_met(vec(point.at)) || has_touch(pile, point, kGround)) continue;
+    const PointWay way = way_of(object, point);
+    if (dot(pile.ground_normal, way.to) < pile.ground_offset_m) try_new_touch(meeting, owner, &point, way, kGround);
   }
 }
 
@@ -158,7 +159,7 @@ void meet_member(const Meeting& meeting, PileMember* owner, uint32_t on) {
   const Cull cull = cull_of(meeting, *owner, pile.members()[on]);
   for (uint32_t p = 0; p < owner->point_count; ++p) {
     PilePoint& point = pile.points()[owner->first_point + p];
-    if (cull.may_have_met(object.now.to_world(vec(point.at), true)) && !has_touch(pile, point, on))
+    if (cull.may_have_met(vec(point.at)) && !has_touch(pile, point, on))
       try_new_touch(meeting, owner, &point, way_of(object, point), on);
   }
 }

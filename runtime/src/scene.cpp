@@ -46,7 +46,9 @@ fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* co
                           {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
                           {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
                           {"config.disabled_skips", config->disabled_skips, 0, FDCG_SKIP_ALL},
-                          {"config.has_soft_fingers", config->has_soft_fingers, 0, 1}};
+                          {"config.has_soft_fingers", config->has_soft_fingers, 0, 1},
+                          {"config.has_deforms", config->has_deforms, 0, 1},
+                          {"config.reserved", config->reserved, 0, 0}};
   for (const Range& range : ranges) {
     if (range.value < range.low || range.value > range.high)
       return refuse(error, range.name, range.value, range.low, range.high);
@@ -66,7 +68,8 @@ uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
   scene->changing_at = layout.place(objects, sizeof(uint32_t));
   scene->fingers_at = layout.place(fingers, sizeof(Finger));
   scene->slots_at = layout.place(slots, sizeof(Slot));
-  scene->contacts_at = layout.place(slots, sizeof(fdcg_contact));
+  scene->contact_bytes = config.has_deforms != 0 ? sizeof(fdcg_deform_contact) : sizeof(fdcg_contact);
+  scene->contacts_at = layout.place(slots, scene->contact_bytes);
   scene->touches_at = layout.place(slots, sizeof(fdcg_touch));
   scene->soft_fingers_at = layout.place(config.has_soft_fingers != 0 ? fingers : 0, sizeof(SoftFinger));
   scene->soft_touches_at = layout.place(config.has_soft_fingers != 0 ? slots : 0, sizeof(SoftTouch));
@@ -156,8 +159,9 @@ fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params
       unused(scene->objects(), &scene->first_free_object, scene->config.object_capacity, "config.object_capacity", error);
   if (added == nullptr) return FDCG_E_ARGUMENT;
   added->graph = shape.graph;
-  added->step_surface = shape.step_surface;
-  added->surface_normal = shape.surface_normal;
+  added->step_shape = shape.step_shape;
+  added->shape_normal = shape.shape_normal;
+  added->deform = shape.deform;
   added->surface = shape.surface;
   added->bounds = shape.bounds;
   fdcg_params room;

@@ -4,10 +4,12 @@
 //   fdcg_scene | Object[objects] | the scan's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
 //   | fdcg_contact[fingers][touches] | fdcg_touch[fingers][touches] | SoftFinger[fingers] | SoftTouch[fingers][touches]
 //
-// Found by offsets from the start, so that a copy of the whole is a scene again.
+// Found by offsets from the start, so that a copy of the whole is a scene again. With config.has_deforms each contact stands in
+// an fdcg_deform_contact, as its first member.
 #pragma once
 
 #include "caller_memory.hpp"
+#include "fdcg/deform.h"
 #include "fdcg/surface.h"
 #include "pose.hpp"
 #include "soft_finger.hpp"
@@ -19,14 +21,17 @@ inline constexpr double kNoReach = -1e300;
 // The scan's arrays are looked at in runs of this many, a length that compilers make vectors of without being asked twice.
 inline constexpr uint32_t kRun = 16;
 
-// fdcg_surface_step and fdcg_surface_normal, by their addresses: who adds no surface does not link them.
-using SurfaceStep = void(const fdcg_surface*, const fdcg_params*, fdcg_contact*, const double[3], fdcg_result*);
-using SurfaceNormal = void(const fdcg_surface*, const fdcg_result*, double[3]);
+// What is no plain graph steps by an address, and so does its normal: who adds no surface does not link surfaces, and likewise
+// deformable meshes.
+struct Object;
+using ShapeStep = void(const Object&, const fdcg_params*, fdcg_contact*, const double hip_object_m[3], fdcg_result*);
+using ShapeNormal = void(const Object&, const fdcg_result*, double normal[3]);
 
 struct Object {
-  const fdcg_graph* graph;    // null: it is the surface
-  SurfaceStep* step_surface;  // null: it is the graph, and so is the next
-  SurfaceNormal* surface_normal;
+  const fdcg_graph* graph;    // null: it is the surface. Of a deformable mesh its own: current where a step has just looked
+  ShapeStep* step_shape;      // null: it is the graph as it is
+  ShapeNormal* shape_normal;  // null: a graph's
+  fdcg_deform* deform;        // null: it is none
   fdcg_surface surface;
   fdcg_params params;
   Bounds bounds;
@@ -77,7 +82,7 @@ struct fdcg_scene {
   uint32_t changing_count;
   uint32_t tick;
   uint32_t look;  // changes when objects come, go or change their size: then every finger looks anew
-  uint32_t reserved;
+  uint32_t contact_bytes;
   fdcg::SoftStep* step_soft;  // null: no finger ever was soft
   uint64_t soft_fingers_at, soft_touches_at;
   double tick_travel;  // the largest move of any object in this tick
@@ -97,8 +102,9 @@ struct fdcg_scene {
   fdcg::Slot* slots(uint32_t finger) {
     return fdcg::part_at<fdcg::Slot>(this, slots_at) + finger * uint64_t{config.touches_per_finger};
   }
-  fdcg_contact* contacts(uint32_t finger) {
-    return fdcg::part_at<fdcg_contact>(this, contacts_at) + finger * uint64_t{config.touches_per_finger};
+  // A slot's is contact_bytes behind that of the slot before it.
+  fdcg_contact* first_contact(uint32_t finger) {
+    return fdcg::part_at<fdcg_contact>(this, contacts_at + finger * config.touches_per_finger * uint64_t{contact_bytes});
   }
   fdcg_touch* touches(uint32_t finger) {
     return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
@@ -123,7 +129,24 @@ namespace fdcg {
 // the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 
-// scene.cpp: adds an object that is like `shape` in graph, surface and bounds.
+// Steps an object's contact to a place in its frame.
+inline void step_object(const Object& object, const fdcg_params* params, fdcg_contact* contact, World at, fdcg_result* result) {
+  const double local[3] = {at.x, at.y, at.z};
+  if (object.step_shape != nullptr) return object.step_shape(object, params, contact, local, result);
+  fdcg_step(object.graph, params, contact, local, result);
+}
+
+// Of an object where a step has just touched it; object's frame, unit. Zero where it has none: on a graph's edges and corners.
+inline World object_normal(const Object& object, const fdcg_result& result) {
+  if (object.shape_normal != nullptr) {
+    double normal[3];
+    object.shape_normal(object, &result, normal);
+    return vec(normal);
+  }
+  return result.state == FDCG_FACE ? vec(fdcg_get_node(object.graph, result.feature).normal) : World{0, 0, 0};
+}
+
+// scene.cpp: adds an object that is like `shape` in graph, surface or deformable mesh, and bounds.
 fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
                        fdcg_object_id* object, fdcg_error* error);
 

@@ -4,8 +4,7 @@
 //   out of reach     the finger's own way since its last look and the objects' largest since then have not used up the distance
 //                    that it saw: nothing to do
 //   look             the distance to every object; the near ones get the finger's free slots
-//   near             sphere and box say that the tick's way may have met it: fdcg_step or fdcg_surface_step, in the object's
-//                    frame
+//   near             sphere and box say that the tick's way may have met it: fdcg_step or its like, in the object's frame
 //   touched          fdcg_step
 //
 // Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
@@ -54,7 +53,7 @@ void settle_endless(fdcg_scene& scene, uint32_t index) {
 fdcg_params params_met(const Object& object, const Finger& finger) {
   fdcg_params params = object.params;
   constexpr uint32_t kMixedInTheStep = FDCG_TERM_MATERIALS | FDCG_TERM_FINGER;
-  if (finger.has_material != 0 && object.step_surface == nullptr && (params.terms & kMixedInTheStep) != 0) {
+  if (finger.has_material != 0 && object.graph != nullptr && (params.terms & kMixedInTheStep) != 0) {
     params.finger = finger.material;
     params.terms |= FDCG_TERM_FINGER;
   } else if (finger.has_material != 0) {
@@ -104,16 +103,28 @@ void store(World from, double (&to)[3]) {
 }
 
 void step_contact(const Object& object, const Finger& finger, fdcg_contact* contact, World at, fdcg_result* result) {
-  double local[3];
-  store(at, local);
   fdcg_params room;
   const fdcg_params* params = &object.params;
   if ((finger.has_material | params->terms) != 0) {
     room = params_met(object, finger);
     params = &room;
   }
-  if (object.step_surface != nullptr) return object.step_surface(&object.surface, params, contact, local, result);
-  fdcg_step(object.graph, params, contact, local, result);
+  step_object(object, params, contact, at, result);
+}
+
+// Whether the contact with an object near by is to be made anew at the beginning of the tick's way. One with a deformable mesh
+// also knows of the mesh's motion since its last step: it stays as long as every step of the finger has stepped it.
+bool is_renewed(const Tick& tick, const Object& object, const Slot& slot, bool missed) {
+  if (slot.step != tick.finger.step) return true;
+  return object.deform == nullptr && (missed || !tick.scene.skips(FDCG_SKIP_RENEWAL));
+}
+
+void renew(const Object& object, fdcg_contact* contact) {
+  if (object.deform != nullptr) {
+    *reinterpret_cast<fdcg_deform_contact*>(contact) = {};
+  } else {
+    *contact = {};
+  }
 }
 
 // The slot's contact in this tick. Returns whether there is anything to feel or to carry over.
@@ -125,8 +136,8 @@ bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed,
     way.to = object.now.to_object(tick.hip, scene.skips(FDCG_SKIP_ROTATION));
   } else {
     if (!can_have_met(tick, object, &way)) return false;
-    if (slot.step != tick.finger.step || missed || !scene.skips(FDCG_SKIP_RENEWAL)) {
-      *contact = {};
+    if (is_renewed(tick, object, slot, missed)) {
+      renew(object, contact);
       step_contact(object, tick.finger, contact, way.from, result);
     }
   }
@@ -174,13 +185,14 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
   Finger& finger = tick.finger;
   if (++finger.idle_steps >= kIdleSteps + (own_bits(scene, finger) & (kIdleSteps - 1))) finger.limit = -HUGE_VAL;
   const auto index = static_cast<uint32_t>(&finger - scene.fingers());
-  fdcg_contact* const contacts = scene.contacts(index);
+  fdcg_contact* contact = scene.first_contact(index);
   fdcg_touch* const touches = scene.touches(index);
   constexpr uint32_t kCarriedOver = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;
-  for (uint32_t s = 0; s < scene.config.touches_per_finger; ++s) {
+  for (uint32_t s = 0; s < scene.config.touches_per_finger;
+       ++s, contact = part_at<fdcg_contact>(contact, scene.contact_bytes)) {
     Slot& slot = tick.slots[s];
     fdcg_result result;
-    if (slot.object == FDCG_NONE || !step_slot(tick, slot, contacts + s, missed, &result)) continue;
+    if (slot.object == FDCG_NONE || !step_slot(tick, slot, contact, missed, &result)) continue;
     if (!is_felt) store({0, 0, 0}, result.force_n);
     if ((result.flags & kCarriedOver) != 0) finger.flags |= FDCG_FINGER_BOUNDED;
     uint32_t place = finger.touch_count++;

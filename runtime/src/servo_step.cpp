@@ -312,7 +312,7 @@ template <class Real>
 [[gnu::noinline, gnu::cold]] void step_with_terms(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
                                                   fdcg_contact* contact, fdcg_result* result) {
   const GraphView<Real> graph(raw);
-  FrictionTerms terms = terms_of(params, raw, *contact);
+  FrictionTerms terms = terms_of(params, &raw, *contact);
   Friction<Real> friction = friction_of<Real>(params, *contact);
   friction.terms = &terms;
   walk_to_hip<Real>({graph,

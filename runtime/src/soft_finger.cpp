@@ -5,7 +5,6 @@
 #include "fdcg/soft_finger.h"
 
 #include "message.hpp"
-#include "scene_memory.hpp"
 #include "scene_tick.hpp"
 
 namespace fdcg {
@@ -58,13 +57,9 @@ Turn reference_for(const Turn& now, World normal, double tangent) {
   return unit(product(about(normal, -tangent), now));
 }
 
+// Where the object says none, the spring's direction.
 World normal_at(const Object& object, const fdcg_result& result, World gap) {
-  if (object.surface_normal != nullptr) {
-    double normal[3];
-    object.surface_normal(&object.surface, &result, normal);
-    return vec(normal);
-  }
-  if (result.state == FDCG_FACE) return vec(fdcg_get_node(object.graph, result.feature).normal);
+  if (object.shape_normal != nullptr || result.state == FDCG_FACE) return object_normal(object, result);
   const double length = norm(gap);
   return length > 0 ? gap * (1 / length) : World{0, 0, 0};
 }
@@ -103,12 +98,6 @@ void share_friction(const Stretch& stretch, double share, bool is_slipping, fdcg
     mu = across * kNoSlip;
   }
   if (mu <= kMostMu) params->mu_static = params->mu_dynamic = mu;
-}
-
-void step_contact(const Object& object, const fdcg_params& params, World hip, fdcg_contact* contact, fdcg_result* result) {
-  const double local[3] = {hip.x, hip.y, hip.z};
-  if (object.step_surface != nullptr) return object.step_surface(&object.surface, &params, contact, local, result);
-  fdcg_step(object.graph, &params, contact, local, result);
 }
 
 // The torque of what is left of the twist when the step is over: never beyond what the tangential force leaves of the limit.
@@ -152,7 +141,7 @@ void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_obj
       }
     }
   }
-  step_contact(object, params, hip, contact, result);
+  step_object(object, &params, contact, hip, result);
   touch.torque_n_m = {0, 0, 0};
   touch.is_on = result->state != FDCG_FREE && finger.radius_m > 0 ? 1 : 0;
   if (touch.is_on == 0) return;

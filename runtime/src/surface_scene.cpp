@@ -9,6 +9,14 @@
 namespace fdcg {
 namespace {
 
+void step_surface(const Object& object, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
+                  fdcg_result* result) {
+  fdcg_surface_step(&object.surface, params, contact, hip_object_m, result);
+}
+void surface_normal(const Object& object, const fdcg_result* result, double normal[3]) {
+  fdcg_surface_normal(&object.surface, result, normal);
+}
+
 Bounds bounds_of(const fdcg_surface& s) {
   const double wide = s.radius_m > s.top_radius_m ? s.radius_m : s.top_radius_m;
   switch (s.kind) {
@@ -37,8 +45,8 @@ extern "C" fdcg_status fdcg_scene_add_surface(fdcg_scene* scene, const fdcg_surf
   fdcg::Object shape = {};
   fdcg_surface room;
   shape.surface = fdcg::in_full(*surface, &room, fdcg_init_surface);
-  shape.step_surface = fdcg_surface_step;
-  shape.surface_normal = fdcg_surface_normal;
+  shape.step_shape = fdcg::step_surface;
+  shape.shape_normal = fdcg::surface_normal;
   shape.bounds = fdcg::bounds_of(shape.surface);
   return fdcg::add_object(scene, shape, params, pose, object, error);
 }

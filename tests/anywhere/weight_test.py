@@ -9,7 +9,7 @@ import unittest
 
 from anywhere import ROOT, RUNTIME, AnywhereCase, qemu
 
-SUPPORT = {"body", "body_scene", "body_step", "deform", "deform_boxes", "deform_move", "deform_step", "deform_upkeep",
+SUPPORT = {"body", "body_scene", "body_step", "deform", "deform_boxes", "deform_move", "deform_scene", "deform_step", "deform_upkeep",
            "hooks", "map_file_none", "map_file_posix", "mass", "materials", "message", "params", "pile", "pile_damp", "pile_near", "pile_points",
            "pile_step", "pile_touch", "records", "soft_finger", "surface", "surface_scene", "surface_step",
            "verify", "version"}

@@ -16,7 +16,7 @@ using namespace fdcg::test;
 namespace {
 
 constexpr int kTicks = 4000, kWarmUp = 1500;
-constexpr double kBar_ns = 5000;
+constexpr double kBar_ns = 5000, kStiffness = 2000;  // N/m
 
 struct Row {
   const char* name;
@@ -39,7 +39,7 @@ class Table {
   explicit Table(const Row& row) : rig_(config(row)), row_(row) {
     fdcg_body_config like = fdcg_default_body_config();
     if (!row.sleeps) like.sleep_after_s = 0;
-    const fdcg_params params = friction(0.8, 0.7, 2000);
+    const fdcg_params params = friction(0.8, 0.7, kStiffness);
     const auto ball = rig_.shape(scaled(ico_sphere(3), 0.03)), box = rig_.box(0.06, 0.06, 0.04);
     rig_.ground({0, 0, 1}, 0, params);
     fdcg_body_config damped = like;
@@ -63,6 +63,21 @@ class Table {
   }
   void tick() { rig_.tick(row_.substeps); }
   [[nodiscard]] PileRig& rig() { return rig_; }
+  // What fdcg_body_substeps says of a body that three fingers press from within its reach, or two and the springs of its
+  // touches.
+  [[nodiscard]] std::uint32_t substeps_asked() {
+    std::uint32_t most = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double reach_m = i == 0 ? 0.03 : 0.047, fingers_n_per_m = i == 0 ? 3 * kStiffness : i == 1 ? 2 * kStiffness : 0;
+      double springs = fingers_n_per_m;
+      for (const fdcg_pile_touch& touch : rig_.touches()) {
+        if (touch.object.index == rig_.object(i).index || touch.on.index == rig_.object(i).index)
+          springs += touch.stiffness_n_per_m;
+      }
+      most = std::max(most, fdcg_body_substeps(&rig_.body(i), springs, reach_m, 1e-3));
+    }
+    return most;
+  }
   [[nodiscard]] int finger_touches() {
     int count = 0;
     for (const fdcg_finger_id finger : fingers_)
@@ -146,6 +161,8 @@ int main(int argc, char** argv) {
     }
   }
   const Stopwatch watch;
+  Table asked{Row{"moving"}};
+  asked.rig().ticks(kWarmUp);
   const Row rows[] = {{"moving"},
                       {"moving, 4 substeps", false, true, 0, 0, 4},
                       {"moving, each asks all", false, true, FDCG_PILE_SKIP_FAR},
@@ -154,7 +171,10 @@ int main(int argc, char** argv) {
                       {"held still, asleep", true},
                       {"held still, asleep, stepped", true, true, FDCG_PILE_SKIP_STILL},
                       {"held still, awake", true, false}};
-  std::printf("Five fingers, three bodies, ground: ns a tick (each tick's least of %d; bar %.0f).\n", replays, kBar_ns);
+  std::printf(
+      "Five fingers, three bodies, ground: ns a tick (each tick's least of %d; bar %.0f). Springs of %.0f N/m ask for %u "
+      "substep(s).\n",
+      replays, kBar_ns, kStiffness, asked.substeps_asked());
   std::printf("%-28s %9s %9s %9s %8s %8s %7s %s\n", "", "median", "99 %", "largest", "touches", "fingers'", "asleep", "motion");
   bool holds = true;
   std::uint64_t moving = 0, still = 0;

@@ -6,6 +6,7 @@ import numpy
 from cvxopt import matrix, solvers
 
 TOLERANCES = (1e-10, 1e-9, 1e-8, 1e-7)  # the first that its arithmetic stands
+STEP_TOLERANCES = (1e-8, 1e-7)  # of a step of a descent, whose value is computed from where it ends
 
 
 def frame(normal):
@@ -34,12 +35,12 @@ def wrench_maps(report):
     return maps
 
 
-def solve(cost, cones, rows=None, equals=None):
+def solve(cost, cones, rows=None, equals=None, tolerances=TOLERANCES):
     """Minimises cost.x with |(M x)[1:] + d[1:]| <= (M x)[0] + d[0] for each (M, d) of cones and rows x = equals."""
     arguments = {"Gq": [matrix(-m) for m, _ in cones], "hq": [matrix(numpy.asarray(d, float)) for _, d in cones]}
     if rows is not None:
         arguments.update(A=matrix(rows), b=matrix(numpy.asarray(equals, float)))
-    for tolerance in TOLERANCES:
+    for tolerance in tolerances:
         solvers.options.update(show_progress=False, abstol=tolerance, reltol=tolerance, feastol=tolerance)
         try:
             done = solvers.socp(matrix(numpy.asarray(cost, float)), **arguments)
@@ -93,19 +94,16 @@ def descend(maps, direction, steps=200):
     """Down to a local minimum of the support over unit directions: the point of {u: support <= 1} farthest along the last one."""
     value = support(maps, direction)
     for _ in range(steps):
-        x = solve(-direction, [(numpy.vstack((-m[:, 0], m[:, 1:].T)), numpy.eye(m.shape[1])[0]) for m in maps])
+        x = solve(-direction, [(numpy.vstack((-m[:, 0], m[:, 1:].T)), numpy.eye(m.shape[1])[0]) for m in maps],
+                  tolerances=STEP_TOLERANCES)
         if x is None:
             break
         following = x / numpy.linalg.norm(x)
         lower = support(maps, following)
-        if lower > value - 1e-10:
+        if lower > value - 1e-9:
             break
         direction, value = following, lower
     return value, direction
-
-
-def epsilon(maps, starts):
-    return min(descend(maps, start / numpy.linalg.norm(start))[0] for start in starts)
 
 
 def load_factor(maps, load, caps, total):

@@ -179,7 +179,10 @@ TEST_CASE("a soft sheet dents under a finger, holds its god-object, and comes ba
     } else {
       // it rides on the sheet, which has given way: well below where the sheet was
       REQUIRE(tick.output->wanted_force_n[2] > -0.1);  // a steep side of the dent may pull it down a little
-      held_z_m = std::min(held_z_m, sheet.touch(0).god_object_m[2]);
+      fdcg_finger_result finger{};
+      REQUIRE(fdcg_scene_result(tick.state->setup.scene, tick.state->setup.fingers[0], &finger, nullptr) == FDCG_OK);
+      REQUIRE(finger.touch_count == 1);
+      held_z_m = std::min(held_z_m, finger.touches[0].god_object_m[2]);
     }
     deepest_m = std::max(deepest_m, sheet.deepest_m());
     most_n = std::max(most_n, force_n);

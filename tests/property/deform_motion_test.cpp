@@ -100,8 +100,8 @@ class Sheet {
     }
   }
 
-  // The surface's height at a place, but for rounding.
-  [[nodiscard]] double height_at(double x, double y) const {
+  // The surface's height at a place, but for rounding; on request the cosine of its slope.
+  [[nodiscard]] double height_at(double x, double y, double* cosine = nullptr) const {
     double best = -1, height = 0;
     const auto& points = mesh.points();
     for (const std::size_t f : near_triangles(cell(x), cell(y))) {
@@ -114,8 +114,18 @@ class Sheet {
       if (inside <= best) continue;
       best = inside;
       height = a.z + u * (b.z - a.z) + v * (c.z - a.z);
+      if (cosine == nullptr) continue;
+      const double rise_x = ((b.z - a.z) * (c.y - a.y) - (c.z - a.z) * (b.y - a.y)) / area;
+      const double rise_y = ((c.z - a.z) * (b.x - a.x) - (b.z - a.z) * (c.x - a.x)) / area;
+      *cosine = 1 / std::sqrt(1 + rise_x * rise_x + rise_y * rise_y);
     }
     return height;
+  }
+  // How far a place is off the surface's triangle above or below it.
+  [[nodiscard]] double off_surface(const double (&place)[3]) const {
+    double cosine = 1;
+    const double height = height_at(place[0], place[1], &cosine);
+    return std::fabs(place[2] - height) * cosine;
   }
 
  private:
@@ -173,6 +183,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
   Hip hip = {0.013, 0.021, 0.3};
   std::uint64_t caught = 0, touched = 0, freed = 0, bound = 0, longest_bound = 0;
   std::uint32_t last_state = FDCG_FREE;
+  double most_off = 0;
   for (std::uint64_t i = 0; i < steps; ++i) {
     const bool is_still = random.chance(0.3);
     const std::uint32_t moves = random.chance(0.1) ? random.below(moving + 1) : moving;
@@ -202,8 +213,9 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     if (result.state != FDCG_FREE) {
       // compared with the planes that were looked at; those of the whole are computed now and then below
       REQUIRE(std::isfinite(result.god_object_m[2]));
-      const double off = result.god_object_m[2] - sheet.height_at(result.god_object_m[0], result.god_object_m[1]);
-      REQUIRE(std::fabs(off) <= 64 * kEpsilon * extent);
+      const double off = sheet.off_surface(result.god_object_m);
+      most_off = std::max(most_off, off);
+      REQUIRE(off <= 16 * kEpsilon * extent);
     }
     bound = (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 ? bound + 1 : 0;  // ticks in a row
     longest_bound = std::max(longest_bound, bound);
@@ -219,12 +231,13 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
   }
   std::ostringstream said;
   said << caught << " caught, " << touched << " in touch, " << freed << " freed, " << longest_bound << " bound in a row, of "
-       << steps;
+       << steps << "; most off the surface " << most_off / (kEpsilon * extent) << " epsilons of the extent";
   INFO(said.str());
   CHECK(caught > steps / 5000);
   CHECK(touched > steps / 10);
   CHECK(freed > steps / 500);
   CHECK(longest_bound < 100);
+  if (steps > 1000000) WARN(said.str());
 }
 
 TEST_CASE("triangles squeezed to lines and points let nothing through, and come back") {

@@ -156,6 +156,17 @@ auto ReferenceWalker<Real>::sweep(const Point& from, const Point& to) -> std::op
   return first;
 }
 
+// How far a point lies beside a face, or 0 where it lies over it.
+template <class Real>
+Real ReferenceWalker<Real>::beside(std::uint32_t f, const Point& point) const {
+  Real by = 0;
+  for (const std::uint32_t c : surface_.faces[f].connections) {
+    const Edge& edge = surface_.edges[c];
+    by = std::max<Real>(by, edge.voronoi[edge.face[0] == f ? 0 : 1].side(point));
+  }
+  return by;
+}
+
 // The segment's entry into one face from its front, its border included.
 template <class Real>
 auto ReferenceWalker<Real>::meet(std::uint32_t f, const Point& from, const Point& to) -> std::optional<Hit> {
@@ -171,6 +182,10 @@ auto ReferenceWalker<Real>::meet(std::uint32_t f, const Point& from, const Point
   require(side_from >= 0, side_from);
   require(side_to < 0, side_to);
   if (missed_by > surface_.extent * 1e-4) return std::nullopt;  // neither met nor nearly so
+  if (side_from < side_to) {  // along the face or out of it: its line would pass the sides the other way round
+    note(std::max<Real>(missed_by, beside(f, from)));
+    return std::nullopt;
+  }
   const Point along = to - from;
   const Real along_length = length(along);
   const std::size_t n = face.corners.size();

@@ -82,6 +82,7 @@ class ReferenceWalker {
   void place_on_edge(std::uint32_t connection, const Real& along);
   Real edge_load(const Edge& edge, const Point& from_line, Real& load_error, bool& is_fold) const;
   std::optional<Hit> sweep(const Point& from, const Point& to);
+  Real beside(std::uint32_t face, const Point& point) const;
   std::optional<Hit> meet(std::uint32_t face, const Point& from, const Point& to);
   Hit located(const Face& face, std::uint32_t f, const Real& side_from, const Real& side_to, const Point& from,
               const Point& to);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "compiled.hpp"
 #include "fdcg/body.h"
@@ -47,10 +48,13 @@ class Grip {
     rig_.step();  // closed while the cube is held still
   }
 
-  // Both fingers, from where they closed.
-  void move(const Place& by) {
-    for (int i = 0; i < 2; ++i)
-      rig_.move(finger_[i], {sign(i) * (kSide / 2 - deep_) + by[0], by[1] + kAbove * up_[1], by[2] + kAbove * up_[2]});
+  // Both fingers, from where they closed; turned about y, then moved.
+  void move(const Place& by, double turn_rad = 0) {
+    const double c = std::cos(turn_rad), s = std::sin(turn_rad);
+    for (int i = 0; i < 2; ++i) {
+      const double x = sign(i) * (kSide / 2 - deep_), y = kAbove * up_[1], z = kAbove * up_[2];
+      rig_.move(finger_[i], {x * c + z * s + by[0], y + by[1], z * c - x * s + by[2]});
+    }
   }
   void tick(std::uint32_t substeps = 1) {
     fdcg_error error;
@@ -118,6 +122,31 @@ TEST_CASE("two fingers hold a cube under gravity for 10^6 ticks, and it does not
     grip.tick();
     worst = std::max(worst, distance(grip.corner(), start));
   }
+  WARN("moved by at most " << worst << " m");
+  CHECK(worst < 1e-9);
+}
+
+TEST_CASE("a cube in a gripper that swings and turns for 10^6 ticks is in the same place of it in every period") {
+  Grip grip(0.6, 0.001);
+  grip.settle();
+  constexpr int kPeriod = 1000, kPeriods = 1000, kFirst = 5;  // until it swings alike
+  std::vector<Place> places;
+  double worst = 0, farthest = 0;
+  for (int tick = 0; tick < kPeriod * kPeriods; ++tick) {
+    const int phase = tick % kPeriod;
+    const double t = 2 * M_PI * phase / kPeriod, begin = std::min(1.0, 1e-3 * tick);  // from rest
+    grip.move({0.02 * begin * std::sin(2 * t), 0.01 * begin * std::sin(t), 0.015 * begin * std::sin(3 * t)},
+              0.4 * begin * std::sin(t));
+    grip.tick();
+    if (phase % 50 != 0) continue;
+    const std::size_t sample = static_cast<std::size_t>(phase / 50);
+    if (tick < kPeriod * kFirst) continue;
+    if (places.size() == sample) places.push_back(grip.corner());
+    worst = std::max(worst, distance(grip.corner(), places[sample]));
+    farthest = std::max(farthest, distance(grip.corner(), places[0]));
+  }
+  WARN("moved by at most " << worst << " m, swung by " << farthest << " m");
+  CHECK(farthest > 0.02);
   CHECK(worst < 1e-9);
 }
 
@@ -135,6 +164,7 @@ TEST_CASE("a cube swung about by its fingers for 10^6 ticks comes back to where 
   CHECK(farthest > 0.002);  // it was swung
   grip.move({0, 0, 0});
   grip.settle();
+  WARN("came back to " << distance(grip.corner(), start) << " m");
   CHECK(distance(grip.corner(), start) < 1e-9);
 }
 

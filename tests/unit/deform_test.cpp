@@ -109,6 +109,32 @@ TEST_CASE("a vertex is not moved to what is no place, and stays where it was") {
   CHECK(place[2] == 0.5);
 }
 
+TEST_CASE("many moves in one call are those of as many calls, up to the first that is refused") {
+  const bake::PolygonSoup rest = plane_grid(20, 20);
+  DeformableMesh sheet(rest, triangle_options(), 0.5), other(rest, triangle_options(), 0.5);
+  std::vector<std::uint32_t> corners;
+  std::vector<double> places;
+  for (std::size_t i = 0; i < 2 * rest.points.size(); ++i) {  // each twice
+    const std::size_t v = 7 * i % rest.points.size();
+    const bake::Vec3 to = {rest.points[v].x, rest.points[v].y, 0.001 * static_cast<double>(i % 97)};
+    corners.push_back(sheet.corner_of(v));
+    places.insert(places.end(), {to.x, to.y, to.z});
+    if (i < 500) other.move(v, to);
+  }
+  places[3 * 500 + 1] = kNan;
+  fdcg_error error;
+  CHECK(fdcg_deform_move_corners(sheet.deform(), corners.data(), places.data(), corners.size(), &error) == FDCG_E_ARGUMENT);
+  CHECK(says(error, "move 500: corner "));
+  CHECK(bytes_of(sheet.updated()) == bytes_of(other.updated()));
+  corners[0] = 441;
+  CHECK(fdcg_deform_move_corners(sheet.deform(), corners.data(), places.data(), 3, &error) == FDCG_E_ARGUMENT);
+  CHECK(says(error, "move 0: corner is 441, the mesh has 441"));
+  CHECK(fdcg_deform_move_corners(sheet.deform(), corners.data(), nullptr, 3, &error) == FDCG_E_ARGUMENT);
+  CHECK(fdcg_deform_move_corners(sheet.deform(), nullptr, places.data(), 3, &error) == FDCG_E_ARGUMENT);
+  CHECK(fdcg_deform_move_corners(sheet.deform(), nullptr, nullptr, 0, &error) == FDCG_OK);
+  CHECK(bytes_of(sheet.updated()) == bytes_of(other.updated()));
+}
+
 TEST_CASE("a sheet that rises over a still finger lifts it, and lets it go where it sinks again") {
   const bake::PolygonSoup rest = plane_grid(8, 8);
   for (const double x : {0.013, 0.125}) {  // over a face, over the line between two

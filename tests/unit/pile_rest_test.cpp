@@ -148,6 +148,7 @@ TEST_CASE("a block that was pushed, slid and was let go is not dragged back by m
       farthest = std::max(farthest, ramp.x());
       back = std::max(back, farthest - ramp.x());
     }
+    WARN("dragged back by " << back / (mu * depth) << " of mu_d times the depth");
     CAPTURE(mu, farthest - from, back, depth);
     CHECK(farthest - from > 0.05);
     CHECK(back <= mu * depth * (1 + 1e-3));

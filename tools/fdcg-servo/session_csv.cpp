@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "rotation.hpp"
+
 namespace fdcg::servo {
 namespace {
 
@@ -26,36 +28,26 @@ void append(std::string& line, const double (&values)[3]) {
     append(line, value);
 }
 
-// One touch of a contact: of the scene, or of a soft object. Null: none.
 struct Touch {
-  const fdcg_touch* of_scene = nullptr;
-  const dev::SoftTouch* of_soft = nullptr;
-  int contact = 0, soft = 0;
-  const double* force_n() const { return of_scene != nullptr ? of_scene->force_n : of_soft->force_n; }
-  const double (&god_object_m() const)[3] { return of_scene != nullptr ? of_scene->god_object_m : of_soft->god_object_m; }
-  std::uint32_t state() const { return of_scene != nullptr ? of_scene->state : of_soft->state; }
+  const fdcg_touch* touch;
+  int contact;
 };
 
-// Contact by contact, the scene's before the soft objects'.
+// Contact by contact.
 std::vector<Touch> touches_of(const dev::DeviceSetup& setup) {
   std::vector<Touch> touches;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result finger{};
     const bool is_there = fdcg_scene_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK;
     for (std::uint32_t i = 0; is_there && i < finger.touch_count; ++i)
-      if (finger.touches[i].state != FDCG_FREE) touches.push_back({finger.touches + i, nullptr, contact, 0});
-    for (int soft = 0; soft < setup.soft_count; ++soft) {
-      const dev::SoftTouch& touch = setup.soft[soft]->touch(contact);
-      if (touch.state != FDCG_FREE) touches.push_back({nullptr, &touch, contact, soft});
-    }
+      if (finger.touches[i].state != FDCG_FREE) touches.push_back({finger.touches + i, contact});
   }
   return touches;
 }
 
-std::string state_columns(const Touch& touch) {
-  const std::uint32_t feature = touch.of_scene != nullptr ? touch.of_scene->feature : touch.of_soft->feature;
-  const std::uint32_t slipping = touch.of_scene != nullptr ? touch.of_scene->slipping : touch.of_soft->slipping;
-  return std::string(kStates[touch.state() & 3]) + "," + std::to_string(feature) + "," + std::to_string(slipping) + ",";
+std::string state_columns(const fdcg_touch& touch) {
+  return std::string(kStates[touch.state & 3]) + "," + std::to_string(touch.feature) + "," + std::to_string(touch.slipping) +
+         ",";
 }
 
 std::string column_name(std::string name) {
@@ -70,13 +62,6 @@ struct Load {
   bool is_known = false;
   double along_n = 0, across_n = 0, margin = 0;
 };
-
-void turn(const double q[4], const double from[3], double to[3]) {
-  const double c[3] = {q[1] * from[2] - q[2] * from[1], q[2] * from[0] - q[0] * from[2], q[0] * from[1] - q[1] * from[0]};
-  to[0] = from[0] + 2 * (q[3] * c[0] + q[1] * c[2] - q[2] * c[1]);
-  to[1] = from[1] + 2 * (q[3] * c[1] + q[2] * c[0] - q[0] * c[2]);
-  to[2] = from[2] + 2 * (q[3] * c[2] + q[0] * c[1] - q[1] * c[0]);
-}
 
 // Where an object was in that tick.
 const fdcg_pose& tick_pose(const dev::HostConfig& config, const dev::ReplayedTick& tick, std::size_t object) {
@@ -109,9 +94,9 @@ Load load_of(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, co
   double normal[3];
   if (of.is_surface && of.surface.kind == FDCG_SURFACE_SPHERE) {
     normal_of_ball(of, tick_pose(replay.config(), tick, object), touch.god_object_m, normal);
-  } else if (!of.is_surface && touch.state == FDCG_FACE) {
-    turn(tick_pose(replay.config(), tick, object).rotation_xyzw, fdcg_get_node(&replay.graph(object), touch.feature).normal,
-         normal);
+  } else if (!of.is_surface && of.motion.kind != dev::MotionKind::kSoft && touch.state == FDCG_FACE) {
+    dev::turn(tick_pose(replay.config(), tick, object).rotation_xyzw,
+              fdcg_get_node(&replay.graph(object), touch.feature).normal, normal);
   } else {
     return load;
   }
@@ -148,7 +133,7 @@ std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_n
   const dev::LoggedOutput& output = *tick.output;
   const std::vector<Touch> touches = touches_of(tick.state->setup);
   const auto square = [](const Touch& touch) {
-    const double* const f = touch.force_n();
+    const double* const f = touch.touch->force_n;
     return f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   };
   const auto best =
@@ -157,10 +142,10 @@ std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_n
   std::string line;
   append(line, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
   append(line, output.hip_world_m);
-  append(line, is_free ? output.hip_world_m : best->god_object_m());
+  append(line, is_free ? output.hip_world_m : best->touch->god_object_m);
   append(line, output.wanted_force_n);
-  line += is_free ? "free,-1,0," : state_columns(*best);
-  line += std::to_string(is_free || best->of_scene == nullptr ? 0 : best->of_scene->transitions) + ",";
+  line += is_free ? "free,-1,0," : state_columns(*best->touch);
+  line += std::to_string(is_free ? 0 : best->touch->transitions) + ",";
   line += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + kPhases[output.phase & 3] + "," +
           dev::fault_name(static_cast<dev::Fault>(output.fault)) + ",";
   append(line, output.force_n);
@@ -181,21 +166,15 @@ std::string touches_csv_header() {
 
 std::string touches_csv_rows(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, std::uint64_t first_ns) {
   const dev::HostConfig& config = replay.config();
-  std::vector<std::size_t> soft;
-  for (std::size_t i = 0; i < config.objects.size(); ++i)
-    if (config.objects[i].motion.kind == dev::MotionKind::kSoft) soft.push_back(i);
   std::string text;
-  for (const Touch& touch : touches_of(tick.state->setup)) {
-    const std::size_t object =
-        touch.of_scene != nullptr ? touch.of_scene->object.index : soft[static_cast<std::size_t>(touch.soft)];
+  for (const auto& [touch, contact] : touches_of(tick.state->setup)) {
     append(text, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
-    text += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + std::to_string(touch.contact) + "," +
-            column_name(config.objects[object].name) + ",";
-    append(text, touch.god_object_m());
-    for (int i = 0; i < 3; ++i)
-      append(text, touch.force_n()[i]);
-    text += state_columns(touch);
-    const Load load = touch.of_scene != nullptr ? load_of(replay, tick, *touch.of_scene) : Load();
+    text += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + std::to_string(contact) + "," +
+            column_name(config.objects[touch->object.index].name) + ",";
+    append(text, touch->god_object_m);
+    append(text, touch->force_n);
+    text += state_columns(*touch);
+    const Load load = load_of(replay, tick, *touch);
     if (!load.is_known) {
       text += ",,\n";
       continue;

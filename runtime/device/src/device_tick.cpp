@@ -99,10 +99,6 @@ void step_scene(DeviceState& device, const double tip_m[3]) {
     place(setup.scene, setup.fingers[contact], to_m[contact], nullptr);
     std::copy_n(to_m[contact], 3, device.places_m[contact]);
   }
-  for (int i = 0; i < setup.soft_count; ++i) {
-    if (!device.has_place) setup.soft[i]->release();
-    setup.soft[i]->step(to_m, 1 / setup.profile.rate_hz);
-  }
   device.has_place = true;
   if (has_bodies) {
     step_bodies(device, to_m);
@@ -118,6 +114,19 @@ void note_touch(const double force_n[3], std::uint32_t state, double* largest, T
   if (square < *largest) return;
   *largest = square;
   output->state = state;
+}
+
+// What gives way does, under what the fingers have just felt of it: they feel that in the next tick.
+void yield_to(const DeviceSetup& setup) {
+  for (int soft = 0; soft < setup.soft_count; ++soft) {
+    for (int contact = 0; contact < setup.contact_count; ++contact) {
+      fdcg_finger_result felt;
+      if (fdcg_scene_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
+      for (std::uint32_t t = 0; t < felt.touch_count; ++t)
+        if (felt.touches[t].object.index == setup.soft_id[soft].index) setup.soft[soft]->press(felt.touches[t]);
+    }
+    setup.soft[soft]->relax(1 / setup.profile.rate_hz);
+  }
 }
 
 // Moves the fingers to the tip, steps the scene, sums what they feel. World's frame.
@@ -136,15 +145,7 @@ void feel(DeviceState& device, const TickInput& input, const double tip_m[3], Ti
     for (std::uint32_t t = 0; t < felt.touch_count; ++t)
       note_touch(felt.touches[t].force_n, felt.touches[t].state, &largest, output);
   }
-  for (int soft = 0; soft < setup.soft_count; ++soft) {
-    for (int contact = 0; contact < setup.contact_count; ++contact) {
-      const SoftTouch& touch = setup.soft[soft]->touch(contact);
-      if (touch.state == FDCG_FREE) continue;
-      for (int i = 0; i < 3; ++i)
-        output->wanted_force_n[i] += touch.force_n[i];
-      note_touch(touch.force_n, touch.state, &largest, output);
-    }
-  }
+  yield_to(setup);
 }
 
 }  // namespace

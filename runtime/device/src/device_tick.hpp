@@ -97,8 +97,9 @@ struct DeviceSetup {
   fdcg_pile* pile = nullptr;   // with the ground and all objects; null where there are no bodies
   fdcg_reaction* reactions = nullptr;
   std::uint32_t reaction_count = 0;
-  int soft_count = 0;
-  SoftObject* soft[kMaxSoft] = {};  // in the DeviceScene's memory too; the scene itself has them disabled
+  int soft_count = 0;  // objects that give way, in the DeviceScene's memory too
+  SoftObject* soft[kMaxSoft] = {};
+  fdcg_object_id soft_id[kMaxSoft] = {};
 };
 
 // All that a device's loop remembers from tick to tick, but for the scene's memory.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rotation.hpp"
+
 namespace fdcg::dev {
 namespace {
 
@@ -40,11 +42,7 @@ void grip_offset(const Grip& grip, const GripState& state, int contact, const do
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   for (double& x : q)
     x /= length;
-  // at + 2 w (u x at) + 2 u x (u x at)
-  const double c[3] = {q[1] * at_m[2] - q[2] * at_m[1], q[2] * at_m[0] - q[0] * at_m[2], q[0] * at_m[1] - q[1] * at_m[0]};
-  offset_m[0] += 2 * (q[3] * c[0] + q[1] * c[2] - q[2] * c[1]);
-  offset_m[1] += 2 * (q[3] * c[1] + q[2] * c[0] - q[0] * c[2]);
-  offset_m[2] += 2 * (q[3] * c[2] + q[0] * c[1] - q[1] * c[0]);
+  turn(q, at_m, offset_m);
 }
 
 }  // namespace fdcg::dev

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "rotation.hpp"
 #include "scene_bodies.hpp"
 #include "words.hpp"
 
@@ -11,17 +12,9 @@ namespace {
 constexpr std::uint32_t kMostTouches = 8;  // objects that one contact can feel at once
 constexpr double kTurn = 6.283185307179586;
 
-// a after b.
-void multiply(const double a[4], const double b[4], double product[4]) {
-  product[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
-  product[1] = a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0];
-  product[2] = a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3];
-  product[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
-}
-
 // Empty, or why it cannot be.
-std::string add_soft(const ObjectConfig& object, const DeviceConfig& device, const fdcg_graph& graph, const fdcg_params& params,
-                     DeviceScene* scene) {
+std::string make_soft(const ObjectConfig& object, const DeviceConfig& device, const fdcg_graph& graph,
+                      const fdcg_params& params, DeviceScene* scene) {
   const SoftConfig& soft = object.motion.soft;
   // All contacts may press on one corner: it must not come back farther in a tick than it went.
   const double most = soft.damping_n_s_per_m * device.profile.rate_hz + soft.stiffness_n_per_m;
@@ -32,9 +25,31 @@ std::string add_soft(const ObjectConfig& object, const DeviceConfig& device, con
            shown_number(std::ceil(pressed / device.profile.rate_hz)) + " or lower the object's stiffness_n_per_m";
   }
   scene->soft.push_back(std::make_unique<SoftObject>());
-  std::string problem = scene->soft.back()->begin(graph, soft, params, object.pose, device.contact_count);
-  if (problem.empty()) scene->setup.soft[scene->setup.soft_count++] = scene->soft.back().get();
-  return problem;
+  return scene->soft.back()->begin(graph, soft, object.pose);
+}
+
+// Of config.objects[index], into the device's scene. Empty, or why it cannot be.
+std::string add_object(const HostConfig& config, std::size_t index, const DeviceConfig& device, const SceneGraphs& graphs,
+                       DeviceScene* scene, fdcg_object_id* id) {
+  const ObjectConfig& object = config.objects[index];
+  DeviceSetup& setup = scene->setup;
+  fdcg_params params = object.params;
+  params.tick_s = 1 / device.profile.rate_hz;
+  fdcg_error error{};
+  fdcg_status status = FDCG_OK;
+  if (object.is_surface) {
+    status = fdcg_scene_add_surface(setup.scene, &object.surface, &params, &object.pose, id, &error);
+  } else if (object.motion.kind == MotionKind::kSoft) {
+    if (std::string problem = make_soft(object, device, graphs.of_object(index), params, scene); !problem.empty())
+      return problem;
+    SoftObject* const soft = scene->soft.back().get();
+    status = fdcg_scene_add_deform(setup.scene, soft->deform(), &params, &object.pose, id, &error);
+    setup.soft[setup.soft_count] = soft;
+    setup.soft_id[setup.soft_count++] = *id;
+  } else {
+    status = fdcg_scene_add_object(setup.scene, &graphs.of_object(index), &params, &object.pose, id, &error);
+  }
+  return status == FDCG_OK ? std::string() : error.message;
 }
 
 }  // namespace
@@ -79,6 +94,8 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
   capacities.object_capacity = std::max(1u, object_count);
   capacities.finger_capacity = static_cast<std::uint32_t>(from.contact_count);
   capacities.touches_per_finger = std::clamp(object_count, 1u, kMostTouches);
+  const auto is_soft = [](const ObjectConfig& object) { return object.motion.kind == MotionKind::kSoft; };
+  capacities.has_deforms = std::any_of(config.objects.begin(), config.objects.end(), is_soft) ? 1 : 0;
   const std::uint64_t bytes = fdcg_scene_bytes(&capacities);
   scene->memory.assign(static_cast<std::size_t>(bytes / sizeof(std::uint64_t) + 1), 0);
 
@@ -97,23 +114,11 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
   }
   std::vector<fdcg_object_id> objects;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
-    const ObjectConfig& object = config.objects[i];
-    fdcg_params params = object.params;
-    params.tick_s = 1 / from.profile.rate_hz;
     fdcg_object_id id{};
-    const fdcg_status status =
-        object.is_surface ? fdcg_scene_add_surface(setup.scene, &object.surface, &params, &object.pose, &id, &error)
-                          : fdcg_scene_add_object(setup.scene, &graphs.of_object(i), &params, &object.pose, &id, &error);
-    if (status != FDCG_OK) {
-      return place_of(config, i) + error.message;
-    }
+    if (const std::string problem = add_object(config, i, from, graphs, scene, &id); !problem.empty())
+      return place_of(config, i) + problem;
     objects.push_back(id);
-    if (object.motion.kind == MotionKind::kSoft) {
-      fdcg_scene_enable_object(setup.scene, id, 0, nullptr);  // felt as it is now, not as it was made
-      const std::string problem = add_soft(object, from, graphs.of_object(i), params, scene);
-      if (!problem.empty()) return place_of(config, i) + problem;
-    }
-    if (!is_moved(object.motion)) continue;
+    if (!is_moved(config.objects[i].motion)) continue;
     if (setup.driven_count == kMaxDriven) {
       return place_of(config, i) + "more than " + std::to_string(kMaxDriven) + " objects have a motion; make it fixed";
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "profile_json.hpp"
+#include "rotation.hpp"
 #include "scene_parser.hpp"
 #include "session_reader.hpp"
 #include "simulated_device.hpp"
@@ -186,11 +187,9 @@ void SceneParser::read_mapping(const JsonObject& from, Mapping* mapping) {
     }
   } else if (double q[4]; from.has("rotation_xyzw") && read_unit(from, "rotation_xyzw", q, 4, kUnitTolerance)) {
     const double length = norm(q, 4);
-    const double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
-    const double rows[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
-                            2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-                            2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
-    std::copy(rows, rows + 9, r);
+    for (double& x : q)
+      x /= length;
+    rows_of(q, r);
   }
 }
 

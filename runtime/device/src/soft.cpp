@@ -3,20 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "rotation.hpp"
 
 namespace fdcg::dev {
 namespace {
 
 constexpr double kStill = 1e-9;  // of the depth: so near its place, a corner that nothing pushes is put there
-
-void rows_of(const double q[4], double r[9]) {
-  const double x = q[0], y = q[1], z = q[2], w = q[3];
-  const double rows[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
-                          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-                          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
-  std::copy_n(rows, 9, r);
-}
 
 double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -44,13 +37,10 @@ void shares_in(const double (&corner)[3][3], const double point[3], double share
 
 }  // namespace
 
-std::string SoftObject::begin(const fdcg_graph& graph, const SoftConfig& config, const fdcg_params& params,
-                              const fdcg_pose& pose, int contact_count) {
+std::string SoftObject::begin(const fdcg_graph& graph, const SoftConfig& config, const fdcg_pose& pose) {
   graph_ = &graph;
   config_ = config;
-  params_ = params;
   pose_ = pose;
-  contact_count_ = contact_count;
   rows_of(pose.rotation_xyzw, turn_);
   fdcg_error error{};
   fdcg_deform_config deform = fdcg_default_deform_config();
@@ -74,59 +64,31 @@ std::string SoftObject::begin(const fdcg_graph& graph, const SoftConfig& config,
     }
     first_neighbour_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
   }
-  release();
   return {};
 }
 
-void SoftObject::release() {
-  std::memset(static_cast<void*>(contacts_), 0, sizeof contacts_);
-}
-
-void SoftObject::step(const double (*contacts_m)[3], double tick_s) {
-  std::fill(pushed_n_.begin(), pushed_n_.end(), 0.0);
-  for (int contact = 0; contact < contact_count_; ++contact)
-    press(contact, contacts_m[contact]);
-  relax(tick_s);
-}
-
-void SoftObject::press(int contact, const double place_world_m[3]) {
-  double from_origin_m[3], hip_m[3];
-  less(place_world_m, pose_.translation_m, from_origin_m);
-  for (int i = 0; i < 3; ++i)
-    hip_m[i] = (turn_[i] * from_origin_m[0] + turn_[3 + i] * from_origin_m[1] + turn_[6 + i] * from_origin_m[2]) / pose_.scale;
-  // The step's stiffness acts on lengths of the object; what is felt, on lengths of the world.
-  fdcg_params params = params_;
-  params.stiffness_n_per_m *= pose_.scale;
-  params.damping_n_s_per_m *= pose_.scale;
-  fdcg_result result{};
-  fdcg_deform_step(deform_, &params, contacts_ + contact, hip_m, &result);
-  SoftTouch& touch = touches_[contact];
-  touch.state = result.state;
-  touch.feature = result.feature;
-  touch.slipping = result.slipping;
-  for (int i = 0; i < 3; ++i) {
-    const double* const row = turn_ + 3 * i;
-    touch.force_n[i] = dot(row, result.force_n);
-    touch.god_object_m[i] = dot(row, result.god_object_m) * pose_.scale + pose_.translation_m[i];
-  }
-  if (result.state != FDCG_FREE) share_out(result);
-}
-
 // To the corners of the face, of one of the edge's faces, or to the corner itself: what the hand feels, the other way.
-void SoftObject::share_out(const fdcg_result& result) {
+void SoftObject::press(const fdcg_touch& touch) {
+  if (touch.state == FDCG_FREE) return;
+  double force_n[3], off_m[3], god_object_m[3];
+  less(touch.god_object_m, pose_.translation_m, off_m);
+  for (int i = 0; i < 3; ++i) {
+    force_n[i] = turn_[i] * touch.force_n[0] + turn_[3 + i] * touch.force_n[1] + turn_[6 + i] * touch.force_n[2];
+    god_object_m[i] = (turn_[i] * off_m[0] + turn_[3 + i] * off_m[1] + turn_[6 + i] * off_m[2]) / pose_.scale;
+  }
   const auto push = [&](std::uint32_t corner, double share) {
     for (std::size_t i = 0; i < 3; ++i)
-      pushed_n_[3 * static_cast<std::size_t>(corner) + i] -= share * result.force_n[i];
+      pushed_n_[3 * static_cast<std::size_t>(corner) + i] -= share * force_n[i];
   };
-  if (result.state == FDCG_VERTEX) return push(result.feature, 1);
-  const std::uint32_t node = result.state == FDCG_FACE ? result.feature : fdcg_get_connection(graph_, result.feature).node[0];
+  if (touch.state == FDCG_VERTEX) return push(touch.feature, 1);
+  const std::uint32_t node = touch.state == FDCG_FACE ? touch.feature : fdcg_get_connection(graph_, touch.feature).node[0];
   std::uint32_t corner[3];
   double place_m[3][3], share[3];
   for (std::uint32_t i = 0; i < 3; ++i) {
     corner[i] = fdcg_get_side(graph_, node, i).corner;
     fdcg_deform_place(deform_, corner[i], place_m[i], nullptr);
   }
-  shares_in(place_m, result.god_object_m, share);
+  shares_in(place_m, god_object_m, share);
   for (int i = 0; i < 3; ++i)
     push(corner[i], share[i]);
 }
@@ -160,6 +122,7 @@ void SoftObject::relax(double tick_s) {
   for (std::size_t at = 0; at < moved_m_.size(); at += 3)
     deepest = std::max(deepest, dot(moved_m_.data() + at, moved_m_.data() + at));
   deepest_m_ = std::sqrt(deepest) * scale;
+  std::fill(pushed_n_.begin(), pushed_n_.end(), 0.0);
 }
 
 }  // namespace fdcg::dev

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A soft sheet (fdcg/deform.h): a graph whose corners give way under contacts and come back. Each corner hangs on a spring to
-// where the file has it and on one to each neighbour, in something thick: it has no mass and no speed of its own, so it never
-// swings. A contact's force goes to the three corners of the triangle that it is on, by how near the god-object is to each.
+// A soft sheet (fdcg/deform.h), an object of a scene: a graph whose corners give way under contacts and come back. Each corner
+// hangs on a spring to where the file has it and on one to each neighbour, in something thick: it has no mass and no speed of
+// its own, so it never swings. A contact's force goes to the three corners of the triangle that it is on, by how near the
+// god-object is to each.
 //
 //   damping * du/dt = force - stiffness * u + tension * sum over neighbours (u_neighbour - u)
 //
@@ -15,7 +16,6 @@
 
 #include "fdcg/deform.h"
 #include "fdcg/scene.h"
-#include "grip.hpp"
 
 namespace fdcg::dev {
 
@@ -26,42 +26,27 @@ struct SoftConfig {
   double depth_m = 0.05;         // that a corner can be moved along each axis
 };
 
-// What the device's tick feels of it.
-struct SoftTouch {
-  std::uint32_t state = 0;  // fdcg_state
-  std::uint32_t feature = 0, slipping = 0;
-  double force_n[3] = {};       // world, on the contact
-  double god_object_m[3] = {};  // world
-};
-
 class SoftObject {
  public:
   // `graph` must outlive it. Empty: fine. Otherwise why the graph cannot be deformed.
-  std::string begin(const fdcg_graph& graph, const SoftConfig& config, const fdcg_params& params, const fdcg_pose& pose,
-                    int contact_count);
-  // Lets go of every contact: the next step of each starts where it is.
-  void release();
-  // The contacts at these places (world) press, then the sheet moves on by tick_s.
-  void step(const double (*contacts_m)[3], double tick_s);
+  std::string begin(const fdcg_graph& graph, const SoftConfig& config, const fdcg_pose& pose);
+  // What a scene of this pose adds (fdcg_scene_add_deform).
+  fdcg_deform* deform() const { return deform_; }
 
-  const SoftTouch& touch(int contact) const { return touches_[contact]; }
+  // A finger's touch of it in the scene's last step: presses in the next relax.
+  void press(const fdcg_touch& touch);
+  // The sheet moves on by tick_s.
+  void relax(double tick_s);
+
   double deepest_m() const { return deepest_m_; }  // the farthest that a corner is from its place, world
   const double (*displacements_m() const)[3] { return reinterpret_cast<const double(*)[3]>(moved_m_.data()); }
 
  private:
-  void press(int contact, const double place_world_m[3]);
-  void share_out(const fdcg_result& result);
-  void relax(double tick_s);
-
   const fdcg_graph* graph_ = nullptr;
   SoftConfig config_;
-  fdcg_params params_;
   fdcg_pose pose_;
   double turn_[9] = {};  // object to world
-  int contact_count_ = 0;
   fdcg_deform* deform_ = nullptr;
-  fdcg_deform_contact contacts_[kMaxContacts];
-  SoftTouch touches_[kMaxContacts];
   double deepest_m_ = 0;
   std::vector<std::uint64_t> memory_;
   // By corner, in the object's frame: where it belongs, how far it is from there, what pushes it.

@@ -10,6 +10,9 @@
  *   each tick:  fdcg_deform_move(deform, corner_of[v], position_m, &error);        for each vertex that moves
  *               fdcg_deform_step(deform, &params, &contact, hip_object_m, &result);   ->  result.force_n
  *
+ * or as an object of a scene, beside graphs and surfaces: fdcg_scene_add_deform(scene, deform, &params, &pose, &object,
+ * &error).
+ *
  * What depends on the corners' places - planes, edges, types, corner normals, boxes - is brought up to date when a step looks
  * at it, and not before: a tick costs what it moves and what it touches, whatever the mesh. Types are exact signs, planes have
  * the bits that fdcg compile gives them; nothing old is ever looked at.
@@ -40,7 +43,7 @@
 #ifndef FDCG_DEFORM_H
 #define FDCG_DEFORM_H
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -85,6 +88,11 @@ fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_ob
  * corner has. Moved more than once between two steps it counts as moved straight from the first place to the last. */
 fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3], fdcg_error* error);
 
+/* Moves many corners, each as fdcg_deform_move does: corners[i] to the three numbers at positions_object_m + 3 i. Stops at the
+ * first that is refused, whose number the error says: those before it have been moved. */
+fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
+                                     uint64_t count, fdcg_error* error);
+
 /* Where a corner is: the place it was moved to, rounded to the file's precision. FDCG_E_ARGUMENT for a number that none has. */
 fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3], fdcg_error* error);
 
@@ -92,8 +100,9 @@ fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double
 typedef struct fdcg_deform_contact {
   fdcg_contact contact;
   double travel;     /* of the mesh, when the contact was last stepped */
-  uint32_t tick;     /* likewise */
+  uint64_t tick;     /* likewise */
   uint32_t halvings; /* a sweep that ran out of work cannot go on on a mesh that has moved: so often its way was halved since */
+  uint32_t ball;     /* where the mesh watches over the contact's clear ball, if it does */
 } fdcg_deform_contact;
 
 /* In fdcg_result.flags, beside fdcg_result_flag: the vertices have moved more than once since this contact's last step. */
@@ -108,6 +117,16 @@ void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_defor
 /* The whole mesh brought up to date, to look at: fdcg_get_node and its like. Good until a vertex is moved. Not for fdcg_step
  * where a triangle has no area. Not to be closed. Cost: linear in the mesh. */
 const fdcg_graph* fdcg_deform_graph(fdcg_deform* deform);
+
+/* As fdcg_scene_add_object; the mesh must outlive the scene, and stays where it was created. FDCG_E_ARGUMENT unless the scene
+ * was created with config.has_deforms. All else of scene.h takes the object as any other, poses too: then it moves as a whole,
+ * and its vertices in its frame. Vertices are moved between the scene's steps, by one thread that is in the scene; every finger
+ * that is within the mesh's bounds and margin is stepped on it in every tick, touching or not, and takes one of its
+ * touches_per_finger there. fdcg_touch.flags says FDCG_DEFORM_MISSED and FDCG_DEFORM_CAUGHT too. Several objects may be one
+ * mesh, and a copy of the scene's memory goes on with the same. Bodies of a pile do not meet it: fdcg_pile_add refuses it.
+ * Cost: brings the whole mesh up to date, once. */
+fdcg_status fdcg_scene_add_deform(fdcg_scene* scene, fdcg_deform* deform, const fdcg_params* params, const fdcg_pose* pose,
+                                  fdcg_object_id* object, fdcg_error* error);
 
 #ifdef __cplusplus
 }

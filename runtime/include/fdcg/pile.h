@@ -18,8 +18,9 @@
  * along what lies on it.
  *
  * What acts between two: the parameters of both objects (fdcg_scene_add_object) together, as fdcg_combine_materials has it: of
- * the object touched those of the face's material where its terms say so (FDCG_TERM_MATERIALS), of the point's object the
- * general ones. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
+ * the object touched those of the faces' materials where its terms say so (FDCG_TERM_MATERIALS), on edges and corners by the
+ * step's own rules (fdcg.h), of the point's object the general ones. A touch keeps the stiffness that it began with; where
+ * faces have materials it follows them. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
  * stiffer than an eighth of the bound of the step, 1 / (8 h^2 w), where w says how easily the place moves (1/kg, over three
  * directions): so no pile runs away while fewer than 32 touches pull at two bodies that meet. The other parameters
  * (edge_friction, ...) are those of the object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by
@@ -80,7 +81,8 @@ uint64_t fdcg_pile_bytes(const fdcg_pile_config* config);
 fdcg_status fdcg_pile_create(void* memory, uint64_t bytes, const fdcg_pile_config* config, fdcg_pile** pile, fdcg_error* error);
 
 /* The ground: solid where normal . x < offset_m, world; a normal of unit length within 1e-3 (made exactly so). params NULL
- * takes it away. Its edge_friction is never asked. A point that begins below it is pushed out. */
+ * takes it away. Of them count the two coefficients, the stiffness and the friction curve (FDCG_TERM_STRIBECK, _VISCOUS, _LAG);
+ * it has no edges, no faces with materials, and no presliding. A point that begins below it is pushed out. */
 fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal[3], double offset_m, const fdcg_params* params,
                                  fdcg_error* error);
 

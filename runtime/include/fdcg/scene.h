@@ -12,14 +12,14 @@
  *               fdcg_scene_step(scene);
  *               fdcg_scene_result(scene, finger, &result, &error);        ->  result.force_n, in the world
  *
- * An object is a graph (any number of objects may share one) or a surface (surface.h), parameters, and a pose: rotation,
- * translation, uniform scale. A finger is one contact point; it has a contact (fdcg_contact) with each object that it touches,
- * in that object's frame, so a moving and turning object carries its god-objects. What is swept each tick is the relative
- * motion: from where the HIP was in the object's frame at the last tick, with the object's pose of that tick, straight to where
- * it is now. An object that moves onto a still finger is met as surely as the other way round. In a turn of w radians a tick
- * the straight way cuts the arc by a share of 1 - cos(w / 2) of its radius: 0.03 % at 10 revolutions a second and 1 kHz. An
- * object whose bounding sphere the finger does not reach, measured from the moving centre of the sphere, is not met, however
- * fast it spins.
+ * An object is a graph (any number of objects may share one), a surface (surface.h) or a deformable mesh (deform.h), with
+ * parameters and a pose: rotation, translation, uniform scale. A finger is one contact point; it has a contact (fdcg_contact)
+ * with each object that it touches, in that object's frame, so a moving and turning object carries its god-objects. What is
+ * swept each tick is the relative motion: from where the HIP was in the object's frame at the last tick, with the object's pose
+ * of that tick, straight to where it is now. An object that moves onto a still finger is met as surely as the other way round.
+ * In a turn of w radians a tick the straight way cuts the arc by a share of 1 - cos(w / 2) of its radius: 0.03 % at 10
+ * revolutions a second and 1 kHz. An object whose bounding sphere the finger does not reach, measured from the moving centre of
+ * the sphere, is not met, however fast it spins.
  *
  * Lengths of the world in metres, forces in newtons. At a scale of s the god-object's distance in the world is s times the one
  * in the object, and stiffness and damping act on the distance in the world; friction does not depend on scale, and speeds of
@@ -35,7 +35,8 @@
  * Threads: the scene holds no lock. fdcg_scene_step is fdcg_scene_advance, then fdcg_scene_step_finger for every finger. After
  * an advance, different fingers may be stepped, moved and asked for results by different threads at once, and at the same time
  * one thread may set poses, which the next advance takes in; for everything else one thread at a time is in the scene. Results
- * do not depend on the order of fingers or on threads.
+ * do not depend on the order of fingers or on threads. Where a deformable mesh is in the scene, its fingers are stepped by one
+ * thread at a time: a step on such a mesh brings it up to date.
  */
 #ifndef FDCG_SCENE_H
 #define FDCG_SCENE_H
@@ -47,7 +48,8 @@ extern "C" {
 #endif
 
 /* Lives in memory of the caller's. Holds no pointer into itself: copied as a whole, to another multiple of 8, it is a snapshot
- * that goes its own way. It does point to the graphs, which must outlive it. There is nothing to destroy. */
+ * that goes its own way. It does point to the graphs and deformable meshes, which must outlive it. There is nothing to destroy.
+ */
 typedef struct fdcg_scene fdcg_scene;
 
 /* Names by value; one of all zeros names nothing. What was removed is not found again under its old name. */
@@ -88,6 +90,8 @@ typedef struct fdcg_scene_config {
   uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
   uint32_t disabled_skips;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
   uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
+  uint32_t has_deforms;        /* 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
+  uint32_t reserved;           /* 0 */
 } fdcg_scene_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 57 KB. */

@@ -66,6 +66,7 @@ AdversaryFind Adversary::judged(AdversaryGoal goal, const AdversaryCase& way) {
     here.ulps = tick.ulps;
     here.conditioning = tick.conditioning;
     here.transitions = tick.step.transitions;
+    if (here.conditioning <= kMostWellPosed) well_posed_ulps = std::max(well_posed_ulps, here.ulps);
     if (score(goal, here) <= score(goal, worst)) continue;
     here.way = way;
     here.what = replay_.errors.worst;

@@ -26,6 +26,9 @@ struct AdversaryFind {
   [[nodiscard]] double backward_ulps() const { return ulps / conditioning; }
 };
 
+// Up to here the bar on errors holds. Beyond it, the rounding of the HIP itself moves the exact answer by more than that.
+constexpr double kMostWellPosed = 64;
+
 enum class AdversaryGoal { error, backward_error, transitions };
 const char* name_of(AdversaryGoal goal);
 
@@ -38,6 +41,7 @@ class Adversary {
   AdversaryFind search(AdversaryGoal goal, int cases);
 
   std::uint64_t ticks = 0, wrong = 0;
+  double well_posed_ulps = 0;  // the largest error of a tick whose conditioning is at most kMostWellPosed
   std::string first_wrong;
 
  private:

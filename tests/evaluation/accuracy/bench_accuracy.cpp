@@ -222,6 +222,7 @@ struct Search {
   AdversaryGoal goal = AdversaryGoal::error;
   AdversaryFind find;
   std::uint64_t ticks = 0, wrong = 0;
+  double well_posed_ulps = 0;
   std::string first_wrong;
 };
 
@@ -248,6 +249,7 @@ std::vector<Search> search_all(const Plan& plan, const Options& options) {
     Adversary adversary(graph.view(), *s.soup, options.seed * 1000 + i);
     s.find = adversary.search(s.goal, cases);
     s.ticks = adversary.ticks;
+    s.well_posed_ulps = adversary.well_posed_ulps;
     s.wrong = adversary.wrong;
     s.first_wrong = adversary.first_wrong;
   });
@@ -455,20 +457,23 @@ void add(Total& total, const AccuracySetting& s, const AccuracyOutcome& o) {
 // for inputs so near to the ones it got.
 void judge_searches(Bars& bars, const std::vector<Search>& searches) {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
-    const Search *worst = nullptr, *furthest = nullptr;
+    const Search *worst = nullptr, *furthest = nullptr, *posed = nullptr;
     std::uint64_t wrong = 0;
     for (const Search& s : searches) {
       if (s.precision != precision) continue;
       wrong += s.wrong;
       if (worst == nullptr || s.find.backward_ulps() > worst->find.backward_ulps()) worst = &s;
       if (furthest == nullptr || s.find.ulps > furthest->find.ulps) furthest = &s;
+      if (posed == nullptr || s.well_posed_ulps > posed->well_posed_ulps) posed = &s;
       if (!s.first_wrong.empty())
         std::printf("wrong: %s %s\n  %s\n", s.soup->name.c_str(), name_of(precision), s.first_wrong.c_str());
     }
     if (worst == nullptr) continue;
     const std::string name = std::string(name_of(precision)) + ", worst found by search";
-    bars.at_most(name + ", error", furthest->find.ulps, kMaxBar_ulps, "ulps",
-                 furthest->soup->name + ", conditioning " + cell(furthest->find.conditioning));
+    std::printf(
+        "%s, of any conditioning: %.1f ulps, where half an ulp of the input moves the exact answer by %.1f half ulps; %s\n",
+        name.c_str(), furthest->find.ulps, furthest->find.conditioning, furthest->soup->name.c_str());
+    bars.at_most(name + ", error of a well-posed tick", posed->well_posed_ulps, kMaxBar_ulps, "ulps", posed->soup->name);
     bars.at_most(name + ", backward error", worst->find.backward_ulps(), kMaxBar_ulps, "ulps", worst->soup->name);
     bars.at_most(name + ", wrong features", static_cast<double>(wrong), 0, "ticks");
   }

@@ -120,13 +120,16 @@ TickError Replay<Real>::judge(const Tick& tick) const {
   return error;
 }
 
+// Both start anew from the runtime's contact at a tie of either.
 template <class Real>
 void Replay<Real>::accumulate(const Hip& hip) {
-  along_->step(hip);
-  if (last_.verdict != TickError::Verdict::agrees || !agree(along_->contact, contact_)) {
+  const ReferenceStep step = along_->step(hip);
+  const double ulps = distance(along_->contact.god_object, contact_.god_object) / ulp_;
+  const bool have_parted = step.margin <= rounding_ && ulps > kSame_ulps;
+  if (last_.verdict != TickError::Verdict::agrees || !agree(along_->contact, contact_) || have_parted) {
     along_->resynchronise(contact_);
   } else if (last_.is_contact) {
-    errors.accumulated.push_back(static_cast<float>(distance(along_->contact.god_object, contact_.god_object) / ulp_));
+    errors.accumulated.push_back(static_cast<float>(ulps));
   }
 }
 
