@@ -53,7 +53,7 @@ constexpr const char* kGrasp = R"({
      "motion": {"kind": "body", "mass_kg": 2}},
     {"name": "egg", "surface": {"kind": "ellipsoid", "half_m": [0.1, 0.2, 0.3], "hollow": true}},
     {"name": "ring", "surface": {"kind": "torus", "radius_m": 0.1, "tube_radius_m": 0.02}},
-    {"name": "sheet", "file": "sheet.fdcg", "motion": {"kind": "soft", "stiffness_n_per_m": 6, "tension_n_per_m": 7,
+    {"name": "sheet", "file": "sheet.fdcg", "motion": {"kind": "soft", "radius_m": 0.01, "stiffness_n_per_m": 6, "tension_n_per_m": 7,
      "damping_n_s_per_m": 8, "depth_m": 0.01}}],
   "devices": [
     {"name": "left", "source": "simulated",
@@ -234,6 +234,7 @@ TEST_CASE("bodies, surfaces, soft sheets, grips and scripts are read, and writte
   CHECK(config.objects[3].surface.tube_radius_m == 0.02);
   CHECK(config.objects[4].motion.soft.tension_n_per_m == 7);
   CHECK(config.objects[4].motion.soft.depth_m == 0.01);
+  CHECK(config.objects[4].motion.soft.radius_m == 0.01);
   const DeviceConfig& left = config.devices[0];
   CHECK(left.grip.close.mask == 8);
   CHECK(left.grip.close.seconds == 0.25);

@@ -52,6 +52,7 @@ Json object_json(const ObjectConfig& object) {
     json["motion"]["tension_n_per_m"] = motion.soft.tension_n_per_m;
     json["motion"]["damping_n_s_per_m"] = motion.soft.damping_n_s_per_m;
     json["motion"]["depth_m"] = motion.soft.depth_m;
+    if (motion.soft.radius_m) json["motion"]["radius_m"] = *motion.soft.radius_m;
   }
   if (motion.kind != MotionKind::kBody) return json;
   const BodyConfig& body = motion.body;
