@@ -170,29 +170,52 @@ template <class Real>
   return kFree;
 }
 
-// Cost: one connection, one node and two Voronoi planes for each edge of the corner; at a busy corner for some eight of them,
-// and the logarithm of their number in boxes.
+// What the steepest descent comes to: where to go on, or the corner itself.
 template <class Real>
-inline Decision corner_rule(Walk<Real>& walk) {
-  const CornerRef<Real> corner = walk.graph.corner(walk.active.index);
-  const Vec3<Real> t = walk.hip - corner.point();
+inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
   const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
   const Steepest<Real> best = has_tree ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
   if (best.feature.state == FDCG_FACE) {
     const NodeRef<Real> node = walk.graph.node(best.feature.index);
-    return go_to(walk.side(node) < 0 ? best.feature : edge_that_holds(walk, node, walk.active.index, t));
+    return walk.side(node) < 0 ? best.feature : edge_that_holds(walk, node, walk.active.index, t);
   }
   if (best.feature.state == FDCG_EDGE) {
     const ConnectionRef<Real> connection = walk.graph.connection(best.feature.index);
     EdgeSides<Real> s;
     look_at_sides(walk, connection, &s);
     if (connection.type() == FDCG_BOUNDARY) {
-      return go_to(s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree);
+      return s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree;
     }
-    return go_to(is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0) ? kFree : best.feature);
+    return is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0) ? kFree : best.feature;
   }
-  if (corner.is_open()) return go_to(kFree);
-  return dot(t, corner.normal()) < 0 ? rest() : go_to(kFree);
+  if (corner.is_open()) return kFree;
+  return dot(t, corner.normal()) < 0 ? walk.active : kFree;
+}
+
+// Whether a place beside a corner is on a face or an edge of that corner, but for its own rounding.
+template <class Real>
+[[gnu::noinline]] bool is_on(const Walk<Real>& walk, Feature feature, Vec3<Real> place) {
+  const fdcg_header& header = *walk.graph.header;
+  const Real rounding =
+      8 * RealLimits<Real>::kEpsilon * static_cast<Real>(header.extent) + static_cast<Real>(header.max_deviation);
+  if (feature.state == FDCG_FACE) return absolute(walk.graph.node(feature.index).plane().distance(place)) <= rounding;
+  if (feature.state != FDCG_EDGE) return false;
+  const EdgeLine<Real> line(walk.graph, feature.index);
+  return norm1(place - (line.start + line.direction * line.parameter(place))) <= rounding;
+}
+
+// Cost: one connection, one node and two Voronoi planes for each edge of the corner; at a busy corner for some eight of them,
+// and the logarithm of their number in boxes.
+template <class Real>
+inline Decision corner_rule(Walk<Real>& walk) {
+  const CornerRef<Real> corner = walk.graph.corner(walk.active.index);
+  const Vec3<Real> point = corner.point();
+  const Feature next = next_from_corner(walk, corner, walk.hip - point);
+  if (next == walk.active) return rest();
+  // An edge's rule may have left the god-object beside the corner (walk.hpp, leads_back): the way to what does not pass there
+  // begins at the corner.
+  if (norm1(walk.god_object - point) > 0 && !is_on(walk, next, walk.god_object)) walk.god_object = point;
+  return go_to(next);
 }
 
 }  // namespace fdcg

@@ -61,7 +61,7 @@ MUTANTS = [
     ("steeper-face", "behind both faces: the nearer plane", "edge.hpp",
      "s.voronoi[1] < s.voronoi[0]", "false"),
     ("open-corner", "an apex with a boundary edge is free", "corner.hpp",
-     "if (corner.is_open()) return go_to(kFree);", ""),
+     "if (corner.is_open()) return kFree;", ""),
     ("steepest-at-vertex", "the longest way at a corner wins", "corner.hpp",
      "if (are_near ? other.distance2 < distance2 : other.reach2 > reach2)", "if (feature == kFree)"),
 ]
