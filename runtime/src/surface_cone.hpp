@@ -160,8 +160,9 @@ struct ConeSurface {
   [[nodiscard]] static double curvature_product(const Spot&) { return 0; }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   bool cross(const Spot& from, Spot* to, Feature* next) const {
-    if (absolute(to->at.z) < half) return false;
     const uint32_t end = to->at.z > 0 ? 1 : 0;
+    const double before = half - absolute(to->at.z);
+    if (before > 0 && !(radius[end] == 0 && before <= 8 * kEps * extent * along_z)) return false;  // an apex is met nearby too
     const double left = end == 0 ? half + from.at.z : half - from.at.z, went = absolute(to->at.z - from.at.z);
     const Point at = left > 0 && went > left ? from.at + (to->at - from.at) * (left / went) : to->at;
     to->at = rim_point(outward_at(at, to->outward), end);

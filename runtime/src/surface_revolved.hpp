@@ -22,7 +22,7 @@ struct Outward {
   double lack;          // x^2 + y^2 - 1: rounding
 };
 inline Outward outward_of(Point at, double off2) {
-  const double off = root(off2), per_off = off * (1 / off2);
+  const double off = root(off2), per_off = inverse_root(off2);
   return {at.x * per_off, at.y * per_off, off, per_off, 0};
 }
 // Profile:
@@ -93,7 +93,7 @@ FDCG_HOT bool slide_to_nearest(const Profile& profile, const Section& from, cons
   const Point hip = touch.hip;
   const double off2 = hip.x * hip.x + hip.y * hip.y;
   if (!(seen.out > 0 && 16 * seen.round * seen.round <= off2)) return false;
-  const double off = root(off2), per_off = off * (1 / off2);
+  const double off = root(off2), per_off = inverse_root(off2);
   Section to;
   if (!profile.nearest(from, off, hip.z, &to)) return false;
   const double at = to.base_r + profile.raised * to.n_r, z = to.base_z + profile.raised * to.n_z;
