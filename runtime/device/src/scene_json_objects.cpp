@@ -23,7 +23,8 @@ constexpr Keys kMotionKeys = {"kind",
                               "stiffness_n_per_m",
                               "tension_n_per_m",
                               "damping_n_s_per_m",
-                              "depth_m"};
+                              "depth_m",
+                              "radius_m"};
 
 }  // namespace
 
@@ -106,11 +107,13 @@ void SceneParser::read_body(const JsonObject& from, BodyConfig* body) {
 }
 
 void SceneParser::read_soft(const JsonObject& from, SoftConfig* soft) {
-  from.allow_only({"kind", "stiffness_n_per_m", "tension_n_per_m", "damping_n_s_per_m", "depth_m", "notes"}, " of a soft one");
+  from.allow_only({"kind", "stiffness_n_per_m", "tension_n_per_m", "damping_n_s_per_m", "depth_m", "radius_m", "notes"},
+                  " of a soft one");
   soft->stiffness_n_per_m = from.number_or("stiffness_n_per_m", soft->stiffness_n_per_m, {1e-6, 1e6, true, "N/m"});
   soft->tension_n_per_m = from.number_or("tension_n_per_m", soft->tension_n_per_m, from_0(1e6, "N/m"));
   soft->damping_n_s_per_m = from.number_or("damping_n_s_per_m", soft->damping_n_s_per_m, {1e-6, 1e6, true, "N s/m"});
   soft->depth_m = from.number_or("depth_m", soft->depth_m, {1e-6, 1e3, true, "m"});
+  if (from.has("radius_m")) soft->radius_m = from.number("radius_m", from_0(1e3, "m"));
 }
 
 void SceneParser::read_ground(const JsonObject& from) {

@@ -52,6 +52,7 @@ Json object_json(const ObjectConfig& object) {
     json["motion"]["tension_n_per_m"] = motion.soft.tension_n_per_m;
     json["motion"]["damping_n_s_per_m"] = motion.soft.damping_n_s_per_m;
     json["motion"]["depth_m"] = motion.soft.depth_m;
+    if (motion.soft.radius_m) json["motion"]["radius_m"] = *motion.soft.radius_m;
   }
   if (motion.kind != MotionKind::kBody) return json;
   const BodyConfig& body = motion.body;
@@ -123,6 +124,7 @@ Json device_json(const DeviceConfig& device) {
   for (int i = 0; i < device.contact_count; ++i) {
     json["contacts"].push_back({{"offset_m", list(device.contacts_m[i])}});
     if (grip.close.mask != 0) json["contacts"].back()["closed_m"] = list(grip.closed_m[i]);
+    if (device.pads_m[i] > 0) json["contacts"].back()["pad_radius_m"] = device.pads_m[i];
   }
   if (grip.close.mask != 0) json["grip"] = button_json(grip.close);
   if (grip.turn.mask != 0) {

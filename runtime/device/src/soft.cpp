@@ -52,35 +52,31 @@ std::string SoftObject::begin(const fdcg_graph& graph, const SoftConfig& config,
   }
   const std::uint32_t count = graph.header->corner_count;
   rest_m_.assign(3 * static_cast<std::size_t>(count), 0);
-  moved_m_ = pushed_n_ = rest_m_;
-  first_neighbour_.assign(1, 0);
+  moved_m_ = rest_m_;
+  corners_ = {};
   for (std::uint32_t corner = 0; corner < count; ++corner) {
     fdcg_deform_place(deform_, corner, rest_m_.data() + 3 * static_cast<std::size_t>(corner), nullptr);
     std::uint32_t fan[FDCG_DEFORM_MOST_FAN];
     const std::uint32_t edges = fdcg_get_fan(&graph, corner, fan, FDCG_DEFORM_MOST_FAN);
     for (std::uint32_t i = 0; i < edges; ++i) {
       const fdcg_connection_info edge = fdcg_get_connection(&graph, fan[i] >> 1);
-      neighbours_.push_back(edge.corner[(fan[i] & 1) == 0 ? 1 : 0]);
+      corners_.neighbour.push_back(edge.corner[(fan[i] & 1) == 0 ? 1 : 0]);
     }
-    first_neighbour_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
+    corners_.first.push_back(static_cast<std::uint32_t>(corners_.neighbour.size()));
   }
-  return {};
+  return load_.begin(corners_, rest_m_, pose.scale, config.radius_m);
 }
 
 // To the corners of the face, of one of the edge's faces, or to the corner itself: what the hand feels, the other way.
 void SoftObject::press(const fdcg_touch& touch) {
   if (touch.state == FDCG_FREE) return;
-  double force_n[3], off_m[3], god_object_m[3];
+  double pressed_n[3], off_m[3], god_object_m[3];
   less(touch.god_object_m, pose_.translation_m, off_m);
   for (int i = 0; i < 3; ++i) {
-    force_n[i] = turn_[i] * touch.force_n[0] + turn_[3 + i] * touch.force_n[1] + turn_[6 + i] * touch.force_n[2];
+    pressed_n[i] = -(turn_[i] * touch.force_n[0] + turn_[3 + i] * touch.force_n[1] + turn_[6 + i] * touch.force_n[2]);
     god_object_m[i] = (turn_[i] * off_m[0] + turn_[3 + i] * off_m[1] + turn_[6 + i] * off_m[2]) / pose_.scale;
   }
-  const auto push = [&](std::uint32_t corner, double share) {
-    for (std::size_t i = 0; i < 3; ++i)
-      pushed_n_[3 * static_cast<std::size_t>(corner) + i] -= share * force_n[i];
-  };
-  if (touch.state == FDCG_VERTEX) return push(touch.feature, 1);
+  if (touch.state == FDCG_VERTEX) return load_.press(touch.feature, pressed_n, 1);
   const std::uint32_t node = touch.state == FDCG_FACE ? touch.feature : fdcg_get_connection(graph_, touch.feature).node[0];
   std::uint32_t corner[3];
   double place_m[3][3], share[3];
@@ -90,20 +86,22 @@ void SoftObject::press(const fdcg_touch& touch) {
   }
   shares_in(place_m, god_object_m, share);
   for (int i = 0; i < 3; ++i)
-    push(corner[i], share[i]);
+    load_.press(corner[i], pressed_n, share[i]);
 }
 
 // Corner after corner, each with its neighbours as they are now: the order is the graph's, so the bits are the same every time.
 void SoftObject::relax(double tick_s) {
   const double give = config_.damping_n_s_per_m / tick_s, scale = pose_.scale;
   double deepest = 0;
-  for (std::uint32_t corner = 0; corner + 1 < first_neighbour_.size(); ++corner) {
+  load_.spread();
+  for (std::uint32_t corner = 0; corner < corners_.count(); ++corner) {
     const std::size_t at = 3 * static_cast<std::size_t>(corner);
-    const std::uint32_t first = first_neighbour_[corner], end = first_neighbour_[corner + 1];
-    double pull[3] = {pushed_n_[at] / scale, pushed_n_[at + 1] / scale, pushed_n_[at + 2] / scale};
+    const std::uint32_t first = corners_.first[corner], end = corners_.first[corner + 1];
+    const double* const pressed_n = load_.force_n(corner);
+    double pull[3] = {pressed_n[0] / scale, pressed_n[1] / scale, pressed_n[2] / scale};
     for (std::uint32_t i = first; i < end; ++i)
       for (std::size_t k = 0; k < 3; ++k)
-        pull[k] += config_.tension_n_per_m * moved_m_[3 * static_cast<std::size_t>(neighbours_[i]) + k];
+        pull[k] += config_.tension_n_per_m * moved_m_[3 * static_cast<std::size_t>(corners_.neighbour[i]) + k];
     const double held = give + config_.stiffness_n_per_m + config_.tension_n_per_m * (end - first);
     double now_m[3], place_m[3], square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -122,7 +120,7 @@ void SoftObject::relax(double tick_s) {
   for (std::size_t at = 0; at < moved_m_.size(); at += 3)
     deepest = std::max(deepest, dot(moved_m_.data() + at, moved_m_.data() + at));
   deepest_m_ = std::sqrt(deepest) * scale;
-  std::fill(pushed_n_.begin(), pushed_n_.end(), 0.0);
+  load_.clear();
 }
 
 }  // namespace fdcg::dev

@@ -2,7 +2,7 @@
 // A soft sheet (fdcg/deform.h), an object of a scene: a graph whose corners give way under contacts and come back. Each corner
 // hangs on a spring to where the file has it and on one to each neighbour, in something thick: it has no mass and no speed of
 // its own, so it never swings. A contact's force goes to the three corners of the triangle that it is on, by how near the
-// god-object is to each.
+// god-object is to each, and from there to those around them.
 //
 //   damping * du/dt = force - stiffness * u + tension * sum over neighbours (u_neighbour - u)
 //
@@ -11,19 +11,22 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fdcg/deform.h"
 #include "fdcg/scene.h"
+#include "soft_load.hpp"
 
 namespace fdcg::dev {
 
 struct SoftConfig {
-  double stiffness_n_per_m = 5;  // of each corner to its place, above 0
-  double tension_n_per_m = 100;  // along each edge, >= 0
-  double damping_n_s_per_m = 2;  // of each corner, above 0
-  double depth_m = 0.05;         // that a corner can be moved along each axis
+  double stiffness_n_per_m = 5;    // of each corner to its place, above 0
+  double tension_n_per_m = 100;    // along each edge, >= 0
+  double damping_n_s_per_m = 2;    // of each corner, above 0
+  double depth_m = 0.05;           // that a corner can be moved along each axis
+  std::optional<double> radius_m;  // over which a contact's force is spread (soft_load.hpp); none: by the mesh
 };
 
 class SoftObject {
@@ -38,7 +41,8 @@ class SoftObject {
   // The sheet moves on by tick_s.
   void relax(double tick_s);
 
-  double deepest_m() const { return deepest_m_; }  // the farthest that a corner is from its place, world
+  double radius_m() const { return load_.radius_m(); }  // over which a contact's force is spread
+  double deepest_m() const { return deepest_m_; }       // the farthest that a corner is from its place, world
   const double (*displacements_m() const)[3] { return reinterpret_cast<const double(*)[3]>(moved_m_.data()); }
 
  private:
@@ -49,9 +53,10 @@ class SoftObject {
   fdcg_deform* deform_ = nullptr;
   double deepest_m_ = 0;
   std::vector<std::uint64_t> memory_;
-  // By corner, in the object's frame: where it belongs, how far it is from there, what pushes it.
-  std::vector<double> rest_m_, moved_m_, pushed_n_;
-  std::vector<std::uint32_t> first_neighbour_, neighbours_;
+  // By corner, in the object's frame: where it belongs, how far it is from there.
+  std::vector<double> rest_m_, moved_m_;
+  CornerNeighbours corners_;
+  SoftLoad load_;
 };
 
 }  // namespace fdcg::dev
