@@ -105,6 +105,7 @@ FDCG_HOT bool slide_to_nearest(const Profile& profile, const Section& from, cons
 // A move and its turns: a tangent round the axis, a way along the section.
 struct RoundMove {
   double tangent, way;
+  double length;  // by the pull's at its start
   double second;  // at its start: of what the excess still is, 1 / 4 bow / fall^2
   bool is_short;
 };
@@ -128,14 +129,14 @@ FDCG_HOT RoundMove next_round_move(const Profile& profile, const Tug& tug, const
   const double taken = load * bent, fall = pull2 - both * taken, turned = bothload * load * (bent * bent);
   const double bow = (pull2 - taken - both * (bent * bent + taken)) + bothload * (2 * load * turn2 - rate) - turned * per_pull2;
   const double left = fall * fall - bow * excess;
-  if (!(fall > kLeast * pull2 && bow > kLeast * pull2 && left > 0)) return {0, 0, 0, false};
+  if (!(fall > kLeast * pull2 && bow > kLeast * pull2 && left > 0)) return {0, 0, 0, 0, false};
   const double length = (fall - root(left)) * (1 / bow), curvature = bent * per_pull2;
   const double aside = half * (k1 - curvature) + narrows * tug.along;
   const double more = half * (profile.bend - curvature) * tug.along - 0.5 * narrows * round2;
   const double tangent = -(tug.round * per_off) * length * (1 + aside * length), way = -length * (tug.along + more * length);
   const double pressed = load * curvature, second = 0.25 * (1 - pressed) / ((pull2 - excess) * (1 - both * pressed));
   const bool is_short = Profile::kIsLine || square(way * profile.bend) <= kMostTurn2;
-  return {tangent, way, second, tangent * tangent <= kMostTurn2 && is_short};
+  return {tangent, way, length, second, tangent * tangent <= kMostTurn2 && is_short};
 }
 
 // Round by the move, and on by what is left of the excess there. False where that is too much.
@@ -161,8 +162,11 @@ FDCG_HOT bool go_round(const Profile& profile, const Section& from, const Outwar
   const double more = 1 + move.second * excess;
   const double set = (excess * (0.5 * off)) * more * (1 / fall), size = absolute(set);
   const double pressed = both * last.load * bends;
-  if (!(last.load > 0 && fall > 0 && size * size * (4 * size + 2 * pressed * pressed) <= kPlaced)) return false;
-  if (!(size * pressed <= kMostSet && last.pull2 + load2 <= tug.pull2 + tug.load * tug.load)) return false;
+  // What `more` does not know: the third order, how the bend changes, how the load did.
+  const double old2 = tug.load * tug.load, unknown = 4 * size + pressed * (pressed + move.length * move.length);
+  if (!(last.load > 0 && fall > 0 && size * size * (unknown * old2 + absolute(load2 - old2)) <= kPlaced / 2 * old2))
+    return false;
+  if (!(size * pressed <= kMostSet && last.pull2 + load2 <= tug.pull2 + old2)) return false;
   const double x = (outward.x - tangent * outward.y) * cosine, y = (outward.y + tangent * outward.x) * cosine;
   const double radial = -to.n_z * last.along, drop = (0.5 * bent) * (1 / off) * (set * set);
   const double end_z = z - to.n_r * last.along * set - to.n_z * drop;
