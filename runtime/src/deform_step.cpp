@@ -198,6 +198,7 @@ template <class Real>
 void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact* contact, const double hip_object_m[3],
              fdcg_result* result) {
   const Upkeep<Real> upkeep(*deform);
+  deform->upkeep_left = kUpkeepWork;
   if (deform->has_moved != 0) begin_tick(upkeep);
   uint32_t flags = 0;
   if (contact->tick != deform->tick) flags = take_part(upkeep, params, hip_object_m, contact);

@@ -2,6 +2,7 @@
 #include "deform_upkeep.hpp"
 
 #include "config.hpp"
+#include "work.hpp"
 
 namespace fdcg {
 
@@ -31,6 +32,7 @@ void Upkeep<Real>::show_places(const Node& node) const {
 template <class Real>
 void Upkeep<Real>::compute_node(uint32_t n) const {
   Node& here = node(n);
+  spend(&d_->upkeep_left, kRenewedNodeWork);
   show_places(here);
   if (is_line(n)) {
     compute_sliver(n);
@@ -200,6 +202,7 @@ void Upkeep<Real>::make_tight(int level, uint32_t index, uint32_t due) const {
     const auto j = static_cast<uint32_t>(__builtin_ctz(left));
     const uint32_t below = index * FDCG_TREE_WAYS + j;
     bool may_shrink = false;
+    spend(&d_->upkeep_left, level == 0 ? kRenewedLeafWork : kRenewedBoxWork);
     (void)set_lane(&record, lanes, j,
                    level == 0 ? leaf_box(below, &may_shrink)
                               : around(d_->boxes[tree.first[level - 1] + below], tree.lanes(level - 1, below)));

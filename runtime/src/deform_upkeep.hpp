@@ -34,6 +34,8 @@ struct fdcg_deform {
   uint64_t tick;       // counts the motions that steps have seen begin; comes to no end
   uint32_t has_moved;  // how many corners, since the last step. They bear the number of the tick to come
   uint32_t node_bytes;
+  uint32_t upkeep_left;  // of a step's upkeep, in units of work.hpp
+  uint32_t reserved;
   double per_tree_unit;
   double travel;           // the sum over all ticks of the largest way of a corner, rounded up; local
   double tick_travel;      // of the present tick

@@ -281,6 +281,13 @@ struct GraphView {
 #endif
   }
 
+  // Leaves a sweep no work where the step has brought up to date as much as it may.
+  void bound_upkeep([[maybe_unused]] uint32_t* work_left) const {
+#if FDCG_DEFORMABLE
+    if (upkeep.deform().upkeep_left == 0) *work_left = 0;
+#endif
+  }
+
   // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs. Written number by
   // number where it is to be: a copy would wait for the numbers to be stored.
   void read_edge(NodeRef<Real> node, uint32_t k, Edge<Real>* edge) const {

@@ -5,10 +5,14 @@
 //
 //   bool is_outside(x)                  in free space, the surface included; one expression wherever it is asked
 //   Entry enter(from, to, begins_outside)    what a way meets first from its front; `from` may be on the surface
+//   bool is_clear(x, way)               in free space and farther than that from the surface
 //   Decision rule(walk)                 the rules of contact-model sections 5 to 7 at walk.active
+//   bool slide_quickly(face, touch)     on a face, what a tick most often is: the god-object rests, moved or not; false where
+//                                       the rules must say
 //   Point normal(feature, x, hip)       away from the material; of the HIP a direction from x is enough, at an apex
 //   static bool kIsConvex               the solid, or the cavity, is convex
 //   double sign                         1 solid, -1 hollow
+//   double extent                       no coordinate of a place on it is larger, nor much smaller than the largest
 #pragma once
 
 #include "fdcg/surface.h"
@@ -28,10 +32,13 @@ inline double from_axis(Point p) {
   return root(p.x * p.x + p.y * p.y);
 }
 
-// One contact within one step.
-struct SurfaceWalk {
+// One contact on one feature within one step.
+struct Touch {
   Friction<double> friction;
   Point hip, god_object;
+};
+// ... within the whole step.
+struct SurfaceWalk : Touch {
   Feature active;
   uint32_t moves_left;
 };
@@ -43,6 +50,13 @@ struct Entry {
   Feature feature;
 };
 inline constexpr Entry kNoEntry = {false, {0, 0, 0}, kFree};
+
+// Whether what is at a squared distance from the middle of a ball, or of a tube, is farther than `way` from its surface, and
+// free.
+FDCG_HOT bool is_clear_of_ball(double sign, double distance2, double radius, double way) {
+  const double least = radius + sign * way;
+  return sign > 0 ? distance2 > least * least : least > 0 && distance2 < least * least;
+}
 
 // ---- ways ---------------------------------------------------------------------------------------------------------------
 
@@ -142,10 +156,10 @@ enum class Slid { kRests, kSlides, kLeaves, kCrosses, kIsCut };
 
 // The god-object on a plane, which the HIP is `load` below; `across` is the part in the plane of the way from the HIP to the
 // god-object. Where it slides, *shrink is what becomes of that part.
-inline Slid slide_on_plane(SurfaceWalk& walk, Point across, double load, double* shrink) {
+FDCG_HOT Slid slide_on_plane(Touch& touch, Point across, double load, double* shrink) {
   if (!(load > 0)) return Slid::kLeaves;
   const double across2 = squared(across);
-  const Slip<double> slip = walk.friction.slip(walk.god_object, across2, load);
+  const Slip<double> slip = touch.friction.slip(touch.god_object, across2, load);
   if (slip.is_rest) return Slid::kRests;
   *shrink = slip.gap > 0 ? slip.gap / root(across2) : 0;
   return Slid::kSlides;
@@ -170,8 +184,8 @@ inline bool stop_on_circle(double reach, double base, double lift, double mu, Ar
 }
 
 // What rounding, of the god-object's place and of the normal there, makes of a pull. Less is no reason to place it anew.
-inline double pull_rounding(const SurfaceWalk& walk) {
-  return 4 * kEps * (norm1(walk.god_object) + norm1(walk.hip));
+inline double pull_rounding(const Touch& touch) {
+  return 4 * kEps * (norm1(touch.god_object) + norm1(touch.hip));
 }
 
 // ---- curved pieces ------------------------------------------------------------------------------------------------------
@@ -204,13 +218,47 @@ struct Press {
   Point across;
   double load, pull2;  // |across|^2
 };
+template <class Spot>
+FDCG_HOT Press press_at(const Spot& spot, Point hip) {
+  const Point gap = spot.at - hip;
+  const double load = dot(gap, spot.normal);
+  const Point across = gap - spot.normal * load;
+  return {across, load, squared(across)};
+}
+
+// How a surface bends along a pull.
+struct Bend {
+  Point turned;         // how the normal changes along it
+  double along, turn2;  // pull * turned; |turned|^2
+  double rate;          // how `along` changes along a geodesic that begins with the pull
+};
+
+template <class Piece, class Spot>
+FDCG_HOT Bend bend_of(const Piece& piece, const Spot& spot, Point pull) {
+  const Point turned = piece.turn(spot, pull);
+  const double along = dot(pull, turned);
+  return {turned, along, squared(turned), piece.turn_rate(spot, pull, along)};
+}
+
+// What is left of (|pull|^2 - (mu load)^2) / |pull|^2 after a way of `length`, in units of the pull, to second order:
+// excess - 2 fall length + bow length^2.
+struct Course {
+  double excess, fall, bow;
+};
+// `turn2`: |turned|^2 along a geodesic; along the steepest descent, which turns by what `turned` has across the pull, that
+// again.
+FDCG_HOT Course course_of(const Press& press, const Bend& bend, double mu, double turn2, double per_pull2) {
+  const double load = press.load, held = mu * load, both = 1 + mu * mu, taken = load * bend.along;
+  const double bent = bend.along * bend.along + taken - load * load * turn2 + load * bend.rate;
+  return {1 - held * held * per_pull2, 1 - both * taken * per_pull2, 1 - (taken + both * bent) * per_pull2};
+}
 
 // One move of a slide.
 struct Move {
   Point step;
-  double per_slope;  // by how much the excess falls, inverted; 0: not known
-  bool is_last;      // what it leaves is below rounding
-  bool has_none;     // friction holds the god-object after all
+  bool is_near;   // what it leaves may be below what set_right() sets right
+  bool is_last;   // what it leaves is below rounding
+  bool has_none;  // friction holds the god-object after all
 };
 
 // A god-object is placed where its pull is that of friction but for this share. Half of it is left for rounding.
@@ -218,59 +266,54 @@ inline constexpr double kPlaced = 0x1p-41;
 
 template <class Piece, class Spot>
 FDCG_HOT Move next_move(const Piece& piece, const Spot& spot, const Press& press, double mu, double rounding, bool has_moved) {
-  constexpr double kLargestTurn = 0.25, kLeastSlope = 0x1p-20;
-  const double load = press.load, pull = root(press.pull2), per_pull2 = 1 / press.pull2, held = mu * load;
-  const Point across = press.across, turned = piece.turn(spot, across);
-  const double turn1 = norm1(turned), per_pull = pull * per_pull2, bend = turn1 * per_pull, bent = bend * (load + pull);
-  const double excess = pull - held;
+  constexpr double kLargestTurn = 0.25, kLeastFall = 0x1p-20, kLeastExcess = -64;
+  const double load = press.load, pull = root(press.pull2), held = mu * load;
+  const Bend bend = bend_of(piece, spot, press.across);
+  const double turn1 = norm1(bend.turned), per_pull2 = 1 / press.pull2, per_pull = pull * per_pull2, bent = turn1 * per_pull;
   // Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of.
-  const double doubt = has_moved ? rounding * 0.0625 : 2 * rounding + 8 * kEps * norm1(spot.at) * bent + kPlaced * pull;
-  if (absolute(excess) <= doubt) return {{0, 0, 0}, 0, true, true};
+  const double doubt =
+      has_moved ? rounding * 0.0625 : 2 * rounding + 8 * kEps * norm1(spot.at) * bent * (load + pull) + kPlaced * pull;
+  if (absolute(pull - held) <= doubt) return {{0, 0, 0}, false, true, true};
   Point step;
-  if (mu == 0 && step_to_minimum(piece, spot, across, turned, load, &step) && norm1(step) * bend <= kLargestTurn) {
+  if (mu == 0 && step_to_minimum(piece, spot, press.across, bend.turned, load, &step) && norm1(step) * bent <= kLargestTurn) {
     const double length = norm1(step);
-    return {step, 0, 1024 * length * length * (per_pull + bend * (1 + bent)) <= rounding, false};
+    return {step, false, 1024 * length * length * (per_pull + bent * (1 + bent * (load + pull))) <= rounding, false};
   }
-  const double curvature = dot(across, turned) * per_pull2, flat = 1 - curvature * load, curved = curvature * pull;
-  const double slope = flat - curved * mu;  // of the excess, along the way
-  if (!(slope > kLeastSlope)) {
-    if (excess < 0) return {{0, 0, 0}, 0, true, true};
-    return {across * (-kLargestTurn / turn1), 0, false, false};
+  const double curvature = bend.along * per_pull2;
+  const Course course = course_of(press, bend, mu, 2 * bend.turn2 - curvature * bend.along, per_pull2);
+  if (!(course.fall > kLeastFall)) {
+    if (pull < held) return {{0, 0, 0}, false, true, true};
+    return {press.across * (-kLargestTurn / turn1), false, false, false};
   }
-  // The length in units of the pull. The move is along a circle with this curvature, brought back onto it from its tangent; in
-  // its middle the descent has another direction, since the load turns the pull. To second order the excess falls by
-  // slope * length + bow * length^2.
-  const Point aside = turned - across * curvature;
-  const double per_slope = 1 / slope, first = excess * per_pull * per_slope;
-  const double bow = 0.5 * mu * curved - squared(aside) * per_pull2 * (load * (load + 0.5 * mu * pull));
-  const double b = first * (bow * per_slope);
-  const double length = absolute(b) < 0.125 ? first * (1 - b * (1 - b * (2 - 5 * b))) : first, size = absolute(length);
-  if (!(size * turn1 <= kLargestTurn)) {
-    return {across * ((excess < 0 ? kLargestTurn : -kLargestTurn) / turn1), 0, false, false};
+  const double excess = larger(course.excess, kLeastExcess), left = course.fall * course.fall - course.bow * excess;
+  const double length = excess / (course.fall + (left > 0 ? root(left) : 0));
+  if (!(absolute(length) * turn1 <= kLargestTurn)) {
+    return {press.across * ((pull < held ? kLargestTurn : -kLargestTurn) / turn1), false, false, false};
   }
-  const double half = flat * length * 0.5;
-  const double turn =
-      norm1(aside) * load * size < pull && absolute(half) < 0.75 ? load * length * length * 0.5 * (1 + half) : 0;
-  return {across * -length - aside * turn, per_slope, false, false};
+  // To second order: the descent's direction changes, since the load turns the pull.
+  const double half = 0.5 * load * length;
+  const bool is_small = half * half * bend.turn2 <= 0.25 * press.pull2;
+  const Point aside = bend.turned - press.across * curvature;
+  return {(press.across + aside * (is_small ? half : 0)) * -length, is_small, false, false};
 }
 
-// The last of a slide, where a move has left so little that the surface is a plane: without a root, and without looking for
-// the surface again. `per_slope` is the one before that move, near enough to invert the new one. False where it is too much.
+// The last of a slide, where a move has left so little that the surface is a parabola there: without looking for it again.
+// False where it is too much.
 template <class Piece, class Spot>
-FDCG_HOT bool set_right(const Piece& piece, const Spot& spot, const Press& press, double mu, double per_slope,
-                        Point* god_object) {
-  constexpr double kMost = 0x1p-16, kCurved = 2;
-  const double held = mu * press.load, per_pull2 = 1 / press.pull2;
-  const double half = (press.pull2 - held * held) * per_pull2 * 0.5, part = half * (1 + half * 0.5);  // of the pull
-  const Point turned = piece.turn(spot, press.across);
-  const double bent = dot(press.across, turned) * per_pull2 * (press.load + mu * held);
-  const double inverse = per_slope * (2 - (1 - bent) * per_slope), length = part * inverse;
-  const double size2 = length * length, turn1 = norm1(turned), pressed = turn1 * press.load;
-  const double off_slope = (1 - bent) * per_slope - 1;
-  const double second = turn1 + pressed * pressed * per_pull2;  // with size2: what is left out of the excess, by the pull
-  if (!(absolute(length) <= kMost && 8 * off_slope * off_slope * absolute(length) <= kPlaced)) return false;
-  if (!(size2 * turn1 * held <= kCurved * kEps * norm1(spot.at) && 8 * size2 * second <= kPlaced)) return false;
-  *god_object = spot.at - press.across * length;
+FDCG_HOT bool set_right(const Piece& piece, const Spot& spot, const Press& press, double mu, Point* god_object) {
+  constexpr double kNear2 = 1e60;        // the HIP; beyond, products of four are no numbers
+  constexpr double kMostTurn = 0x1p-20;  // of the normal: its cube is nothing
+  const double load = press.load, load2 = load * load, pull2 = press.pull2, both = 1 + mu * mu;
+  if (!(pull2 < kNear2 && load2 < kNear2)) return false;
+  const Bend bend = bend_of(piece, spot, press.across);
+  const double taken = load * bend.along, turned2 = load2 * bend.turn2, fall = pull2 - both * taken;
+  const double excess = pull2 - mu * mu * load2, per_fall = 1 / fall, first = 0.5 * excess * per_fall;
+  const double bow = pull2 - taken - both * (bend.along * bend.along + taken - turned2 + load * bend.rate);
+  const double length = first + first * first * (0.5 * bow * per_fall), size = absolute(length);
+  const double bent = 1 + both * both * turned2 * absolute(per_fall);
+  if (!(fall > 0.125 * pull2 && 4 * size * size * size * (bent * bent) <= kPlaced)) return false;
+  if (!(size * norm1(bend.turned) <= kMostTurn)) return false;
+  *god_object = spot.at - press.across * length - spot.normal * (0.5 * bend.along * length * length);
   return true;
 }
 
@@ -282,29 +325,28 @@ FDCG_HOT bool set_right(const Piece& piece, const Spot& spot, const Press& press
 //   Spot spot(x, hip)            a place on it: `at`, `normal`, and what the others want to know
 //   Spot project(p, spot)        the place near p, which is near the spot
 //   Point turn(spot, v)          how the normal changes along the tangent v; linear in it
+//   double turn_rate(spot, v, along)   how `along` = dot(v, turn(v)) changes on a geodesic along v
 //   curvature_sum, _product      of the spot's principal curvatures
 //   bool bends_alike(spot, spot) false where the curvature may be quite another
 //   bool cross(from, &to, &next) whether the piece ends on the way; to->at is put on its end, `next` is what is there
 template <class Piece>
-Slid slide_on_piece(const Piece& piece, SurfaceWalk& walk, Feature* next) {
+[[gnu::noinline]] Slid slide_on_piece(const Piece& piece, SurfaceWalk& walk, Feature* next) {
   const Point start = walk.god_object - walk.hip;
   const double rounding = pull_rounding(walk);
-  const double start2 = squared(start) + norm1(start) * rounding;  // but for the rounding of a place
+  const double start2 = squared(start) + 2 * norm1(start) * rounding;  // but for the rounding of both places
   auto spot = piece.spot(walk.god_object, walk.hip);
-  double mu = -1, share = 1, per_slope = 0;
+  double mu = -1, share = 1;
+  bool is_near = false;
   for (bool has_moved = false; walk.moves_left > 0; --walk.moves_left) {
-    const Point gap = spot.at - walk.hip;
-    const double load = dot(gap, spot.normal);
-    if (!(load > 0)) return Slid::kLeaves;
-    const Point across = gap - spot.normal * load;
-    const Press press = {across, load, squared(across)};
+    const Press press = press_at(spot, walk.hip);
+    if (!(press.load > 0)) return Slid::kLeaves;
     if (mu < 0) {
-      const Slip<double> slip = walk.friction.slip(walk.god_object, press.pull2, load);
+      const Slip<double> slip = walk.friction.slip(walk.god_object, press.pull2, press.load);
       if (slip.is_rest) return Slid::kRests;
       mu = walk.friction.mu_dynamic;
     }
     if (!(press.pull2 > rounding * rounding)) return Slid::kRests;
-    if (per_slope > 0 && set_right(piece, spot, press, mu, per_slope, &walk.god_object)) return Slid::kRests;
+    if (is_near && set_right(piece, spot, press, mu, &walk.god_object)) return Slid::kRests;
     const Move move = next_move(piece, spot, press, mu, rounding, has_moved);
     if (move.has_none) return Slid::kRests;
     auto to = piece.project(spot.at + move.step * share, spot);
@@ -318,12 +360,30 @@ Slid slide_on_piece(const Piece& piece, SurfaceWalk& walk, Feature* next) {
     if (has_crossed) return Slid::kCrosses;
     const bool is_smooth = piece.bends_alike(spot, to);
     if (move.is_last && share == 1 && is_smooth) return Slid::kRests;
-    per_slope = share == 1 && is_smooth ? move.per_slope : 0;
+    is_near = share == 1 && is_smooth && move.is_near;
     share = share < 0.25 ? share * 4 : 1;
     has_moved = true;
     spot = to;
   }
   return Slid::kIsCut;
+}
+
+// The same where one move and one correction do, as most often. True where the god-object rests, moved or not.
+template <class Piece>
+FDCG_HOT bool slide_in_one(const Piece& piece, Touch& touch) {
+  const double rounding = pull_rounding(touch), mu = touch.friction.mu_dynamic;
+  if (mu == 0) return false;  // takes more than one
+  const auto from = piece.spot(touch.god_object, touch.hip);
+  const Press press = press_at(from, touch.hip);
+  if (!(press.load > 0)) return false;
+  const Slip<double> slip = touch.friction.slip(touch.god_object, press.pull2, press.load);
+  if (slip.is_rest || !(press.pull2 > rounding * rounding)) return true;
+  const Move move = next_move(piece, from, press, mu, rounding, false);
+  if (move.has_none || !move.is_near) return move.has_none;
+  const auto to = piece.project(from.at + move.step, from);
+  const Press last = press_at(to, touch.hip);
+  const bool is_nearer = last.pull2 + last.load * last.load <= press.pull2 + press.load * press.load;
+  return is_nearer && last.load > 0 && set_right(piece, to, last, mu, &touch.god_object);
 }
 
 // What the rules make of a slide; a piece that ends goes on at `next`.

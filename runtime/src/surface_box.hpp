@@ -13,11 +13,15 @@ struct BoxSurface {
   double half[3];
 
   explicit BoxSurface(const fdcg_surface& s)
-      : sign(s.is_hollow != 0 ? -1 : 1), extent(norm(vec(s.half_m))), half{s.half_m[0], s.half_m[1], s.half_m[2]} {}
+      : sign(s.is_hollow != 0 ? -1 : 1), extent(norm1(vec(s.half_m))), half{s.half_m[0], s.half_m[1], s.half_m[2]} {}
 
   [[nodiscard]] bool is_outside(Point p) const {
     const double x = absolute(p.x) - half[0], y = absolute(p.y) - half[1], z = absolute(p.z) - half[2];
     return sign > 0 ? x >= 0 || y >= 0 || z >= 0 : x <= 0 && y <= 0 && z <= 0;
+  }
+  [[nodiscard]] bool is_clear(Point p, double way) const {
+    const double x = absolute(p.x) - half[0], y = absolute(p.y) - half[1], z = absolute(p.z) - half[2];
+    return sign > 0 ? x > way || y > way || z > way : x < -way && y < -way && z < -way;
   }
   [[nodiscard]] Span span(Point from, Point way) const {
     Span span = kWholeLine;
@@ -85,6 +89,23 @@ struct BoxSurface {
     return root(squared(vec(walls.load)));
   }
 
+  // Within a face, off its edges.
+  FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
+    const uint32_t k = face / 2, i = k == 0 ? 1 : 0, j = k == 2 ? 1 : 2;
+    double at[3] = {touch.god_object.x, touch.god_object.y, touch.god_object.z};
+    const double hip[3] = {touch.hip.x, touch.hip.y, touch.hip.z};
+    const double load = at[k] > 0 ? sign * (half[k] - hip[k]) : sign * (half[k] + hip[k]);
+    const double gap_i = at[i] - hip[i], gap_j = at[j] - hip[j];
+    if (!(absolute(at[i]) < half[i] && absolute(at[j]) < half[j])) return false;
+    double shrink = 0;
+    const Slid slid = slide_on_plane(touch, {gap_i, gap_j, 0}, load, &shrink);
+    if (slid != Slid::kSlides) return slid == Slid::kRests;
+    at[i] = hip[i] + gap_i * shrink;
+    at[j] = hip[j] + gap_j * shrink;
+    if (!(absolute(at[i]) < half[i] && absolute(at[j]) < half[j])) return false;
+    touch.god_object = {at[0], at[1], at[2]};
+    return true;
+  }
   // Along the axes that no wall takes, to where friction stops it or the first end. Each round ends on one wall more.
   Decision rule(SurfaceWalk& walk) const {
     double at[3] = {walk.god_object.x, walk.god_object.y, walk.god_object.z};

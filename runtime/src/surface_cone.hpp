@@ -2,7 +2,7 @@
 // Cylinder, cone and frustum: a side between two rims, a disc at each end that is not an apex.
 #pragma once
 
-#include "surface.hpp"
+#include "surface_revolved.hpp"
 
 namespace fdcg {
 
@@ -29,14 +29,17 @@ struct ConeSurface {
     per_radius = 1 / (radius[0] > 0 ? radius[0] : radius[1]);
     along_r = grows == 0 ? 0 : grows / length;
     along_z = grows == 0 ? 1 : rises / length;
-    const double widest = radius[0] > radius[1] ? radius[0] : radius[1];
-    extent = root(widest * widest + half * half);
+    extent = larger(radius[0], radius[1]) + half;
   }
   // The side's normal in a plane of the axis is (along_z, -along_r) * sign.
   [[nodiscard]] double above_side(double off, double z) const { return along_z * (off - radius[0]) - along_r * (z + half); }
   [[nodiscard]] bool is_outside(Point x) const {
     const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
     return sign > 0 ? side >= 0 || disc >= 0 : side <= 0 && disc <= 0;
+  }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
+    return sign > 0 ? side > way || disc > way : side < -way && disc < -way;
   }
   // Between the discs' planes, and there where x^2 + y^2 is below the square of the side's radius at that height.
   [[nodiscard]] Span span(Point from, Point way) const {
@@ -142,6 +145,9 @@ struct ConeSurface {
     const Point round = {-spot.outward.y, spot.outward.x, 0};
     return round * ((v.x * round.x + v.y * round.y) * curvature_sum(spot));
   }
+  [[nodiscard]] FDCG_HOT static double turn_rate(const Spot& spot, Point v, double along) {
+    return -3 * along * (dot(v, spot.outward) * spot.per_off);
+  }
   [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * along_z * spot.per_off; }
   [[nodiscard]] static double curvature_product(const Spot&) { return 0; }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
@@ -158,6 +164,9 @@ struct ConeSurface {
 
   // ---- rules
 
+  FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
+    return face == kSide && slide_round(LineProfile{sign, radius[0], half, along_r, along_z, per_radius}, touch);
+  }
   Decision rule(SurfaceWalk& walk) const {
     if (walk.active.state == FDCG_EDGE) return rim_rule(walk);
     if (walk.active.state == FDCG_VERTEX) return apex_rule(walk);

@@ -2,7 +2,7 @@
 // The convex surfaces without an edge: plane, sphere, capsule, ellipsoid.
 #pragma once
 
-#include "surface.hpp"
+#include "surface_revolved.hpp"
 
 namespace fdcg {
 
@@ -15,20 +15,50 @@ struct PlaneSurface {
 
   explicit PlaneSurface(const fdcg_surface&) {}
   [[nodiscard]] bool is_outside(Point x) const { return x.z >= 0; }
+  [[nodiscard]] static bool is_clear(Point x, double way) { return x.z > way; }
   [[nodiscard]] Entry enter(Point from, Point to, bool begins_outside) const {
     if (!begins_outside || is_outside(to)) return kNoEntry;
     const double t = from.z / (from.z - to.z);
     return {true, {from.x + (to.x - from.x) * t, from.y + (to.y - from.y) * t, 0}, kOnlyFace};
   }
-  Decision rule(SurfaceWalk& walk) const {
-    const Point across = {walk.god_object.x - walk.hip.x, walk.god_object.y - walk.hip.y, 0};
+  FDCG_HOT Slid slide(Touch& touch) const {
+    const Point hip = touch.hip, across = {touch.god_object.x - hip.x, touch.god_object.y - hip.y, 0};
     double shrink = 0;
-    const Slid slid = slide_on_plane(walk, across, -walk.hip.z, &shrink);
-    if (slid == Slid::kSlides) walk.god_object = {walk.hip.x + across.x * shrink, walk.hip.y + across.y * shrink, 0};
-    return decide(slid, kFree);
+    const Slid slid = slide_on_plane(touch, across, -hip.z, &shrink);
+    if (slid == Slid::kSlides) touch.god_object = {hip.x + across.x * shrink, hip.y + across.y * shrink, 0};
+    return slid;
   }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide(touch) != Slid::kLeaves; }
+  Decision rule(SurfaceWalk& walk) const { return decide(slide(walk), kFree); }
   [[nodiscard]] Point normal(Feature, Point, Point) const { return {0, 0, 1}; }
 };
+
+// On a ball whose centre is on the axis the descent is a great circle towards the HIP, and its end has a closed form: with the
+// angle between god-object and HIP, the HIP pulls with reach * sin(angle) and presses with sign * (radius - reach *
+// cos(angle)), and it stops where the pull is mu times the load. The stop's angle is the HIP's alone; the god-object says in
+// which plane.
+FDCG_HOT Slid slide_on_ball(Touch& touch, double centre_z, double radius, double sign) {
+  const Point at = {touch.god_object.x, touch.god_object.y, touch.god_object.z - centre_z};
+  const Point hip = {touch.hip.x, touch.hip.y, touch.hip.z - centre_z};
+  const double per_radius = 1 / radius, level = dot(hip, at), load = sign * (radius - level * per_radius);
+  if (!(load > 0)) return Slid::kLeaves;
+  const double pull2 = squared(hip - at * (level * per_radius * per_radius));
+  const Slip<double> slip = touch.friction.slip(touch.god_object, pull2, load);
+  const double mu = touch.friction.mu_dynamic, held = mu * load;
+  const double doubt = 8 * kEps * (norm1(touch.god_object) * per_radius) * (load + held);  // the rounding of a place, as a turn
+  const double most = held + pull_rounding(touch) + doubt;
+  if (slip.is_rest || !(pull2 > most * most)) return Slid::kRests;
+  const double reach2 = squared(hip), per_reach2 = 1 / reach2, less = 1 / root(1 + mu * mu), share = mu * less;
+  const double free2 = reach2 - share * share * (radius * radius), rest = free2 > 0 ? root(free2) : 0;
+  // In units of the reach: the stop's sine and cosine.
+  const double sine = sign * share * (radius * less - rest), cosine = rest * less + share * share * radius;
+  if (!(sine >= 0 && sign * (radius - cosine) > 0)) return Slid::kLeaves;
+  const Point aside = at - hip * (level * per_reach2);
+  const double both2 = reach2 * squared(aside), per_both = root(both2) * (1 / both2);
+  const double up = radius * cosine * per_reach2, out = radius * sine * per_both;
+  touch.god_object = {hip.x * up + aside.x * out, hip.y * up + aside.y * out, hip.z * up + aside.z * out + centre_z};
+  return Slid::kRests;
+}
 
 struct Sphere {
   static constexpr bool kIsConvex = true;
@@ -36,6 +66,7 @@ struct Sphere {
 
   explicit Sphere(const fdcg_surface& s) : sign(s.is_hollow != 0 ? -1 : 1), radius(s.radius_m), extent(radius) {}
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(x) - radius * radius) >= 0; }
+  [[nodiscard]] bool is_clear(Point x, double way) const { return is_clear_of_ball(sign, squared(x), radius, way); }
   [[nodiscard]] Span span(Point from, Point way) const { return ball_span(from, way, radius); }
   [[nodiscard]] uint32_t piece_near(Point) const { return 0; }
   [[nodiscard]] Entry land(uint32_t, Point at) const {
@@ -45,30 +76,13 @@ struct Sphere {
   [[nodiscard]] Entry enter(Point from, Point to, bool begins_outside) const {
     return enter_convex(*this, from, to, begins_outside);
   }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide_on_ball(touch, 0, radius, sign) == Slid::kRests; }
+  Decision rule(SurfaceWalk& walk) const { return decide(slide_on_ball(walk, 0, radius, sign), kFree); }
   // x is on the sphere but for rounding.
-  [[nodiscard]] Point direction_of(Point x) const {
-    const double per_radius = 1 / radius;
-    const Point near = x * per_radius;
-    return near * inverse_root_near_1(squared(near) - 1);
+  [[nodiscard]] Point normal(Feature, Point x, Point) const {
+    const Point near = x * (1 / radius);
+    return near * (sign * inverse_root_near_1(squared(near) - 1));
   }
-  // The descent is a great circle towards the HIP: its end has a closed form.
-  Decision rule(SurfaceWalk& walk) const {
-    const Point up = direction_of(walk.god_object);
-    const double height = dot(walk.hip, up), load = sign * (radius - height);
-    if (!(load > 0)) return go_to(kFree);
-    const Point towards = walk.hip - up * height;
-    const double pull2 = squared(towards);
-    const Slip<double> slip = walk.friction.slip(walk.god_object, pull2, load);
-    if (slip.is_rest) return rest();
-    const double pull = root(pull2), reach = root(height * height + pull2), mu = walk.friction.mu_dynamic;
-    if (!(pull - mu * load > pull_rounding(walk))) return rest();
-    Arc stop;
-    if (!stop_on_circle(reach, sign * radius, sign * reach, mu, &stop)) return go_to(kFree);
-    const double scale = radius / reach, ahead = scale * (stop.cosine - height * stop.sine / pull);  // in units of the pull
-    walk.god_object = up * (scale * (height * stop.cosine + pull * stop.sine)) + towards * ahead;
-    return rest();
-  }
-  [[nodiscard]] Point normal(Feature, Point x, Point) const { return direction_of(x) * sign; }
 };
 
 // What is within `radius` of a segment of the z axis.
@@ -90,6 +104,9 @@ struct Capsule {
   [[nodiscard]] double nearest_z(Point x) const { return x.z > half ? half : (x.z < -half ? -half : x.z); }
   [[nodiscard]] Point from_segment(Point x) const { return {x.x, x.y, x.z - nearest_z(x)}; }
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(from_segment(x)) - radius * radius) >= 0; }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    return is_clear_of_ball(sign, squared(from_segment(x)), radius, way);
+  }
   // The side's span and those of the caps' balls together: a convex body's.
   [[nodiscard]] Span span(Point from, Point way) const {
     Span all = kWholeLine;
@@ -136,10 +153,21 @@ struct Capsule {
     const Point along = {v.x, v.y, spot.is_on_side ? 0 : v.z};
     return along * (sign * per_radius);
   }
+  [[nodiscard]] static double turn_rate(const Spot&, Point, double) { return 0; }
   [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * per_radius * (spot.is_on_side ? 1 : 2); }
   [[nodiscard]] double curvature_product(const Spot& spot) const { return spot.is_on_side ? 0 : per_radius * per_radius; }
   [[nodiscard]] static bool bends_alike(const Spot& a, const Spot& b) { return a.is_on_side == b.is_on_side; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
+  // Where it stays on the side, or on a cap.
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const {
+    const double z = touch.god_object.z;
+    if (absolute(z) <= half) return slide_round(LineProfile{sign, radius, half, 0, 1, per_radius}, touch);
+    Touch on_cap = touch;
+    const bool is_rest = slide_on_ball(on_cap, z > 0 ? half : -half, radius, sign) == Slid::kRests;
+    if (!is_rest || !(z > 0 ? on_cap.god_object.z > half : on_cap.god_object.z < -half)) return false;
+    touch = on_cap;
+    return true;
+  }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     const Slid slid = slide_on_piece(*this, walk, &none);
@@ -157,7 +185,7 @@ struct Ellipsoid {
 
   struct Spot {
     Point at, normal;
-    double steepness;  // |gradient| of the sum of (x / half)^2, halved
+    double per_steepness;  // 1 / |gradient| of the sum of (x / half)^2, halved
   };
 
   explicit Ellipsoid(const fdcg_surface& s)
@@ -170,6 +198,9 @@ struct Ellipsoid {
   static Point scaled(Point x, Point by) { return {x.x * by.x, x.y * by.y, x.z * by.z}; }
   [[nodiscard]] Point gradient(Point x) const { return scaled(x, inverse2); }
   [[nodiscard]] bool is_outside(Point x) const { return sign * (squared(scaled(x, inverse)) - 1) >= 0; }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    return is_clear_of_ball(sign, squared(scaled(x, inverse)), 1, way * larger(inverse.x, larger(inverse.y, inverse.z)));
+  }
   [[nodiscard]] Span span(Point from, Point way) const { return ball_span(scaled(from, inverse), scaled(way, inverse), 1); }
   [[nodiscard]] uint32_t piece_near(Point) const { return 0; }
   [[nodiscard]] Entry land(uint32_t, Point at) const {
@@ -182,29 +213,33 @@ struct Ellipsoid {
 
   [[nodiscard]] FDCG_HOT Spot spot(Point x, Point) const {
     const Point g = gradient(x);
-    const double length = norm(g);
-    return {x, g * (sign / length), length};
+    const double g2 = squared(g), per_length = root(g2) * (1 / g2);
+    return {x, g * (sign * per_length), per_length};
   }
-  // Along the gradient, then what is left along the ray: that is of second order, and exact to rounding.
-  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot&) const {
+  // Along the gradient, then what is left along the ray: that is of third order, and exact to rounding.
+  [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot& spot) const {
     const Point g = gradient(p);
-    const Point near = p - g * ((dot(p, g) - 1) / (2 * squared(g)));
-    return spot(near * inverse_root_near_1(squared(scaled(near, inverse)) - 1), near);
+    const Point near = p - g * ((dot(p, g) - 1) * (0.5 * spot.per_steepness * spot.per_steepness));
+    return this->spot(near * inverse_root_near_1(squared(scaled(near, inverse)) - 1), near);
   }
   [[nodiscard]] FDCG_HOT Point turn(const Spot& spot, Point v) const {
     const Point bent = gradient(v);
-    return (bent - spot.normal * dot(bent, spot.normal)) * (sign / spot.steepness);
+    return (bent - spot.normal * dot(bent, spot.normal)) * (sign * spot.per_steepness);
+  }
+  [[nodiscard]] FDCG_HOT double turn_rate(const Spot& spot, Point v, double along) const {
+    return -3 * sign * spot.per_steepness * along * dot(gradient(v), spot.normal);
   }
   [[nodiscard]] double curvature_sum(const Spot& spot) const {
     const double along = dot(gradient(spot.normal), spot.normal);
-    return sign * (inverse2.x + inverse2.y + inverse2.z - along) / spot.steepness;
+    return sign * (inverse2.x + inverse2.y + inverse2.z - along) * spot.per_steepness;
   }
   [[nodiscard]] double curvature_product(const Spot& spot) const {
-    const double steepness2 = spot.steepness * spot.steepness;
-    return per_volume2 / (steepness2 * steepness2);
+    const double per_steepness2 = spot.per_steepness * spot.per_steepness;
+    return per_volume2 * (per_steepness2 * per_steepness2);
   }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide_in_one(*this, touch); }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);

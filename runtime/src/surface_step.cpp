@@ -62,30 +62,6 @@ Progress move_god_object(const Shape& shape, SurfaceWalk& walk) {
   return progress;
 }
 
-// Calls `work` with the shape, of a struct of any size.
-template <class Work>
-auto with_shape(const fdcg_surface& given, Work work) {
-  fdcg_surface room;
-  const fdcg_surface& surface = in_full(given, &room, fdcg_init_surface);
-  switch (surface.kind) {
-    case FDCG_SURFACE_SPHERE:
-      return work(Sphere(surface));
-    case FDCG_SURFACE_CYLINDER:
-    case FDCG_SURFACE_CONE:
-      return work(ConeSurface(surface));
-    case FDCG_SURFACE_CAPSULE:
-      return work(Capsule(surface));
-    case FDCG_SURFACE_BOX:
-      return work(BoxSurface(surface));
-    case FDCG_SURFACE_TORUS:
-      return work(Torus(surface));
-    case FDCG_SURFACE_ELLIPSOID:
-      return work(Ellipsoid(surface));
-    default:
-      return work(PlaneSurface(surface));
-  }
-}
-
 bool is_usable_place(const double p[3]) {
   constexpr double kFar = RealLimits<double>::kFar;
   return absolute(p[0]) <= kFar && absolute(p[1]) <= kFar && absolute(p[2]) <= kFar;
@@ -111,35 +87,98 @@ void start(Point hip, fdcg_contact* contact) {
   contact->slipping = 0;
 }
 
-void respond(const fdcg_params& params, const fdcg_contact& contact, const SurfaceWalk& walk, fdcg_result* result) {
-  const Point spring = walk.god_object - walk.hip;
-  double newtons_per_metre = params.stiffness_n_per_m;
-  if (params.damping_n_s_per_m > 0) newtons_per_metre = damped(params, newtons_per_metre, spring, walk.hip - vec(contact.hip));
-  store(spring * newtons_per_metre, result->force_n);
+struct Tick {
+  const fdcg_surface& surface;
+  const fdcg_params& params;
+  fdcg_contact* contact;
+  const double* hip_m;
+  fdcg_result* result;
+};
+
+// What the hand feels of a contact in its new place, which is stored.
+FDCG_HOT void respond(const Tick& tick, const Touch& touch) {
+  fdcg_contact& contact = *tick.contact;
+  const Point spring = touch.god_object - touch.hip;
+  double newtons_per_metre = tick.params.stiffness_n_per_m;
+  if (tick.params.damping_n_s_per_m > 0)
+    newtons_per_metre = damped(tick.params, newtons_per_metre, spring, touch.hip - vec(contact.hip));
+  store(spring * newtons_per_metre, tick.result->force_n);
+  store(touch.god_object, contact.god_object);
+  store(touch.hip, contact.hip);
+  contact.slipping = touch.friction.is_slipping ? 1 : 0;
+}
+
+FDCG_HOT Touch touch_of(const Tick& tick, double extent) {
+  const fdcg_params& params = tick.params;
+  return {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, tick.contact->slipping != 0},
+          place_of(tick.hip_m, extent),
+          vec(tick.contact->god_object)};
 }
 
 template <class Shape>
-void step(const Shape& shape, const fdcg_params& params, fdcg_contact* contact, Point hip, fdcg_result* result) {
-  if (contact->started == 0) {
-    start(hip, contact);
+[[gnu::noinline]] void step_by_rules(const Tick& tick) {
+  fdcg_contact& contact = *tick.contact;
+  const Shape shape(tick.surface);
+  SurfaceWalk walk = {touch_of(tick, shape.extent), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
+  if (contact.started == 0) {
+    start(walk.hip, &contact);
     return;
   }
-  SurfaceWalk walk = {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, contact->slipping != 0},
-                      hip,
-                      vec(contact->god_object),
-                      {contact->state, contact->feature},
-                      FDCG_SURFACE_MAX_MOVES};
   const Progress progress = move_god_object(shape, walk);
-  result->transitions = progress.transitions;
-  result->flags = progress.flags;
-  contact->transition_bound_ticks += progress.flags != 0 ? 1 : 0;
-  const bool is_free = walk.active == kFree;
-  if (!is_free) respond(params, *contact, walk, result);
-  store(walk.god_object, contact->god_object);
-  store(hip, contact->hip);
-  contact->state = walk.active.state;
-  contact->feature = walk.active.index;
-  contact->slipping = !is_free && walk.friction.is_slipping ? 1 : 0;
+  tick.result->transitions = progress.transitions;
+  tick.result->flags = progress.flags;
+  contact.transition_bound_ticks += progress.flags != 0 ? 1 : 0;
+  contact.state = walk.active.state;
+  contact.feature = walk.active.index;
+  if (walk.active == kFree) {
+    store(walk.god_object, contact.god_object);
+    store(walk.hip, contact.hip);
+    contact.slipping = 0;
+  } else {
+    respond(tick, walk);
+  }
+}
+
+// No less than a way's length, and all roundings of where it leads.
+FDCG_HOT double way_bound(Point way, double extent) {
+  return norm1(way) * (1 + 0x1p-20) + 16 * kEps * extent;
+}
+
+// What most ticks are, before the rules. All of it stays in registers: nothing here is handed to another function.
+template <class Shape>
+void step_on(const Tick& tick) {
+  fdcg_contact& contact = *tick.contact;
+  const Shape shape(tick.surface);
+  Touch touch = touch_of(tick, shape.extent);
+  const Point way = touch.hip - touch.god_object;
+  if (contact.state == FDCG_FREE && contact.started != 0 && shape.is_clear(touch.hip, way_bound(way, shape.extent))) {
+    store(touch.hip, contact.god_object);
+    store(touch.hip, contact.hip);
+  } else if (contact.state == FDCG_FACE && shape.slide_quickly(contact.feature, touch)) {
+    respond(tick, touch);
+  } else {
+    step_by_rules<Shape>(tick);
+  }
+}
+
+template <class Shape>
+Point normal_on(const fdcg_surface& surface, const fdcg_result& result) {
+  const Point at = vec(result.god_object_m);
+  return Shape(surface).normal({result.state, result.feature}, at, at - vec(result.force_n));
+}
+
+// What is done with a surface, by its kind.
+struct Kind {
+  void (*step)(const Tick& tick);
+  Point (*normal)(const fdcg_surface& surface, const fdcg_result& result);
+};
+template <class Shape>
+inline constexpr Kind kKind = {step_on<Shape>, normal_on<Shape>};
+
+const Kind& kind_of(const fdcg_surface& surface) {
+  static constexpr Kind kKinds[] = {kKind<PlaneSurface>, kKind<Sphere>,      kKind<ConeSurface>, kKind<Capsule>,
+                                    kKind<BoxSurface>,   kKind<ConeSurface>, kKind<Torus>,       kKind<Ellipsoid>};
+  return kKinds[surface.kind <= FDCG_SURFACE_ELLIPSOID ? surface.kind : 0];
 }
 
 }  // namespace
@@ -150,10 +189,10 @@ extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params
   using namespace fdcg;
   *result = {};
   if (is_usable_place(hip_object_m)) {
-    fdcg_params room;
-    const fdcg_params& all_params = in_full(*params, &room, fdcg_init_params);
-    with_shape(*surface,
-               [&](const auto& shape) { step(shape, all_params, contact, place_of(hip_object_m, shape.extent), result); });
+    fdcg_surface surface_room;
+    fdcg_params params_room;
+    const fdcg_surface& whole = in_full(*surface, &surface_room, fdcg_init_surface);
+    kind_of(whole).step({whole, in_full(*params, &params_room, fdcg_init_params), contact, hip_object_m, result});
   } else {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
@@ -168,9 +207,9 @@ extern "C" void fdcg_surface_normal(const fdcg_surface* surface, const fdcg_resu
   using namespace fdcg;
   Point n = {0, 0, 0};
   if (result->state != FDCG_FREE) {
-    const Feature feature = {result->state, result->feature};
-    const Point at = vec(result->god_object_m);
-    with_shape(*surface, [&](const auto& shape) { n = shape.normal(feature, at, at - vec(result->force_n)); });
+    fdcg_surface room;
+    const fdcg_surface& whole = in_full(*surface, &room, fdcg_init_surface);
+    n = kind_of(whole).normal(whole, *result);
   }
   normal[0] = n.x;
   normal[1] = n.y;

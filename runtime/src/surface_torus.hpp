@@ -2,6 +2,7 @@
 // The torus: the one surface here that is convex from neither side, so that what leaves it may meet it again.
 #pragma once
 
+#include "surface_revolved.hpp"
 #include "surface_round.hpp"
 
 namespace fdcg {
@@ -91,6 +92,28 @@ inline Marks quadratic_marks(const Polynomial<2>& f) {
   return 2;
 }
 
+// The tube's circle.
+struct TubeProfile {
+  static constexpr bool kIsLine = false;
+  double ring, raised, bend;
+
+  [[nodiscard]] static Outward outward(Point at, double off2) { return outward_of(at, off2); }
+  [[nodiscard]] FDCG_HOT Section section(double off, double z) const { return {ring, 0, (off - ring) * bend, z * bend}; }
+  [[nodiscard]] FDCG_HOT Section moved(const Section& from, double way) const {
+    const double tangent = way * bend, off_1 = from.n_r * from.n_r + from.n_z * from.n_z - 1;
+    const double cosine = inverse_root_of_turn(off_1 + tangent * tangent * (1 + off_1));
+    return {ring, 0, (from.n_r - tangent * from.n_z) * cosine, (from.n_z + tangent * from.n_r) * cosine};
+  }
+  [[nodiscard]] FDCG_HOT bool nearest(const Section& from, double off, double z, Section* to) const {
+    const double out = off - ring, distance2 = out * out + z * z;
+    if (!(distance2 > 0)) return false;
+    const double distance = root(distance2), scale = (raised > 0 ? 1 : -1) / distance;
+    *to = {ring, 0, out * scale, z * scale};
+    return from.n_r * to->n_r + from.n_z * to->n_z > 0.96875 && (raised > 0 ? distance < raised : distance > -raised);
+  }
+  [[nodiscard]] static bool is_within(double) { return true; }
+};
+
 struct Torus {
   static constexpr bool kIsConvex = false;
   double sign, ring, tube, per_tube, extent;
@@ -108,6 +131,10 @@ struct Torus {
   [[nodiscard]] bool is_outside(Point x) const {
     const double out = from_axis(x) - ring;
     return sign * (out * out + x.z * x.z - tube * tube) >= 0;
+  }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    const double out = from_axis(x) - ring;
+    return is_clear_of_ball(sign, out * out + x.z * x.z, tube, way);
   }
   // (|x|^2 + ring^2 - tube^2)^2 - 4 ring^2 (x^2 + y^2) along a way: negative within the tube.
   [[nodiscard]] Polynomial<4> along(Point from, Point way) const {
@@ -134,13 +161,13 @@ struct Torus {
     const bool must_meet = begins_outside && !is_outside(to);
     const Way near = near_part(from, to, extent);
     const Point way = near.to - near.from;
-    if (!must_meet && is_clear(near.from, way)) return kNoEntry;
+    if (!must_meet && is_far_from(near.from, way)) return kNoEntry;
     const double t = first_fall(along(near.from, way), begins_outside);
     if (t <= 1) return land(near.from + way * t);
     return must_meet ? land(to) : kNoEntry;
   }
   // Whether the tube's surface is farther away than the way is long.
-  [[nodiscard]] bool is_clear(Point from, Point way) const {
+  [[nodiscard]] bool is_far_from(Point from, Point way) const {
     constexpr double kHeldBack = 1 - 0x1p-20;
     const double out = from_axis(from) - ring;
     const double distance = absolute(root(out * out + from.z * from.z) - tube) * kHeldBack - 8 * kEps * extent;
@@ -176,10 +203,17 @@ struct Torus {
     const double on_ring = v.x * round.x + v.y * round.y;
     return (v - round * on_ring) * (sign * per_tube) + round * (on_ring * sign * spot.out * spot.per_off);
   }
+  [[nodiscard]] FDCG_HOT double turn_rate(const Spot& spot, Point v, double) const {
+    const double on_ring = v.y * spot.outward.x - v.x * spot.outward.y;
+    return 3 * sign * (per_tube - spot.out * spot.per_off) * (on_ring * on_ring) * (dot(v, spot.outward) * spot.per_off);
+  }
   [[nodiscard]] double curvature_sum(const Spot& spot) const { return sign * (per_tube + spot.out * spot.per_off); }
   [[nodiscard]] double curvature_product(const Spot& spot) const { return per_tube * spot.out * spot.per_off; }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const {
+    return slide_round(TubeProfile{ring, sign * tube, sign * per_tube}, touch);
+  }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);

@@ -161,8 +161,9 @@ class Sweep {
     const fdcg_box8& boxes = graph_.hierarchy[tree.first[level] + record];
     const float limit = tree_fraction(best_.fraction);
     const uint32_t touched = touched_boxes(boxes, in_tree_, limit, entry) & tree.lanes(level, record);
-    if (graph_.has_tightened(level, record, touched)) return touched & touched_boxes(boxes, in_tree_, limit, entry);
-    return touched;
+    const bool has_tightened = graph_.has_tightened(level, record, touched);
+    graph_.bound_upkeep(work_left_);
+    return has_tightened ? touched & touched_boxes(boxes, in_tree_, limit, entry) : touched;
   }
 
   // A fraction of the whole way as one of the part of it that is near the tree.
@@ -200,6 +201,7 @@ class Sweep {
     const uint32_t count = left_in_graph < FDCG_LEAF_NODES ? left_in_graph : FDCG_LEAF_NODES;
     for (uint32_t n = first; n < first + count; ++n)
       glance_at_node(n);
+    graph_.bound_upkeep(work_left_);
   }
 
   // Of most nodes the way ends in front, or begins behind, by more than rounding could change: those need no call.

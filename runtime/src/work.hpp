@@ -20,19 +20,29 @@ inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 #endif
 inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 
-inline constexpr uint32_t kBoxWork = 30;         // eight boxes tested, and put in order
-inline constexpr uint32_t kLeafWork = 4;         // a leaf taken up, besides its nodes
-inline constexpr uint32_t kNodeWork = 5;         // one node fetched, both ends of the way against its plane
-inline constexpr uint32_t kNearPlaneWork = 18;   // ... one end so near that its side is asked of the corners
-inline constexpr uint32_t kOrientationWork = 9;  // one side's edge against the way, where rounding cannot matter
-inline constexpr uint32_t kPairsWork = 30;       // ... and where it does: 450 instructions
-inline constexpr uint32_t kExactWork = 70;       // ... so much more on a plane but for 2^-98 of the size: 1,050
-inline constexpr uint32_t kLongExactWork = 290;  // ... with coordinates of very different sizes: 4,300
-inline constexpr uint32_t kTransitionWork = 10;  // one change of state
-inline constexpr uint32_t kSideWork = 4;         // one side of a face that the god-object slides on
-inline constexpr uint32_t kEdgeWork = 15;        // the rule of an edge
-inline constexpr uint32_t kFanWork = 8;          // one edge of a corner and the face beside it
-inline constexpr uint32_t kFanBoxWork = 5;       // one box of a busy corner's tree
+// Of one step on a deformable mesh, all that it brings up to date (deform_upkeep.hpp): some 90,000 instructions. Where it is
+// spent the step's sweeps have no work left either.
+#ifndef FDCG_UPKEEP_WORK
+#define FDCG_UPKEEP_WORK 6000
+#endif
+inline constexpr uint32_t kUpkeepWork = FDCG_UPKEEP_WORK;
+
+inline constexpr uint32_t kBoxWork = 30;          // eight boxes tested, and put in order
+inline constexpr uint32_t kLeafWork = 4;          // a leaf taken up, besides its nodes
+inline constexpr uint32_t kNodeWork = 5;          // one node fetched, both ends of the way against its plane
+inline constexpr uint32_t kNearPlaneWork = 18;    // ... one end so near that its side is asked of the corners
+inline constexpr uint32_t kOrientationWork = 9;   // one side's edge against the way, where rounding cannot matter
+inline constexpr uint32_t kPairsWork = 30;        // ... and where it does: 450 instructions
+inline constexpr uint32_t kExactWork = 70;        // ... so much more on a plane but for 2^-98 of the size: 1,050
+inline constexpr uint32_t kLongExactWork = 290;   // ... with coordinates of very different sizes: 4,300
+inline constexpr uint32_t kTransitionWork = 10;   // one change of state
+inline constexpr uint32_t kSideWork = 4;          // one side of a face that the god-object slides on
+inline constexpr uint32_t kEdgeWork = 15;         // the rule of an edge
+inline constexpr uint32_t kFanWork = 8;           // one edge of a corner and the face beside it
+inline constexpr uint32_t kFanBoxWork = 5;        // one box of a busy corner's tree
+inline constexpr uint32_t kRenewedNodeWork = 55;  // a node's plane computed anew
+inline constexpr uint32_t kRenewedLeafWork = 85;  // a leaf's box
+inline constexpr uint32_t kRenewedBoxWork = 40;   // the box of a record
 
 // Takes `units` off what is left; at nothing left stays there.
 inline void spend(uint32_t* work_left, uint32_t units) {

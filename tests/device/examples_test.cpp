@@ -144,6 +144,40 @@ TEST_CASE("three fingers hold a ball and turn it by a third, without slipping") 
   CHECK(std::fabs(held.end_m - 0.03) < 0.002);
 }
 
+TEST_CASE("two fingers beside a cube's middle: it tips between points, pads hold and turn it") {
+  for (const double pad_m : {0.0, 0.01}) {
+    const Folder folder;
+    HostConfig config = read(kScenes + "lift_cube.json");
+    DeviceConfig& device = config.devices[0];
+    for (int contact = 0; contact < 2; ++contact) {
+      device.contacts_m[contact][1] = device.grip.closed_m[contact][1] = 0.006;
+      device.pads_m[contact] = pad_m;
+    }
+    CHECK(run(std::move(config), 4.6, folder.file("a.fdcglog")).last.phase == Phase::kArmed);
+    SessionReplay replay;
+    REQUIRE(replay.open(folder.file("a.fdcglog"), "") == "");
+    fdcg_pose last{};
+    double tilt_rad = 0;
+    std::uint64_t ticks = 0;
+    for (ReplayedTick tick; replay.next(&tick);) {
+      last = tick.output->bodies[0];
+      const double* const q = last.rotation_xyzw;
+      if (++ticks > 2600) tilt_rad = std::max(tilt_rad, 2 * std::hypot(q[0], q[1]));  // it hangs in the air
+    }
+    CAPTURE(pad_m, tilt_rad, last.translation_m[2]);
+    CHECK(replay.is_same());
+    CHECK(last.translation_m[2] > 0.03);
+    if (pad_m == 0) {
+      CHECK(tilt_rad > 0.5);
+      continue;
+    }
+    // the weight, 6 mm beside, against two springs of 1 N/mm times the radius squared; as much again for the swing
+    const double sagged_rad = 0.1 * 9.80665 * 0.006 / (2 * 1000 * pad_m * pad_m);
+    CHECK(tilt_rad < 2 * sagged_rad);
+    CHECK(tilt_rad > 0.5 * sagged_rad);
+  }
+}
+
 TEST_CASE("with friction for half of its weight the cube stays on the ground, and the fingers slip") {
   const Folder folder;
   HostConfig config = read(kScenes + "lift_cube.json");

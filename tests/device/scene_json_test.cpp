@@ -57,7 +57,7 @@ constexpr const char* kGrasp = R"({
      "damping_n_s_per_m": 8, "depth_m": 0.01}}],
   "devices": [
     {"name": "left", "source": "simulated",
-     "contacts": [{"offset_m": [0.03, 0, 0], "closed_m": [0.01, 0.001, 0]}, {"offset_m": [-0.03, 0, 0]}],
+     "contacts": [{"offset_m": [0.03, 0, 0], "closed_m": [0.01, 0.001, 0], "pad_radius_m": 0.004}, {"offset_m": [-0.03, 0, 0]}],
      "grip": {"button": 3, "seconds": 0.25}, "turn": {"button": 31, "seconds": 2, "rotation_xyzw": [0, 0, -0.6, -0.8]},
      "simulation": {"script": [{"at_s": 0.5, "place_m": [0.1, 0, 0.2]}, {"at_s": 1, "place_m": [0, 0, 0.3], "buttons": [0, 7]}]}}]
 })";
@@ -243,6 +243,8 @@ TEST_CASE("bodies, surfaces, soft sheets, grips and scripts are read, and writte
   CHECK(left.grip.turn_xyzw[3] == 0.8);
   CHECK(left.grip.closed_m[0][1] == 0.001);
   CHECK(left.grip.closed_m[1][0] == -0.03);
+  CHECK(left.pads_m[0] == 0.004);
+  CHECK(left.pads_m[1] == 0);
   REQUIRE(left.simulation.script.size() == 2);
   CHECK(left.simulation.script[0].place_m[2] == 0.2);
   CHECK(left.simulation.script[1].buttons == 0x81);
@@ -269,6 +271,7 @@ TEST_CASE("what is wrong with a grasp is told too") {
       {"/ground/normal", "[0, 0, 2]", {"ground.normal has length 2"}},
       {"/devices/0/turn/rotation_xyzw", "[0, 0, 0, 0]", {"turn.rotation_xyzw has length 0"}},
       {"/devices/0/grip/button", "32", {"grip.button is 32", "0 to 31"}},
+      {"/devices/0/contacts/0/pad_radius_m", "-0.001", {"contacts[0].pad_radius_m is -0.001", "0 to 1"}},
       {"/devices/0/grip", "", {"contacts[0].closed_m has no \"grip\""}},
       {"/devices/0/simulation/start_m", "[0, 0, 0]", {"simulation.start_m stands beside script"}},
       {"/devices/0/simulation/script/1/at_s", "0.5", {"script[1].at_s is 0.5", "times ascend"}},

@@ -100,6 +100,17 @@ class Sheet {
     }
   }
 
+  // The same of many at once; of none that is squeezed or followed.
+  void lift_with_others(std::size_t v, double z) {
+    lifted_.push_back(v);
+    places_.insert(places_.end(), {rest_.points[v].x, rest_.points[v].y, static_cast<double>(static_cast<float>(z))});
+  }
+  void lift_all() {
+    mesh.move(lifted_, places_);
+    lifted_.clear();
+    places_.clear();
+  }
+
   // The surface's height at a place, but for rounding; on request the cosine of its slope.
   [[nodiscard]] double height_at(double x, double y, double* cosine = nullptr) const {
     double best = -1, height = 0;
@@ -157,6 +168,8 @@ class Sheet {
   bake::CompileOptions options_;
   std::vector<Squeezed> squeezed_;
   std::vector<float> height_;
+  std::vector<std::size_t> lifted_;
+  std::vector<double> places_;
   std::vector<std::size_t> vertex_;
   std::vector<Polygon> triangles_;
   std::vector<std::vector<std::size_t>> of_cell_;
@@ -167,21 +180,21 @@ class Sheet {
 
 }  // namespace
 
-// FDCG_STEPS=10000000 FDCG_SHEET=224 is the long form: 10^5 faces.
+// FDCG_STEPS=10000000 FDCG_SHEET=224 is the long form: 10^5 faces. With FDCG_SEED it may run in parts.
 TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
   constexpr double kEpsilon = 2.2204460492503131e-16;
   const std::uint64_t steps = steps_or(60000);
   const int n = std::getenv("FDCG_SHEET") != nullptr ? std::atoi(std::getenv("FDCG_SHEET")) : 40;
   Sheet sheet(n);
   const double extent = sheet.updated_extent();
-  Random random(17);
+  Random random(std::getenv("FDCG_SEED") != nullptr ? std::strtoull(std::getenv("FDCG_SEED"), nullptr, 10) : 17);
   fdcg_deform_contact contact = {};
   const fdcg_params params = contact_params(0.5, 0.3);
   const auto moving = static_cast<std::uint32_t>(sheet.vertex_count() / 100) + 1;
   const std::uint64_t between =
       std::min<std::uint64_t>(steps / 32, 10000);  // steps, from one computation of the whole to the next
   Hip hip = {0.013, 0.021, 0.3};
-  std::uint64_t caught = 0, touched = 0, freed = 0, bound = 0, longest_bound = 0;
+  std::uint64_t caught = 0, touched = 0, freed = 0, bound = 0, longest_bound = 0, all_bound = 0;
   std::uint32_t last_state = FDCG_FREE;
   double most_off = 0;
   for (std::uint64_t i = 0; i < steps; ++i) {
@@ -192,8 +205,9 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
       const std::size_t v = is_near ? sheet.vertex_near(hip[0] + random.uniform(-4, 4) / n, hip[1] + random.uniform(-4, 4) / n)
                                     : random.below(static_cast<std::uint32_t>(sheet.vertex_count()));
       // the rim stays level: over a steep one a god-object may rightly leave an open sheet
-      if (!sheet.is_near_rim(v)) sheet.lift(v, random.uniform(-0.2, 0.2));
+      if (!sheet.is_near_rim(v)) sheet.lift_with_others(v, random.uniform(-0.2, 0.2));
     }
+    sheet.lift_all();
     if (!is_still) {
       const double size = random.chance(0.1) ? 0.3 : 0.02;
       for (int k = 0; k < 3; ++k)
@@ -219,6 +233,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     }
     bound = (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 ? bound + 1 : 0;  // ticks in a row
     longest_bound = std::max(longest_bound, bound);
+    all_bound += bound > 0;
     caught += (result.flags & FDCG_DEFORM_CAUGHT) != 0;
     touched += result.state != FDCG_FREE;
     freed += result.state == FDCG_FREE && last_state != FDCG_FREE;
@@ -230,14 +245,14 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
     }
   }
   std::ostringstream said;
-  said << caught << " caught, " << touched << " in touch, " << freed << " freed, " << longest_bound << " bound in a row, of "
-       << steps << "; most off the surface " << most_off / (kEpsilon * extent) << " epsilons of the extent";
+  said << caught << " caught, " << touched << " in touch, " << freed << " freed, " << all_bound << " bound, " << longest_bound
+       << " in a row, of " << steps << "; most off the surface " << most_off / (kEpsilon * extent) << " epsilons of the extent";
   INFO(said.str());
   CHECK(caught > steps / 5000);
   CHECK(touched > steps / 10);
   CHECK(freed > steps / 500);
   CHECK(longest_bound < 100);
-  if (steps > 1000000) WARN(said.str());
+  if (steps > 100000) WARN(said.str());
 }
 
 TEST_CASE("triangles squeezed to lines and points let nothing through, and come back") {

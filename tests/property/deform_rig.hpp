@@ -82,6 +82,17 @@ class DeformableMesh {
     if (status != FDCG_OK) FAIL(error.message);
     points_[vertex] = to;
   }
+  // Many at once, in order.
+  void move(const std::vector<std::size_t>& vertices, const std::vector<double>& places) {
+    moving_.clear();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      moving_.push_back(corner_of_[vertices[i]]);
+      points_[vertices[i]] = {places[3 * i], places[3 * i + 1], places[3 * i + 2]};
+    }
+    fdcg_error error;
+    if (fdcg_deform_move_corners(deform_, moving_.data(), places.data(), moving_.size(), &error) != FDCG_OK)
+      FAIL(error.message);
+  }
   fdcg_result step(const fdcg_params& params, fdcg_deform_contact* contact, const Hip& hip) {
     fdcg_result result;
     fdcg_deform_step(deform_, &params, contact, hip.data(), &result);
@@ -112,7 +123,7 @@ class DeformableMesh {
   CompiledMesh compiled_;
   std::vector<bake::Vec3> points_;  // where they were moved to
   std::vector<std::uint64_t> memory_;
-  std::vector<std::uint32_t> corner_of_;
+  std::vector<std::uint32_t> corner_of_, moving_;
   fdcg_deform* deform_ = nullptr;
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "fdcg/soft_finger.h"
+
 namespace fdcg::dev {
 namespace {
 
@@ -28,6 +30,23 @@ void contact_place(const DeviceSetup& setup, const GripState& grip, int contact,
   for (int i = 0; i < 3; ++i)
     place_m[i] = tip_m[i] + offset_m[i];
   to_world(setup.mapping, place_m, world_m);
+}
+
+// How the contacts are turned: the device's turn, about axes of the world.
+void turn_of_contacts(const DeviceSetup& setup, const GripState& grip, double turn_xyzw[4]) {
+  double q[4];
+  grip_turn(setup.grip, grip, q);
+  for (int i = 0; i < 3; ++i) {
+    const double* const row = setup.mapping.rotation + 3 * i;
+    turn_xyzw[i] = row[0] * q[0] + row[1] * q[1] + row[2] * q[2];
+  }
+  turn_xyzw[3] = q[3];
+}
+
+// Pads resist being turned against what they touch, so they have to know how they stand.
+void turn_pads(const DeviceSetup& setup, const double turn_xyzw[4]) {
+  for (int contact = 0; contact < setup.contact_count; ++contact)
+    if (setup.pads_m[contact] > 0) fdcg_scene_turn_finger(setup.scene, setup.fingers[contact], turn_xyzw, nullptr);
 }
 
 // Judges what was read. True with the newest good report in *sample.
@@ -66,7 +85,7 @@ void count_tick(DeviceState& device, const TickInput& input, bool has_sample) {
 }
 
 // Substeps, in which the fingers go in even steps to where they are now: what they hold is not struck once a tick.
-void step_bodies(DeviceState& device, const double (*to_m)[3]) {
+void step_bodies(DeviceState& device, const double (*to_m)[3], const double to_xyzw[4]) {
   const DeviceSetup& setup = device.setup;
   const std::uint32_t count = setup.substeps;
   const double substep_s = 1 / setup.profile.rate_hz / count;
@@ -79,6 +98,10 @@ void step_bodies(DeviceState& device, const double (*to_m)[3]) {
         at_m[i] = step == count ? to_m[contact][i] : from[i] + (to_m[contact][i] - from[i]) * share;
       fdcg_scene_move_finger(setup.scene, setup.fingers[contact], at_m, nullptr);
     }
+    double at_xyzw[4];  // the straight line: of length 1 but for turns of many degrees a tick, of which the end alone is taken
+    for (int i = 0; i < 4; ++i)
+      at_xyzw[i] = step == count ? to_xyzw[i] : device.turn_xyzw[i] + (to_xyzw[i] - device.turn_xyzw[i]) * share;
+    turn_pads(setup, at_xyzw);
     const fdcg_status status = fdcg_scene_step_pile(setup.scene, setup.pile, setup.bodies, setup.body_count, 1, substep_s,
                                                     setup.reactions, setup.reaction_count, nullptr);
     if (status == FDCG_OK) continue;
@@ -91,7 +114,8 @@ void step_bodies(DeviceState& device, const double (*to_m)[3]) {
 void step_scene(DeviceState& device, const double tip_m[3]) {
   const DeviceSetup& setup = device.setup;
   const bool has_bodies = setup.body_count > 0 && device.counters.bodies_lost == 0;
-  double to_m[kMaxContacts][3];
+  double to_m[kMaxContacts][3], to_xyzw[4];
+  turn_of_contacts(setup, device.grip, to_xyzw);
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     contact_place(setup, device.grip, contact, tip_m, to_m[contact]);
     if (device.has_place && has_bodies) continue;
@@ -99,12 +123,15 @@ void step_scene(DeviceState& device, const double tip_m[3]) {
     place(setup.scene, setup.fingers[contact], to_m[contact], nullptr);
     std::copy_n(to_m[contact], 3, device.places_m[contact]);
   }
+  if (!device.has_place) std::copy_n(to_xyzw, 4, device.turn_xyzw);
   device.has_place = true;
   if (has_bodies) {
-    step_bodies(device, to_m);
+    step_bodies(device, to_m, to_xyzw);
   } else {
+    turn_pads(setup, to_xyzw);
     fdcg_scene_step(setup.scene);
   }
+  std::copy_n(to_xyzw, 4, device.turn_xyzw);
   std::copy_n(&to_m[0][0], 3 * setup.contact_count, &device.places_m[0][0]);
 }
 
@@ -158,7 +185,10 @@ bool begin_device(const DeviceSetup& setup, DeviceState* device, fdcg_error* err
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     double world_m[3];
     contact_place(setup, device->grip, contact, tip_m, world_m);
-    if (fdcg_scene_add_finger(setup.scene, world_m, &device->setup.fingers[contact], error) != FDCG_OK) return false;
+    fdcg_finger_id* const finger = &device->setup.fingers[contact];
+    if (fdcg_scene_add_finger(setup.scene, world_m, finger, error) != FDCG_OK) return false;
+    const double pad_m = setup.pads_m[contact];
+    if (pad_m > 0 && fdcg_scene_soften_finger(setup.scene, *finger, pad_m, error) != FDCG_OK) return false;
   }
   return true;
 }

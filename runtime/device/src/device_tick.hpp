@@ -84,6 +84,7 @@ struct DeviceSetup {
   Mapping mapping;
   int contact_count = 1;
   double contacts_m[kMaxContacts][3] = {};  // from the tip, device's frame, not scaled
+  double pads_m[kMaxContacts] = {};         // radius of each contact's pad, world; 0: a point
   double most_force_n = 0;                  // the scene's limit; 0: the profile's
   fdcg_scene* scene = nullptr;              // this device's own: nothing is shared but the graphs
   fdcg_finger_id fingers[kMaxContacts] = {};
@@ -113,6 +114,7 @@ struct DeviceState {
   std::uint64_t last_good_ns = 0;
   GripState grip;
   double places_m[kMaxContacts][3] = {};  // of the contacts, world, in the last tick
+  double turn_xyzw[4] = {0, 0, 0, 1};     // and how they were turned
   // as of the last good report
   Sample sample;
   double tip_world_m[3] = {};

@@ -27,6 +27,15 @@ void move_grip(const Grip& grip, std::uint32_t buttons, double period_s, GripSta
   state->turned = moved(grip.turn, buttons, period_s, state->turned);
 }
 
+void grip_turn(const Grip& grip, const GripState& state, double turn_xyzw[4]) {
+  // Between no turn and the whole one on the straight line, made of length 1 again: up to half a turn, without sine or cosine.
+  const double part = smooth(state.turned), *const whole = grip.turn_xyzw;
+  const double q[4] = {whole[0] * part, whole[1] * part, whole[2] * part, 1 + (whole[3] - 1) * part};
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (int i = 0; i < 4; ++i)
+    turn_xyzw[i] = q[i] / length;
+}
+
 void grip_offset(const Grip& grip, const GripState& state, int contact, const double open_m[3], double offset_m[3]) {
   const double share = smooth(state.closed);
   double at_m[3] = {open_m[0], open_m[1], open_m[2]};
@@ -36,12 +45,8 @@ void grip_offset(const Grip& grip, const GripState& state, int contact, const do
   }
   std::copy_n(at_m, 3, offset_m);
   if (!(state.turned > 0)) return;
-  // Between no turn and the whole one on the straight line, made of length 1 again: up to half a turn, without sine or cosine.
-  const double part = smooth(state.turned), *const whole = grip.turn_xyzw;
-  double q[4] = {whole[0] * part, whole[1] * part, whole[2] * part, 1 + (whole[3] - 1) * part};
-  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  for (double& x : q)
-    x /= length;
+  double q[4];
+  grip_turn(grip, state, q);
   turn(q, at_m, offset_m);
 }
 

@@ -29,6 +29,9 @@ struct GripState {
 // One period of the device further.
 void move_grip(const Grip& grip, std::uint32_t buttons, double period_s, GripState* state);
 
+// How far the contacts are turned about the tip: a unit quaternion, device's frame.
+void grip_turn(const Grip& grip, const GripState& state, double turn_xyzw[4]);
+
 // Where a contact is, from the tip, device's frame. open_m: where it is with no button held.
 void grip_offset(const Grip& grip, const GripState& state, int contact, const double open_m[3], double offset_m[3]);
 

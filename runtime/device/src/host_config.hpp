@@ -69,6 +69,7 @@ struct DeviceConfig {
   Mapping mapping;
   int contact_count = 1;
   double contacts_m[kMaxContacts][3] = {};
+  double pads_m[kMaxContacts] = {};  // radius of each contact's pad; 0: a point
   Grip grip;
   double most_force_n = 0;
 };

@@ -192,9 +192,11 @@ std::string Builder::add_body(std::size_t index) {
   // All contacts may press on it at once. The pile holds its own springs within bounds.
   const double stiffness_n_per_m = object.params.stiffness_n_per_m * from_.contact_count;
   const double tick_s = 1 / from_.profile.rate_hz;
-  const double reach_m = object.is_surface ? reach_of(object.surface, object.pose.scale)
-                                           : reach_of(graphs_.of_object(index), config, object.pose.scale);
-  const std::uint32_t substeps = fdcg_body_substeps(&body.body, stiffness_n_per_m, reach_m, tick_s);
+  // A pad's spring against turning has its stiffness times its radius squared.
+  const double pad_m = *std::max_element(from_.pads_m, from_.pads_m + from_.contact_count);
+  const double far_m = object.is_surface ? reach_of(object.surface, object.pose.scale)
+                                         : reach_of(graphs_.of_object(index), config, object.pose.scale);
+  const std::uint32_t substeps = fdcg_body_substeps(&body.body, stiffness_n_per_m, std::hypot(far_m, pad_m), tick_s);
   if (substeps == 0) {
     return "with " + shown_number(config.mass_kg) + " kg it is too light for " + std::to_string(from_.contact_count) +
            " contacts of " + shown_number(object.params.stiffness_n_per_m) + " N/m each: it would need more than " +

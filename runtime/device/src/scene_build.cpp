@@ -97,6 +97,8 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
   capacities.touches_per_finger = std::clamp(object_count, 1u, kMostTouches);
   const auto is_soft = [](const ObjectConfig& object) { return object.motion.kind == MotionKind::kSoft; };
   capacities.has_deforms = std::any_of(config.objects.begin(), config.objects.end(), is_soft) ? 1 : 0;
+  const auto is_pad = [](double radius_m) { return radius_m > 0; };
+  capacities.has_soft_fingers = std::any_of(from.pads_m, from.pads_m + from.contact_count, is_pad) ? 1 : 0;
   const std::uint64_t bytes = fdcg_scene_bytes(&capacities);
   scene->memory.assign(static_cast<std::size_t>(bytes / sizeof(std::uint64_t) + 1), 0);
 
@@ -107,6 +109,7 @@ std::string build_device_scene(const HostConfig& config, std::size_t device, con
   setup.mapping = from.mapping;
   setup.contact_count = from.contact_count;
   std::copy(&from.contacts_m[0][0], &from.contacts_m[0][0] + kMaxContacts * 3, &setup.contacts_m[0][0]);
+  std::copy_n(from.pads_m, kMaxContacts, setup.pads_m);
   setup.grip = from.grip;
   setup.most_force_n = from.most_force_n;
   fdcg_error error{};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kOrthonormalTolerance = 1e-9;  // of a rotation matrix
 constexpr Keys kMappingKeys = {"scale", "rotation_xyzw", "rotation_matrix", "offset_m"};
-constexpr Keys kContactKeys = {"offset_m", "closed_m"};
+constexpr Keys kContactKeys = {"offset_m", "closed_m", "pad_radius_m"};
 constexpr Keys kGripKeys = {"button", "seconds"};
 constexpr Keys kTurnKeys = {"button", "seconds", "rotation_xyzw"};
 constexpr Keys kScriptKeys = {"at_s", "place_m", "buttons", "notes"};
@@ -93,6 +93,7 @@ void SceneParser::read_contacts(const JsonObject& from, DeviceConfig* device) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     contacts[i].numbers("offset_m", device->contacts_m[i], 3, kLengths);
     std::copy_n(device->contacts_m[i], 3, grip.closed_m[i]);
+    device->pads_m[i] = contacts[i].number_or("pad_radius_m", 0, {0, 1, true, "m"});
     if (!contacts[i].has("closed_m")) continue;
     contacts[i].numbers("closed_m", grip.closed_m[i], 3, kLengths);
     if (grip.close.mask == 0) contacts[i].fail("closed_m", "has no \"grip\" that would close it; name a button there");

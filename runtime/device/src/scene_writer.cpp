@@ -124,6 +124,7 @@ Json device_json(const DeviceConfig& device) {
   for (int i = 0; i < device.contact_count; ++i) {
     json["contacts"].push_back({{"offset_m", list(device.contacts_m[i])}});
     if (grip.close.mask != 0) json["contacts"].back()["closed_m"] = list(grip.closed_m[i]);
+    if (device.pads_m[i] > 0) json["contacts"].back()["pad_radius_m"] = device.pads_m[i];
   }
   if (grip.close.mask != 0) json["grip"] = button_json(grip.close);
   if (grip.turn.mask != 0) {
