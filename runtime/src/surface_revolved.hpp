@@ -60,7 +60,8 @@ struct LineProfile {
     *to = section(off, z);
     return sign * (along_z * (off - start_r) - along_r * (z + half)) < 0;
   }
-  [[nodiscard]] bool is_within(double z) const { return absolute(z) < half; }
+  // Off the ends: on an apex, or beside it by rounding, the side has no normal.
+  [[nodiscard]] bool is_within(double z) const { return absolute(z) < half * (1 - 0x1p-40); }
 };
 
 // 1 / sqrt(1 + e + rounding) for 0 <= e <= 2^-11.
