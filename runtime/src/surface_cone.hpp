@@ -127,8 +127,8 @@ struct ConeSurface {
   [[nodiscard]] FDCG_HOT Spot spot(Point x, Point hip) const {
     if (along_r == 0) return on_cylinder(x, x, false);
     const double off = from_axis(x);
-    if (!(off > kEps * extent)) {
-      const Point outward = outward_at(x, hip);
+    if (!(off > 32 * kEps * extent)) {  // an apex, or so near that its direction from the axis is rounding
+      const Point outward = outward_at({0, 0, x.z}, hip);
       return {x, normal_of(outward), outward, 0, 0};
     }
     const double per_off = 1 / off;
