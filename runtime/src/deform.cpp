@@ -202,8 +202,10 @@ void bring_all_up_to_date(fdcg_deform* deform) {
   memset(deform->header.connection_type_count, 0, sizeof header.connection_type_count);
   for (uint32_t c = 0; c < header.connection_count; ++c)
     ++deform->header.connection_type_count[upkeep.type(c)];
-  for (uint32_t c = 0; c < header.corner_count; ++c)
+  for (uint32_t c = 0; c < header.corner_count; ++c) {
     upkeep.bring_normal_up_to_date(c);
+    memcpy(upkeep.corner(c).point, upkeep.place(c).point, sizeof upkeep.place(c).point);
+  }
   for (int level = 0; level < deform->tree.levels; ++level) {
     for (uint32_t i = 0; i < deform->tree.size[level]; ++i)
       upkeep.make_tight(level, i, deform->loose[deform->tree.first[level] + i]);

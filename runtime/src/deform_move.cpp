@@ -83,13 +83,16 @@ template <class Real>
   if (to.x == from.x && to.y == from.y && to.z == from.z) return;
   Place<Real>& place = upkeep.place(c);
   const uint64_t coming = deform->tick + 1;
+  Vec3<Real> old = from;
   if (place.tick != coming) {
     place.tick = coming;
     place.logged = deform->has_moved++;
     store_in(upkeep.was(place).point, from);
+  } else {
+    old = vec(upkeep.was(place).point);
   }
   store_in(place.point, to);
-  const Vec3<double> way = widen(to) - widen(vec(upkeep.was(place).point));
+  const Vec3<double> way = widen(to) - widen(old);
   const double way2 = dot(way, way);
   if (way2 > deform->way2) deform->way2 = way2;
   const Vec3<double> at = upkeep.in_tree(to);
@@ -100,18 +103,15 @@ template <class Real>
   if (__builtin_expect(is_marked == 0, false)) upkeep.mark(c, way * deform->per_tree_unit);
 }
 
+// `which` of several, or FDCG_NONE. One copy for all: in a loop of its own it took longer.
 template <class Real>
-fdcg_status move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_m, uint64_t count,
-                         fdcg_error* error) {
-  const Upkeep<Real> upkeep(*deform);
-  const uint32_t corner_count = deform->header.corner_count;
-  for (uint64_t i = 0; i < count; ++i) {
-    const double* const position_m = positions_m + 3 * i;
-    Vec3<double> local;
-    if (corners[i] >= corner_count) return refuse_corner(*deform, i, corners[i], error);
-    if (!to_local(*deform, position_m, &local)) return refuse_place(*deform, i, corners[i], position_m, error);
-    move<Real>(deform, corners[i], local);
-  }
+[[gnu::noinline]] fdcg_status move_corner(fdcg_deform* deform, uint64_t which, uint32_t corner, const double position_m[3],
+                                          fdcg_error* error) {
+  Vec3<double> local;
+  if (corner >= deform->header.corner_count) return refuse_corner(*deform, which, corner, error);
+  if (position_m == nullptr || !to_local(*deform, position_m, &local))
+    return refuse_place(*deform, which, corner, position_m, error);
+  move<Real>(deform, corner, local);
   return FDCG_OK;
 }
 
@@ -166,12 +166,9 @@ uint32_t find(const fdcg_deform& deform, Vec3<double> at, double reach) {
 
 extern "C" fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3],
                                         fdcg_error* error) {
-  fdcg::Vec3<double> local;
-  if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, FDCG_NONE, corner, error);
-  if (position_object_m == nullptr || !fdcg::to_local(*deform, position_object_m, &local))
-    return fdcg::refuse_place(*deform, FDCG_NONE, corner, position_object_m, error);
-  fdcg::with_real_of(deform->header, [&](auto real) { fdcg::move<decltype(real)>(deform, corner, local); });
-  return FDCG_OK;
+  return fdcg::with_real_of(deform->header, [&](auto real) {
+    return fdcg::move_corner<decltype(real)>(deform, FDCG_NONE, corner, position_object_m, error);
+  });
 }
 
 extern "C" fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
@@ -180,7 +177,15 @@ extern "C" fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint3
   if (corners == nullptr || positions_object_m == nullptr)
     return fdcg::Message(error, FDCG_E_ARGUMENT).text("corners or positions: null pointer");
   return fdcg::with_real_of(deform->header, [&](auto real) {
-    return fdcg::move_corners<decltype(real)>(deform, corners, positions_object_m, count, error);
+    using Place = fdcg::Place<decltype(real)>;
+    constexpr uint64_t kAhead = 8;  // so that scattered corners are in the cache when their turn comes
+    fdcg_status status = FDCG_OK;
+    for (uint64_t i = 0; i < count && status == FDCG_OK; ++i) {
+      if (i + kAhead < count && corners[i + kAhead] < deform->header.corner_count)
+        __builtin_prefetch(static_cast<Place*>(deform->places) + corners[i + kAhead], 1);
+      status = fdcg::move_corner<decltype(real)>(deform, i, corners[i], positions_object_m + 3 * i, error);
+    }
+    return status;
   });
 }
 

@@ -21,19 +21,9 @@ bool Upkeep<Real>::is_line(uint32_t n) const {
 }
 
 template <class Real>
-void Upkeep<Real>::show_places(const Node& node) const {
-  for (const fdcg_side& side : node.sides) {
-    const Vec3<Real> at = point(side.corner);
-    auto& shown = corner(side.corner).point;
-    shown[0] = at.x, shown[1] = at.y, shown[2] = at.z;
-  }
-}
-
-template <class Real>
 void Upkeep<Real>::compute_node(uint32_t n) const {
   Node& here = node(n);
   spend(&d_->upkeep_left, kRenewedNodeWork);
-  show_places(here);
   if (is_line(n)) {
     compute_sliver(n);
     return;

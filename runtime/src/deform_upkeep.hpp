@@ -7,7 +7,7 @@
 // A corner that moves leaves marks (deform.cpp): its triangles are stale, the boxes around them have grown and are loose. The
 // view (graph_view.hpp) asks here before it hands out a number. Voronoi planes and edges are derived anew whenever they are
 // asked for, and so are types and corner normals: there is nothing of them to be old. The corners' records have the places
-// where a plane was last computed from them: they are for those who look in from outside.
+// of when the whole was last brought up to date: they are for those who look in from outside.
 #pragma once
 
 #include "deform_watch.hpp"
@@ -167,7 +167,6 @@ class Upkeep {
   };
 
   void compute_node(uint32_t n) const;
-  void show_places(const Node& node) const;
   void compute_sliver(uint32_t n) const;
   [[nodiscard]] Lender plane_lender(uint32_t n) const;
   // Its corners are in one line, or so near one that it has no normal: a node that is none lends a plane of its own.

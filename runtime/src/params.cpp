@@ -2,6 +2,7 @@
 #include "config.hpp"
 #include "fdcg/fdcg.h"
 #include "friction_terms.hpp"
+#include "materials.hpp"
 #include "message.hpp"
 #include "struct_bytes.hpp"
 
@@ -46,7 +47,6 @@ fdcg_status check_ranges(const Owner& owner, const Range* ranges, uint32_t count
   return FDCG_OK;
 }
 
-#if FDCG_WITH_TERMS
 fdcg_status check_material(const Owner& owner, const fdcg_material& material, double least_stiffness, fdcg_error* error) {
   const Range ranges[] = {{"mu_dynamic", material.mu_dynamic, 0, kLargest},
                           {"mu_static", material.mu_static, material.mu_dynamic, kLargest},
@@ -54,6 +54,7 @@ fdcg_status check_material(const Owner& owner, const fdcg_material& material, do
   return check_ranges(owner, ranges, 3, material.mu_dynamic, error);
 }
 
+#if FDCG_WITH_TERMS
 // One solution at every speed, on this material.
 fdcg_status check_steepness(const fdcg_params& params, const Owner& owner, const fdcg_material& material, fdcg_error* error) {
   const bool has_finger = (params.terms & FDCG_TERM_FINGER) != 0;
@@ -109,6 +110,11 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
 #endif
 
 }  // namespace
+
+fdcg_status check_finger_material(const fdcg_material& material, fdcg_error* error) {
+  return check_material({"material", FDCG_NONE}, material, kLeast, error);
+}
+
 }  // namespace fdcg
 
 extern "C" void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene's memory, and what comes into it and goes. scene_step.cpp is its tick.
+#include "materials.hpp"
 #include "message.hpp"
 #include "scene_memory.hpp"
 #include "struct_bytes.hpp"
@@ -315,11 +316,7 @@ extern "C" fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_fi
   Finger* const finger = find_finger(scene, id, error);
   if (finger == nullptr) return FDCG_E_ARGUMENT;
   if (material != nullptr) {
-    fdcg_params params = fdcg_default_params();
-    params.terms = FDCG_TERM_FINGER;
-    params.finger = *material;
-    const fdcg_status status = fdcg_check_params(&params, error);
-    if (status != FDCG_OK) return status;
+    if (const fdcg_status status = check_finger_material(*material, error); status != FDCG_OK) return status;
     finger->material = *material;
   }
   finger->has_material = material != nullptr ? 1 : 0;

@@ -32,6 +32,11 @@ inline double from_axis(Point p) {
   return root(p.x * p.x + p.y * p.y);
 }
 
+// 1 / sqrt(a), with root and division at once.
+FDCG_HOT double inverse_root(double a) {
+  return root(a) * (1 / a);
+}
+
 // One contact on one feature within one step.
 struct Touch {
   Friction<double> friction;
@@ -372,7 +377,6 @@ template <class Piece>
 template <class Piece>
 FDCG_HOT bool slide_in_one(const Piece& piece, Touch& touch) {
   const double rounding = pull_rounding(touch), mu = touch.friction.mu_dynamic;
-  if (mu == 0) return false;  // takes more than one
   const auto from = piece.spot(touch.god_object, touch.hip);
   const Press press = press_at(from, touch.hip);
   if (!(press.load > 0)) return false;

@@ -91,6 +91,7 @@ struct BoxSurface {
 
   // Within a face, off its edges.
   FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
+    if (face > 5) return false;  // a contact of another surface
     const uint32_t k = face / 2, i = k == 0 ? 1 : 0, j = k == 2 ? 1 : 2;
     double at[3] = {touch.god_object.x, touch.god_object.y, touch.god_object.z};
     const double hip[3] = {touch.hip.x, touch.hip.y, touch.hip.z};

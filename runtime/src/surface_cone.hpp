@@ -11,7 +11,7 @@ struct ConeSurface {
   static constexpr uint32_t kSide = 0;  // the discs are 1 and 2: 1 + end
   double sign, extent, half;
   double radius[2];         // at -half and at half
-  double per_radius;        // of a cylinder
+  double per_radius;        // of a cylinder; else 0
   double length;            // of the side, from rim to rim
   double along_r, along_z;  // the side's unit direction from -half to half, in a plane of the axis: distance from it, height
 
@@ -25,10 +25,18 @@ struct ConeSurface {
     radius[0] = s.radius_m;
     radius[1] = s.kind == FDCG_SURFACE_CYLINDER ? s.radius_m : s.top_radius_m;
     const double grows = radius[1] - radius[0], rises = s.length_m;
-    length = grows == 0 ? rises : root(grows * grows + rises * rises);
-    per_radius = 1 / (radius[0] > 0 ? radius[0] : radius[1]);
-    along_r = grows == 0 ? 0 : grows / length;
-    along_z = grows == 0 ? 1 : rises / length;
+    if (grows == 0) {
+      length = rises;
+      per_radius = 1 / radius[0];
+      along_r = 0;
+      along_z = 1;
+    } else {
+      const double length2 = grows * grows + rises * rises, per_length2 = 1 / length2;
+      length = root(length2);
+      per_radius = 0;
+      along_r = grows * (length * per_length2);
+      along_z = rises * (length * per_length2);
+    }
     extent = larger(radius[0], radius[1]) + half;
   }
   // The side's normal in a plane of the axis is (along_z, -along_r) * sign.
@@ -119,8 +127,8 @@ struct ConeSurface {
   [[nodiscard]] FDCG_HOT Spot spot(Point x, Point hip) const {
     if (along_r == 0) return on_cylinder(x, x, false);
     const double off = from_axis(x);
-    if (!(off > kEps * extent)) {
-      const Point outward = outward_at(x, hip);
+    if (!(off > 32 * kEps * extent)) {  // an apex, or so near that its direction from the axis is rounding
+      const Point outward = outward_at({0, 0, x.z}, hip);
       return {x, normal_of(outward), outward, 0, 0};
     }
     const double per_off = 1 / off;
@@ -152,8 +160,9 @@ struct ConeSurface {
   [[nodiscard]] static double curvature_product(const Spot&) { return 0; }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   bool cross(const Spot& from, Spot* to, Feature* next) const {
-    if (absolute(to->at.z) < half) return false;
     const uint32_t end = to->at.z > 0 ? 1 : 0;
+    const double before = half - absolute(to->at.z);
+    if (before > 0 && !(radius[end] == 0 && before <= 8 * kEps * extent * along_z)) return false;  // an apex is met nearby too
     const double left = end == 0 ? half + from.at.z : half - from.at.z, went = absolute(to->at.z - from.at.z);
     const Point at = left > 0 && went > left ? from.at + (to->at - from.at) * (left / went) : to->at;
     to->at = rim_point(outward_at(at, to->outward), end);

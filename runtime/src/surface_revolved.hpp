@@ -22,7 +22,7 @@ struct Outward {
   double lack;          // x^2 + y^2 - 1: rounding
 };
 inline Outward outward_of(Point at, double off2) {
-  const double off = root(off2), per_off = off * (1 / off2);
+  const double off = root(off2), per_off = inverse_root(off2);
   return {at.x * per_off, at.y * per_off, off, per_off, 0};
 }
 // Profile:
@@ -60,13 +60,14 @@ struct LineProfile {
     *to = section(off, z);
     return sign * (along_z * (off - start_r) - along_r * (z + half)) < 0;
   }
-  [[nodiscard]] bool is_within(double z) const { return absolute(z) < half; }
+  // Off the ends: on an apex, or beside it by rounding, the side has no normal.
+  [[nodiscard]] bool is_within(double z) const { return absolute(z) < half * (1 - 0x1p-40); }
 };
 
-// 1 / sqrt(1 + e) for 0 <= e <= 2^-11.
-FDCG_HOT double inverse_root_of_turn(double e) {
+// 1 / sqrt(1 + e + rounding) for 0 <= e <= 2^-11.
+FDCG_HOT double inverse_root_of_turn(double e, double rounding) {
   const double e2 = e * e;
-  return (1 - 0.5 * e) + e2 * ((0.375 - 0.3125 * e) + 0.2734375 * e2);
+  return ((1 - 0.5 * rounding) - 0.5 * e) + e2 * ((0.375 - 0.3125 * e) + 0.2734375 * e2);
 }
 inline constexpr double kMostTurn2 = 0x1p-12;  // of a move, as a tangent's square
 
@@ -93,7 +94,7 @@ FDCG_HOT bool slide_to_nearest(const Profile& profile, const Section& from, cons
   const Point hip = touch.hip;
   const double off2 = hip.x * hip.x + hip.y * hip.y;
   if (!(seen.out > 0 && 16 * seen.round * seen.round <= off2)) return false;
-  const double off = root(off2), per_off = off * (1 / off2);
+  const double off = root(off2), per_off = inverse_root(off2);
   Section to;
   if (!profile.nearest(from, off, hip.z, &to)) return false;
   const double at = to.base_r + profile.raised * to.n_r, z = to.base_z + profile.raised * to.n_z;
@@ -105,6 +106,7 @@ FDCG_HOT bool slide_to_nearest(const Profile& profile, const Section& from, cons
 // A move and its turns: a tangent round the axis, a way along the section.
 struct RoundMove {
   double tangent, way;
+  double length;  // by the pull's at its start
   double second;  // at its start: of what the excess still is, 1 / 4 bow / fall^2
   bool is_short;
 };
@@ -117,25 +119,25 @@ FDCG_HOT RoundMove next_round_move(const Profile& profile, const Tug& tug, const
   constexpr double kLeast = 0.25;
   const double load = tug.load, pull2 = tug.pull2, per_pull2 = 1 / pull2, bothload = both * load;
   const double round2 = tug.round * tug.round, k1 = from.n_r * per_off, narrows = -from.n_z * per_off;
-  const double on_ring = k1 * round2, narrowing = narrows * tug.along, half = 0.5 * load;
-  double bent = on_ring, turn2 = k1 * on_ring, rate = -3 * narrowing * on_ring;
+  const double on_ring = k1 * round2, half = 0.5 * load;
+  double bent = on_ring, turn2 = k1 * on_ring, rate = -3 * narrows * on_ring * tug.along;
   if constexpr (!Profile::kIsLine) {
     const double on_section = profile.bend * (tug.along * tug.along);
     bent = on_ring + on_section;
     turn2 = turn2 + profile.bend * on_section;
-    rate = 3 * narrowing * (profile.bend * round2 - on_ring);
+    rate = 3 * narrows * (profile.bend * round2 - on_ring) * tug.along;
   }
   const double taken = load * bent, fall = pull2 - both * taken, turned = bothload * load * (bent * bent);
   const double bow = (pull2 - taken - both * (bent * bent + taken)) + bothload * (2 * load * turn2 - rate) - turned * per_pull2;
   const double left = fall * fall - bow * excess;
-  if (!(fall > kLeast * pull2 && bow > kLeast * pull2 && left > 0)) return {0, 0, 0, false};
-  const double length = (fall - root(left)) * (1 / bow), length2 = length * length, curvature = bent * per_pull2;
-  const double aside = half * (k1 - curvature) + narrowing;
+  if (!(fall > kLeast * pull2 && bow > kLeast * pull2 && left > 0)) return {0, 0, 0, 0, false};
+  const double length = (fall - root(left)) * (1 / bow), curvature = bent * per_pull2;
+  const double aside = half * (k1 - curvature) + narrows * tug.along;
   const double more = half * (profile.bend - curvature) * tug.along - 0.5 * narrows * round2;
-  const double tangent = -(tug.round * per_off) * (length + aside * length2), way = -(tug.along * length + more * length2);
+  const double tangent = -(tug.round * per_off) * length * (1 + aside * length), way = -length * (tug.along + more * length);
   const double pressed = load * curvature, second = 0.25 * (1 - pressed) / ((pull2 - excess) * (1 - both * pressed));
   const bool is_short = Profile::kIsLine || square(way * profile.bend) <= kMostTurn2;
-  return {tangent, way, second, tangent * tangent <= kMostTurn2 && is_short};
+  return {tangent, way, length, second, tangent * tangent <= kMostTurn2 && is_short};
 }
 
 // Round by the move, and on by what is left of the excess there. False where that is too much.
@@ -144,7 +146,7 @@ FDCG_HOT bool go_round(const Profile& profile, const Section& from, const Outwar
                        const RoundMove& move, double mu2, Touch& touch) {
   constexpr double kMostSet = 0x1p-20;  // of the normal's turn: its cube is nothing
   const Section to = profile.moved(from, move.way);
-  const double tangent = move.tangent, cosine = inverse_root_of_turn(tangent * tangent) * (1 - 0.5 * outward.lack);
+  const double tangent = move.tangent, cosine = inverse_root_of_turn(tangent * tangent, outward.lack);
   const Sight sees = {(seen.out + tangent * seen.round) * cosine, (seen.round - tangent * seen.out) * cosine, touch.hip.z};
   const Tug last = tug_at(profile, to, sees);
   // The place, and the bend and the fall times the distance from the axis: one division for both.
@@ -161,8 +163,11 @@ FDCG_HOT bool go_round(const Profile& profile, const Section& from, const Outwar
   const double more = 1 + move.second * excess;
   const double set = (excess * (0.5 * off)) * more * (1 / fall), size = absolute(set);
   const double pressed = both * last.load * bends;
-  if (!(last.load > 0 && fall > 0 && size * size * (4 * size + 2 * pressed * pressed) <= kPlaced)) return false;
-  if (!(size * pressed <= kMostSet && last.pull2 + load2 <= tug.pull2 + tug.load * tug.load)) return false;
+  // What `more` does not know: the third order, how the bend changes, how the load did.
+  const double old2 = tug.load * tug.load, unknown = 4 * size + pressed * (pressed + move.length * move.length);
+  if (!(last.load > 0 && fall > 0 && size * size * (unknown * old2 + absolute(load2 - old2)) <= kPlaced / 2 * old2))
+    return false;
+  if (!(size * pressed <= kMostSet && last.pull2 + load2 <= tug.pull2 + old2)) return false;
   const double x = (outward.x - tangent * outward.y) * cosine, y = (outward.y + tangent * outward.x) * cosine;
   const double radial = -to.n_z * last.along, drop = (0.5 * bent) * (1 / off) * (set * set);
   const double end_z = z - to.n_r * last.along * set - to.n_z * drop;
@@ -178,12 +183,12 @@ FDCG_HOT bool slide_round(const Profile& profile, Touch& touch) {
   constexpr double kNear2 = 16;
   const Point at = touch.god_object, hip = touch.hip;
   const double off2 = at.x * at.x + at.y * at.y;
-  if (!(squared(at - hip) < kNear2 * off2)) return false;
+  if (!(off2 > 0)) return false;  // an apex
   const Outward outward = profile.outward(at, off2);
   const Section from = profile.section(outward.off, at.z);
   const Sight seen = {(hip.x * at.x + hip.y * at.y) * outward.per_off, (hip.y * at.x - hip.x * at.y) * outward.per_off, hip.z};
   const Tug tug = tug_at(profile, from, seen);
-  if (!(tug.load > 0)) return false;
+  if (!(tug.load > 0 && tug.load * tug.load + tug.pull2 < kNear2 * off2)) return false;
   const Slip<double> slip = touch.friction.slip(at, tug.pull2, tug.load);
   const double rounding = pull_rounding(touch);
   if (slip.is_rest || !(tug.pull2 > rounding * rounding)) return true;

@@ -54,7 +54,7 @@ FDCG_HOT Slid slide_on_ball(Touch& touch, double centre_z, double radius, double
   const double sine = sign * share * (radius * less - rest), cosine = rest * less + share * share * radius;
   if (!(sine >= 0 && sign * (radius - cosine) > 0)) return Slid::kLeaves;
   const Point aside = at - hip * (level * per_reach2);
-  const double both2 = reach2 * squared(aside), per_both = root(both2) * (1 / both2);
+  const double both2 = reach2 * squared(aside), per_both = inverse_root(both2);
   const double up = radius * cosine * per_reach2, out = radius * sine * per_both;
   touch.god_object = {hip.x * up + aside.x * out, hip.y * up + aside.y * out, hip.z * up + aside.z * out + centre_z};
   return Slid::kRests;
@@ -213,7 +213,7 @@ struct Ellipsoid {
 
   [[nodiscard]] FDCG_HOT Spot spot(Point x, Point) const {
     const Point g = gradient(x);
-    const double g2 = squared(g), per_length = root(g2) * (1 / g2);
+    const double per_length = inverse_root(squared(g));
     return {x, g * (sign * per_length), per_length};
   }
   // Along the gradient, then what is left along the ray: that is of third order, and exact to rounding.
@@ -239,7 +239,42 @@ struct Ellipsoid {
   }
   [[nodiscard]] static bool bends_alike(const Spot&, const Spot&) { return true; }
   static bool cross(const Spot&, Spot*, Feature*) { return false; }
-  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide_in_one(*this, touch); }
+  FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const {
+    return touch.friction.mu_dynamic == 0 ? slide_to_nearest(touch) : slide_in_one(*this, touch);
+  }
+  // Without friction the descent ends at a nearest place: x with hip = x + t gradient(x) (Eberly's secular equation in t, in
+  // the form whose Newton steps are nearly exact). False where that is not near.
+  FDCG_HOT bool slide_to_nearest(Touch& touch) const {
+    constexpr double kLeast = 0x1p-6, kDone = 0x1p-26, kMostBent2 = 0x1p-4;
+    const Point hip = touch.hip, squares = scaled(half, half);
+    const Spot from = spot(touch.god_object, hip);
+    const Press press = press_at(from, hip);
+    if (!(press.load > 0)) return false;
+    if (touch.friction.slip(touch.god_object, press.pull2, press.load).is_rest) return true;
+    const double most = larger(inverse.x, larger(inverse.y, inverse.z)), bend = extent * most * most;  // the sharpest
+    const double doubt = 2 * pull_rounding(touch) + 8 * kEps * norm1(touch.god_object) * bend * press.load;
+    if (!(press.pull2 > doubt * doubt)) return true;
+    double t = -sign * press.load * from.per_steepness;
+    for (int i = 0; i < 4; ++i) {
+      const Point lower = {squares.x + t, squares.y + t, squares.z + t};
+      if (!(lower.x > kLeast * squares.x && lower.y > kLeast * squares.y && lower.z > kLeast * squares.z)) return false;
+      const Point per = {1 / lower.x, 1 / lower.y, 1 / lower.z}, q = scaled(scaled(hip, half), per);
+      const Point q2 = scaled(q, q);
+      const double e = q2.x + q2.y + q2.z - 1;
+      if (!(absolute(e) < 0.125)) return false;
+      const double per_fall = 1 / dot(q2, per), step = 0.5 * e * per_fall;
+      const double change = absolute(step) * larger(per.x, larger(per.y, per.z));
+      if (absolute(e) <= kDone && change <= kDone) {  // what is left is of second order, but for the ray
+        const Point unit = {q.x * (1 - step * per.x), q.y * (1 - step * per.y), q.z * (1 - step * per.z)};
+        const Point to = scaled(unit, half) * inverse_root_near_1(squared(unit) - 1);
+        if (!(squared(to - touch.god_object) * (bend * bend) <= kMostBent2 && sign * t < 0)) return false;
+        touch.god_object = to;
+        return true;
+      }
+      t = t + e * (0.5 + e * (0.375 - e * 0.0625)) * per_fall;
+    }
+    return false;
+  }
   Decision rule(SurfaceWalk& walk) const {
     Feature none;
     return decide(slide_on_piece(*this, walk, &none), none);

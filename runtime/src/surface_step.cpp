@@ -87,6 +87,14 @@ void start(Point hip, fdcg_contact* contact) {
   contact->slipping = 0;
 }
 
+// Where the contact is; one of zeros is free, and on nothing.
+FDCG_HOT void report(const fdcg_contact& contact, fdcg_result* result) {
+  store(vec(contact.god_object), result->god_object_m);
+  result->state = contact.state;
+  result->feature = contact.state == FDCG_FREE ? FDCG_NONE : contact.feature;
+  result->slipping = contact.slipping;
+}
+
 struct Tick {
   const fdcg_surface& surface;
   const fdcg_params& params;
@@ -95,17 +103,30 @@ struct Tick {
   fdcg_result* result;
 };
 
-// What the hand feels of a contact in its new place, which is stored.
-FDCG_HOT void respond(const Tick& tick, const Touch& touch) {
+// Stores a contact on the surface in its new place, and what the hand feels of it.
+FDCG_HOT void respond(const Tick& tick, const Touch& touch, Feature feature) {
   fdcg_contact& contact = *tick.contact;
+  fdcg_result& result = *tick.result;
   const Point spring = touch.god_object - touch.hip;
   double newtons_per_metre = tick.params.stiffness_n_per_m;
   if (tick.params.damping_n_s_per_m > 0)
     newtons_per_metre = damped(tick.params, newtons_per_metre, spring, touch.hip - vec(contact.hip));
-  store(spring * newtons_per_metre, tick.result->force_n);
+  store(spring * newtons_per_metre, result.force_n);
   store(touch.god_object, contact.god_object);
+  store(touch.god_object, result.god_object_m);
   store(touch.hip, contact.hip);
-  contact.slipping = touch.friction.is_slipping ? 1 : 0;
+  contact.state = result.state = feature.state;
+  contact.feature = result.feature = feature.index;
+  contact.slipping = result.slipping = touch.friction.is_slipping ? 1 : 0;
+}
+// Free, and at the HIP or on the way to it.
+FDCG_HOT void respond_free(const Tick& tick, Point at, Point hip) {
+  store(at, tick.contact->god_object);
+  store(hip, tick.contact->hip);
+  tick.contact->state = FDCG_FREE;
+  tick.contact->feature = FDCG_NONE;
+  tick.contact->slipping = 0;
+  report(*tick.contact, tick.result);
 }
 
 FDCG_HOT Touch touch_of(const Tick& tick, double extent) {
@@ -122,20 +143,17 @@ template <class Shape>
   SurfaceWalk walk = {touch_of(tick, shape.extent), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
   if (contact.started == 0) {
     start(walk.hip, &contact);
+    report(contact, tick.result);
     return;
   }
   const Progress progress = move_god_object(shape, walk);
   tick.result->transitions = progress.transitions;
   tick.result->flags = progress.flags;
   contact.transition_bound_ticks += progress.flags != 0 ? 1 : 0;
-  contact.state = walk.active.state;
-  contact.feature = walk.active.index;
   if (walk.active == kFree) {
-    store(walk.god_object, contact.god_object);
-    store(walk.hip, contact.hip);
-    contact.slipping = 0;
+    respond_free(tick, walk.god_object, walk.hip);
   } else {
-    respond(tick, walk);
+    respond(tick, walk, walk.active);
   }
 }
 
@@ -146,16 +164,17 @@ FDCG_HOT double way_bound(Point way, double extent) {
 
 // What most ticks are, before the rules. All of it stays in registers: nothing here is handed to another function.
 template <class Shape>
-void step_on(const Tick& tick) {
-  fdcg_contact& contact = *tick.contact;
-  const Shape shape(tick.surface);
+void step_on(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at, const double* hip_m,
+             fdcg_result* result) {
+  const Tick tick = {*surface, *params, at, hip_m, result};
+  fdcg_contact& contact = *at;
+  const Shape shape(*surface);
   Touch touch = touch_of(tick, shape.extent);
   const Point way = touch.hip - touch.god_object;
   if (contact.state == FDCG_FREE && contact.started != 0 && shape.is_clear(touch.hip, way_bound(way, shape.extent))) {
-    store(touch.hip, contact.god_object);
-    store(touch.hip, contact.hip);
+    respond_free(tick, touch.hip, touch.hip);
   } else if (contact.state == FDCG_FACE && shape.slide_quickly(contact.feature, touch)) {
-    respond(tick, touch);
+    respond(tick, touch, {FDCG_FACE, contact.feature});
   } else {
     step_by_rules<Shape>(tick);
   }
@@ -169,7 +188,7 @@ Point normal_on(const fdcg_surface& surface, const fdcg_result& result) {
 
 // What is done with a surface, by its kind.
 struct Kind {
-  void (*step)(const Tick& tick);
+  decltype(&fdcg_surface_step) step;
   Point (*normal)(const fdcg_surface& surface, const fdcg_result& result);
 };
 template <class Shape>
@@ -192,15 +211,12 @@ extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params
     fdcg_surface surface_room;
     fdcg_params params_room;
     const fdcg_surface& whole = in_full(*surface, &surface_room, fdcg_init_surface);
-    kind_of(whole).step({whole, in_full(*params, &params_room, fdcg_init_params), contact, hip_object_m, result});
+    kind_of(whole).step(&whole, &in_full(*params, &params_room, fdcg_init_params), contact, hip_object_m, result);
   } else {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
+    report(*contact, result);
   }
-  store(vec(contact->god_object), result->god_object_m);
-  result->state = contact->state;
-  result->feature = contact->state == FDCG_FREE ? FDCG_NONE : contact->feature;  // a contact of zeros is free, and on nothing
-  result->slipping = contact->slipping;
 }
 
 extern "C" void fdcg_surface_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]) {

@@ -101,7 +101,7 @@ struct TubeProfile {
   [[nodiscard]] FDCG_HOT Section section(double off, double z) const { return {ring, 0, (off - ring) * bend, z * bend}; }
   [[nodiscard]] FDCG_HOT Section moved(const Section& from, double way) const {
     const double tangent = way * bend, off_1 = from.n_r * from.n_r + from.n_z * from.n_z - 1;
-    const double cosine = inverse_root_of_turn(off_1 + tangent * tangent * (1 + off_1));
+    const double cosine = inverse_root_of_turn(tangent * tangent, off_1);
     return {ring, 0, (from.n_r - tangent * from.n_z) * cosine, (from.n_z + tangent * from.n_r) * cosine};
   }
   [[nodiscard]] FDCG_HOT bool nearest(const Section& from, double off, double z, Section* to) const {

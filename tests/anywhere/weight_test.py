@@ -156,6 +156,48 @@ int main(int argc, char** argv) {
         for line in self.said("no-files", "-DFDCG_WITH_FILES=OFF"):
             self.assertRegex(line, "^2 .*built without files.*fdcg_open_memory")
 
+    FINGER = """
+#include <stdio.h>
+#include <stdlib.h>
+#include "fdcg/scene.h"
+int main(int argc, char** argv) {
+  fdcg_graph graph;
+  fdcg_error error;
+  if (argc < 2 || fdcg_open_file(argv[1], FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) return 1;
+  const fdcg_scene_config config = fdcg_default_scene_config();
+  const uint64_t bytes = fdcg_scene_bytes(&config);
+  fdcg_scene* scene;
+  fdcg_params params = fdcg_default_params();
+  const fdcg_pose pose = fdcg_identity_pose();
+  const fdcg_material soft = {0.6, 0.4, 1000}, bad = {0.1, 0.2, 100};
+  const double above[3] = {0.5, 0.5, 2}, within[3] = {0.5, 0.5, 0.99};
+  fdcg_object_id object;
+  fdcg_finger_id finger;
+  fdcg_finger_result felt;
+  if (fdcg_scene_create(malloc(bytes), bytes, &config, &scene, &error) != FDCG_OK) return 2;
+  fdcg_scene_add_object(scene, &graph, &params, &pose, &object, &error);
+  fdcg_scene_add_finger(scene, above, &finger, &error);
+  printf("%d", (int)fdcg_scene_set_finger_material(scene, finger, &bad, &error));
+  printf(" %s\\n", error.message);
+  printf("%d", (int)fdcg_scene_set_finger_material(scene, finger, &soft, &error));
+  fdcg_scene_step(scene);
+  fdcg_scene_move_finger(scene, finger, within, &error);
+  fdcg_scene_step(scene);
+  fdcg_scene_result(scene, finger, &felt, &error);
+  printf(" %.6f\\n", felt.force_n[2]);
+  return 0;
+}
+"""
+
+    def test_a_finger_has_a_material_without_terms_too(self):
+        library = self.library("no-terms", "-DFDCG_WITH_TERMS=OFF")
+        program, graph = self.path("finger-program"), self.path("finger.fdcg")
+        self.run_program("cc", "-std=c11", "-I", str(RUNTIME / "include"), self.write("finger.c", self.FINGER), library, "-lm", "-o", program)
+        self.fdcg("compile", str(ROOT / "testdata" / "meshes" / "good" / "cube_quads.off"), "-q", "-o", graph)
+        lines = self.run_program(program, graph).stdout.decode().splitlines()
+        self.assertRegex(lines[0], "^1 material.mu_static is 0.1, allowed 0.2 to")
+        self.assertEqual("0 5.000000", lines[1])  # two springs of 1,000 N/m in series, 10 mm
+
     def test_no_messages(self):
         lines = self.said("no-messages", "-DFDCG_WITH_MESSAGES=OFF")
         self.assertEqual(["0 opened", "0 opened"], lines[:2])

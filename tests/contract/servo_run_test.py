@@ -217,7 +217,9 @@ class Run(ServoCase):
 
     def test_wrong_usage(self):
         scene = self.scene()
-        for arguments, words in (((), ("scene",)), ((scene, "--for", "0"), ("--for",)), ((scene, "--hid", "x"), ("--hid",)),
+        for arguments, words in (((), ("scene",)), ((scene, "--for", "0"), ("--for",)),
+                                 ((scene, "--for", "nan"), ("--for", "'nan' is no number from 0.001")),
+                                 ((scene, "--status-every", "inf"), ("--status-every", "'inf'")), ((scene, "--hid", "x"), ("--hid",)),
                                  ((scene, "--status", "xml"), ("--status",)), ((scene, "--log", "a", "--no-log"), ("--no-log",))):
             self.assert_one_line(self.servo("run", *arguments, code=2), *words)
         for name, words in ((self.path("missing.json"), ("missing.json",)), (str(self.folder), (str(self.folder),)),
@@ -447,7 +449,7 @@ class Examples(ServoCase):
         hid = [{"name": "hand", "profile": "fdcg-reference"}]
         done = self.servo("run", self.scene(devices=hid), "--fast", "--for", "1", code=3)
         self.assert_one_line(done, "without --fast")
-        self.assert_one_line(self.servo("run", self.scene(), "--fast", "--no-log", "-q", code=1), "--for")
+        self.assert_one_line(self.servo("run", self.scene(), "--fast", "--no-log", "-q", code=2), "--for")
 
     def test_a_recording_is_played_without_waiting(self):
         log, again = self.path("a.fdcglog"), self.path("b.fdcglog")
@@ -460,6 +462,73 @@ class Examples(ServoCase):
                    csv.DictReader(io.StringIO(self.servo("replay", file, "-o", "-").stdout.decode()))] for file in (log, again)]
         self.assertEqual(20000, len(forces[0]))
         self.assertEqual(forces[0], forces[1])
+
+
+class Hostile(ServoCase):
+    """What is no scene, no log, no number: one line that names it, and the promised exit code."""
+
+    def setUp(self):
+        super().setUp()
+        for name in ("lift_cube.json", "press_sheet.json"):
+            shutil.copy(EXAMPLE.parent / name, self.folder)
+        self.fdcg("compile", str(EXAMPLE.parent / "sheet.off"), "--triangles", "-q", "-o", self.path("sheet.fdcg"))
+        self.fdcg("compile", str(EXAMPLE.parent / "sheet.off"), "-q", "-o", self.path("polygons.fdcg"))
+
+    def test_what_is_no_scene(self):
+        (self.folder / "folder").mkdir()
+        whole = pathlib.Path(self.path("lift_cube.json")).read_text()
+        for name, text, words in (("empty.json", "", ("no JSON",)), ("cut.json", whole[:700], ("no JSON",)),
+                                  ("list.json", "[]", ()), ("none.json", "{}", ("fdcg_scene",))):
+            with self.subTest(name):
+                done = self.servo("run", self.write(name, text), "--fast", "--for", "1", "--no-log", code=3)
+                self.assert_one_line(done, name, *words)
+        self.assert_one_line(self.servo("run", self.path("folder"), "--fast", "--for", "1", code=3), "folder")
+
+    def test_scenes_with_a_soft_sheet(self):
+        whole = pathlib.Path(self.path("press_sheet.json")).read_text()
+        part = '"tension_n_per_m": 60'
+        for old, new, words in ((part, '"tension_n_per_m": NaN', ("no JSON",)), (part, '"tension_n_per_m": 1e999', ("1e999",)),
+                                (part, '"tension_n_per_m": -1', ("tension_n_per_m is -1", "from 0 to 1000000")),
+                                (part, '"tenson_n_per_m": 60', ("tenson_n_per_m", "did you mean 'tension_n_per_m'")),
+                                (part, '"radius_m": "wide"', ('radius_m is "wide"',)),
+                                (part, '"radius_m": 0.5', ("objects[0] 'sheet'", "radius_m is 0.5", "lower radius_m")),
+                                ('"damping_n_s_per_m": 1', '"damping_n_s_per_m": 0.01', ("1 contact presses with 1000", "raise")),
+                                ('"sheet.fdcg"', '"gone.fdcg"', ("'sheet'", "gone.fdcg")),
+                                ('"sheet.fdcg"', '"cube.json"', ("'sheet'",)),
+                                ('"sheet.fdcg"', '"polygons.fdcg"', ("'sheet'", "--triangles"))):
+            with self.subTest(new):
+                self.assertIn(old, whole)
+                scene = self.write("hostile.json", whole.replace(old, new, 1))
+                done = self.servo("run", scene, "--fast", "--for", "0.1", "--no-log", code=3)
+                self.assert_one_line(done, "hostile.json", *words)
+
+    def test_scenes_with_a_body(self):
+        for key, value, words in (("mass_kg", 0, ("mass_kg is 0", "above 0")), ("mass_kg", 1e-6, ("with 1e-06 kg it is too light",)),
+                                  ("points", 1.5, ("points is 1.5",)), ("points", 10**30, ("points is 1e+30",)),
+                                  ("radius_m", 1, ("radius_m",)), ("kind", "bodies", ("kind", "bodies"))):
+            with self.subTest(f"{key} {value}"):
+                scene = json.loads(pathlib.Path(self.path("lift_cube.json")).read_text())
+                scene["objects"][0]["motion"][key] = value
+                done = self.servo("run", self.write("hostile.json", json.dumps(scene)), "--fast", "--for", "0.1", "--no-log", code=3)
+                self.assert_one_line(done, "objects[0]", *words)
+
+    def test_logs_and_outputs(self):
+        log = self.path("a.fdcglog")
+        self.run_scene(self.path("lift_cube.json"), "--fast", "--arm", "--for", "0.3", "--log", log, "-q", codes=(0,))
+        whole = pathlib.Path(log).read_bytes()
+        for name, data in (("empty", b""), ("cut", whole[:5]), ("none", bytes(range(256)))):
+            with self.subTest(name):
+                pathlib.Path(self.path(name)).write_bytes(data)
+                self.assert_one_line(self.servo("replay", self.path(name), "-o", self.path("x.csv"), code=3), name, "nor a graph")
+        self.assert_one_line(self.servo("replay", str(self.folder), code=3), "nor a graph")
+        self.assert_one_line(self.servo("replay", self.path("sheet.fdcg"), code=2), "--trajectory is required")
+        self.assert_one_line(self.servo("replay", log, "--touches", self.path("none/x.csv"), code=3), "none/x.csv")
+        self.assert_one_line(self.servo("replay", log, "-o", "/dev/full", code=3), "/dev/full")
+        graph = pathlib.Path(self.path("cube.fdcg")).read_bytes()
+        done = self.servo("replay", log, "--touches", self.path("cube.fdcg"), code=2)
+        self.assert_one_line(done, "would overwrite the graph of 'cube'")
+        self.assertEqual(graph, pathlib.Path(self.path("cube.fdcg")).read_bytes())
+        self.assertFalse((self.folder / "x.csv").exists())
 
 
 class Devices(ServoCase):

@@ -10,6 +10,7 @@
 
 #include "fast_run.hpp"
 #include "scene_json.hpp"
+#include "session_log.hpp"
 #include "session_replay.hpp"
 #include "session_rig.hpp"
 
@@ -310,6 +311,50 @@ TEST_CASE("a recording is played as fast as it goes, to its end, and gives the f
   for (ReplayedTick tick; replay.next(&tick);)
     last = tick.output->bodies[0];
   CHECK(std::memcmp(&last, &fast.status(0).last.bodies[0], offsetof(fdcg_pose, scale)) == 0);
+}
+
+TEST_CASE("a recording with a silence of hours is not played without waiting") {
+  const Folder folder;
+  const HostConfig scene = read(kScenes + "lift_cube.json");
+  const auto play = [&](const std::vector<std::uint64_t>& times_ns) {
+    HostConfig config = scene;
+    config.log_file = folder.file("a.fdcglog");
+    LogRing ring(1 << 16);
+    LogRing* const rings[] = {&ring};
+    SessionLog log;
+    REQUIRE(log.start(config, rings, 1) == "");
+    for (const std::uint64_t time_ns : times_ns) {
+      TickInput input;
+      input.now_ns = input.reports[0].host_ns = time_ns;
+      input.read = ReadStatus::kReport;
+      input.report_count = 1;
+      input.reports[0].bytes = 4;
+      ring.put(input, TickOutput());
+    }
+    REQUIRE(log.stop() == "");
+    config = scene;
+    config.devices[0].source = DeviceSource::kRecorded;
+    config.devices[0].recording = folder.file("a.fdcglog");
+    FastRun fast;
+    REQUIRE(fast.open(config) == "");
+    const std::string problem = fast.run(0, false);
+    CHECK(fast.has_failed_file() == !problem.empty());
+    return problem;
+  };
+  constexpr std::uint64_t kSecond = 1'000'000'000, kHour = 3600 * kSecond;
+  CHECK(play({kSecond, kSecond, 2 * kSecond}) == "");
+  CHECK(play({kHour, kSecond, kHour + kSecond}) == "");  // times that go back are played at once
+  const std::string gap = play({kSecond, kSecond + 1, 3 * kSecond + kHour});
+  INFO(gap);
+  CHECK(gap.find("a.fdcglog: report 2 of 'gripper' comes 3601.9") != std::string::npos);
+  CHECK(gap.find("at most 3600 s") != std::string::npos);
+  CHECK(gap.find("without --fast") != std::string::npos);
+  CHECK(play({kSecond, 10'000'000'000'000'000'000u}).find("report 1 of 'gripper'") != std::string::npos);
+  CHECK(play({kSecond, kHour, 0, ~std::uint64_t{0}}).find("report 3 of 'gripper'") != std::string::npos);
+  std::vector<std::uint64_t> hours;
+  for (std::uint64_t i = 0; i < 200; ++i)
+    hours.push_back(i * kHour);
+  CHECK(play(hours).find("are played: record it in parts") != std::string::npos);
 }
 
 TEST_CASE("what cannot run without real time is refused, and says what to do") {

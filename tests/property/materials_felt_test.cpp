@@ -207,7 +207,7 @@ TEST_CASE("a finger's material is combined with what it touches: geometric mean,
       REQUIRE(fdcg_scene_add_finger(scene, start, &id, &error) == FDCG_OK);
       const fdcg_material bad = {0.1, 0.2, 100};
       CHECK(fdcg_scene_set_finger_material(scene, id, &bad, &error) == FDCG_E_ARGUMENT);
-      CHECK_THAT(error.message, Catch::Contains("params.finger.mu_static"));
+      CHECK_THAT(error.message, Catch::Contains("material.mu_static is"));
       REQUIRE(fdcg_scene_set_finger_material(scene, id, &finger, &error) == FDCG_OK);
       fdcg_scene_step(scene);
       for (int tick = 0; tick < 100; ++tick) {

@@ -87,6 +87,8 @@ class Judge {
     const Long rounding = 16 * kEps * std::max<Long>(extent_, length(hip));
     REQUIRE(load >= -rounding);                                                              // never pulls
     if (felt.state != FDCG_FACE || felt.flags != 0 || length(hip) > 1000 * extent_) return;  // of a far HIP nothing is left
+    // Beside an apex by rounding the side's normal is rounding too; the place, and so the force, is right.
+    if (surface.kind == FDCG_SURFACE_CONE && std::hypot(god_object[0], god_object[1]) < 64 * kEps * extent_) return;
     const Long pull = length(minus(spring, {normal[0] * load, normal[1] * load, normal[2] * load}));
     // The normal turns over the rounding of a place, by what the surface bends; a HIP far below makes much of it.
     const Long doubt = 8 * rounding * (1 + sharpest_bend(surface) * (load + pull));

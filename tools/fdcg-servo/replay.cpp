@@ -243,6 +243,11 @@ int run_session(const ReplayArguments& arguments, const std::string& given) {
 
 int run_replay(const ReplayArguments& arguments) {
   if (arguments.trajectory.empty()) {
+    fdcg_graph graph{};
+    fdcg_error error{};
+    if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK)
+      return fail(kFile, std::string("neither a session's log nor a graph: ") + error.message);
+    fdcg_close(&graph);
     return fail(kUsage, "--trajectory is required: '" + arguments.graph +
                             "' is no session's log, and a graph needs a path (see 'fdcg-servo replay --help')");
   }

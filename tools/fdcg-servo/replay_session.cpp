@@ -92,6 +92,15 @@ int check_outputs(const ReplaySessionArguments& arguments) {
   return kClean;
 }
 
+// The graphs are known when the log is open; nothing takes its name before the replay is over.
+int check_graphs(const ReplaySessionArguments& arguments, const dev::HostConfig& config) {
+  for (const dev::ObjectConfig& object : config.objects)
+    for (const std::string* const file : {&arguments.csv, &arguments.touches, &arguments.rewritten})
+      if (!object.is_surface && tools::is_same_file(object.file, *file))
+        return fail(kUsage, "'" + *file + "' would overwrite the graph of '" + object.name + "'");
+  return kClean;
+}
+
 }  // namespace
 
 int replay_session(const ReplaySessionArguments& arguments) {
@@ -102,6 +111,7 @@ int replay_session(const ReplaySessionArguments& arguments) {
   const auto replay = std::make_unique<dev::SessionReplay>();
   if (const std::string problem = replay->open(arguments.session, arguments.graphs); !problem.empty())
     return fail(kFile, problem);
+  if (const int code = check_graphs(arguments, replay->config()); code != kClean) return code;
   const auto started = std::chrono::steady_clock::now();
   csv.add(session_csv_header(replay->config()));
   touches.add(touches_csv_header());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "run_fast.hpp"
 #include "scene_json.hpp"
 #include "status_text.hpp"
+#include "words.hpp"
 
 namespace fdcg::servo {
 namespace {
@@ -325,6 +327,19 @@ int Session::end(const std::string& stop_problem) {
   return is_clean ? kClean : kFindings;
 }
 
+// What is no number, too, is outside.
+CLI::Validator seconds_from(double least) {
+  const auto check = [least](const std::string& text) -> std::string {
+    constexpr double kMost = 1e9;
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc{} && stopped == end && value >= least && value <= kMost) return {};
+    return "'" + text + "' is no number from " + dev::shown_number(least) + " to 1e9 seconds";
+  };
+  return {check, ""};
+}
+
 int run_scene(const RunArguments& arguments) {
   dev::HostConfig config;
   std::vector<std::string> warnings;
@@ -337,6 +352,9 @@ int run_scene(const RunArguments& arguments) {
   if (arguments.hid == "libusb") config.loop.backend = dev::HidBackend::kLibusb;
   const StatusKind says = arguments.quiet ? StatusKind::kNone : arguments.status;
   if (arguments.fast) {
+    const auto is_simulated = [](const dev::DeviceConfig& device) { return device.source == dev::DeviceSource::kSimulated; };
+    if (!(arguments.for_s > 0) && std::any_of(config.devices.begin(), config.devices.end(), is_simulated))
+      return fail(kUsage, "a simulated device never ends; say for how long it runs (--for)");
     return run_fast(std::move(config), warnings,
                     {arguments.for_s, arguments.arm, says == StatusKind::kText, says == StatusKind::kJson});
   }
@@ -378,7 +396,7 @@ program.)");
   command->add_flag("--arm", arguments->arm, "Arm each device once, as soon as it is there and free of force");
   command->add_flag("--fast", arguments->fast,
                     "Simulated and recorded devices only: no waiting, each on a clock of its own; the same log every time");
-  command->add_option("--for", arguments->for_s, "Stop after so long")->type_name("SECONDS")->check(CLI::Range(0.001, 1e9));
+  command->add_option("--for", arguments->for_s, "Stop after so long")->type_name("SECONDS")->check(seconds_from(0.001));
   command->add_option("--hid", arguments->hid, "hidapi's back end, in place of the scene's")
       ->type_name("hidraw|libusb")
       ->check(CLI::IsMember({"hidraw", "libusb"}));
@@ -392,7 +410,7 @@ program.)");
       ->transform(CLI::CheckedTransformer(kinds));
   command->add_option("--status-every", arguments->status_every_s, "Default: 0.2 on a terminal, 1 elsewhere")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.01, 1e9));
+      ->check(seconds_from(0.01));
   command->add_flag("-q,--quiet", arguments->quiet, "Errors and warnings only");
   return {command, [arguments] { return run_scene(*arguments); }};
 }

@@ -49,7 +49,7 @@ int run_fast(dev::HostConfig config, const std::vector<std::string>& warnings, c
   }
   if (arguments.says_json) std::printf("%s\n", status_json("end", seconds, looks, problem).c_str());
   if (arguments.says_text) std::fputs(summary_text(looks).c_str(), stdout);
-  if (!problem.empty()) return fail(run.has_failed_log() ? kFile : kFindings, problem);
+  if (!problem.empty()) return fail(run.has_failed_file() ? kFile : kFindings, problem);
   return is_clean ? kClean : kFindings;
 }
 

@@ -18,7 +18,7 @@ constexpr std::uint32_t kLogRingBytes = 1u << 22;
 constexpr std::uint64_t kOriginNs = 1'000'000'000;  // of the host's clock: a time of 0 says "never" in places
 constexpr std::uint64_t kArmAgainNs = 200'000'000;
 constexpr std::uint64_t kRoomWaitNs = 1'000'000;
-constexpr int kMostOpenings = 100'000;  // attempts in a row: 1,000 s of a simulated device's time
+constexpr int kMostOpenings = 100'000;  // attempts in a row: 1,000 s of a simulated device's time; a file is there or not
 constexpr int kLookTicks = 1000;
 
 struct Unit {
@@ -43,7 +43,7 @@ struct FastRun::Impl {
   SceneGraphs graphs;
   std::vector<std::unique_ptr<Unit>> units;
   SessionLog log;
-  bool has_run = false, has_failed_log = false;
+  bool has_run = false, has_failed_file = false;
 
   std::string build_unit(std::size_t index);
   std::string start_log();
@@ -93,7 +93,7 @@ std::string FastRun::Impl::start_log() {
   for (const auto& unit : units)
     rings.push_back(unit->log.get());
   std::string problem = log.start(config, rings.data(), static_cast<int>(rings.size()));
-  has_failed_log = !problem.empty();
+  has_failed_file = !problem.empty();
   return problem;
 }
 
@@ -136,16 +136,20 @@ std::string FastRun::run(double seconds, bool arm, const std::function<bool()>& 
   }
   if (impl.config.log_file.empty()) return problem;
   const std::string of_log = impl.log.stop();
-  impl.has_failed_log = problem.empty() && !of_log.empty();
+  impl.has_failed_file |= problem.empty() && !of_log.empty();
   return problem.empty() ? of_log : problem;
 }
 
 std::string FastRun::Impl::open_device(std::size_t index) {
   Unit& unit = *units[index];
   std::string problem = "it could not be opened";
-  for (int i = 0; i < kMostOpenings && !problem.empty(); ++i)
+  const int most = config.devices[index].source == DeviceSource::kSimulated ? kMostOpenings : 1;
+  for (int i = 0; i < most && !problem.empty(); ++i)
     problem = unit.transport->open();
-  if (!problem.empty()) return "device '" + config.devices[index].name + "': " + problem;
+  if (!problem.empty()) {
+    has_failed_file = most == 1;
+    return "device '" + config.devices[index].name + "': " + problem;
+  }
   unit.is_open = unit.begins = true;
   unit.has_write_failed = false;
   unit.last_good_ns = 0;
@@ -238,8 +242,8 @@ const DeviceStatus& FastRun::status(int device) const {
 bool FastRun::has_ended(int device) const {
   return impl_->units[static_cast<std::size_t>(device)]->has_ended;
 }
-bool FastRun::has_failed_log() const {
-  return impl_->has_failed_log;
+bool FastRun::has_failed_file() const {
+  return impl_->has_failed_file;
 }
 
 }  // namespace fdcg::dev

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "words.hpp"
+
 namespace fdcg::dev {
 namespace {
 
@@ -196,8 +198,8 @@ std::string Builder::add_body(std::size_t index) {
                                          : reach_of(graphs_.of_object(index), config, object.pose.scale);
   const std::uint32_t substeps = fdcg_body_substeps(&body.body, stiffness_n_per_m, std::hypot(far_m, pad_m), tick_s);
   if (substeps == 0) {
-    return "with " + std::to_string(config.mass_kg) + " kg it is too light for " + std::to_string(from_.contact_count) +
-           " contacts of " + std::to_string(object.params.stiffness_n_per_m) + " N/m each: it would need more than " +
+    return "with " + shown_number(config.mass_kg) + " kg it is too light for " + std::to_string(from_.contact_count) +
+           " contacts of " + shown_number(object.params.stiffness_n_per_m) + " N/m each: it would need more than " +
            std::to_string(FDCG_BODY_MAX_SUBSTEPS) + " steps a tick; make it heavier, or softer (stiffness_n_per_m)";
   }
   substeps_ = std::max(substeps_, substeps);

@@ -21,8 +21,9 @@ std::string make_soft(const ObjectConfig& object, const DeviceConfig& device, co
   const double pressed = params.stiffness_n_per_m * device.contact_count;
   if (!(pressed <= most)) {
     return "a corner takes up " + shown_number(most) + " N/m in a tick, and " + std::to_string(device.contact_count) +
-           " contacts press with " + shown_number(pressed) + "; raise the motion's damping_n_s_per_m to " +
-           shown_number(std::ceil(pressed / device.profile.rate_hz)) + " or lower the object's stiffness_n_per_m";
+           (device.contact_count == 1 ? " contact presses with " : " contacts press with ") + shown_number(pressed) +
+           "; raise the motion's damping_n_s_per_m to " + shown_number(std::ceil(pressed / device.profile.rate_hz)) +
+           " or lower the object's stiffness_n_per_m";
   }
   scene->soft.push_back(std::make_unique<SoftObject>());
   return scene->soft.back()->begin(graph, soft, object.pose);

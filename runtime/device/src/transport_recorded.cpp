@@ -11,11 +11,14 @@
 #include "make_transport.hpp"
 #include "scene_json.hpp"
 #include "session_reader.hpp"
+#include "words.hpp"
 
 namespace fdcg::dev {
 namespace {
 
 constexpr std::uint64_t kSecond_ns = 1'000'000'000, kMillisecond_ns = 1'000'000;
+// Without real time each millisecond is a tick's work: of a silence, and of a whole recording.
+constexpr std::uint64_t kLongestGap_ns = 3600 * kSecond_ns, kLongest_ns = 7 * 24 * 3600 * kSecond_ns;
 
 std::uint64_t now_ns() {
   timespec time{};
@@ -49,6 +52,7 @@ class RecordedTransport final : public Transport {
     std::uint16_t bytes;
   };
   std::string load();
+  std::string check_times() const;
 
   std::uint64_t time_ns() const { return is_real_time_ ? now_ns() : clock_ns_; }
   void wait_until(std::uint64_t when_ns) {
@@ -87,6 +91,26 @@ std::string RecordedTransport::load() {
     }
   }
   if (reports_.empty()) return path_ + ": no report of '" + name_ + "' in it: there is nothing to play";
+  return is_real_time_ ? std::string() : check_times();
+}
+
+std::string RecordedTransport::check_times() const {
+  std::uint64_t last_ns = reports_[0].host_ns;
+  for (std::size_t i = 1; i < reports_.size(); ++i) {
+    const std::uint64_t at_ns = reports_[i].host_ns;
+    const std::uint64_t gap_ns = at_ns - std::min(at_ns, last_ns), whole_ns = at_ns - std::min(at_ns, reports_[0].host_ns);
+    const auto in_s = [](std::uint64_t ns) { return shown_number(static_cast<double>(ns) * 1e-9) + " s"; };
+    const auto report = [&] { return path_ + ": report " + std::to_string(i) + " of '" + name_ + "' comes "; };
+    if (gap_ns > kLongestGap_ns) {
+      return report() + in_s(gap_ns) + " after the one before; without waiting at most " + in_s(kLongestGap_ns) +
+             " are passed over: play it in real time (without --fast), or a recording without that silence";
+    }
+    if (whole_ns > kLongest_ns) {
+      return report() + in_s(whole_ns) + " after the first; without waiting at most " + in_s(kLongest_ns) +
+             " are played: record it in parts";
+    }
+    last_ns = std::max(last_ns, at_ns);
+  }
   return {};
 }
 
@@ -107,7 +131,8 @@ ReadResult RecordedTransport::read(std::uint8_t* data, int capacity, int timeout
   if (!has_started_) started_ns_ = time_ns();
   has_started_ = true;
   const Report& report = reports_[next_];
-  const std::uint64_t due_ns = started_ns_ + (report.host_ns - std::min(report.host_ns, reports_[0].host_ns));
+  const std::uint64_t after_ns = report.host_ns - std::min(report.host_ns, reports_[0].host_ns);
+  const std::uint64_t due_ns = started_ns_ + std::min(after_ns, ~started_ns_);  // a hostile time is never, not long ago
   const std::uint64_t until_ns = time_ns() + static_cast<std::uint64_t>(std::max(timeout_ms, 0)) * kMillisecond_ns;
   if (due_ns > until_ns) {
     if (timeout_ms > 0) wait_until(until_ns);

@@ -7,7 +7,8 @@
  *   fdcg_deform_create(memory, bytes, &graph, &config, &deform, &error);
  *   for each vertex of the mesh:  fdcg_deform_find(deform, vertex_m[v], &corner_of[v], &error);
  *   fdcg_deform_contact contact = {0};
- *   each tick:  fdcg_deform_move(deform, corner_of[v], position_m, &error);        for each vertex that moves
+ *   each tick:  fdcg_deform_move(deform, corner_of[v], position_m, &error);        for each vertex that moves, or
+ *               fdcg_deform_move_corners(deform, corners, positions_m, count, &error);             for all that move
  *               fdcg_deform_step(deform, &params, &contact, hip_object_m, &result);   ->  result.force_n
  *
  * or as an object of a scene, beside graphs and surfaces: fdcg_scene_add_deform(scene, deform, &params, &pose, &object,
@@ -33,12 +34,16 @@
  *
  * Threads: one at a time. Steps write too (what they bring up to date).
  *
- * Cost (busy machine): fdcg_deform_move 12 ns, 30 where the vertices lie scattered over a mesh larger than the cache. A step in
- * contact 1.6 to 2.9 times the rigid one on a sheet of 10^5 triangles of which a hundredth moves each tick, the dearest where
- * all of it moves around the finger (tests/bench/deform_bench.cpp). A free HIP not in a clear ball looks once a tick for faces
- * that passed over it: at the boxes around it, and the triangles that moved in them; where the surface moves as far in a tick
- * as it is away, that is 0.3 to 1.2 us. This work, and what is brought up to date, is bounded by the number of triangles near
- * the HIP that moved, and is not carried over to later ticks. Memory, for each triangle: some 155 bytes (f64), 120 (f32).
+ * Cost (busy machine, tests/bench/deform_bench.cpp): moving a vertex 12 ns; where vertices lie scattered over a mesh larger
+ * than the cache 17 to 23 in one call for all, 22 to 27 in a call each. On a sheet of 10^5 triangles of which a hundredth moves
+ * each tick a step in contact takes 1.6 to 3 times the rigid one, the dearest where all of it moves around the finger; one of a
+ * free HIP 1.6 to 2.6 times. While no box of what moves reaches it, a free HIP costs nothing more, however far the surface
+ * moves in its boxes: the mesh watches over the clear balls of 16 contacts, others look anew. A HIP so near that they do reach
+ * it looks once a tick for faces that passed over it: 0.3 to 0.9 us at 1 to 2 mm over waves of 0.5 to 3 mm.
+ *
+ * What a step brings up to date is bounded as its other work is (some 90,000 instructions): where that is spent, a sweep goes
+ * on in the next tick. Not bounded is the look for faces that passed over a HIP: by the triangles in whose boxes it lies.
+ * Memory, for each triangle: some 177 bytes (f64), 137 (f32).
  */
 #ifndef FDCG_DEFORM_H
 #define FDCG_DEFORM_H
@@ -89,7 +94,7 @@ fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_ob
 fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3], fdcg_error* error);
 
 /* Moves many corners, each as fdcg_deform_move does: corners[i] to the three numbers at positions_object_m + 3 i. Stops at the
- * first that is refused, whose number the error says: those before it have been moved. */
+ * first that is refused, whose number the error says: those before it have been moved. Faster by some nanoseconds each. */
 fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
                                      uint64_t count, fdcg_error* error);
 

@@ -19,7 +19,8 @@
  *
  * What acts between two: the parameters of both objects (fdcg_scene_add_object) together, as fdcg_combine_materials has it: of
  * the object touched those of the faces' materials where its terms say so (FDCG_TERM_MATERIALS), on edges and corners by the
- * step's own rules (fdcg.h), of the point's object the general ones. A touch keeps the stiffness that it began with; where
+ * step's own rules (fdcg.h), of the point's object the general ones. The friction curve counts on graphs and on the ground, not
+ * on surfaces (surface.h). A touch keeps the stiffness that it began with; where
  * faces have materials it follows them. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
  * stiffer than an eighth of the bound of the step, 1 / (8 h^2 w), where w says how easily the place moves (1/kg, over three
  * directions): so no pile runs away while fewer than 32 touches pull at two bodies that meet. The other parameters

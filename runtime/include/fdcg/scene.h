@@ -134,8 +134,8 @@ fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, f
 fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
 
 /* What the finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the next
- * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0, or where
- * the library was built without FDCG_WITH_TERMS. */
+ * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. A library
+ * built without FDCG_WITH_TERMS does it too: faces have no materials of their own there, and the object's are combined. */
 fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
                                            fdcg_error* error);
 
