@@ -192,16 +192,22 @@ inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<R
   return dot(t, corner.normal()) < 0 ? walk.active : kFree;
 }
 
-// Whether a place beside a corner is on a face or an edge of that corner, but for its own rounding.
+// A god-object beside the corner `point`, where an edge's rule left it (walk.hpp, leads_back), as far from the corner on `next`
+// instead, straight down: so it is no farther from the HIP than it was, which at the corner it might be. Free, the way begins
+// at the corner, lest it pass below a face of it. `t`: from the corner to the HIP.
 template <class Real>
-[[gnu::noinline]] bool is_on(const Walk<Real>& walk, Feature feature, Vec3<Real> place) {
-  const fdcg_header& header = *walk.graph.header;
-  const Real rounding =
-      8 * RealLimits<Real>::kEpsilon * static_cast<Real>(header.extent) + static_cast<Real>(header.max_deviation);
-  if (feature.state == FDCG_FACE) return absolute(walk.graph.node(feature.index).plane().distance(place)) <= rounding;
-  if (feature.state != FDCG_EDGE) return false;
-  const EdgeLine<Real> line(walk.graph, feature.index);
-  return norm1(place - (line.start + line.direction * line.parameter(place))) <= rounding;
+[[gnu::noinline]] Vec3<Real> moved_beside(const Walk<Real>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
+  if (next == kFree) return point;
+  Vec3<Real> down;  // to the foot of the HIP on `next`
+  if (next.state == FDCG_FACE) {
+    const Vec3<Real> normal = walk.graph.node(next.index).normal();
+    down = t - normal * dot(normal, t);
+  } else {
+    const Vec3<Real> direction = walk.graph.edge(next.index).direction;
+    down = direction * dot(direction, t);
+  }
+  const Real off = norm(walk.god_object - point), length = norm(down);
+  return point + (off < length ? down * (off / length) : down);
 }
 
 // Cost: one connection, one node and two Voronoi planes for each edge of the corner; at a busy corner for some eight of them,
@@ -209,12 +215,10 @@ template <class Real>
 template <class Real>
 inline Decision corner_rule(Walk<Real>& walk) {
   const CornerRef<Real> corner = walk.graph.corner(walk.active.index);
-  const Vec3<Real> point = corner.point();
-  const Feature next = next_from_corner(walk, corner, walk.hip - point);
+  const Vec3<Real> point = corner.point(), t = walk.hip - point;
+  const Feature next = next_from_corner(walk, corner, t);
   if (next == walk.active) return rest();
-  // An edge's rule may have left the god-object beside the corner (walk.hpp, leads_back): the way to what does not pass there
-  // begins at the corner.
-  if (norm1(walk.god_object - point) > 0 && !is_on(walk, next, walk.god_object)) walk.god_object = point;
+  if (norm1(walk.god_object - point) > 0) walk.god_object = moved_beside(walk, next, point, t);
   return go_to(next);
 }
 
