@@ -5,7 +5,7 @@
 // The step is compiled twice: for graphs as they are, and (FDCG_DEFORMABLE, deform_step.cpp) for those whose corners move. There
 // a number that depends on a corner's place is brought up to date before it is handed out, here, so that no rule can see an old
 // one. The two views are in inline namespaces of their own, and so must be every class with members that look at a graph; a
-// function that is given one of them is told apart by that.
+// function that is given one of them is told apart by that. A few lines over 400: where numbers lie is known in one file.
 #pragma once
 
 #include "box_tree.hpp"

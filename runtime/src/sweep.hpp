@@ -4,6 +4,8 @@
 // A sweep looks at the nearest boxes first. Where its work runs out (work.hpp, free_space.hpp) it is carried over to later
 // ticks, which look at the leaves in index order instead: one number then says how far they have come, and each tick gets on by
 // at least one box. A carried sweep takes at most 1 + (boxes and nodes that the way touches) / (work of a tick) ticks.
+//
+// Over 400 lines: one class, whose questions to a node all share the way and its rounding.
 #pragma once
 
 #include "box_tree.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fdcg-servo run: the devices of a scene, until a signal, the command quit, or the time is over.
+// fdcg-servo run: the devices of a scene, until a signal, the command quit, or the time is over. A little over 400
+// lines: one loop, and what it tells its user.
 #include <poll.h>
 #include <signal.h>
 #include <unistd.h>
