@@ -65,7 +65,8 @@ RepairAction drop_duplicates_action(const Workpiece& piece, Tally& tally);
 RepairAction split_vertices_step(Workpiece& piece);
 RepairAction orient_step(Workpiece& piece);
 RepairAction reverse_inside_out_step(Workpiece& piece);
-// All or nothing: where the outcome has another topology, or more pairs of faces that meet, after several tries, it is not taken.
+// All or nothing: where the outcome has another topology, or more pairs of faces that meet, after several tries, it is not
+// taken.
 RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const Progress& progress);
 
 // ---- for the steps

@@ -49,7 +49,8 @@ inline float squared_leaf_distance(const GraphView<Real>& graph, uint32_t leaf, 
 }
 
 // Which of a record's boxes are nearer than that, a bit each.
-inline uint32_t nearer_boxes(const fdcg_box8& boxes, const float (&point)[3], float clear2, float (&distance2)[FDCG_TREE_WAYS]) {
+inline uint32_t nearer_boxes(const fdcg_box8& boxes, const float (&point)[3], float clear2,
+                             float (&distance2)[FDCG_TREE_WAYS]) {
   squared_distances(boxes, point, distance2);
   uint32_t near = 0;
   for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)

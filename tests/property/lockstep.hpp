@@ -20,13 +20,13 @@ struct Lockstep {
   std::uint64_t ties = 0;               // a decision was within rounding
   std::uint64_t ties_off_features = 0;  // of those, where neither this HIP nor the last was put exactly on a feature
   std::uint64_t steps_off_features = 0;
-  std::uint64_t failures = 0;             // all others
-  std::uint64_t bound_hits = 0;           // steps that carried work over to the next tick
-  std::uint64_t most_transitions = 0;     // of the reference in one step
-  double worst_god_object = 0;            // largest difference while they agree, parts of the extent
-  double worst_growth = 0;                // largest growth of |GO - HIP| within a step, parts of eps of the extent
-  std::string first_growth;               // the first beyond 16 eps
-  std::string first_failure;              // everything needed to repeat it
+  std::uint64_t failures = 0;          // all others
+  std::uint64_t bound_hits = 0;        // steps that carried work over to the next tick
+  std::uint64_t most_transitions = 0;  // of the reference in one step
+  double worst_god_object = 0;         // largest difference while they agree, parts of the extent
+  double worst_growth = 0;             // largest growth of |GO - HIP| within a step, parts of eps of the extent
+  std::string first_growth;            // the first beyond 16 eps
+  std::string first_failure;           // everything needed to repeat it
 };
 
 // `soup` in the graph's object frame at one metre per unit: the walk is drawn from its points.

@@ -63,7 +63,8 @@ int run(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "fdcg " FDCG_VERSION_STRING " (file format 1)");
   app.require_subcommand(1);
-  const std::vector<Command> commands{add_compile(app), add_validate(app), add_repair(app), add_inspect(app), add_explain(app), add_grasp(app)};
+  const std::vector<Command> commands{add_compile(app), add_validate(app), add_repair(app),
+                                      add_inspect(app), add_explain(app),  add_grasp(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -37,7 +37,7 @@ class FastRun {
   // After run. Times are not measured.
   const DeviceStatus& status(int device) const;
   bool has_ended(int device) const;  // a recording that has been played
-  bool has_failed_file() const;       // the text that run gave is the log's
+  bool has_failed_file() const;      // the text that run gave is the log's
 
  private:
   struct Impl;

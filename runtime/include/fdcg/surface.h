@@ -27,12 +27,13 @@
  *                                     FDCG_VERTEX 1 x + 2 y + 4 z, each 1 for plus
  *
  * The god-object rests on edges and vertices of cavities only; on convex ones it is on its way. Cost of a tick that slides 1 mm
- * deep at 0.1 m/s and 1 kHz with friction on surfaces of hand's size, at 3.6 GHz (tests/bench/surface_bench.cpp; alone, and in a
- * row): plane 25 and 16 ns, sphere 40 and 25, box 32 and 20, cylinder and capsule 70 and 60, cone and torus 75 and 62, ellipsoid
- * 140 and 130; at rest, free or without friction less. Slides so long, so deep or so near to an edge or an apex that one move
- * and one correction do not do take two to four times that. A jump halfway round a surface takes at most FDCG_SURFACE_MAX_MOVES
- * moves of some 60 ns, and what is left then is carried to the next tick (FDCG_RESULT_TRANSITION_BOUND) with a valid god-object.
- * In a large move the way over a curved surface that friction ends is followed in pieces of a quarter of a radian.
+ * deep at 0.1 m/s and 1 kHz with friction on surfaces of hand's size, at 3.6 GHz (tests/bench/surface_bench.cpp; alone, and in
+ * a row): plane 25 and 16 ns, sphere 40 and 25, box 32 and 20, cylinder and capsule 70 and 60, cone and torus 75 and 62,
+ * ellipsoid 140 and 130; at rest, free or without friction less. Slides so long, so deep or so near to an edge or an apex that
+ * one move and one correction do not do take two to four times that. A jump halfway round a surface takes at most
+ * FDCG_SURFACE_MAX_MOVES moves of some 60 ns, and what is left then is carried to the next tick (FDCG_RESULT_TRANSITION_BOUND)
+ * with a valid god-object. In a large move the way over a curved surface that friction ends is followed in pieces of a quarter
+ * of a radian.
  */
 #ifndef FDCG_SURFACE_H
 #define FDCG_SURFACE_H

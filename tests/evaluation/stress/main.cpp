@@ -213,8 +213,8 @@ std::uint64_t count_of(const BlockResult& r, Fault fault) {
 // Whether stress/open/list.txt has the fault: known, and not mended.
 bool stands_open(const Row& row, Fault fault) {
   std::ifstream list(FDCG_STRESS_OPEN "/list.txt");
-  const std::string wanted = std::string(row.stress_case->name) + " " + name_of(row.precision) + " " +
-                             std::string(fdcg::test::name_of(fault)) + " ";
+  const std::string wanted =
+      std::string(row.stress_case->name) + " " + name_of(row.precision) + " " + std::string(fdcg::test::name_of(fault)) + " ";
   for (std::string line; std::getline(list, line);) {
     if (line.rfind(wanted, 0) == 0) return true;
   }

@@ -66,9 +66,7 @@ bool passes_through_itself(const Body& body) {
 
 class Minimiser {
  public:
-  explicit Minimiser(Reproducer r) : best_(std::move(r)) {
-    best_.body.focus.clear();
-  }
+  explicit Minimiser(Reproducer r) : best_(std::move(r)) { best_.body.focus.clear(); }
 
   Reproducer run() {
     if (!take(best_)) throw std::runtime_error("the reproducer does not fail: nothing to cut down");

@@ -24,7 +24,8 @@ std::string quoted(const std::string& text) {
 std::string in_folder(const std::string& folder, const std::string& file) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw std::runtime_error(folder + ": cannot be made (" + error.message() + "); name a folder that you may write to");
+  if (error)
+    throw std::runtime_error(folder + ": cannot be made (" + error.message() + "); name a folder that you may write to");
   return (std::filesystem::path(folder) / file).string();
 }
 

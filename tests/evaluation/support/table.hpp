@@ -17,14 +17,13 @@ inline std::string cell(std::string_view text) {
   return std::string(text);
 }
 template <class Integer>
-  requires std::is_integral_v<Integer>
-std::string cell(Integer value) {
+requires std::is_integral_v<Integer> std::string cell(Integer value) {
   return std::to_string(value);
 }
 
 // FOLDER/NAME.csv. The header is written at once, each row when it is complete: what a program that is stopped has measured is
-// there to read. Units belong into the columns' names (`p50_ns`). Throws std::runtime_error, naming the file, where it cannot be
-// written, and std::logic_error where a row has not as many cells as there are columns.
+// there to read. Units belong into the columns' names (`p50_ns`). Throws std::runtime_error, naming the file, where it cannot
+// be written, and std::logic_error where a row has not as many cells as there are columns.
 class Table {
  public:
   Table(const std::string& folder, const std::string& name, const std::vector<std::string>& columns);

@@ -87,13 +87,13 @@ typedef struct fdcg_device_status {
   uint32_t arming_refused;
   uint32_t state; /* fdcg_state, of the contact with the largest force */
   double tip_world_m[3];
-  double force_n[3]; /* device's frame, as it was sent */
+  double force_n[3];        /* device's frame, as it was sent */
   double wanted_force_n[3]; /* world, before the gate */
   uint64_t ticks, late, lost, rejected, write_failures, opened, log_dropped;
   double elapsed_s;
   double interval_p50_s, interval_p999_s; /* between good reports */
   double work_p50_s, work_p999_s;         /* of a tick */
-  fdcg_host_message problem; /* why it is not open; empty: it is, or nobody has tried yet */
+  fdcg_host_message problem;              /* why it is not open; empty: it is, or nobody has tried yet */
 } fdcg_device_status;
 
 /* Some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, or struct_bytes is no multiple of 8. */
