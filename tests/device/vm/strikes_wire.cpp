@@ -20,7 +20,7 @@ int burst_length(Rig& rig, int longest) {
     case 0:
       return static_cast<int>(rig.random_between(1, 2));
     case 1:
-      return static_cast<int>(rig.random_between(5, silence - 3));  // the good report after it may take two periods on its way
+      return static_cast<int>(rig.random_between(5, silence * 6 / 10));  // the good report after it may take periods on its way
     default:
       return static_cast<int>(rig.random_between(silence + 3, longest));
   }
