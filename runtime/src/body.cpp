@@ -172,6 +172,8 @@ extern "C" fdcg_status fdcg_body_init(fdcg_body* body, const fdcg_body_config* c
 extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double velocity_m_per_s[3],
                                             const double angular_rad_per_s[3], fdcg_error* error) {
   using namespace fdcg;
+  if (body == nullptr || velocity_m_per_s == nullptr || angular_rad_per_s == nullptr)
+    return Message(error, FDCG_E_ARGUMENT).text("body, velocity or angular velocity: null pointer");
   for (int k = 0; k < 3; ++k) {
     const Range ranges[] = {{"velocity_m_per_s", velocity_m_per_s[k], -kFastest, kFastest},
                             {"angular_rad_per_s", angular_rad_per_s[k], -kFastest, kFastest}};

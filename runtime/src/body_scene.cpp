@@ -21,7 +21,7 @@ fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_react
 }
 
 fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
-                         const fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error) {
+                         double tick_s, const fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error) {
   if (scene == nullptr || bodies == nullptr || reactions == nullptr)
     return Message(error, FDCG_E_ARGUMENT).text("scene, bodies or reactions: null pointer");
   if (substeps == 0 || substeps > FDCG_BODY_MAX_SUBSTEPS) {
@@ -31,6 +31,17 @@ fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies,
         .text(", allowed 1 to ")
         .number(FDCG_BODY_MAX_SUBSTEPS)
         .text("; a shorter tick, a softer contact or a heavier body needs fewer");
+  }
+  constexpr double kLeastStep_s = 1e-9, kLongestStep_s = 1;  // of fdcg_body_step
+  if (!(tick_s / substeps >= kLeastStep_s && tick_s / substeps <= kLongestStep_s)) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("tick_s is ")
+        .real(tick_s)
+        .text(", allowed for each of the substeps ")
+        .real(kLeastStep_s)
+        .text(" to ")
+        .real(kLongestStep_s)
+        .text(" s");
   }
   for (uint32_t i = 0; i < body_count; ++i) {
     if (bodies[i].object.index < reaction_count) continue;
@@ -50,7 +61,7 @@ fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies,
 extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count,
                                               uint32_t substeps, double tick_s, fdcg_reaction* reactions,
                                               uint32_t reaction_count, fdcg_error* error) {
-  fdcg_status status = fdcg::check_bodies(scene, bodies, body_count, substeps, reactions, reaction_count, error);
+  fdcg_status status = fdcg::check_bodies(scene, bodies, body_count, substeps, tick_s, reactions, reaction_count, error);
   for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
     fdcg_scene_step(scene);
     fdcg_scene_reactions(scene, reactions, reaction_count);

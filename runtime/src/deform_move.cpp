@@ -166,6 +166,8 @@ uint32_t find(const fdcg_deform& deform, Vec3<double> at, double reach) {
 
 extern "C" fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3],
                                         fdcg_error* error) {
+  if (deform == nullptr || position_object_m == nullptr)
+    return fdcg::Message(error, FDCG_E_ARGUMENT).text("deform or position: null pointer");
   return fdcg::with_real_of(deform->header, [&](auto real) {
     return fdcg::move_corner<decltype(real)>(deform, FDCG_NONE, corner, position_object_m, error);
   });
@@ -174,8 +176,8 @@ extern "C" fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, co
 extern "C" fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
                                                 uint64_t count, fdcg_error* error) {
   if (count == 0) return FDCG_OK;
-  if (corners == nullptr || positions_object_m == nullptr)
-    return fdcg::Message(error, FDCG_E_ARGUMENT).text("corners or positions: null pointer");
+  if (deform == nullptr || corners == nullptr || positions_object_m == nullptr)
+    return fdcg::Message(error, FDCG_E_ARGUMENT).text("deform, corners or positions: null pointer");
   return fdcg::with_real_of(deform->header, [&](auto real) {
     using Place = fdcg::Place<decltype(real)>;
     constexpr uint64_t kAhead = 8;  // so that scattered corners are in the cache when their turn comes
@@ -192,6 +194,8 @@ extern "C" fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint3
 extern "C" fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3],
                                          fdcg_error* error) {
   using fdcg::widen;
+  if (deform == nullptr || position_object_m == nullptr)
+    return fdcg::Message(error, FDCG_E_ARGUMENT).text("deform or position: null pointer");
   if (corner >= deform->header.corner_count) return fdcg::refuse_corner(*deform, FDCG_NONE, corner, error);
   fdcg::with_real_of(deform->header, [&](auto real) {
     const fdcg::Upkeep<decltype(real)> upkeep(const_cast<fdcg_deform&>(*deform));
@@ -205,8 +209,8 @@ extern "C" fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t cor
 extern "C" fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_object_m[3], uint32_t* corner,
                                         fdcg_error* error) {
   constexpr double kNear = 0x1p-20;  // of the extent: more than the rounding of a float or of a change of units
-  if (corner == nullptr || position_object_m == nullptr)
-    return fdcg::Message(error, FDCG_E_ARGUMENT).text("position or corner: null pointer");
+  if (deform == nullptr || corner == nullptr || position_object_m == nullptr)
+    return fdcg::Message(error, FDCG_E_ARGUMENT).text("deform, position or corner: null pointer");
   *corner = FDCG_NONE;
   fdcg::Vec3<double> local;
   if (!fdcg::to_local(*deform, position_object_m, &local))

@@ -310,6 +310,12 @@ fdcg_status check_presence(const fdcg_header& header, fdcg_error* error) {
 
 fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
   if (data == nullptr) return Message(error, FDCG_E_ARGUMENT).text("data: null pointer");
+  if (verify != FDCG_VERIFY_FULL && verify != FDCG_VERIFY_TRUSTED) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("verify is ")
+        .number(static_cast<uint32_t>(verify))
+        .text(", allowed FDCG_VERIFY_FULL (0) and FDCG_VERIFY_TRUSTED (1)");
+  }
   if (reinterpret_cast<uintptr_t>(data) % alignof(fdcg_header) != 0) {
     return Message(error, FDCG_E_ALIGNMENT)
         .text("the memory must start at a multiple of 8 bytes; align the buffer (64 is best)");

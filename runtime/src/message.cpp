@@ -52,13 +52,18 @@ Message& Message::real(double value) {
   }
   if (value > 1e300) return text("infinite");
   int exponent = 0;
-  if (value != 0 && (value >= 1e6 || value < 1e-3)) {
+  const bool has_exponent = value != 0 && (value >= 1e6 || value < 1e-3);
+  if (has_exponent) {
     for (; value >= 10; value /= 10)
       ++exponent;
     for (; value < 1; value *= 10)
       --exponent;
   }
-  const auto millionths = static_cast<uint64_t>(value * 1e6 + 0.5);
+  auto millionths = static_cast<uint64_t>(value * 1e6 + 0.5);
+  if (has_exponent && millionths >= 10000000) {  // by rounding: 1e-12, not 10e-13
+    millionths /= 10;
+    ++exponent;
+  }
   number(millionths / 1000000);
   uint64_t rest = millionths % 1000000;
   if (rest != 0) put('.');

@@ -274,19 +274,8 @@ extern "C" fdcg_status fdcg_scene_step_pile(fdcg_scene* scene, fdcg_pile* pile, 
                                             fdcg_error* error) {
   using namespace fdcg;
   if (pile == nullptr) return Message(error, FDCG_E_ARGUMENT).text("pile: null pointer");
-  fdcg_status status = check_bodies(scene, bodies, body_count, substeps, reactions, reaction_count, error);
+  fdcg_status status = check_bodies(scene, bodies, body_count, substeps, tick_s, reactions, reaction_count, error);
   if (status != FDCG_OK) return status;
-  constexpr double kLeastStep_s = 1e-9, kLongestStep_s = 1;  // of fdcg_body_step
-  if (!(tick_s / substeps >= kLeastStep_s && tick_s / substeps <= kLongestStep_s)) {
-    return Message(error, FDCG_E_ARGUMENT)
-        .text("tick_s is ")
-        .real(tick_s)
-        .text(", allowed for each of the substeps ")
-        .real(kLeastStep_s)
-        .text(" to ")
-        .real(kLongestStep_s)
-        .text(" s");
-  }
   if (pile->member_end > scene->object_end) return Message(error, FDCG_E_ARGUMENT).text("pile: not this scene's");
   find_bodies(*pile, bodies, body_count);
   const Meeting meeting = {*scene, *pile, bodies, tick_s / substeps};

@@ -125,6 +125,10 @@ Record* find(Record* records, uint32_t end, Id id, const char* unknown, fdcg_err
   return nullptr;
 }
 Object* find(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {
+  if (scene == nullptr) {
+    refuse(error, "scene: null pointer");
+    return nullptr;
+  }
   return find(scene->objects(), scene->object_end, id, "object: not in the scene, or removed", error);
 }
 
@@ -151,7 +155,7 @@ void start(fdcg_scene* scene, Finger* finger, World hip) {
 
 fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
                        fdcg_object_id* object, fdcg_error* error) {
-  if (object == nullptr) return refuse(error, "object: null pointer");
+  if (scene == nullptr || object == nullptr) return refuse(error, "scene or object: null pointer");
   fdcg_status status = fdcg_check_params(params, error);
   fdcg_pose checked;
   if (status == FDCG_OK) status = checked_pose(pose, &checked, error);
@@ -178,6 +182,10 @@ fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params
 }
 
 Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error) {
+  if (scene == nullptr) {
+    refuse(error, "scene: null pointer");
+    return nullptr;
+  }
   return find(scene->fingers(), scene->finger_end, id, "finger: not in the scene, or removed", error);
 }
 
@@ -275,7 +283,8 @@ extern "C" fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_i
 
 extern "C" fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip_world_m[3], fdcg_finger_id* finger,
                                              fdcg_error* error) {
-  if (hip_world_m == nullptr || finger == nullptr) return refuse(error, "hip_world_m or finger: null pointer");
+  if (scene == nullptr || hip_world_m == nullptr || finger == nullptr)
+    return refuse(error, "scene, hip_world_m or finger: null pointer");
   Finger* const added =
       unused(scene->fingers(), &scene->first_free_finger, scene->config.finger_capacity, "config.finger_capacity", error);
   if (added == nullptr) return FDCG_E_ARGUMENT;
@@ -307,6 +316,7 @@ extern "C" fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id 
                                               fdcg_error* error) {
   Finger* const finger = find_finger(scene, id, error);
   if (finger == nullptr) return FDCG_E_ARGUMENT;
+  if (hip_world_m == nullptr) return refuse(error, "hip_world_m: null pointer");
   finger->hip = {hip_world_m[0], hip_world_m[1], hip_world_m[2]};
   return FDCG_OK;
 }
@@ -327,14 +337,16 @@ extern "C" fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id
                                                fdcg_error* error) {
   Finger* const finger = find_finger(scene, id, error);
   if (finger == nullptr) return FDCG_E_ARGUMENT;
+  if (hip_world_m == nullptr) return refuse(error, "hip_world_m: null pointer");
   start(scene, finger, {hip_world_m[0], hip_world_m[1], hip_world_m[2]});
   return FDCG_OK;
 }
 
 extern "C" fdcg_status fdcg_scene_result(const fdcg_scene* scene, fdcg_finger_id id, fdcg_finger_result* result,
                                          fdcg_error* error) {
-  const Finger* const finger = find(scene->fingers(), scene->finger_end, id, "finger: not in the scene, or removed", error);
+  const Finger* const finger = find_finger(const_cast<fdcg_scene*>(scene), id, error);
   if (finger == nullptr) return FDCG_E_ARGUMENT;
+  if (result == nullptr) return refuse(error, "result: null pointer");
   *result = {{finger->force.x, finger->force.y, finger->force.z},
              finger->flags,
              finger->touch_count,

@@ -203,6 +203,7 @@ extern "C" fdcg_status fdcg_scene_turn_finger(fdcg_scene* scene, fdcg_finger_id 
 extern "C" fdcg_status fdcg_scene_finger_torque(const fdcg_scene* scene, fdcg_finger_id id, double torque_n_m[3],
                                                 fdcg_error* error) {
   if (find_finger(const_cast<fdcg_scene*>(scene), id, error) == nullptr) return FDCG_E_ARGUMENT;
+  if (torque_n_m == nullptr) return Message(error, FDCG_E_ARGUMENT).text("torque_n_m: null pointer");
   World sum = {0, 0, 0};
   if (scene->config.has_soft_fingers != 0) {
     for (uint32_t s = 0; s < scene->config.touches_per_finger; ++s) {

@@ -366,6 +366,14 @@ class Input(GraspCase):
                 self.assert_one_line(done, *words)
                 self.assertEqual(b"", done.stdout)
 
+    def test_no_input_is_overwritten(self):
+        for path in (self.cube, self.fingers):
+            with self.subTest(path=path):
+                before = pathlib.Path(path).read_bytes()
+                done = self.fdcg("grasp", self.cube, "--contacts", self.fingers, "--mu", "1", "-o", path, code=2)
+                self.assert_one_line(done, path, "would overwrite")
+                self.assertEqual(before, pathlib.Path(path).read_bytes())
+
     def test_objects_that_cannot_serve(self):
         done = self.fdcg("grasp", self.path("none.off"), "--contacts", self.fingers, "--mu", "1", code=3)
         self.assert_one_line(done, "none.off")

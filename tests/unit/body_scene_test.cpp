@@ -234,5 +234,9 @@ TEST_CASE("a tick of bodies that cannot be is refused by name") {
   CHECK(fdcg_scene_step_bodies(rig.get(), &body, 1, 1, kTick, &reaction, 0, &error) == FDCG_E_ARGUMENT);
   CHECK(std::string(error.message).find("body 0: its object has index 0") == 0);
   CHECK(fdcg_scene_step_bodies(nullptr, &body, 1, 1, kTick, &reaction, 1, &error) == FDCG_E_ARGUMENT);
+  for (const double tick_s : {std::numeric_limits<double>::quiet_NaN(), 0.0, -1.0, 100.0}) {
+    CHECK(fdcg_scene_step_bodies(rig.get(), &body, 1, 1, tick_s, &reaction, 1, &error) == FDCG_E_ARGUMENT);
+    CHECK(std::string(error.message).find("allowed for each of the substeps 1e-9 to 1 s") != std::string::npos);
+  }
   CHECK(fdcg_scene_step_bodies(rig.get(), &body, 1, 1, kTick, &reaction, 1, &error) != FDCG_OK);  // names no object
 }

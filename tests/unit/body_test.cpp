@@ -246,7 +246,7 @@ TEST_CASE("a body that turns too fast for its step keeps its momentum and its un
 }
 
 TEST_CASE("bodies that cannot be are refused, with the field, its value and its limit") {
-  CHECK(refusal([](auto& config, auto&) { config.mass_kg = 0; }).find("config.mass_kg is 0") == 0);
+  CHECK(refusal([](auto& config, auto&) { config.mass_kg = 0; }).find("config.mass_kg is 0, allowed 1e-12 to 1e12") == 0);
   CHECK(refusal([](auto& config, auto&) { config.mass_kg = std::nan(""); }).find("config.mass_kg") == 0);
   CHECK(refusal([](auto& config, auto&) { config.linear_damping_per_s = -1; }).find("linear_damping_per_s") !=
         std::string::npos);

@@ -122,6 +122,14 @@ TEST_CASE("opening a compiled file gives its graph, in both precisions and both 
   }
 }
 
+TEST_CASE("a degree of trust that there is not is refused") {
+  const AlignedBytes file = compiled(cube(), {});
+  fdcg_graph graph;
+  fdcg_error error = {};
+  CHECK(fdcg_open_memory(file.data(), file.size(), static_cast<fdcg_verify>(2), &graph, &error) == FDCG_E_ARGUMENT);
+  CHECK(std::string(error.message).find("verify is 2") == 0);
+}
+
 TEST_CASE("every truncation of a file is refused with a message") {
   AlignedBytes file = compiled(cube(), small_f32());
   for (std::uint64_t bytes = 0; bytes < file.size(); ++bytes) {

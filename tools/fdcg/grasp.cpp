@@ -119,6 +119,9 @@ bool has_grip(const GraspArguments& arguments, const grasp::Grasp& grasp) {
 }
 
 int run_grasp(const GraspArguments& arguments) {
+  for (const std::string* input : {&arguments.object, &arguments.contacts}) {
+    if (is_same_file(*input, arguments.output)) return fail(kUsage, "'" + arguments.output + "' would overwrite an input");
+  }
   const auto contacts = read_contacts(arguments.contacts);
   if (!contacts) return fail(contacts.error().exit_code, contacts.error().message);
   const auto object = GraspObject::load(arguments.object, arguments.compile);

@@ -115,8 +115,9 @@ typedef struct fdcg_scene_body {
 
 /* A tick of the scene and its bodies: `substeps` times (1 to FDCG_BODY_MAX_SUBSTEPS) a fdcg_scene_step, the reactions to the
  * fingers' forces, each body moved on by tick_s / substeps, its pose handed to the scene. `reactions`: room for one entry by
- * object index, of at least the largest index among the bodies and one. A finger's result is that of the last substep.
- * Stops with the scene's own status where a pose is refused: a body that flew beyond 1e12 m, or an object removed. */
+ * object index, of at least the largest index among the bodies and one. tick_s / substeps: 1e-9 to 1. A finger's result is that
+ * of the last substep. Stops with the scene's own status where a pose is refused: a body that flew beyond 1e12 m, or an object
+ * removed. */
 fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
                                    double tick_s, fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error);
 

@@ -126,6 +126,8 @@ fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_id object, i
 
 /* ---- fingers ----------------------------------------------------------------------------------------------------------- */
 
+/* It begins, free, where it stands when it is stepped for the first time: nothing on the way there is met. From then on its way
+ * is swept. */
 fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip_world_m[3], fdcg_finger_id* finger, fdcg_error* error);
 fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
 
@@ -139,7 +141,7 @@ fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, con
 fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
                                            fdcg_error* error);
 
-/* Lets go of everything and starts anew at a place: nothing on the way there is met. */
+/* Lets go of everything and starts anew at a place, as if just added: nothing on the way there is met. */
 fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
 
 /* ---- step -------------------------------------------------------------------------------------------------------------- */
