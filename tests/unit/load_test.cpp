@@ -123,7 +123,7 @@ TEST_CASE("opening a compiled file gives its graph, in both precisions and both 
 }
 
 TEST_CASE("a degree of trust that there is not is refused") {
-  const AlignedBytes file = compiled(cube(), {});
+  AlignedBytes file = compiled(cube(), {});
   fdcg_graph graph;
   fdcg_error error = {};
   CHECK(fdcg_open_memory(file.data(), file.size(), static_cast<fdcg_verify>(2), &graph, &error) == FDCG_E_ARGUMENT);
