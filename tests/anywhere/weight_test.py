@@ -66,7 +66,8 @@ class TextSize(WeightCase):
         slide over the faces of a large mesh takes half as long again."""
         if platform.machine() != "x86_64":
             self.skipTest("looks for an instruction of x86-64")
-        code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", self.library("both")], capture_output=True, check=True, text=True).stdout
+        objdump = ["objdump", "-d", "--no-show-raw-insn", self.library("both")]
+        code = subprocess.run(objdump, capture_output=True, check=True, text=True).stdout
         step = re.search(r"^servo_step\.cpp\.o:.*?(?=^\S+\.o:|\Z)", code, re.M | re.S)
         self.assertGreater(len(re.findall(r"\bprefetch", step.group())), 8)
 
