@@ -26,7 +26,7 @@ struct AdversaryFind {
   [[nodiscard]] double backward_ulps() const { return ulps / conditioning; }
 };
 
-// Up to here the bar on errors holds. Beyond it, the rounding of the HIP itself moves the exact answer by more than that.
+// Up to here the bar on errors holds. Beyond it, an ulp of the HIP moves the exact answer by more than that.
 constexpr double kMostWellPosed = 64;
 
 enum class AdversaryGoal { error, backward_error, transitions };
