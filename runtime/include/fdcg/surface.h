@@ -80,6 +80,7 @@ typedef struct fdcg_surface {
 
 /* Sets the first `struct_bytes` bytes of *surface: a plane, which is all zero but for struct_bytes. */
 static inline void fdcg_init_surface(fdcg_surface* surface, uint32_t struct_bytes) {
+  if (surface == NULL) return;
   memset((void*)surface, 0, struct_bytes);
   surface->struct_bytes = struct_bytes;
 }
@@ -127,7 +128,8 @@ static inline fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m,
 }
 
 /* FDCG_E_ARGUMENT, with the field, its value and its limit in the message, unless every field is in range: sizes of 1e-9 to 1e9
- * m, none less than 1e-4 of the largest, and no field set that the kind does not name. The step does not check. */
+ * m, none less than 1e-4 of the largest (a tube's radius at most 1 - 1e-4 of the torus'), and no field set that the kind does
+ * not name; a capsule's length may be 0, and so may one radius of a cone. The step does not check. */
 fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_error* error);
 
 /* Moves the contact to the HIP of this tick and says what the hand should feel: fdcg_step for a surface. Of *params neither
