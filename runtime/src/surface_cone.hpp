@@ -135,11 +135,13 @@ struct ConeSurface {
     const Point outward = {x.x * per_off, x.y * per_off, 0};
     return {x, normal_of(outward), outward, off, per_off};
   }
-  // On the side's line through the axis's plane of p, beyond its ends too, but not beyond an apex.
+  // On the side's line through the axis's plane of p, beyond its ends too, but not beyond the axis.
   [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot& spot) const {
     if (along_r == 0 && (p.x != 0 || p.y != 0)) return on_cylinder(p, p, true);
     const double off2 = p.x * p.x + p.y * p.y;
     if (!(off2 > kEps * extent * kEps * extent)) return on_line(spot.outward, root(off2), p.z);
+    const double ahead = p.x * spot.outward.x + p.y * spot.outward.y;
+    if (spot.off > 0 && !(ahead > 0)) return on_line(spot.outward, ahead, p.z);  // past the narrow end
     const double per_off = inverse_root_near(off2, spot.per_off);
     return on_line({p.x * per_off, p.y * per_off, 0}, off2 * per_off, p.z);
   }
