@@ -96,13 +96,15 @@ FDCG_HOT Move next_move(const Piece& piece, const Spot& spot, const Press& press
   const Course course = course_of(press, bend, mu, 2 * bend.turn2 - curvature * bend.along, per_pull2);
   const double left = course.fall * course.fall - course.bow * course.excess;
   // The descent's direction changes, since the load turns the pull: a move knows how to second order, if that is not much.
+  // Without friction no more is asked than that it ends at the minimum.
   const Point aside = bend.turned - press.across * curvature;
-  const double most = larger(turn1 * (1 / kLargestTurn), load * norm1(aside) * per_pull * (1 / kLargestSwing));
+  const double swing = mu > 0 ? load * norm1(aside) * per_pull : 0;  // by a way of 1
+  const double most = larger(turn1 * (1 / kLargestTurn), swing * (1 / kLargestSwing));
   const double stop = course.excess / (course.fall + (left > 0 ? root(left) : 0));
   const bool is_near = course.fall > kLeastFall && stop * most <= 1;
-  const double length = is_near ? stop : 1 / most;
-  const Point bow = aside * (0.5 * load * length);
-  return {(press.across + bow) * -length, bow * -length, is_near, false, false};
+  const double length = is_near ? stop : 1 / most, half = 0.5 * load * length;
+  const Point bow = aside * (half * half * squared(aside) <= 0.25 * press.pull2 ? half * length : 0);
+  return {press.across * -length - bow, bow * -1.0, is_near, false, false};
 }
 
 // The last of a slide, where a move has left so little that the surface is a parabola there: without looking for it again.
