@@ -177,7 +177,9 @@ struct ConeSurface {
   // ---- rules
 
   FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
-    return face == kSide && slide_round(LineProfile{sign, radius[0], half, along_r, along_z, per_radius}, touch);
+    if (face != kSide) return false;
+    if (along_r == 0) return slide_round(CylinderProfile{sign, radius[0], per_radius, half}, touch);
+    return slide_round(LineProfile{sign, radius[0], half, along_r, along_z}, touch);
   }
   Decision rule(SurfaceWalk& walk) const {
     if (walk.active.state == FDCG_EDGE) return rim_rule(walk);

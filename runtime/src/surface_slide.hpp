@@ -111,6 +111,7 @@ template <class Piece, class Spot>
   Point step = {0, 0, 0};
   bool is_cut = false;
   for (int k = 0; k < 2; ++k) {
+    if (!(norm1(parts[k]) > rounding)) continue;  // none
     const double change = absolute(changes[k]), turns = absolute(1 - changes[k]) * norm1(parts[k]) / (load * kLargestTurn);
     is_cut = is_cut || !(changes[k] > kLeast && turns <= change);
     if (change > 0 || turns > 0) step = step - parts[k] * (1 / larger(change, turns));
