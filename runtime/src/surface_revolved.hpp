@@ -65,6 +65,7 @@ inline Outward outward_of(Point at, double off2) {
 //   raised, bend                  the arc's radius and its inverse, negative where hollow; of a line 0 and none
 //   Outward outward(at, off2)     of a place at the square of this distance from the axis
 //   Section section(off, z)       at a place; the normal may lack rounding of its length 1
+//   double per_off(off)           its inverse
 //   bool nearest(from, off, z, &to)   the place nearest to this one, which is in the material; false where it is not near
 //   `from` bool is_within(z)             whether it goes on there
 
@@ -79,6 +80,7 @@ struct CylinderProfile {
     const double scale = per_radius * (1.5 - 0.5 * (off2 * per_radius * per_radius));  // no rounding adds up
     return {at.x * scale, at.y * scale, radius, per_radius};
   }
+  [[nodiscard]] double per_off(double) const { return per_radius; }
   [[nodiscard]] FDCG_HOT Section<Nought> section(double, double z) const { return {radius, z, sign, {}}; }
   [[nodiscard]] FDCG_HOT bool nearest(const Section<Nought>&, double off, double z, Section<Nought>* to) const {
     *to = section(off, z);
@@ -95,6 +97,7 @@ struct LineProfile {
   double sign, start_r, half, along_r, along_z;
 
   [[nodiscard]] static Outward outward(Point at, double off2) { return outward_of(at, off2); }
+  [[nodiscard]] static double per_off(double off) { return 1 / off; }
   [[nodiscard]] FDCG_HOT Section<double> section(double off, double z) const {
     const double u = along_r * (off - start_r) + along_z * (z + half);
     return {start_r + u * along_r, u * along_z - half, sign * along_z, -sign * along_r};
@@ -151,15 +154,13 @@ struct RoundMove {
   bool is_short;
 };
 
-// To where the course of the excess says that friction stops it, as next_move() has it; `both` is 1 + mu^2, `held` mu * load.
-// On a plane that is at 1 - held / pull; `later` is what the surface's bend adds, to second order. What waits for the pull's
-// root comes last.
+// To where the course of the excess says that friction stops it, as next_move() has it; `held` is mu * load. On a plane that is
+// at 1 - held / pull; `later` is what the surface's bend adds, to second order. What waits for the pull's root comes last.
 template <class Profile, class From>
 FDCG_HOT RoundMove next_round_move(const Profile& profile, const Tug& tug, const From& from, double per_off, double held,
-                                   double both) {
-  constexpr double kLeast = 0.25, kLeastHeld2 = 0x1p-40, kMostLater = 0.125;
-  const double load = tug.load, pull2 = tug.pull2, pull = root(pull2), per_pull2 = 1 / pull2, bothload = both * load;
-  if (!(held * held > kLeastHeld2 * pull2)) return {0, 0, 0, 0, false};
+                                   double mu2) {
+  constexpr double kLeast = 0.25, kMostLater = 0.125;
+  const double load = tug.load, pull2 = tug.pull2, pull = root(pull2), per_pull2 = 1 / pull2, both = 1 + mu2;
   const auto narrows = -from.n_z * per_off;
   const double round2 = tug.round * tug.round, along2 = tug.along * tug.along, k1 = from.n_r * per_off, half = 0.5 * load;
   const auto on_section = profile.bend * along2;
@@ -168,17 +169,14 @@ FDCG_HOT RoundMove next_round_move(const Profile& profile, const Tug& tug, const
   const double taken = load * bent, fall = pull2 - both * taken;
   if (!(fall > kLeast * pull2)) return {0, 0, 0, 0, false};
   const double per_fall = 1 / fall, per_held = 1 / held, curvature = bent * per_pull2, pressed = load * curvature;
-  const double bow =
-      (pull2 - taken - both * (bent * bent + taken)) + bothload * (2 * load * turn2 - rate) - bothload * bent * pressed;
-  const double later = ((bow * pull2 - fall * fall) * (0.5 * per_fall * per_pull2)) * (pull * per_held);
-  const double length = (pull2 - held * pull) * per_fall;
+  const double bow = mu2 * taken + both * (load * (2 * load * turn2 - rate) - bent * bent - (1 + both) * (taken * pressed));
+  const double later = bow * (0.5 * per_fall) * (pull * per_held), length = (pull2 - held * pull) * per_fall;
   const double aside = half * (k1 - curvature) + narrows * tug.along + later;
   const double more = (half * (profile.bend - curvature) + later) * tug.along - narrows * (0.5 * round2);
   const double sine = -(tug.round * per_off * length) * (1 + aside * length), way = -length * (tug.along + more * length);
   const double second = 0.25 * (1 - pressed) * (per_held * per_held) * (pull2 * per_fall);
-  const auto turn = profile.bend * way;
   bool is_short = sine * sine <= kMostTurn2 && absolute(later) * length <= kMostLater;
-  if constexpr (!Profile::kIsLine) is_short = is_short && turn * turn <= kMostTurn2;
+  if constexpr (!Profile::kIsLine) is_short = is_short && square(profile.bend * way) <= kMostTurn2;
   return {sine, way, length, second, is_short};
 }
 
@@ -208,10 +206,10 @@ FDCG_HOT Moved<From> moved_along(const Profile& profile, const From& from, const
 // Round by the move, and on by what is left of the excess there. False where that is too much.
 template <class Profile, class From>
 FDCG_HOT bool go_round(const Profile& profile, const From& from, const Outward& outward, const Sight& seen, const Tug& tug,
-                       const RoundMove& move, double mu2, Touch& touch) {
+                       const RoundMove& move, double mu2, double bends, Touch& touch) {
   constexpr double kMostSet = 0x1p-20;  // of the normal's turn: its cube is nothing
-  const double sine = move.sine, less = versine(sine * sine), nearer = seen.round * sine - seen.out * less;
-  const double round = seen.round - seen.round * less - seen.out * sine;
+  const double sine = move.sine, less = versine(sine * sine), cosine = 1 - less;
+  const double nearer = seen.round * sine - seen.out * less, round = seen.round * cosine - seen.out * sine;
   const Tug turned = {tug.load - from.n_r * nearer, -round, tug.along + from.n_z * nearer, 0};
   const Moved<From> moved = moved_along(profile, from, turned, move.way);
   const From& to = moved.to;
@@ -220,7 +218,6 @@ FDCG_HOT bool go_round(const Profile& profile, const From& from, const Outward& 
   // The bend and the fall times the distance from the axis: one division for both.
   const double both = 1 + mu2, load2 = last.load * last.load, excess = last.pull2 - mu2 * load2;
   const double bent = to.n_r * (last.round * last.round) + profile.bend * off * (last.along * last.along);
-  const double bends = absolute(to.n_r * outward.per_off) + absolute(profile.bend);
   const double fall = last.pull2 * off - (both * last.load) * bent;
   // The second order of what is left: from where the move began it is known well enough.
   const double more = 1 + move.second * excess;
@@ -231,20 +228,19 @@ FDCG_HOT bool go_round(const Profile& profile, const From& from, const Outward& 
   if (!(last.load > 0 && fall > 0 && size * size * (unknown * old2 + absolute(load2 - old2)) <= kPlaced / 2 * old2))
     return false;
   if (!(size * pressed <= kMostSet && last.pull2 + load2 <= tug.pull2 + old2)) return false;
-  const double x = outward.x - outward.x * less - sine * outward.y, y = outward.y - outward.y * less + sine * outward.x;
-  const auto radial = -to.n_z * last.along;
-  const double drop = (0.5 * bent) * (1 / off) * (set * set);
-  const double end_z = moved.z - to.n_r * last.along * set - to.n_z * drop;
+  const double aside = last.round * set, drop = (0.5 * bent) * profile.per_off(off) * (set * set);
+  const double end_r = off + to.n_z * (last.along * set) - to.n_r * drop;
+  const double end_z = moved.z - to.n_r * (last.along * set) - to.n_z * drop;
   if (!profile.is_within(end_z)) return false;
-  touch.god_object = {x * off - (x * radial - y * last.round) * set - x * to.n_r * drop,
-                      y * off - (y * radial + x * last.round) * set - y * to.n_r * drop, end_z};
+  const double ahead = cosine * end_r + sine * aside, left = sine * end_r - cosine * aside;  // from where the move began
+  touch.god_object = {outward.x * ahead - outward.y * left, outward.y * ahead + outward.x * left, end_z};
   return true;
 }
 
 // True where the god-object rests, moved or not.
 template <class Profile>
 FDCG_HOT bool slide_round(const Profile& profile, Touch& touch) {
-  constexpr double kNear2 = 16;
+  constexpr double kNear2 = 16, kLeastHeld2 = 0x1p-40;
   const Point at = touch.god_object, gap = at - touch.hip;
   const double off2 = at.x * at.x + at.y * at.y;
   if (!(off2 > 0)) return false;  // an apex
@@ -254,17 +250,17 @@ FDCG_HOT bool slide_round(const Profile& profile, Touch& touch) {
   const Tug tug = tug_of(from.n_r * gap_r + from.n_z * gap.z, round, from.n_r * gap.z - from.n_z * gap_r);
   if (!(tug.load > 0 && tug.load * tug.load + tug.pull2 < kNear2 * off2)) return false;
   const Slip<double> slip = touch.friction.slip(at, tug.pull2, tug.load);
-  const double rounding = pull_rounding(touch);
-  if (slip.is_rest || !(tug.pull2 > rounding * rounding)) return true;
+  if (slip.is_rest) return true;
   const double mu = touch.friction.mu_dynamic, mu2 = mu * mu, held = mu * tug.load;
-  const double excess = tug.pull2 - held * held;
+  const double held2 = held * held, excess = tug.pull2 - held2;
   const double bent = absolute(from.n_r * outward.per_off) + absolute(profile.bend);
-  const double doubt = 2 * rounding + 8 * kEps * norm1(at) * bent * (tug.load + held) + kPlaced * held;  // see pull_doubt()
+  const double doubt =
+      2 * pull_rounding(touch) + 8 * kEps * norm1(at) * bent * (tug.load + held) + kPlaced * held;  // see pull_doubt()
   if (excess <= doubt * larger(doubt, 2 * held)) return true;
   const Sight seen = {outward.off - gap_r, -round};
-  if (mu == 0) return slide_to_nearest(profile, from, seen, touch);
-  const RoundMove move = next_round_move(profile, tug, from, outward.per_off, held, 1 + mu2);
-  return move.is_short && go_round(profile, from, outward, seen, tug, move, mu2, touch);
+  if (!(held2 > kLeastHeld2 * tug.pull2)) return mu == 0 && slide_to_nearest(profile, from, seen, touch);
+  const RoundMove move = next_round_move(profile, tug, from, outward.per_off, held, mu2);
+  return move.is_short && go_round(profile, from, outward, seen, tug, move, mu2, bent, touch);
 }
 
 }  // namespace fdcg

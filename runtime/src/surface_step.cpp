@@ -137,8 +137,10 @@ FDCG_HOT Touch touch_of(const Tick& tick, double extent) {
 }
 
 template <class Shape>
-[[gnu::noinline]] void step_by_rules(const Tick& tick) {
-  fdcg_contact& contact = *tick.contact;
+[[gnu::noinline]] void step_by_rules(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at,
+                                     const double* hip_m, fdcg_result* result) {
+  const Tick tick = {*surface, *params, at, hip_m, result};
+  fdcg_contact& contact = *at;
   const Shape shape(tick.surface);
   SurfaceWalk walk = {touch_of(tick, shape.extent), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
   if (contact.started == 0) {
@@ -176,7 +178,7 @@ void step_on(const fdcg_surface* surface, const fdcg_params* params, fdcg_contac
   } else if (contact.state == FDCG_FACE && shape.slide_quickly(contact.feature, touch)) {
     respond(tick, touch, {FDCG_FACE, contact.feature});
   } else {
-    step_by_rules<Shape>(tick);
+    step_by_rules<Shape>(surface, params, at, hip_m, result);
   }
 }
 

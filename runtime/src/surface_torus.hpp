@@ -98,6 +98,7 @@ struct TubeProfile {
   double ring, raised, bend;
 
   [[nodiscard]] static Outward outward(Point at, double off2) { return outward_of(at, off2); }
+  [[nodiscard]] static double per_off(double off) { return 1 / off; }
   [[nodiscard]] FDCG_HOT Section<double> section(double off, double z) const {
     return {ring, 0, (off - ring) * bend, z * bend};
   }
