@@ -177,9 +177,7 @@ struct ConeSurface {
   // ---- rules
 
   FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
-    if (face != kSide) return false;
-    if (along_r == 0) return slide_round(CylinderProfile{sign, radius[0], per_radius, half}, touch);
-    return slide_round(LineProfile{sign, radius[0], half, along_r, along_z}, touch);
+    return face == kSide && slide_round(LineProfile{sign, radius[0], half, along_r, along_z}, touch);
   }
   Decision rule(SurfaceWalk& walk) const {
     if (walk.active.state == FDCG_EDGE) return rim_rule(walk);
@@ -270,6 +268,21 @@ struct ConeSurface {
     if (feature.state == FDCG_FACE) return disc;
     const Point sum = side + disc;
     return sum * (1 / norm(sum));
+  }
+};
+
+// What most ticks on a cylinder need of it.
+struct QuickCylinder {
+  double sign, radius, half, extent;
+
+  explicit QuickCylinder(const fdcg_surface& s)
+      : sign(s.is_hollow != 0 ? -1 : 1), radius(s.radius_m), half(s.length_m / 2), extent(radius + half) {}
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    const double side = from_axis(x) - radius, disc = absolute(x.z) - half;
+    return sign > 0 ? side > way || disc > way : side < -way && disc < -way;
+  }
+  FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
+    return face == ConeSurface::kSide && slide_round(CylinderProfile{sign, radius, 1 / radius, half}, touch);
   }
 };
 

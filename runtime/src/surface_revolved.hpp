@@ -29,6 +29,9 @@ inline Nought operator-(Nought, Nought) {
 inline double operator+(double a, Nought) {
   return a;
 }
+inline Nought operator+(Nought, Nought) {
+  return {};
+}
 inline double operator+(Nought, double a) {
   return a;
 }
@@ -112,9 +115,9 @@ struct LineProfile {
 
 inline constexpr double kMostTurn2 = 0x1p-14;  // of a move, as the square of a sine
 
-// 1 - cosine, of the square of a sine that is no larger.
-FDCG_HOT double versine(double sine2) {
-  return sine2 * ((0.5 + 0.125 * sine2) + 0.0625 * (sine2 * sine2));
+// (1 - cosine) / sine^2, of the square of a sine that is no larger.
+FDCG_HOT double versine_by_square(double sine2) {
+  return (0.5 + 0.125 * sine2) + 0.0625 * (sine2 * sine2);
 }
 
 // The HIP from the half plane through the god-object: its parts in that plane, and across it.
@@ -133,10 +136,12 @@ inline Tug tug_of(double load, double round, double along) {
 // Without friction the descent ends at the point nearest to the HIP, which is in the HIP's half plane. False where that is not
 // near.
 template <class Profile, class From>
-FDCG_HOT bool slide_to_nearest(const Profile& profile, const From& from, const Sight& seen, Touch& touch) {
+FDCG_HOT bool slide_to_nearest(const Profile& profile, const From& from, const Outward& outward, const Sight& seen,
+                               Touch& touch) {
+  constexpr double kOffAxis = 0x1p-30;
   const Point hip = touch.hip;
   const double off2 = hip.x * hip.x + hip.y * hip.y;
-  if (!(seen.out > 0 && 16 * seen.round * seen.round <= off2)) return false;
+  if (!(seen.out > kOffAxis * outward.off && 16 * seen.round * seen.round <= off2)) return false;
   const double off = root(off2), per_off = inverse_root(off2);
   From to;
   if (!profile.nearest(from, off, hip.z, &to)) return false;
@@ -163,17 +168,19 @@ FDCG_HOT RoundMove next_round_move(const Profile& profile, const Tug& tug, const
   const double load = tug.load, pull2 = tug.pull2, pull = root(pull2), per_pull2 = 1 / pull2, both = 1 + mu2;
   const auto narrows = -from.n_z * per_off;
   const double round2 = tug.round * tug.round, along2 = tug.along * tug.along, k1 = from.n_r * per_off, half = 0.5 * load;
+  const double bothload = both * load, fall = pull2 - ((bothload * k1) * round2 + (bothload * profile.bend) * along2);
+  if (!(fall > kLeast * pull2)) return {0, 0, 0, 0, false};
+  const double per_fall = 1 / fall, per_held = 1 / held;
   const auto on_section = profile.bend * along2;
   const double on_ring = k1 * round2, bent = on_ring + on_section, turn2 = k1 * on_ring + profile.bend * on_section;
   const auto rate = narrows * (profile.bend * round2 - on_ring) * (3 * tug.along);
-  const double taken = load * bent, fall = pull2 - both * taken;
-  if (!(fall > kLeast * pull2)) return {0, 0, 0, 0, false};
-  const double per_fall = 1 / fall, per_held = 1 / held, curvature = bent * per_pull2, pressed = load * curvature;
-  const double bow = mu2 * taken + both * (load * (2 * load * turn2 - rate) - bent * bent - (1 + both) * (taken * pressed));
-  const double later = bow * (0.5 * per_fall) * (pull * per_held), length = (pull2 - held * pull) * per_fall;
-  const double aside = half * (k1 - curvature) + narrows * tug.along + later;
-  const double more = (half * (profile.bend - curvature) + later) * tug.along - narrows * (0.5 * round2);
-  const double sine = -(tug.round * per_off * length) * (1 + aside * length), way = -length * (tug.along + more * length);
+  const double taken = load * bent, curvature = bent * per_pull2, pressed = taken * per_pull2;
+  const double bow =
+      (mu2 * taken + both * (load * (2 * load * turn2 - rate) - bent * bent)) - (both * (1 + both) * taken) * pressed;
+  const double later = (bow * (0.5 * per_held)) * (pull * per_fall), length = (pull2 - held * pull) * per_fall;
+  const double aside = (half * (k1 - curvature) + narrows * tug.along) + later;
+  const double more = (half * (profile.bend - curvature) * tug.along - narrows * (0.5 * round2)) + later * tug.along;
+  const double sine = (-(tug.round * per_off) * length) * (1 + aside * length), way = -length * (tug.along + more * length);
   const double second = 0.25 * (1 - pressed) * (per_held * per_held) * (pull2 * per_fall);
   bool is_short = sine * sine <= kMostTurn2 && absolute(later) * length <= kMostLater;
   if constexpr (!Profile::kIsLine) is_short = is_short && square(profile.bend * way) <= kMostTurn2;
@@ -194,7 +201,8 @@ FDCG_HOT Moved<From> moved_along(const Profile& profile, const From& from, const
     const double off = from.base_r - from.n_z * way, z = from.base_z + from.n_r * way;
     return {from, off, z, tug_of(turned.load, turned.round, turned.along + way)};
   } else {
-    const double sine = way * profile.bend, less = versine(sine * sine), towards = profile.raised - turned.load;
+    const double sine = way * profile.bend, less = sine * sine * versine_by_square(sine * sine),
+                 towards = profile.raised - turned.load;
     const double unit = 1.5 - 0.5 * (from.n_r * from.n_r + from.n_z * from.n_z), n_r = from.n_r * unit, n_z = from.n_z * unit;
     const From to = {from.base_r, from.base_z, n_r - n_r * less - n_z * sine, n_z - n_z * less + n_r * sine};
     const double load = turned.load + towards * less + turned.along * sine,
@@ -208,9 +216,12 @@ template <class Profile, class From>
 FDCG_HOT bool go_round(const Profile& profile, const From& from, const Outward& outward, const Sight& seen, const Tug& tug,
                        const RoundMove& move, double mu2, double bends, Touch& touch) {
   constexpr double kMostSet = 0x1p-20;  // of the normal's turn: its cube is nothing
-  const double sine = move.sine, less = versine(sine * sine), cosine = 1 - less;
-  const double nearer = seen.round * sine - seen.out * less, round = seen.round * cosine - seen.out * sine;
-  const Tug turned = {tug.load - from.n_r * nearer, -round, tug.along + from.n_z * nearer, 0};
+  const double sine = move.sine, sine2 = sine * sine, more2 = versine_by_square(sine2), cosine = 1 - sine2 * more2;
+  const double round = seen.round * cosine - seen.out * sine;
+  // The HIP comes nearer to the axis by out (1 - cosine) - round sine.
+  const double load = (tug.load - (from.n_r * seen.round) * sine) + ((from.n_r * seen.out) * sine2) * more2;
+  const double along = (tug.along + (from.n_z * seen.round) * sine) - ((from.n_z * seen.out) * sine2) * more2;
+  const Tug turned = {load, -round, along, 0};
   const Moved<From> moved = moved_along(profile, from, turned, move.way);
   const From& to = moved.to;
   const Tug& last = moved.tug;
@@ -258,7 +269,7 @@ FDCG_HOT bool slide_round(const Profile& profile, Touch& touch) {
       2 * pull_rounding(touch) + 8 * kEps * norm1(at) * bent * (tug.load + held) + kPlaced * held;  // see pull_doubt()
   if (excess <= doubt * larger(doubt, 2 * held)) return true;
   const Sight seen = {outward.off - gap_r, -round};
-  if (!(held2 > kLeastHeld2 * tug.pull2)) return mu == 0 && slide_to_nearest(profile, from, seen, touch);
+  if (!(held2 > kLeastHeld2 * tug.pull2)) return mu == 0 && slide_to_nearest(profile, from, outward, seen, touch);
   const RoundMove move = next_round_move(profile, tug, from, outward.per_off, held, mu2);
   return move.is_short && go_round(profile, from, outward, seen, tug, move, mu2, bent, touch);
 }
