@@ -30,8 +30,12 @@ inline double share(double part, double whole) {
   return !(part > 0) ? 0 : part < whole ? part / whole : 1;
 }
 
+inline double clamped(double x) {
+  return !(x > 0) ? 0 : x < 1 ? x : 1;
+}
+
 inline PlaceInTriangle within(PlaceInTriangle place) {
-  const double a = share(place.a, 1), b = share(place.b, 1), sum = a + b;
+  const double a = clamped(place.a), b = clamped(place.b), sum = a + b;
   return sum > 1 ? PlaceInTriangle{a / sum, b / sum} : PlaceInTriangle{a, b};
 }
 
@@ -85,7 +89,7 @@ inline bool passes_over(const MovedTriangle& t, Vec3<double> x, PlaceInTriangle*
       double weight[3];
       weight[b] = share(dot(cross(way, off), to_c), volume);
       weight[c] = share(dot(cross(way, to_b), off), volume);
-      weight[k] = share(1 - weight[b] - weight[c], 1);
+      weight[k] = clamped(1 - weight[b] - weight[c]);
       *place = within({weight[1], weight[2]});
     }
     now[k] = to;
