@@ -113,6 +113,7 @@ struct Catch {
   uint32_t node = FDCG_NONE;
   double when = 2;
   Vec3<double> place = {0, 0, 0};
+  bool is_in_box = false;  // some leaf's box holds the point, whether or not a face passed over it
 };
 
 template <class Real>
@@ -131,7 +132,10 @@ inline void try_to_catch(const Upkeep<Real>& upkeep, uint32_t n, Vec3<double> x,
   PlaceInTriangle place;
   if (!passes_over(t, x, &place)) return;
   const double when = when_met(t, x);
-  if (when < first->when || (when == first->when && n < first->node)) *first = {n, when, point_at(place, t.point)};
+  if (when > first->when || (when == first->when && n > first->node)) return;
+  first->node = n;
+  first->when = when;
+  first->place = point_at(place, t.point);
 }
 
 // Which of a record's boxes hold a point or are as near as that, a bit each.
@@ -171,6 +175,7 @@ template <class Real>
         stack[waiting++] = {below, item.level - 1};
         continue;
       }
+      first.is_in_box = true;
       const uint32_t begin = below * FDCG_LEAF_NODES, end = begin + FDCG_LEAF_NODES;
       for (uint32_t n = begin; n < end && n < deform.header.node_count; ++n)
         try_to_catch(upkeep, n, x, &first);
