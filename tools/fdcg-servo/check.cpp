@@ -6,9 +6,11 @@
 
 #include "command.hpp"
 #include "json_reader.hpp"
+#include "make_transport.hpp"
 #include "profile_json.hpp"
 #include "scene_build.hpp"
 #include "scene_json.hpp"
+#include "session_log.hpp"
 
 namespace fdcg::servo {
 namespace {
@@ -24,6 +26,19 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+// What the run would refuse of a device before it starts.
+std::string problem_of_device(const dev::HostConfig& config, std::size_t index, const dev::SceneGraphs& graphs) {
+  const dev::DeviceConfig& device = config.devices[index];
+  dev::DeviceScene scene;
+  if (std::string problem = dev::build_device_scene(config, index, graphs, &scene); !problem.empty()) return problem;
+  const auto state = std::make_unique<dev::DeviceState>();
+  fdcg_error error{};
+  if (!dev::begin_device(scene.setup, state.get(), &error)) return "device '" + device.name + "': " + error.message;
+  if (device.source != dev::DeviceSource::kRecorded) return {};
+  const std::string problem = dev::make_transport(device, config.loop)->open();
+  return problem.empty() ? problem : "device '" + device.name + "': " + problem;
+}
+
 // Names, values and files, and that the runtime takes the whole.
 Judgement judge_scene(const std::string& file, const std::string& text) {
   Judgement judgement;
@@ -33,10 +48,10 @@ Judgement judge_scene(const std::string& file, const std::string& text) {
   judgement.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device");
   dev::SceneGraphs graphs;
   judgement.problem = graphs.open(config);
-  for (std::size_t i = 0; i < config.devices.size() && judgement.problem.empty(); ++i) {
-    dev::DeviceScene scene;
-    judgement.problem = dev::build_device_scene(config, i, graphs, &scene);
-  }
+  for (std::size_t i = 0; i < config.devices.size() && judgement.problem.empty(); ++i)
+    judgement.problem = problem_of_device(config, i, graphs);
+  if (judgement.problem.empty()) judgement.problem = dev::log_problem(config);
+  if (!judgement.problem.empty() && judgement.problem.rfind(file, 0) != 0) judgement.problem.insert(0, file + ": ");
   return judgement;
 }
 
