@@ -30,12 +30,13 @@ Judgement judge_scene(const std::string& file, const std::string& text) {
   dev::HostConfig config;
   judgement.problem = dev::parse_scene(text, file, &config, &judgement.warnings);
   if (!judgement.problem.empty()) return judgement;
-  judgement.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device");
+  judgement.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device") +
+                   (config.is_shared ? " that share it" : "");
   dev::SceneGraphs graphs;
   judgement.problem = graphs.open(config);
-  for (std::size_t i = 0; i < config.devices.size() && judgement.problem.empty(); ++i) {
+  for (const dev::DeviceRange& devices : dev::device_ranges(config)) {
     dev::DeviceScene scene;
-    judgement.problem = dev::build_device_scene(config, i, graphs, &scene);
+    if (judgement.problem.empty()) judgement.problem = dev::build_device_scene(config, devices, graphs, &scene);
   }
   return judgement;
 }
