@@ -51,9 +51,11 @@ void count_tick(DeviceState& device, const TickInput& input, bool has_sample) {
   ++counters.ticks;
 }
 
-// Judge, kinematics, grip. What the gate is to know of the report in *gate. True: the tip has a place.
-bool take_reports(const Member& member, GateInput* gate) {
+// Judge, kinematics, grip. What the gate is to know of the report in to_gate. True: the tip has a place.
+bool take_reports(const Member& member) {
   DeviceState& device = *member.device;
+  GateInput* const gate = &device.to_gate;
+  *gate = GateInput();
   *member.output = TickOutput();
   if (member.input->begins) {
     device.judge = ReportJudge();
@@ -90,8 +92,9 @@ void tell(const DeviceState& device, TickOutput* output) {
     output->bodies[i] = fdcg_body_pose(&device.setup.bodies[i].body);
 }
 
-void pass_gate(const Member& member, GateInput* gate) {
+void pass_gate(const Member& member) {
   DeviceState& device = *member.device;
+  GateInput* const gate = &device.to_gate;
   const TickInput& input = *member.input;
   TickOutput& output = *member.output;
   gate->now_ns = input.now_ns;
@@ -126,14 +129,13 @@ void device_tick(DeviceState& device, const TickInput& input, TickOutput* output
 }
 
 int group_tick(const Member* members, int count) {
-  GateInput gates[kMaxDevices];
   bool has_moved[kMaxDevices] = {};
   for (int m = 0; m < count; ++m)
-    has_moved[m] = take_reports(members[m], &gates[m]);
+    has_moved[m] = take_reports(members[m]);
   const int clock = scene_tick(members, count, has_moved);
   for (int m = 0; m < count; ++m) {
     tell(*members[m].device, members[m].output);
-    pass_gate(members[m], &gates[m]);
+    pass_gate(members[m]);
     if (members[m].device->setup.is_shared) leave_scene(members[m]);
   }
   return clock;

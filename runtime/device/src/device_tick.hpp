@@ -113,6 +113,7 @@ struct DeviceSetup {
 struct DeviceState {
   DeviceSetup setup;
   Gate gate;
+  GateInput to_gate;  // of the tick that is going on
   ReportJudge judge;
   TickCounters counters;
   int samples = 0;          // good reports since the device was opened, up to kSamplesToArm

@@ -61,6 +61,8 @@ struct SessionReplay::Impl {
     TickOutput output;
     LoggedOutput in_log, replayed;
     std::vector<std::uint8_t> in_log_bytes;
+    std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(kMostTickBytes);  // the same made anew
+    std::size_t byte_count = 0;
     std::uint64_t next_tick = 0;
     std::size_t group = 0;
   };
@@ -77,7 +79,7 @@ struct SessionReplay::Impl {
   std::vector<std::unique_ptr<Group>> groups;
   std::vector<std::unique_ptr<Seat>> seats;
   std::vector<DeviceReplay> devices;
-  std::vector<std::uint8_t> record, payload = std::vector<std::uint8_t>(kMostTickBytes);
+  std::vector<std::uint8_t> record;
   // Of the last tick that was replayed: the devices that next() has not given yet.
   std::size_t next_given = 0, end_given = 0;
   bool has_strays = false;
@@ -88,7 +90,6 @@ struct SessionReplay::Impl {
   void end_group(Group& group);
   void give(ReplayedTick* tick);
   void compare(std::size_t index);
-  std::size_t encode(const Seat& seat);
   void note_lost_tail();
 };
 
@@ -168,19 +169,15 @@ void SessionReplay::Impl::step(Group& group) {
     if (devices[i].difference.empty()) devices[i].ended_by = devices[other].name;
 }
 
-// Into `payload`: the tick's bytes made anew.
-std::size_t SessionReplay::Impl::encode(const Seat& seat) {
-  const std::size_t bytes = encode_tick_input(seat.input, payload.data());
-  return bytes + encode_tick_output(seat.replayed, payload.data() + bytes);
-}
-
 void SessionReplay::Impl::compare(std::size_t index) {
   Seat& seat = *seats[index];
   DeviceReplay& device = devices[index];
   ++device.ticks;
   seat.replayed = logged(seat.output);
-  const std::size_t bytes = encode(seat);
-  if (bytes == seat.in_log_bytes.size() && std::memcmp(payload.data(), seat.in_log_bytes.data(), bytes) == 0) return;
+  seat.byte_count = encode_tick_input(seat.input, seat.bytes.data());
+  seat.byte_count += encode_tick_output(seat.replayed, seat.bytes.data() + seat.byte_count);
+  const std::vector<std::uint8_t>& in_log = seat.in_log_bytes;
+  if (seat.byte_count == in_log.size() && std::memcmp(seat.bytes.data(), in_log.data(), in_log.size()) == 0) return;
   const std::string difference = first_difference(seat.in_log, seat.replayed);
   device.difference = "tick " + std::to_string(seat.next_tick - 1) + ": " +
                       (difference.empty() ? "the same numbers, in other bytes" : difference);
@@ -189,9 +186,9 @@ void SessionReplay::Impl::compare(std::size_t index) {
 void SessionReplay::Impl::give(ReplayedTick* tick) {
   const std::size_t index = next_given++;
   const Seat& seat = *seats[index];
-  const std::size_t bytes = encode(seat);
-  record.resize(kRecordFrameBytes + bytes);
-  encode_record(RecordKind::kTick, static_cast<std::uint16_t>(index), seat.next_tick - 1, payload.data(), bytes, record.data());
+  record.resize(kRecordFrameBytes + seat.byte_count);
+  const auto device = static_cast<std::uint16_t>(index);
+  encode_record(RecordKind::kTick, device, seat.next_tick - 1, seat.bytes.data(), seat.byte_count, record.data());
   *tick = {index, seat.next_tick - 1, &seat.input, &seat.replayed, &seat.state};
 }
 
