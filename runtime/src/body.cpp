@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies: made, set in motion, looked at. body_step.cpp moves them.
 #include "fdcg/body.h"
+
+#include <string.h>
+
 #include "body_math.hpp"
 #include "message.hpp"
 #include "struct_bytes.hpp"
@@ -15,7 +18,7 @@ struct Range {
   double value, low, high;
 };
 
-fdcg_status check_range(const char* of, const Range& range, fdcg_error* error) {
+fdcg_status check_range(const char* of, const Range& range, fdcg_error* error, const char* remedy = "") {
   if (range.value >= range.low && range.value <= range.high) return FDCG_OK;
   return Message(error, FDCG_E_ARGUMENT)
       .text(of)
@@ -25,7 +28,8 @@ fdcg_status check_range(const char* of, const Range& range, fdcg_error* error) {
       .text(", allowed ")
       .real(range.low)
       .text(" to ")
-      .real(range.high);
+      .real(range.high)
+      .text(remedy);
 }
 
 // No axis has more than the two others together: checked of the diagonal and, for the rest, by leading minors.
@@ -39,8 +43,22 @@ bool is_solid_inertia(const double (&i)[6]) {
   return i[0] * i[1] - i[3] * i[3] > 0 && dot(m.row[0], cross(m.row[1], m.row[2])) > 0;
 }
 
+// Mass, centre and inertia.
+fdcg_status check_solid(const char* of, const fdcg_body_config& config, const char* remedy, fdcg_error* error) {
+  fdcg_status status = check_range(of, {"mass_kg", config.mass_kg, 1e-12, kLargest}, error, remedy);
+  for (int k = 0; k < 3 && status == FDCG_OK; ++k) {
+    status = check_range(of, {"centre_m", config.centre_m[k], -kLargest, kLargest}, error, remedy);
+    if (status == FDCG_OK) status = check_range(of, {"inertia_kg_m2", config.inertia_kg_m2[k], 1e-30, 1e30}, error, remedy);
+  }
+  if (status != FDCG_OK || is_solid_inertia(config.inertia_kg_m2)) return status;
+  return Message(error, FDCG_E_ARGUMENT)
+      .text(of)
+      .text("inertia_kg_m2 is no solid's: it must be positive definite, and no axis may have more than the two others")
+      .text(remedy);
+}
+
 fdcg_status check_config(const fdcg_body_config& config, fdcg_error* error) {
-  const Range ranges[] = {{"mass_kg", config.mass_kg, 1e-12, kLargest},
+  const Range ranges[] = {{"reserved", double(config.reserved), 0, 0},
                           {"linear_damping_per_s", config.linear_damping_per_s, 0, kLargest},
                           {"angular_damping_per_s", config.angular_damping_per_s, 0, kLargest},
                           {"sleep_after_s", config.sleep_after_s, 0, kLargest},
@@ -50,31 +68,20 @@ fdcg_status check_config(const fdcg_body_config& config, fdcg_error* error) {
   for (const Range& range : ranges) {
     if (const fdcg_status status = check_range("config.", range, error); status != FDCG_OK) return status;
   }
-  for (int k = 0; k < 3; ++k) {
-    const Range vectors[] = {{"centre_m", config.centre_m[k], -kLargest, kLargest},
-                             {"gravity_m_per_s2", config.gravity_m_per_s2[k], -kFastest, kFastest},
-                             {"inertia_kg_m2", config.inertia_kg_m2[k], 1e-30, 1e30}};
-    for (const Range& range : vectors) {
-      if (const fdcg_status status = check_range("config.", range, error); status != FDCG_OK) return status;
-    }
+  for (const double pull : config.gravity_m_per_s2) {
+    const fdcg_status status = check_range("config.", {"gravity_m_per_s2", pull, -kFastest, kFastest}, error);
+    if (status != FDCG_OK) return status;
   }
-  if (is_solid_inertia(config.inertia_kg_m2)) return FDCG_OK;
-  return Message(error, FDCG_E_ARGUMENT)
-      .text("config.inertia_kg_m2 is no solid's: it must be positive definite, and no axis may have more than the two others");
+  return check_solid("config.", config, "", error);
 }
 
-// The unit quaternion; false where it is not within 1e-3 of one.
-bool unit_rotation(const double (&q)[4], double (&unit)[4]) {
-  const double length = root(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  for (int k = 0; k < 4; ++k)
-    unit[k] = q[k] / length;
-  return length >= 1 - 1e-3 && length <= 1 + 1e-3;
+double length_of(const double (&q)[4]) {
+  return root(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
 fdcg_status check_pose(const fdcg_pose& pose, fdcg_error* error) {
-  double unit[4];
-  if (!unit_rotation(pose.rotation_xyzw, unit))
-    return Message(error, FDCG_E_ARGUMENT).text("pose.rotation_xyzw is not within 1e-3 of unit length");
+  const Range length = {"rotation_xyzw's length", length_of(pose.rotation_xyzw), 1 - 1e-3, 1 + 1e-3};
+  if (const fdcg_status status = check_range("pose.", length, error); status != FDCG_OK) return status;
   for (const double x : pose.translation_m) {
     if (const fdcg_status status = check_range("pose.", {"translation_m", x, -kLargest, kLargest}, error); status != FDCG_OK)
       return status;
@@ -137,11 +144,18 @@ extern "C" fdcg_status fdcg_body_set_mass(fdcg_body_config* config, const fdcg_m
   }
   const double density = density_kg_per_m3 != 0 ? density_kg_per_m3 : mass->density_kg_per_m3;
   const double cube = scale * scale * scale;
-  config->mass_kg = (density_kg_per_m3 != 0 ? density * mass->volume_m3 : mass->mass_kg) * cube;
-  for (int k = 0; k < 3; ++k)
-    config->centre_m[k] = mass->centroid_m[k];
+  fdcg_body_config solid = {};
+  solid.mass_kg = (density_kg_per_m3 != 0 ? density * mass->volume_m3 : mass->mass_kg) * cube;
+  memcpy(solid.centre_m, mass->centroid_m, sizeof solid.centre_m);
   for (int k = 0; k < 6; ++k)
-    config->inertia_kg_m2[k] = density * mass->inertia_per_density_m5[k] * cube * scale * scale;
+    solid.inertia_kg_m2[k] = density * mass->inertia_per_density_m5[k] * cube * scale * scale;
+  const fdcg_status status =
+      fdcg::check_solid("at this density and scale the body's ", solid,
+                        "; fill mass with fdcg_get_mass or fdcg_surface_mass, or give another density or scale", error);
+  if (status != FDCG_OK) return status;
+  config->mass_kg = solid.mass_kg;
+  memcpy(config->centre_m, solid.centre_m, sizeof solid.centre_m);
+  memcpy(config->inertia_kg_m2, solid.inertia_kg_m2, sizeof solid.inertia_kg_m2);
   return FDCG_OK;
 }
 
@@ -162,7 +176,9 @@ extern "C" fdcg_status fdcg_body_init(fdcg_body* body, const fdcg_body_config* c
   fdcg_body made = {};
   made.config = whole;
   made.scale = pose->scale;
-  fdcg::unit_rotation(pose->rotation_xyzw, made.rotation_xyzw);
+  const double length = fdcg::length_of(pose->rotation_xyzw);
+  for (int k = 0; k < 4; ++k)
+    made.rotation_xyzw[k] = pose->rotation_xyzw[k] / length;
   const Vector arm = fdcg::rotation_of(made.rotation_xyzw) * (fdcg::vec(whole.centre_m) * pose->scale);
   fdcg::put(fdcg::vec(pose->translation_m) + arm, made.centre_m);
   *body = made;
@@ -194,6 +210,7 @@ extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double veloci
 
 extern "C" fdcg_pose fdcg_body_pose(const fdcg_body* body) {
   fdcg_pose pose = {};
+  if (body == nullptr) return pose;
   for (int k = 0; k < 4; ++k)
     pose.rotation_xyzw[k] = body->rotation_xyzw[k];
   const Vector arm = fdcg::rotation_of(body->rotation_xyzw) * (fdcg::vec(body->config.centre_m) * body->scale);
@@ -203,21 +220,25 @@ extern "C" fdcg_pose fdcg_body_pose(const fdcg_body* body) {
 }
 
 extern "C" void fdcg_body_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]) {
-  const Vector spin = fdcg::rotation_of(body->rotation_xyzw) * fdcg::spin_now(*body);
+  if (angular_rad_per_s == nullptr) return;
+  Vector spin = {0, 0, 0};
+  if (body != nullptr) spin = fdcg::rotation_of(body->rotation_xyzw) * fdcg::spin_now(*body);
   for (int k = 0; k < 3; ++k)
     angular_rad_per_s[k] = fdcg::component(spin, k);
 }
 
 extern "C" double fdcg_body_kinetic_energy_j(const fdcg_body* body) {
+  if (body == nullptr) return 0;
   const Vector velocity = fdcg::vec(body->velocity_m_per_s), spin = fdcg::spin_now(*body);
   return (body->config.mass_kg * dot(velocity, velocity) + dot(spin, fdcg::tensor_of(body->config.inertia_kg_m2) * spin)) / 2;
 }
 
 extern "C" uint32_t fdcg_body_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s) {
+  if (body == nullptr) return 0;
   const double least = fdcg::least_moment(body->config.inertia_kg_m2);
   const double steps =
       tick_s * fdcg::root(stiffness_n_per_m * (1 / body->config.mass_kg + reach_m * reach_m / least));  // at 1: half of 2
-  if (!(steps <= FDCG_BODY_MAX_SUBSTEPS)) return 0;
+  if (!(steps >= 0 && steps <= FDCG_BODY_MAX_SUBSTEPS)) return 0;
   const auto whole = static_cast<uint32_t>(steps);
   return whole < steps || whole == 0 ? whole + 1 : whole;
 }

@@ -6,9 +6,9 @@
 
 namespace fdcg {
 
-// Arguments of a tick; bodies' objects are found in it by index.
+// Arguments of a tick. Writes over the reactions.
 fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
-                         double tick_s, const fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error);
+                         double tick_s, fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error);
 
 // The scene's torque is about the origin of the object's frame, the body's about its centre of mass.
 fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction);

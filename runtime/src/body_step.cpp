@@ -153,6 +153,11 @@ void move(fdcg_body* body, Vector force, Vector torque, double h) {
 
 extern "C" void fdcg_body_step(fdcg_body* body, const double force_n[3], const double torque_n_m[3], double dt_s) {
   using namespace fdcg;
+  if (body == nullptr) return;
+  if (force_n == nullptr || torque_n_m == nullptr) {
+    ++body->refused_steps;
+    return;
+  }
   const double force_given[3] = {force_n[0], force_n[1], force_n[2]};
   const double torque_given[3] = {torque_n_m[0], torque_n_m[1], torque_n_m[2]};
   if (!(body->config.mass_kg > 0) || !(dt_s >= kLeastStep && dt_s <= kLongestStep) || !is_push(force_given) ||

@@ -89,7 +89,8 @@ fdcg_status checked_config(const fdcg_deform_config* given, fdcg_deform_config* 
   }
   *config = in_full(*given, config, fdcg_init_deform_config);
   constexpr double kLargest = 1e90;
-  if (config->reserved != 0) return refuse(error, FDCG_E_ARGUMENT, "config.reserved must be 0");
+  if (config->reserved != 0)
+    return Message(error, FDCG_E_ARGUMENT).text("config.reserved is ").number(config->reserved).text(", allowed 0");
   if (config->margin_m >= 0 && config->margin_m <= kLargest) return FDCG_OK;
   return Message(error, FDCG_E_ARGUMENT)
       .text("config.margin_m is ")
@@ -309,6 +310,7 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
 }
 
 extern "C" const fdcg_graph* fdcg_deform_graph(fdcg_deform* deform) {
+  if (deform == nullptr) return nullptr;
   fdcg::with_real_of(deform->header, [&](auto real) { fdcg::bring_all_up_to_date<decltype(real)>(deform); });
   return &deform->graph;
 }

@@ -19,7 +19,7 @@ void step_deform(const Object& object, const fdcg_params* params, fdcg_contact* 
 extern "C" fdcg_status fdcg_scene_add_deform(fdcg_scene* scene, fdcg_deform* deform, const fdcg_params* params,
                                              const fdcg_pose* pose, fdcg_object_id* object, fdcg_error* error) {
   using fdcg::Message;
-  if (deform == nullptr) return Message(error, FDCG_E_ARGUMENT).text("deform: null pointer");
+  if (scene == nullptr || deform == nullptr) return Message(error, FDCG_E_ARGUMENT).text("scene or deform: null pointer");
   if (scene->config.has_deforms == 0) {
     return Message(error, FDCG_E_ARGUMENT)
         .text("scene: has no room for deformable meshes; set config.has_deforms to 1 before fdcg_scene_create");

@@ -165,5 +165,12 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
         .number(params->edge_friction)
         .text(", allowed 0 (wedge) and 1 (paper)");
   }
+  for (const uint32_t reserved : params->reserved) {
+    if (reserved == 0) continue;
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.reserved is ")
+        .number(reserved)
+        .text(", allowed 0; start from fdcg_default_params()");
+  }
   return check_terms(*params, error);
 }

@@ -183,9 +183,6 @@ extern "C" fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal
     fdcg_params room;
     pile->ground_params = in_full(*params, &room, fdcg_init_params);
     pile->ground_params.terms &= FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
-    pile->ground_params.materials = nullptr;  // of faces, which it has not; and the pile's memory holds no pointer
-    pile->ground_params.material_count = 0;
-    pile->ground_params.terms &= FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
     pile->ground_params.materials = nullptr;  // of faces, which it has not: nothing outside the pile's memory is kept
     pile->ground_params.material_count = 0;
     pile->ground_normal = {up.x / length, up.y / length, up.z / length};
@@ -254,6 +251,8 @@ extern "C" fdcg_status fdcg_pile_remove(fdcg_pile* pile, fdcg_object_id object, 
 }
 
 extern "C" uint32_t fdcg_pile_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity) {
+  if (pile == nullptr) return 0;
+  if (touches == nullptr) capacity = 0;
   uint32_t count = 0;
   for (uint32_t m = 0; m < pile->member_end; ++m) {
     const PileMember& member = pile->members()[m];
@@ -281,5 +280,5 @@ extern "C" uint32_t fdcg_pile_touches(const fdcg_pile* pile, fdcg_pile_touch* to
 }
 
 extern "C" fdcg_pile_counts fdcg_pile_get_counts(const fdcg_pile* pile) {
-  return pile->counts;
+  return pile != nullptr ? pile->counts : fdcg_pile_counts{};
 }

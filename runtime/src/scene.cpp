@@ -359,8 +359,9 @@ extern "C" fdcg_status fdcg_scene_result(const fdcg_scene* scene, fdcg_finger_id
 }
 
 extern "C" void fdcg_scene_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count) {
-  for (uint32_t i = 0; i < count; ++i)
+  for (uint32_t i = 0; reactions != nullptr && i < count; ++i)
     reactions[i] = {};
+  if (scene == nullptr || reactions == nullptr) return;
   for (uint32_t f = 0; f < scene->finger_end; ++f) {
     if (scene->fingers()[f].is_used == 0) continue;
     for (uint32_t i = 0; i < scene->fingers()[f].touch_count; ++i) {

@@ -248,6 +248,7 @@ inline void step_finger(fdcg_scene& scene, Finger& finger) {
 }  // namespace fdcg
 
 extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
+  if (scene == nullptr) return;
   ++scene->tick;
   scene->tick_travel = 0;
   if (!scene->skips(FDCG_SKIP_STILL)) {
@@ -263,6 +264,7 @@ extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
 }
 
 extern "C" void fdcg_scene_step(fdcg_scene* scene) {
+  if (scene == nullptr) return;
   fdcg_scene_advance(scene);
   fdcg::Finger* const fingers = scene->fingers();
   for (uint32_t i = 0; i < scene->finger_end; ++i) {

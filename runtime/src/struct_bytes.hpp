@@ -23,9 +23,11 @@ inline const Struct& in_full(const Struct& given, Struct* room, Init init) {
   return *room;
 }
 
-// Writes the defaults' first `struct_bytes` bytes over *to; what lies beyond the library's own struct is zeroed.
+// Writes the defaults' first `struct_bytes` bytes over *to, which may be null; what lies beyond the library's own struct is
+// zeroed.
 template <class Struct>
 inline void fill_defaults(Struct* to, Struct defaults, uint32_t struct_bytes) {
+  if (to == nullptr) return;
   const uint32_t known = struct_bytes < sizeof(Struct) ? struct_bytes : uint32_t{sizeof(Struct)};
   defaults.struct_bytes = struct_bytes;
   memcpy(static_cast<void*>(to), &defaults, known);

@@ -21,48 +21,51 @@ uint32_t fields_of(uint32_t kind) {
 
 struct Size {
   const char* name;
-  double value, low, high;
+  double value, high;
+  bool may_be_0;
 };
 
-fdcg_status refuse(const Size& size, const char* why, fdcg_error* error) {
-  return Message(error, FDCG_E_ARGUMENT)
-      .text("surface.")
-      .text(size.name)
-      .text(" is ")
-      .real(size.value)
-      .text(", allowed ")
-      .real(size.low)
-      .text(" to ")
-      .real(size.high)
-      .text(why);
+Message& say(Message& message, const Size& size, double low) {
+  message.text("surface.").text(size.name).text(" is ").real(size.value);
+  return message.text(size.may_be_0 ? ", allowed 0 and " : ", allowed ").real(low).text(" to ").real(size.high);
 }
 
 fdcg_status refuse(const char* field, uint32_t value, const char* allowed, fdcg_error* error) {
   return Message(error, FDCG_E_ARGUMENT).text(field).text(" is ").number(value).text(allowed);
 }
 
+constexpr uint32_t kSizes = 7;
+
+// Each by itself first: what is compared then is finite.
 fdcg_status check_sizes(const fdcg_surface& s, fdcg_error* error) {
-  const uint32_t fields = fields_of(s.kind);
-  const bool is_cone = s.kind == FDCG_SURFACE_CONE;
-  const double largest =
-      larger(larger(larger(s.radius_m, s.top_radius_m), s.length_m), larger(s.half_m[0], larger(s.half_m[1], s.half_m[2])));
-  const double least = larger(kLeast_m, kLeastShare * largest);
-  const bool may_point = is_cone && s.top_radius_m > 0;  // one end may be an apex
-  const bool may_top_point = is_cone && s.radius_m > 0;
-  const Size sizes[] = {{"radius_m", s.radius_m, may_point && s.radius_m == 0 ? 0 : least, kLargest_m},
-                        {"top_radius_m", s.top_radius_m, may_top_point && s.top_radius_m == 0 ? 0 : least, kLargest_m},
-                        {"tube_radius_m", s.tube_radius_m, least, s.radius_m * (1 - kLeastShare)},
-                        {"length_m", s.length_m, s.kind == FDCG_SURFACE_CAPSULE && s.length_m == 0 ? 0 : least, kLargest_m},
-                        {"half_m[0]", s.half_m[0], least, kLargest_m},
-                        {"half_m[1]", s.half_m[1], least, kLargest_m},
-                        {"half_m[2]", s.half_m[2], least, kLargest_m}};
-  for (uint32_t i = 0; i < 7; ++i) {
+  const bool is_cone = s.kind == FDCG_SURFACE_CONE;  // one end may be an apex
+  const Size sizes[kSizes] = {{"radius_m", s.radius_m, kLargest_m, is_cone && s.top_radius_m != 0},
+                              {"top_radius_m", s.top_radius_m, kLargest_m, is_cone && s.radius_m != 0},
+                              {"tube_radius_m", s.tube_radius_m, s.radius_m * (1 - kLeastShare), false},
+                              {"length_m", s.length_m, kLargest_m, s.kind == FDCG_SURFACE_CAPSULE},
+                              {"half_m[0]", s.half_m[0], kLargest_m, false},
+                              {"half_m[1]", s.half_m[1], kLargest_m, false},
+                              {"half_m[2]", s.half_m[2], kLargest_m, false}};
+  const Size* largest = sizes;
+  for (uint32_t i = 0; i < kSizes; ++i) {
     const Size& size = sizes[i];
-    if ((fields >> (i < 4 ? i : 4) & 1) == 0) {
-      if (size.value != 0) return refuse({size.name, size.value, 0, 0}, "; a surface of this kind has none", error);
-    } else if (!(size.value >= size.low && size.value <= size.high)) {
-      return refuse(size, size.low > kLeast_m ? " (no size below 1e-4 of the largest)" : "", error);
+    const bool has = (fields_of(s.kind) >> (i < 4 ? i : 4) & 1) != 0;
+    if (has ? (size.value >= kLeast_m && size.value <= size.high) || (size.may_be_0 && size.value == 0) : size.value == 0) {
+      if (size.value > largest->value) largest = &size;
+      continue;
     }
+    Message message(error, FDCG_E_ARGUMENT);
+    if (has)
+      return say(message, size, kLeast_m)
+          .text(is_cone && i < 2 && size.value == 0 ? " (one end may be a point, not both)" : "");
+    message.text("surface.").text(size.name).text(" is ").real(size.value);
+    return message.text(", allowed 0; a surface of this kind has none");
+  }
+  for (const Size& size : sizes) {
+    if (size.value == 0 || size.value >= kLeastShare * largest->value) continue;
+    Message message(error, FDCG_E_ARGUMENT);
+    say(message, size, kLeastShare * largest->value).text(" (at least 1e-4 of the largest, ").text(largest->name);
+    return message.text(", ").real(largest->value).text(")");
   }
   return FDCG_OK;
 }

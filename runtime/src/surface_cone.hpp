@@ -135,18 +135,19 @@ struct ConeSurface {
     const Point outward = {x.x * per_off, x.y * per_off, 0};
     return {x, normal_of(outward), outward, off, per_off};
   }
-  // On the side's line through the axis's plane of p, beyond its ends too, but not beyond an apex.
+  // On the side's line through the axis's plane of p, beyond its ends too, but not beyond the axis.
   [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot& spot) const {
     if (along_r == 0 && (p.x != 0 || p.y != 0)) return on_cylinder(p, p, true);
     const double off2 = p.x * p.x + p.y * p.y;
     if (!(off2 > kEps * extent * kEps * extent)) return on_line(spot.outward, root(off2), p.z);
-    const double per_off =
-        spot.off > 0 ? spot.per_off * inverse_root_near_1(off2 * spot.per_off * spot.per_off - 1) : 1 / root(off2);
+    const double ahead = p.x * spot.outward.x + p.y * spot.outward.y;
+    if (spot.off > 0 && !(ahead > 0)) return on_line(spot.outward, ahead, p.z);  // past the narrow end
+    const double per_off = inverse_root_near(off2, spot.per_off);
     return on_line({p.x * per_off, p.y * per_off, 0}, off2 * per_off, p.z);
   }
   [[nodiscard]] FDCG_HOT Spot on_line(Point outward, double off, double z) const {
     const double u = side_parameter(off, z), at_off = radius[0] + u * along_r;
-    if (!(at_off > kEps * extent)) return {rim_point(outward, u > 0 ? 1 : 0), normal_of(outward), outward, 0, 0};
+    if (!(at_off > kEps * extent)) return {rim_point(outward, along_r < 0 ? 1 : 0), normal_of(outward), outward, 0, 0};
     return {{outward.x * at_off, outward.y * at_off, u * along_z - half}, normal_of(outward), outward, at_off, 1 / at_off};
   }
   [[nodiscard]] FDCG_HOT Point turn(const Spot& spot, Point v) const {
@@ -165,7 +166,9 @@ struct ConeSurface {
     if (before > 0 && !(radius[end] == 0 && before <= 8 * kEps * extent * along_z)) return false;  // an apex is met nearby too
     const double left = end == 0 ? half + from.at.z : half - from.at.z, went = absolute(to->at.z - from.at.z);
     const Point at = left > 0 && went > left ? from.at + (to->at - from.at) * (left / went) : to->at;
-    to->at = rim_point(outward_at(at, to->outward), end);
+    to->outward = outward_at(at, to->outward);
+    to->normal = normal_of(to->outward);
+    to->at = rim_point(to->outward, end);
     *next = rim_feature(end);
     return true;
   }

@@ -5,7 +5,7 @@
 // next tick for nothing but the god-object.
 #pragma once
 
-#include "surface.hpp"
+#include "surface_slide.hpp"
 
 namespace fdcg {
 

@@ -179,8 +179,9 @@ struct Torus {
     return spot_of(x, off, 1 / off, x, false);
   }
   [[nodiscard]] FDCG_HOT Spot project(Point p, const Spot& spot) const {
-    const double off2 = p.x * p.x + p.y * p.y, more = off2 * spot.per_off * spot.per_off - 1;
-    const double per_off = spot.per_off * inverse_root_near_1(more);
+    const double off2 = p.x * p.x + p.y * p.y;
+    if (!(off2 > kEps * ring * kEps * ring)) return spot_of({spot.outward.x, spot.outward.y, p.z}, 0, 1, p, true);
+    const double per_off = inverse_root_near(off2, spot.per_off);
     return spot_of(p, off2 * per_off, per_off, p, true);
   }
   // On the tube at x, or where x is brought onto it.

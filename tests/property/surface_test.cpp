@@ -94,7 +94,9 @@ class Judge {
     const Long doubt = 8 * rounding * (1 + sharpest_bend(surface) * (load + pull));
     REQUIRE(pull <= contact_.params().mu_static * load + doubt);
     if (felt.slipping == 0) return;
-    REQUIRE(pull <= contact_.params().mu_dynamic * load * (1 + 1e-12L) + doubt);
+    const Long held = contact_.params().mu_dynamic * load;
+    REQUIRE(pull <= held * (1 + 1e-12L) + doubt);
+    REQUIRE(pull >= held * (1 - 0x1p-20L) - doubt);  // what friction holds by less slips no more
   }
 
   const SurfaceContact& contact_;

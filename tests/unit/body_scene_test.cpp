@@ -238,5 +238,11 @@ TEST_CASE("a tick of bodies that cannot be is refused by name") {
     CHECK(fdcg_scene_step_bodies(rig.get(), &body, 1, 1, tick_s, &reaction, 1, &error) == FDCG_E_ARGUMENT);
     CHECK(std::string(error.message).find("allowed for each of the substeps 1e-9 to 1 s") != std::string::npos);
   }
-  CHECK(fdcg_scene_step_bodies(rig.get(), &body, 1, 1, kTick, &reaction, 1, &error) != FDCG_OK);  // names no object
+  CHECK(fdcg_scene_step_bodies(rig.get(), &body, 1, 1, kTick, &reaction, 1, &error) == FDCG_E_ARGUMENT);
+  CHECK(std::string(error.message) == "body 0: has no mass; make it with fdcg_body_init");
+  body.body = grip.body();
+  CHECK(fdcg_scene_step_bodies(rig.get(), &body, 1, 1, kTick, &reaction, 1, &error) == FDCG_E_ARGUMENT);  // names no object
+  CHECK(fdcg_scene_step_bodies(rig.get(), nullptr, 0, 1, kTick, nullptr, 0, &error) == FDCG_OK);
+  CHECK(fdcg_scene_step_bodies(rig.get(), nullptr, 0, 65, kTick, nullptr, 0, &error) == FDCG_E_ARGUMENT);
+  CHECK(std::string(error.message).find("substeps is 65, allowed 1 to 64; a shorter tick") == 0);
 }

@@ -255,6 +255,9 @@ TEST_CASE("bodies that cannot be are refused, with the field, its value and its 
   CHECK(refusal([](auto&, auto& pose) { pose.rotation_xyzw[0] = 1; }).find("rotation_xyzw") != std::string::npos);
   CHECK(refusal([](auto&, auto& pose) { pose.scale = 0; }).find("pose.scale is 0") == 0);
   CHECK(refusal([](auto& config, auto&) { config.struct_bytes += 8; }).find("struct_bytes") != std::string::npos);
+  CHECK(refusal([](auto& config, auto&) { config.reserved = 7; }).find("config.reserved is 7, allowed 0 to 0") == 0);
+  CHECK(refusal([](auto&, auto& pose) { pose.rotation_xyzw[3] = 2; }) ==
+        "pose.rotation_xyzw's length is 2, allowed 0.999 to 1.001");
 }
 
 TEST_CASE("mass from a file becomes a body's, by density, by mass and by scale") {
@@ -274,6 +277,29 @@ TEST_CASE("mass from a file becomes a body's, by density, by mass and by scale")
   mass.density_kg_per_m3 = 3, mass.mass_kg = 6;
   REQUIRE(fdcg_body_set_mass(&config, &mass, 0, 1, &error) == FDCG_OK);
   CHECK(config.mass_kg == 6);
+
+  const fdcg_body_config before = config;
+  const struct {
+    std::function<void(fdcg_mass&)> spoil;
+    double density;
+    const char* words;
+  } refused[] = {
+      {[](fdcg_mass& m) { m = {}; }, 1000, "the body's mass_kg is 0, allowed 1e-12 to 1e12; fill mass with fdcg_get_mass"},
+      {[](fdcg_mass& m) { m.volume_m3 = std::nan(""); }, 1000, "the body's mass_kg is NaN"},
+      {[](fdcg_mass& m) { m.mass_kg = -1; }, 0, "the body's mass_kg is -1"},
+      {[](fdcg_mass& m) { m.density_kg_per_m3 = std::nan(""); }, 0, "the body's inertia_kg_m2 is NaN"},
+      {[](fdcg_mass& m) { m.centroid_m[2] = std::nan(""); }, 1000, "the body's centre_m is NaN"},
+      {[](fdcg_mass& m) { m.inertia_per_density_m5[1] = HUGE_VAL; }, 1000, "the body's inertia_kg_m2 is infinite"},
+      {[](fdcg_mass& m) { m.inertia_per_density_m5[5] = std::nan(""); }, 1000, "the body's inertia_kg_m2 is no solid's"},
+      {[](fdcg_mass& m) { m.inertia_per_density_m5[0] = 9; }, 1000, "the body's inertia_kg_m2 is no solid's"},
+  };
+  for (const auto& one : refused) {
+    fdcg_mass spoilt = mass;
+    one.spoil(spoilt);
+    CHECK(fdcg_body_set_mass(&config, &spoilt, one.density, 1, &error) == FDCG_E_ARGUMENT);
+    CHECK_THAT(error.message, Catch::Matchers::Contains(one.words));
+    CHECK(std::memcmp(&config, &before, sizeof config) == 0);
+  }
 
   fdcg_pose pose = {{0, 0, std::sqrt(0.5), std::sqrt(0.5)}, {1, 2, 3}, 2};  // a quarter turn about z
   fdcg_body body;

@@ -378,6 +378,9 @@ TEST_CASE("parameters out of range are refused with field, value and limit") {
   params.stiffness_n_per_m = -1;
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
   params = fdcg_default_params();
+  params.reserved[0] = 7;
+  CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
+  CHECK(std::string(error.message) == "params.reserved is 7, allowed 0; start from fdcg_default_params()");
   params = fdcg_default_params();
   params.edge_friction = 7;
   CHECK(fdcg_check_params(&params, nullptr) == FDCG_E_ARGUMENT);

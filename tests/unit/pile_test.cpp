@@ -242,6 +242,30 @@ TEST_CASE("piles that cannot be are refused, with the field, its value and its l
         FDCG_E_ARGUMENT);
 }
 
+TEST_CASE("an object that is given twice among the bodies is refused, and nothing moves") {
+  PileRig rig;
+  const auto cube = rig.box(0.1, 0.1, 0.1);
+  for (int i = 0; i < 3; ++i)
+    rig.add_body(cube, 1, friction(0.5, 0.4), posed({0.0, 0.0, 1.0 * i}));
+  rig.tick();
+  const Place at = rig.centre(1);
+  std::vector<fdcg_scene_body> bodies = rig.bodies();
+  bodies.insert(bodies.begin() + 2, bodies[1]);
+  std::vector<fdcg_reaction> reactions(4, {{1, 1, 1}, {1, 1, 1}});
+  fdcg_error error = {};
+  const auto step = [&](bool with_pile) {
+    fdcg_scene* const scene = rig.scene().get();
+    return with_pile ? fdcg_scene_step_pile(scene, rig.pile(), bodies.data(), 4, 1, 1e-3, reactions.data(), 4, &error)
+                     : fdcg_scene_step_bodies(scene, bodies.data(), 4, 1, 1e-3, reactions.data(), 4, &error);
+  };
+  for (const bool with_pile : {false, true}) {
+    CHECK(step(with_pile) == FDCG_E_ARGUMENT);
+    CHECK(std::string(error.message) == "body 2: its object is that of body 1 too; an object is one body's: give each its own");
+    CHECK(place(bodies[1].body.centre_m) == at);
+    CHECK(reactions[1].force_n[0] == 0);
+  }
+}
+
 TEST_CASE("a block on a plane that is a surface sticks and slides as on the ground, and a ball carries what is laid on it") {
   for (const double share : {0.998, 1.002}) {
     PileRig rig;

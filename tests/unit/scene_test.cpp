@@ -175,34 +175,6 @@ TEST_CASE("damping acts on the motion against the object") {
   CHECK(fdcg_scene_reset_finger(rig.scene.get(), finger, hip, nullptr) == FDCG_OK);
 }
 
-TEST_CASE("a null pointer is refused by name") {
-  Rig rig;
-  const Place above = {0, 0, 2};
-  fdcg_finger_id finger = rig.scene.add(above);
-  fdcg_object_id object;
-  fdcg_finger_result result;
-  const fdcg_pose pose = posed({0, 0, 0});
-  const fdcg_graph graph = rig.mesh.view();
-  fdcg_scene* const scene = rig.scene.get();
-  fdcg_error error = {};
-  const auto is_refused = [&](fdcg_status status, const char* words) {
-    CHECK(status == FDCG_E_ARGUMENT);
-    CHECK_THAT(error.message, Contains(words) && Contains("null pointer"));
-    error = {};
-  };
-  is_refused(fdcg_scene_move_finger(scene, finger, nullptr, &error), "hip_world_m");
-  is_refused(fdcg_scene_reset_finger(scene, finger, nullptr, &error), "hip_world_m");
-  is_refused(fdcg_scene_result(scene, finger, nullptr, &error), "result");
-  is_refused(fdcg_scene_finger_torque(scene, finger, nullptr, &error), "torque_n_m");
-  is_refused(fdcg_scene_move_finger(nullptr, finger, above.data(), &error), "scene");
-  is_refused(fdcg_scene_result(nullptr, finger, &result, &error), "scene");
-  is_refused(fdcg_scene_step_finger(nullptr, finger, &error), "scene");
-  is_refused(fdcg_scene_soften_finger(nullptr, finger, 0, &error), "scene");
-  is_refused(fdcg_scene_add_finger(nullptr, above.data(), &finger, &error), "scene");
-  is_refused(fdcg_scene_add_object(nullptr, &graph, &rig.params, &pose, &object, &error), "scene");
-  is_refused(fdcg_scene_set_pose(nullptr, rig.object, &pose, &error), "scene");
-}
-
 TEST_CASE("a HIP that is no number stands still and is counted") {
   Rig rig;
   const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});

@@ -76,7 +76,7 @@ TEST_CASE("a surface out of range is refused by field, value and limit") {
   CHECK(refused(fdcg_make_ellipsoid(1, kNan, 1)).find("surface.half_m[1]") == 0);
   fdcg_surface surface = fdcg_make_sphere(1);
   surface.length_m = 1;
-  CHECK(refused(surface) == "surface.length_m is 1, allowed 0 to 0; a surface of this kind has none");
+  CHECK(refused(surface) == "surface.length_m is 1, allowed 0; a surface of this kind has none");
   surface = fdcg_make_sphere(1);
   surface.kind = 8;
   CHECK(refused(surface).find("surface.kind is 8") == 0);
@@ -93,6 +93,39 @@ TEST_CASE("a surface out of range is refused by field, value and limit") {
   CHECK(refused(surface).find("surface.struct_bytes is 12") == 0);
   fdcg_error error;
   CHECK(fdcg_check_surface(nullptr, &error) == FDCG_E_ARGUMENT);
+}
+
+TEST_CASE("the range that a refused surface is told of is the one that is accepted") {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+  const struct {
+    fdcg_surface surface;
+    const char* words;
+  } cases[] = {
+      {fdcg_make_capsule(1, -1), "surface.length_m is -1, allowed 0 and 1e-9 to 1e9"},
+      {fdcg_make_capsule(1, 5e-5),
+       "surface.length_m is 5e-5, allowed 0 and 1e-4 to 1e9 (at least 1e-4 of the largest, radius_m, 1)"},
+      {fdcg_make_capsule(0, 1), "surface.radius_m is 0, allowed 1e-9 to 1e9"},
+      {fdcg_make_cylinder(0.1, kInfinity), "surface.length_m is infinite, allowed 1e-9 to 1e9"},
+      {fdcg_make_cylinder(0.1, 2e9), "surface.length_m is 2e9, allowed 1e-9 to 1e9"},
+      {fdcg_make_cylinder(kNan, 1), "surface.radius_m is NaN, allowed 1e-9 to 1e9"},
+      {fdcg_make_cone(0, -1, 1), "surface.top_radius_m is -1, allowed 1e-9 to 1e9"},
+      {fdcg_make_cone(1, -1, 1), "surface.top_radius_m is -1, allowed 0 and 1e-9 to 1e9"},
+      {fdcg_make_cone(0, 0, 1), "surface.radius_m is 0, allowed 1e-9 to 1e9 (one end may be a point, not both)"},
+      {fdcg_make_cone(1, 0, 0), "surface.length_m is 0, allowed 1e-9 to 1e9"},
+      {fdcg_make_torus(1, 1), "surface.tube_radius_m is 1, allowed 1e-9 to 0.9999"},
+      {fdcg_make_torus(1, 1e-5),
+       "surface.tube_radius_m is 1e-5, allowed 1e-4 to 0.9999 (at least 1e-4 of the largest, radius_m, 1)"},
+      {fdcg_make_box(1e9, 1, 1),
+       "surface.half_m[1] is 1, allowed 100000 to 1e9 (at least 1e-4 of the largest, half_m[0], 1e9)"},
+      {fdcg_make_ellipsoid(1, 1, 1e-10), "surface.half_m[2] is 1e-10, allowed 1e-9 to 1e9"},
+  };
+  for (const auto& one : cases)
+    CHECK(refused(one.surface) == one.words);
+  fdcg_error error;
+  for (const fdcg_surface& limit :
+       {fdcg_make_capsule(1, 0), fdcg_make_capsule(1, 1e-4), fdcg_make_torus(1, 0.9999), fdcg_make_torus(1, 1e-4),
+        fdcg_make_box(1e9, 1e5, 1e5), fdcg_make_sphere(1e-9), fdcg_make_cone(0, 1e-9, 1e-9)})
+    CHECK(fdcg_check_surface(&limit, &error) == FDCG_OK);
 }
 
 TEST_CASE("a surface's mass is that of its slices") {

@@ -56,7 +56,8 @@ static inline fdcg_body_config fdcg_default_body_config(void) {
 }
 
 /* Mass, centre and inertia of a graph's solid at a density, or at the file's own where density_kg_per_m3 is 0; for an object of
- * this scale in the scene. FDCG_E_ARGUMENT where neither says what it weighs. */
+ * this scale in the scene. FDCG_E_ARGUMENT, and *config stays, where neither says what it weighs, or where what comes of it is
+ * none that fdcg_body_init takes. */
 fdcg_status fdcg_body_set_mass(fdcg_body_config* config, const fdcg_mass* mass, double density_kg_per_m3, double scale,
                                fdcg_error* error);
 
@@ -115,9 +116,9 @@ typedef struct fdcg_scene_body {
 
 /* A tick of the scene and its bodies: `substeps` times (1 to FDCG_BODY_MAX_SUBSTEPS) a fdcg_scene_step, the reactions to the
  * fingers' forces, each body moved on by tick_s / substeps, its pose handed to the scene. `reactions`: room for one entry by
- * object index, of at least the largest index among the bodies and one. tick_s / substeps: 1e-9 to 1. A finger's result is that
- * of the last substep. Stops with the scene's own status where a pose is refused: a body that flew beyond 1e12 m, or an object
- * removed. */
+ * object index, of at least the largest index among the bodies and one; zeroed or left half done where the call fails. No
+ * object is that of two bodies. tick_s / substeps: 1e-9 to 1. A finger's result is that of the last substep. Stops with the
+ * scene's own status where a pose is refused: a body that flew beyond 1e12 m, or an object removed. */
 fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
                                    double tick_s, fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error);
 

@@ -46,6 +46,11 @@ uint32_t fdcg_version(void);
 
 /* ---- errors ------------------------------------------------------------------------------------------------------------ */
 
+/* Null pointers, in all of these headers. A function that returns an fdcg_status refuses them (FDCG_E_ARGUMENT), but for
+ * `error` and where it says otherwise. Of the others those that a tick in contact is made of (fdcg_step, fdcg_surface_step,
+ * fdcg_surface_normal, fdcg_deform_step, fdcg_combine_materials) and those that look at a graph's records and materials check
+ * nothing; all the rest do nothing, or return zeros. */
+
 typedef enum fdcg_status {
   FDCG_OK = 0,
   FDCG_E_ARGUMENT,  /* a null pointer, a number outside its range */

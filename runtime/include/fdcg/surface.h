@@ -32,8 +32,14 @@
  * ellipsoid 140 and 130; at rest, free or without friction less. Slides so long, so deep or so near to an edge or an apex that
  * one move and one correction do not do take two to four times that. A jump halfway round a surface takes at most
  * FDCG_SURFACE_MAX_MOVES moves of some 60 ns, and what is left then is carried to the next tick (FDCG_RESULT_TRANSITION_BOUND)
- * with a valid god-object. In a large move the way over a curved surface that friction ends is followed in pieces of a quarter
- * of a radian.
+ * with a valid god-object.
+ *
+ * A slide follows the descent to the first place where friction holds: the pull is mu_dynamic times the load there, within
+ * 1e-12 and the rounding of places, however deep the hand is. Beyond an axis or a centre of curvature there may be several such
+ * places and none near by, so that a small move of the hand may end in a large one of the god-object. In a large move the way
+ * over a curved surface that friction ends is followed in pieces of a quarter of a radian; one that passes by a place at which
+ * friction would just hold it may then be held there, or the other way round. A god-object that friction holds again by less
+ * than a part in 2^20 still counts as slipping, as on graphs.
  */
 #ifndef FDCG_SURFACE_H
 #define FDCG_SURFACE_H
@@ -74,6 +80,7 @@ typedef struct fdcg_surface {
 
 /* Sets the first `struct_bytes` bytes of *surface: a plane, which is all zero but for struct_bytes. */
 static inline void fdcg_init_surface(fdcg_surface* surface, uint32_t struct_bytes) {
+  if (surface == NULL) return;
   memset((void*)surface, 0, struct_bytes);
   surface->struct_bytes = struct_bytes;
 }
@@ -121,7 +128,8 @@ static inline fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m,
 }
 
 /* FDCG_E_ARGUMENT, with the field, its value and its limit in the message, unless every field is in range: sizes of 1e-9 to 1e9
- * m, none less than 1e-4 of the largest, and no field set that the kind does not name. The step does not check. */
+ * m, none less than 1e-4 of the largest (a tube's radius at most 1 - 1e-4 of the torus'), and no field set that the kind does
+ * not name; a capsule's length may be 0, and so may one radius of a cone. The step does not check. */
 fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_error* error);
 
 /* Moves the contact to the HIP of this tick and says what the hand should feel: fdcg_step for a surface. Of *params neither
