@@ -373,6 +373,7 @@ class Check(ServoCase):
             {"devices": [{**hand, "simulation": {"script": [{"at_s": 0}]}}]},
             {"devices": [{**hand, "simulation": {"script": []}}]},
             {"devices": [{**hand, "contacts": []}]}, {"devices": [{**hand, "force_limit_n": 0}]},
+            {"devices": [{**hand, "contacts": [{"offset_m": [0, 0, 0], "pad_radius_m": 1e-12}]}]},
             {"devices": [{**hand, "simulation": {"rate_hz": 0}}]},
             {"devices": [{**hand, "simulation": {"faults": [{"kind": "fire", "at_s": 1}]}}]},
             {"devices": [{**hand, "mapping": {"rotation_xyzw": [0, 0, 0, 1], "rotation_matrix": [1, 0, 0, 0, 1, 0, 0, 0, 1]}}]},
@@ -390,6 +391,8 @@ class Check(ServoCase):
             ("a.json", {"objects": [{"name": "cube", "file": "gone.fdcg"}]}, ("objects[0] 'cube'", "gone.fdcg")),
             ("b.json", {"objects": [{"name": "cube", "file": "b.json"}]}, ("b.json",)),
             ("c.json", {"devices": [{"name": "hand", "profile": "fdcg-referense"}]}, ("did you mean 'fdcg-reference'?",)),
+            ("d.json", {"log": {"file": "d.json"}}, ("d.json: cannot write the log", "would overwrite the scene")),
+            ("e.json", {"log": {"file": "nowhere/e.fdcglog"}}, ("cannot write the log", "folder does not exist")),
         ):
             done = self.servo("check", self.scene(name, **changes), code=1)
             for word in words:

@@ -80,8 +80,20 @@ void SceneParser::read_surface(const JsonObject& from, ObjectConfig* object) {
   surface.tube_radius_m = from.number_or("tube_radius_m", 0, kSizes);
   surface.length_m = from.number_or("length_m", 0, kSizes);
   if (from.has("half_m")) from.numbers("half_m", surface.half_m, 3, kSizes);
+  refuse_surface(from, surface);
+}
+
+// The runtime says "surface.FIELD is VALUE, allowed ...": the fields are the scene's keys.
+void SceneParser::refuse_surface(const JsonObject& from, const fdcg_surface& surface) {
   fdcg_error error{};
-  if (fdcg_check_surface(&surface, &error) != FDCG_OK) from.fail("kind", std::string("is refused: ") + error.message);
+  if (fdcg_check_surface(&surface, &error) == FDCG_OK) return;
+  const std::string message = error.message, start = "surface.";
+  const std::size_t end = message.find(' ');
+  if (message.rfind(start, 0) != 0 || end == std::string::npos) return from.fail("kind", "is refused: " + message);
+  std::string field = message.substr(start.size(), end - start.size());
+  if (field == "is_hollow") field = "hollow";
+  const std::string key = field.substr(0, field.find('['));
+  from.fail(field.c_str(), from.has(key.c_str()) ? message.substr(end + 1) : "is missing, so it" + message.substr(end));
 }
 
 void SceneParser::read_friction(const JsonObject& from, fdcg_params* params) {

@@ -43,6 +43,7 @@ class SceneParser {
  private:
   void read_object(const JsonObject& from);
   void read_surface(const JsonObject& from, ObjectConfig* object);
+  void refuse_surface(const JsonObject& from, const fdcg_surface& surface);
   void read_friction(const JsonObject& from, fdcg_params* params);
   void read_motion(const JsonObject& from, Motion* motion);
   void read_body(const JsonObject& from, BodyConfig* body);

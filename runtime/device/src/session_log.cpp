@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -69,7 +70,29 @@ std::string describe(const HostConfig& config, SessionHeader* header) {
   return {};
 }
 
+std::string cannot_write(const HostConfig& config) {
+  return "cannot write the log '" + config.log_file + "': ";
+}
+
+// *header is then filled in.
+std::string begin_log(const HostConfig& config, SessionHeader* header) {
+  if (const std::string problem = overwritten(config); !problem.empty())
+    return cannot_write(config) + "it " + problem + "; give another name (log.file, --log)";
+  const std::string problem = describe(config, header);
+  return problem.empty() ? problem : cannot_write(config) + problem;
+}
+
 }  // namespace
+
+std::string log_problem(const HostConfig& config) {
+  if (config.log_file.empty()) return {};
+  const std::filesystem::path folder = std::filesystem::path(config.log_file).parent_path();
+  std::error_code ignored;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+    return cannot_write(config) + "its folder does not exist; make it, or give another name (log.file, --log)";
+  SessionHeader header;
+  return begin_log(config, &header);
+}
 
 // ---- ring -----------------------------------------------------------------------------------------------------------------
 
@@ -297,12 +320,8 @@ SessionLog::~SessionLog() {
 }
 
 std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, int ring_count) {
-  const std::string cannot = "cannot write the log '" + config.log_file + "': ";
-  if (const std::string problem = overwritten(config); !problem.empty()) {
-    return cannot + "it " + problem + "; give another name (log.file, --log)";
-  }
   SessionHeader header;
-  if (const std::string problem = describe(config, &header); !problem.empty()) return cannot + problem;
+  if (std::string problem = begin_log(config, &header); !problem.empty()) return problem;
   impl_->path = config.log_file;
   impl_->rings.assign(rings, rings + ring_count);
   std::size_t devices = 0;
@@ -317,7 +336,7 @@ std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, i
 
   // A crash must leave a log that can be read: it is written in place as the session goes, unlike other outputs.
   impl_->descriptor = ::open(config.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (impl_->descriptor < 0) return cannot + std::strerror(errno);
+  if (impl_->descriptor < 0) return cannot_write(config) + std::strerror(errno);
   // The thread takes no signals: those of the process belong to others, and SIGXFSZ becomes an error of write.
   sigset_t all{}, before{};
   sigfillset(&all);
@@ -331,7 +350,7 @@ std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, i
   const int error_number = impl_->trouble.load();
   ::close(impl_->descriptor);
   impl_->descriptor = -1;
-  return cannot + std::strerror(error_number);
+  return cannot_write(config) + std::strerror(error_number);
 }
 
 std::string SessionLog::stop() {

@@ -52,6 +52,11 @@ class LogRing {
   std::atomic<std::uint64_t> dropped_[kMaxDevices] = {};
 };
 
+// Whether a session of this scene could be logged where config.log_file says, as far as can be told without touching it. Empty:
+// it could, or there is no log. Otherwise why not: the name is that of an input or a folder, or in none; the scene could not be
+// read back.
+std::string log_problem(const HostConfig& config);
+
 // The file and its thread.
 class SessionLog {
  public:
