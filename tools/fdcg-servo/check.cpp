@@ -26,17 +26,20 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// What the run would refuse of a device before it starts.
-std::string problem_of_device(const dev::HostConfig& config, std::size_t index, const dev::SceneGraphs& graphs) {
-  const dev::DeviceConfig& device = config.devices[index];
+// What the run would refuse of devices that feel one scene before it starts.
+std::string problem_of(const dev::HostConfig& config, const dev::DeviceRange& devices, const dev::SceneGraphs& graphs) {
   dev::DeviceScene scene;
-  if (std::string problem = dev::build_device_scene(config, index, graphs, &scene); !problem.empty()) return problem;
-  const auto state = std::make_unique<dev::DeviceState>();
-  fdcg_error error{};
-  if (!dev::begin_device(scene.setup, state.get(), &error)) return "device '" + device.name + "': " + error.message;
-  if (device.source != dev::DeviceSource::kRecorded) return {};
-  const std::string problem = dev::make_transport(device, config.loop)->open();
-  return problem.empty() ? problem : "device '" + device.name + "': " + problem;
+  if (std::string problem = dev::build_device_scene(config, devices, graphs, &scene); !problem.empty()) return problem;
+  for (std::size_t i = 0; i < devices.count; ++i) {
+    const dev::DeviceConfig& device = config.devices[devices.first + i];
+    const auto state = std::make_unique<dev::DeviceState>();
+    fdcg_error error{};
+    if (!dev::begin_device(scene.setups[i], state.get(), &error)) return "device '" + device.name + "': " + error.message;
+    if (device.source != dev::DeviceSource::kRecorded) continue;
+    const std::string problem = dev::make_transport(device, config.loop)->open();
+    if (!problem.empty()) return "device '" + device.name + "': " + problem;
+  }
+  return {};
 }
 
 // Names, values and files, and that the runtime takes the whole.
@@ -45,11 +48,12 @@ Judgement judge_scene(const std::string& file, const std::string& text) {
   dev::HostConfig config;
   judgement.problem = dev::parse_scene(text, file, &config, &judgement.warnings);
   if (!judgement.problem.empty()) return judgement;
-  judgement.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device");
+  judgement.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device") +
+                   (config.is_shared ? " that share it" : "");
   dev::SceneGraphs graphs;
   judgement.problem = graphs.open(config);
-  for (std::size_t i = 0; i < config.devices.size() && judgement.problem.empty(); ++i)
-    judgement.problem = problem_of_device(config, i, graphs);
+  for (const dev::DeviceRange& devices : dev::device_ranges(config))
+    if (judgement.problem.empty()) judgement.problem = problem_of(config, devices, graphs);
   if (judgement.problem.empty()) judgement.problem = dev::log_problem(config);
   if (!judgement.problem.empty() && judgement.problem.rfind(file, 0) != 0) judgement.problem.insert(0, file + ": ");
   return judgement;

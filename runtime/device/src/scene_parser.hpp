@@ -49,7 +49,7 @@ class SceneParser {
   void read_body(const JsonObject& from, BodyConfig* body);
   void read_soft(const JsonObject& from, SoftConfig* soft);
   void read_ground(const JsonObject& from);
-  void refuse_shared_bodies(const JsonObject& scene);
+  void read_shared(const JsonObject& scene);
   void read_contacts(const JsonObject& from, DeviceConfig* device);
   void read_button(const JsonObject& from, HeldButton* button);
   void read_script(const JsonObject& from, SimulationConfig* simulation);
