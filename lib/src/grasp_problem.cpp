@@ -7,9 +7,7 @@
 namespace fdcg::grasp {
 namespace {
 
-constexpr std::size_t kMostContacts = 1000;
 constexpr double kMostScales = 1000;  // beyond, one newton's torque drowns what the tolerance is to tell
-constexpr double kMostMu = 100, kMostTorsionScales = 100;
 constexpr double kUnitWithin = 1e-9;
 
 std::string number(double value) {
@@ -20,6 +18,10 @@ std::string number(double value) {
 
 bool is_finite(const bake::Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool is_force(double newtons) {
+  return newtons >= kLeastForce_n && newtons <= kMostForce_n;
 }
 
 std::string outside(const char* name, double value, const std::string& range) {
@@ -39,7 +41,8 @@ std::string problem_of_contact(const Contact& contact, const Grasp& grasp) {
   const double most_torsion = kMostTorsionScales * grasp.torque_scale_m;
   if (!(contact.torsion_m >= 0 && contact.torsion_m <= most_torsion))
     return outside("torsion", contact.torsion_m, "between 0 and " + number(most_torsion) + " m");
-  if (!(contact.cap_n > 0)) return outside("cap", contact.cap_n, "above 0 N");
+  if (!is_force(contact.cap_n) && contact.cap_n != std::numeric_limits<double>::infinity())
+    return outside("cap", contact.cap_n, "from 1e-100 to 1e100 N, or infinite: none");
   return "";
 }
 
@@ -50,14 +53,24 @@ std::optional<std::string> problem_of(const Grasp& grasp) {
   if (count == 0) return "there are no contacts; name at least one";
   if (count > kMostContacts)
     return "there are " + std::to_string(count) + " contacts, at most " + std::to_string(kMostContacts) + " are judged";
-  if (!is_finite(grasp.centre_m)) return "the centre is not finite";
-  if (!(grasp.torque_scale_m > 0 && std::isfinite(grasp.torque_scale_m)))
-    return outside("the torque scale", grasp.torque_scale_m, "a finite number above 0 (metres)");
+  for (const double x : {grasp.centre_m.x, grasp.centre_m.y, grasp.centre_m.z})
+    if (!(std::abs(x) <= kFarthest_m)) return outside("the centre's coordinate", x, "from -1e12 to 1e12 m");
+  if (!(grasp.torque_scale_m >= 1e-100 && grasp.torque_scale_m <= 1e100))
+    return outside("the torque scale", grasp.torque_scale_m, "from 1e-100 to 1e100 m");
   for (std::size_t i = 0; i < count; ++i) {
     const std::string problem = problem_of_contact(grasp.contacts[i], grasp);
     if (!problem.empty()) return "contact " + std::to_string(i) + ": " + problem;
   }
   return std::nullopt;
+}
+
+std::optional<std::string> problem_of(const Wrench& load, double torque_scale_m) {
+  const bake::Vec3 &f = load.force_n, &t = load.torque_nm;
+  const auto norm = [](const bake::Vec3& v) { return std::hypot(std::hypot(v.x, v.y), v.z); };  // of three infinity is NaN
+  const double length = std::hypot(norm(f), norm(t) / torque_scale_m);
+  if (is_force(length)) return std::nullopt;
+  if (length == 0) return "a load of nothing slips never; give one other than zero";
+  return outside("the load of", length, "from 1e-100 to 1e100 N");
 }
 
 }  // namespace fdcg::grasp

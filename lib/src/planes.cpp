@@ -34,7 +34,7 @@ double balanced_offset(const Vec3& normal, std::span<const Vec3> points) {
     lowest = std::min(lowest, height);
     highest = std::max(highest, height);
   }
-  return offset_through(of_runtime(normal), of_runtime(first), 0.5 * (lowest + highest));
+  return offset_through<double>(of_runtime(normal), of_runtime(first), 0.5 * (lowest + highest));
 }
 
 Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision precision) {

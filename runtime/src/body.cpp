@@ -16,20 +16,15 @@ constexpr double kLargest = 1e12, kFastest = 1e6;
 struct Range {
   const char* name;
   double value, low, high;
+  int index = -1;  // of the number in the field; -1: it has one alone
 };
 
 fdcg_status check_range(const char* of, const Range& range, fdcg_error* error, const char* remedy = "") {
   if (range.value >= range.low && range.value <= range.high) return FDCG_OK;
-  return Message(error, FDCG_E_ARGUMENT)
-      .text(of)
-      .text(range.name)
-      .text(" is ")
-      .real(range.value)
-      .text(", allowed ")
-      .real(range.low)
-      .text(" to ")
-      .real(range.high)
-      .text(remedy);
+  Message message(error, FDCG_E_ARGUMENT);
+  message.text(of).text(range.name);
+  if (range.index >= 0) message.text("[").number(static_cast<uint64_t>(range.index)).text("]");
+  return message.text(" is ").real(range.value).text(", allowed ").real(range.low).text(" to ").real(range.high).text(remedy);
 }
 
 // No axis has more than the two others together: checked of the diagonal and, for the rest, by leading minors.
@@ -47,8 +42,8 @@ bool is_solid_inertia(const double (&i)[6]) {
 fdcg_status check_solid(const char* of, const fdcg_body_config& config, const char* remedy, fdcg_error* error) {
   fdcg_status status = check_range(of, {"mass_kg", config.mass_kg, 1e-12, kLargest}, error, remedy);
   for (int k = 0; k < 3 && status == FDCG_OK; ++k) {
-    status = check_range(of, {"centre_m", config.centre_m[k], -kLargest, kLargest}, error, remedy);
-    if (status == FDCG_OK) status = check_range(of, {"inertia_kg_m2", config.inertia_kg_m2[k], 1e-30, 1e30}, error, remedy);
+    status = check_range(of, {"centre_m", config.centre_m[k], -kLargest, kLargest, k}, error, remedy);
+    if (status == FDCG_OK) status = check_range(of, {"inertia_kg_m2", config.inertia_kg_m2[k], 1e-30, 1e30, k}, error, remedy);
   }
   if (status != FDCG_OK || is_solid_inertia(config.inertia_kg_m2)) return status;
   return Message(error, FDCG_E_ARGUMENT)
@@ -68,9 +63,9 @@ fdcg_status check_config(const fdcg_body_config& config, fdcg_error* error) {
   for (const Range& range : ranges) {
     if (const fdcg_status status = check_range("config.", range, error); status != FDCG_OK) return status;
   }
-  for (const double pull : config.gravity_m_per_s2) {
-    const fdcg_status status = check_range("config.", {"gravity_m_per_s2", pull, -kFastest, kFastest}, error);
-    if (status != FDCG_OK) return status;
+  for (int k = 0; k < 3; ++k) {
+    const Range pull = {"gravity_m_per_s2", config.gravity_m_per_s2[k], -kFastest, kFastest, k};
+    if (const fdcg_status status = check_range("config.", pull, error); status != FDCG_OK) return status;
   }
   return check_solid("config.", config, "", error);
 }
@@ -82,9 +77,9 @@ double length_of(const double (&q)[4]) {
 fdcg_status check_pose(const fdcg_pose& pose, fdcg_error* error) {
   const Range length = {"rotation_xyzw's length", length_of(pose.rotation_xyzw), 1 - 1e-3, 1 + 1e-3};
   if (const fdcg_status status = check_range("pose.", length, error); status != FDCG_OK) return status;
-  for (const double x : pose.translation_m) {
-    if (const fdcg_status status = check_range("pose.", {"translation_m", x, -kLargest, kLargest}, error); status != FDCG_OK)
-      return status;
+  for (int k = 0; k < 3; ++k) {
+    const Range at = {"translation_m", pose.translation_m[k], -kLargest, kLargest, k};
+    if (const fdcg_status status = check_range("pose.", at, error); status != FDCG_OK) return status;
   }
   return check_range("pose.", {"scale", pose.scale, 1e-9, 1e9}, error);
 }
@@ -149,9 +144,8 @@ extern "C" fdcg_status fdcg_body_set_mass(fdcg_body_config* config, const fdcg_m
   memcpy(solid.centre_m, mass->centroid_m, sizeof solid.centre_m);
   for (int k = 0; k < 6; ++k)
     solid.inertia_kg_m2[k] = density * mass->inertia_per_density_m5[k] * cube * scale * scale;
-  const fdcg_status status =
-      fdcg::check_solid("at this density and scale the body's ", solid,
-                        "; fill mass with fdcg_get_mass or fdcg_surface_mass, or give another density or scale", error);
+  const fdcg_status status = fdcg::check_solid("at this density and scale the body's ", solid,
+                                               "; check the density, the scale, and what mass was filled with", error);
   if (status != FDCG_OK) return status;
   config->mass_kg = solid.mass_kg;
   memcpy(config->centre_m, solid.centre_m, sizeof solid.centre_m);
@@ -191,8 +185,8 @@ extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double veloci
   if (body == nullptr || velocity_m_per_s == nullptr || angular_rad_per_s == nullptr)
     return Message(error, FDCG_E_ARGUMENT).text("body, velocity or angular velocity: null pointer");
   for (int k = 0; k < 3; ++k) {
-    const Range ranges[] = {{"velocity_m_per_s", velocity_m_per_s[k], -kFastest, kFastest},
-                            {"angular_rad_per_s", angular_rad_per_s[k], -kFastest, kFastest}};
+    const Range ranges[] = {{"velocity_m_per_s", velocity_m_per_s[k], -kFastest, kFastest, k},
+                            {"angular_rad_per_s", angular_rad_per_s[k], -kFastest, kFastest, k}};
     for (const Range& range : ranges) {
       if (const fdcg_status status = check_range("", range, error); status != FDCG_OK) return status;
     }

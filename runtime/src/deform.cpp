@@ -10,7 +10,14 @@
 namespace fdcg {
 namespace {
 
-constexpr uint64_t kAlignment = 64;
+constexpr uint64_t kAlignment = 64;  // a line of the cache
+
+// Wherever the caller's memory begins, the parts begin at a line: a corner's place in two takes twice the time.
+void* at_a_line(void* memory) {
+  const auto at = reinterpret_cast<uintptr_t>(memory);
+  return static_cast<unsigned char*>(memory) + (kAlignment - at % kAlignment) % kAlignment;
+}
+
 // Leaves stand beside their nodes' bits in 32.
 constexpr uint32_t kMostNodes = FDCG_LEAF_NODES << (32 - FDCG_LEAF_NODES);
 
@@ -70,6 +77,7 @@ struct Layout {
     tight_tick = place(tree.records, sizeof(uint32_t));
     leaf_first = place(header.corner_count + uint64_t{1}, sizeof(uint32_t));
     leaves = place(header.node_count * uint64_t{3}, sizeof(uint32_t));
+    bytes += kAlignment - alignof(fdcg_deform);  // at_a_line
   }
 
  private:
@@ -280,7 +288,7 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
   if (status != FDCG_OK) return status;
   if (memory == nullptr) return fdcg::refuse(error, FDCG_E_ARGUMENT, "memory: null pointer");
   if (reinterpret_cast<uintptr_t>(memory) % alignof(fdcg_deform) != 0)
-    return fdcg::refuse(error, FDCG_E_ALIGNMENT, "memory must start at a multiple of 8 bytes (64 is best)");
+    return fdcg::refuse(error, FDCG_E_ALIGNMENT, "memory must start at a multiple of 8 bytes");
   const fdcg::Layout layout(*graph->header);
   if (bytes < layout.bytes) {
     return Message(error, FDCG_E_ARGUMENT)
@@ -292,8 +300,9 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
   fdcg_header header = *graph->header;
   status = fdcg::widen_bounds(whole.margin_m, &header, error);
   if (status != FDCG_OK) return status;
-  auto* const made = static_cast<fdcg_deform*>(memory);
-  memset(memory, 0, sizeof *made);
+  void* const aligned = fdcg::at_a_line(memory);
+  auto* const made = static_cast<fdcg_deform*>(aligned);
+  memset(aligned, 0, sizeof *made);
   made->header = header;
   made->tree = fdcg::BoxTree(header.node_count);
   made->tick = 1;  // the corners' is 0: none has moved
@@ -303,7 +312,7 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
   made->per_tree_unit = 1 / fdcg::tree_unit(header.extent);
   memcpy(made->low, header.bounds_min, sizeof made->low);
   memcpy(made->high, header.bounds_max, sizeof made->high);
-  fdcg::place_parts(memory, layout, *graph, made);
+  fdcg::place_parts(aligned, layout, *graph, made);
   fdcg::with_real_of(header, [&](auto real) { fdcg::fill_in<decltype(real)>(*graph, made); });
   *deform = made;
   return FDCG_OK;

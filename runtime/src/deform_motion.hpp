@@ -30,8 +30,12 @@ inline double share(double part, double whole) {
   return !(part > 0) ? 0 : part < whole ? part / whole : 1;
 }
 
+inline double clamped(double x) {
+  return !(x > 0) ? 0 : x < 1 ? x : 1;
+}
+
 inline PlaceInTriangle within(PlaceInTriangle place) {
-  const double a = share(place.a, 1), b = share(place.b, 1), sum = a + b;
+  const double a = clamped(place.a), b = clamped(place.b), sum = a + b;
   return sum > 1 ? PlaceInTriangle{a / sum, b / sum} : PlaceInTriangle{a, b};
 }
 
@@ -85,7 +89,7 @@ inline bool passes_over(const MovedTriangle& t, Vec3<double> x, PlaceInTriangle*
       double weight[3];
       weight[b] = share(dot(cross(way, off), to_c), volume);
       weight[c] = share(dot(cross(way, to_b), off), volume);
-      weight[k] = share(1 - weight[b] - weight[c], 1);
+      weight[k] = clamped(1 - weight[b] - weight[c]);
       *place = within({weight[1], weight[2]});
     }
     now[k] = to;
@@ -109,6 +113,7 @@ struct Catch {
   uint32_t node = FDCG_NONE;
   double when = 2;
   Vec3<double> place = {0, 0, 0};
+  bool is_in_box = false;  // some leaf's box holds the point, whether or not a face passed over it
 };
 
 template <class Real>
@@ -127,7 +132,10 @@ inline void try_to_catch(const Upkeep<Real>& upkeep, uint32_t n, Vec3<double> x,
   PlaceInTriangle place;
   if (!passes_over(t, x, &place)) return;
   const double when = when_met(t, x);
-  if (when < first->when || (when == first->when && n < first->node)) *first = {n, when, point_at(place, t.point)};
+  if (when > first->when || (when == first->when && n > first->node)) return;
+  first->node = n;
+  first->when = when;
+  first->place = point_at(place, t.point);
 }
 
 // Which of a record's boxes hold a point or are as near as that, a bit each.
@@ -167,6 +175,7 @@ template <class Real>
         stack[waiting++] = {below, item.level - 1};
         continue;
       }
+      first.is_in_box = true;
       const uint32_t begin = below * FDCG_LEAF_NODES, end = begin + FDCG_LEAF_NODES;
       for (uint32_t n = begin; n < end && n < deform.header.node_count; ++n)
         try_to_catch(upkeep, n, x, &first);

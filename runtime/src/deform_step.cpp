@@ -108,17 +108,24 @@ inline bool keep_ball(double travel, fdcg_contact* contact) {
   return ball.radius2 > 0;
 }
 
-// Whether no face has come to the god-object since the contact's last step, nor to the way from it to the HIP, as far as clear
-// balls tell; `hip` null: there is none.
+// How far a contact's clear ball, if it still has one, says that no face has come since its last step: to nowhere, to the
+// god-object, or to all of the way from it to the HIP; `hip` null: that is not asked.
 enum class Clear { no, at_god_object, all_the_way };
 template <class Real>
 Clear clear_of_faces(const Upkeep<Real>& upkeep, double travel, const Vec3<double>* hip, fdcg_deform_contact* contact) {
-  fdcg_clear_ball& ball = contact->contact.clear_ball;
-  const bool is_watched = upkeep.deform().watched.holds(contact->ball, ball);
-  const bool is_clear = is_watched || keep_ball(travel, &contact->contact);
-  if (hip == nullptr) return is_clear ? Clear::at_god_object : Clear::no;
-  if ((is_clear && is_in_clear_ball(ball, *hip)) || find_quiet_ball(upkeep, *hip, contact)) return Clear::all_the_way;
-  return is_clear ? Clear::at_god_object : Clear::no;
+  const fdcg_clear_ball& ball = contact->contact.clear_ball;
+  if (!upkeep.deform().watched.holds(contact->ball, ball) && !keep_ball(travel, &contact->contact)) return Clear::no;
+  return hip != nullptr && is_in_clear_ball(ball, *hip) ? Clear::all_the_way : Clear::at_god_object;
+}
+
+inline void seat_on(uint32_t n, fdcg_contact* contact) {
+  contact->state = FDCG_FACE;
+  contact->feature = n;
+  contact->seat_state = FDCG_FREE;
+  contact->seat_feature = FDCG_NONE;
+  contact->slipping = 0;
+  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
+  contact->sweep.in_place = 0;
 }
 
 // A contact in free space. A sweep that was carried over begins anew, on the mesh as it is. Returns whether a face caught it.
@@ -128,19 +135,19 @@ bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, 
   fdcg_contact* const contact = &waiting->contact;
   contact->sweep.is_carried = 0;
   const Clear clear = clear_of_faces(upkeep, travel, hip, waiting);
-  if (clear == Clear::all_the_way) waiting->halvings = 0;
-  if (clear != Clear::no || !saw_before) return false;
-  const Catch caught = catch_of(upkeep, narrow<Real>(contact->god_object));
-  if (caught.node == FDCG_NONE) return false;
-  contact->state = FDCG_FACE;
-  contact->feature = caught.node;
-  contact->seat_state = FDCG_FREE;
-  contact->seat_feature = FDCG_NONE;
-  contact->slipping = 0;
-  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
-  contact->sweep.in_place = 0;
-  put<Real>(contact, caught.place);
-  return true;
+  bool is_in_box = false;  // then there is no quiet ball around it: not looked for
+  if (clear == Clear::no && saw_before) {
+    const Catch caught = catch_of(upkeep, narrow<Real>(contact->god_object));
+    if (caught.node != FDCG_NONE) {
+      seat_on(caught.node, contact);
+      put<Real>(contact, caught.place);
+      return true;
+    }
+    is_in_box = caught.is_in_box;
+  }
+  if (clear == Clear::all_the_way || (hip != nullptr && !is_in_box && find_quiet_ball(upkeep, *hip, waiting)))
+    waiting->halvings = 0;
+  return false;
 }
 
 // The motion of the present tick. Returns what it adds to the result's flags.

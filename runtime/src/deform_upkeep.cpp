@@ -12,8 +12,7 @@ bool Upkeep<Real>::is_line(uint32_t n) const {
   const Vec3<double> a = widen(point(here.sides[0].corner)), b = widen(point(here.sides[1].corner)),
                      c = widen(point(here.sides[2].corner));
   const Vec3<double> u = b - a, v = c - a, across = cross(u, v);
-  constexpr double kSure = 1e-12;  // of the product of two sides: far more than its rounding
-  if (norm1(across) > kSure * (norm1(u) * norm1(v)) + RealLimits<double>::kTiny) return false;
+  if (norm1(across) > kSurelyWide * (norm1(u) * norm1(v)) + RealLimits<double>::kTiny) return false;
   if (largest_of(unit_normal_of(a, b, c)) == 0) return true;  // so thin that its products vanish
   const double far = 4 * d_->header.extent;  // in one line: in one plane with three points that are in no plane with a
   return orient3d_sign(a, b, c, {a.x + far, a.y, a.z}) == 0 && orient3d_sign(a, b, c, {a.x, a.y + far, a.z}) == 0 &&
@@ -24,13 +23,17 @@ template <class Real>
 void Upkeep<Real>::compute_node(uint32_t n) const {
   Node& here = node(n);
   spend(&d_->upkeep_left, kRenewedNodeWork);
-  if (is_line(n)) {
-    compute_sliver(n);
-    return;
-  }
   const Vec3<double> a = widen(point(here.sides[0].corner)), b = widen(point(here.sides[1].corner)),
                      c = widen(point(here.sides[2].corner));
-  const Plane<Real> plane = plane_with_normal<Real>(unit_normal_of(a, b, c), a, b, c);
+  Vec3<double> unit;
+  if (__builtin_expect(!quick_normal_of(a, b, c, &unit, Real{}), false)) {
+    if (is_line(n)) {
+      compute_sliver(n);
+      return;
+    }
+    unit = unit_normal_of(a, b, c);
+  }
+  const Plane<Real> plane = plane_with_normal<Real>(unit, a, b, c);
   here.plane = {{plane.normal.x, plane.normal.y, plane.normal.z}, plane.offset};
   here.flags = 0;
   for (const fdcg_side& side : here.sides)

@@ -51,14 +51,14 @@ namespace fdcg {
 // between `low` and `high`. What takes a mark off, or makes a box smaller, resets it: so a corner that nobody looks at is
 // marked once, however often it moves.
 template <class Real>
-struct Place {
+struct alignas(64) Place {
   Real point[3];
   uint32_t is_marked;
   uint32_t logged;  // where it was before that tick: in the tick's log
   uint64_t tick;
   float low[3], high[3];  // tree units
 };
-static_assert(sizeof(Place<double>) == 64 && sizeof(Place<float>) == 56);
+static_assert(sizeof(Place<double>) == 64 && sizeof(Place<float>) == 64);
 
 // An entry of a tick's log. Logs are as long as the mesh has corners, and none is in one twice.
 template <class Real>

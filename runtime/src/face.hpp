@@ -54,8 +54,7 @@ template <class Real>
 
 template <class Real>
 FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
-  for (uint32_t k = 0; k < node.side_count(); ++k) {
-    if (node.surely_holds(k, to, bound)) continue;
+  for (uint32_t k = node.first_doubtful(to, bound); k < node.side_count(); ++k) {
     if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to, bound);
   }
   return {};

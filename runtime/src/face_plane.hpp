@@ -71,10 +71,13 @@ inline Vec3<double> unit_of_any_size(Vec3<double> v) {
   if (!is_moderate(largest_of(scaled))) scaled = scaled * scale_for(largest_of(scaled));
   return over(scaled, norm(scaled));
 }
+// Of a square whose own square and root's products stay in range.
+inline bool is_square_in_range(double squared) {
+  return squared > 1e-200 && squared < 1e200;
+}
 inline Vec3<double> unit_of(Vec3<double> v) {
-  constexpr double kSmall = 1e-200, kLarge = 1e200;  // their squares and products stay in range
   const double squared = dot(v, v);
-  return squared > kSmall && squared < kLarge ? over(v, root(squared)) : unit_of_any_size(v);
+  return is_square_in_range(squared) ? over(v, root(squared)) : unit_of_any_size(v);
 }
 
 struct SplitEdges {
@@ -110,9 +113,56 @@ inline Vec3<double> unit_normal_of(Vec3<double> a, Vec3<double> b, Vec3<double> 
   return unit_of(edges.product());
 }
 
+// Of the product of two sides: a triangle whose doubled area is more is none in one line, whatever the rounding.
+inline constexpr double kSurelyWide = 1e-12;
+
+// The same, which rounded to Real is so to the bit, with less work; false: not for this triangle, which may be a line.
+FDCG_HOT bool quick_normal_of(Vec3<double> a, Vec3<double> b, Vec3<double> c, Vec3<double>* unit, double) {
+  const SplitEdges edges(a, b, c);
+  const double u = norm1(Vec3<double>{edges.ux.value, edges.uy.value, edges.uz.value}),
+               v = norm1(Vec3<double>{edges.vx.value, edges.vy.value, edges.vz.value});
+  if (!(is_moderate(u / 4) && is_moderate(v / 4))) return false;
+  const Vec3<double> product = edges.product();
+  const double squared = dot(product, product);
+  if (!(norm1(product) > kSurelyWide * (u * v) && is_square_in_range(squared))) return false;
+  *unit = over(product, root(squared));
+  return true;
+}
+
+inline bool is_sure_float(double x, double error) {
+  const auto low = static_cast<float>(x - error), high = static_cast<float>(x + error);
+  return __builtin_bit_cast(uint32_t, low) == __builtin_bit_cast(uint32_t, high);
+}
+
+// In plain double: its error is some 2^-50 of the two products that a component is the difference of, and of the component.
+// Where that is too little to matter to the float that is nearest, the exact one has the same.
+FDCG_HOT bool quick_normal_of(Vec3<double> a, Vec3<double> b, Vec3<double> c, Vec3<double>* unit, float) {
+  constexpr double kRounding = 0x1p-49;
+  const Vec3<double> u = b - a, v = c - a;
+  const Vec3<double> plus = {u.y * v.z, u.z * v.x, u.x * v.y}, minus = {u.z * v.y, u.x * v.z, u.y * v.x};
+  const Vec3<double> product = plus - minus;
+  const double squared = dot(product, product);
+  if (!(norm1(product) > kSurelyWide * (norm1(u) * norm1(v)) && is_square_in_range(squared))) return false;
+  const double inverse = 1 / root(squared), rounding = kRounding * inverse;
+  *unit = product * inverse + Vec3<double>{0, 0, 0};  // no -0, which the exact one is not
+  const double own = rounding * (norm1(plus) + norm1(minus));
+  return is_sure_float(unit->x, rounding * (absolute(plus.x) + absolute(minus.x)) + own * absolute(unit->x)) &&
+         is_sure_float(unit->y, rounding * (absolute(plus.y) + absolute(minus.y)) + own * absolute(unit->y)) &&
+         is_sure_float(unit->z, rounding * (absolute(plus.z) + absolute(minus.z)) + own * absolute(unit->z));
+}
+
+// Of numbers that are Reals: floats' products are exact as they are.
+template <class Real>
+FDCG_HOT Split exact_product_of(double a, double b) {
+  if constexpr (sizeof(Real) < sizeof(double)) return {a * b, 0};
+  return exact_product(a, b);
+}
+
 // -normal.point, rounded once at the end but for `middle`, which is taken off.
-inline double offset_through(Vec3<double> normal, Vec3<double> point, double middle) {
-  const Split x = exact_product(normal.x, point.x), y = exact_product(normal.y, point.y), z = exact_product(normal.z, point.z);
+template <class Real>
+FDCG_HOT double offset_through(Vec3<double> normal, Vec3<double> point, double middle) {
+  const Split x = exact_product_of<Real>(normal.x, point.x), y = exact_product_of<Real>(normal.y, point.y),
+              z = exact_product_of<Real>(normal.z, point.z);
   const Split xy = exact_difference(x.value, -y.value), xyz = exact_difference(xy.value, -z.value);
   const double rest = ((x.rest + y.rest) + z.rest) + (xy.rest + xyz.rest);
   return -(xyz.value + (rest + middle));
@@ -126,14 +176,14 @@ inline double greater_of(double a, double b) {
 }
 
 // The plane as it is stored: the normal rounded to Real, then the offset that makes the largest distance of the three corners
-// from it smallest, rounded.
+// from it smallest, rounded. Corners are Reals.
 template <class Real>
-inline Plane<Real> plane_with_normal(Vec3<double> unit, Vec3<double> a, Vec3<double> b, Vec3<double> c) {
+FDCG_HOT Plane<Real> plane_with_normal(Vec3<double> unit, Vec3<double> a, Vec3<double> b, Vec3<double> c) {
   const Vec3<Real> normal = {static_cast<Real>(unit.x), static_cast<Real>(unit.y), static_cast<Real>(unit.z)};
   const Vec3<double> stored = {normal.x, normal.y, normal.z};
   const double height_b = dot(stored, b - a), height_c = dot(stored, c - a);
   const double lowest = lesser_of(lesser_of(0, height_b), height_c), highest = greater_of(greater_of(0, height_b), height_c);
-  return {normal, static_cast<Real>(offset_through(stored, a, 0.5 * (lowest + highest)))};
+  return {normal, static_cast<Real>(offset_through<Real>(stored, a, 0.5 * (lowest + highest)))};
 }
 
 // The angle between two unit vectors, 0 .. pi, within 4e-8 (Abramowitz and Stegun 4.4.46): a weight for a corner's normal,

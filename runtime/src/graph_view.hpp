@@ -88,18 +88,20 @@ class NodeRef {
     return derived;
   }
 
-  // Whether a point is inside of side k's Voronoi plane by more than `bound`; false: it may be. Only where that is told sooner
-  // than by the plane.
-  [[nodiscard]] bool surely_holds([[maybe_unused]] uint32_t k, [[maybe_unused]] Vec3<Real> x,
-                                  [[maybe_unused]] Real bound) const {
+  // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it hold it surely, which
+  // is told sooner than by the plane, where planes are derived for a mesh that moves.
+  [[nodiscard]] uint32_t first_doubtful([[maybe_unused]] Vec3<Real> x, [[maybe_unused]] Real bound) const {
 #if FDCG_DEFORMABLE
-    const Vec3<Real> start = graph_->corner_point(corner(k)), along = graph_->corner_point(corner(next(k))) - start;
-    const Vec3<Real> off = x - start;
-    const Real beyond = dot(cross(along, normal()), off);  // times the side's length: in winding order
-    const Real rounding = 64 * RealLimits<Real>::kEpsilon * (norm1(x) + extent());
-    return beyond < -(2 * bound + rounding) * norm1(along);
+    const Vec3<Real> up = normal();
+    const Real off_line = 2 * bound + 64 * RealLimits<Real>::kEpsilon * (norm1(x) + extent());
+    for (uint32_t k = 0; k < 3; ++k) {
+      const Vec3<Real> start = graph_->corner_point(corner(k)), along = graph_->corner_point(corner(next(k))) - start;
+      const Real beyond = dot(cross(along, up), x - start);  // times the side's length: in winding order
+      if (!(beyond < -off_line * norm1(along))) return k;
+    }
+    return 3;
 #else
-    return false;
+    return 0;
 #endif
   }
 

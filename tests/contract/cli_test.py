@@ -193,6 +193,9 @@ class Compile(Case):
             about = json.loads(self.fdcg("inspect", "--json", out).stdout)
             self.assertEqual((nodes, connections), (about["nodes"], about["connections"]), options)
             self.assertEqual(12, about["connection_types"]["convex"])
+        self.fdcg("compile", mesh, "-o", out, "-q", "--triangles", "--no-merge")
+        for options, words in ((("--merge",), "--merge"), (("--coplanar", "5"), "--coplanar")):
+            self.assert_one_line(self.fdcg("compile", mesh, "-o", out, "--triangles", *options, code=2), "--triangles", words)
 
     def test_depfile_names_target_and_mesh_as_make_reads_them(self):
         mesh, out = self.write("my mesh#1.off", CUBE), self.path("out $x.fdcg")
@@ -480,7 +483,9 @@ class BadInput(Case):
         os.mkdir(self.path("folder"))
         for target in (self.path("no/such/out"), file + "/out", self.path("folder"), "/dev/full", "/proc/out"):
             with self.subTest(target=target):
-                self.assert_one_line(self.fdcg("compile", mesh, "-o", target, code=3), target)
+                done = self.fdcg("compile", mesh, "-o", target, code=3)
+                self.assert_one_line(done, target)
+                self.assertEqual("no/such" in target, b"its directory does not exist" in done.stderr)
                 self.assert_one_line(self.fdcg("validate", mesh, "-o", target, code=3), target)
                 out = self.path("out.fdcg")
                 self.assert_one_line(self.fdcg("compile", mesh, "-o", out, "-q", "--report", target, code=3), target)

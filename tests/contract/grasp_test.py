@@ -336,21 +336,53 @@ class Input(GraspCase):
             ("[{\"mu\": 1}]", ("contact 0", "point")),
             ("[{\"point\": [1, 2, 3], \"nu\": 1}]", ("nu", "'mu'")),
             ("[{\"point\": [1, 2, 3], \"name\": 1}]", ("name", "text")),
-            ("[{\"point\": [1, 2, 3]}", ("JSON",)),
+            ("[{\"point\": [1, 2, 3]}", ("no JSON: line 1, column 22",)),
+            ("{\"contacts\": [{\"point\": [1, 0, 0]}], \"contacts\": []}", ('"contacts" stands twice',)),
+            ("[{\"point\": [1, 0, 0], \"mu\": 1, \"mu\": 2}]", ('"mu" stands twice',)),
+            (b"[{\"n\xff\": 1}]", ("line 1, column 5", "\ufffd")),
+            ("[{\"point\": [1, 0, 1e999]}]", ("1e999",)),
+            ("[" * 300000 + "]" * 300000, ("contact 0", "an array")),
+            ("[{\"point\": [1, 0, 0], \"mu\": 200}]", ("contact 0: mu is 200, allowed 0 to 100",)),
+            ("x,y,z,mu\n1,0,0,-1\n", ("line 2: mu is -1, allowed 0 to 100",)),
+            ("x,y,z,cap\n1,0,0,0\n", ("line 2: cap is 0, allowed 1e-100 to 1e100 N",)),
+            ("x,y,z,cap\n1,0,0,1e101\n", ("cap is 1e+101",)),
+            ("x,y,z,torsion\n1,0,0,-1\n", ("line 2: torsion is -1",)),
+            ("x,y,z,torsion\n1,0,0,1e9\n", ("contact 0: torsion is 1e+09", "100 torque scales")),
+            ("x,y,z\n1,0,2e12\n", ("line 2: the point's coordinate is 2e+12",)),
+            ("x,y,z,nx,ny,nz\n1,0,0,1e-200,0,0\n", ("no direction",)),
+            ("x;y;z\n1;0;0\n", ("'x;y;z'", "commas")),
+            ("x,y,z\n" + 1001 * "1,0,0\n", ("1001 contacts", "1000")),
         ):
-            with self.subTest(text=text):
+            with self.subTest(text=text[:60]):
                 done = self.fdcg("grasp", self.cube, "--contacts", self.write("bad", text), "--mu", "1", code=3)
                 self.assert_one_line(done, "bad", *words)
+                self.assertNotIn(b"json.exception", done.stderr)
+                self.assertNotIn(b"while parsing", done.stderr)
                 self.assertEqual(b"", done.stdout)
-        self.assert_one_line(self.fdcg("grasp", self.cube, "--contacts", self.path("none"), "--mu", "1", code=3), "none")
+        for path, words in ((self.path("none"), "No such file"), (str(self.folder), "Is a directory"), ("", "No such file")):
+            self.assert_one_line(self.fdcg("grasp", self.cube, "--contacts", path, "--mu", "1", code=3), path, words)
+
+    def test_a_mark_of_utf_8_in_front_is_passed_over(self):
+        for text in ("x,y,z\n1,0,0\n", "[{\"point\": [1, 0, 0]}]"):
+            plain, marked = self.write("plain", text), self.write("marked", b"\xef\xbb\xbf" + text.encode())
+            reports = [self.fdcg("grasp", self.cube, "--contacts", path, "--mu", "1", "--json", code=1).stdout for path in (plain, marked)]
+            self.assertEqual(*reports)
 
     def test_wrong_usage_is_code_2_and_one_line(self):
         here = ("grasp", self.cube, "--contacts", self.fingers)
         for arguments, words in (
             (("grasp", self.cube), ("--contacts",)),
             (here, ("contact 0", "--mu")),
-            ((*here, "--mu", "-1"), ("--mu", "from 0 up")),
-            ((*here, "--mu", "101"), ("contact 0", "mu 101", "100")),
+            ((*here, "--mu", "-1"), ("--mu", "from 0 to 100")),
+            ((*here, "--mu", "101"), ("--mu: '101' is no number from 0 to 100",)),
+            ((*here, "--mu", "nan"), ("--mu", "'nan'")),
+            ((*here, "--mu", "1", "--torsion", "1e9"), ("--torsion is 1e+09", "100 torque scales")),
+            ((*here, "--mu", "1", "--cap", "1e300"), ("--cap", "above 0 and up to 1e+100")),
+            ((*here, "--mu", "1", "--load", "1e300,0,0"), ("--load", "1e-100 to 1e100")),
+            ((*here, "--mu", "1", "--mass", "1e300", "--gravity", "0,0,1e300"), ("--mass", "inf")),
+            ((*here, "--mu", "1", "--centre", "1e200,0,0"), ("--centre", "1e12")),
+            (("grasp", self.compiled_cube(), *here[2:], "--mu", "1", "--units", "mm"), ("--units", "FDCG file")),
+            (("grasp", self.compiled_cube(), *here[2:], "--mu", "1", "--scale", "2"), ("--scale", "FDCG file")),
             ((*here, "--mu", "1", "--torsion", "x"), ("--torsion",)),
             ((*here, "--mu", "1", "--grip", "0"), ("--grip", "above 0")),
             ((*here, "--mu", "1", "--load", "1,2"), ("--load", "2 numbers", "3 or 6")),

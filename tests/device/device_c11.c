@@ -18,6 +18,15 @@ int refuses_from_c(void) {
   if (!fails_with(fdcg_host_open(NULL, &host, &message), &message, "NULL") || host) return 2;
   if (!fails_with(fdcg_host_open_text(bad, strlen(bad), "here.json", &host, &message), &message, "here.json") || host) return 3;
   if (fdcg_host_open("no/such/scene.json", &host, NULL) == FDCG_OK) return 4;
+  if (!fails_with(fdcg_host_open(bad, NULL, &message), &message, "host is NULL")) return 7;
+  if (!fails_with(fdcg_host_start(NULL, &message), &message, "host is NULL")) return 8;
+  if (!fails_with(fdcg_host_stop(NULL, &message), &message, "host is NULL")) return 9;
+  if (!fails_with(fdcg_host_set_pose(NULL, "cube", NULL, &message), &message, "host is NULL")) return 22;
+  if (fdcg_host_get_status(NULL, 0, NULL) != FDCG_E_ARGUMENT || fdcg_host_wait(NULL, 1) != 1) return 23;
+  if (fdcg_host_device_count(NULL) != 0 || fdcg_host_device_name(NULL, 0) != NULL) return 24;
+  fdcg_host_arm(NULL, 0);
+  fdcg_host_disarm(NULL, 0);
+  fdcg_host_request_stop(NULL);
   fdcg_host_close(NULL);
   if (fdcg_device_profile_name(fdcg_device_profile_count()) != NULL) return 5;
   return strlen(fdcg_fault_text(2)) > 10 && strlen(fdcg_fault_text(99)) > 10 ? 0 : 6;

@@ -87,7 +87,7 @@ DeviceConfig device_of(const Case& c, std::uint64_t seed) {
   return device;
 }
 
-HostConfig scene_of(std::uint64_t seed) {
+HostConfig scene_of(std::uint64_t seed, bool is_shared) {
   HostConfig config;
   config.scene_file = "faults_test";
   ObjectConfig cube;
@@ -101,6 +101,7 @@ HostConfig scene_of(std::uint64_t seed) {
   config.objects.push_back(cube);
   for (const Case& c : kCases)
     config.devices.push_back(device_of(c, seed++));
+  config.is_shared = is_shared;
   config.loop.servo_priority = config.loop.writer_priority = 10;
   config.loop.lock_memory = false;
   return config;
@@ -153,14 +154,13 @@ void check_strikes(const Case& c, const SimulationConfig& device, const std::vec
   CHECK(judged >= kStrikes / 2);
 }
 
-}  // namespace
-
-TEST_CASE("thirteen devices, each with its fault, twenty times: the force goes, and comes back only when it is armed") {
+// is_shared: all of them in one loop, where none may hold up the others.
+void strike_all(bool is_shared) {
   // Where it is granted, so that what else the machine does is no fault of a device's.
   const sched_param real_time{5};
   pthread_setschedparam(pthread_self(), SCHED_FIFO, &real_time);
   Host host;
-  HostConfig config = scene_of(20261);
+  HostConfig config = scene_of(20261, is_shared);
   std::vector<SimulationConfig> devices;
   for (const DeviceConfig& device : config.devices)
     devices.push_back(device.simulation);
@@ -209,4 +209,14 @@ TEST_CASE("thirteen devices, each with its fault, twenty times: the force goes, 
     CHECK(record.zero_at(record.forces.empty() ? 0 : record.forces.back().time_ns) != SimulationRecord::kNever);
     CHECK(last[i].counters.ticks > 1000);
   }
+}
+
+}  // namespace
+
+TEST_CASE("thirteen devices, each with its fault, twenty times: the force goes, and comes back only when it is armed") {
+  strike_all(false);
+}
+
+TEST_CASE("the same thirteen devices in one scene: each is struck alone") {
+  strike_all(true);
 }

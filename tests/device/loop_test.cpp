@@ -33,14 +33,14 @@ struct Rig {
 
   Rig() {
     REQUIRE(graphs.open(config).empty());
-    REQUIRE(build_device_scene(config, 0, graphs, &scene).empty());
+    REQUIRE(build_device_scene(config, {}, graphs, &scene).empty());
     ServoParts parts;
     parts.transport = &transport;
     parts.link = &link;
     parts.writer = &writer;
     parts.lost = &lost;
     parts.start_ns = monotonic_ns();
-    REQUIRE(servo.begin(scene.setup, parts, nullptr));
+    REQUIRE(servo.begin(scene.setups[0], parts, nullptr));
   }
   void send(const GatedForce& force, std::uint32_t echo) {
     writer.put(force, echo);

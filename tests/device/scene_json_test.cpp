@@ -264,7 +264,12 @@ TEST_CASE("what is wrong with a grasp is told too") {
   };
   const std::vector<Wrong> cases = {
       {"/objects/0/surface", R"({"kind": "sphere", "radius_m": 1})", {"objects[0].file stands beside surface"}},
-      {"/objects/1/surface/radius_m", "1e-30", {"objects[1].surface.kind is refused", "radius"}},
+      {"/objects/1/surface/radius_m", "1e-30", {"objects[1].surface.radius_m is 1e-30, allowed 0 and 1e-9 to 1e9"}},
+      {"/objects/1/surface/half_m", "[1, 1, 1]", {"objects[1].surface.half_m[0] is 1, allowed 0; a surface of this kind"}},
+      {"/objects/1/surface", R"({"kind": "torus", "radius_m": 0.1})",
+       {"objects[1].surface.tube_radius_m is missing, so it is 0, allowed 1e-9 to"}},
+      {"/objects/1/surface", R"({"kind": "plane", "hollow": true})", {"objects[1].surface.hollow is 1, allowed 0: turn the plane"}},
+      {"/objects/2/surface/half_m", "[0.1, 0.2, 1e-6]", {"objects[2].surface.half_m[2] is 1e-6, allowed 2e-5 to 1e9 (at least"}},
       {"/objects/1/motion", R"({"kind": "soft"})", {"objects[1].motion is soft", "give a file"}},
       {"/objects/0/motion/mass_kg", "1", {"objects[0].motion.mass_kg stands beside density_kg_per_m3"}},
       {"/objects/0/motion/points", "0", {"points is 0", "1 to 256"}},
@@ -273,6 +278,7 @@ TEST_CASE("what is wrong with a grasp is told too") {
       {"/devices/0/turn/rotation_xyzw", "[0, 0, 0, 0]", {"turn.rotation_xyzw has length 0"}},
       {"/devices/0/grip/button", "32", {"grip.button is 32", "0 to 31"}},
       {"/devices/0/contacts/0/pad_radius_m", "-0.001", {"contacts[0].pad_radius_m is -0.001", "0 to 1"}},
+      {"/devices/0/contacts/0/pad_radius_m", "1e-10", {"pad_radius_m is 1e-10", "0 (a point) or a number from 1e-09 to 1 m"}},
       {"/devices/0/grip", "", {"contacts[0].closed_m has no \"grip\""}},
       {"/devices/0/simulation/start_m", "[0, 0, 0]", {"simulation.start_m stands beside script"}},
       {"/devices/0/simulation/script/1/at_s", "0.5", {"script[1].at_s is 0.5", "times ascend"}},

@@ -255,6 +255,10 @@ TEST_CASE("bodies that cannot be are refused, with the field, its value and its 
   CHECK(refusal([](auto&, auto& pose) { pose.rotation_xyzw[0] = 1; }).find("rotation_xyzw") != std::string::npos);
   CHECK(refusal([](auto&, auto& pose) { pose.scale = 0; }).find("pose.scale is 0") == 0);
   CHECK(refusal([](auto& config, auto&) { config.struct_bytes += 8; }).find("struct_bytes") != std::string::npos);
+  CHECK(refusal([](auto& config, auto&) { config.gravity_m_per_s2[1] = HUGE_VAL; }) ==
+        "config.gravity_m_per_s2[1] is infinite, allowed -1e6 to 1e6");
+  CHECK(refusal([](auto&, auto& pose) { pose.translation_m[2] = 2e12; }) ==
+        "pose.translation_m[2] is 2e12, allowed -1e12 to 1e12");
   CHECK(refusal([](auto& config, auto&) { config.reserved = 7; }).find("config.reserved is 7, allowed 0 to 0") == 0);
   CHECK(refusal([](auto&, auto& pose) { pose.rotation_xyzw[3] = 2; }) ==
         "pose.rotation_xyzw's length is 2, allowed 0.999 to 1.001");
@@ -284,12 +288,12 @@ TEST_CASE("mass from a file becomes a body's, by density, by mass and by scale")
     double density;
     const char* words;
   } refused[] = {
-      {[](fdcg_mass& m) { m = {}; }, 1000, "the body's mass_kg is 0, allowed 1e-12 to 1e12; fill mass with fdcg_get_mass"},
+      {[](fdcg_mass& m) { m = {}; }, 1000, "the body's mass_kg is 0, allowed 1e-12 to 1e12; check the density, the scale"},
       {[](fdcg_mass& m) { m.volume_m3 = std::nan(""); }, 1000, "the body's mass_kg is NaN"},
       {[](fdcg_mass& m) { m.mass_kg = -1; }, 0, "the body's mass_kg is -1"},
-      {[](fdcg_mass& m) { m.density_kg_per_m3 = std::nan(""); }, 0, "the body's inertia_kg_m2 is NaN"},
-      {[](fdcg_mass& m) { m.centroid_m[2] = std::nan(""); }, 1000, "the body's centre_m is NaN"},
-      {[](fdcg_mass& m) { m.inertia_per_density_m5[1] = HUGE_VAL; }, 1000, "the body's inertia_kg_m2 is infinite"},
+      {[](fdcg_mass& m) { m.density_kg_per_m3 = std::nan(""); }, 0, "the body's inertia_kg_m2[0] is NaN"},
+      {[](fdcg_mass& m) { m.centroid_m[2] = std::nan(""); }, 1000, "the body's centre_m[2] is NaN"},
+      {[](fdcg_mass& m) { m.inertia_per_density_m5[1] = HUGE_VAL; }, 1000, "the body's inertia_kg_m2[1] is infinite"},
       {[](fdcg_mass& m) { m.inertia_per_density_m5[5] = std::nan(""); }, 1000, "the body's inertia_kg_m2 is no solid's"},
       {[](fdcg_mass& m) { m.inertia_per_density_m5[0] = 9; }, 1000, "the body's inertia_kg_m2 is no solid's"},
   };

@@ -218,7 +218,10 @@ bool AtomicFile::commit() {
 void AtomicFile::fail(int error_number) {
   const std::string name = path_ == "-" ? "standard output" : "'" + path_ + "'";
   error_ = "cannot write " + name + ": " + std::strerror(error_number);
-  if (error_number == ENOENT) error_ += " (its directory does not exist; make it first)";
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  if (error_number == ENOENT && !folder.empty() && !std::filesystem::exists(folder, ignored))
+    error_ += " (its directory does not exist; make it first)";
   if (error_number == EISDIR) error_ += " (name a file inside it)";
   discard();
 }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace fdcg::tools {
 
-// The text on one line that a person reads: control characters as '?', cut after a thousand bytes.
-std::string one_line(std::string text);
+// The text on one line that a person reads: control characters as '?', bytes that are no UTF-8 as U+FFFD, cut after so many
+// bytes of it, never in the middle of a letter.
+std::string one_line(std::string_view text, std::size_t longest = 1000);
 
 }  // namespace fdcg::tools

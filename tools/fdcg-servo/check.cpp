@@ -6,9 +6,11 @@
 
 #include "command.hpp"
 #include "json_reader.hpp"
+#include "make_transport.hpp"
 #include "profile_json.hpp"
 #include "scene_build.hpp"
 #include "scene_json.hpp"
+#include "session_log.hpp"
 
 namespace fdcg::servo {
 namespace {
@@ -24,19 +26,36 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+// What the run would refuse of devices that feel one scene before it starts.
+std::string problem_of(const dev::HostConfig& config, const dev::DeviceRange& devices, const dev::SceneGraphs& graphs) {
+  dev::DeviceScene scene;
+  if (std::string problem = dev::build_device_scene(config, devices, graphs, &scene); !problem.empty()) return problem;
+  for (std::size_t i = 0; i < devices.count; ++i) {
+    const dev::DeviceConfig& device = config.devices[devices.first + i];
+    const auto state = std::make_unique<dev::DeviceState>();
+    fdcg_error error{};
+    if (!dev::begin_device(scene.setups[i], state.get(), &error)) return "device '" + device.name + "': " + error.message;
+    if (device.source != dev::DeviceSource::kRecorded) continue;
+    const std::string problem = dev::make_transport(device, config.loop)->open();
+    if (!problem.empty()) return "device '" + device.name + "': " + problem;
+  }
+  return {};
+}
+
 // Names, values and files, and that the runtime takes the whole.
 Judgement judge_scene(const std::string& file, const std::string& text) {
   Judgement judgement;
   dev::HostConfig config;
   judgement.problem = dev::parse_scene(text, file, &config, &judgement.warnings);
   if (!judgement.problem.empty()) return judgement;
-  judgement.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device");
+  judgement.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device") +
+                   (config.is_shared ? " that share it" : "");
   dev::SceneGraphs graphs;
   judgement.problem = graphs.open(config);
-  for (std::size_t i = 0; i < config.devices.size() && judgement.problem.empty(); ++i) {
-    dev::DeviceScene scene;
-    judgement.problem = dev::build_device_scene(config, i, graphs, &scene);
-  }
+  for (const dev::DeviceRange& devices : dev::device_ranges(config))
+    if (judgement.problem.empty()) judgement.problem = problem_of(config, devices, graphs);
+  if (judgement.problem.empty()) judgement.problem = dev::log_problem(config);
+  if (!judgement.problem.empty() && judgement.problem.rfind(file, 0) != 0) judgement.problem.insert(0, file + ": ");
   return judgement;
 }
 

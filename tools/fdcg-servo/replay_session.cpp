@@ -55,6 +55,9 @@ std::string summary(const dev::SessionReplay& replay, double seconds) {
     text += device.name + ": " + grouped(device.ticks) + " ticks";
     if (!device.is_over) text += ", every output the same bit for bit";
     if (!device.difference.empty()) text += "; the last one differs: " + device.difference;
+    if (!device.ended_by.empty()) {
+      text += ", the same bit for bit; the replay ends with that of '" + device.ended_by + "', whose scene it shares";
+    }
     if (device.has_gap) {
       text += ", the same bit for bit; then the log lacks ticks from " + grouped(device.gap_at) +
               " on (its ring was full: a busy disk), and the replay ends there";

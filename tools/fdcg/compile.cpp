@@ -252,9 +252,16 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
           "Which edges are flat: exactly; within the input's own rounding (quantum, the default); "
           "within ANGLE degrees")
       ->type_name("exact|quantum|ANGLE");
-  command.add_flag("--merge,!--no-merge", arguments->options.merge, "Merge coplanar faces into convex polygons; default: yes");
-  command.add_flag("--triangles", arguments->options.triangles,
-                   "Make every face triangles and merge nothing: for a mesh that is to be deformed (fdcg/deform.h)");
+  const CLI::Option* const merge = command.add_flag("--merge,!--no-merge", arguments->options.merge,
+                                                    "Merge coplanar faces into convex polygons; default: yes");
+  command
+      .add_flag("--triangles", arguments->options.triangles,
+                "Make every face triangles and merge nothing: for a mesh that is to be deformed (fdcg/deform.h)")
+      ->excludes("--coplanar");
+  command.final_callback([arguments, merge] {
+    if (arguments->options.triangles && merge->count() > 0 && arguments->options.merge)
+      throw CLI::ExcludesError("--triangles", "--merge");
+  });
   const auto parse_planes = [arguments](const std::string& text) {
     require_choice("--planes", text, {"stored", "derived"});
     arguments->options.store_planes = text == "stored";

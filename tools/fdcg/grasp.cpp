@@ -53,6 +53,16 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   return numbers;
 }
 
+// A length that is far beyond the object's: of the file or of the option, whichever said it.
+int check_torsion(const GraspArguments& arguments, const NamedContact& asked, double torsion_m, double torque_scale_m) {
+  const double most_m = grasp::kMostTorsionScales * torque_scale_m;
+  if (torsion_m <= most_m) return kClean;
+  const std::string words =
+      number(torsion_m) + ", allowed 0 to " + number(most_m) + " m, " + number(grasp::kMostTorsionScales) + " torque scales";
+  if (asked.torsion_m) return fail(kFile, arguments.contacts + ": " + asked.name + ": torsion is " + words);
+  return fail(kUsage, "--torsion is " + words);
+}
+
 // The report's contacts: on the surface, with what the file or the command line says of them.
 int place_contacts(const GraspArguments& arguments, const GraspObject& object, GraspReport& report) {
   for (const NamedContact& asked : report.asked) {
@@ -64,6 +74,8 @@ int place_contacts(const GraspArguments& arguments, const GraspObject& object, G
     contact.inward = asked.inward ? *asked.inward : Vec3{0 - found.outward.x, 0 - found.outward.y, 0 - found.outward.z};
     contact.mu = *mu;
     contact.torsion_m = asked.torsion_m.value_or(arguments.torsion_m.value_or(0));
+    if (const int code = check_torsion(arguments, asked, contact.torsion_m, report.grasp.torque_scale_m); code != kClean)
+      return code;
     contact.cap_n = asked.cap_n.value_or(arguments.cap_n.value_or(std::numeric_limits<double>::infinity()));
     report.grasp.contacts.push_back(contact);
     report.found.push_back(found);
@@ -107,9 +119,8 @@ int set_load(const GraspArguments& arguments, const GraspObject& object, GraspRe
     report.load.force_n = {mass * g.x, mass * g.y, mass * g.z};
     report.load_text = "the weight of " + number(mass) + " kg";
   }
-  const Vec3 &f = report.load.force_n, &t = report.load.torque_nm;
-  if (f == Vec3{} && t == Vec3{})
-    return fail(kUsage, "a load of nothing slips never; give --load or --gravity other than zero");
+  if (const auto problem = grasp::problem_of(report.load, report.grasp.torque_scale_m))
+    return fail(kUsage, *problem + " (--load, --gravity, --mass)");
   return kClean;
 }
 
@@ -122,6 +133,8 @@ int run_grasp(const GraspArguments& arguments) {
   for (const std::string* input : {&arguments.object, &arguments.contacts}) {
     if (is_same_file(*input, arguments.output)) return fail(kUsage, "'" + arguments.output + "' would overwrite an input");
   }
+  if (!arguments.unit_text.empty() && is_graph_file(arguments.object))
+    return fail(kUsage, "--units and --scale are for meshes; '" + arguments.object + "' is an FDCG file, which is in metres");
   const auto contacts = read_contacts(arguments.contacts);
   if (!contacts) return fail(contacts.error().exit_code, contacts.error().message);
   const auto object = GraspObject::load(arguments.object, arguments.compile);
@@ -136,8 +149,9 @@ int run_grasp(const GraspArguments& arguments) {
   report.asked = *contacts;
   if (const int code = set_frame(arguments, *object, report); code != kClean) return code;
   if (const int code = place_contacts(arguments, *object, report); code != kClean) return code;
+  if (const auto problem = grasp::problem_of(report.grasp))  // what is left is a matter of the centre and the scale
+    return fail(kUsage, *problem + " (--centre, --torque-scale)");
   if (const int code = set_load(arguments, *object, report); code != kClean) return code;
-  if (const auto problem = grasp::problem_of(report.grasp)) return fail(kUsage, arguments.contacts + ": " + *problem);
   report.closure = grasp::force_closure(report.grasp);
   report.effort = arguments.effort;
   report.epsilon = grasp::ferrari_canny(report.grasp, arguments.effort, arguments.cones);
@@ -156,12 +170,16 @@ int run_grasp(const GraspArguments& arguments) {
 }
 
 void add_number(CLI::App& command, const std::string& name, std::optional<double>& value, bool may_be_zero,
-                const std::string& help, const std::string& type) {
-  const auto parse = [name, &value, may_be_zero](const std::string& text) {
+                const std::string& help, const std::string& type, double most = std::numeric_limits<double>::max()) {
+  const auto parse = [name, &value, may_be_zero, most](const std::string& text) {
     const auto parsed =
         parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
-    if (!parsed || *parsed < 0 || (*parsed == 0 && !may_be_zero))
-      throw CLI::ValidationError(name, "'" + text + "' is no number " + (may_be_zero ? "from 0 up" : "above 0"));
+    constexpr double kLeast = grasp::kLeastForce_n;  // smaller ones lose digits
+    const bool has_most = most < std::numeric_limits<double>::max();
+    if (!parsed || *parsed < 0 || (*parsed < kLeast && !may_be_zero) || *parsed > most)
+      throw CLI::ValidationError(
+          name, "'" + text + "' is no number " + (may_be_zero ? "from 0 " : "above 0") +
+                    (has_most ? (may_be_zero ? "to " : " and up to ") + number(most) : (may_be_zero ? "up" : "")));
     value = parsed;
   };
   command.add_option_function<std::string>(name, parse, help)->type_name(type);
@@ -176,8 +194,10 @@ void add_vector(CLI::App& command, const std::string& name, std::optional<Vec3>&
 }
 
 void add_load_options(CLI::App& command, GraspArguments& arguments) {
-  add_number(command, "--grip", arguments.grip_n, false, "The most that all contacts press together; asks for the margin", "N");
-  add_number(command, "--cap", arguments.cap_n, false, "The most that each contact presses; asks for the margin", "N");
+  add_number(command, "--grip", arguments.grip_n, false, "The most that all contacts press together; asks for the margin", "N",
+             grasp::kMostForce_n);
+  add_number(command, "--cap", arguments.cap_n, false, "The most that each contact presses; asks for the margin", "N",
+             grasp::kMostForce_n);
   const auto parse_load = [&arguments](const std::string& text) {
     const auto v = parse_numbers("--load", text, {3, 6});
     grasp::Wrench load;
@@ -212,7 +232,7 @@ Exit code 0: force closure, and the load holds if a grip is given; 1: not.)");
   command->add_option("--contacts", arguments->contacts, "Where it is touched: JSON or CSV; - is standard input")
       ->required()
       ->type_name("FILE");
-  add_number(*command, "--mu", arguments->mu, true, "Friction of contacts that do not say theirs", "MU");
+  add_number(*command, "--mu", arguments->mu, true, "Friction of contacts that do not say theirs", "MU", grasp::kMostMu);
   add_number(*command, "--torsion", arguments->torsion_m, true,
              "Soft fingers: the most moment about the normal for each newton pressed; default: 0, hard", "METRES");
   add_load_options(*command, *arguments);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grasp_contacts.hpp"
 
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "../common/nearest.hpp"
 #include "../common/one_line.hpp"
 #include "command.hpp"
+#include "fdcg/grasp.hpp"
+#include "json_words.hpp"
 #include "mesh_options.hpp"
 
 namespace fdcg::tools {
@@ -26,7 +30,7 @@ struct Wrong {
 // What the file holds, short enough for a message that says more.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 40;
-  return one_line(text.size() <= kLongest ? text : text.substr(0, kLongest) + "...");
+  return one_line(text, kLongest);
 }
 
 // The finite number that a text is, or a message.
@@ -39,21 +43,43 @@ double finite_number(const std::string& text, const std::string& what) {
 
 void set_normal(NamedContact& contact, const bake::Vec3& normal) {
   const double length = std::hypot(normal.x, normal.y, normal.z);
-  if (!(length > 0 && std::isfinite(length)))
+  constexpr double kLeast = 1e-100;  // shorter ones have lost digits
+  if (!(length >= kLeast && std::isfinite(length)))
     throw Wrong{contact.name + ": the normal has no direction; it points into the object"};
   contact.inward = bake::Vec3{normal.x / length, normal.y / length, normal.z / length};
+}
+
+// What a file says of a contact can be what a contact has; what it cannot is told with its place.
+void check_numbers(const NamedContact& contact, const std::string& where) {
+  const auto refuse = [&](const char* name, double value, const std::string& allowed) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.9g", value);
+    throw Wrong{where + name + " is " + number + ", allowed " + allowed};
+  };
+  if (contact.mu && !(*contact.mu >= 0 && *contact.mu <= grasp::kMostMu)) refuse("mu", *contact.mu, "0 to 100");
+  if (contact.torsion_m && !(*contact.torsion_m >= 0)) refuse("torsion", *contact.torsion_m, "0 m and more");
+  if (contact.cap_n && !(*contact.cap_n >= grasp::kLeastForce_n && *contact.cap_n <= grasp::kMostForce_n))
+    refuse("cap", *contact.cap_n, "1e-100 to 1e100 N; leave it out where there is none");
+  for (const double x : {contact.point_m.x, contact.point_m.y, contact.point_m.z})
+    if (!(std::abs(x) <= grasp::kFarthest_m)) refuse("the point's coordinate", x, "-1e12 to 1e12 m");
+}
+
+// As it stands in the file; of lists and objects that it is one: printing those within one another takes as many calls.
+std::string text_of(const Json& value) {
+  if (value.is_structured()) return "an " + std::string(value.type_name());
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 // ---- JSON ----------------------------------------------------------------------------------------------------------------
 
 double number_of(const Json& value, const std::string& what) {
   if (!value.is_number() || !std::isfinite(value.get<double>()))
-    throw Wrong{what + " is no finite number: " + shown(value.dump())};
+    throw Wrong{what + " is no finite number: " + shown(text_of(value))};
   return value.get<double>();
 }
 
 bake::Vec3 vector_of(const Json& value, const std::string& what) {
-  if (!value.is_array() || value.size() != 3) throw Wrong{what + " is not [x, y, z]: " + shown(value.dump())};
+  if (!value.is_array() || value.size() != 3) throw Wrong{what + " is not [x, y, z]: " + shown(text_of(value))};
   return {number_of(value[0], what), number_of(value[1], what), number_of(value[2], what)};
 }
 
@@ -61,7 +87,7 @@ NamedContact contact_of(const Json& json, std::size_t index) {
   NamedContact contact;
   contact.name = "contact " + std::to_string(index);
   const std::string where = contact.name + ": ";
-  if (!json.is_object()) throw Wrong{where + "is no object: " + shown(json.dump())};
+  if (!json.is_object()) throw Wrong{where + "is no object: " + shown(text_of(json))};
   if (!json.contains("point")) throw Wrong{where + "has no \"point\": [x, y, z] in metres"};
   std::optional<bake::Vec3> normal;
   for (const auto& [key, value] : json.items()) {
@@ -83,11 +109,15 @@ NamedContact contact_of(const Json& json, std::size_t index) {
                   (key == "name" ? "" : did_you_mean(key, {"point", "normal", "mu", "torsion", "cap", "name"}))};
   }
   if (normal) set_normal(contact, *normal);
+  check_numbers(contact, where);
   return contact;
 }
 
 Contacts parse_json(const std::string& text) {
-  const Json document = Json::parse(text);
+  DuplicateKeys duplicates;
+  const Json document = Json::parse(text, std::ref(duplicates));
+  if (!duplicates.duplicate.empty())
+    throw Wrong{"\"" + shown(duplicates.duplicate) + "\" stands twice in one object; keep one"};
   const bool is_object = document.is_object();
   if (is_object) {
     for (const auto& [key, value] : document.items()) {
@@ -123,7 +153,8 @@ void check_header(const std::vector<std::string>& header) {
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto& column = header[i];
     if (std::find(known.begin(), known.end(), column) == known.end())
-      throw Wrong{"line 1: '" + shown(column) + "' is no column of a contacts file" + did_you_mean(column, known)};
+      throw Wrong{"line 1: '" + shown(column) + "' is no column of a contacts file" +
+                  (column.find(';') != std::string::npos ? "; columns are separated by commas" : did_you_mean(column, known))};
     if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i), column) !=
         header.begin() + static_cast<std::ptrdiff_t>(i))
       throw Wrong{"line 1: the column '" + column + "' comes twice"};
@@ -161,6 +192,7 @@ NamedContact contact_of_line(const std::vector<std::string>& header, const std::
     if (column == "nz") normal.z = value, has_normal = true;
   }
   if (has_normal) set_normal(contact, normal);
+  check_numbers(contact, where);
   return contact;
 }
 
@@ -186,29 +218,34 @@ Contacts parse_csv(const std::string& text) {
 
 }  // namespace
 
-bake::Result<Contacts> parse_contacts(const std::string& text, const std::string& path) {
+bake::Result<Contacts> parse_contacts(const std::string& bytes, const std::string& path) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8, which spreadsheets put in front
+  const std::string text = bytes.starts_with(kMark) ? bytes.substr(kMark.size()) : bytes;
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   try {
     if (first == std::string::npos) throw Wrong{"the file is empty; it lists contacts as JSON or CSV"};
     const bool is_json = text[first] == '{' || text[first] == '[';
     Contacts contacts = is_json ? parse_json(text) : parse_csv(text);
     if (contacts.empty()) throw Wrong{"there are no contacts in it"};
+    if (contacts.size() > grasp::kMostContacts)
+      throw Wrong{"there are " + std::to_string(contacts.size()) + " contacts; at most " +
+                  std::to_string(grasp::kMostContacts) + " are judged"};
     return contacts;
   } catch (const Wrong& wrong) {
     return bake::Failure{kFile, path + ": " + one_line(wrong.message)};
   } catch (const Json::exception& error) {
-    return bake::Failure{kFile, path + ": no JSON: " + one_line(error.what())};
+    return bake::Failure{kFile, path + ": is no JSON: " + one_line(plain_complaint(error))};
   }
 }
 
 bake::Result<Contacts> read_contacts(const std::string& path) {
   std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-  if (file == nullptr) return bake::Failure{kFile, path + ": cannot be opened"};
+  if (file == nullptr) return bake::Failure{kFile, "'" + path + "': " + std::strerror(errno)};
   std::string text(kMostBytes + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), file));
-  const bool failed = std::ferror(file) != 0;
+  const int error_number = std::ferror(file) != 0 ? errno : 0;
   if (file != stdin) std::fclose(file);
-  if (failed) return bake::Failure{kFile, path + ": cannot be read"};
+  if (error_number != 0) return bake::Failure{kFile, "'" + path + "': " + std::strerror(error_number)};
   if (text.size() > kMostBytes) return bake::Failure{kFile, path + ": more than 16 MiB is no list of contacts"};
   return parse_contacts(text, path);
 }

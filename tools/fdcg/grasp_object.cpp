@@ -43,6 +43,8 @@ Vec3 nearest_of_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   return plus(plus(a, in_b / sum, ab), in_c / sum, ac);
 }
 
+}  // namespace
+
 bool is_graph_file(const std::string& path) {
   constexpr unsigned char kMagic[] = {0x89, 'F', 'D', 'C', 'G'};  // schemas/fdcg-v1.md
   unsigned char start[sizeof kMagic] = {};
@@ -53,8 +55,6 @@ bool is_graph_file(const std::string& path) {
   std::fclose(file);
   return is_graph;
 }
-
-}  // namespace
 
 bake::Result<GraspObject> GraspObject::load(const std::string& path, const bake::CompileOptions& options) {
   GraspObject object;

@@ -12,6 +12,9 @@
 
 namespace fdcg::tools {
 
+// Whether the file begins as an FDCG file; no where it cannot be read.
+bool is_graph_file(const std::string& path);
+
 // The point of a surface that is nearest to another.
 struct SurfacePoint {
   bake::Vec3 point_m{};

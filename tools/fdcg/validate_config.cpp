@@ -9,6 +9,7 @@
 #include "../common/nearest.hpp"
 #include "../common/one_line.hpp"
 #include "command.hpp"
+#include "json_words.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -85,22 +86,6 @@ Complaint read_key(const std::string& key, const Json& value, const fs::path& fo
   return "'" + key + "' is no key" + did_you_mean(key, kKeys) + " (the keys are " + known + ")";
 }
 
-// Two members of one name hide each other: the parser must tell.
-class DuplicateKeys {
- public:
-  bool operator()(int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys_.pop_back();
-    if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second && duplicate.empty())
-      duplicate = parsed.get<std::string>();
-    return true;
-  }
-  std::string duplicate;
-
- private:
-  std::vector<std::set<std::string>> keys_;
-};
-
 }  // namespace
 
 bake::Result<ValidateConfig> read_config(const std::string& path) {
@@ -129,7 +114,7 @@ bake::Result<ValidateConfig> read_config(const std::string& path) {
     }
     if (!complaint.empty()) return bake::Failure{kUsage, one_line(path + ": " + complaint), {}};
   } catch (const Json::exception& error) {
-    return bake::Failure{kUsage, one_line(path + ": is no JSON: " + error.what()), {}};
+    return bake::Failure{kUsage, one_line(path + ": is no JSON: " + plain_complaint(error)), {}};
   }
   return config;
 }

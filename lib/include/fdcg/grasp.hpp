@@ -9,6 +9,7 @@
 // torques are divided by the torque scale first; a unit wrench has length 1 so.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -23,6 +24,14 @@ using bake::Vec3;
 
 // Lengths of wrenches below this count as zero, bounds this near as tight. Rounding stays far below it.
 inline constexpr double kTolerance = 1e-9;
+
+// What problem_of allows.
+inline constexpr std::size_t kMostContacts = 1000;
+inline constexpr double kMostMu = 100;
+inline constexpr double kMostTorsionScales = 100;
+inline constexpr double kFarthest_m = 1e12;
+// Of loads, caps and totals: what is computed from them stays a number.
+inline constexpr double kLeastForce_n = 1e-100, kMostForce_n = 1e100;
 
 struct Contact {
   Vec3 point_m{};        // object's frame
@@ -43,10 +52,13 @@ struct Wrench {
   Vec3 force_n{}, torque_nm{};
 };
 
-// Why a grasp cannot be judged: contact (from 0), value, limit, remedy. None where it can: 1 to 1,000 contacts, finite points
-// at most 1,000 torque scales from the centre, normals of unit length within 1e-9, mu from 0 to 100, torsion from 0 to 100
-// torque scales, caps above 0, torque scale above 0. The functions below need this.
+// Why a grasp cannot be judged: contact (from 0), value, limit, remedy. None where it can: 1 to 1,000 contacts, points at most
+// 1,000 torque scales from the centre, which is at most 1e12 m away along each axis, normals of unit length within 1e-9, mu
+// from 0 to 100, torsion from 0 to 100 torque scales, caps from 1e-100 to 1e100 N or infinite, torque scale from 1e-100 to
+// 1e100 m. The functions below need this.
 std::optional<std::string> problem_of(const Grasp& grasp);
+// Of a load: its length, torques divided by the torque scale, is from 1e-100 to 1e100 N.
+std::optional<std::string> problem_of(const Wrench& load, double torque_scale_m);
 
 // ---- force closure -------------------------------------------------------------------------------------------------------
 
@@ -99,7 +111,8 @@ struct Margin {
   double upper = 0;                  // cannot be held beyond this; no farther from load_factor than 1e-9 of it
   std::vector<ContactForce> forces;  // that hold load_factor times the load
 };
-// `load` acts on the object, torque about the centre. total_n or each cap is finite, the load is not zero.
+// `load` acts on the object, torque about the centre; problem_of has nothing against it. total_n is as a cap may be, and finite
+// unless each cap is.
 Margin slip_margin(const Grasp& grasp, const Wrench& load, double total_n = std::numeric_limits<double>::infinity());
 
 }  // namespace fdcg::grasp

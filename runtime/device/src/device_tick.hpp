@@ -6,6 +6,9 @@
 //
 // Bodies (fdcg/body.h) live in ticks: each tick with a good report moves them on by one period of the device, whatever the
 // clock says, and while no report comes they stand still. So a busy computer makes them slow, never wild.
+//
+// Devices that share a scene are ticked together, by group_tick (scene_tick.hpp has what is theirs in common). Each has its own
+// judge, gate and counters, as if it were alone.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +29,7 @@ inline constexpr int kSamplesToArm = 8;  // good reports since the device was op
 inline constexpr int kMaxDriven = 16;    // objects that something moves
 inline constexpr int kMaxSoft = 4;       // objects that give way
 inline constexpr int kMaxBodies = 16;    // objects that move by what acts on them
+inline constexpr int kMaxDevices = 16;   // of a scene
 
 struct RawReport {
   std::uint64_t host_ns = 0;
@@ -86,7 +90,8 @@ struct DeviceSetup {
   double contacts_m[kMaxContacts][3] = {};  // from the tip, device's frame, not scaled
   double pads_m[kMaxContacts] = {};         // radius of each contact's pad, world; 0: a point
   double most_force_n = 0;                  // the scene's limit; 0: the profile's
-  fdcg_scene* scene = nullptr;              // this device's own: nothing is shared but the graphs
+  fdcg_scene* scene = nullptr;              // this device's own, or that of all devices
+  bool is_shared = false;                   // the scene is that of several devices: what follows the fingers is so too
   fdcg_finger_id fingers[kMaxContacts] = {};
   int driven_count = 0;
   fdcg_object_id driven[kMaxDriven] = {};
@@ -94,7 +99,8 @@ struct DeviceSetup {
   // Bodies: all of it in the DeviceScene's memory, which changes with every tick as the scene's does.
   fdcg_scene_body* bodies = nullptr;
   std::uint32_t body_count = 0;
-  std::uint32_t substeps = 1;  // of a tick, 1 to FDCG_BODY_MAX_SUBSTEPS
+  std::uint32_t substeps = 1;  // of a tick at scene_rate_hz, 1 to FDCG_BODY_MAX_SUBSTEPS
+  double scene_rate_hz = 0;    // of the fastest device that shares the scene; 0: this one's
   fdcg_pile* pile = nullptr;   // with the ground and all objects; null where there are no bodies
   fdcg_reaction* reactions = nullptr;
   std::uint32_t reaction_count = 0;
@@ -107,12 +113,16 @@ struct DeviceSetup {
 struct DeviceState {
   DeviceSetup setup;
   Gate gate;
+  GateInput to_gate;  // of the tick that is going on
   ReportJudge judge;
   TickCounters counters;
-  int samples = 0;         // good reports since the device was opened, up to kSamplesToArm
-  bool has_place = false;  // fingers stand where the tip was last seen
+  int samples = 0;          // good reports since the device was opened, up to kSamplesToArm
+  bool has_place = false;   // fingers stand where the tip was last seen
+  bool has_left = false;    // is_shared: the fingers are out of the scene
+  bool is_waiting = false;  // is_shared: after a fault they stay out until the device is armed again
   std::uint64_t last_good_ns = 0;
   GripState grip;
+  double tip_m[3] = {};                   // device's frame, as of the last good report with a place
   double places_m[kMaxContacts][3] = {};  // of the contacts, world, in the last tick
   double turn_xyzw[4] = {0, 0, 0, 1};     // and how they were turned
   // as of the last good report
@@ -125,5 +135,15 @@ struct DeviceState {
 // setup.scene's fingers are added here. False with *error where the scene refuses them.
 bool begin_device(const DeviceSetup& setup, DeviceState* device, fdcg_error* error);
 void device_tick(DeviceState& device, const TickInput& input, TickOutput* output);
+
+// One of the devices that share a scene, in the scene's order.
+struct Member {
+  DeviceState* device = nullptr;
+  const TickInput* input = nullptr;
+  TickOutput* output = nullptr;
+};
+// 1 to kMaxDevices of them, always the same; each has a tick, whatever came of it. Where it is one, it is device_tick. Returns
+// which of them is the clock: the loop waits for its next report, and takes what is there of the others.
+int group_tick(const Member* members, int count);
 
 }  // namespace fdcg::dev

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 
 #include "emergency.hpp"
 #include "link.hpp"
@@ -30,13 +31,19 @@ struct Unit {
   Link link;
   Writer writer;
   ServoLoop servo;
-  DeviceScene scene;
   std::vector<std::size_t> moving;  // objects
-  std::unique_ptr<LogRing> log;
   EmergencyExit emergency;
   // What the threads have said last.
   DeviceStatus status;
   WriterStatus writes;
+};
+
+// A scene and the devices that feel it: one servo thread.
+struct Group {
+  DeviceRange devices;
+  DeviceScene scene;
+  std::unique_ptr<LogRing> log;
+  std::vector<ServoLoop*> loops;
 };
 
 // All that any thread of a host may touch. A thread that cannot be ended keeps its share: nothing is freed under it.
@@ -44,6 +51,7 @@ struct Shared {
   HostConfig config;
   SceneGraphs graphs;
   std::vector<std::unique_ptr<Unit>> units;
+  std::vector<std::unique_ptr<Group>> groups;
   Supervisor supervisor;
   SessionLog log;
   std::uint64_t start_ns = monotonic_ns();  // the same for all: motions of one object agree
@@ -55,13 +63,15 @@ struct Host::Impl {
   TransportMaker maker;
   std::shared_ptr<Shared> shared;
   Thread supervisor;
-  std::vector<Thread> servos, writers;  // as the units
+  std::vector<Thread> servos;   // as the groups
+  std::vector<Thread> writers;  // as the units
   std::vector<std::string> warnings;
   bool is_running = false, has_run = false, has_log = false;
   std::atomic<bool> is_stopping{false};
   Event stop_asked;
 
-  std::string build_unit(std::size_t index);
+  std::string build_group(const DeviceRange& devices);
+  std::string build_unit(std::size_t index, Group& group);
   std::string start_threads();
   std::string start_log();
   void make_punctual();
@@ -92,38 +102,59 @@ std::string Host::open(HostConfig config) {
   impl_->warnings.clear();
   impl_->has_run = false;
   impl_->is_stopping.store(false);
-  for (std::size_t i = 0; i < impl_->shared->config.devices.size() && problem.empty(); ++i)
-    problem = impl_->build_unit(i);
+  for (const DeviceRange& devices : device_ranges(impl_->shared->config))
+    if (problem.empty()) problem = impl_->build_group(devices);
   if (!problem.empty()) impl_->shared = nullptr;
   return problem;
 }
 
-std::string Host::Impl::build_unit(std::size_t index) {
+std::string Host::Impl::build_group(const DeviceRange& devices) {
+  auto group = std::make_unique<Group>();
+  group->devices = devices;
+  for (std::size_t i = devices.first; devices.count > 1 && i < devices.first + devices.count; ++i) {
+    const DeviceConfig& device = shared->config.devices[i];
+    const bool is_free_running = device.source == DeviceSource::kSimulated && !device.simulation.is_real_time;
+    if (is_free_running || (device.source == DeviceSource::kRecorded && !device.is_recording_in_real_time)) {
+      return "device '" + device.name + "': it shares the scene with others, so all must live in real time; set its " +
+             "simulation's real_time to true, or run the scene with --fast";
+    }
+  }
+  std::string problem = build_device_scene(shared->config, devices, shared->graphs, &group->scene);
+  if (!problem.empty()) return problem;
+  if (!shared->config.log_file.empty()) {
+    const auto count = static_cast<std::uint32_t>(devices.count);
+    group->log = std::make_unique<LogRing>(kLogRingBytes * std::bit_ceil(count), static_cast<int>(count));
+  }
+  for (std::size_t i = devices.first; problem.empty() && i < devices.first + devices.count; ++i)
+    problem = build_unit(i, *group);
+  shared->groups.push_back(std::move(group));
+  return problem;
+}
+
+std::string Host::Impl::build_unit(std::size_t index, Group& group) {
   const DeviceConfig& config = shared->config.devices[index];
   auto unit = std::make_unique<Unit>(maker(config, shared->config.loop), config.profile);
-  std::string problem = build_device_scene(shared->config, index, shared->graphs, &unit->scene);
-  if (!problem.empty()) return problem;
   ServoParts parts;
   parts.transport = unit->transport.get();
   parts.link = &unit->link;
   parts.writer = &unit->writer;
   parts.lost = &shared->supervisor.lost();
   parts.start_ns = shared->start_ns;
+  parts.log = group.log.get();
+  parts.log_place = static_cast<int>(index - group.devices.first);
   for (std::size_t i = 0; i < shared->config.objects.size(); ++i) {
     const ObjectConfig& object = shared->config.objects[i];
     if (!is_moved(object.motion)) continue;
     parts.moving.push_back(&object);
     unit->moving.push_back(i);
   }
-  if (!shared->config.log_file.empty()) {
-    unit->log = std::make_unique<LogRing>(kLogRingBytes);
-    parts.log = unit->log.get();
-  }
   fdcg_error error;
-  if (!unit->servo.begin(unit->scene.setup, parts, &error)) return "device '" + config.name + "': " + error.message;
+  const DeviceSetup& setup = group.scene.setups[index - group.devices.first];
+  if (!unit->servo.begin(setup, parts, &error)) return "device '" + config.name + "': " + error.message;
   unit->emergency.profile = &config.profile;
   unit->emergency.writer = &unit->writer;
   shared->supervisor.add({parts.transport, parts.link, &unit->servo, &unit->writer, &unit->emergency});
+  group.loops.push_back(&unit->servo);
   shared->units.push_back(std::move(unit));
   return {};
 }
@@ -147,8 +178,8 @@ std::string Host::start() {
 std::string Host::Impl::start_log() {
   if (shared->config.log_file.empty()) return {};
   std::vector<LogRing*> rings;
-  for (const auto& unit : shared->units)
-    rings.push_back(unit->log.get());
+  for (const auto& group : shared->groups)
+    rings.push_back(group->log.get());
   std::string problem = shared->log.start(shared->config, rings.data(), static_cast<int>(rings.size()));
   has_log = problem.empty();
   return problem;
@@ -156,7 +187,7 @@ std::string Host::Impl::start_log() {
 
 // Each thread's body holds `shared`: see there.
 std::string Host::Impl::start_threads() {
-  servos.resize(shared->units.size());
+  servos.resize(shared->groups.size());
   writers.resize(shared->units.size());
   const std::shared_ptr<Shared> share = shared;
   for (std::size_t i = 0; i < shared->units.size(); ++i) {
@@ -164,7 +195,13 @@ std::string Host::Impl::start_threads() {
     if (!add_emergency_exit(&unit->emergency))
       warnings.push_back("too many devices: one gets no zero force if this program crashes");
     std::string problem = writers[i].start("fdcg-writer", [share, unit] { unit->writer.run(); });
-    if (problem.empty()) problem = servos[i].start("fdcg-servo", [share, unit] { unit->servo.run(); });
+    if (!problem.empty()) return problem;
+  }
+  for (std::size_t i = 0; i < shared->groups.size(); ++i) {
+    Group* const group = shared->groups[i].get();
+    const int count = static_cast<int>(group->loops.size());
+    std::string problem =
+        servos[i].start("fdcg-servo", [share, group, count] { ServoLoop::run_together(group->loops.data(), count); });
     if (!problem.empty()) return problem;
   }
   return supervisor.start("fdcg-supervisor", [share] { share->supervisor.run(); });
@@ -177,14 +214,23 @@ void Host::Impl::make_punctual() {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   };
   if (loop.lock_memory) warn(lock_memory());
-  for (std::size_t i = 0; i < shared->units.size(); ++i) {
-    const std::string name = "device '" + shared->config.devices[i].name + "'";
-    // A device that answers as fast as it is read would keep a real-time thread from ever sleeping.
+  // A device that answers as fast as it is read would keep a real-time thread from ever sleeping.
+  const auto is_free_running = [&](std::size_t i) {
     const DeviceConfig& device = shared->config.devices[i];
-    if (device.source == DeviceSource::kSimulated && !device.simulation.is_real_time) continue;
-    warn(set_real_time_priority(servos[i], name + ", servo thread", loop.servo_priority));
-    warn(set_real_time_priority(writers[i], name + ", writer thread", loop.writer_priority));
-    warn(set_cpu(servos[i], name + ", servo thread", loop.cpu));
+    return device.source == DeviceSource::kSimulated && !device.simulation.is_real_time;
+  };
+  for (std::size_t i = 0; i < shared->groups.size(); ++i) {
+    const DeviceRange& devices = shared->groups[i]->devices;
+    if (is_free_running(devices.first)) continue;
+    const std::string name = "device '" + shared->config.devices[devices.first].name +
+                             (devices.count > 1 ? "' and those that share its scene" : "'") + ", servo thread";
+    warn(set_real_time_priority(servos[i], name, loop.servo_priority));
+    warn(set_cpu(servos[i], name, loop.cpu));
+  }
+  for (std::size_t i = 0; i < shared->units.size(); ++i) {
+    if (is_free_running(i)) continue;
+    const std::string name = "device '" + shared->config.devices[i].name + "', writer thread";
+    warn(set_real_time_priority(writers[i], name, loop.writer_priority));
   }
 }
 
@@ -307,9 +353,15 @@ std::string Host::Impl::end_threads() {
   shared->supervisor.request_stop();
   const bool has_supervisor_ended = join(supervisor);
   std::string problem;
+  std::vector<bool> have_servos_ended(shared->units.size());
+  for (std::size_t i = 0; i < shared->groups.size(); ++i) {
+    const DeviceRange& devices = shared->groups[i]->devices;
+    const bool has_ended = join(servos[i]);
+    std::fill_n(have_servos_ended.begin() + static_cast<std::ptrdiff_t>(devices.first), devices.count, has_ended);
+  }
   for (std::size_t i = 0; i < shared->units.size(); ++i) {
     Unit& unit = *shared->units[i];
-    const bool has_writer_ended = join(writers[i]), has_servo_ended = join(servos[i]);
+    const bool has_writer_ended = join(writers[i]), has_servo_ended = have_servos_ended[i];
     unit.link.close();
     unit.emergency.descriptor.store(-1);
     const bool has_ended = has_writer_ended && has_servo_ended && has_supervisor_ended;

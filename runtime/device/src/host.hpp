@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host: every device of a scene with its own servo thread, writer thread and fdcg_scene, one supervisor that opens and
-// re-opens them, and the log. All of it on one screen:
+// The host: every device of a scene with its own servo thread, writer thread and fdcg_scene (or one servo thread and scene for
+// all of them, HostConfig::is_shared), one supervisor that opens and re-opens them, and the log. All of it on one screen:
 //
 //   Host host;
 //   host.open(config);     graphs opened and verified, scenes built; no thread yet
@@ -23,7 +23,6 @@
 
 namespace fdcg::dev {
 
-inline constexpr int kMaxDevices = 16;
 inline constexpr int kAllDevices = -1;
 
 // What stands between a device and its use. Empty `problem`: it is open, or nobody has tried yet.

@@ -30,6 +30,10 @@ void say(fdcg_host_message* message, const std::string& text) {
   message->text[bytes] = '\0';
 }
 
+std::string no_host() {
+  return "host is NULL: fdcg_host_open gives one";
+}
+
 // `work` hands back a problem, or nothing.
 template <class Work>
 fdcg_status guarded(fdcg_status failure, fdcg_host_message* message, const Work& work) {
@@ -45,6 +49,7 @@ fdcg_status guarded(fdcg_status failure, fdcg_host_message* message, const Work&
 
 template <class Parse>
 fdcg_status open_host(fdcg_host** host, fdcg_host_message* message, const Parse& parse) {
+  if (host == nullptr) return guarded(FDCG_E_ARGUMENT, message, [] { return std::string("host is NULL"); });
   *host = nullptr;
   return guarded(FDCG_E_ARGUMENT, message, [&] {
     HostConfig config;
@@ -114,10 +119,12 @@ fdcg_status fdcg_host_open_text(const char* scene, uint64_t bytes, const char* n
 }
 
 fdcg_status fdcg_host_start(fdcg_host* host, fdcg_host_message* message) {
+  if (host == nullptr) return guarded(FDCG_E_ARGUMENT, message, no_host);
   return guarded(FDCG_E_IO, message, [&] { return host->host.start(); });
 }
 
 fdcg_status fdcg_host_stop(fdcg_host* host, fdcg_host_message* message) {
+  if (host == nullptr) return guarded(FDCG_E_ARGUMENT, message, no_host);
   return guarded(FDCG_E_IO, message, [&] { return host->host.stop(); });
 }
 
@@ -126,11 +133,11 @@ void fdcg_host_close(fdcg_host* host) {
 }
 
 int fdcg_host_wait(fdcg_host* host, int milliseconds) {
-  return host->host.wait_ms(milliseconds);
+  return host == nullptr ? 1 : host->host.wait_ms(milliseconds);
 }
 
 void fdcg_host_request_stop(fdcg_host* host) {
-  host->host.request_stop();
+  if (host != nullptr) host->host.request_stop();
 }
 
 void fdcg_device_install_crash_handlers(void) {
@@ -138,28 +145,30 @@ void fdcg_device_install_crash_handlers(void) {
 }
 
 int32_t fdcg_host_device_count(const fdcg_host* host) {
-  return host->host.device_count();
+  return host == nullptr ? 0 : host->host.device_count();
 }
 
 const char* fdcg_host_device_name(const fdcg_host* host, int32_t device) {
-  return device < 0 || device >= host->host.device_count() ? nullptr : host->host.device(device).name.c_str();
+  return device < 0 || device >= fdcg_host_device_count(host) ? nullptr : host->host.device(device).name.c_str();
 }
 
 void fdcg_host_arm(fdcg_host* host, int32_t device) {
-  host->host.arm(device);
+  if (host != nullptr) host->host.arm(device);
 }
 
 void fdcg_host_disarm(fdcg_host* host, int32_t device) {
-  host->host.disarm(device);
+  if (host != nullptr) host->host.disarm(device);
 }
 
 fdcg_status fdcg_host_set_pose(fdcg_host* host, const char* object, const fdcg_pose* pose, fdcg_host_message* message) {
   return guarded(FDCG_E_ARGUMENT, message, [&] {
+    if (host == nullptr) return no_host();
     return object == nullptr || pose == nullptr ? std::string("object or pose is NULL") : host->host.set_pose(object, *pose);
   });
 }
 
 fdcg_status fdcg_host_get_status(fdcg_host* host, int32_t device, fdcg_device_status* status) {
+  if (host == nullptr || status == nullptr) return FDCG_E_ARGUMENT;
   const std::uint32_t bytes = status->struct_bytes;
   if (bytes < 8 || bytes % 8 != 0 || device < 0 || device >= host->host.device_count()) return FDCG_E_ARGUMENT;
   return guarded(FDCG_E_IO, nullptr, [&] {

@@ -87,6 +87,7 @@ struct HostConfig {
   std::string scene_file, scene_text;
   std::vector<ObjectConfig> objects;
   std::vector<DeviceConfig> devices;
+  bool is_shared = false;  // all devices feel one scene, in one loop; else each has its own, and there may be no body
   double gravity_m_per_s2[3] = {0, 0, -9.80665};
   GroundConfig ground;
   LoopConfig loop;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The text as a whole: json_reader.hpp's JsonFile, and reading it from a disk.
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,19 @@ namespace fdcg::dev {
 namespace {
 
 using Json = nlohmann::json;
+
+// nlohmann's words without its own number and the names of its parts: "line 1, column 19: invalid literal; last read: ...".
+std::string plain_complaint(std::string what) {
+  for (const char* const words : {"] parse error at ", "] "}) {
+    const std::size_t at = what.find(words);
+    if (at == std::string::npos) continue;
+    what.erase(0, at + std::strlen(words));
+    break;
+  }
+  const std::size_t from = what.find(": syntax error while parsing "), to = what.find(" - ");
+  if (from != std::string::npos && to != std::string::npos && from < to) what.replace(from, to + 3 - from, ": ");
+  return what;
+}
 
 // The pass before the real one: nlohmann's document takes the last of two members with one name and nests without end.
 class Shape : public nlohmann::json_sax<Json> {
@@ -38,9 +52,7 @@ class Shape : public nlohmann::json_sax<Json> {
     return false;
   }
   bool parse_error(std::size_t, const std::string&, const Json::exception& error) override {
-    const std::string what = error.what();
-    const std::size_t end = what.find("] ");  // of nlohmann's own number for it
-    complaint = "is no JSON: " + (end == std::string::npos ? what : what.substr(end + 2));
+    complaint = "is no JSON: " + plain_complaint(error.what());
     return false;
   }
 

@@ -94,9 +94,9 @@ double reach_of(const fdcg_graph& graph, const fdcg_body_config& body, double sc
 
 class Builder {
  public:
-  Builder(const HostConfig& config, std::size_t device, const SceneGraphs& graphs, const std::vector<fdcg_object_id>& objects,
-          DeviceScene* scene)
-      : config_(config), from_(config.devices[device]), graphs_(graphs), objects_(objects), scene_(*scene) {}
+  Builder(const HostConfig& config, const SceneLoad& load, const SceneGraphs& graphs,
+          const std::vector<fdcg_object_id>& objects, DeviceScene* scene, DeviceSetup* setup)
+      : config_(config), load_(load), graphs_(graphs), objects_(objects), scene_(*scene), setup_(*setup) {}
 
   std::string build() {
     int points = 0;
@@ -124,10 +124,11 @@ class Builder {
   std::string set_steps();
 
   const HostConfig& config_;
-  const DeviceConfig& from_;
+  const SceneLoad load_;
   const SceneGraphs& graphs_;
   const std::vector<fdcg_object_id>& objects_;
   DeviceScene& scene_;
+  DeviceSetup& setup_;
   fdcg_pile* pile_ = nullptr;
   std::uint32_t substeps_ = 1;
   fdcg_error error_{};
@@ -174,7 +175,7 @@ bool Builder::add_points(std::size_t index) {
     return false;
   }
   const auto points = reinterpret_cast<const double(*)[3]>(points_m.data());
-  return fdcg_pile_add(pile_, scene_.setup.scene, objects_[index], points, count, &error_) == FDCG_OK;
+  return fdcg_pile_add(pile_, setup_.scene, objects_[index], points, count, &error_) == FDCG_OK;
 }
 
 std::string Builder::add_body(std::size_t index) {
@@ -190,15 +191,15 @@ std::string Builder::add_body(std::size_t index) {
   if (fdcg_body_init(&body.body, &config, &object.pose, &error_) != FDCG_OK) return error_.message;
   if (!add_points(index)) return error_.message;
   // All contacts may press on it at once. The pile holds its own springs within bounds.
-  const double stiffness_n_per_m = object.params.stiffness_n_per_m * from_.contact_count;
-  const double tick_s = 1 / from_.profile.rate_hz;
-  // A pad's spring against turning has its stiffness times its radius squared.
-  const double pad_m = *std::max_element(from_.pads_m, from_.pads_m + from_.contact_count);
+  const double stiffness_n_per_m = object.params.stiffness_n_per_m * load_.contact_count;
+  const double tick_s = 1 / load_.fastest_hz;
   const double far_m = object.is_surface ? reach_of(object.surface, object.pose.scale)
                                          : reach_of(graphs_.of_object(index), config, object.pose.scale);
-  const std::uint32_t substeps = fdcg_body_substeps(&body.body, stiffness_n_per_m, std::hypot(far_m, pad_m), tick_s);
+  // A pad's spring against turning has its stiffness times its radius squared.
+  const double arm_m = std::hypot(far_m, load_.pad_m);
+  const std::uint32_t substeps = fdcg_body_substeps(&body.body, stiffness_n_per_m, arm_m, tick_s);
   if (substeps == 0) {
-    return "with " + shown_number(config.mass_kg) + " kg it is too light for " + std::to_string(from_.contact_count) +
+    return "with " + shown_number(config.mass_kg) + " kg it is too light for " + std::to_string(load_.contact_count) +
            " contacts of " + shown_number(object.params.stiffness_n_per_m) + " N/m each: it would need more than " +
            std::to_string(FDCG_BODY_MAX_SUBSTEPS) + " steps a tick; make it heavier, or softer (stiffness_n_per_m)";
   }
@@ -208,27 +209,26 @@ std::string Builder::add_body(std::size_t index) {
 }
 
 std::string Builder::add_fixed(std::size_t index) {
-  const fdcg_status status = fdcg_pile_add(pile_, scene_.setup.scene, objects_[index], nullptr, 0, &error_);
+  const fdcg_status status = fdcg_pile_add(pile_, setup_.scene, objects_[index], nullptr, 0, &error_);
   return status == FDCG_OK ? std::string() : error_.message;
 }
 
 void Builder::hand_over() {
   scene_.reactions.resize(objects_.size());
-  DeviceSetup& setup = scene_.setup;
-  setup.bodies = scene_.bodies.data();
-  setup.body_count = static_cast<std::uint32_t>(scene_.bodies.size());
-  setup.substeps = substeps_;
-  setup.pile = pile_;
-  setup.reactions = scene_.reactions.data();
-  setup.reaction_count = static_cast<std::uint32_t>(objects_.size());
+  setup_.bodies = scene_.bodies.data();
+  setup_.body_count = static_cast<std::uint32_t>(scene_.bodies.size());
+  setup_.substeps = substeps_;
+  setup_.pile = pile_;
+  setup_.reactions = scene_.reactions.data();
+  setup_.reaction_count = static_cast<std::uint32_t>(objects_.size());
 }
 
 // Damping goes by the time between two steps, which now are substeps.
 std::string Builder::set_steps() {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     fdcg_params params = config_.objects[i].params;
-    params.tick_s = 1 / from_.profile.rate_hz / substeps_;
-    if (fdcg_scene_set_params(scene_.setup.scene, objects_[i], &params, &error_) != FDCG_OK) {
+    params.tick_s = 1 / load_.fastest_hz / substeps_;
+    if (fdcg_scene_set_params(setup_.scene, objects_[i], &params, &error_) != FDCG_OK) {
       return place_of(config_, i) + error_.message;
     }
   }
@@ -241,9 +241,9 @@ std::string place_of(const HostConfig& config, std::size_t object) {
   return config.scene_file + ": objects[" + std::to_string(object) + "] '" + config.objects[object].name + "': ";
 }
 
-std::string build_bodies(const HostConfig& config, std::size_t device, const SceneGraphs& graphs,
-                         const std::vector<fdcg_object_id>& objects, DeviceScene* scene) {
-  return Builder(config, device, graphs, objects, scene).build();
+std::string build_bodies(const HostConfig& config, const SceneLoad& load, const SceneGraphs& graphs,
+                         const std::vector<fdcg_object_id>& objects, DeviceScene* scene, DeviceSetup* setup) {
+  return Builder(config, load, graphs, objects, scene, setup).build();
 }
 
 }  // namespace fdcg::dev

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of a device's scene: what they weigh, where they touch, how often a tick they are stepped. Load time only;
+// The bodies of a scene: what they weigh, where they touch, how often a tick they are stepped. Load time only;
 // allocates.
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace fdcg::dev {
 
-// `objects`: of config.objects, in scene->setup.scene. Fills the scene's bodies, pile and reactions, and what setup says of
-// them; nothing where there is no body. Empty: fine. Otherwise the object and what is wrong with it.
-std::string build_bodies(const HostConfig& config, std::size_t device, const SceneGraphs& graphs,
-                         const std::vector<fdcg_object_id>& objects, DeviceScene* scene);
+// `objects`: of config.objects, in setup->scene. Fills the scene's bodies, pile and reactions, and what *setup says of them;
+// nothing where there is no body. Empty: fine. Otherwise the object and what is wrong with it.
+std::string build_bodies(const HostConfig& config, const SceneLoad& load, const SceneGraphs& graphs,
+                         const std::vector<fdcg_object_id>& objects, DeviceScene* scene, DeviceSetup* setup);
 
 // "scene.json: objects[1] 'cube': "
 std::string place_of(const HostConfig& config, std::size_t object);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kMostObjects = 1000;
 constexpr std::size_t kMostSceneBytes = kMostJsonBytes;
-constexpr Keys kSceneKeys = {"fdcg_scene", "$schema", "notes",  "objects",          "devices",
-                             "loop",       "log",     "limits", "gravity_m_per_s2", "ground"};
+constexpr Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices", "loop", "log",
+                             "limits",     "gravity_m_per_s2", "ground", "shared"};
 constexpr Keys kObjectKeys = {
     "name",       "file",          "surface", "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static",
     "mu_dynamic", "edge_friction", "motion",  "notes"};
@@ -59,7 +59,7 @@ std::string SceneParser::parse(std::string_view text) {
     read_device(device);
   if (scene.has("gravity_m_per_s2")) scene.numbers("gravity_m_per_s2", config_.gravity_m_per_s2, 3, {-1e4, 1e4});
   if (scene.has("ground")) read_ground(scene.object("ground", kGroundKeys));
-  refuse_shared_bodies(scene);
+  read_shared(scene);
   if (scene.has("loop")) read_loop(scene.object("loop", kLoopKeys));
   if (scene.has("log")) read_log(scene.object("log", kLogKeys));
   return file_.error();

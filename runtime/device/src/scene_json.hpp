@@ -12,6 +12,7 @@ namespace fdcg::dev {
 
 struct SceneOptions {
   bool reads_files = true;  // profiles and recordings that the scene names; false (fuzzing): a name of a file is an error
+  bool shares_soft = true;  // false (logs of the time before "shared"): each device has soft objects of its own
 };
 
 // Empty: *config is the whole of it. Otherwise one line that names file_name, the field, what was found and what is expected;

@@ -12,6 +12,7 @@ namespace fdcg::dev {
 namespace {
 
 constexpr double kOrthonormalTolerance = 1e-9;  // of a rotation matrix
+constexpr double kLeastPad_m = 1e-9;            // of fdcg_scene_soften_finger
 constexpr Keys kMappingKeys = {"scale", "rotation_xyzw", "rotation_matrix", "offset_m"};
 constexpr Keys kContactKeys = {"offset_m", "closed_m", "pad_radius_m"};
 constexpr Keys kGripKeys = {"button", "seconds"};
@@ -94,6 +95,10 @@ void SceneParser::read_contacts(const JsonObject& from, DeviceConfig* device) {
     contacts[i].numbers("offset_m", device->contacts_m[i], 3, kLengths);
     std::copy_n(device->contacts_m[i], 3, grip.closed_m[i]);
     device->pads_m[i] = contacts[i].number_or("pad_radius_m", 0, {0, 1, true, "m"});
+    if (device->pads_m[i] > 0 && device->pads_m[i] < kLeastPad_m) {
+      contacts[i].fail("pad_radius_m", "is " + shown_number(device->pads_m[i]) + "; it must be 0 (a point) or a number from " +
+                                           shown_number(kLeastPad_m) + " to 1 m");
+    }
     if (!contacts[i].has("closed_m")) continue;
     contacts[i].numbers("closed_m", grip.closed_m[i], 3, kLengths);
     if (grip.close.mask == 0) contacts[i].fail("closed_m", "has no \"grip\" that would close it; name a button there");

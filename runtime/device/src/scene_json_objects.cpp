@@ -80,8 +80,20 @@ void SceneParser::read_surface(const JsonObject& from, ObjectConfig* object) {
   surface.tube_radius_m = from.number_or("tube_radius_m", 0, kSizes);
   surface.length_m = from.number_or("length_m", 0, kSizes);
   if (from.has("half_m")) from.numbers("half_m", surface.half_m, 3, kSizes);
+  refuse_surface(from, surface);
+}
+
+// The runtime says "surface.FIELD is VALUE, allowed ...": the fields are the scene's keys.
+void SceneParser::refuse_surface(const JsonObject& from, const fdcg_surface& surface) {
   fdcg_error error{};
-  if (fdcg_check_surface(&surface, &error) != FDCG_OK) from.fail("kind", std::string("is refused: ") + error.message);
+  if (fdcg_check_surface(&surface, &error) == FDCG_OK) return;
+  const std::string message = error.message, start = "surface.";
+  const std::size_t end = message.find(' ');
+  if (message.rfind(start, 0) != 0 || end == std::string::npos) return from.fail("kind", "is refused: " + message);
+  std::string field = message.substr(start.size(), end - start.size());
+  if (field == "is_hollow") field = "hollow";
+  const std::string key = field.substr(0, field.find('['));
+  from.fail(field.c_str(), from.has(key.c_str()) ? message.substr(end + 1) : "is missing, so it" + message.substr(end));
 }
 
 void SceneParser::read_friction(const JsonObject& from, fdcg_params* params) {
@@ -124,12 +136,18 @@ void SceneParser::read_ground(const JsonObject& from) {
   read_friction(from, &ground.params);
 }
 
-// Each device has a scene of its own, and there a body of its own: two would each lift another cube.
-void SceneParser::refuse_shared_bodies(const JsonObject& scene) {
-  const auto is_body = [](const ObjectConfig& object) { return object.motion.kind == MotionKind::kBody; };
-  if (config_.devices.size() <= 1 || std::none_of(config_.objects.begin(), config_.objects.end(), is_body)) return;
-  scene.fail("devices", "has " + std::to_string(config_.devices.size()) +
-                            " devices, and an object is a body; a scene with bodies has one device: give it more contacts");
+// With scenes of their own two devices would each lift another cube, and each dent another sheet.
+void SceneParser::read_shared(const JsonObject& scene) {
+  const auto has = [&](MotionKind kind) {
+    return std::any_of(config_.objects.begin(), config_.objects.end(),
+                       [&](const ObjectConfig& object) { return object.motion.kind == kind; });
+  };
+  const bool has_body = has(MotionKind::kBody);
+  const bool is_shared = scene.boolean_or("shared", has_body || (options_.shares_soft && has(MotionKind::kSoft)));
+  config_.is_shared = is_shared && config_.devices.size() > 1;
+  if (is_shared || config_.devices.size() <= 1 || !has_body) return;
+  scene.fail("shared", "is false for " + std::to_string(config_.devices.size()) +
+                           " devices, and an object is a body: each would move another; leave it out, or set it to true");
 }
 
 void SceneParser::read_motion(const JsonObject& from, Motion* motion) {

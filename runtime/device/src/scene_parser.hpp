@@ -43,12 +43,13 @@ class SceneParser {
  private:
   void read_object(const JsonObject& from);
   void read_surface(const JsonObject& from, ObjectConfig* object);
+  void refuse_surface(const JsonObject& from, const fdcg_surface& surface);
   void read_friction(const JsonObject& from, fdcg_params* params);
   void read_motion(const JsonObject& from, Motion* motion);
   void read_body(const JsonObject& from, BodyConfig* body);
   void read_soft(const JsonObject& from, SoftConfig* soft);
   void read_ground(const JsonObject& from);
-  void refuse_shared_bodies(const JsonObject& scene);
+  void read_shared(const JsonObject& scene);
   void read_contacts(const JsonObject& from, DeviceConfig* device);
   void read_button(const JsonObject& from, HeldButton* button);
   void read_script(const JsonObject& from, SimulationConfig* simulation);

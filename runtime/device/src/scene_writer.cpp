@@ -146,6 +146,7 @@ std::string write_scene(const HostConfig& config) {
     scene["objects"].push_back(object_json(object));
   for (const DeviceConfig& device : config.devices)
     scene["devices"].push_back(device_json(device));
+  if (config.devices.size() > 1) scene["shared"] = config.is_shared;
   scene["gravity_m_per_s2"] = list(config.gravity_m_per_s2);
   if (config.ground.is_there) {
     const GroundConfig& ground = config.ground;

@@ -37,13 +37,46 @@ void ServoLoop::run() {
   publish(monotonic_ns());
 }
 
-void ServoLoop::tick() {
-  gather();
-  device_tick(device_, input_, &output_);
-  hand_over();
+void ServoLoop::run_together(ServoLoop* const* loops, int count) {
+  prepare_servo_thread();
+  const auto is_stopping = [](const ServoLoop* loop) { return loop->is_stopping_.load(std::memory_order_acquire); };
+  for (int clock = 0; std::none_of(loops, loops + count, is_stopping);)
+    tick_together(loops, count, &clock);
+  for (int i = 0; i < count; ++i)
+    loops[i]->publish(monotonic_ns());
 }
 
-void ServoLoop::gather() {
+void ServoLoop::tick() {
+  ServoLoop* const alone = this;
+  int clock = 0;
+  tick_together(&alone, 1, &clock);
+}
+
+// Who is waited for: the clock, as long as it is there; else the first that is; where none is, the first, which then sleeps.
+void ServoLoop::tick_together(ServoLoop* const* loops, int count, int* clock) {
+  int waiting = *clock;
+  for (int i = 0; i < count && !loops[waiting]->is_open(); ++i)
+    waiting = loops[i]->is_open() ? i : waiting;
+  Member members[kMaxDevices];
+  loops[waiting]->gather(true);
+  for (int i = 0; i < count; ++i) {
+    if (i != waiting) loops[i]->gather(false);
+    members[i] = {&loops[i]->device_, &loops[i]->input_, &loops[i]->output_};
+  }
+  *clock = group_tick(members, count);
+  for (int i = 0; i < count; ++i)
+    loops[i]->parts_.writer->put(loops[i]->output_.force, loops[i]->output_.echo);
+  for (int i = 0; i < count; ++i)
+    loops[i]->send_force();
+  LogRing* const log = loops[0]->parts_.log;
+  if (log != nullptr && log->device_count() > 1) log->put_all(members);
+  if (log != nullptr && log->device_count() == 1) log->put(loops[0]->input_, loops[0]->output_);
+  for (int i = 0; i < count; ++i)
+    loops[i]->note_tick();
+}
+
+// waits: for a report, or the device's return.
+void ServoLoop::gather(bool waits) {
   input_.report_count = 0;
   input_.read = ReadStatus::kLost;
   const std::uint64_t opened = parts_.link->opened();
@@ -55,9 +88,9 @@ void ServoLoop::gather() {
   // Once lost it is left alone until it has been opened anew: a read would fail at once, and this thread would spin.
   was_inside_ = !is_lost_ && parts_.link->enter(Link::kReader);
   if (was_inside_) {
-    read_reports();
+    read_reports(waits);
     parts_.link->leave(Link::kReader);
-  } else {
+  } else if (waits) {
     stop_.wait(kAwayTickNs);
   }
   input_.begins = begins_;
@@ -72,8 +105,8 @@ void ServoLoop::gather() {
 
 // The oldest with a wait, then all that are there. A device that sends faster than this drains is cut at kMaxDrain: what is
 // left is read by the next tick, and judged by its age.
-void ServoLoop::read_reports() {
-  if (!read_one(kReadTimeoutMs)) return;
+void ServoLoop::read_reports(bool waits) {
+  if (!read_one(waits ? kReadTimeoutMs : 0)) return;
   while (input_.report_count < kMaxDrain && read_one(0)) {
   }
 }
@@ -106,9 +139,9 @@ void ServoLoop::set_poses() {
   }
 }
 
-void ServoLoop::hand_over() {
-  parts_.writer->put(output_.force, output_.echo);
-  const std::uint64_t done_ns = monotonic_ns();
+// What has been put is on its way: no writer waits for another's wake, which takes microseconds.
+void ServoLoop::send_force() {
+  done_ns_ = monotonic_ns();
   parts_.writer->wake();
   // Only now may the supervisor act: the zero force of this tick is on its way.
   if (input_.read == ReadStatus::kLost && !is_lost_ && was_inside_) {
@@ -116,14 +149,16 @@ void ServoLoop::hand_over() {
     lost_opening_.store(seen_opened_, std::memory_order_release);
     parts_.lost->signal();
   }
-  status_now_.work.add(done_ns - input_.now_ns);
+}
+
+void ServoLoop::note_tick() {
+  status_now_.work.add(done_ns_ - input_.now_ns);
   if (input_.begins) last_good_ns_ = 0;
   if (output_.has_sample) {
     if (last_good_ns_ != 0) status_now_.interval.add(input_.now_ns - last_good_ns_);
     last_good_ns_ = input_.now_ns;
   }
-  if (parts_.log != nullptr) parts_.log->put(input_, output_);
-  if (done_ns - published_ns_ >= kPublishNs) publish(done_ns);
+  if (done_ns_ - published_ns_ >= kPublishNs) publish(done_ns_);
 }
 
 void ServoLoop::publish(std::uint64_t now_ns) {
@@ -132,7 +167,7 @@ void ServoLoop::publish(std::uint64_t now_ns) {
   status_now_.opened = seen_opened_;
   status_now_.last = output_;
   status_now_.counters = device_.counters;
-  status_now_.log_dropped = parts_.log != nullptr ? parts_.log->dropped() : 0;
+  status_now_.log_dropped = parts_.log != nullptr ? parts_.log->dropped(parts_.log_place) : 0;
   status_now_.elapsed_s = static_cast<double>(now_ns - parts_.start_ns) * 1e-9;
   status_.put(status_now_);
 }

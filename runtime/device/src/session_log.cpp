@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -23,7 +24,7 @@
 namespace fdcg::dev {
 namespace {
 
-constexpr std::size_t kEntryBytes = 12;                  // before a tick in the ring: its length and its number
+constexpr std::size_t kEntryBytes = 16;                  // before a tick in the ring: its length, its device, its number
 constexpr std::chrono::milliseconds kDrainInterval{20};  // what a crash can lose, beside what the system holds
 constexpr std::size_t kChunkBytes = 1 << 16;             // a write
 constexpr double kBytesPerMegabyte = 1e6;
@@ -52,7 +53,9 @@ std::string describe(const HostConfig& config, SessionHeader* header) {
   header->scene = write_scene(config);
   // a log that could not be replayed is found now, not when it is needed
   HostConfig back;
-  if (const std::string problem = parse_scene(header->scene, "its scene", &back); !problem.empty()) return problem;
+  if (const std::string problem = parse_scene(header->scene, "its scene", &back, nullptr, {.shares_soft = false});
+      !problem.empty())
+    return problem;
   for (const ObjectConfig& object : config.objects) {
     if (object.is_surface) {
       header->graphs.push_back({});
@@ -67,17 +70,41 @@ std::string describe(const HostConfig& config, SessionHeader* header) {
   return {};
 }
 
+std::string cannot_write(const HostConfig& config) {
+  return "cannot write the log '" + config.log_file + "': ";
+}
+
+// *header is then filled in.
+std::string begin_log(const HostConfig& config, SessionHeader* header) {
+  if (const std::string problem = overwritten(config); !problem.empty())
+    return cannot_write(config) + "it " + problem + "; give another name (log.file, --log)";
+  const std::string problem = describe(config, header);
+  return problem.empty() ? problem : cannot_write(config) + problem;
+}
+
 }  // namespace
+
+std::string log_problem(const HostConfig& config) {
+  if (config.log_file.empty()) return {};
+  const std::filesystem::path folder = std::filesystem::path(config.log_file).parent_path();
+  std::error_code ignored;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+    return cannot_write(config) + "its folder does not exist; make it, or give another name (log.file, --log)";
+  SessionHeader header;
+  return begin_log(config, &header);
+}
 
 // ---- ring -----------------------------------------------------------------------------------------------------------------
 
 static_assert(LogRing::kLeastBytes >= 2 * (kMostTickBytes + kEntryBytes));
 
-LogRing::LogRing(std::uint32_t bytes)
-    : bytes_(new std::uint8_t[bytes]), scratch_(new std::uint8_t[kMostTickBytes]), capacity_(bytes) {
+LogRing::LogRing(std::uint32_t bytes, int device_count) : capacity_(bytes), device_count_(device_count) {
+  const std::size_t most = static_cast<std::size_t>(device_count) * (kEntryBytes + kMostTickBytes);
+  bytes_ = new std::uint8_t[bytes];
+  scratch_ = new std::uint8_t[most];
   // every page is there before the first tick
   std::memset(bytes_, 0, bytes);
-  std::memset(scratch_, 0, kMostTickBytes);
+  std::memset(scratch_, 0, most);
 }
 
 LogRing::~LogRing() {
@@ -97,41 +124,59 @@ void LogRing::copy_out(std::uint64_t at, std::uint8_t* to, std::size_t bytes) co
   std::memcpy(to + first, bytes_, bytes - first);
 }
 
-bool LogRing::put(const TickInput& input, const TickOutput& output) {
-  const std::uint64_t tick = tick_++;
-  std::size_t bytes = encode_tick_input(input, scratch_);
-  bytes += encode_tick_output(logged(output), scratch_ + bytes);
+std::size_t LogRing::encode(const TickInput& input, const TickOutput& output, int device, std::size_t at) {
+  std::uint8_t* const entry = scratch_ + at;
+  std::size_t bytes = encode_tick_input(input, entry + kEntryBytes);
+  bytes += encode_tick_output(logged(output), entry + kEntryBytes + bytes);
+  const std::uint32_t words[2] = {static_cast<std::uint32_t>(bytes), static_cast<std::uint32_t>(device)};
+  const std::uint64_t tick = ticks_[device]++;
+  std::memcpy(entry, words, sizeof words);
+  std::memcpy(entry + sizeof words, &tick, sizeof tick);
+  return kEntryBytes + bytes;
+}
+
+// The scratch memory's first bytes into the ring, if there is room for all.
+bool LogRing::hand_over(std::size_t bytes) {
   const std::uint64_t head = head_.load(std::memory_order_relaxed);
-  if (capacity_ - (head - tail_.load(std::memory_order_acquire)) < kEntryBytes + bytes) {
-    dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-    return false;
-  }
-  const auto length = static_cast<std::uint32_t>(bytes);
-  std::uint8_t entry[kEntryBytes];
-  std::memcpy(entry, &length, sizeof length);
-  std::memcpy(entry + sizeof length, &tick, sizeof tick);
-  copy_in(head, entry, kEntryBytes);
-  copy_in(head + kEntryBytes, scratch_, bytes);
-  head_.store(head + kEntryBytes + bytes, std::memory_order_release);
+  if (capacity_ - (head - tail_.load(std::memory_order_acquire)) < bytes) return false;
+  copy_in(head, scratch_, bytes);
+  head_.store(head + bytes, std::memory_order_release);
   return true;
+}
+
+bool LogRing::put(const TickInput& input, const TickOutput& output, int device) {
+  if (hand_over(encode(input, output, device, 0))) return true;
+  dropped_[device].store(dropped_[device].load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  return false;
+}
+
+bool LogRing::put_all(const Member* members) {
+  std::size_t bytes = 0;
+  for (int i = 0; i < device_count_; ++i)
+    bytes += encode(*members[i].input, *members[i].output, i, bytes);
+  if (hand_over(bytes)) return true;
+  for (int i = 0; i < device_count_; ++i)
+    dropped_[i].store(dropped_[i].load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  return false;
 }
 
 bool LogRing::has_room() const {
   const std::uint64_t used = head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire);
-  return capacity_ - used >= kEntryBytes + kMostTickBytes;
+  return capacity_ - used >= static_cast<std::size_t>(device_count_) * (kEntryBytes + kMostTickBytes);
 }
 
-std::size_t LogRing::take(std::uint64_t* tick, std::uint8_t* payload) {
+std::size_t LogRing::take(std::uint64_t* tick, int* device, std::uint8_t* payload) {
   const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
   if (tail == head_.load(std::memory_order_acquire)) return 0;
   std::uint8_t entry[kEntryBytes];
-  std::uint32_t length = 0;
+  std::uint32_t words[2];
   copy_out(tail, entry, kEntryBytes);
-  std::memcpy(&length, entry, sizeof length);
-  std::memcpy(tick, entry + sizeof length, sizeof *tick);
-  copy_out(tail + kEntryBytes, payload, length);
-  tail_.store(tail + kEntryBytes + length, std::memory_order_release);
-  return length;
+  std::memcpy(words, entry, sizeof words);
+  std::memcpy(tick, entry + sizeof words, sizeof *tick);
+  *device = static_cast<int>(words[1]);
+  copy_out(tail + kEntryBytes, payload, words[0]);
+  tail_.store(tail + kEntryBytes + words[0], std::memory_order_release);
+  return words[0];
 }
 
 // ---- file -----------------------------------------------------------------------------------------------------------------
@@ -200,19 +245,22 @@ void SessionLog::Impl::add(const std::uint8_t* bytes, std::size_t count) {
 }
 
 void SessionLog::Impl::drain() {
-  for (std::size_t device = 0; device < rings.size(); ++device) {
+  std::size_t first = 0;  // device of the ring
+  for (LogRing* const ring : rings) {
     std::uint64_t tick = 0;
+    int place = 0;
     // no more than was there at first: a fast device does not keep the others waiting
-    const std::uint64_t until = rings[device]->head_.load(std::memory_order_acquire);
-    while (rings[device]->tail_.load(std::memory_order_relaxed) < until) {
-      const std::size_t bytes = rings[device]->take(&tick, payload.data());
+    const std::uint64_t until = ring->head_.load(std::memory_order_acquire);
+    while (ring->tail_.load(std::memory_order_relaxed) < until) {
+      const std::size_t bytes = ring->take(&tick, &place, payload.data());
+      const std::size_t device = first + static_cast<std::size_t>(place);
       if (trouble.load(std::memory_order_relaxed) != kWell) {
         ticks_left_out.fetch_add(1, std::memory_order_relaxed);
         continue;
       }
       const std::size_t length =
           encode_record(RecordKind::kTick, static_cast<std::uint16_t>(device), tick, payload.data(), bytes, record.data());
-      const std::uint64_t room_for_end = kRecordFrameBytes + 1 + 16 * rings.size();
+      const std::uint64_t room_for_end = kRecordFrameBytes + 1 + 16 * end.ticks.size();
       if (limit_bytes != 0 && whole_bytes + chunk.size() + length + room_for_end > limit_bytes) {
         end.reason = EndReason::kLimit;
         const std::string last = encode_end(end);
@@ -225,6 +273,7 @@ void SessionLog::Impl::drain() {
       add(record.data(), length);
       end.ticks[device] = tick + 1;
     }
+    first += static_cast<std::size_t>(ring->device_count());
   }
   flush();
 }
@@ -239,9 +288,12 @@ void SessionLog::Impl::run() {
     drain();
   }
   if (trouble.load(std::memory_order_relaxed) != kWell) return;
-  for (std::size_t i = 0; i < rings.size(); ++i) {
-    end.ticks[i] = rings[i]->tick_;  // its thread has put its last
-    end.dropped[i] = rings[i]->dropped();
+  std::size_t device = 0;
+  for (const LogRing* const ring : rings) {
+    for (int place = 0; place < ring->device_count(); ++place, ++device) {
+      end.ticks[device] = ring->ticks_[place];  // its thread has put its last
+      end.dropped[device] = ring->dropped(place);
+    }
   }
   const std::string last = encode_end(end);
   add(reinterpret_cast<const std::uint8_t*>(last.data()), last.size());
@@ -268,16 +320,15 @@ SessionLog::~SessionLog() {
 }
 
 std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, int ring_count) {
-  const std::string cannot = "cannot write the log '" + config.log_file + "': ";
-  if (const std::string problem = overwritten(config); !problem.empty()) {
-    return cannot + "it " + problem + "; give another name (log.file, --log)";
-  }
   SessionHeader header;
-  if (const std::string problem = describe(config, &header); !problem.empty()) return cannot + problem;
+  if (std::string problem = begin_log(config, &header); !problem.empty()) return problem;
   impl_->path = config.log_file;
   impl_->rings.assign(rings, rings + ring_count);
-  impl_->end.ticks.assign(impl_->rings.size(), 0);
-  impl_->end.dropped.assign(impl_->rings.size(), 0);
+  std::size_t devices = 0;
+  for (const LogRing* const ring : impl_->rings)
+    devices += static_cast<std::size_t>(ring->device_count());
+  impl_->end.ticks.assign(devices, 0);
+  impl_->end.dropped.assign(devices, 0);
   impl_->limit_bytes = static_cast<std::uint64_t>(config.log_megabytes * kBytesPerMegabyte);
   impl_->payload.resize(kMostTickBytes);
   impl_->record.resize(kRecordFrameBytes + kMostTickBytes);
@@ -285,7 +336,7 @@ std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, i
 
   // A crash must leave a log that can be read: it is written in place as the session goes, unlike other outputs.
   impl_->descriptor = ::open(config.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (impl_->descriptor < 0) return cannot + std::strerror(errno);
+  if (impl_->descriptor < 0) return cannot_write(config) + std::strerror(errno);
   // The thread takes no signals: those of the process belong to others, and SIGXFSZ becomes an error of write.
   sigset_t all{}, before{};
   sigfillset(&all);
@@ -299,7 +350,7 @@ std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, i
   const int error_number = impl_->trouble.load();
   ::close(impl_->descriptor);
   impl_->descriptor = -1;
-  return cannot + std::strerror(error_number);
+  return cannot_write(config) + std::strerror(error_number);
 }
 
 std::string SessionLog::stop() {

@@ -12,6 +12,8 @@
 namespace fdcg::dev {
 namespace {
 
+constexpr SceneOptions kOfLog = {.shares_soft = false};  // a log says it, but for one of the time before
+
 // Empty: the file is the graph that the session had. Otherwise why not; *is_there: a file of that name exists.
 std::string compare_graph(const std::string& path, const SessionGraph& graph, bool* is_there) {
   std::error_code ignored;
@@ -52,84 +54,159 @@ std::string find_graph(const std::string& log, const std::string& folder, const 
 }  // namespace
 
 struct SessionReplay::Impl {
+  // A device's tick: what the log has of it, and what became of it.
+  struct Seat {
+    DeviceState state;
+    TickInput input;
+    TickOutput output;
+    LoggedOutput in_log, replayed;
+    std::vector<std::uint8_t> in_log_bytes;
+    std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(kMostTickBytes);  // the same made anew
+    std::size_t byte_count = 0;
+    std::uint64_t next_tick = 0;
+    std::size_t group = 0;
+  };
+  // A scene and the devices that feel it.
+  struct Group {
+    DeviceRange devices;
+    DeviceScene scene;
+    std::size_t taken = 0;  // of its next tick: the devices whose record is there
+    bool is_over = false;
+  };
   SessionReader reader;
   HostConfig config;
   SceneGraphs graphs;
-  std::vector<std::unique_ptr<DeviceScene>> scenes;
-  std::vector<std::unique_ptr<DeviceState>> states;
-  std::vector<std::uint64_t> next_tick;
+  std::vector<std::unique_ptr<Group>> groups;
+  std::vector<std::unique_ptr<Seat>> seats;
   std::vector<DeviceReplay> devices;
-  std::unique_ptr<TickInput> input = std::make_unique<TickInput>();
-  TickOutput output;
-  LoggedOutput replayed;
-  std::vector<std::uint8_t> record, payload = std::vector<std::uint8_t>(kMostTickBytes);
-
+  std::vector<std::uint8_t> record;
+  // Of the last tick that was replayed: the devices that next() has not given yet.
+  std::size_t next_given = 0, end_given = 0;
   bool has_strays = false;
 
   std::string begin_devices();
-  bool replay(const SessionRecord& record);
+  bool take(const SessionRecord& record);
+  void step(Group& group);
+  void end_group(Group& group);
+  void give(ReplayedTick* tick);
+  void compare(std::size_t index);
   void note_lost_tail();
 };
 
 std::string SessionReplay::Impl::begin_devices() {
-  for (std::size_t i = 0; i < config.devices.size(); ++i) {
-    scenes.push_back(std::make_unique<DeviceScene>());
-    states.push_back(std::make_unique<DeviceState>());
-    if (const std::string problem = build_device_scene(config, i, graphs, scenes.back().get()); !problem.empty())
-      return problem;
-    fdcg_error error{};
-    if (!begin_device(scenes.back()->setup, states.back().get(), &error)) {
-      return "device '" + config.devices[i].name + "': " + error.message;
+  for (const DeviceRange& range : device_ranges(config)) {
+    groups.push_back(std::make_unique<Group>());
+    Group& group = *groups.back();
+    group.devices = range;
+    if (const std::string problem = build_device_scene(config, range, graphs, &group.scene); !problem.empty()) return problem;
+    for (std::size_t i = 0; i < range.count; ++i) {
+      seats.push_back(std::make_unique<Seat>());
+      seats.back()->group = groups.size() - 1;
+      const std::string& name = config.devices[range.first + i].name;
+      fdcg_error error{};
+      if (!begin_device(group.scene.setups[i], &seats.back()->state, &error)) return "device '" + name + "': " + error.message;
+      devices.emplace_back();
+      devices.back().name = name;
     }
-    DeviceReplay device;
-    device.name = config.devices[i].name;
-    devices.push_back(device);
   }
-  next_tick.assign(config.devices.size(), 0);
   return {};
 }
 
-// False: nothing of the record was replayed.
-bool SessionReplay::Impl::replay(const SessionRecord& from) {
-  DeviceReplay& device = devices[from.device];
-  if (from.tick != next_tick[from.device]) {
-    device.has_gap = device.is_over = true;
-    device.gap_at = next_tick[from.device];
-    return false;
-  }
-  ++next_tick[from.device];
-  LoggedOutput in_log;
-  const std::size_t input_bytes = decode_tick_input(from.payload, from.payload_bytes, input.get());
-  const std::size_t output_bytes =
-      input_bytes == 0 ? 0 : decode_tick_output(from.payload + input_bytes, from.payload_bytes - input_bytes, &in_log);
-  if (output_bytes == 0 || input_bytes + output_bytes != from.payload_bytes) {
-    device.difference = "tick " + std::to_string(from.tick) + ": the record is no tick";
-    device.is_over = true;
-    return false;
-  }
-  device_tick(*states[from.device], *input, &output);
-  ++device.ticks;
-  replayed = logged(output);
-  std::size_t bytes = encode_tick_input(*input, payload.data());
-  bytes += encode_tick_output(replayed, payload.data() + bytes);
-  record.resize(kRecordFrameBytes + bytes);
-  encode_record(RecordKind::kTick, from.device, from.tick, payload.data(), bytes, record.data());
-  const bool is_same = bytes == from.payload_bytes && std::memcmp(payload.data(), from.payload, bytes) == 0;
-  if (is_same) return true;
-  const std::string difference = first_difference(in_log, replayed);
-  device.difference =
-      "tick " + std::to_string(from.tick) + ": " + (difference.empty() ? "the same numbers, in other bytes" : difference);
-  device.is_over = true;
-  return true;
+void SessionReplay::Impl::end_group(Group& group) {
+  group.is_over = true;
+  for (std::size_t i = 0; i < group.devices.count; ++i)
+    devices[group.devices.first + i].is_over = true;
 }
 
-// Ticks that found the ring full after the last one that is there.
+// True: the group's next tick is whole. A group's records stand one after another, in the scene's order.
+bool SessionReplay::Impl::take(const SessionRecord& from) {
+  Seat& seat = *seats[from.device];
+  Group& group = *groups[seat.group];
+  DeviceReplay& device = devices[from.device];
+  if (group.is_over) return false;
+  if (from.tick != seat.next_tick || from.device != group.devices.first + group.taken) {
+    const DeviceRange& all = group.devices;
+    for (std::size_t i = all.first; i < all.first + all.count; ++i) {
+      devices[i].has_gap = true;
+      devices[i].gap_at = devices[i].ticks;
+    }
+    end_group(group);
+    return false;
+  }
+  ++seat.next_tick;
+  const std::size_t input_bytes = decode_tick_input(from.payload, from.payload_bytes, &seat.input);
+  const std::size_t output_bytes =
+      input_bytes == 0 ? 0 : decode_tick_output(from.payload + input_bytes, from.payload_bytes - input_bytes, &seat.in_log);
+  if (output_bytes == 0 || input_bytes + output_bytes != from.payload_bytes) {
+    device.difference = "tick " + std::to_string(from.tick) + ": the record is no tick";
+    end_group(group);
+    return false;
+  }
+  seat.in_log_bytes.assign(from.payload, from.payload + from.payload_bytes);
+  return ++group.taken == group.devices.count;
+}
+
+void SessionReplay::Impl::step(Group& group) {
+  group.taken = 0;
+  next_given = group.devices.first;
+  end_given = group.devices.first + group.devices.count;
+  Member members[kMaxDevices];
+  for (std::size_t i = 0; i < group.devices.count; ++i) {
+    Seat& seat = *seats[group.devices.first + i];
+    members[i] = {&seat.state, &seat.input, &seat.output};
+  }
+  group_tick(members, static_cast<int>(group.devices.count));
+  for (std::size_t i = next_given; i < end_given; ++i)
+    compare(i);
+  const std::size_t other =
+      static_cast<std::size_t>(std::find_if(devices.begin() + static_cast<std::ptrdiff_t>(next_given),
+                                            devices.begin() + static_cast<std::ptrdiff_t>(end_given),
+                                            [](const DeviceReplay& device) { return !device.difference.empty(); }) -
+                               devices.begin());
+  if (other == end_given) return;
+  end_group(group);
+  for (std::size_t i = next_given; i < end_given; ++i)
+    if (devices[i].difference.empty()) devices[i].ended_by = devices[other].name;
+}
+
+void SessionReplay::Impl::compare(std::size_t index) {
+  Seat& seat = *seats[index];
+  DeviceReplay& device = devices[index];
+  ++device.ticks;
+  seat.replayed = logged(seat.output);
+  seat.byte_count = encode_tick_input(seat.input, seat.bytes.data());
+  seat.byte_count += encode_tick_output(seat.replayed, seat.bytes.data() + seat.byte_count);
+  const std::vector<std::uint8_t>& in_log = seat.in_log_bytes;
+  if (seat.byte_count == in_log.size() && std::memcmp(seat.bytes.data(), in_log.data(), in_log.size()) == 0) return;
+  const std::string difference = first_difference(seat.in_log, seat.replayed);
+  device.difference = "tick " + std::to_string(seat.next_tick - 1) + ": " +
+                      (difference.empty() ? "the same numbers, in other bytes" : difference);
+}
+
+void SessionReplay::Impl::give(ReplayedTick* tick) {
+  const std::size_t index = next_given++;
+  const Seat& seat = *seats[index];
+  record.resize(kRecordFrameBytes + seat.byte_count);
+  const auto device = static_cast<std::uint16_t>(index);
+  encode_record(RecordKind::kTick, device, seat.next_tick - 1, seat.bytes.data(), seat.byte_count, record.data());
+  *tick = {index, seat.next_tick - 1, &seat.input, &seat.replayed, &seat.state};
+}
+
+// Ticks that found the ring full after the last one that is there. Where the log ends at its limit, it may do so in the middle
+// of a group's tick, which is then not there.
 void SessionReplay::Impl::note_lost_tail() {
-  const SessionEnd& end = reader.end();
-  for (std::size_t i = 0; i < devices.size() && i < end.ticks.size(); ++i) {
-    if (devices[i].is_over || next_tick[i] >= end.ticks[i]) continue;
-    devices[i].has_gap = devices[i].is_over = true;
-    devices[i].gap_at = next_tick[i];
+  SessionEnd end = reader.end();
+  end.ticks.resize(devices.size());  // a log that was not closed says nothing
+  for (const auto& group : groups) {
+    const auto first = end.ticks.begin() + static_cast<std::ptrdiff_t>(group->devices.first);
+    const auto last = first + static_cast<std::ptrdiff_t>(group->devices.count);
+    const std::uint64_t whole =
+        end.reason == EndReason::kLimit ? *std::min_element(first, last) : *std::max_element(first, last);
+    for (std::size_t i = group->devices.first; i < group->devices.first + group->devices.count; ++i) {
+      if (devices[i].is_over || devices[i].ticks >= whole) continue;
+      devices[i].has_gap = devices[i].is_over = true;
+      devices[i].gap_at = devices[i].ticks;
+    }
   }
 }
 
@@ -139,7 +216,10 @@ SessionReplay::~SessionReplay() = default;
 std::string SessionReplay::open(const std::string& path, const std::string& graph_folder) {
   if (std::string problem = impl_->reader.open(path); !problem.empty()) return problem;
   const SessionHeader& header = impl_->reader.header();
-  if (std::string problem = parse_scene(header.scene, path + " (its scene)", &impl_->config); !problem.empty()) return problem;
+  if (std::string problem = parse_scene(header.scene, path + " (its scene)", &impl_->config, nullptr, kOfLog);
+      !problem.empty()) {
+    return problem;
+  }
   if (header.graphs.size() != impl_->config.objects.size()) {
     return path + ": the header has " + std::to_string(header.graphs.size()) + " graphs for " +
            std::to_string(impl_->config.objects.size()) + " objects: it is damaged";
@@ -156,17 +236,19 @@ std::string SessionReplay::open(const std::string& path, const std::string& grap
 
 bool SessionReplay::next(ReplayedTick* tick) {
   SessionRecord record;
-  while (impl_->reader.next(&record)) {
+  while (impl_->next_given == impl_->end_given) {
+    if (!impl_->reader.next(&record)) {
+      impl_->note_lost_tail();
+      return false;
+    }
     if (record.device >= impl_->devices.size()) {
       impl_->has_strays = true;
-      continue;
+    } else if (impl_->take(record)) {
+      impl_->step(*impl_->groups[impl_->seats[record.device]->group]);
     }
-    if (impl_->devices[record.device].is_over || !impl_->replay(record)) continue;
-    *tick = {record.device, record.tick, impl_->input.get(), &impl_->replayed, impl_->states[record.device].get()};
-    return true;
   }
-  impl_->note_lost_tail();
-  return false;
+  impl_->give(tick);
+  return true;
 }
 
 bool SessionReplay::is_same() const {

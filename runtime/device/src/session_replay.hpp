@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A session again: the scene rebuilt from its log, every recorded input fed through device_tick, every output compared bit for
-// bit. Devices do not know of each other, so each ends on its own: at its first difference, or before a lost tick.
+// bit. Devices do not know of each other, so each ends on its own: at its first difference, or before a lost tick. Those that
+// share a scene end together.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,7 @@ struct DeviceReplay {
   bool is_over = false;     // it came to a difference or a gap
   bool has_gap = false;
   std::uint64_t gap_at = 0;  // the first tick that the log lacks
+  std::string ended_by;      // the device that shares its scene and came to a difference; empty: none
 };
 
 struct ReplayedTick {
@@ -48,7 +50,7 @@ class SessionReplay {
   // Every tick was there and the same, and the log was closed in order (at its limit, too).
   bool is_same() const;
   bool has_strays() const;  // records of devices that the scene has not: they were passed by
-  // The last tick's record, its bytes made anew from the replay; and the whole header, and the end.
+  // The record of the last that next() gave, its bytes made anew from the replay; and the whole header, and the end.
   const std::vector<std::uint8_t>& record() const;
   std::string header_bytes() const;
   std::string end_bytes() const;

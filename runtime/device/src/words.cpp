@@ -26,12 +26,31 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// Bytes of the well-formed UTF-8 letter that the text begins with; 0: with none (Unicode 15, table 3-7).
+std::size_t letter_bytes(std::string_view text) {
+  const auto byte = [text](std::size_t i) -> unsigned { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0; };
+  const unsigned lead = byte(0), second = byte(1);
+  if (lead < 0x80) return 1;
+  const std::size_t bytes = lead >= 0xC2 && lead < 0xE0   ? 2
+                            : lead >= 0xE0 && lead < 0xF0 ? 3
+                            : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                          : 0;
+  if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F)) return 0;  // overlong; surrogates
+  if ((lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F)) return 0;  // overlong; beyond U+10FFFF
+  for (std::size_t i = 1; i < bytes; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  return bytes;
+}
+
 // Never through the middle of a UTF-8 letter.
 std::string cut(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return std::string(text);
-  while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0) == 0x80)
-    --longest;
-  return std::string(text.substr(0, longest)) + "...";
+  constexpr std::size_t kMostContinued = 3;
+  std::size_t end = longest;
+  while (end > 0 && longest - end < kMostContinued && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80)
+    --end;
+  const bool splits_none = letter_bytes(text.substr(end)) == 0;
+  return std::string(text.substr(0, splits_none ? longest : end)) + "...";
 }
 
 }  // namespace
@@ -43,8 +62,16 @@ bool is_control(char c) {
 std::string one_line(std::string text) {
   constexpr std::size_t kLongest = 1000;
   text = cut(text, kLongest);
-  std::replace_if(text.begin(), text.end(), is_control, '?');
-  return text;
+  std::string line;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::string_view rest = std::string_view(text).substr(at);
+    const std::size_t bytes = letter_bytes(rest);
+    const bool is_high_control =
+        bytes == 2 && rest[0] == '\xC2' && static_cast<unsigned char>(rest[1]) < 0xA0;  // U+0080 to U+009F
+    line += bytes == 0 ? "\xEF\xBF\xBD" : is_control(rest[0]) || is_high_control ? "?" : rest.substr(0, bytes);
+    at += bytes > 0 ? bytes : 1;
+  }
+  return line;
 }
 
 std::string in_quotes(std::string_view word) {

@@ -9,7 +9,7 @@
 namespace fdcg::dev {
 
 bool is_control(char c);  // would break a line or hide text on a terminal
-// On one line that a person reads: control characters as '?', cut after a thousand bytes.
+// On one line that a person reads: control characters as '?', bytes that are no UTF-8 as U+FFFD, cut after a thousand bytes.
 std::string one_line(std::string text);
 // 'word', cut after 40 bytes.
 std::string in_quotes(std::string_view word);

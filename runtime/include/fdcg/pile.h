@@ -89,7 +89,8 @@ fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal[3], double
 
 /* An object of the scene joins: `point_count` points in its own frame, before the pose's scale, up to 1e12 m; none for one that
  * is only touched. Again: with other points, letting go of what it touched. FDCG_E_ARGUMENT where the capacities do not
- * suffice. Cost: the points and the touches. */
+ * suffice. Cost: the points and the touches. (C before C23, asked to be pedantic, warns of points that are not const: the cast
+ * is (const double(*)[3])points.) */
 fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, fdcg_object_id object, const double (*points_m)[3],
                           uint32_t point_count, fdcg_error* error);
 /* An object that left the scene leaves by itself. */

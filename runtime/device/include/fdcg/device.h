@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The device host: force-feedback devices, each with a servo thread, a writer thread and a safety gate, that feel a scene. The
- * whole of it on one screen:
+ * The device host: force-feedback devices, each with a servo thread, a writer thread and a safety gate, that feel a scene; those
+ * that press on the same bodies share one servo thread (the scene's "shared"). The whole of it on one screen:
  *
  *   fdcg_host* host;
  *   fdcg_host_message message;
@@ -17,7 +17,8 @@
  * on threads of the host's own and does neither.
  *
  * Safety: no force before fdcg_host_arm, none after a fault until it is armed anew, never more than the profile and the scene
- * allow. A fault is told by fdcg_device_status.
+ * allow. A fault is told by fdcg_device_status. Of devices that share a scene, one that is gone, silent or disarmed by a fault
+ * takes its fingers out of it; the others go on, each within its own limits.
  */
 #ifndef FDCG_DEVICE_H
 #define FDCG_DEVICE_H
@@ -36,6 +37,9 @@ typedef struct fdcg_host_message {
 } fdcg_host_message;
 
 /* ---- open, start, stop. `message` may be NULL, and is filled in by every function that takes one. ---------------------- */
+
+/* A host that is NULL is FDCG_E_ARGUMENT where there is a status; the other functions do nothing, or return zeros, and
+ * fdcg_host_wait 1: there is nothing to wait for. */
 
 /* FDCG_E_ARGUMENT with the message, and *host NULL, where the scene, a profile or a graph is not right; FDCG_E_IO where the
  * host's threads or its log cannot be started. */
@@ -96,7 +100,8 @@ typedef struct fdcg_device_status {
   fdcg_host_message problem;              /* why it is not open; empty: it is, or nobody has tried yet */
 } fdcg_device_status;
 
-/* Some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, or struct_bytes is no multiple of 8. */
+/* Some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, a null pointer, or struct_bytes is no
+ * multiple of 8. */
 fdcg_status fdcg_host_get_status(fdcg_host* host, int32_t device, fdcg_device_status* status);
 /* Static text, one line: what happened and what to do. Never NULL. */
 const char* fdcg_fault_text(uint32_t fault);
