@@ -45,10 +45,6 @@ struct ConeSurface {
     const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
     return sign > 0 ? side >= 0 || disc >= 0 : side <= 0 && disc <= 0;
   }
-  [[nodiscard]] bool is_clear(Point x, double way) const {
-    const double side = above_side(from_axis(x), x.z), disc = absolute(x.z) - half;
-    return sign > 0 ? side > way || disc > way : side < -way && disc < -way;
-  }
   // Between the discs' planes, and there where x^2 + y^2 is below the square of the side's radius at that height.
   [[nodiscard]] Span span(Point from, Point way) const {
     Span span = kWholeLine;
@@ -176,9 +172,6 @@ struct ConeSurface {
 
   // ---- rules
 
-  FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
-    return face == kSide && slide_round(LineProfile{sign, radius[0], half, along_r, along_z}, touch);
-  }
   Decision rule(SurfaceWalk& walk) const {
     if (walk.active.state == FDCG_EDGE) return rim_rule(walk);
     if (walk.active.state == FDCG_VERTEX) return apex_rule(walk);
@@ -275,7 +268,26 @@ struct ConeSurface {
   }
 };
 
-// What most ticks on a cylinder need of it.
+// What most ticks on a cone need of it: its side's normal as soon as may be.
+struct QuickCone {
+  double sign, half, extent;
+  LineProfile side;
+
+  explicit QuickCone(const fdcg_surface& s) : sign(s.is_hollow != 0 ? -1 : 1), half(s.length_m / 2) {
+    const double grows = s.top_radius_m - s.radius_m, rises = s.length_m,
+                 per_length = inverse_root(grows * grows + rises * rises);
+    side = {s.radius_m, half, sign * rises * per_length, -(sign * grows) * per_length};
+    extent = larger(s.radius_m, s.top_radius_m) + half;
+  }
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    const double above = side.above(from_axis(x), x.z), beyond = sign * (absolute(x.z) - half);
+    return sign > 0 ? above > way || beyond > way : above > way && beyond > way;
+  }
+  FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
+    return face == ConeSurface::kSide && slide_round(side, touch);
+  }
+};
+// ... on a cylinder.
 struct QuickCylinder {
   double sign, radius, half, extent;
 

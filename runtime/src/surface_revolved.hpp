@@ -92,22 +92,23 @@ struct CylinderProfile {
   [[nodiscard]] bool is_within(double z) const { return absolute(z) < half; }
 };
 
-// A line that begins at (start_r, -half) in a unit direction and rises: of a cone.
+// A line that begins at (start_r, -half) and rises: of a cone. Its normal is unit, away from the material.
 struct LineProfile {
   static constexpr bool kIsLine = true;
   static constexpr double raised = 0;
   static constexpr Nought bend = {};
-  double sign, start_r, half, along_r, along_z;
+  double start_r, half, n_r, n_z;
 
   [[nodiscard]] static Outward outward(Point at, double off2) { return outward_of(at, off2); }
   [[nodiscard]] static double per_off(double off) { return 1 / off; }
+  [[nodiscard]] double above(double off, double z) const { return n_r * (off - start_r) + n_z * (z + half); }
   [[nodiscard]] FDCG_HOT Section<double> section(double off, double z) const {
-    const double u = along_r * (off - start_r) + along_z * (z + half);
-    return {start_r + u * along_r, u * along_z - half, sign * along_z, -sign * along_r};
+    const double along = n_r * (z + half) - n_z * (off - start_r);
+    return {start_r - along * n_z, along * n_r - half, n_r, n_z};
   }
   [[nodiscard]] FDCG_HOT bool nearest(const Section<double>&, double off, double z, Section<double>* to) const {
     *to = section(off, z);
-    return sign * (along_z * (off - start_r) - along_r * (z + half)) < 0;
+    return above(off, z) < 0;
   }
   // Off the ends: on an apex, or beside it by rounding, the side has no normal.
   [[nodiscard]] bool is_within(double z) const { return absolute(z) < half * (1 - 0x1p-40); }

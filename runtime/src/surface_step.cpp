@@ -199,7 +199,7 @@ inline constexpr Kind kKind = {step_on<Shape, Quick>, normal_on<Shape>};
 
 const Kind& kind_of(const fdcg_surface& surface) {
   static constexpr Kind kKinds[] = {kKind<PlaneSurface>, kKind<Sphere>,     kKind<ConeSurface, QuickCylinder>,
-                                    kKind<Capsule>,      kKind<BoxSurface>, kKind<ConeSurface>,
+                                    kKind<Capsule>,      kKind<BoxSurface>, kKind<ConeSurface, QuickCone>,
                                     kKind<Torus>,        kKind<Ellipsoid>};
   return kKinds[surface.kind <= FDCG_SURFACE_ELLIPSOID ? surface.kind : 0];
 }
