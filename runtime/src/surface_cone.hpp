@@ -289,16 +289,20 @@ struct QuickCone {
 };
 // ... on a cylinder.
 struct QuickCylinder {
-  double sign, radius, half, extent;
+  double sign, radius, per_radius, half, extent;
 
   explicit QuickCylinder(const fdcg_surface& s)
-      : sign(s.is_hollow != 0 ? -1 : 1), radius(s.radius_m), half(s.length_m / 2), extent(radius + half) {}
+      : sign(s.is_hollow != 0 ? -1 : 1),
+        radius(s.radius_m),
+        per_radius(1 / radius),
+        half(s.length_m / 2),
+        extent(radius + half) {}
   [[nodiscard]] bool is_clear(Point x, double way) const {
     const double side = from_axis(x) - radius, disc = absolute(x.z) - half;
     return sign > 0 ? side > way || disc > way : side < -way && disc < -way;
   }
   FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
-    return face == ConeSurface::kSide && slide_round(CylinderProfile{sign, radius, 1 / radius, half}, touch);
+    return face == ConeSurface::kSide && slide_round(CylinderProfile{sign, radius, per_radius, half}, touch);
   }
 };
 
