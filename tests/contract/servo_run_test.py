@@ -178,6 +178,22 @@ class Run(ServoCase):
         self.assertIn(b"hand: gone", done.stdout)
         self.assertIn(b"hand: disarmed: ", done.stdout)
 
+    def test_of_devices_that_share_a_scene_one_is_unplugged_and_the_other_goes_on(self):
+        scene = json.loads((EXAMPLE.parent / "two_devices.json").read_text())
+        scene["loop"] = {"servo_priority": 0, "writer_priority": 0, "lock_memory": False}
+        scene["devices"][0]["simulation"]["faults"] = [{"kind": "unplug", "at_s": 0.8}]
+        log = self.path("shared.fdcglog")
+        done = self.run_scene(self.write("shared.json", json.dumps(scene)), "--arm", "--for", "2", "--log", log, codes=(1,))
+        self.assertIn(b"thumb: gone", done.stdout)
+        self.assertIn(b"thumb: disarmed: ", done.stdout)
+        self.assertNotIn(b"finger: gone", done.stdout)
+        text = self.servo("replay", log, "-o", self.path("a.csv")).stdout.decode()
+        for name in ("thumb", "finger"):
+            self.assertRegex(text, f"{name}: [0-9,]+ ticks, every output the same")
+        rows = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("a.csv")).read_text())))
+        self.assertGreater(float([row for row in rows if row["device"] == "1"][-1]["t"]), 1.7)
+        self.assertLess(float([row for row in rows if row["device"] == "0"][-1]["t"]), 1.2)
+
     def test_a_device_that_is_pressed_is_not_armed_and_that_is_said(self):
         simulation = {"start_m": [0, 0, -0.01], "amplitude_m": [0, 0, 0], "hand_stiffness_n_per_m": 1000}
         cube = {"name": "cube", "file": "cube.fdcg", "motion": {"kind": "swing", "axis": [0, 0, 1], "rate_hz": 0.1, "amplitude_m": 0.2},
