@@ -72,6 +72,12 @@ Point place_of(const double p[3], double extent) {
   return {absolute(p[0]) < least ? 0 : p[0], absolute(p[1]) < least ? 0 : p[1], absolute(p[2]) < least ? 0 : p[2]};
 }
 
+// Whether place_of() leaves a place as it is: nothing but a jump waits for that.
+FDCG_HOT bool is_plain_place(Point p, double extent) {
+  const double least = kLeastShare * extent;
+  return !((absolute(p.x) < least && p.x != 0) || (absolute(p.y) < least && p.y != 0) || (absolute(p.z) < least && p.z != 0));
+}
+
 void store(Point from, double (&to)[3]) {
   to[0] = from.x;
   to[1] = from.y;
@@ -129,10 +135,10 @@ FDCG_HOT void respond_free(const Tick& tick, Point at, Point hip) {
   report(*tick.contact, tick.result);
 }
 
-FDCG_HOT Touch touch_of(const Tick& tick, double extent) {
+FDCG_HOT Touch touch_of(const Tick& tick, Point hip) {
   const fdcg_params& params = tick.params;
   return {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, tick.contact->slipping != 0},
-          place_of(tick.hip_m, extent),
+          hip,
           vec(tick.contact->god_object)};
 }
 
@@ -142,7 +148,8 @@ template <class Shape>
   const Tick tick = {*surface, *params, at, hip_m, result};
   fdcg_contact& contact = *at;
   const Shape shape(tick.surface);
-  SurfaceWalk walk = {touch_of(tick, shape.extent), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
+  SurfaceWalk walk = {
+      touch_of(tick, place_of(tick.hip_m, shape.extent)), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
   if (contact.started == 0) {
     start(walk.hip, &contact);
     report(contact, tick.result);
@@ -172,7 +179,9 @@ void step_on(const fdcg_surface* surface, const fdcg_params* params, fdcg_contac
   const Tick tick = {*surface, *params, at, hip_m, result};
   fdcg_contact& contact = *at;
   const Quick shape(*surface);
-  Touch touch = touch_of(tick, shape.extent);
+  const Point hip = {hip_m[0], hip_m[1], hip_m[2]};
+  if (!is_plain_place(hip, shape.extent)) return step_by_rules<Shape>(surface, params, at, hip_m, result);
+  Touch touch = touch_of(tick, hip);
   const Point way = touch.hip - touch.god_object;
   if (contact.state == FDCG_FREE && contact.started != 0 && shape.is_clear(touch.hip, way_bound(way, shape.extent))) {
     respond_free(tick, touch.hip, touch.hip);
