@@ -28,8 +28,8 @@
  *
  * The god-object rests on edges and vertices of cavities only; on convex ones it is on its way. Cost of a tick that slides 1 mm
  * deep at 0.1 m/s and 1 kHz with friction on surfaces of hand's size, at 3.6 GHz (tests/bench/surface_bench.cpp; alone, and in
- * a row): plane 24 and 16 ns, sphere 39 and 25, box 32 and 19, capsule 57 and 48, cylinder 63 and 51, cone and torus 71 and
- * 62, ellipsoid 138 and 130; at rest, free or without friction less. Slides so long, so deep or so near to an edge or an apex
+ * a row): plane 24 and 16 ns, sphere 39 and 25, box 32 and 19, cylinder and capsule 60 and 50, cone and torus 72 and
+ * 63, ellipsoid 140 and 130; at rest, free or without friction less. Slides so long, so deep or so near to an edge or an apex
  * that one move and one correction do not do take two to four times that. A jump halfway round a surface takes at most
  * FDCG_SURFACE_MAX_MOVES moves of some 60 ns, and what is left then is carried to the next tick (FDCG_RESULT_TRANSITION_BOUND)
  * with a valid god-object.
