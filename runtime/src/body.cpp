@@ -144,9 +144,8 @@ extern "C" fdcg_status fdcg_body_set_mass(fdcg_body_config* config, const fdcg_m
   memcpy(solid.centre_m, mass->centroid_m, sizeof solid.centre_m);
   for (int k = 0; k < 6; ++k)
     solid.inertia_kg_m2[k] = density * mass->inertia_per_density_m5[k] * cube * scale * scale;
-  const fdcg_status status =
-      fdcg::check_solid("at this density and scale the body's ", solid,
-                        "; fill mass with fdcg_get_mass or fdcg_surface_mass, or give another density or scale", error);
+  const fdcg_status status = fdcg::check_solid("at this density and scale the body's ", solid,
+                                               "; check the density, the scale, and what mass was filled with", error);
   if (status != FDCG_OK) return status;
   config->mass_kg = solid.mass_kg;
   memcpy(config->centre_m, solid.centre_m, sizeof solid.centre_m);

@@ -177,7 +177,7 @@ struct ConeSurface {
   // ---- rules
 
   FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
-    return face == kSide && slide_round(LineProfile{sign, radius[0], half, along_r, along_z, per_radius}, touch);
+    return face == kSide && slide_round(LineProfile{sign, radius[0], half, along_r, along_z}, touch);
   }
   Decision rule(SurfaceWalk& walk) const {
     if (walk.active.state == FDCG_EDGE) return rim_rule(walk);
@@ -216,20 +216,24 @@ struct ConeSurface {
   // Contact-model section 6, round a circle.
   Decision rim_rule(SurfaceWalk& walk) const {
     const uint32_t end = walk.active.index;
-    const Point outward = outward_at(walk.god_object, walk.hip);
-    const double off = dot(walk.hip, outward);
-    const RimSides at = rim_sides(end, off, walk.hip.z);
+    const Decision here = leave_rim(walk, end);
+    if (!here.is_rest() || sign > 0 || !slide_on_rim(walk, end)) return here;
+    return leave_rim(walk, end);  // elsewhere on the rim the HIP may be behind a face alone
+  }
+  // Rest where the rim holds the god-object.
+  [[nodiscard]] Decision leave_rim(const SurfaceWalk& walk, uint32_t end) const {
+    const RimSides at = rim_sides(end, dot(walk.hip, outward_at(walk.god_object, walk.hip)), walk.hip.z);
     const bool is_behind_side = at.side < 0, is_behind_disc = at.disc < 0;
     if (sign > 0 ? !is_behind_side || !is_behind_disc : !is_behind_side && !is_behind_disc) return go_to(kFree);
     const bool may_be_side = is_behind_side && at.beyond_side < 0, may_be_disc = is_behind_disc && at.beyond_disc < 0;
     if (may_be_side && !(may_be_disc && at.beyond_disc < at.beyond_side)) return go_to({FDCG_FACE, kSide});
-    if (may_be_disc) return go_to({FDCG_FACE, 1 + end});
-    if (sign > 0) return rest();
-    return slide_on_rim(walk, end, outward, off);
+    return may_be_disc ? go_to({FDCG_FACE, 1 + end}) : rest();
   }
   // The loads of both faces together are base - lift * cos(angle), by contact-model section 6.
-  Decision slide_on_rim(SurfaceWalk& walk, uint32_t end, Point outward, double off) const {
-    const Point round = {-outward.y, outward.x, 0};
+  // True where the god-object was moved.
+  bool slide_on_rim(SurfaceWalk& walk, uint32_t end) const {
+    const Point outward = outward_at(walk.god_object, walk.hip), round = {-outward.y, outward.x, 0};
+    const double off = dot(walk.hip, outward);
     const double reach = from_axis(walk.hip), across = dot(walk.hip, round);
     const double up = end == 0 ? walk.hip.z + half : walk.hip.z - half, out = off - radius[end];
     const double sum_r = -along_z, sum_z = along_r + (end == 0 ? 1 : -1);  // of the two normals, into the cavity
@@ -242,14 +246,14 @@ struct ConeSurface {
     }
     const Slip<double> slip = walk.friction.slip(walk.god_object, across * across, load);
     const bool is_placed = absolute(absolute(across) - slip.gap) <= pull_rounding(walk);
-    if (slip.is_rest || is_placed) return rest();
+    if (slip.is_rest || is_placed) return false;
     Arc stop;
     if (!stop_on_circle(reach, base, lift, load > 0 ? slip.gap / load : 0, &stop)) stop = {0, 1};
     const Point towards = {walk.hip.x / reach, walk.hip.y / reach, 0};
     const double turn = across > 0 ? -stop.sine : stop.sine;  // the god-object is to the right of the HIP, or to the left
     walk.god_object =
         rim_point({towards.x * stop.cosine - towards.y * turn, towards.y * stop.cosine + towards.x * turn, 0}, end);
-    return rest();
+    return true;
   }
   // Contact-model section 7: the steepest line of the side is the one in the HIP's plane.
   Decision apex_rule(SurfaceWalk& walk) const {
@@ -268,6 +272,21 @@ struct ConeSurface {
     if (feature.state == FDCG_FACE) return disc;
     const Point sum = side + disc;
     return sum * (1 / norm(sum));
+  }
+};
+
+// What most ticks on a cylinder need of it.
+struct QuickCylinder {
+  double sign, radius, half, extent;
+
+  explicit QuickCylinder(const fdcg_surface& s)
+      : sign(s.is_hollow != 0 ? -1 : 1), radius(s.radius_m), half(s.length_m / 2), extent(radius + half) {}
+  [[nodiscard]] bool is_clear(Point x, double way) const {
+    const double side = from_axis(x) - radius, disc = absolute(x.z) - half;
+    return sign > 0 ? side > way || disc > way : side < -way && disc < -way;
+  }
+  FDCG_HOT bool slide_quickly(uint32_t face, Touch& touch) const {
+    return face == ConeSurface::kSide && slide_round(CylinderProfile{sign, radius, 1 / radius, half}, touch);
   }
 };
 

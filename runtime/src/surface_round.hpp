@@ -161,7 +161,7 @@ struct Capsule {
   // Where it stays on the side, or on a cap.
   FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const {
     const double z = touch.god_object.z;
-    if (absolute(z) <= half) return slide_round(LineProfile{sign, radius, half, 0, 1, per_radius}, touch);
+    if (absolute(z) <= half) return slide_round(CylinderProfile{sign, radius, per_radius, half}, touch);
     Touch on_cap = touch;
     const bool is_rest = slide_on_ball(on_cap, z > 0 ? half : -half, radius, sign) == Slid::kRests;
     if (!is_rest || !(z > 0 ? on_cap.god_object.z > half : on_cap.god_object.z < -half)) return false;

@@ -6,19 +6,6 @@
 
 namespace fdcg {
 
-// The Newton step to where there is no pull, of a surface that the HIP is not too deep in: (1 - load S) step = -across, where S
-// says how the normal turns (its trace and determinant are the sum and the product of the principal curvatures). False where
-// the god-object is not near a minimum.
-template <class Piece, class Spot>
-FDCG_HOT bool step_to_minimum(const Piece& piece, const Spot& spot, Point across, Point turned, double load, Point* step) {
-  constexpr double kLeast = 0x1p-10;
-  const double sum = piece.curvature_sum(spot), product = piece.curvature_product(spot);
-  const double trace = 2 - load * sum, determinant = 1 - load * (sum - load * product);
-  if (!(trace > 0 && determinant > kLeast * (1 + load * load * absolute(product)))) return false;
-  *step = (across * (1 - load * sum) + turned * load) * (-1 / determinant);
-  return true;
-}
-
 // The spring's force at a place, by the stiffness: the part along the normal, and the one across it.
 struct Press {
   Point across;
@@ -74,24 +61,22 @@ inline Move straight_move(Point step) {
   return {step, {0, 0, 0}, false, false, false};
 }
 
-// From outside the cone, or, without friction, from anywhere.
+// Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of. `bent`: how the
+// normal turns along the pull.
+FDCG_HOT double pull_doubt(Point at, double load, double pull, double bent, double rounding, bool has_moved) {
+  return has_moved ? rounding * kRestShare : 2 * rounding + 8 * kEps * norm1(at) * bent * (load + pull) + kPlaced * pull;
+}
+inline constexpr double kLargestTurn = 0.25;  // of the normal, in a move
+inline constexpr Move kNoMove = {{0, 0, 0}, {0, 0, 0}, false, true, true};
+
+// With friction, from outside the cone.
 template <class Piece, class Spot>
 FDCG_HOT Move next_move(const Piece& piece, const Spot& spot, const Press& press, double mu, double rounding, bool has_moved) {
-  constexpr double kLargestTurn = 0.25, kLargestSwing = 0.25, kLeastFall = 0x1p-20;
-  constexpr Move kNone = {{0, 0, 0}, {0, 0, 0}, false, true, true};
+  constexpr double kLargestSwing = 0.25, kLeastFall = 0x1p-20;
   const double load = press.load, pull = root(press.pull2), held = mu * load;
   const Bend bend = bend_of(piece, spot, press.across);
-  const double turn1 = norm1(bend.turned), per_pull2 = 1 / press.pull2, per_pull = pull * per_pull2, bent = turn1 * per_pull;
-  // Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of.
-  const double doubt =
-      has_moved ? rounding * kRestShare : 2 * rounding + 8 * kEps * norm1(spot.at) * bent * (load + pull) + kPlaced * pull;
-  if (pull - held <= doubt) return kNone;
-  Point step;
-  if (mu == 0 && step_to_minimum(piece, spot, press.across, bend.turned, load, &step) && norm1(step) * bent <= kLargestTurn) {
-    const double length = norm1(step);
-    const bool is_last = 1024 * length * length * (per_pull + bent * (1 + bent * (load + pull))) <= rounding;
-    return {step, {0, 0, 0}, false, is_last, false};
-  }
+  const double turn1 = norm1(bend.turned), per_pull2 = 1 / press.pull2, per_pull = pull * per_pull2;
+  if (pull - held <= pull_doubt(spot.at, load, pull, turn1 * per_pull, rounding, has_moved)) return kNoMove;
   const double curvature = bend.along * per_pull2;
   const Course course = course_of(press, bend, mu, 2 * bend.turn2 - curvature * bend.along, per_pull2);
   const double left = course.fall * course.fall - course.bow * course.excess;
@@ -101,8 +86,39 @@ FDCG_HOT Move next_move(const Piece& piece, const Spot& spot, const Press& press
   const double stop = course.excess / (course.fall + (left > 0 ? root(left) : 0));
   const bool is_near = course.fall > kLeastFall && stop * most <= 1;
   const double length = is_near ? stop : 1 / most;
-  const Point bow = aside * (0.5 * load * length);
-  return {(press.across + bow) * -length, bow * -length, is_near, false, false};
+  const Point bow = aside * (0.5 * load * length * length);
+  return {press.across * -length - bow, bow * -1.0, is_near, false, false};
+}
+
+// Without friction, towards where there is no pull: a Newton step in each principal direction, downhill. 1 - load S says how
+// the pull changes, where S says how the normal turns; its trace and determinant are the sum and the product of the principal
+// curvatures. Where the HIP is nearly a centre of curvature, one direction's step is far larger than the other's.
+template <class Piece, class Spot>
+[[gnu::noinline]] Move move_to_minimum(const Piece& piece, const Spot& spot, const Press& press, double rounding,
+                                       bool has_moved) {
+  constexpr double kLeast = 0x1p-10, kAlike = 0x1p-20;
+  const double load = press.load, pull = root(press.pull2);
+  const Point across = press.across, turned = piece.turn(spot, across);
+  const double bent = norm1(turned) / pull;
+  if (pull <= pull_doubt(spot.at, load, pull, bent, rounding, has_moved)) return kNoMove;
+  const double sum = piece.curvature_sum(spot), product = piece.curvature_product(spot);
+  const double trace = 2 - load * sum, determinant = 1 - load * (sum - load * product),
+               apart2 = trace * trace - 4 * determinant;
+  const double apart = apart2 > square(kAlike * trace) ? root(apart2) : 0;
+  const double changes[2] = {0.5 * (trace + apart), 0.5 * (trace - apart)};
+  const Point first = apart > 0 ? (across - turned * load - across * changes[1]) * (1 / apart) : across;
+  const Point parts[2] = {first, across - first};
+  Point step = {0, 0, 0};
+  bool is_cut = false;
+  for (int k = 0; k < 2; ++k) {
+    if (!(norm1(parts[k]) > rounding)) continue;  // none
+    const double change = absolute(changes[k]), turns = absolute(1 - changes[k]) * norm1(parts[k]) / (load * kLargestTurn);
+    is_cut = is_cut || !(changes[k] > kLeast && turns <= change);
+    if (change > 0 || turns > 0) step = step - parts[k] * (1 / larger(change, turns));
+  }
+  const double length = norm1(step);
+  const bool is_last = !is_cut && 1024 * length * length * (1 / pull + bent * (1 + bent * (load + pull))) <= rounding;
+  return {step, {0, 0, 0}, false, is_last, false};
 }
 
 // The last of a slide, where a move has left so little that the surface is a parabola there: without looking for it again.
@@ -200,7 +216,8 @@ template <class Piece>
   for (bool has_moved = false; walk.moves_left > 0; --walk.moves_left) {
     if (!(from.press.pull2 > rounding * rounding)) return Slid::kRests;
     if (is_near && set_right(piece, from.spot, from.press, mu, &walk.god_object)) return Slid::kRests;
-    const Move move = next_move(piece, from.spot, from.press, mu, rounding, has_moved);
+    const Move move = mu > 0 ? next_move(piece, from.spot, from.press, mu, rounding, has_moved)
+                             : move_to_minimum(piece, from.spot, from.press, rounding, has_moved);
     if (move.has_none) return Slid::kRests;
     auto end = piece.project(from.spot.at + move.after(share), from.spot);
     bool is_farther = squared(end.at - walk.hip) > start2;  // a piece that bends sharply ahead

@@ -137,8 +137,10 @@ FDCG_HOT Touch touch_of(const Tick& tick, double extent) {
 }
 
 template <class Shape>
-[[gnu::noinline]] void step_by_rules(const Tick& tick) {
-  fdcg_contact& contact = *tick.contact;
+[[gnu::noinline]] void step_by_rules(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at,
+                                     const double* hip_m, fdcg_result* result) {
+  const Tick tick = {*surface, *params, at, hip_m, result};
+  fdcg_contact& contact = *at;
   const Shape shape(tick.surface);
   SurfaceWalk walk = {touch_of(tick, shape.extent), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
   if (contact.started == 0) {
@@ -162,13 +164,14 @@ FDCG_HOT double way_bound(Point way, double extent) {
   return norm1(way) * (1 + 0x1p-20) + 16 * kEps * extent;
 }
 
-// What most ticks are, before the rules. All of it stays in registers: nothing here is handed to another function.
-template <class Shape>
+// What most ticks are, before the rules. All of it stays in registers: nothing here is handed to another function. Quick: what
+// of the shape that needs, with is_clear(), slide_quickly() and extent.
+template <class Shape, class Quick>
 void step_on(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at, const double* hip_m,
              fdcg_result* result) {
   const Tick tick = {*surface, *params, at, hip_m, result};
   fdcg_contact& contact = *at;
-  const Shape shape(*surface);
+  const Quick shape(*surface);
   Touch touch = touch_of(tick, shape.extent);
   const Point way = touch.hip - touch.god_object;
   if (contact.state == FDCG_FREE && contact.started != 0 && shape.is_clear(touch.hip, way_bound(way, shape.extent))) {
@@ -176,7 +179,7 @@ void step_on(const fdcg_surface* surface, const fdcg_params* params, fdcg_contac
   } else if (contact.state == FDCG_FACE && shape.slide_quickly(contact.feature, touch)) {
     respond(tick, touch, {FDCG_FACE, contact.feature});
   } else {
-    step_by_rules<Shape>(tick);
+    step_by_rules<Shape>(surface, params, at, hip_m, result);
   }
 }
 
@@ -191,12 +194,13 @@ struct Kind {
   decltype(&fdcg_surface_step) step;
   Point (*normal)(const fdcg_surface& surface, const fdcg_result& result);
 };
-template <class Shape>
-inline constexpr Kind kKind = {step_on<Shape>, normal_on<Shape>};
+template <class Shape, class Quick = Shape>
+inline constexpr Kind kKind = {step_on<Shape, Quick>, normal_on<Shape>};
 
 const Kind& kind_of(const fdcg_surface& surface) {
-  static constexpr Kind kKinds[] = {kKind<PlaneSurface>, kKind<Sphere>,      kKind<ConeSurface>, kKind<Capsule>,
-                                    kKind<BoxSurface>,   kKind<ConeSurface>, kKind<Torus>,       kKind<Ellipsoid>};
+  static constexpr Kind kKinds[] = {kKind<PlaneSurface>, kKind<Sphere>,     kKind<ConeSurface, QuickCylinder>,
+                                    kKind<Capsule>,      kKind<BoxSurface>, kKind<ConeSurface>,
+                                    kKind<Torus>,        kKind<Ellipsoid>};
   return kKinds[surface.kind <= FDCG_SURFACE_ELLIPSOID ? surface.kind : 0];
 }
 

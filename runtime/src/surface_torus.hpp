@@ -98,13 +98,11 @@ struct TubeProfile {
   double ring, raised, bend;
 
   [[nodiscard]] static Outward outward(Point at, double off2) { return outward_of(at, off2); }
-  [[nodiscard]] FDCG_HOT Section section(double off, double z) const { return {ring, 0, (off - ring) * bend, z * bend}; }
-  [[nodiscard]] FDCG_HOT Section moved(const Section& from, double way) const {
-    const double tangent = way * bend, off_1 = from.n_r * from.n_r + from.n_z * from.n_z - 1;
-    const double cosine = inverse_root_of_turn(tangent * tangent, off_1);
-    return {ring, 0, (from.n_r - tangent * from.n_z) * cosine, (from.n_z + tangent * from.n_r) * cosine};
+  [[nodiscard]] static double per_off(double off) { return 1 / off; }
+  [[nodiscard]] FDCG_HOT Section<double> section(double off, double z) const {
+    return {ring, 0, (off - ring) * bend, z * bend};
   }
-  [[nodiscard]] FDCG_HOT bool nearest(const Section& from, double off, double z, Section* to) const {
+  [[nodiscard]] FDCG_HOT bool nearest(const Section<double>& from, double off, double z, Section<double>* to) const {
     const double out = off - ring, distance2 = out * out + z * z;
     if (!(distance2 > 0)) return false;
     const double distance = root(distance2), scale = (raised > 0 ? 1 : -1) / distance;

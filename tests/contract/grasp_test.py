@@ -350,6 +350,7 @@ class Input(GraspCase):
             ("x,y,z,torsion\n1,0,0,1e9\n", ("contact 0: torsion is 1e+09", "100 torque scales")),
             ("x,y,z\n1,0,2e12\n", ("line 2: the point's coordinate is 2e+12",)),
             ("x,y,z,nx,ny,nz\n1,0,0,1e-200,0,0\n", ("no direction",)),
+            ("x;y;z\n1;0;0\n", ("'x;y;z'", "commas")),
             ("x,y,z\n" + 1001 * "1,0,0\n", ("1001 contacts", "1000")),
         ):
             with self.subTest(text=text[:60]):
@@ -358,7 +359,14 @@ class Input(GraspCase):
                 self.assertNotIn(b"json.exception", done.stderr)
                 self.assertNotIn(b"while parsing", done.stderr)
                 self.assertEqual(b"", done.stdout)
-        self.assert_one_line(self.fdcg("grasp", self.cube, "--contacts", self.path("none"), "--mu", "1", code=3), "none")
+        for path, words in ((self.path("none"), "No such file"), (str(self.folder), "Is a directory"), ("", "No such file")):
+            self.assert_one_line(self.fdcg("grasp", self.cube, "--contacts", path, "--mu", "1", code=3), path, words)
+
+    def test_a_mark_of_utf_8_in_front_is_passed_over(self):
+        for text in ("x,y,z\n1,0,0\n", "[{\"point\": [1, 0, 0]}]"):
+            plain, marked = self.write("plain", text), self.write("marked", b"\xef\xbb\xbf" + text.encode())
+            reports = [self.fdcg("grasp", self.cube, "--contacts", path, "--mu", "1", "--json", code=1).stdout for path in (plain, marked)]
+            self.assertEqual(*reports)
 
     def test_wrong_usage_is_code_2_and_one_line(self):
         here = ("grasp", self.cube, "--contacts", self.fingers)

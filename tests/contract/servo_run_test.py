@@ -178,6 +178,22 @@ class Run(ServoCase):
         self.assertIn(b"hand: gone", done.stdout)
         self.assertIn(b"hand: disarmed: ", done.stdout)
 
+    def test_of_devices_that_share_a_scene_one_is_unplugged_and_the_other_goes_on(self):
+        scene = json.loads((EXAMPLE.parent / "two_devices.json").read_text())
+        scene["loop"] = {"servo_priority": 0, "writer_priority": 0, "lock_memory": False}
+        scene["devices"][0]["simulation"]["faults"] = [{"kind": "unplug", "at_s": 0.8}]
+        log = self.path("shared.fdcglog")
+        done = self.run_scene(self.write("shared.json", json.dumps(scene)), "--arm", "--for", "2", "--log", log, codes=(1,))
+        self.assertIn(b"thumb: gone", done.stdout)
+        self.assertIn(b"thumb: disarmed: ", done.stdout)
+        self.assertNotIn(b"finger: gone", done.stdout)
+        text = self.servo("replay", log, "-o", self.path("a.csv")).stdout.decode()
+        for name in ("thumb", "finger"):
+            self.assertRegex(text, f"{name}: [0-9,]+ ticks, every output the same")
+        rows = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("a.csv")).read_text())))
+        self.assertGreater(float([row for row in rows if row["device"] == "1"][-1]["t"]), 1.7)
+        self.assertLess(float([row for row in rows if row["device"] == "0"][-1]["t"]), 1.2)
+
     def test_a_device_that_is_pressed_is_not_armed_and_that_is_said(self):
         simulation = {"start_m": [0, 0, -0.01], "amplitude_m": [0, 0, 0], "hand_stiffness_n_per_m": 1000}
         cube = {"name": "cube", "file": "cube.fdcg", "motion": {"kind": "swing", "axis": [0, 0, 1], "rate_hz": 0.1, "amplitude_m": 0.2},
@@ -426,7 +442,8 @@ class Examples(ServoCase):
         shutil.copy(scenes / "sheet.off", self.folder)
         self.fdcg("compile", self.path("sheet.off"), "--triangles", "-o", self.path("sheet.fdcg"), "-q")
         validator = jsonschema.Draft202012Validator(schema("servo-scene.schema.json"))
-        for name, column, contacts in (("lift_cube", "cube_z", 2), ("hold_sphere", "ball_z", 3), ("press_sheet", "sheet_dent", 1)):
+        for name, column, contacts, devices in (("lift_cube", "cube_z", 2, 1), ("two_devices", "cube_z", 1, 2),
+                                                ("hold_sphere", "ball_z", 3, 1), ("press_sheet", "sheet_dent", 1, 1)):
             with self.subTest(name):
                 scene = json.loads((scenes / f"{name}.json").read_text())
                 validator.validate(scene)
@@ -435,18 +452,36 @@ class Examples(ServoCase):
                 done = self.run_scene(path, "--arm", "--for", "8", "--fast", "--log", log, "--status", "json", codes=(0,))
                 last = lines_of(done.stdout)[-1]
                 jsonschema.validate(last, schema("servo-status.schema.json"))
-                self.assertEqual(8000, last["devices"][0]["ticks"])
+                self.assertEqual([8000] * devices, [device["ticks"] for device in last["devices"]])
                 rewritten = self.path("again.fdcglog")
                 self.servo("replay", log, "-o", self.path("a.csv"), "--touches", self.path("t.csv"), "--write", rewritten)
                 self.assertEqual(pathlib.Path(log).read_bytes(), pathlib.Path(rewritten).read_bytes())
                 rows = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("a.csv")).read_text())))
-                self.assertEqual(8000, len(rows))
+                self.assertEqual(8000 * devices, len(rows))
                 values = [float(row[column]) for row in rows]
                 self.assertGreater(max(values) - values[0], 0.004)
                 touches = list(csv.DictReader(io.StringIO(pathlib.Path(self.path("t.csv")).read_text())))
                 self.assertEqual({str(i) for i in range(contacts)}, {touch["contact"] for touch in touches})
+                self.assertEqual({str(i) for i in range(devices)}, {touch["device"] for touch in touches})
                 held = [touch for touch in touches if 2.1 < float(touch["t"]) < 5.7 and name != "press_sheet"]
                 self.assertTrue(all(touch["slip"] == "0" and 0 < float(touch["margin"]) <= 1 for touch in held))
+
+    def test_each_draws_its_picture(self):
+        self.assertIsNotNone(shutil.which("gnuplot"), "gnuplot-nox of tools/packages draws them")
+        for name in ("lift_cube", "two_devices", "hold_sphere", "press_sheet"):
+            with self.subTest(name):
+                shutil.copy(EXAMPLE.parent / f"{name}.json", self.folder)
+                shutil.copy(EXAMPLE.parent / "sheet.off", self.folder)
+                self.fdcg("compile", self.path("sheet.off"), "--triangles", "-o", self.path("sheet.fdcg"), "-q")
+                log = self.path(f"{name}.fdcglog")
+                self.run_scene(self.path(f"{name}.json"), "--arm", "--for", "8", "--fast", "--log", log, "-q", codes=(0,))
+                self.servo("replay", log, "-o", self.path(f"{name}.csv"), "--touches", self.path(f"{name}_touches.csv"), "-q")
+                done = subprocess.run(["gnuplot", "-e", f"name = '{name}'", str(ROOT / "tools" / "examples.gp")], cwd=self.folder,
+                                      capture_output=True, timeout=60, check=False)
+                self.assertEqual((0, b"", b""), (done.returncode, done.stdout, done.stderr))
+                picture = pathlib.Path(self.path(f"{name}.png")).read_bytes()
+                self.assertEqual(b"\x89PNG", picture[:4])
+                self.assertGreater(len(picture), 40000)  # an empty frame has some 29 kB
 
     def test_only_devices_without_real_time_run_fast(self):
         hid = [{"name": "hand", "profile": "fdcg-reference"}]

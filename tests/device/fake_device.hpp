@@ -91,8 +91,9 @@ struct FakeDevice {
   // Knobs.
   std::atomic<bool> is_plugged{true}, is_silent{false}, holds_reads{false}, holds_writes{false}, refuses_writes{false};
   std::atomic<double> tip_z_m{0.01};
-  std::atomic<int> burst{0};   // reports that wait all at once
-  std::atomic<int> excess{0};  // bytes too many on each report
+  std::atomic<bool> answers_polls{false};  // a read that does not wait gets a report that is due, too
+  std::atomic<int> burst{0};               // reports that wait all at once
+  std::atomic<int> excess{0};              // bytes too many on each report
   std::atomic<int> emergency{-1};
   std::uint64_t period_ns = 1'000'000;
   // What it saw.
@@ -182,7 +183,7 @@ class FakeTransport final : public Transport {
       --device_.burst;
       return true;
     }
-    if (timeout_ms == 0) return false;
+    if (timeout_ms == 0 && !device_.answers_polls) return false;
     const std::uint64_t until_ns = monotonic_ns() + static_cast<std::uint64_t>(timeout_ms) * 1'000'000;
     const bool is_due = due_ns_ <= until_ns && !device_.is_silent;
     const std::uint64_t wake_ns = is_due ? due_ns_ : until_ns, now_ns = monotonic_ns();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind.
+// The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind. Over 400
+// lines: a case for each thing that a device or a program may do, on one rig.
 #include "host.hpp"
 
 #include <signal.h>
@@ -62,6 +63,12 @@ struct Hosted {
     config.loop.writer_priority = 70;
     while (static_cast<int>(config.devices.size()) < count)
       config.devices.push_back(config.devices[0]);
+  }
+  // All of them in one loop.
+  void share() {
+    config.is_shared = true;
+    for (auto& device : devices)
+      device->answers_polls = true;
   }
   void start() {
     REQUIRE(host.open(config) == "");
@@ -278,6 +285,49 @@ TEST_CASE("a read that does not return leaves no force, and does not keep the ho
   CHECK(within_ms(5000, [&] { return device->inside_reads == 0; }));
   sleep_ms(50);
   CHECK(device->misused == 0);
+}
+
+TEST_CASE("of devices that share a scene one that is silent or pulled out takes no force from another, and comes back") {
+  Hosted hosted(3);
+  hosted.share();
+  hosted.start();
+  for (int i = 0; i < 3; ++i)
+    hosted.press(i);
+  for (const int dead : {0, 2}) {  // 0 is the clock
+    INFO(dead);
+    hosted.device(dead).is_silent = true;
+    CHECK(within_ms(2000, [&] { return hosted.device(dead).force_n == 0 && hosted.phase(dead) == Phase::kDisarmed; }));
+    CHECK(hosted.fault(dead) == Fault::kSilence);
+    hosted.press(1);  // at once, where the machine is not too busy
+    hosted.device(dead).is_silent = false;
+    hosted.device(dead).is_plugged = false;
+    REQUIRE(within_ms(5000, [&] { return !hosted.device(dead).is_open; }));
+    hosted.press(1);
+    hosted.device(dead).is_plugged = true;
+    REQUIRE(within_ms(5000, [&] { return hosted.device(dead).is_open.load(); }));
+    hosted.press(dead);
+    CHECK(hosted.device(1).force_n > 1.5);
+  }
+  CHECK(hosted.host.stop() == "");
+  for (int i = 0; i < 3; ++i) {
+    CHECK(hosted.device(i).force_n == 0);
+    CHECK(hosted.device(i).misused == 0);
+  }
+}
+
+TEST_CASE("a read that does not return takes the force from all that share the scene, until it returns") {
+  Hosted hosted(2);
+  hosted.share();
+  hosted.start();
+  hosted.press(0);
+  hosted.press(1);
+  hosted.device(1).holds_reads = true;
+  CHECK(within_ms(2000, [&] { return hosted.device(0).force_n == 0 && hosted.device(1).force_n == 0; }));
+  hosted.device(1).holds_reads = false;
+  hosted.press(0);
+  hosted.press(1);
+  CHECK(hosted.host.stop() == "");
+  CHECK(hosted.device(0).misused + hosted.device(1).misused == 0);
 }
 
 TEST_CASE("an object that spins or is driven is where its motion says, for every device") {

@@ -127,6 +127,70 @@ TEST_CASE("when the third of three devices dies the two others hold the cube, wh
   CHECK(std::fabs(story.height_m.back()) < 0.0005);  // put down as if nothing had been
 }
 
+TEST_CASE("a recording of devices that share a scene is played to the same forces") {
+  const Folder folder;
+  HostConfig config = example();
+  config.log_file = folder.file("a.fdcglog");
+  {
+    FastRun fast;
+    REQUIRE(fast.open(config) == "");
+    REQUIRE(fast.run(4, true) == "");
+  }
+  for (DeviceConfig& device : config.devices) {
+    device.source = DeviceSource::kRecorded;
+    device.recording = config.log_file;
+  }
+  config.log_file = folder.file("b.fdcglog");
+  FastRun fast;
+  REQUIRE(fast.open(config) == "");
+  REQUIRE(fast.run(0, true) == "");
+  CHECK(fast.has_ended(0));
+  CHECK(fast.has_ended(1));
+  SessionReplay first, second;
+  REQUIRE(first.open(folder.file("a.fdcglog"), "") == "");
+  REQUIRE(second.open(folder.file("b.fdcglog"), "") == "");
+  ReplayedTick a, b;
+  int compared = 0;
+  while (first.next(&a) && second.next(&b)) {
+    REQUIRE(a.device == b.device);
+    for (int i = 0; i < 3; ++i)
+      REQUIRE(a.output->wanted_force_n[i] == b.output->wanted_force_n[i]);
+    ++compared;
+  }
+  CHECK(compared >= 7990);
+}
+
+TEST_CASE("two devices press one sheet, and it bears them both") {
+  const bool is_shared = GENERATE(true, false);
+  const Folder folder;
+  HostConfig config;
+  REQUIRE(read_scene(FDCG_SOURCE_DIR "/testdata/scenes/press_sheet.json", &config) == "");
+  config.objects[0].file = FDCG_SHEET;
+  config.objects[0].motion.soft.damping_n_s_per_m = 2;
+  config.devices.push_back(config.devices[0]);
+  config.devices[1].name = "second";
+  for (ScriptStep& step : config.devices[1].simulation.script)
+    step.place_m[0] += 0.01;
+  config.is_shared = is_shared;
+  config.log_file = folder.file("a.fdcglog");
+  FastRun fast;
+  REQUIRE(fast.open(config) == "");
+  REQUIRE(fast.run(3, true) == "");
+  SessionReplay replay;
+  REQUIRE(replay.open(config.log_file, "") == "");
+  double deepest_m[2] = {};
+  for (ReplayedTick tick; replay.next(&tick);)
+    deepest_m[tick.device] = std::max(deepest_m[tick.device], tick.state->setup.soft[0]->deepest_m());
+  CHECK(replay.is_same());
+  if (is_shared) {
+    CHECK(deepest_m[0] == deepest_m[1]);
+    CHECK(deepest_m[0] > 0.0105);
+  } else {
+    CHECK(deepest_m[0] < 0.0095);  // each alone
+    CHECK(deepest_m[1] < 0.0095);
+  }
+}
+
 TEST_CASE("a log that was cut off replays up to the last tick that all devices have") {
   const Folder folder;
   HostConfig config = example();

@@ -288,7 +288,7 @@ TEST_CASE("mass from a file becomes a body's, by density, by mass and by scale")
     double density;
     const char* words;
   } refused[] = {
-      {[](fdcg_mass& m) { m = {}; }, 1000, "the body's mass_kg is 0, allowed 1e-12 to 1e12; fill mass with fdcg_get_mass"},
+      {[](fdcg_mass& m) { m = {}; }, 1000, "the body's mass_kg is 0, allowed 1e-12 to 1e12; check the density, the scale"},
       {[](fdcg_mass& m) { m.volume_m3 = std::nan(""); }, 1000, "the body's mass_kg is NaN"},
       {[](fdcg_mass& m) { m.mass_kg = -1; }, 0, "the body's mass_kg is -1"},
       {[](fdcg_mass& m) { m.density_kg_per_m3 = std::nan(""); }, 0, "the body's inertia_kg_m2[0] is NaN"},

@@ -10,6 +10,7 @@
 
 #include "../common/one_line.hpp"
 #include "command.hpp"
+#include "json_words.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -72,7 +73,7 @@ class ReportReader {
     return leaf();
   }
   bool parse_error(std::size_t, const std::string&, const Json::exception& exception) {
-    return stop(std::string("is no JSON: ") + exception.what());
+    return stop("is no JSON: " + plain_complaint(exception));
   }
 
  private:

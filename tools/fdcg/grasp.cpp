@@ -226,7 +226,8 @@ Examples:
 
 Contacts (CSV with a header of x,y,z and any of mu,torsion,cap,nx,ny,nz,name; or JSON with "contacts": [{"point": [x,y,z], ..}])
 are in metres in the object's frame, and are moved to the nearest point of the surface.
-Exit code 0: force closure, and the load holds if a grip is given; 1: not.)");
+Exit code 0: force closure, and the load holds if a grip is given; 1: not, or the mesh has errors; 2: an option is wrong; 3: a
+file is.)");
   const auto arguments = std::make_shared<GraspArguments>();
   command->add_option("object", arguments->object, "FDCG file, or a mesh without errors")->required()->type_name("OBJECT");
   command->add_option("--contacts", arguments->contacts, "Where it is touched: JSON or CSV; - is standard input")

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grasp_contacts.hpp"
 
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "../common/nearest.hpp"
@@ -151,7 +153,8 @@ void check_header(const std::vector<std::string>& header) {
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto& column = header[i];
     if (std::find(known.begin(), known.end(), column) == known.end())
-      throw Wrong{"line 1: '" + shown(column) + "' is no column of a contacts file" + did_you_mean(column, known)};
+      throw Wrong{"line 1: '" + shown(column) + "' is no column of a contacts file" +
+                  (column.find(';') != std::string::npos ? "; columns are separated by commas" : did_you_mean(column, known))};
     if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i), column) !=
         header.begin() + static_cast<std::ptrdiff_t>(i))
       throw Wrong{"line 1: the column '" + column + "' comes twice"};
@@ -215,7 +218,9 @@ Contacts parse_csv(const std::string& text) {
 
 }  // namespace
 
-bake::Result<Contacts> parse_contacts(const std::string& text, const std::string& path) {
+bake::Result<Contacts> parse_contacts(const std::string& bytes, const std::string& path) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8, which spreadsheets put in front
+  const std::string text = bytes.starts_with(kMark) ? bytes.substr(kMark.size()) : bytes;
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   try {
     if (first == std::string::npos) throw Wrong{"the file is empty; it lists contacts as JSON or CSV"};
@@ -235,12 +240,12 @@ bake::Result<Contacts> parse_contacts(const std::string& text, const std::string
 
 bake::Result<Contacts> read_contacts(const std::string& path) {
   std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-  if (file == nullptr) return bake::Failure{kFile, path + ": cannot be opened"};
+  if (file == nullptr) return bake::Failure{kFile, "'" + path + "': " + std::strerror(errno)};
   std::string text(kMostBytes + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), file));
-  const bool failed = std::ferror(file) != 0;
+  const int error_number = std::ferror(file) != 0 ? errno : 0;
   if (file != stdin) std::fclose(file);
-  if (failed) return bake::Failure{kFile, path + ": cannot be read"};
+  if (error_number != 0) return bake::Failure{kFile, "'" + path + "': " + std::strerror(error_number)};
   if (text.size() > kMostBytes) return bake::Failure{kFile, path + ": more than 16 MiB is no list of contacts"};
   return parse_contacts(text, path);
 }

@@ -63,6 +63,7 @@ struct FastRun::Impl {
   std::string tick(Group& group);
   std::string choose_clock(Group& group);
   void read_reports(Unit& unit, int timeout_ms) const;
+  void catch_up(Unit& unit, std::uint64_t until_ns) const;
   void finish_input(Unit& unit) const;
   void send(Unit& unit, const GatedForce& force, std::uint32_t echo);
   void note_tick(std::size_t index);
@@ -206,6 +207,15 @@ void FastRun::Impl::read_reports(Unit& unit, int timeout_ms) const {
   }
 }
 
+// What else has come up to then: each device has a clock of its own, which only its reads carry forward.
+void FastRun::Impl::catch_up(Unit& unit, std::uint64_t until_ns) const {
+  bool is_behind = true;
+  while (is_behind && unit.is_open && unit.input.read != ReadStatus::kLost && unit.input.report_count < kMaxDrain) {
+    is_behind = unit.transport->clock_ns() < until_ns;
+    read_reports(unit, is_behind ? kReadTimeoutMs : 0);
+  }
+}
+
 // Clock, poses and commands, as ServoLoop::gather has them.
 void FastRun::Impl::finish_input(Unit& unit) const {
   TickInput& input = unit.input;
@@ -267,10 +277,7 @@ std::string FastRun::Impl::tick(Group& group) {
   Member members[kMaxDevices];
   for (int i = 0; i < count; ++i) {
     Unit& unit = *units[first + static_cast<std::size_t>(i)];
-    // the others up to now: each has its own clock, which only its reads carry forward
-    while (unit.is_open && unit.input.read != ReadStatus::kLost && unit.input.report_count < kMaxDrain &&
-           unit.transport->clock_ns() < group.clock_ns)
-      read_reports(unit, kReadTimeoutMs);
+    catch_up(unit, group.clock_ns);
     finish_input(unit);
     members[i] = {&unit.device, &unit.input, &unit.output};
   }

@@ -200,8 +200,9 @@ std::string Builder::add_body(std::size_t index) {
   const std::uint32_t substeps = fdcg_body_substeps(&body.body, stiffness_n_per_m, arm_m, tick_s);
   if (substeps == 0) {
     return "with " + shown_number(config.mass_kg) + " kg it is too light for " + std::to_string(load_.contact_count) +
-           " contacts of " + shown_number(object.params.stiffness_n_per_m) + " N/m each: it would need more than " +
-           std::to_string(FDCG_BODY_MAX_SUBSTEPS) + " steps a tick; make it heavier, or softer (stiffness_n_per_m)";
+           (load_.contact_count == 1 ? " contact of " : " contacts of ") + shown_number(object.params.stiffness_n_per_m) +
+           " N/m each: it would need more than " + std::to_string(FDCG_BODY_MAX_SUBSTEPS) +
+           " steps a tick; make it heavier, or softer (stiffness_n_per_m)";
   }
   substeps_ = std::max(substeps_, substeps);
   scene_.bodies.push_back(body);

@@ -65,6 +65,8 @@ void ServoLoop::tick_together(ServoLoop* const* loops, int count, int* clock) {
   }
   *clock = group_tick(members, count);
   for (int i = 0; i < count; ++i)
+    loops[i]->parts_.writer->put(loops[i]->output_.force, loops[i]->output_.echo);
+  for (int i = 0; i < count; ++i)
     loops[i]->send_force();
   LogRing* const log = loops[0]->parts_.log;
   if (log != nullptr && log->device_count() > 1) log->put_all(members);
@@ -137,8 +139,8 @@ void ServoLoop::set_poses() {
   }
 }
 
+// What has been put is on its way: no writer waits for another's wake, which takes microseconds.
 void ServoLoop::send_force() {
-  parts_.writer->put(output_.force, output_.echo);
   done_ns_ = monotonic_ns();
   parts_.writer->wake();
   // Only now may the supervisor act: the zero force of this tick is on its way.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The device host: force-feedback devices, each with a servo thread, a writer thread and a safety gate, that feel a scene. The
- * whole of it on one screen:
+ * The device host: force-feedback devices, each with a servo thread, a writer thread and a safety gate, that feel a scene; those
+ * that press on the same bodies share one servo thread (the scene's "shared"). The whole of it on one screen:
  *
  *   fdcg_host* host;
  *   fdcg_host_message message;
@@ -17,7 +17,8 @@
  * on threads of the host's own and does neither.
  *
  * Safety: no force before fdcg_host_arm, none after a fault until it is armed anew, never more than the profile and the scene
- * allow. A fault is told by fdcg_device_status.
+ * allow. A fault is told by fdcg_device_status. Of devices that share a scene, one that is gone, silent or disarmed by a fault
+ * takes its fingers out of it; the others go on, each within its own limits.
  */
 #ifndef FDCG_DEVICE_H
 #define FDCG_DEVICE_H
