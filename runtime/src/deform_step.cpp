@@ -128,12 +128,29 @@ inline void seat_on(uint32_t n, fdcg_contact* contact) {
   contact->sweep.in_place = 0;
 }
 
-// A contact in free space. A sweep that was carried over begins anew, on the mesh as it is. Returns whether a face caught it.
+// A sweep that ran out of work begins anew, on the mesh as it is, and goes half as far (shorten): from the feature that let the
+// god-object go, where it still stands. From free space it would meet that first, and all that lies around be looked at twice.
+// Returns whether it went back to one.
+inline bool begin_sweep_anew(fdcg_deform_contact* contact) {
+  constexpr uint32_t kMostHalvings = 24;
+  fdcg_carried_sweep& sweep = contact->contact.sweep;
+  if (sweep.is_carried == 0) {
+    if (contact->halvings > 0) --contact->halvings;
+    return false;
+  }
+  if (contact->halvings < kMostHalvings) ++contact->halvings;
+  sweep.is_carried = 0;
+  if (sweep.left_state == FDCG_FREE) return false;
+  contact->contact.state = sweep.left_state;
+  contact->contact.feature = sweep.left_feature;
+  return true;
+}
+
+// A contact in free space. Returns whether a face caught it.
 template <class Real>
 bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, const Vec3<double>* hip,
                     fdcg_deform_contact* waiting) {
   fdcg_contact* const contact = &waiting->contact;
-  contact->sweep.is_carried = 0;
   const Clear clear = clear_of_faces(upkeep, travel, hip, waiting);
   bool is_in_box = false;  // then there is no quiet ball around it: not looked for
   if (clear == Clear::no && saw_before) {
@@ -161,12 +178,6 @@ template <class Real>
   contact->tick = deform.tick;
   contact->travel = deform.travel;
   if (!is_started) return 0;
-  constexpr uint32_t kMostHalvings = 24;
-  if (contact->contact.sweep.is_carried != 0) {
-    if (contact->halvings < kMostHalvings) ++contact->halvings;
-  } else if (contact->halvings > 0) {
-    --contact->halvings;
-  }
   uint32_t flags = saw_before ? 0 : FDCG_DEFORM_MISSED;
   if (contact->contact.state != FDCG_FREE) {
     ride(upkeep, saw_before, &contact->contact);
@@ -208,9 +219,13 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
   deform->upkeep_left = kUpkeepWork;
   if (deform->has_moved != 0) begin_tick(upkeep);
   uint32_t flags = 0;
-  if (contact->tick != deform->tick) flags = take_part(upkeep, params, hip_object_m, contact);
+  bool begins_anew = false;
+  if (contact->tick != deform->tick) {
+    begins_anew = begin_sweep_anew(contact);
+    flags = take_part(upkeep, params, hip_object_m, contact);
+  }
   if (contact->contact.state == FDCG_FACE) leave_sliver(upkeep, &contact->contact);
-  if (contact->contact.state != FDCG_FREE) contact->halvings = 0;
+  if (contact->contact.state != FDCG_FREE && !begins_anew) contact->halvings = 0;
   if (contact->halvings > 0) {
     double to[3];
     shorten(deform->header, *contact, hip_object_m, to);
