@@ -67,7 +67,9 @@ fdcg_status check_steepness(const fdcg_params& params, const Owner& owner, const
       .real(steep.fall)
       .text(" s/m, allowed ")
       .real(steep.limit)
-      .text(" s/m to hold down to curve_depth_m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower curve_depth_m");
+      .text(
+          " s/m to hold down to curve_depth_m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower "
+          "curve_depth_m");
 }
 
 fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {

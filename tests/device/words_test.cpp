@@ -17,12 +17,12 @@ TEST_CASE("a message is one line of UTF-8, whatever bytes it quotes") {
       {"\xFF\xFE", "\uFFFD\uFFFD"},
       {"\xC3", "\uFFFD"},
       {"\x80\x80x", "\uFFFD\uFFFDx"},
-      {"\xC0\xAF", "\uFFFD\uFFFD"},                          // overlong
-      {"\xE0\x80\x80", "\uFFFD\uFFFD\uFFFD"},                // overlong
-      {"\xED\xA0\x80", "\uFFFD\uFFFD\uFFFD"},                // a surrogate
-      {"\xF4\x90\x80\x80", "\uFFFD\uFFFD\uFFFD\uFFFD"},      // beyond U+10FFFF
-      {"\xF0\x80\x80\x80", "\uFFFD\uFFFD\uFFFD\uFFFD"},      // overlong
-      {"\xC2\x85", "?"},                                       // U+0085, a line's end on some terminals
+      {"\xC0\xAF", "\uFFFD\uFFFD"},                      // overlong
+      {"\xE0\x80\x80", "\uFFFD\uFFFD\uFFFD"},            // overlong
+      {"\xED\xA0\x80", "\uFFFD\uFFFD\uFFFD"},            // a surrogate
+      {"\xF4\x90\x80\x80", "\uFFFD\uFFFD\uFFFD\uFFFD"},  // beyond U+10FFFF
+      {"\xF0\x80\x80\x80", "\uFFFD\uFFFD\uFFFD\uFFFD"},  // overlong
+      {"\xC2\x85", "?"},                                 // U+0085, a line's end on some terminals
   };
   for (const auto& one : cases)
     CHECK(one_line(one.bytes) == one.line);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The device host: force-feedback devices, each with a servo thread, a writer thread and a safety gate, that feel a scene; those
- * that press on the same bodies share one servo thread (the scene's "shared"). The whole of it on one screen:
+ * The device host: force-feedback devices, each with a servo thread, a writer thread and a safety gate, that feel a scene;
+ * those that press on the same bodies share one servo thread (the scene's "shared"). The whole of it on one screen:
  *
  *   fdcg_host* host;
  *   fdcg_host_message message;
