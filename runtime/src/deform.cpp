@@ -288,7 +288,7 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
   if (status != FDCG_OK) return status;
   if (memory == nullptr) return fdcg::refuse(error, FDCG_E_ARGUMENT, "memory: null pointer");
   if (reinterpret_cast<uintptr_t>(memory) % alignof(fdcg_deform) != 0)
-    return fdcg::refuse(error, FDCG_E_ALIGNMENT, "memory must start at a multiple of 8 bytes");
+    return fdcg::refuse(error, FDCG_E_ALIGNMENT, "memory must start at a multiple of 8 bytes; align the buffer");
   const fdcg::Layout layout(*graph->header);
   if (bytes < layout.bytes) {
     return Message(error, FDCG_E_ARGUMENT)

@@ -79,6 +79,27 @@ TEST_CASE("a deformed mesh has the planes, types and normals that the compiler g
   }
 }
 
+TEST_CASE("a deformable mesh keeps to its memory, and begins at a line of the cache, wherever that memory begins") {
+  const CompiledMesh sheet(rounded_to_float(ico_sphere(1)), triangle_options());
+  const std::uint64_t bytes = fdcg_deform_bytes(&sheet.view());
+  constexpr std::size_t kMost = 8, kMargin = 8;  // eights of bytes
+  constexpr std::uint64_t kUntouched = 0x5A5A5A5A5A5A5A5A;
+  const fdcg_deform_config config = fdcg_default_deform_config();
+  for (std::size_t first = kMargin; first < kMargin + kMost; ++first) {
+    std::vector<std::uint64_t> room(bytes / 8 + 2 * kMargin + kMost, kUntouched);
+    fdcg_deform* deform = nullptr;
+    fdcg_error error;
+    REQUIRE(bytes % 8 == 0);
+    CHECK(fdcg_deform_create(&room[first], bytes - 1, &sheet.view(), &config, &deform, &error) == FDCG_E_ARGUMENT);
+    REQUIRE(fdcg_deform_create(&room[first], bytes, &sheet.view(), &config, &deform, &error) == FDCG_OK);
+    CHECK(reinterpret_cast<std::uintptr_t>(deform) % 64 == 0);
+    (void)fdcg_deform_graph(deform);
+    for (std::size_t i = 0; i < room.size(); ++i) {
+      if (i < first || i >= first + bytes / 8) CHECK(room[i] == kUntouched);
+    }
+  }
+}
+
 TEST_CASE("lazy steps are those on a mesh computed anew as a whole, bit for bit") {
   const std::uint64_t steps = steps_or(4000);
   for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {

@@ -80,8 +80,9 @@ static inline fdcg_deform_config fdcg_default_deform_config(void) {
 /* What fdcg_deform_create needs; 0 if the graph cannot be deformed (fdcg_deform_create says why). */
 uint64_t fdcg_deform_bytes(const fdcg_graph* graph);
 
-/* At `memory`, a multiple of 8, with every vertex where the graph has it. FDCG_E_GRAPH unless every node is a triangle and no
- * corner has more than FDCG_DEFORM_MOST_FAN edges. `error` may be NULL, here and below. Cost: linear in the graph. */
+/* In `memory`, a multiple of 8 (*deform is the next multiple of 64), with every vertex where the graph has it. FDCG_E_GRAPH
+ * unless every node is a triangle and no corner has more than FDCG_DEFORM_MOST_FAN edges. `error` may be NULL, here and below.
+ * Cost: linear in the graph. */
 fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fdcg_graph* graph, const fdcg_deform_config* config,
                                fdcg_deform** deform, fdcg_error* error);
 
