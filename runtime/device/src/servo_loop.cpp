@@ -52,7 +52,7 @@ void ServoLoop::tick() {
   tick_together(&alone, 1, &clock);
 }
 
-// Who is waited for: the clock, as long as it is there; else the first that is; where none is, the first, which then sleeps.
+// Who is waited for: the clock, as long as it is there, else the first that is; where none is, the clock, which then sleeps.
 void ServoLoop::tick_together(ServoLoop* const* loops, int count, int* clock) {
   int waiting = *clock;
   for (int i = 0; i < count && !loops[waiting]->is_open(); ++i)
