@@ -14,7 +14,11 @@ Message& say_which(Message& message, uint64_t move) {
   return message;
 }
 
-// `corner`: FDCG_NONE where one is looked for.
+inline bool is_finite(double x) {
+  return absolute(x) <= DBL_MAX;
+}
+
+// Of a place that is not finite, or, for a corner that is to be moved, outside. `corner`: FDCG_NONE where one is looked for.
 [[gnu::cold, gnu::noinline]] fdcg_status refuse_place(const fdcg_deform& deform, uint64_t move, uint32_t corner,
                                                       const double position_m[3], fdcg_error* error) {
   const fdcg_header& header = deform.header;
@@ -24,12 +28,16 @@ Message& say_which(Message& message, uint64_t move) {
   if (corner != FDCG_NONE) message.text("corner ").number(corner).text(": ");
   message.text("position ");
   for (int k = 0; k < 3; ++k) {
+    if (is_finite(position_m[k])) continue;
+    message.number(static_cast<uint64_t>(k)).text(" is ").real(position_m[k]);
+    return message.text(" m; it must be finite: look at where it was computed");
+  }
+  for (int k = 0; k < 3; ++k) {
     const double low = (deform.low[k] + header.origin[k]) * header.metres_per_unit;
     const double high = (deform.high[k] + header.origin[k]) * header.metres_per_unit;
     if (position_m[k] >= low && position_m[k] <= high) continue;
     message.number(static_cast<uint64_t>(k)).text(" is ").real(position_m[k]).text(" m, allowed ").real(low).text(" to ");
-    return message.real(high).text(corner != FDCG_NONE ? "; create the deformable mesh with a larger margin_m"
-                                                       : "; vertices are where the file says, in metres");
+    return message.real(high).text("; create the deformable mesh with a larger margin_m");
   }
   return message.text("is at the very end of what the margin_m allows");
 }
@@ -213,10 +221,12 @@ extern "C" fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double 
     return fdcg::Message(error, FDCG_E_ARGUMENT).text("deform, position or corner: null pointer");
   *corner = FDCG_NONE;
   fdcg::Vec3<double> local;
-  if (!fdcg::to_local(*deform, position_object_m, &local))
-    return fdcg::refuse_place(*deform, FDCG_NONE, FDCG_NONE, position_object_m, error);
+  for (int k = 0; k < 3; ++k)
+    if (!fdcg::is_finite(position_object_m[k]))
+      return fdcg::refuse_place(*deform, FDCG_NONE, FDCG_NONE, position_object_m, error);
   const double reach = kNear * deform->header.extent;
-  *corner = fdcg::with_real_of(deform->header, [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
+  if (fdcg::to_local(*deform, position_object_m, &local))  // no corner has ever been beyond
+    *corner = fdcg::with_real_of(deform->header, [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
   if (*corner != FDCG_NONE) return FDCG_OK;
   return fdcg::Message(error, FDCG_E_ABSENT)
       .text("no corner within ")

@@ -352,6 +352,8 @@ class Input(GraspCase):
             ("x,y,z,nx,ny,nz\n1,0,0,1e-200,0,0\n", ("no direction",)),
             ("x;y;z\n1;0;0\n", ("'x;y;z'", "commas")),
             ("x,y,z\n" + 1001 * "1,0,0\n", ("1001 contacts", "1000")),
+            ("x,y,z,name\n1,0,0,a\n0,1,0,b\n-1,0,0,a\n", ("contacts 0 and 2 are both called 'a'", "give each its own")),
+            ("[{\"point\": [1, 0, 0], \"name\": \"contact 1\"}, {\"point\": [-1, 0, 0]}]", ("0 and 1", "'contact 1'")),
         ):
             with self.subTest(text=text[:60]):
                 done = self.fdcg("grasp", self.cube, "--contacts", self.write("bad", text), "--mu", "1", code=3)
@@ -361,6 +363,10 @@ class Input(GraspCase):
                 self.assertEqual(b"", done.stdout)
         for path, words in ((self.path("none"), "No such file"), (str(self.folder), "Is a directory"), ("", "No such file")):
             self.assert_one_line(self.fdcg("grasp", self.cube, "--contacts", path, "--mu", "1", code=3), path, words)
+
+    def test_one_contact_is_told_as_one(self):
+        done = self.fdcg("grasp", self.cube, "--contacts", self.write("one.csv", "x,y,z\n1,0,0\n"), "--mu", "1", code=1)
+        self.assertIn(b": 1 contact on 6 nodes\n", done.stdout)
 
     def test_a_mark_of_utf_8_in_front_is_passed_over(self):
         for text in ("x,y,z\n1,0,0\n", "[{\"point\": [1, 0, 0]}]"):
@@ -372,6 +378,7 @@ class Input(GraspCase):
         here = ("grasp", self.cube, "--contacts", self.fingers)
         for arguments, words in (
             (("grasp", self.cube), ("--contacts",)),
+            (("grasp", "-", "--contacts", "-", "--mu", "1"), ("OBJECT", "--contacts", "standard input", "only one")),
             (here, ("contact 0", "--mu")),
             ((*here, "--mu", "-1"), ("--mu", "from 0 to 100")),
             ((*here, "--mu", "101"), ("--mu: '101' is no number from 0 to 100",)),

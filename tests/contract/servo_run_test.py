@@ -219,7 +219,28 @@ class Run(ServoCase):
         done = self.run_scene(scene, "--no-log", "--status", "json", codes=(0,))
         device = lines_of(done.stdout)[-1]["devices"][0]
         self.assertGreater(device["ticks"], 200)
+        self.assertIs(True, device["ended"])
+        jsonschema.validate(lines_of(done.stdout)[-1], schema("servo-status.schema.json"))
         self.run_scene(scene, "--log", log, codes=(3,))  # would overwrite what it plays
+
+    def test_a_recording_that_ends_while_it_is_armed_is_no_fault_and_is_told_as_its_end(self):
+        log = self.path("session.fdcglog")
+        hand = {"name": "hand", "source": "simulated", "simulation": {"start_m": [0, 0, 0.03], "amplitude_m": [0, 0, 0]}}
+        self.run_scene(self.scene(devices=[hand]), "--fast", "--for", "1.5", "--log", log, "-q", codes=(0,))
+        scene = self.scene(devices=[{"name": "hand", "source": "recorded", "recording": os.path.basename(log)}])
+        for how in ((), ("--fast",)):
+            with self.subTest(how):
+                done = self.run_scene(scene, "--arm", "--no-log", *how, codes=(0,) if how else (0, 1))
+                self.assertIn(b"the recording has ended", done.stdout)
+                self.assertNotIn(b"read-failed", done.stdout)
+                self.assertNotIn(b"plug it in", done.stdout)
+                self.assertNotIn(b"hand: gone", done.stdout)
+                if how:
+                    self.assertIn(b"disarmed       never\n", done.stdout)
+                last = lines_of(self.run_scene(scene, "--arm", "--no-log", "--status", "json", *how).stdout)[-1]
+                jsonschema.validate(last, schema("servo-status.schema.json"))
+                self.assertIs(True, last["devices"][0]["ended"])
+        self.assertIn(b"(a recording that has ended is no fault)", self.servo("run", "--help").stdout)
 
     def test_a_device_of_unknown_limits_is_read_but_never_armed(self):
         log = self.session("1")
@@ -413,6 +434,22 @@ class Check(ServoCase):
             done = self.servo("check", self.scene(name, **changes), code=1)
             for word in words:
                 self.assertIn(word, done.stdout.decode())
+
+    def test_a_rate_at_which_nothing_stays_armed_is_a_warning_that_says_which_does(self):
+        profile = json.loads((ROOT / "runtime/device/profiles/fdcg-reference.json").read_text())
+        profile["rate_hz"] = 10
+        slow = [{"name": "hand", "source": "simulated", "simulation": {"rate_hz": 10}}]
+        for path in (self.scene("slow.json", devices=slow), self.write("device.json", json.dumps(profile)),
+                     self.scene(devices=[{"name": "hand", "profile": "device.json"}])):
+            done = self.servo("check", path)
+            self.assertIn(b": ok\n", done.stdout)
+            self.assertEqual(1, done.stdout.count(b"warning: "), done.stdout)
+            self.assertIn(b"rate_hz is 10, a report every 100 ms, and the gate disarms after 10 ms", done.stdout)
+            self.assertIn(b"above 100 Hz", done.stdout)
+        for rate_hz, is_armed in ((10, False), (110, True)):  # as the warning says
+            slow[0]["simulation"] = {"rate_hz": rate_hz, "start_m": [0, 0, 0.03], "amplitude_m": [0, 0, 0]}
+            done = self.run_scene(self.scene(devices=slow), "--arm", "--for", "3", "--fast", "--no-log")
+            self.assertEqual(is_armed, b"disarmed       never" in done.stdout, done.stdout)
 
     def test_unknown_limits_are_a_warning_that_says_what_follows(self):
         profile = json.loads((ROOT / "runtime/device/profiles/fdcg-reference.json").read_text())

@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -288,4 +290,20 @@ TEST_CASE("every fault has a name of its own and a text") {
     for (int k = 0; k < i; ++k)
       CHECK(std::string(fault_name(static_cast<Fault>(i))) != fault_name(static_cast<Fault>(k)));
   }
+}
+
+TEST_CASE("the documents name every fault as the program does") {
+  const auto text_of = [](const char* name) {
+    std::ifstream file(std::string(FDCG_SOURCE_DIR "/schemas/") + name);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string log = text_of("session-log.md"), status = text_of("servo-status.schema.json");
+  std::string names;  // the schema's list is of these, in this order, and of no others
+  for (int i = 0; i < kFaults; ++i) {
+    const std::string name = fault_name(static_cast<Fault>(i));
+    INFO(name);
+    CHECK(log.find((i == 0 ? "fault: 0 `" : ", " + std::to_string(i) + " `") + name + "`") != std::string::npos);
+    names += (i == 0 ? "\"" : ", \"") + name + "\"";
+  }
+  CHECK(status.find("\"enum\": [" + names + "]") != std::string::npos);
 }

@@ -406,6 +406,32 @@ TEST_CASE("a device without limits is accepted, and a warning says that it gives
                     [](const std::string& warning) { return warning.find("limits") != std::string::npos; }));
 }
 
+TEST_CASE("a device whose reports come as seldom as silence is accepted with a warning, once, that says what rate will do") {
+  json profile = json::parse(std::string(find_builtin_profile("fdcg-reference")->text));
+  for (const double rate_hz : {1.0, 10.0, 100.0, 100.5, 1000.0}) {
+    profile["rate_hz"] = rate_hz;
+    const json simulation = {{"rate_hz", rate_hz}};
+    const json devices = {{{"name", "hand"}, {"source", "simulated"}, {"simulation", simulation}},
+                          {{"name", "hand"}, {"profile", profile}},
+                          {{"name", "hand"}, {"source", "recorded"}, {"recording", "a"}, {"simulation", simulation}},
+                          {{"name", "hand"}, {"source", "recorded"}, {"recording", "a"}, {"profile", profile}}};
+    for (const json& device : devices) {
+      json scene = small();
+      scene["devices"][0] = device;
+      HostConfig config;
+      std::vector<std::string> warnings;
+      INFO(device.dump());
+      REQUIRE(parse_scene(scene.dump(), "s.json", &config, &warnings) == "");
+      REQUIRE(warnings.size() == (rate_hz <= 100 ? 1 : 0));
+      if (warnings.empty()) continue;
+      CHECK(warnings[0].rfind("device 'hand': ", 0) == 0);
+      CHECK(warnings[0].find("rate_hz is " + std::to_string(static_cast<int>(rate_hz)) + ", ") != std::string::npos);
+      CHECK(warnings[0].find("disarms after 10 ms") != std::string::npos);
+      CHECK(warnings[0].find("above 100 Hz") != std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("whatever is changed in a scene, it is accepted, or refused in one line that names the file") {
   std::mt19937_64 random(22);
   const json full = json::parse(kFull);

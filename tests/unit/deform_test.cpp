@@ -78,10 +78,20 @@ TEST_CASE("each vertex is found as a corner of its own, and no place has a corne
   CHECK(corners.size() == rest.points.size());
   fdcg_error error;
   std::uint32_t corner = 0;
-  const double beside[3] = {0.01, 0.01, 0.25}, nowhere[3] = {kNan, 0, 0};
-  CHECK(fdcg_deform_find(sheet.deform(), beside, &corner, &error) == FDCG_E_ABSENT);
-  CHECK(corner == FDCG_NONE);
-  CHECK(fdcg_deform_find(sheet.deform(), nowhere, &corner, &error) == FDCG_E_ARGUMENT);
+  for (const double away : {0.01, 2.5, 1e9, -1e300}) {  // beside a corner, beyond the margin, far beyond all
+    const double beside[3] = {0.01, away, 0.25};
+    corner = 0;
+    CHECK(fdcg_deform_find(sheet.deform(), beside, &corner, &error) == FDCG_E_ABSENT);
+    CHECK(corner == FDCG_NONE);
+    CHECK(says(error, "no corner within"));
+  }
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    const double nowhere[3] = {1e9, bad, 0};
+    CHECK(fdcg_deform_find(sheet.deform(), nowhere, &corner, &error) == FDCG_E_ARGUMENT);
+    CHECK(says(error, "position 1 is "));
+    CHECK(says(error, "must be finite"));
+    CHECK_FALSE(says(error, "margin_m"));
+  }
 }
 
 TEST_CASE("a vertex is not moved to what is no place, and stays where it was") {
@@ -92,7 +102,9 @@ TEST_CASE("a vertex is not moved to what is no place, and stays where it was") {
   for (const double bad : {kNan, kInfinity, -kInfinity, 0.51, -1e300}) {
     const double at[3] = {rest.points[4].x, rest.points[4].y, bad};
     CHECK(fdcg_deform_move(sheet.deform(), corner, at, &error) == FDCG_E_ARGUMENT);
-    CHECK(says(error, "margin_m"));
+    CHECK(says(error, "position 2 is "));
+    CHECK(says(error, "margin_m") == std::isfinite(bad));
+    CHECK(says(error, "must be finite") == !std::isfinite(bad));
   }
   const double fine[3] = {0, 0, 0};
   CHECK(fdcg_deform_move(sheet.deform(), 9, fine, &error) == FDCG_E_ARGUMENT);
@@ -125,6 +137,7 @@ TEST_CASE("many moves in one call are those of as many calls, up to the first th
   fdcg_error error;
   CHECK(fdcg_deform_move_corners(sheet.deform(), corners.data(), places.data(), corners.size(), &error) == FDCG_E_ARGUMENT);
   CHECK(says(error, "move 500: corner "));
+  CHECK(says(error, "position 1 is NaN m; it must be finite"));
   CHECK(bytes_of(sheet.updated()) == bytes_of(other.updated()));
   corners[0] = 441;
   CHECK(fdcg_deform_move_corners(sheet.deform(), corners.data(), places.data(), 3, &error) == FDCG_E_ARGUMENT);

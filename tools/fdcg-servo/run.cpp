@@ -133,6 +133,7 @@ class Session {
   void look();
   void notice(std::size_t device);
   void notice_connection(std::size_t device);
+  bool is_recorded(std::size_t device) const;
   void arm_where_wanted(std::size_t device);
   void say(const std::string& line);
   void show_status();
@@ -205,11 +206,17 @@ void Session::arm_where_wanted(std::size_t device) {
   }
 }
 
+// It is never gone: it ends, and its connection's problem says so.
+bool Session::is_recorded(std::size_t device) const {
+  return host_.device(static_cast<int>(device)).source == dev::DeviceSource::kRecorded;
+}
+
 void Session::notice_connection(std::size_t device) {
   Seen& seen = seen_[device];
   const DeviceLook& look = looks_[device];
   if (look.connection.connection != seen.connection) {
-    say(look.name + (look.connection.connection == dev::Connection::kOpen ? ": open" : ": gone"));
+    const bool is_open = look.connection.connection == dev::Connection::kOpen;
+    if (is_open || !is_recorded(device)) say(look.name + (is_open ? ": open" : ": gone"));
     seen.connection = look.connection.connection;
   }
   if (look.connection.problem != seen.problem) {
@@ -227,7 +234,8 @@ void Session::notice(std::size_t device) {
   for (int i = 1; i < dev::kFaults; ++i) {
     const auto fault = static_cast<dev::Fault>(i);
     if (status.counters.disarmed[i] > seen.disarmed[i]) {
-      say(look.name + ": disarmed: " + dev::fault_text(fault));
+      const bool is_end = fault == dev::Fault::kReadFailed && is_recorded(device);
+      if (!is_end) say(look.name + ": disarmed: " + dev::fault_text(fault));
       has_disarmed = true;
     }
     seen.disarmed[i] = status.counters.disarmed[i];
@@ -308,10 +316,11 @@ int Session::end(const std::string& stop_problem) {
   for (std::size_t i = 0; i < looks_.size(); ++i) {
     const dev::ConnectionReport after = host_.connection(static_cast<int>(i));  // all are closed: only is_over tells
     looks_[i].status = host_.status(static_cast<int>(i));
-    const bool is_played = after.is_over;  // a recording's end is no fault
-    if (!is_played) notice(i);
     const bool is_missing = looks_[i].status.opened == 0;
     const dev::Fault fault = looks_[i].status.last.fault;
+    const bool is_played = after.is_over || (is_recorded(i) && fault == dev::Fault::kReadFailed);  // that end is no fault
+    looks_[i].connection.is_over = is_played;
+    notice(i);
     const bool is_only_read = fault == dev::Fault::kUnknownLimit && !seen_[i].was_asked;
     is_clean = is_clean && (is_played || ((!is_trouble(fault) || is_only_read) && !is_missing));
   }
@@ -390,8 +399,8 @@ Examples:
 Commands on standard input, a line each: arm, disarm, quit. Its end does not end the run; Ctrl-C does, with zero force.
 Nothing is pushed until a device is armed, and after a fault until it is armed again. A log that is there is overwritten.
 
-Exit codes: 0 clean; 1 a device ended disarmed by a fault, or was never there; 2 wrong usage; 3 a file; 4 a fault of the
-program.)");
+Exit codes: 0 clean (a recording that has ended is no fault); 1 a device ended disarmed by a fault, or was never there;
+2 wrong usage; 3 a file; 4 a fault of the program.)");
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("scene", arguments->scene, "Scene (schemas/servo-scene.schema.json)")->required()->type_name("SCENE");
   command->add_flag("--arm", arguments->arm, "Arm each device once, as soon as it is there and free of force");

@@ -57,6 +57,7 @@ Json device_json(const DeviceLook& look) {
   json["name"] = look.name;
   json["connection"] = look.connection.connection == dev::Connection::kOpen ? "open" : "absent";
   if (!look.connection.problem.empty()) json["problem"] = look.connection.problem;
+  if (look.connection.is_over) json["ended"] = true;
   json["opened"] = status.opened;
   json["phase"] = phase_name(status.last.phase);
   json["fault"] = dev::fault_name(status.last.fault);
@@ -113,10 +114,11 @@ std::string rejected_text(const dev::TickCounters& counters) {
   return total == 0 ? text : text + ")";
 }
 
-std::string disarmed_text(const dev::TickCounters& counters) {
+// A recording's end disarms as an unplugged device does, and is told apart.
+std::string disarmed_text(const dev::TickCounters& counters, bool is_over) {
   std::string text;
   for (int i = 1; i < dev::kFaults; ++i) {
-    if (counters.disarmed[i] == 0) continue;
+    if (counters.disarmed[i] == 0 || (is_over && static_cast<dev::Fault>(i) == dev::Fault::kReadFailed)) continue;
     text += (text.empty() ? "" : ", ") + std::string(dev::fault_name(static_cast<dev::Fault>(i)));
     if (counters.disarmed[i] > 1) text += " " + grouped(counters.disarmed[i]) + " times";
   }
@@ -188,7 +190,8 @@ std::string summary_text(const std::vector<DeviceLook>& looks) {
     if (status.write_failures != 0) text += "  writes failed  " + grouped(status.write_failures) + "\n";
     if (status.log_dropped != 0) text += "  not logged     " + grouped(status.log_dropped) + " ticks\n";
     if (counters.bodies_lost != 0) text += "  bodies         lost: one flew beyond all bounds, and all stand still since\n";
-    text += "  disarmed       " + disarmed_text(counters) + "\n";
+    text += "  disarmed       " + disarmed_text(counters, look.connection.is_over) + "\n";
+    if (look.connection.is_over) text += "  ended          the recording has ended\n";
   }
   return text;
 }

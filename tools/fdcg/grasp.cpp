@@ -130,6 +130,9 @@ bool has_grip(const GraspArguments& arguments, const grasp::Grasp& grasp) {
 }
 
 int run_grasp(const GraspArguments& arguments) {
+  if (arguments.object == "-" && arguments.contacts == "-")
+    return fail(kUsage,
+                "OBJECT and --contacts are both '-', and standard input can be only one of them; name a file for the other");
   for (const std::string* input : {&arguments.object, &arguments.contacts}) {
     if (is_same_file(*input, arguments.output)) return fail(kUsage, "'" + arguments.output + "' would overwrite an input");
   }

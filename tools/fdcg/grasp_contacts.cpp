@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "../common/nearest.hpp"
@@ -216,6 +217,17 @@ Contacts parse_csv(const std::string& text) {
   return contacts;
 }
 
+// The report tells contacts by their names. Those without one have a number, which another may have been given as its name.
+void refuse_twins(const Contacts& contacts) {
+  std::map<std::string_view, std::size_t> first;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto [other, is_new] = first.emplace(contacts[i].name, i);
+    if (!is_new)
+      throw Wrong{"contacts " + std::to_string(other->second) + " and " + std::to_string(i) + " are both called '" +
+                  shown(contacts[i].name) + "'; the report tells contacts by their names: give each its own"};
+  }
+}
+
 }  // namespace
 
 bake::Result<Contacts> parse_contacts(const std::string& bytes, const std::string& path) {
@@ -230,6 +242,7 @@ bake::Result<Contacts> parse_contacts(const std::string& bytes, const std::strin
     if (contacts.size() > grasp::kMostContacts)
       throw Wrong{"there are " + std::to_string(contacts.size()) + " contacts; at most " +
                   std::to_string(grasp::kMostContacts) + " are judged"};
+    refuse_twins(contacts);
     return contacts;
   } catch (const Wrong& wrong) {
     return bake::Failure{kFile, path + ": " + one_line(wrong.message)};

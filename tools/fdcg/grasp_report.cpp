@@ -111,6 +111,11 @@ std::string wrench_text(const grasp::Wrench& w, double torque_scale_m) {
   return "force " + triple(w.force_n, size) + " N, torque " + triple(w.torque_nm, size * torque_scale_m) + " Nm";
 }
 
+// "1 contact", "2,000 nodes"
+std::string counted(std::size_t count, const char* what) {
+  return grouped(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 std::size_t name_width(const GraspReport& report) {
   std::size_t width = 0;
   for (const NamedContact& contact : report.asked)
@@ -206,7 +211,8 @@ std::string grasp_report_text(const GraspReport& report) {
   const grasp::Epsilon& epsilon = report.epsilon;
   const bool is_closed = closure.verdict == grasp::Verdict::closure;
   const double scale = report.grasp.torque_scale_m;
-  std::string text = report.object + ": " + grouped(report.asked.size()) + " contacts on " + grouped(report.faces) + " nodes\n";
+  std::string text =
+      report.object + ": " + counted(report.asked.size(), "contact") + " on " + counted(report.faces, "node") + "\n";
   text += "  centre         " + triple(report.grasp.centre_m, scale) + " m (" + report.centre_from + ")\n";
   text += "  torque scale   " + number(report.grasp.torque_scale_m) + " m (" + report.torque_scale_from + ")\n";
   text += contacts_text(report);

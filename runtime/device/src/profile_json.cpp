@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gate.hpp"
 #include "json_reader.hpp"
 #include "profile_kinematics.hpp"
 #include "profile_reports.hpp"
@@ -63,8 +64,10 @@ void read_limits(const JsonObject& json, int axis_count, DeviceLimits* limits) {
   limits->device_watchdog_s = json.number_or("device_watchdog_s", 0, kWatchdog);
 }
 
-// What is not known, for a device that could push.
-void warn(const JsonObject* json, const std::string& file_name, std::vector<std::string>* warnings) {
+// What is not known, for a device that could push, and what it is too slow for.
+void warn(const JsonObject* json, double rate_hz, const std::string& file_name, std::vector<std::string>* warnings) {
+  if (const std::string warning = rate_warning(rate_hz); !warning.empty())
+    warnings->push_back(one_line(file_name + ": " + warning));
   for (const char* key : {"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m"}) {
     if (json == nullptr || !json->has(key))
       warnings->push_back(one_line(file_name + ": limits." + key +
@@ -96,13 +99,22 @@ void read_profile(const JsonObject& json, const std::string& file_name, Profile*
     const JsonObject limits =
         json.object("limits", {"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m", "device_watchdog_s"});
     read_limits(limits, profile->axis_count, &profile->limits);
-    if (warnings != nullptr && profile->has_output) warn(&limits, file_name, warnings);
+    if (warnings != nullptr && profile->has_output) warn(&limits, profile->rate_hz, file_name, warnings);
   } else if (warnings != nullptr && profile->has_output) {
-    warn(nullptr, file_name, warnings);
+    warn(nullptr, profile->rate_hz, file_name, warnings);
   }
 }
 
 }  // namespace
+
+std::string rate_warning(double rate_hz) {
+  constexpr double kLeastRate = 1 / kSilenceS;  // at it each report comes as the last one's time is over
+  if (!(rate_hz <= kLeastRate)) return {};
+  return "rate_hz is " + shown_number(rate_hz) + ", a report every " + shown_number(1000 / rate_hz) +
+         " ms, and the gate disarms after " + shown_number(1000 * kSilenceS) +
+         " ms without one: it will not stay armed, so there is no force; above " + shown_number(kLeastRate) +
+         " Hz it does, and above " + shown_number(2 * kLeastRate) + " also where a report is lost";
+}
 
 std::string parse_profile(std::string_view text, const std::string& file_name, Profile* profile,
                           std::vector<std::string>* warnings) {

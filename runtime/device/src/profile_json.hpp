@@ -11,10 +11,13 @@
 namespace fdcg::dev {
 
 // Empty: *profile is the whole of it. Otherwise one line that names file_name, the field, what was found and what is expected;
-// *profile is then not to be used. `warnings` (may be null) gets a line for each limit that is not known, since the device is
-// then read but never pushes.
+// *profile is then not to be used. `warnings` (may be null) gets, for a device that could push, a line for each limit that is
+// not known, since it is then read but never pushes, and one for a rate at which it would not stay armed.
 std::string parse_profile(std::string_view text, const std::string& file_name, Profile* profile,
                           std::vector<std::string>* warnings = nullptr);
+
+// What follows for a device that reports so seldom that the gate takes it for silent; empty: it does not.
+std::string rate_warning(double rate_hz);
 
 // The profiles of runtime/device/profiles, by their files' names without ".json", in alphabetical order.
 struct BuiltinProfile {

@@ -55,6 +55,7 @@ void SceneParser::read_device(const JsonObject& from) {
                     " of a simulated device");
     if (from.has("simulation")) read_simulation(from.object("simulation", kSimulationKeys), &device.simulation);
     device.profile = simulated_profile(device.simulation);
+    warn_of_rate(device);
   } else {
     from.allow_only({"name", "source", "mapping", "contacts", "grip", "turn", "force_limit_n", "notes", "profile", "recording",
                      "simulation"},
@@ -117,6 +118,12 @@ void SceneParser::parse_profile_of(const JsonObject& from, const std::string& te
     warnings_->push_back("device " + in_quotes(device->name) + ": " + warning);
 }
 
+// Of a device whose profile nobody has read: a profile that is read has warned of its own rate.
+void SceneParser::warn_of_rate(const DeviceConfig& device) {
+  const std::string warning = rate_warning(device.profile.rate_hz);
+  if (warnings_ != nullptr && !warning.empty()) warnings_->push_back("device " + in_quotes(device.name) + ": " + warning);
+}
+
 // A built-in one by its name, a file, or in place.
 void SceneParser::read_profile(const JsonObject& from, DeviceConfig* device) {
   if (from.is_object("profile")) return parse_profile_of(from, from.json("profile"), "it", device);
@@ -148,7 +155,7 @@ void SceneParser::read_recording(const JsonObject& from, DeviceConfig* device) {
   if (from.has("simulation")) {  // of a device that was simulated when it was recorded: so a log of its recording says all
     read_simulation(from.object("simulation", kSimulationKeys), &device->simulation);
     device->profile = simulated_profile(device->simulation);
-    return;
+    return warn_of_rate(*device);
   }
   if (file_.has_failed()) return;
   if (!options_.reads_files) return from.fail("recording", "names a file, and none is read here");
@@ -170,6 +177,7 @@ void SceneParser::read_recording(const JsonObject& from, DeviceConfig* device) {
   device->profile = recorded.devices[index].profile;
   device->profile_text = recorded.devices[index].profile_text;
   device->simulation = recorded.devices[index].simulation;
+  warn_of_rate(*device);
 }
 
 void SceneParser::read_mapping(const JsonObject& from, Mapping* mapping) {

@@ -55,6 +55,7 @@ class SceneParser {
   void read_script(const JsonObject& from, SimulationConfig* simulation);
   void read_device(const JsonObject& from);
   void read_profile(const JsonObject& from, DeviceConfig* device);
+  void warn_of_rate(const DeviceConfig& device);
   void read_recording(const JsonObject& from, DeviceConfig* device);
   void read_mapping(const JsonObject& from, Mapping* mapping);
   void read_simulation(const JsonObject& from, SimulationConfig* simulation);

@@ -6,10 +6,10 @@
 //   this tick, the scene moves on by one period of it, otherwise it stands still. A clock that falls silent is followed by
 //   another after kMissedTicksToFade periods.
 // - The others' fingers are where their newest reports had them.
-// - A device's fingers leave the scene when it is gone, has given no good report for kSilenceS, or was disarmed by a fault;
-// they
-//   then touch nothing. They come back, free, where the hand then is: after a fault when it is armed again, otherwise with the
-//   next good report. What they held is the others' to hold, or falls.
+// - A device's fingers leave the scene when it is gone, has given no good report for kSilenceS, or was disarmed by a fault:
+//   they then touch nothing. They come back, free, where the hand then is: after a fault when it is armed again, otherwise with
+//   the next good report. What they held is the others' to hold, or falls. Without a fault (not armed yet, disarmed by command,
+//   a limit that is not known) they stay: a hand that gets no force still moves what it presses.
 //
 // No heap, no lock, no clock.
 #pragma once

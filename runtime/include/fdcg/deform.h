@@ -15,8 +15,11 @@
  * &error).
  *
  * What depends on the corners' places - planes, edges, types, corner normals, boxes - is brought up to date when a step looks
- * at it, and not before: a tick costs what it moves and what it touches, whatever the mesh. Types are exact signs, planes have
- * the bits that fdcg compile gives them; nothing old is ever looked at.
+ * at it, and not before: a tick costs what it moves and what it touches, whatever the mesh. Nothing old is ever
+ * looked at. An edge's type is the exact sign of its four corners as they are; a triangle's plane has the bits that fdcg
+ * compile gives a triangle with a plane of its own. Compile, with --triangles too, also takes an edge for flat, and lets its
+ * triangles share a plane, where that is so within what the mesh's coordinates are rounded to: there types and normals may
+ * differ from the file's, from the start on.
  *
  * A god-object in contact rides on its feature: at the same place of its triangle, edge or corner. A free HIP that a face
  * passes over is caught by it, however far the vertices moved in the tick, and whether or not the HIP moves: each triangle's
@@ -87,12 +90,13 @@ fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fdcg_graph* g
                                fdcg_deform** deform, fdcg_error* error);
 
 /* The corner at a place: of those nearer than 2^-20 of the extent the nearest, of equally near ones the lowest. FDCG_E_ABSENT
- * where there is none. Ask before vertices move: a mesh's vertex has the place that its file says, in metres in the object's
- * frame. Vertices that the compiler welded are one corner. Cost: the boxes around the place. */
+ * where there is none, however far away; FDCG_E_ARGUMENT for a place that is not finite. Ask before vertices move: a mesh's
+ * vertex has the place that its file says, in metres in the object's frame. Vertices that the compiler welded are one corner.
+ * Cost: the boxes around the place. */
 fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_object_m[3], uint32_t* corner, fdcg_error* error);
 
-/* Moves a corner. FDCG_E_ARGUMENT, and it stays where it was, for a place that is NaN or beyond the margin, or a number that no
- * corner has. Moved more than once between two steps it counts as moved straight from the first place to the last. */
+/* Moves a corner. FDCG_E_ARGUMENT, and it stays where it was, for a place that is not finite or beyond the margin, or a number
+ * that no corner has. Moved more than once between two steps it counts as moved straight from the first place to the last. */
 fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3], fdcg_error* error);
 
 /* Moves many corners, each as fdcg_deform_move does: corners[i] to the three numbers at positions_object_m + 3 i. Stops at the

@@ -18,7 +18,8 @@
  *
  * Safety: no force before fdcg_host_arm, none after a fault until it is armed anew, never more than the profile and the scene
  * allow. A fault is told by fdcg_device_status. Of devices that share a scene, one that is gone, silent or disarmed by a fault
- * takes its fingers out of it; the others go on, each within its own limits.
+ * takes its fingers out of it; the others go on, each within its own limits. One that is not armed yet, or was disarmed by
+ * fdcg_host_disarm, leaves them in: a hand that gets no force still moves what it presses.
  */
 #ifndef FDCG_DEVICE_H
 #define FDCG_DEVICE_H
@@ -87,7 +88,7 @@ typedef struct fdcg_device_status {
   uint32_t struct_bytes; /* the caller's sizeof(fdcg_device_status) */
   uint32_t is_open;
   uint32_t phase; /* fdcg_device_phase */
-  uint32_t fault; /* why it was disarmed last; 0: armed. fdcg_fault_text says it in words */
+  uint32_t fault; /* why it was disarmed last; 0: armed. fdcg_fault_text says it in words. A recording's end: read failed */
   uint32_t arming_refused;
   uint32_t state; /* fdcg_state, of the contact with the largest force */
   double tip_world_m[3];
