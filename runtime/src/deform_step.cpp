@@ -55,20 +55,6 @@ void ride_on_edge(const Upkeep<Real>& upkeep, uint32_t connection, bool saw_befo
   put<Real>(contact, point_along(end, share_along(old_end, place_of(*contact))));
 }
 
-// Whether a triangle has become a line, but for rounding.
-template <class Real>
-inline bool is_squeezed(const Vec3<double> (&p)[3], double extent) {
-  constexpr double kRounding = 8 * double{RealLimits<Real>::kEpsilon};
-  const Vec3<double> u = p[1] - p[0], v = p[2] - p[0], doubled_area = cross(u, v);
-  const double height = kRounding * extent;
-  return dot(doubled_area, doubled_area) <= height * height * larger(dot(u, u), dot(v, v));
-}
-
-// Whether rounding, or what is left of a triangle's area, has turned its normal by a right angle or more.
-inline bool is_turned_over(const Vec3<double> (&before)[3], const Vec3<double> (&after)[3]) {
-  return dot(unit_normal_of(before[0], before[1], before[2]), unit_normal_of(after[0], after[1], after[2])) <= 0;
-}
-
 // Off a triangle that is a line now and whose front may be its back: just in front of its neighbours, so that the way to the
 // HIP meets what is there. Where no direction leads in front of all it stays.
 template <class Real>
@@ -77,7 +63,7 @@ template <class Real>
   uint32_t count = 0;
   for (const fdcg_side& side : upkeep.node(n).sides) {
     if (side.across == FDCG_NONE) continue;
-    upkeep.bring_up_to_date(side.across);
+    if (upkeep.is_sliver(side.across)) return;
     normal[count] = widen(vec(upkeep.node(side.across).plane.normal));
     out = out + normal[count++];
   }
@@ -104,7 +90,7 @@ void ride_on_face(const Upkeep<Real>& upkeep, uint32_t n, bool saw_before, fdcg_
   }
   if (!has_moved) return;
   put<Real>(contact, point_at(foot_in(old_point, place_of(*contact)), point));
-  if (__builtin_expect(is_squeezed<Real>(point, upkeep.deform().header.extent), false) && is_turned_over(old_point, point))
+  if (__builtin_expect(is_line<Real>(point[0], point[1], point[2], upkeep.deform().header.extent), false))
     let_go(upkeep, n, contact);
 }
 
