@@ -55,6 +55,29 @@ void ride_on_edge(const Upkeep<Real>& upkeep, uint32_t connection, bool saw_befo
   put<Real>(contact, point_along(end, share_along(old_end, place_of(*contact))));
 }
 
+// Off a triangle that is a line now and whose front may be its back: just in front of its neighbours, so that the way to the
+// HIP meets what is there. Where no direction leads in front of all it stays.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void let_go(const Upkeep<Real>& upkeep, uint32_t n, fdcg_contact* contact) {
+  Vec3<double> normal[3], out = {0, 0, 0};
+  uint32_t count = 0;
+  for (const fdcg_side& side : upkeep.node(n).sides) {
+    if (side.across == FDCG_NONE) continue;
+    if (upkeep.is_sliver(side.across)) return;
+    normal[count] = widen(vec(upkeep.node(side.across).plane.normal));
+    out = out + normal[count++];
+  }
+  const double length = norm(out);
+  for (uint32_t i = 0; i < count; ++i)
+    if (!(dot(out, normal[i]) > length / 4)) return;
+  if (count == 0) return;
+  const double lift = 16 * double{RealLimits<Real>::kEpsilon} * upkeep.deform().header.extent / length;
+  contact->state = contact->seat_state = FDCG_FREE;
+  contact->feature = contact->seat_feature = FDCG_NONE;
+  contact->clear_ball.radius2 = 0;
+  put<Real>(contact, place_of(*contact) + out * lift);
+}
+
 template <class Real>
 void ride_on_face(const Upkeep<Real>& upkeep, uint32_t n, bool saw_before, fdcg_contact* contact) {
   Vec3<double> old_point[3], point[3];
@@ -65,7 +88,10 @@ void ride_on_face(const Upkeep<Real>& upkeep, uint32_t n, bool saw_before, fdcg_
     point[k] = widen(upkeep.point(c));
     has_moved = has_moved || upkeep.has_moved(c);
   }
-  if (has_moved) put<Real>(contact, point_at(foot_in(old_point, place_of(*contact)), point));
+  if (!has_moved) return;
+  put<Real>(contact, point_at(foot_in(old_point, place_of(*contact)), point));
+  if (__builtin_expect(is_line<Real>(point[0], point[1], point[2], upkeep.deform().header.extent), false))
+    let_go(upkeep, n, contact);
 }
 
 // Where it was on its triangle, edge or corner it still is. One that was seated on a rim or in a corner stays there.
@@ -212,6 +238,23 @@ inline void shorten(const fdcg_header& header, const fdcg_deform_contact& contac
   }
 }
 
+// A step to a HIP that is nearer than the hand's, which the contact is told of after all.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void step_part_way(const fdcg_deform& deform, const fdcg_params& params,
+                                                fdcg_deform_contact* contact, const double hip_object_m[3],
+                                                fdcg_result* result) {
+  double to[3], before[3];
+  shorten(deform.header, *contact, hip_object_m, to);
+  memcpy(before, contact->contact.hip, sizeof before);
+  step<Real>(deform.graph, params, &contact->contact, to, result);
+  Vec3<double> hip;
+  if (contact->contact.state != FDCG_FREE) {  // the hand's step is yet to come
+    memcpy(contact->contact.hip, before, sizeof before);
+  } else if (to_local(deform.header, hip_object_m, RealLimits<Real>::kFar, &hip)) {
+    store(hip, contact->contact.hip);
+  }
+}
+
 template <class Real>
 void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact* contact, const double hip_object_m[3],
              fdcg_result* result) {
@@ -227,11 +270,11 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
   if (contact->contact.state == FDCG_FACE) leave_sliver(upkeep, &contact->contact);
   if (contact->contact.state != FDCG_FREE && !begins_anew) contact->halvings = 0;
   if (contact->halvings > 0) {
-    double to[3];
-    shorten(deform->header, *contact, hip_object_m, to);
-    step<Real>(deform->graph, params, &contact->contact, to, result);
-    flags |= FDCG_RESULT_SWEEP_BOUND;
-  } else {
+    step_part_way<Real>(*deform, params, contact, hip_object_m, result);
+    if (contact->contact.state == FDCG_FREE) flags |= FDCG_RESULT_SWEEP_BOUND;
+  }
+  if ((flags & FDCG_RESULT_SWEEP_BOUND) == 0) {
+    contact->halvings = 0;
     step<Real>(deform->graph, params, &contact->contact, hip_object_m, result);
   }
   if (contact->contact.state == FDCG_FACE && upkeep.is_sliver(contact->contact.feature)) {

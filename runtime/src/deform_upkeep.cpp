@@ -8,15 +8,9 @@ namespace fdcg {
 
 template <class Real>
 bool Upkeep<Real>::is_line(uint32_t n) const {
-  const Node& here = node(n);
-  const Vec3<double> a = widen(point(here.sides[0].corner)), b = widen(point(here.sides[1].corner)),
-                     c = widen(point(here.sides[2].corner));
-  const Vec3<double> u = b - a, v = c - a, across = cross(u, v);
-  if (norm1(across) > kSurelyWide * (norm1(u) * norm1(v)) + RealLimits<double>::kTiny) return false;
-  if (largest_of(unit_normal_of(a, b, c)) == 0) return true;  // so thin that its products vanish
-  const double far = 4 * d_->header.extent;  // in one line: in one plane with three points that are in no plane with a
-  return orient3d_sign(a, b, c, {a.x + far, a.y, a.z}) == 0 && orient3d_sign(a, b, c, {a.x, a.y + far, a.z}) == 0 &&
-         orient3d_sign(a, b, c, {a.x, a.y, a.z + far}) == 0;
+  const fdcg_side* const sides = node(n).sides;
+  return fdcg::is_line<Real>(widen(point(sides[0].corner)), widen(point(sides[1].corner)), widen(point(sides[2].corner)),
+                             d_->header.extent);
 }
 
 template <class Real>
@@ -25,14 +19,12 @@ void Upkeep<Real>::compute_node(uint32_t n) const {
   spend(&d_->upkeep_left, kRenewedNodeWork);
   const Vec3<double> a = widen(point(here.sides[0].corner)), b = widen(point(here.sides[1].corner)),
                      c = widen(point(here.sides[2].corner));
-  Vec3<double> unit;
-  if (__builtin_expect(!quick_normal_of(a, b, c, &unit, Real{}), false)) {
-    if (is_line(n)) {
-      compute_sliver(n);
-      return;
-    }
-    unit = unit_normal_of(a, b, c);
+  if (__builtin_expect(fdcg::is_line<Real>(a, b, c, d_->header.extent), false)) {
+    compute_sliver(n);
+    return;
   }
+  Vec3<double> unit;
+  if (__builtin_expect(!quick_normal_of(a, b, c, &unit, Real{}), false)) unit = unit_normal_of(a, b, c);
   const Plane<Real> plane = plane_with_normal<Real>(unit, a, b, c);
   here.plane = {{plane.normal.x, plane.normal.y, plane.normal.z}, plane.offset};
   here.flags = 0;
@@ -42,25 +34,29 @@ void Upkeep<Real>::compute_node(uint32_t n) const {
 }
 
 template <class Real>
-uint32_t Upkeep<Real>::longest_side(uint32_t n, uint32_t but_for) const {
-  uint32_t longest = but_for == 0 ? 1 : 0;
+uint32_t Upkeep<Real>::longest_side(uint32_t n, uint32_t sides) const {
+  uint32_t longest = FDCG_NONE;
   double length2 = -1;
   for (uint32_t k = 0; k < 3; ++k) {
     const Vec3<double> along = widen(point(node(n).sides[(k + 1) % 3].corner)) - widen(point(node(n).sides[k].corner));
-    if (k == but_for || !(dot(along, along) > length2)) continue;
+    if ((sides >> k & 1) == 0 || !(dot(along, along) > length2)) continue;
     longest = k;
     length2 = dot(along, along);
   }
   return longest;
 }
 
-// Across the longest side; where that is a sliver too, on through it.
+// Across the longest side that has a neighbour; where that is a sliver too, on through it.
 template <class Real>
 typename Upkeep<Real>::Lender Upkeep<Real>::plane_lender(uint32_t n) const {
   uint32_t from = FDCG_NONE;
   for (int hop = 0; hop < kMostHops; ++hop) {
-    const uint32_t k = longest_side(n, from), across = node(n).sides[k].across;
-    if (across == FDCG_NONE) break;
+    uint32_t sides = 0;
+    for (uint32_t k = 0; k < 3; ++k)
+      sides |= uint32_t{k != from && node(n).sides[k].across != FDCG_NONE} << k;
+    const uint32_t k = longest_side(n, sides);
+    if (k == FDCG_NONE) break;
+    const uint32_t across = node(n).sides[k].across;
     from = side_across(n, k);
     n = across;
     if (!is_line(n)) return {n, from};

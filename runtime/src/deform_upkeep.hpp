@@ -91,6 +91,15 @@ inline bool bounds_nothing(Vec3<Real> direction, Vec3<Real> normal, Real length)
   return length == 0 || norm1(cross(direction, normal)) == 0;
 }
 
+// Whether a triangle's corners are in one line, but for rounding: its normal means nothing, and may be turned over.
+template <class Real>
+FDCG_HOT bool is_line(Vec3<double> a, Vec3<double> b, Vec3<double> c, double extent) {
+  constexpr double kRounding = 8 * double{RealLimits<Real>::kEpsilon};
+  const Vec3<double> u = b - a, v = c - a, doubled_area = cross(u, v);
+  const double least = kRounding * extent;
+  return !(dot(doubled_area, doubled_area) > least * least * larger(dot(u, u), dot(v, v)));
+}
+
 template <class Real>
 class Upkeep {
   using Node = typename Records<Real>::Node;
@@ -119,7 +128,7 @@ class Upkeep {
   void bring_up_to_date(uint32_t n) const {
     if (__builtin_expect((d_->stale[n / FDCG_LEAF_NODES] >> n % FDCG_LEAF_NODES & 1) != 0, false)) compute_node(n);
   }
-  // Its corners are in one line: it has no area, and the plane of a neighbour.
+  // Its corners are in one line: it has the plane of a neighbour.
   [[nodiscard]] bool is_sliver(uint32_t n) const {
     bring_up_to_date(n);
     return (node(n).flags & kSliver) != 0;
@@ -129,7 +138,9 @@ class Upkeep {
     return node(n).sides[k].corner;
   }
   // The side of a sliver that holds the other two.
-  [[nodiscard]] uint32_t longest_side(uint32_t n, uint32_t but_for = FDCG_NONE) const;
+  [[nodiscard]] uint32_t longest_side(uint32_t n) const {
+    return longest_side(n, kAllSides);
+  }
 
   // ---- connections, corner normals
 
@@ -169,7 +180,9 @@ class Upkeep {
   void compute_node(uint32_t n) const;
   void compute_sliver(uint32_t n) const;
   [[nodiscard]] Lender plane_lender(uint32_t n) const;
-  // Its corners are in one line, or so near one that it has no normal: a node that is none lends a plane of its own.
+  static constexpr uint32_t kAllSides = 7;     // a bit each
+  // Of some; FDCG_NONE of none.
+  [[nodiscard]] uint32_t longest_side(uint32_t n, uint32_t sides) const;
   [[nodiscard]] bool is_line(uint32_t n) const;
   // A corner of the node, or of its lender, that is off side k's line.
   [[nodiscard]] uint32_t apex(uint32_t n, uint32_t k) const;

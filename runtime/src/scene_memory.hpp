@@ -26,6 +26,8 @@ inline constexpr uint32_t kRun = 16;
 struct Object;
 using ShapeStep = void(const Object&, const fdcg_params*, fdcg_contact*, const double hip_object_m[3], fdcg_result*);
 using ShapeNormal = void(const Object&, const fdcg_result*, double normal[3]);
+struct Finger;
+using DeformStart = void(fdcg_scene&, Finger&);
 
 struct Object {
   const fdcg_graph* graph;    // null: it is the surface. Of a deformable mesh its own: current where a step has just looked
@@ -85,6 +87,7 @@ struct fdcg_scene {
   uint32_t contact_bytes;
   fdcg::SoftStep* step_soft;  // null: no finger ever was soft
   uint64_t soft_fingers_at, soft_touches_at;
+  fdcg::DeformStart* start_on_deforms;  // null: no deformable mesh ever was in it
   double tick_travel;  // the largest move of any object in this tick
   double travel;       // the sum of those, rounded up
   double farthest;     // the largest |x| + |y| + |z| of any object's place: scales rounding

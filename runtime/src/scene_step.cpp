@@ -113,7 +113,8 @@ void step_contact(const Object& object, const Finger& finger, fdcg_contact* cont
 }
 
 // Whether the contact with an object near by is to be made anew at the beginning of the tick's way. One with a deformable mesh
-// also knows of the mesh's motion since its last step: it stays as long as every step of the finger has stepped it.
+// also knows of the mesh's motion since its last step: it stays as long as every step of the finger has stepped it, from the
+// first on (deform_scene.cpp). One that is made anew comes from outside of all places where the mesh can be.
 bool is_renewed(const Tick& tick, const Object& object, const Slot& slot, bool missed) {
   if (slot.step != tick.finger.step) return true;
   return object.deform == nullptr && (missed || !tick.scene.skips(FDCG_SKIP_RENEWAL));
@@ -219,6 +220,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
     finger.is_started = 1;
     finger.last = finger.hip;
     finger.tick = scene.tick;
+    if (scene.start_on_deforms != nullptr) scene.start_on_deforms(scene, finger);
     return;
   }
   const Tick tick = {scene, finger, scene.slots(index), is_felt ? finger.hip : finger.last, finger.tick == scene.tick};

@@ -128,6 +128,83 @@ Outcome play(std::uint32_t disabled_skips, bool backwards) {
   return outcome;
 }
 
+// A finger that is put now here, now there, in a scene and by hand, and what feels it.
+struct Placed {
+  fdcg_finger_id finger;
+  fdcg_deform_contact contact;
+  Place at;
+  int age;  // ticks since it was put there
+};
+
+// Fingers near a sheet that heaves are put somewhere else all the time and stay there for a few ticks, at rest or on the move.
+// Whether a finger is placed before the vertices move, after that, or between advance and step, `turn` says, and who is stepped
+// first. Returns how many were caught in the tick after their placing.
+std::uint64_t place_everywhere(std::uint32_t disabled_skips, bake::Precision precision, std::uint64_t ticks) {
+  constexpr std::size_t kFingers = 4;
+  DeformableMesh in_scene(plane_grid(10, 10), triangle_options(precision)),
+      by_hand(plane_grid(10, 10), triangle_options(precision));
+  const fdcg_params params = fdcg_default_params();
+  SceneRig rig(config_of(disabled_skips));
+  const fdcg_object_id object = add(rig, in_scene, params, fdcg_identity_pose());
+  Random random(77);
+  std::vector<Placed> placed(kFingers);
+  const auto place = [&](Placed& p, bool is_new) {
+    p.at = {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-0.2, 0.2)};
+    p.contact = {};
+    p.age = 0;
+    if (is_new) {
+      p.finger = rig.add(p.at);
+    } else {
+      REQUIRE(fdcg_scene_reset_finger(rig.get(), p.finger, p.at.data(), nullptr) == FDCG_OK);
+    }
+  };
+  for (Placed& p : placed)
+    place(p, true);
+  std::uint64_t caught = 0;
+  for (std::uint64_t tick = 0; tick < ticks; ++tick) {
+    const std::uint64_t turn = random.uniform(0, 1) < 0.5 ? 0 : tick % 3;
+    const auto put_some = [&](std::uint64_t when) {
+      if (turn != when) return;
+      for (Placed& p : placed) {
+        ++p.age;
+        const double what = random.uniform(0, 1);
+        if (what < 0.1) {
+          REQUIRE(fdcg_scene_remove_finger(rig.get(), p.finger, nullptr) == FDCG_OK);
+          place(p, true);
+        } else if (what < 0.3) {
+          place(p, false);
+        } else if (what < 0.6) {
+          p.at[2] += random.uniform(-0.02, 0.02);
+          rig.move(p.finger, p.at);
+        }
+      }
+    };
+    put_some(0);
+    if (tick % 8 != 7) {  // else the sheet rests
+      heave(in_scene, 0.15, 0.4 * static_cast<double>(tick));
+      heave(by_hand, 0.15, 0.4 * static_cast<double>(tick));
+    }
+    put_some(1);
+    fdcg_scene_advance(rig.get());
+    put_some(2);
+    for (std::size_t f = 0; f < kFingers; ++f) {
+      Placed& p = placed[tick % 2 == 0 ? f : kFingers - 1 - f];
+      const fdcg_result result = by_hand.step(params, &p.contact, p.at);
+      REQUIRE(fdcg_scene_step_finger(rig.get(), p.finger, nullptr) == FDCG_OK);
+      const fdcg_finger_result felt = rig.result(p.finger);
+      INFO("tick " << tick << " finger " << f << " age " << p.age << " turn " << turn);
+      REQUIRE(felt.touch_count == (result.state != FDCG_FREE ? 1u : 0u));
+      REQUIRE(std::memcmp(felt.force_n, result.force_n, sizeof felt.force_n) == 0);
+      if (felt.touch_count == 0) continue;
+      REQUIRE(felt.touches[0].object.index == object.index);
+      REQUIRE(felt.touches[0].flags == result.flags);
+      REQUIRE(std::memcmp(felt.touches[0].god_object_m, result.god_object_m, sizeof result.god_object_m) == 0);
+      caught += p.age == 1 && (result.flags & FDCG_DEFORM_CAUGHT) != 0;
+    }
+  }
+  return caught;
+}
+
 }  // namespace
 
 TEST_CASE("what a scene skips among deformable meshes leaves no trace, nor does the order of fingers") {
@@ -181,6 +258,15 @@ TEST_CASE("a scene gives the bits of a contact with a deformable mesh stepped by
     }
     CHECK(touches > 500);
     CHECK(caught > 5);
+  }
+}
+
+TEST_CASE("a finger just put somewhere is caught by what passes over it in the next tick, in a scene as by hand") {
+  CHECK(place_everywhere(0, bake::Precision::f64, steps_or(3000)) > 100);
+  CHECK(place_everywhere(0, bake::Precision::f32, steps_or(1000)) > 30);
+  for (const std::uint32_t off : {1u, 2u, 4u, 8u, 16u, 31u}) {
+    INFO("off " << off);
+    CHECK(place_everywhere(off, bake::Precision::f64, steps_or(500)) > 15);
   }
 }
 
