@@ -247,6 +247,7 @@ extern "C" fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_i
   object->is_used = 0;
   if (id.index < scene->first_free_object) scene->first_free_object = id.index;
   put_in_place(scene, object);
+  let_go_of(*scene, id.index);
   return FDCG_OK;
 }
 
@@ -278,6 +279,7 @@ extern "C" fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_i
   if (object->is_enabled == (is_enabled != 0 ? 1u : 0u)) return FDCG_OK;
   object->is_enabled = is_enabled != 0 ? 1 : 0;
   put_in_place(scene, object);
+  if (is_enabled == 0) let_go_of(*scene, id.index);
   return FDCG_OK;
 }
 

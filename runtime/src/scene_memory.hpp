@@ -88,9 +88,9 @@ struct fdcg_scene {
   fdcg::SoftStep* step_soft;  // null: no finger ever was soft
   uint64_t soft_fingers_at, soft_touches_at;
   fdcg::DeformStart* start_on_deforms;  // null: no deformable mesh ever was in it
-  double tick_travel;  // the largest move of any object in this tick
-  double travel;       // the sum of those, rounded up
-  double farthest;     // the largest |x| + |y| + |z| of any object's place: scales rounding
+  double tick_travel;                   // the largest move of any object in this tick
+  double travel;                        // the sum of those, rounded up
+  double farthest;                      // the largest |x| + |y| + |z| of any object's place: scales rounding
 
   fdcg::Object* objects() { return fdcg::part_at<fdcg::Object>(this, objects_at); }
   const fdcg::Object* objects() const { return fdcg::part_at<fdcg::Object>(this, objects_at); }
@@ -131,6 +131,9 @@ namespace fdcg {
 // scene_step.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a way,
 // the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
+
+// scene_step.cpp: no finger has a slot for the object any more. One that comes before the next step may be given its index.
+void let_go_of(fdcg_scene& scene, uint32_t object);
 
 // Steps an object's contact to a place in its frame.
 inline void step_object(const Object& object, const fdcg_params* params, fdcg_contact* contact, World at, fdcg_result* result) {

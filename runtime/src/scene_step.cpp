@@ -84,6 +84,16 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
   scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
 }
 
+void let_go_of(fdcg_scene& scene, uint32_t object) {
+  for (uint32_t f = 0; f < scene.finger_end; ++f) {
+    const uint32_t slot_count = scene.fingers()[f].is_used != 0 ? scene.config.touches_per_finger : 0;
+    for (uint32_t s = 0; s < slot_count; ++s) {
+      Slot& slot = scene.slots(f)[s];
+      if (slot.object == object) slot = {FDCG_NONE, 0, slot.step};
+    }
+  }
+}
+
 namespace {
 
 // Whether nothing without a slot can have been met since the last look.
@@ -171,16 +181,6 @@ fdcg_touch touch_of(const fdcg_scene& scene, uint32_t index, const fdcg_result& 
   return touch;
 }
 
-// Lets go of objects that were removed or disabled.
-void drop_gone(const Tick& tick) {
-  for (uint32_t s = 0; s < tick.scene.config.touches_per_finger; ++s) {
-    Slot& slot = tick.slots[s];
-    if (slot.object == FDCG_NONE || tick.scene.scan(3)[slot.object] >= 0) continue;
-    slot.object = FDCG_NONE;
-    slot.is_held = 0;
-  }
-}
-
 void step_slots(const Tick& tick, bool missed, bool is_felt) {
   fdcg_scene& scene = tick.scene;
   Finger& finger = tick.finger;
@@ -227,7 +227,6 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
   const uint32_t missed = tick.is_second ? 0 : scene.tick - finger.tick - 1;
   if (missed > 0) finger.flags |= FDCG_FINGER_MISSED_TICK;
   finger.missed_ticks += missed;
-  if (finger.look != scene.look) drop_gone(tick);
   if (!is_out_of_reach(scene, finger, tick.hip) || !scene.skips(FDCG_SKIP_OUT_OF_REACH)) look(tick);
   if (finger.busy > 0) step_slots(tick, missed > 0, is_felt);
   finger.last = tick.hip;

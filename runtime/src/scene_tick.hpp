@@ -46,7 +46,7 @@ fdcg_params params_met(const Object& object, const Finger& finger);
 bool can_have_met(const Tick& tick, const Object& object, LocalWay* way);
 
 // Looks at every object: the near ones get the finger's free slots, and the finger learns how far it is from the others. Cost:
-// 2 to 3 ns an object, some 20 more for one near the way. Wants that slots of objects removed or disabled are empty.
+// 2 to 3 ns an object, some 20 more for one near the way. Slots of objects removed or disabled are empty.
 void look(const Tick& tick);
 
 }  // namespace fdcg

@@ -249,6 +249,38 @@ TEST_CASE("objects that are removed or disabled are let go of") {
   CHECK(rig.scene.result(finger).touch_count == 0);
 }
 
+TEST_CASE("what is taken away and put back between two steps is as if just added") {
+  Rig rig;
+  const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});
+  REQUIRE(fdcg_scene_enable_object(rig.scene.get(), rig.object, 0, nullptr) == FDCG_OK);
+  REQUIRE(fdcg_scene_enable_object(rig.scene.get(), rig.object, 1, nullptr) == FDCG_OK);
+  rig.scene.step();
+  CHECK(rig.scene.result(finger).touch_count == 0);
+}
+
+// The contact's feature is one of hundreds, and the other object has a dozen.
+TEST_CASE("an object that takes the index of one removed between two steps does not get its contacts") {
+  const CompiledMesh large(ico_sphere(3)), small(ico_sphere(0));
+  SceneRig scene(fdcg_default_scene_config());
+  const fdcg_params params = fdcg_default_params();
+  const fdcg_object_id before = scene.add(large.view(), params, posed({0, 0, 0}));
+  std::vector<fdcg_finger_id> fingers;
+  for (double x = -0.6; x < 0.7; x += 0.2)
+    fingers.push_back(scene.add({x, 0.1, 2}));
+  scene.step();
+  for (std::size_t f = 0; f < fingers.size(); ++f)
+    scene.move(fingers[f], {-0.6 + 0.2 * static_cast<double>(f), 0.1, 0.5});
+  scene.step();
+  for (const fdcg_finger_id finger : fingers)
+    REQUIRE(scene.result(finger).touch_count == 1);
+  REQUIRE(fdcg_scene_remove_object(scene.get(), before, nullptr) == FDCG_OK);
+  const fdcg_object_id after = scene.add(small.view(), params, posed({0, 0, 0}));
+  CHECK(after.index == before.index);
+  scene.step();
+  for (const fdcg_finger_id finger : fingers)
+    CHECK(scene.result(finger).touch_count == 0);
+}
+
 TEST_CASE("names of what was removed are not found again") {
   Rig rig;
   fdcg_error error = {};

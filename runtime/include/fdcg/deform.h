@@ -132,10 +132,11 @@ const fdcg_graph* fdcg_deform_graph(fdcg_deform* deform);
 /* As fdcg_scene_add_object; the mesh must outlive the scene, and stays where it was created. FDCG_E_ARGUMENT unless the scene
  * was created with config.has_deforms. All else of scene.h takes the object as any other, poses too: then it moves as a whole,
  * and its vertices in its frame. Vertices are moved between the scene's steps, by one thread that is in the scene; every finger
- * that is within the mesh's bounds and margin is stepped on it in every tick, touching or not, and takes one of its
- * touches_per_finger there. fdcg_touch.flags says FDCG_DEFORM_MISSED and FDCG_DEFORM_CAUGHT too. Several objects may be one
- * mesh, and a copy of the scene's memory goes on with the same. Bodies of a pile do not meet it: fdcg_pile_add refuses it.
- * Cost: brings the whole mesh up to date, once. */
+ * that is within the mesh's bounds and margin is stepped on it in every tick, from its first step on, touching or not, and
+ * takes one of its touches_per_finger there. Of a mesh just added or enabled again a finger sees the motion from the next step
+ * on. fdcg_touch.flags says FDCG_DEFORM_MISSED and FDCG_DEFORM_CAUGHT too. Several objects may be one mesh, and a copy of the
+ * scene's memory goes on with the same. Bodies of a pile do not meet it: fdcg_pile_add refuses it. Cost: brings the whole mesh
+ * up to date, once. */
 fdcg_status fdcg_scene_add_deform(fdcg_scene* scene, fdcg_deform* deform, const fdcg_params* params, const fdcg_pose* pose,
                                   fdcg_object_id* object, fdcg_error* error);
 

@@ -114,6 +114,7 @@ fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdcg_scene_con
 /* A finger that is inside the object when it is added passes out of it freely. Cost: the graph's header. */
 fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph* graph, const fdcg_params* params, const fdcg_pose* pose,
                                   fdcg_object_id* object, fdcg_error* error);
+/* Every finger lets go of it. Cost: the fingers. */
 fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_id object, fdcg_error* error);
 
 /* From the next advance on: the tick between sweeps from the old pose to the new one. FDCG_E_ARGUMENT, and the old pose stays,
