@@ -40,7 +40,7 @@
  * Cost (busy machine, tests/bench/deform_bench.cpp): moving a vertex 10 to 13 ns, in one call for all 10 to 17 wherever they
  * lie; scattered over a mesh larger than the cache and in a call each, 19 to 25: one wait for memory. On a sheet of 10^5
  * triangles of which a hundredth moves each tick a step in contact takes 1.7 to 2.7 times the rigid one, the dearest where all
- * of it moves around the finger; one of a free HIP 1.3 to 2.9 times. While no box of what moves reaches it, a free HIP costs
+ * of it moves around the finger; one of a free HIP 1.3 to 3.2 times. While no box of what moves reaches it, a free HIP costs
  * nothing more, however far the surface moves in its boxes: the mesh watches over the clear balls of 16 contacts, others look
  * anew. A HIP so near that they do reach it looks once a tick for faces that passed over it: 0.3 to 0.9 us at 1 to 2 mm over
  * waves of 0.5 to 3 mm, 2 to 5 times as over waves that stand still.
