@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""fdcg grasp: what it says of grasps that can be worked out by hand, of random ones against CVXOPT, and of wrong input."""
+"""fdcg grasp: what it says of grasps that can be worked out by hand, of random ones against CVXOPT, and of wrong
+input. Over 400 lines: the table of wrong inputs is long."""
 import concurrent.futures
 import json
 import math

@@ -48,7 +48,8 @@ int run_fast(dev::HostConfig config, const std::vector<std::string>& warnings, c
     looks.push_back(look);
   }
   if (arguments.says_json) std::printf("%s\n", status_json("end", seconds, looks, problem).c_str());
-  if (arguments.says_text) std::fputs(summary_text(looks).c_str(), stdout);
+  const bool has_begun = problem.empty() || seconds > 0;  // else there is nothing to sum up
+  if (arguments.says_text && has_begun) std::fputs(summary_text(looks).c_str(), stdout);
   if (!problem.empty()) return fail(run.has_failed_file() ? kFile : kFindings, problem);
   return is_clean ? kClean : kFindings;
 }

@@ -251,14 +251,22 @@ bake::Result<Contacts> parse_contacts(const std::string& bytes, const std::strin
   }
 }
 
+namespace {
+
+bake::Failure unreadable(const std::string& path, int error_number) {
+  return {kFile, "'" + path + "': " + std::strerror(error_number) + (error_number == EISDIR ? "; name a file in it" : "")};
+}
+
+}  // namespace
+
 bake::Result<Contacts> read_contacts(const std::string& path) {
   std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-  if (file == nullptr) return bake::Failure{kFile, "'" + path + "': " + std::strerror(errno)};
+  if (file == nullptr) return unreadable(path, errno);
   std::string text(kMostBytes + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), file));
   const int error_number = std::ferror(file) != 0 ? errno : 0;
   if (file != stdin) std::fclose(file);
-  if (error_number != 0) return bake::Failure{kFile, "'" + path + "': " + std::strerror(error_number)};
+  if (error_number != 0) return unreadable(path, error_number);
   if (text.size() > kMostBytes) return bake::Failure{kFile, path + ": more than 16 MiB is no list of contacts"};
   return parse_contacts(text, path);
 }

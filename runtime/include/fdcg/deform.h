@@ -31,9 +31,9 @@
  * with another part. A contact should be stepped at least once between two ticks' moves: of a motion that it missed it sees
  * only where it ended, and FDCG_DEFORM_MISSED is set.
  *
- * Any triangle may be squeezed to a line or a point, and comes back: while it is less than 8 epsilons of the extent high it takes
- * the plane of the neighbour across its longest side that has one, and no god-object stays on it. Two faces that lie on one another exactly are a fold: their edge
- * keeps the type that it had when a step last looked at it.
+ * Any triangle may be squeezed to a line or a point, and comes back: while it is less than 8 epsilons of the extent high it
+ * takes the plane of the neighbour across its longest side that has one, and no god-object stays on it. Two faces that lie on
+ * one another exactly are a fold: their edge keeps the type that it had when a step last looked at it.
  *
  * Threads: one at a time. Steps write too (what they bring up to date).
  *
