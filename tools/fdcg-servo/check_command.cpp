@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "base/json_reader.hpp"
+#include "shared/json/reader.hpp"
 #include "profile/profile_json.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"
@@ -83,7 +83,7 @@ int check_files(const std::vector<std::string>& files) {
   int code = kClean;
   for (const std::string& file : files) {
     std::string text;
-    if (const std::string problem = dev::read_text_file(file, dev::kMostJsonBytes, &text); !problem.empty()) {
+    if (const std::string problem = json::read_text_file(file, json::Limits{}.bytes, &text); !problem.empty()) {
       code = fail(kFile, problem);
       continue;
     }

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "base/json_reader.hpp"
+#include "shared/json/reader.hpp"
 #include "profile/profile_json.hpp"
 #include "servo_commands.hpp"
 #include "transport/hid_devices.hpp"
@@ -40,7 +40,7 @@ std::string read_profiles(const DevicesArguments& arguments, std::vector<NamedPr
   for (const std::string& file : arguments.profiles) {
     NamedProfile named{file, {}};
     std::string text;
-    std::string problem = dev::read_text_file(file, dev::kMostJsonBytes, &text);
+    std::string problem = json::read_text_file(file, json::Limits{}.bytes, &text);
     if (problem.empty()) problem = dev::parse_profile(text, file, &named.profile);
     if (!problem.empty()) return problem;
     profiles->push_back(named);

@@ -14,7 +14,7 @@
 #include <cstdio>
 
 #include "../common/terminal.hpp"
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "host/host.hpp"
 #include "run_fast.hpp"
 #include "scene/scene_json.hpp"
@@ -345,7 +345,7 @@ CLI::Validator seconds_from(double least) {
     const char* const end = text.data() + text.size();
     const auto [stopped, error] = std::from_chars(text.data(), end, value);
     if (error == std::errc{} && stopped == end && value >= least && value <= kMost) return {};
-    return "'" + text + "' is no number from " + dev::shown_number(least) + " to 1e9 seconds";
+    return "'" + text + "' is no number from " + shown_number(least) + " to 1e9 seconds";
   };
   return {check, ""};
 }

@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include "../common/atomic_file.hpp"
-#include "../common/nearest.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

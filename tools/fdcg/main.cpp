@@ -5,9 +5,9 @@
 #include <new>
 #include <vector>
 
-#include "../common/nearest.hpp"
 #include "fdcg/fdcg.h"
 #include "fdcg_commands.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

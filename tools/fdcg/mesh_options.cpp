@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "../common/nearest.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {
