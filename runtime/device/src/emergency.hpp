@@ -27,7 +27,7 @@ void remove_emergency_exit(EmergencyExit* exit);
 
 // Handlers, once a process, and a stack of its own for them in the calling thread (threads of the host have theirs). They are
 // taken for every signal of a crash, and pass it on to whatever handled it before; of the other signals that end a process by
-// default, for those which nobody handles or ignores at the time of the call. A host does not install them by itself: they
+// default, for those that nobody handles or ignores at the time of the call. A host does not install them by itself: they
 // belong to the process, so to the program (fdcg-servo run does).
 void install_crash_handlers();
 
