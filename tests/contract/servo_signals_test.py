@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """fdcg-servo run under signals, from outside: a device with a force on it gets zero force last, and the program dies of the
 signal. FDCG_FAKE_HID is the folder of a hidapi whose device passes all that it gets on to a FIFO
-(tests/device/fake_hid_node.c)."""
+(tests/device/transport/fake_hid_node.c)."""
 import json
 import os
 import resource

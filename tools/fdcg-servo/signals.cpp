@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-#include "emergency.hpp"
+#include "host/emergency.hpp"
 
 namespace fdcg::servo {
 namespace {

@@ -9,7 +9,7 @@
 //   that ends a process
 #pragma once
 
-#include "host.hpp"
+#include "host/host.hpp"
 
 namespace fdcg::servo {
 
