@@ -36,6 +36,7 @@ void SceneParser::read_object(const json::Value& from) {
     if (from["file"]) from["file"].fail("stands beside surface; give one of them");
     read_surface(from["surface"].object(kSurfaceKeys), &object);
   } else {
+    if (!from["file"]) from.fail("has neither file nor surface; give one of them");
     object.file = beside(file_name_, from["file"].text(kLongestPath));
   }
   object.pose = fdcg_make_identity_pose();
