@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by tools/check and tools/demo: packages, configure, build. Needs $root.
+# Sourced by the scripts of this folder: packages, configure, build. Needs $root.
 
 say() { printf '== %s\n' "$*"; }
 stop() {
@@ -35,6 +35,7 @@ install_packages() { # GROUP...
     stop 'install them by the means of your system, then run this again with FDCG_SKIP_PACKAGES=1'
   fi
   for package in $(packages_of "$@"); do
+    [[ " ${unpacked[*]:-} " = *" $package "* ]] && continue
     is_installed "$package" || missing+=("$package")
   done
   [ ${#missing[@]} -eq 0 ] && return
@@ -43,6 +44,23 @@ install_packages() { # GROUP...
   as_root apt-get update -q </dev/null || stop 'apt-get update failed; is there a network?'
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}" </dev/null ||
     stop "apt-get could not install: ${missing[*]}"
+}
+
+# Packages of a group that are not installed are unpacked into build/packages instead, without what they depend on, and left out
+# by install_packages from then on. Sets `prefix` to where they are, or to nothing.
+unpack_packages() { # GROUP
+  local package archive
+  unpacked=() prefix=
+  command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || return 0
+  for package in $(packages_of "$1"); do
+    is_installed "$package" || unpacked+=("$package")
+  done
+  [ ${#unpacked[@]} -eq 0 ] && return
+  prefix=$root/build/packages/usr
+  mkdir -p "$root/build/packages"
+  [ -n "$(ls -A /var/lib/apt/lists 2>/dev/null)" ] || as_root apt-get update -q || stop 'apt-get update failed; is there a network?'
+  (cd "$root/build/packages" && apt-get download -q "${unpacked[@]}" >&2) || stop "could not fetch ${unpacked[*]}"
+  for archive in "$root"/build/packages/*.deb; do dpkg-deb -x "$archive" "$root/build/packages"; done
 }
 
 # As many as there are cores, but no more than memory holds at 1.5 GB each: what the largest unit takes, with room.
@@ -55,9 +73,9 @@ build_jobs() {
   [ "$fitting" -lt "$cores" ] && echo "$fitting" || echo "$cores"
 }
 
-configure() { # PRESET
+configure() { # PRESET [ARGUMENT OF CMAKE...]
   say "configuring ($1)"
-  cmake --preset "$1" >"$root/build/configure-$1.log" 2>&1 || {
+  cmake --preset "$@" >"$root/build/configure-$1.log" 2>&1 || {
     cat "$root/build/configure-$1.log" >&2
     stop 'cmake failed'
   }

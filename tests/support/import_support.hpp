@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 
 namespace fdcg::bake::test {

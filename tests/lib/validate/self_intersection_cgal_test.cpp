@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
@@ -21,6 +20,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "catch.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
 #include "real_files.hpp"

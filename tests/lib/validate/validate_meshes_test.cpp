@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Totals on real meshes, where they are at hand: FDCG_REAL_MESHES, or ../shared/meshes beside the project. Not part of it.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 
 using namespace fdcg::bake;
