@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step on a deformable mesh: servo_step.cpp once more, seen through a view that brings up to date what it hands out, after
-// the contact has taken part in the mesh's motion.
-#define FDCG_DEFORMABLE 1
+// The step on a deformable mesh: that on any graph (step/servo_step.hpp), on the geometry of one whose corners move, after the
+// contact has taken part in the mesh's motion.
+#include "base/struct_bytes.hpp"
 #include "deform/deform_clear.hpp"
 #include "deform/deform_motion.hpp"
-#include "step/servo_step.cpp"  // NOLINT(bugprone-suspicious-include): the same source, on the other view
+#include "deform/deformable_geometry.hpp"
+#include "step/servo_step.hpp"
 
 namespace fdcg {
 namespace {
@@ -246,7 +247,7 @@ template <class Real>
   double to[3], before[3];
   shorten(deform.header, *contact, hip_object_m, to);
   memcpy(before, contact->contact.hip, sizeof before);
-  step<Real>(deform.graph, params, &contact->contact, to, result);
+  step<DeformableGeometry<Real>>(deform.graph, params, &contact->contact, to, result);
   Vec3<double> hip;
   if (contact->contact.state != FDCG_FREE) {  // the hand's step is yet to come
     memcpy(contact->contact.hip, before, sizeof before);
@@ -275,7 +276,7 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
   }
   if ((flags & FDCG_RESULT_SWEEP_BOUND) == 0) {
     contact->halvings = 0;
-    step<Real>(deform->graph, params, &contact->contact, hip_object_m, result);
+    step<DeformableGeometry<Real>>(deform->graph, params, &contact->contact, hip_object_m, result);
   }
   if (contact->contact.state == FDCG_FACE && upkeep.is_sliver(contact->contact.feature)) {
     leave_sliver(upkeep, &contact->contact);

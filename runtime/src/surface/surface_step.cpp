@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step on a surface without a mesh: the same states, friction and response as servo_step.cpp, with shapes in place of a
+// The step on a surface without a mesh: the same states, friction and response as servo_step.hpp, with shapes in place of a
 // graph's features.
 #include "base/struct_bytes.hpp"
 #include "step/response.hpp"

@@ -18,7 +18,7 @@ FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fn
 
 # (tag of the test, what is taken out, then for each place: file, the text as it stands, what replaces it)
 MUTANTS = [
-    ("met-again", "a feature met again is a rest", "step/servo_step.cpp",
+    ("met-again", "a feature met again is a rest", "step/servo_step.hpp",
      "if (trail.has_met_again(walk) && !trail.retry_without_residual(walk)) return progress;", ""),
     ("crossing", "crossed means on or beyond, and further out than before: the paper's change of sign instead", "step/face.hpp",
      "if (!(s1 > s0)) continue;", "if (!(s1 * s0 < 0)) continue;"),
@@ -32,7 +32,7 @@ MUTANTS = [
     ("seat", "the seat's rule decides, and where it is not asked the other wall holds", "step/face.hpp",
      "return go_to(leave_face(walk, node));", "return go_to(kFree);",
      "step/sweep.hpp", "if (start_side >= -from_bound_) try_other_wall(n, node);", ""),
-    ("last-tick-segment", "the sweep starts where the HIP was", "step/servo_step.cpp",
+    ("last-tick-segment", "the sweep starts where the HIP was", "step/servo_step.hpp",
      "progress.flags = sweep_to_hip(walk, kFree, walk.god_object, space);",
      "walk.god_object = walk.hip; progress.flags = sweep_to_hip(walk, kFree, walk.god_object, space);"),
     ("exact-feature", "an edge met exactly becomes active, not one of its faces", "step/sweep.hpp",
@@ -52,7 +52,7 @@ MUTANTS = [
     ("slip-flag", "the slip flag survives a change of feature", "step/walk.hpp",
      "const Feature edge = {FDCG_EDGE, connection_index};",
      "walk.friction.is_slipping = false; const Feature edge = {FDCG_EDGE, connection_index};"),
-    ("slip-flag", "a tick that ends free resets the slip flag", "step/servo_step.cpp",
+    ("slip-flag", "a tick that ends free resets the slip flag", "step/servo_step.hpp",
      "(!is_free || is_undecided) && walk.friction.is_slipping", "walk.friction.is_slipping"),
     ("rest-untouched", "at rest the god-object is not placed anew", "step/friction.hpp",
      "return {!is_slipping || gap2 <= square(gap + rounding), gap};", "return {false, is_slipping ? gap : root(gap2)};"),
