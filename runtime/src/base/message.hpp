@@ -48,4 +48,9 @@ class Message {
 
 #endif
 
+[[gnu::cold]] fdcg_status refuse(fdcg_error* error, fdcg_status status, const char* what);
+// FDCG_E_ARGUMENT: `what`; or a field's value out of its range.
+[[gnu::cold]] fdcg_status refuse(fdcg_error* error, const char* what);
+[[gnu::cold]] fdcg_status refuse(fdcg_error* error, const char* field, double value, double low, double high);
+
 }  // namespace fdcg

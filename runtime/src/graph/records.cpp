@@ -7,17 +7,10 @@ namespace fdcg {
 namespace {
 
 template <class Real>
-void widen_to(Vec3<Real> from, double (&to)[3]) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
-
-template <class Real>
 fdcg_node_info node_info(const RigidView<Real>& graph, uint32_t index) {
   const auto node = graph.node(index);
   fdcg_node_info info = {};
-  widen_to(node.normal(), info.normal);
+  store(node.normal(), info.normal);
   info.offset = node.plane().offset;
   info.side_count = node.side_count();
   info.flags = node.flags();
@@ -29,7 +22,7 @@ fdcg_side_info side_info(const RigidView<Real>& graph, uint32_t node_index, uint
   const auto node = graph.node(node_index);
   const Plane<Real> plane = node.voronoi_plane(k);
   fdcg_side_info info = {};
-  widen_to(plane.normal, info.voronoi_normal);
+  store(plane.normal, info.voronoi_normal);
   info.voronoi_offset = plane.offset;
   info.connection = node.connection(k);
   info.which = node.which(k);
@@ -43,7 +36,7 @@ fdcg_connection_info connection_info(const RigidView<Real>& graph, uint32_t inde
   const auto connection = graph.connection(index);
   const Edge<Real> edge = graph.edge(index);
   fdcg_connection_info info = {};
-  widen_to(edge.direction, info.direction);
+  store(edge.direction, info.direction);
   info.length = edge.length;
   for (uint32_t k = 0; k < 2; ++k) {
     info.corner[k] = connection.corner(k);
@@ -59,8 +52,8 @@ template <class Real>
 fdcg_corner_info corner_info(const RigidView<Real>& graph, uint32_t index) {
   const auto corner = graph.corner(index);
   fdcg_corner_info info = {};
-  widen_to(corner.point(), info.point);
-  widen_to(corner.normal(), info.normal);
+  store(corner.point(), info.point);
+  store(corner.normal(), info.normal);
   info.fan_count = corner.fan_count();
   info.is_open = corner.is_open() ? 1 : 0;
   return info;

@@ -13,13 +13,13 @@ namespace {
 
 // How far a stored unit vector's squared length may lie from 1.
 template <class Real>
-constexpr double kUnitTolerance = sizeof(Real) == 8 ? 1e-9 : 1e-4;
+constexpr double kStoredUnitTolerance = sizeof(Real) == 8 ? 1e-9 : 1e-4;
 
 template <class Real>
 bool is_unit(Vec3<Real> v) {
   const Vec3<double> w = widen(v);
   const double off = dot(w, w) - 1;
-  return off <= kUnitTolerance<Real> && off >= -kUnitTolerance<Real>;  // false for NaN too
+  return off <= kStoredUnitTolerance<Real> && off >= -kStoredUnitTolerance<Real>;  // false for NaN too
 }
 
 // An edge and its face's normal give a Voronoi plane where they are far enough from parallel: the compiler joins no face to

@@ -37,7 +37,7 @@ struct Friction {
     if constexpr (FDCG_WITH_FRICTION_TERMS) {
       if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
     }
-    constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
+    constexpr Real kStickAgain = Real(kStickAgainShare);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {
       if (gap2 <= square(kStickAgain * gap)) is_slipping = false;

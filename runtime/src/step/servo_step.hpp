@@ -18,6 +18,7 @@
 
 #include "base/config.hpp"
 #include "base/hooks.hpp"
+#include "base/near_zero.hpp"
 #include "step/corner.hpp"
 #include "step/edge.hpp"
 #include "step/face.hpp"
@@ -99,12 +100,6 @@ Decision apply_rule(Walk<Geometry>& walk) {
   }
 }
 
-// What a step did besides moving the god-object (contact-model RESP-3).
-struct Progress {
-  uint32_t transitions;  // changes of state
-  uint32_t flags;        // fdcg_result_flag: what was cut short
-};
-
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
 // decided. It stood on `start` then, `start_gap` away from the HIP.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -151,10 +146,6 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
 // overflow before it is found out (contact-model TICK-2).
 constexpr double kFarthestHip_m = 1e110;
 
-// A coordinate smaller than this share of the extent is zero: no hand can tell, and exact signs need not look at bits that
-// stand further apart than a few machine words hold (contact-model TICK-4).
-constexpr double kLeastShare = 0x1p-70;
-
 // A double rounded to a float, in a way that no compiler sees through: GCC 12's basic-block vectoriser (-O2) drops the rounding
 // of a double to float and back where it sees both. In a register where that can be said, since a call or a way through memory
 // costs a tenth of a step.
@@ -178,15 +169,6 @@ inline void round_to(Vec3<double> from, Vec3<double>* to) {
 inline bool is_within(Vec3<double> p, double limit) {
   const int x = absolute(p.x) <= limit, y = absolute(p.y) <= limit, z = absolute(p.z) <= limit;
   return (x & y & z) != 0;
-}
-
-inline double zero_below(double least, double x) {
-  return absolute(x) < least ? 0 : x;
-}
-// Asked first, since a branch that is foreseen takes less time than three choices of a number on which all else waits.
-inline bool has_below(double least, Vec3<double> p) {
-  const int x = absolute(p.x) < least, y = absolute(p.y) < least, z = absolute(p.z) < least;
-  return (x | y | z) != 0;
 }
 
 // The HIP in the graph's frame, not yet rounded to its reals. False, without an overflow on the way, where it is not usable.
@@ -216,13 +198,6 @@ inline bool to_local(const fdcg_header& header, const double hip_object_m[3], do
 template <class Real>
 inline Vec3<Real> narrow(const double (&a)[3]) {
   return {static_cast<Real>(a[0]), static_cast<Real>(a[1]), static_cast<Real>(a[2])};
-}
-
-template <class Real>
-inline void store(Vec3<Real> from, double (&to)[3]) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
 }
 
 inline void write_position(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {

@@ -46,6 +46,12 @@ struct Walk {
   }
 };
 
+// What a step did besides moving the god-object (contact-model RESP-3).
+struct Progress {
+  uint32_t transitions;  // changes of state
+  uint32_t flags;        // fdcg_result_flag: what was cut short
+};
+
 // What a rule decides: stay (rest), or go on at another feature. One word: of parts written one by one the caller would wait
 // for the whole.
 class Decision {
