@@ -78,21 +78,6 @@ Message& Message::real(double value) {
   return *this;
 }
 
-#else
-
-Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : status_(status) {
-  if (error == nullptr) return;
-  error->status = status;
-  error->offset = offset;
-  const char* words = fdcg_status_text(status);
-  uint32_t length = 0;
-  for (; words[length] != '\0' && length + 1 < sizeof error->message; ++length)
-    error->message[length] = words[length];
-  error->message[length] = '\0';
-}
-
-#endif
-
 fdcg_status refuse(fdcg_error* error, fdcg_status status, const char* what) {
   return Message(error, status).text(what);
 }
@@ -111,5 +96,20 @@ fdcg_status refuse(fdcg_error* error, const char* field, double value, double lo
       .text(" to ")
       .real(high);
 }
+
+#else
+
+Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : status_(status) {
+  if (error == nullptr) return;
+  error->status = status;
+  error->offset = offset;
+  const char* words = fdcg_status_text(status);
+  uint32_t length = 0;
+  for (; words[length] != '\0' && length + 1 < sizeof error->message; ++length)
+    error->message[length] = words[length];
+  error->message[length] = '\0';
+}
+
+#endif
 
 }  // namespace fdcg
