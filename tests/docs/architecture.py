@@ -57,7 +57,7 @@ def part_of(folder):
 
 
 def short(folder):
-    for prefix in ("runtime/device/src/", "runtime/src/", "lib/src/", "runtime/device/", "runtime/"):
+    for prefix in ("runtime/device/src/", "runtime/src/", "lib/src/", "runtime/device/", "runtime/", "tools/"):
         if folder.startswith(prefix):
             return folder[len(prefix):]
     return folder
