@@ -8,8 +8,23 @@ stop() {
 }
 
 packages_of() { # GROUP...
-  local group
-  for group in "$@"; do sed -n "s/^$group: //p" "$root/tools/packages"; done | tr ' ' '\n' | sort -u
+  local group name
+  for group in "$@"; do sed -n "s/^$group: //p" "$root/tools/packages"; done | tr ' ' '\n' | sort -u |
+    while read -r name; do
+      case $name in *'|'*) one_of "$name" ;; *) printf '%s\n' "$name" ;; esac
+    done
+}
+
+# Of NAME|NAME... the first that is installed or that this system knows, or the first.
+one_of() {
+  local name
+  for name in ${1//|/ }; do
+    if is_installed "$name" || [ -n "$(apt-cache madison "$name" 2>/dev/null)" ]; then
+      printf '%s\n' "$name"
+      return
+    fi
+  done
+  printf '%s\n' "${1%%|*}"
 }
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null)" = 'ii ' ]; }
@@ -24,9 +39,18 @@ as_root() {
   fi
 }
 
+# Sets `missing` to what of the groups is not installed.
+find_missing() { # GROUP...
+  local package
+  missing=()
+  for package in $(packages_of "$@"); do
+    [[ " ${unpacked[*]:-} " = *" $package "* ]] && continue
+    is_installed "$package" || missing+=("$package")
+  done
+}
+
 # Installs what is missing of the groups; touches neither network nor root when all is there.
 install_packages() { # GROUP...
-  local package
   missing=()
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     [ -n "${FDCG_SKIP_PACKAGES:-}" ] && return
@@ -34,14 +58,12 @@ install_packages() { # GROUP...
     packages_of "$@" | sed 's/^/  /' >&2
     stop 'install them by the means of your system, then run this again with FDCG_SKIP_PACKAGES=1'
   fi
-  for package in $(packages_of "$@"); do
-    [[ " ${unpacked[*]:-} " = *" $package "* ]] && continue
-    is_installed "$package" || missing+=("$package")
-  done
+  find_missing "$@"
   [ ${#missing[@]} -eq 0 ] && return
   say "installing ${missing[*]}"
   export DEBIAN_FRONTEND=noninteractive
   as_root apt-get update -q </dev/null || stop 'apt-get update failed; is there a network?'
+  find_missing "$@" # names that differ between systems are known now
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}" </dev/null ||
     stop "apt-get could not install: ${missing[*]}"
 }

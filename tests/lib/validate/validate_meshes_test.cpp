@@ -100,5 +100,6 @@ TEST_CASE("totals on real meshes are those that other programs count") {
     CHECK(report.passes() == std::none_of(report.issues.begin(), report.issues.end(),
                                           [](const Issue& i) { return i.severity == Severity::error; }));
   }
+  if (found == 0) WARN("skipped: none of the meshes is at hand");
   WARN(found << " of " << kKnown.size() << " real meshes found in " << folder());
 }
