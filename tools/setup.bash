@@ -74,13 +74,14 @@ unpack_packages() { # GROUP
   local package archive
   unpacked=() prefix=
   command -v apt-get >/dev/null && command -v dpkg-deb >/dev/null || return 0
-  for package in $(packages_of "$1"); do
-    is_installed "$package" || unpacked+=("$package")
-  done
+  for package in $(packages_of "$1"); do is_installed "$package" || unpacked+=("$package"); done
   [ ${#unpacked[@]} -eq 0 ] && return
+  if [ -z "$(apt-cache madison "${unpacked[0]}" 2>/dev/null)" ]; then
+    as_root apt-get update -q || stop 'apt-get update failed; is there a network?'
+    mapfile -t unpacked < <(packages_of "$1") # names that differ between systems are known now
+  fi
   prefix=$root/build/packages/usr
   mkdir -p "$root/build/packages"
-  [ -n "$(ls -A /var/lib/apt/lists 2>/dev/null)" ] || as_root apt-get update -q || stop 'apt-get update failed; is there a network?'
   (cd "$root/build/packages" && apt-get download -q "${unpacked[@]}" >&2) || stop "could not fetch ${unpacked[*]}"
   for archive in "$root"/build/packages/*.deb; do dpkg-deb -x "$archive" "$root/build/packages"; done
 }
