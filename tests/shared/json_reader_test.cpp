@@ -2,10 +2,11 @@
 // The one reader of JSON: what it takes, and that all it refuses is refused by its place, with what is expected.
 #include "shared/json/reader.hpp"
 
-#include <catch2/catch.hpp>
 #include <functional>
 #include <sstream>
 #include <string>
+
+#include "catch.hpp"
 
 using namespace fdcg::json;
 

@@ -2,9 +2,10 @@
 // Messages that quote a file's bytes stay one line of UTF-8.
 #include "shared/text.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "catch.hpp"
 
 using namespace fdcg;
 using nlohmann::json;

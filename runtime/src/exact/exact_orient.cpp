@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "base/mutation.hpp"
 #include "base/work.hpp"
 #include "shared/error_free.hpp"
 
@@ -313,6 +314,7 @@ int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<doubl
   const double bound = kErrorBound * size + kUnderflow;
   if (det > bound) return 1;
   if (det < -bound) return -1;
+  if (FDCG_MUTANT("watertight")) return det > 0 ? 1 : (det < 0 ? -1 : 0);
   return exact_sign({a, b, c, d}, bound, work_left);
 }
 

@@ -2,7 +2,6 @@
 // Device profiles: what is read, and that everything wrong is refused by name. testdata/profiles/refused.json has an edit of
 // full.json for each error; profile_schema_test.py holds the schema against the same list.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "catch.hpp"
 #include "profile/kinematics.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/json_writer.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+
+#include "catch.hpp"
 
 using namespace fdcg::bake;
 using nlohmann::json;
