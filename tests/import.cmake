@@ -5,17 +5,17 @@ if(FDCG_BUILD_TESTS)
   add_library(fdcg_import_testing INTERFACE)
   target_include_directories(fdcg_import_testing INTERFACE ${PROJECT_SOURCE_DIR}/lib/src ${CMAKE_CURRENT_SOURCE_DIR})
   target_compile_definitions(fdcg_import_testing INTERFACE FDCG_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  fdcg_test(text_scanner SOURCES unit/text_scanner_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
-  fdcg_test(import SOURCES unit/import_test.cpp unit/import_off_test.cpp unit/import_obj_test.cpp unit/import_ply_test.cpp
-            unit/import_ply_binary_test.cpp unit/import_stl_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
-  fdcg_test(guarded_child SOURCES unit/guarded_child_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
-  fdcg_test(import_drc SOURCES unit/import_drc_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers)
-  fdcg_test(import_gltf SOURCES unit/import_gltf_test.cpp unit/import_gltf_scene_test.cpp unit/import_gltf_refusal_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers
+  fdcg_test(text_scanner SOURCES lib/import/text_scanner_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import SOURCES lib/import/import_test.cpp lib/import/import_off_test.cpp lib/import/import_obj_test.cpp lib/import/import_ply_test.cpp
+            lib/import/import_ply_binary_test.cpp lib/import/import_stl_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(guarded_child SOURCES lib/import/guarded_child_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import_drc SOURCES lib/import/import_drc_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers)
+  fdcg_test(import_gltf SOURCES lib/import/import_gltf_test.cpp lib/import/import_gltf_scene_test.cpp lib/import/import_gltf_refusal_test.cpp LIBRARIES fdcg_import fdcg_import_testing fdcg_test_mesh_writers
             nlohmann_json::nlohmann_json)
-  fdcg_test(import_corpus SOURCES unit/import_corpus_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
-  fdcg_test(import_allocation SOURCES unit/import_allocation_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
-  fdcg_test(import_openmesh SOURCES unit/import_openmesh_test.cpp LIBRARIES fdcg_import fdcg_import_testing OpenMeshCore)
-  fdcg_test(export SOURCES unit/export_test.cpp LIBRARIES fdcg_export fdcg_import fdcg_import_testing OpenMeshCore)
+  fdcg_test(import_corpus SOURCES lib/import/import_corpus_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import_allocation SOURCES lib/import/import_allocation_test.cpp LIBRARIES fdcg_import fdcg_import_testing)
+  fdcg_test(import_openmesh SOURCES lib/import/import_openmesh_test.cpp LIBRARIES fdcg_import fdcg_import_testing OpenMeshCore)
+  fdcg_test(export SOURCES lib/export/export_test.cpp LIBRARIES fdcg_export fdcg_import fdcg_import_testing OpenMeshCore)
   # with sanitizers GCC 12 sees OpenMesh's vectors copied before they are set
   foreach(test import_openmesh export)
     target_compile_options(fdcg_test_${test} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -11,22 +11,22 @@
 #include <string>
 #include <utility>
 
-#include "classify.hpp"
+#include "base/large_pages.hpp"
+#include "base/parallel.hpp"
+#include "base/quantum.hpp"
+#include "base/vec3.hpp"
 #include "fdcg/format.h"
-#include "graph.hpp"
-#include "info.hpp"
-#include "large_pages.hpp"
-#include "materials.hpp"
-#include "merge.hpp"
-#include "parallel.hpp"
-#include "quantum.hpp"
-#include "regions.hpp"
-#include "serialise.hpp"
-#include "topology.hpp"
-#include "triangulate.hpp"
-#include "validate.hpp"
-#include "vec.hpp"
-#include "weigh.hpp"
+#include "graph/classify.hpp"
+#include "graph/face_materials.hpp"
+#include "graph/graph.hpp"
+#include "graph/info.hpp"
+#include "graph/merge.hpp"
+#include "graph/regions.hpp"
+#include "graph/serialise.hpp"
+#include "graph/triangulate.hpp"
+#include "graph/weigh.hpp"
+#include "topology/topology.hpp"
+#include "validate/validate.hpp"
 
 namespace fdcg::bake {
 namespace {

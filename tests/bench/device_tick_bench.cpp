@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "bench_graph.hpp"
-#include "device_tick.hpp"
 #include "plain_profile.hpp"
 #include "stopwatch.hpp"
+#include "tick/device_tick.hpp"
 
 using namespace fdcg::test;
 using namespace fdcg::dev;

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "parallel.hpp"
-#include "self_intersection.hpp"
 #include "soups.hpp"
-#include "topology.hpp"
-#include "weld.hpp"
+#include "topology/topology.hpp"
+#include "topology/weld.hpp"
+#include "validate/self_intersection.hpp"
 
 using namespace fdcg::bake;
 

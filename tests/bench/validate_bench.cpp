@@ -7,9 +7,9 @@
 #include <random>
 
 #include "soups.hpp"
-#include "topology.hpp"
-#include "validate.hpp"
-#include "weld.hpp"
+#include "topology/topology.hpp"
+#include "topology/weld.hpp"
+#include "validate/validate.hpp"
 
 using namespace fdcg::bake;
 

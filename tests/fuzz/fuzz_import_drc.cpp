@@ -3,8 +3,8 @@
 // sanitizers, takes what memory a forged count says, and crashes on some bytes: in fdcg that ends the child only. Run with
 //   -fork=1 -ignore_ooms=1 -ignore_timeouts=1 -ignore_crashes=1 -malloc_limit_mb=512 -rss_limit_mb=1024
 // and look at what it writes: what counts is that no crash is in our own reading of what libdraco gives.
-#include "draco_decode.hpp"
 #include "fuzz_import.hpp"
+#include "import/draco_decode.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   const fdcg::bake::DracoMesh mesh = fdcg::bake::decode_draco_here({{reinterpret_cast<const char*>(data), size}, std::nullopt});

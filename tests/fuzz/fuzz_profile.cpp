@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "profile/profile_json.hpp"
 #include "profile_in_order.hpp"
-#include "profile_json.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   using namespace fdcg::dev;

@@ -13,10 +13,10 @@
 #include <random>
 #include <vector>
 
-#include "crc.hpp"
+#include "profile/crc.hpp"
+#include "profile/report_codec.hpp"
 #include "profile_in_order.hpp"
 #include "random_profile.hpp"
-#include "report_codec.hpp"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "host.hpp"
-#include "scene_build.hpp"
-#include "scene_json.hpp"
+#include "host/host.hpp"
+#include "scene/scene_build.hpp"
+#include "scene/scene_json.hpp"
 
 namespace {
 

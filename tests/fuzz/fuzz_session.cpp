@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "session_reader.hpp"
-#include "tick_bytes.hpp"
+#include "session/session_reader.hpp"
+#include "tick/tick_bytes.hpp"
 
 namespace {
 

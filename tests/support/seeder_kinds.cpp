@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/vec3.hpp"
 #include "seeder.hpp"
-#include "vec.hpp"
 
 namespace fdcg::test {
 namespace {

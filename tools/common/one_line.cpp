@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "one_line.hpp"
 
-#include "../../runtime/device/src/utf8.hpp"
+#include "shared/utf8.hpp"
 
 namespace fdcg::tools {
 namespace {

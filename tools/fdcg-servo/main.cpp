@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "command.hpp"
 #include "fdcg/fdcg.h"
+#include "servo_commands.hpp"
 
 namespace fdcg::servo {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "../common/atomic_file.hpp"
 #include "../common/terminal.hpp"
-#include "command.hpp"
+#include "servo_commands.hpp"
+#include "session/session_replay.hpp"
 #include "session_csv.hpp"
-#include "session_replay.hpp"
 
 namespace fdcg::servo {
 namespace {

@@ -7,8 +7,8 @@
 #include <atomic>
 #include <cstdio>
 
-#include "command.hpp"
-#include "fast_run.hpp"
+#include "host/fast_run.hpp"
+#include "servo_commands.hpp"
 #include "status_text.hpp"
 
 namespace fdcg::servo {

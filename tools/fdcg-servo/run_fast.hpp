@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host_config.hpp"
+#include "base/host_config.hpp"
 
 namespace fdcg::servo {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "rotation.hpp"
+#include "base/rotation.hpp"
 
 namespace fdcg::servo {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "session_replay.hpp"
+#include "session/session_replay.hpp"
 
 namespace fdcg::servo {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host.hpp"
+#include "host/host.hpp"
 
 namespace fdcg::servo {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "../common/one_line.hpp"
-#include "command.hpp"
+#include "fdcg_commands.hpp"
 #include "json_words.hpp"
 
 namespace fdcg::tools {

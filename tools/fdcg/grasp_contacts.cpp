@@ -10,8 +10,8 @@
 
 #include "../common/nearest.hpp"
 #include "../common/one_line.hpp"
-#include "command.hpp"
 #include "fdcg/grasp.hpp"
+#include "fdcg_commands.hpp"
 #include "json_words.hpp"
 #include "mesh_options.hpp"
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "../common/terminal.hpp"
-#include "command.hpp"
+#include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
 
 namespace fdcg::tools {

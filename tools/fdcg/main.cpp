@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "../common/nearest.hpp"
-#include "command.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg_commands.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -5,7 +5,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "command.hpp"
+#include "fdcg_commands.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "../common/nearest.hpp"
 #include "../common/one_line.hpp"
-#include "command.hpp"
+#include "fdcg_commands.hpp"
 #include "json_words.hpp"
 
 namespace fdcg::tools {

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "../common/terminal.hpp"
-#include "command.hpp"
+#include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
 
 namespace fdcg::tools {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "../common/nearest.hpp"
-#include "command.hpp"
+#include "fdcg_commands.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -364,7 +364,7 @@ typedef struct fdcg_result {
  *
  * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 600, whatever the mesh; with the
  * friction curve some 1,500, with presliding 1,900. At most,
- * two budgets together (src/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the library
+ * two budgets together (src/base/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the library
  * is compiled) let a tick run to some 75,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick with a valid
  * god-object. A budget is looked at between pieces of work, of which the largest is a node that the way meets within rounding:
  * an exact sign for each of its sides, of which fdcg compile gives a node at most 16. The dearest tick that a search over 23

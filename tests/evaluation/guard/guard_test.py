@@ -109,14 +109,14 @@ class PlantedSlowdown(unittest.TestCase):
 
     def slow_program(self):
         source = pathlib.Path(os.environ["FDCG_ROOT"]) / "runtime"
-        text = (source / "src/servo_step.cpp").read_text()
+        text = (source / "src/step/servo_step.cpp").read_text()
         entry = "  fdcg_params room;\n"
         self.assertEqual(text.count(entry), 1, "where fdcg_step begins has changed: this test plants its delay there")
         slow = self.path / "servo_step.cpp"
         slow.write_text(text.replace(entry, "  for (volatile int i = 0; i < 400; i = i + 1) {\n  }\n" + entry))
         compiler = os.environ["FDCG_COMPILER"]
         subprocess.run([compiler, "-std=c++20", "-O2", "-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-fno-math-errno", "-I",
-                        str(source / "include"), "-I", str(source / "src"), "-c", str(slow), "-o", str(self.path / "slow.o")],
+                        str(source / "include"), "-I", str(source), "-I", str(source / "src"), "-c", str(slow), "-o", str(self.path / "slow.o")],
                        check=True)
         program = self.path / "fdcg_guard_slow"  # its own step is found before the library's
         subprocess.run([compiler, *os.environ["FDCG_GUARD_OBJECTS"].split(";"), str(self.path / "slow.o"),

@@ -17,10 +17,10 @@ FLAGS = ["-std=c++20", "-O2", "-w", "-ffp-contract=off", "-fno-math-errno", "-fn
 
 # (case, precision, fault, what is taken out, file, the text as it stands, what replaces it, most faces, most ticks)
 MUTANTS = [
-    ("aimed", "f64", "push-through", "no distance tolerance where contact was lost", "sweep.hpp",
+    ("aimed", "f64", "push-through", "no distance tolerance where contact was lost", "step/sweep.hpp",
      "if (!is_before_best(fraction, n)) return;",
      "if (!is_before_best(fraction, n) || (left_.state != FDCG_FREE && fraction < Real(1e-4))) return;", 16, 8),
-    ("open-boundaries", "f64", "off-surface", "a way that grazes a face ends over it", "free_space.hpp",
+    ("open-boundaries", "f64", "off-surface", "a way that grazes a face ends over it", "step/free_space.hpp",
      "const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;",
      "const Real over = first.fraction + (is_on_face ? Real(0.01) : Real(0));", 4, 6),
 ]
@@ -39,8 +39,8 @@ def build(number, mutant):
     assert text.count(before) == 1, f"the text of this rule stands {text.count(before)} times in {file}: {rule}"
     (work / file).write_text(text.replace(before, after))
     compiler, stress = os.environ["FDCG_COMPILER"], root / "tests/evaluation/stress"
-    subprocess.run([compiler, *FLAGS, "-include", str(stress / "step_watch.hpp"), "-I", str(root / "runtime/include"), "-c",
-                    str(work / "servo_step.cpp"), "-o", str(work / "step.o")], check=True)
+    subprocess.run([compiler, *FLAGS, "-include", str(stress / "step_watch.hpp"), "-I", str(root / "runtime/include"), "-I", str(root / "runtime"), "-I", str(work), "-c",
+                    str(work / "step/servo_step.cpp"), "-o", str(work / "step.o")], check=True)
     subprocess.run([compiler, str(work / "step.o"), *os.environ["FDCG_LINK"].split(";"), "-o", str(work / "stress")], check=True)
     return work, work / "stress"
 

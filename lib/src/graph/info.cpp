@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/info.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "fdcg/fdcg.h"
+
+namespace fdcg::bake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(Format format) {
+  switch (format) {
+    case Format::off:
+      return "off";
+    case Format::obj:
+      return "obj";
+    case Format::ply:
+      return "ply";
+    case Format::stl:
+      return "stl";
+    case Format::gltf:
+      return "gltf";
+    case Format::drc:
+      return "drc";
+  }
+  return "";
+}
+
+const char* name_of(Weld::Kind kind) {
+  switch (kind) {
+    case Weld::Kind::exact:
+      return "exact";
+    case Weld::Kind::none:
+      return "none";
+    case Weld::Kind::distance:
+      return "distance";
+  }
+  return "";
+}
+
+const char* name_of(Coplanar::Kind kind) {
+  switch (kind) {
+    case Coplanar::Kind::exact:
+      return "exact";
+    case Coplanar::Kind::quantum:
+      return "quantum";
+    case Coplanar::Kind::angle:
+      return "angle";
+  }
+  return "";
+}
+
+Json options_json(const CompileOptions& options) {
+  Json json;
+  json["metres_per_unit"] = options.metres_per_unit;
+  json["precision"] = options.precision == Precision::f32 ? "f32" : "f64";
+  json["coplanar"] = name_of(options.coplanar.kind);
+  if (options.coplanar.kind == Coplanar::Kind::angle) json["coplanar_angle_rad"] = options.coplanar.angle_rad;
+  json["merge"] = options.merge && !options.triangles;
+  if (options.triangles) json["triangles"] = true;
+  json["weld"] = name_of(options.weld.kind);
+  if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
+  json["orient"] = options.orient;
+  json["planes"] = options.store_planes ? "stored" : "derived";
+  json["without"] = options.without;
+  json["allow"] = options.allow;
+  json["self_intersections"] = options.self_intersections;
+  if (options.density_kg_per_m3 != 0) json["density_kg_per_m3"] = options.density_kg_per_m3;
+  if (options.mass_kg != 0) json["mass_kg"] = options.mass_kg;
+  return json;
+}
+
+}  // namespace
+
+std::string info_json(const PolygonSoup& soup, const CompileOptions& options, const Compiled& compiled) {
+  Json json;
+  json["tool"] = "fdcg " FDCG_VERSION_STRING;
+  json["source"] = {{"file_sha256", soup.sha256},
+                    {"format", name_of(soup.format)},
+                    {"vertices", soup.points.size()},
+                    {"faces", soup.face_count()}};
+  json["options"] = options_json(options);
+  const Report& report = compiled.report;
+  json["verdict"] = report.passes() ? "pass" : "fail";
+  json["checks"] = report.checks;
+  json["allowed"] = report.allowed;
+  Json issues = Json::object();
+  std::map<Severity, std::uint64_t> findings;
+  for (const Issue& issue : report.issues) {
+    issues[issue.rule] = issue.total;
+    findings[issue.severity] += issue.total;
+  }
+  json["issues"] = issues;
+  json["errors"] = findings[Severity::error];
+  json["warnings"] = findings[Severity::warning];
+  json["notes"] = findings[Severity::note];
+  json["components"] = report.components;
+  json["kept_faces"] = report.kept_faces;
+  json["flipped_faces"] = compiled.flipped_faces;
+  json["split_faces"] = compiled.split_faces;
+  json["merged_faces"] = compiled.merged_faces;
+  if (!compiled.no_mass.empty()) json["no_mass"] = compiled.no_mass;
+  return json.dump();
+}
+
+}  // namespace fdcg::bake

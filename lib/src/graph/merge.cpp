@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/merge.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "base/lazy_array.hpp"
+#include "base/vec3.hpp"
+#include "graph/remove_vertices.hpp"
+
+namespace fdcg::bake {
+namespace {
+
+// Where the entries of a triangle's slots, and of a triangle, start.
+struct NextInTriangle {
+  std::uint32_t operator()(std::uint32_t slot) const { return slot % 3 == 2 ? slot - 2 : slot + 1; }
+};
+struct PreviousInTriangle {
+  std::uint32_t operator()(std::uint32_t slot) const { return slot % 3 == 0 ? slot + 2 : slot - 1; }
+};
+struct Itself {
+  std::uint32_t operator()(std::uint32_t face) const { return face; }
+};
+struct ThreeSides {
+  std::uint32_t operator()(std::uint32_t) const { return 3; }
+};
+
+class Merger {
+ public:
+  Merger(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions, const MergeOptions& options)
+      : mesh_(std::move(mesh)),
+        topology_(std::move(topology)),
+        edges_(std::move(edges)),
+        regions_(std::move(regions)),
+        options_(options) {}
+
+  Merged run() {
+    for (const Region& region : regions_.list)
+      views_.emplace_back(region.plane.normal);
+    find_centres();
+    if (options_.across_faces) VertexRemover(mesh_, topology_, edges_, regions_, views_, options_).run();
+    drop_diagonals();
+    collect();
+    locate_triangles();
+    return std::move(out_);
+  }
+
+ private:
+  struct Diagonal {
+    double squared_length;
+    std::uint32_t slot;
+  };
+
+  [[nodiscard]] const Vec3& start(std::uint32_t slot) const { return mesh_.points[+mesh_.corners[slot]]; }
+  [[nodiscard]] std::uint32_t region(std::uint32_t slot) const { return regions_.of_face[slot / 3]; }
+  [[nodiscard]] bool is_alive(std::uint32_t face) const { return mesh_.corners[3 * face] != VertexId{kNone}; }
+
+  // Before triangles change: where each of a region was, in their order.
+  void find_centres() {
+    for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
+      if (regions_.of_face[f] == kNone) continue;
+      const Vec3& a = start(3 * f);
+      centre_.push_back(a + (1.0 / 3) * ((start(3 * f + 1) - a) + (start(3 * f + 2) - a)));
+    }
+  }
+
+  [[nodiscard]] std::uint32_t root(std::uint32_t face) {
+    while (parent_[face] != face) {
+      parent_.set(face, parent_[parent_[face]]);
+      face = parent_[face];
+    }
+    return face;
+  }
+
+  // before -> at -> after does not turn right in the view, nor back. Of corners off their plane the same is asked as seen along
+  // the plane's normal, for that is how the Voronoi planes stand; there rounding is let pass.
+  [[nodiscard]] bool stays_convex(std::uint32_t before, std::uint32_t at, std::uint32_t after) const {
+    const Vec3 &a = start(before), &b = start(at), &c = start(after);
+    const Projection& view = views_[region(at)];
+    const int turn = view.orient(a, b, c);
+    if (turn < 0 || (turn == 0 && !view.goes_on(a, b, c))) return false;
+    const Region& home = regions_.list[region(at)];
+    if (home.is_exact) return true;
+    constexpr double kRounding = 1e-14;
+    return dot(home.plane.normal, cross(b - a, c - b)) >= -kRounding * length(b - a) * length(c - b);
+  }
+
+  void drop_diagonals() {
+    const auto slots = static_cast<std::uint32_t>(mesh_.corners.size());
+    next_ = LazyArray<NextInTriangle>(slots);
+    previous_ = LazyArray<PreviousInTriangle>(slots);
+    parent_ = LazyArray<Itself>(mesh_.face_count());
+    sides_ = LazyArray<ThreeSides>(mesh_.face_count());
+    std::vector<Diagonal> diagonals;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const HalfedgeId twin = topology_.twin[slot];
+      const std::uint32_t r = region(slot);
+      if (r == kNone || !is_alive(slot / 3) || twin == Topology::kBoundary || +twin < slot) continue;
+      if (region(+twin) != r || !may_join(slot / 3, +twin / 3)) continue;
+      diagonals.push_back({squared_length(start(+twin) - start(slot)), slot});
+    }
+    std::stable_sort(diagonals.begin(), diagonals.end(),
+                     [](const Diagonal& a, const Diagonal& b) { return a.squared_length > b.squared_length; });
+    for (const Diagonal& diagonal : diagonals)
+      try_drop(diagonal.slot);
+    split_large_polygons(diagonals);
+  }
+
+  [[nodiscard]] bool may_join(std::uint32_t a, std::uint32_t b) const {
+    if (options_.across_faces) return true;
+    return options_.polygon != nullptr && (*options_.polygon)[a] == (*options_.polygon)[b];
+  }
+
+  void try_drop(std::uint32_t slot) {
+    const std::uint32_t twin = +topology_.twin[slot];
+    const std::uint32_t a = root(slot / 3), b = root(twin / 3);
+    if (a == b) return;
+    if (!stays_convex(previous_[slot], slot, next_[next_[twin]])) return;
+    if (!stays_convex(previous_[twin], twin, next_[next_[slot]])) return;
+    link(previous_[slot], next_[twin]);
+    link(previous_[twin], next_[slot]);
+    parent_.set(std::max(a, b), std::min(a, b));
+    sides_.set(std::min(a, b), sides_[a] + sides_[b] - 2);
+    next_.set(slot, kNone);  // dropped
+    next_.set(twin, kNone);
+  }
+
+  // Polygons with more sides than a node may have are cut again, into as few pieces of like size as will do; dropped diagonals
+  // lend their slots.
+  void split_large_polygons(const std::vector<Diagonal>& diagonals) {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> spare;  // of each large polygon, by its root
+    for (const Diagonal& diagonal : diagonals) {
+      const std::uint32_t r = root(diagonal.slot / 3);
+      if (next_[diagonal.slot] == kNone && sides_[r] > kMaxMergedSides) spare[r].push_back(diagonal.slot);
+    }
+    for (auto& [r, slots] : spare) {
+      std::uint32_t first = kNone;
+      for (std::uint32_t slot = 0; slot < 3 && first == kNone; ++slot)
+        first = next_[3 * r + slot] != kNone ? 3 * r + slot : kNone;
+      // The root triangle may have lost all its sides: then any end of a dropped diagonal leads to the loop.
+      for (std::size_t i = 0; i < slots.size() && first == kNone; ++i) {
+        for (const std::uint32_t slot : {slots[i] / 3 * 3, slots[i] / 3 * 3 + 1, slots[i] / 3 * 3 + 2})
+          first = first == kNone && next_[slot] != kNone ? slot : first;
+      }
+      std::vector<std::uint32_t> loop;
+      std::uint32_t slot = first;
+      do {
+        loop.push_back(slot);
+        slot = next_[slot];
+      } while (slot != first);
+      split(loop, slots);
+    }
+  }
+
+  void split(const std::vector<std::uint32_t>& loop, std::vector<std::uint32_t>& spare) {
+    const std::size_t count = loop.size();
+    if (count <= kMaxMergedSides) return;
+    constexpr std::size_t kCorners = kMaxMergedSides - 2;  // that a piece adds to the two it shares
+    const std::size_t pieces = (count - 2 + kCorners - 1) / kCorners;
+    const std::size_t taken = (count - 2) * (pieces / 2) / pieces + 1;  // sides of the first part but the cut
+    for (std::size_t offset = 0; offset < count; ++offset) {
+      std::vector<std::uint32_t> part(loop.begin() + static_cast<std::ptrdiff_t>(offset), loop.end());
+      part.insert(part.end(), loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(offset));
+      std::vector<std::uint32_t> rest(part.begin() + static_cast<std::ptrdiff_t>(taken), part.end());
+      part.resize(taken);
+      const std::uint32_t from = part.front(), to = rest.front();
+      if (!has_area(part, to) || !has_area(rest, from)) continue;
+      if (!runs_along(regions_.list[region(from)].plane.normal, start(from), start(to))) continue;
+      const std::uint32_t cut = spare.back(), back = +topology_.twin[cut];
+      spare.pop_back();
+      mesh_.corners[cut] = mesh_.corners[to];
+      mesh_.corners[back] = mesh_.corners[from];
+      const Region& home = regions_.list[region(cut)];
+      edges_[cut] = edges_[back] = home.is_exact ? EdgeClass{FDCG_COPLANAR, Flat::exact} : EdgeClass{FDCG_CONVEX, home.tier};
+      link(part.back(), cut);
+      link(cut, from);
+      link(rest.back(), back);
+      link(back, to);
+      part.push_back(cut);
+      rest.push_back(back);
+      split(part, spare);
+      split(rest, spare);
+      return;
+    }
+  }
+
+  // The chain of sides, closed by the cut that leads from `end` back to its start, is no straight line.
+  [[nodiscard]] bool has_area(const std::vector<std::uint32_t>& chain, std::uint32_t end) const {
+    const Projection& view = views_[region(end)];
+    return std::any_of(chain.begin() + 1, chain.end(),
+                       [&](std::uint32_t slot) { return view.orient(start(chain.front()), start(slot), start(end)) > 0; });
+  }
+
+  void link(std::uint32_t slot, std::uint32_t after) {
+    next_.set(slot, after);
+    previous_.set(after, slot);
+  }
+
+  // The polygons as a mesh of their own, in the order of their first half-edges.
+  void collect() {
+    std::vector<std::uint32_t> slot_now(mesh_.corners.size(), kNone);
+    Mesh& mesh = out_.mesh;
+    mesh.face_first.push_back(0);
+    face_of_loner_.assign(mesh_.face_count(), kNone);
+    std::vector<std::uint32_t> source;  // slots, in their new order
+    source.reserve(mesh_.corners.size());
+    mesh.face_first.reserve(mesh_.face_count() + 1);
+    out_.regions.of_face.reserve(mesh_.face_count());
+    for (std::uint32_t first = 0; first < slot_now.size(); ++first) {
+      if (!is_alive(first / 3) || next_[first] == kNone || slot_now[first] != kNone) continue;
+      std::uint32_t slot = first;
+      do {
+        slot_now[slot] = static_cast<std::uint32_t>(source.size());
+        source.push_back(slot);
+        slot = next_[slot];
+      } while (slot != first);
+      if (region(first) == kNone) face_of_loner_[first / 3] = mesh.face_count();
+      out_.regions.of_face.push_back(region(first));
+      mesh.face_first.push_back(static_cast<std::uint32_t>(source.size()));
+    }
+    out_.topology.face_of.reserve(source.size());
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+      out_.topology.face_of.insert(out_.topology.face_of.end(), mesh.face_first[f + 1] - mesh.face_first[f], FaceId{f});
+    mesh.corners.reserve(source.size());
+    out_.topology.twin.reserve(source.size());
+    out_.edges.reserve(source.size());
+    for (const std::uint32_t slot : source) {
+      const HalfedgeId twin = topology_.twin[slot];
+      mesh.corners.push_back(mesh_.corners[slot]);
+      out_.topology.twin.push_back(twin == Topology::kBoundary ? twin : HalfedgeId{slot_now[+twin]});
+      out_.edges.push_back(edges_[slot]);
+    }
+    mesh.points = std::move(mesh_.points);
+    mesh.origin = mesh_.origin;
+    mesh.source_point = std::move(mesh_.source_point);
+    out_.regions.list = regions_.list;
+  }
+
+  void locate_triangles();
+  struct Depth {
+    double distance;
+    std::uint32_t slot;
+  };
+  [[nodiscard]] Depth depth(const Projection& view, std::uint32_t face, const Vec3& x) const;
+  [[nodiscard]] std::uint32_t locate(const Projection& view, std::span<const std::uint32_t> faces, std::uint32_t start_face,
+                                     const Vec3& x) const;
+
+  Mesh mesh_;
+  Topology topology_;
+  std::vector<EdgeClass> edges_;
+  Regions regions_;
+  const MergeOptions& options_;
+  std::vector<Projection> views_;
+  std::vector<Vec3> centre_;        // of the regions' triangles, in order
+  LazyArray<NextInTriangle> next_;  // of each slot in its polygon; kNone for a dropped diagonal
+  LazyArray<PreviousInTriangle> previous_;
+  LazyArray<Itself> parent_;                  // of each triangle: union-find
+  LazyArray<ThreeSides> sides_;               // at the root: the polygon's
+  std::vector<std::uint32_t> face_of_loner_;  // of each triangle in no region: its face of the result
+  Merged out_;
+};
+
+// How far inside the polygon the point is: the least of the signed distances to its edges; and the edge that it is least
+// inside of.
+Merger::Depth Merger::depth(const Projection& view, std::uint32_t face, const Vec3& x) const {
+  const Mesh& mesh = out_.mesh;
+  Depth least{std::numeric_limits<double>::infinity(), 0};
+  for (std::uint32_t slot = mesh.face_first[face]; slot < mesh.face_first[face + 1]; ++slot) {
+    const Vec3& a = mesh.points[+mesh.corners[slot]];
+    const Vec3& b = mesh.points[+mesh.corners[slot + 1 < mesh.face_first[face + 1] ? slot + 1 : mesh.face_first[face]]];
+    const double u = view.u(b) - view.u(a), v = view.v(b) - view.v(a);
+    const double area = u * (view.v(x) - view.v(a)) - v * (view.u(x) - view.u(a));
+    const double distance = area / std::sqrt(u * u + v * v);
+    if (distance < least.distance) least = {distance, slot};
+  }
+  return least;
+}
+
+// Walks from one polygon of the region to the next towards x; where the walk leaves the region (around a hole) or takes too
+// long, looks at all of them.
+std::uint32_t Merger::locate(const Projection& view, std::span<const std::uint32_t> faces, std::uint32_t start_face,
+                             const Vec3& x) const {
+  constexpr int kMostSteps = 256;
+  std::uint32_t face = start_face;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Depth here = depth(view, face, x);
+    if (here.distance >= 0) return face;
+    const HalfedgeId twin = out_.topology.twin[here.slot];
+    if (twin == Topology::kBoundary) break;
+    const FaceId other = out_.topology.face(twin);
+    if (out_.regions.of(other) != out_.regions.of(FaceId{face})) break;
+    face = +other;
+  }
+  double best = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t candidate : faces) {
+    const double distance = depth(view, candidate, x).distance;
+    if (distance <= best) continue;
+    best = distance;
+    face = candidate;
+    if (best >= 0) break;
+  }
+  return face;
+}
+
+void Merger::locate_triangles() {
+  std::vector<std::uint32_t> first(regions_.list.size() + 1, 0);
+  for (const std::uint32_t r : out_.regions.of_face) {
+    if (r != kNone) ++first[r + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> faces(first.back());
+  std::vector<std::uint32_t> at(first.begin(), first.end() - 1);
+  for (std::uint32_t f = 0; f < out_.mesh.face_count(); ++f) {
+    const std::uint32_t r = out_.regions.of_face[f];
+    if (r != kNone) faces[at[r]++] = f;
+  }
+  std::vector<std::uint32_t> last_found(regions_.list.size());
+  for (std::size_t r = 0; r < last_found.size(); ++r)
+    last_found[r] = faces[first[r]];
+  out_.face_of_triangle.resize(mesh_.face_count());
+  std::size_t of_regions = 0;  // triangles so far, as find_centres counted them
+  for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
+    const std::uint32_t r = regions_.of_face[f];
+    if (r == kNone) {
+      out_.face_of_triangle[f] = face_of_loner_[f];
+      continue;
+    }
+    const std::span<const std::uint32_t> of_region{faces.data() + first[r], first[r + 1] - first[r]};
+    const Vec3& centre = centre_[of_regions++];
+    if (of_region.size() > 1) last_found[r] = locate(views_[r], of_region, last_found[r], centre);
+    out_.face_of_triangle[f] = last_found[r];
+  }
+}
+
+}  // namespace
+
+Merged merge_regions(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions, const MergeOptions& options) {
+  return Merger(std::move(mesh), std::move(topology), std::move(edges), std::move(regions), options).run();
+}
+
+}  // namespace fdcg::bake

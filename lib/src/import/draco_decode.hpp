@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draco-compressed meshes (bitstream up to 2.2, libdraco). draco_decode.cpp alone includes the library.
+//
+// libdraco believes the counts in a file: 34 forged bytes make it take 16 GB. So it runs in a child process under limits, and
+// nowhere else in this program.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fdcg/bake.hpp"
+#include "import/guarded_child.hpp"
+
+namespace fdcg::bake {
+
+struct DracoInput {
+  std::string_view bytes;
+  std::optional<std::uint32_t> position_id;  // the attribute's unique id, as glTF names it; default: the one that is positions
+};
+
+// Points are numbered as Draco numbers them: one for each combination of attribute values, so that a vertex on a seam of
+// another attribute (a texture's, say) is several points at the same place.
+struct DracoMesh {
+  std::string trouble;  // why there is no mesh, in words that follow its name: "is not ..."; else empty
+  bool is_point_cloud = false;
+  bool is_float = false;               // every coordinate is a float; else each is an integer or a double
+  double absolute_quantum = 0;         // half a step of the quantisation; 0 where there is none
+  std::vector<Vec3> points;            // exactly what libdraco decodes
+  std::vector<std::uint32_t> corners;  // three a face
+};
+
+// In this process: for the child, and for fuzzing under a memory limit of another kind.
+DracoMesh decode_draco_here(const DracoInput& input);
+
+// Meshes in the child's answer.
+class DracoMeshes {
+ public:
+  struct Mesh {
+    std::string trouble;
+    bool is_point_cloud = false;
+    bool is_float = false;
+    double absolute_quantum = 0;
+    std::span<const Vec3> points;
+    std::span<const std::uint32_t> corners;  // three a face; may be no point's number
+  };
+
+  // Why none could be decoded: what happened to the child, in words that follow "its Draco data"; else empty.
+  [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  [[nodiscard]] std::string refusal() const;                                 // the same as a message, with what to do about it
+  [[nodiscard]] const std::vector<Mesh>& meshes() const { return meshes_; }  // one an input
+
+ private:
+  friend DracoMeshes decode_draco(std::span<const DracoInput> inputs, const ChildLimits& limits);
+  bool read(std::size_t count);
+
+  ChildResult result_;
+  std::string trouble_;
+  std::vector<Mesh> meshes_;
+};
+
+// Decodes all of them in one child process.
+DracoMeshes decode_draco(std::span<const DracoInput> inputs, const ChildLimits& limits);
+
+// 256 MiB and 512 bytes for each byte of Draco data; 10 s and 4 s for each MiB. Meshes take 0.3 to 2 bytes a face, and libdraco
+// some 100 bytes and a microsecond for each.
+ChildLimits draco_limits(std::size_t draco_bytes);
+
+}  // namespace fdcg::bake

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/gltf_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "import/draco_decode.hpp"
+#include "import/gltf_accessor.hpp"
+#include "import/gltf_placing.hpp"
+
+namespace fdcg::bake::gltf {
+namespace {
+
+constexpr std::uint64_t kPrimitiveCost = 64;  // elements: what a primitive takes beside its points and corners
+constexpr std::size_t kMaxNameBytes = 128;    // of a node or a mesh, in the name of a part
+
+// At most kMaxNameBytes, and no half character of UTF-8 at the end.
+std::string cut(const std::string& name) {
+  std::size_t size = std::min(name.size(), kMaxNameBytes);
+  while (size < name.size() && size > 0 && (static_cast<unsigned char>(name[size]) & 0xC0) == 0x80)
+    --size;
+  return name.substr(0, size);
+}
+
+std::string name_or(const std::string& name, const char* list, Index index) {
+  return name.empty() ? std::string(list) + "[" + std::to_string(index) + "]" : cut(name);
+}
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const Document& document, Buffers& buffers, const MeshText& input, PolygonSoup& soup)
+      : document_(document), buffers_(buffers), input_(input), soup_(soup) {}
+
+  void build() {
+    find_shown_nodes();
+    decode_draco_data();
+    for (std::size_t i = 0; i < shown_.size(); ++i) {
+      show(shown_[i]);
+      constexpr std::size_t kReportEvery = 1024;  // nodes
+      if (input_.progress && i % kReportEvery == 0) {
+        input_.progress("import", static_cast<double>(i) / static_cast<double>(shown_.size()));
+      }
+    }
+    rounding_.finish(soup_);
+    materials_.finish(soup_);
+    for (const auto& [what, count] : ignored_) {
+      if (count > 0) soup_.ignored.push_back({what, count});
+    }
+  }
+
+ private:
+  // ---- which nodes, and where they are
+
+  // Depth first, a node before its children, in the file's order.
+  void find_shown_nodes() {
+    world_of_.assign(document_.nodes.size(), kNone);
+    std::vector<bool> is_shown(document_.nodes.size());
+    std::vector<Index> open(document_.roots.rbegin(), document_.roots.rend());
+    while (!open.empty()) {
+      const Index n = open.back();
+      open.pop_back();
+      const Node& node = document_.nodes[n];
+      is_shown[n] = true;
+      shown_.push_back(n);
+      place(n);
+      open.insert(open.end(), node.children.rbegin(), node.children.rend());
+    }
+    for (Index n = 0; n < document_.nodes.size(); ++n) {
+      if (!is_shown[n] && document_.nodes[n].mesh != kNone) ++count("nodes with a mesh outside the scene");
+    }
+    std::vector<bool> has_node(document_.meshes.size());
+    for (const Node& node : document_.nodes) {
+      if (node.mesh != kNone) has_node[node.mesh] = true;
+    }
+    for (const bool has : has_node)
+      count("meshes of no node") += has ? 0 : 1;
+  }
+
+  // Identity times identity is no matrix at all, so that points which nothing moves keep their bits.
+  void place(Index n) {
+    const Node& node = document_.nodes[n];
+    const Index above = node.parent != kNone ? world_of_[node.parent] : kNone;
+    if (node.matrix == kNone) {
+      world_of_[n] = above;
+      return;
+    }
+    const Matrix& own = document_.matrices[node.matrix];
+    const Matrix world = above == kNone ? own : product(worlds_[above], own);
+    if (!std::all_of(world.begin(), world.end(), [](double c) { return std::isfinite(c); })) {
+      throw Refusal{"nodes[" + std::to_string(n) + "]: its transform and those above it multiply to more than a double holds"};
+    }
+    world_of_[n] = static_cast<Index>(worlds_.size());
+    worlds_.push_back(world);
+  }
+
+  // ---- Draco data: of all primitives at once, in one child process
+
+  using DracoKey = std::pair<Index, std::uint32_t>;  // view, unique id of the positions
+
+  void decode_draco_data() {
+    std::vector<DracoInput> inputs;
+    std::vector<std::string> places;
+    std::size_t bytes = 0;
+    for (const Index n : shown_) {
+      if (document_.nodes[n].mesh == kNone) continue;
+      const Mesh& mesh = document_.meshes[document_.nodes[n].mesh];
+      for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+        const Primitive& primitive = mesh.primitives[p];
+        if (!primitive.draco_view) continue;
+        const DracoKey key = {*primitive.draco_view, primitive.draco_positions};
+        if (!draco_.emplace(key, inputs.size()).second) continue;
+        inputs.push_back({buffers_.view(*primitive.draco_view), primitive.draco_positions});
+        bytes += inputs.back().bytes.size();
+        places.push_back("meshes[" + std::to_string(document_.nodes[n].mesh) + "].primitives[" + std::to_string(p) + "]");
+      }
+    }
+    if (inputs.empty()) return;
+    bytes = std::min(bytes, file_bytes());  // views may overlap
+    decoded_ = decode_draco(inputs, draco_limits(bytes));
+    if (!decoded_.trouble().empty()) throw Refusal{decoded_.refusal()};
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const DracoMeshes::Mesh& mesh = decoded_.meshes()[i];
+      if (mesh.is_point_cloud) throw Refusal{places[i] + ": its Draco data is a point cloud; compress a mesh"};
+      if (!mesh.trouble.empty()) {
+        throw Refusal{places[i] + ": its Draco data " + mesh.trouble + "; fetch the file or compress the mesh again"};
+      }
+      constexpr std::size_t kBytes = 12;  // of three floats, of three corners: as it would be without Draco
+      draco_bytes_ += mesh.points.size() * kBytes + mesh.corners.size() / 3 * kBytes;
+    }
+  }
+
+  // ---- primitives
+
+  void show(Index n) {
+    const Node& node = document_.nodes[n];
+    if (node.mesh == kNone) return;
+    if (node.has_skin) ++count("skins (shown at rest)");
+    const Mesh& mesh = document_.meshes[node.mesh];
+    const Matrix* world = world_of_[n] == kNone ? nullptr : &worlds_[world_of_[n]];
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+      const std::size_t faces = soup_.face_count();
+      charge(primitives_, 1);
+      begin_material(mesh.primitives[p].material);
+      const std::uint32_t first_point = show(mesh.primitives[p], world);
+      if (soup_.face_count() == faces) continue;
+      soup_.parts.push_back(
+          {name_or(node.name, "nodes", n) + "/" + name_or(mesh.name, "meshes", node.mesh) + "/primitive " + std::to_string(p),
+           static_cast<std::uint32_t>(faces), first_point});
+    }
+  }
+
+  // One without a name goes by its number.
+  void begin_material(Index material) {
+    std::string name = material == kNone ? std::string() : document_.materials[material];
+    if (material != kNone && name.empty()) name = name_or(name, "materials", material);
+    if (!materials_.begin(soup_, name)) ++count("materials beyond the 65,535th");
+  }
+
+  // Says where its points start.
+  std::uint32_t show(const Primitive& primitive, const Matrix* world) {
+    if (!primitive.positions && !primitive.draco_view) {
+      ++count("primitives without positions");
+      return 0;
+    }
+    if (primitive.has_targets) ++count("primitives with morph targets (shown at rest)");
+    if (primitive.draco_view) return show_draco(primitive, world);
+    const Positions positions(document_, *primitive.positions, buffers_);
+    const Indices indices = primitive.indices ? Indices(document_, *primitive.indices, buffers_) : Indices(positions.count());
+    if (count_if_no_faces(primitive.mode, indices.count())) return 0;
+    const std::uint32_t first_point = place_points({false, *primitive.positions, 0}, positions.count(), grain_of(positions),
+                                                   world, [&positions](const auto& use) { positions.for_each(use); });
+    const auto resolve = [&indices, first_point, limit = positions.count()](std::uint64_t i) {
+      const std::uint32_t index = indices.at(i);
+      return index < limit ? first_point + index : PolygonSoup::kInvalidVertex;
+    };
+    add_faces(primitive.mode, indices.count(), world != nullptr && is_mirrored(*world), resolve);
+    return first_point;
+  }
+
+  std::uint32_t show_draco(const Primitive& primitive, const Matrix* world) {
+    const DracoMeshes::Mesh& mesh = decoded_.meshes()[draco_.at({*primitive.draco_view, primitive.draco_positions})];
+    const Grain grain = {mesh.is_float ? 0x1p-24 : 0x1p-53, mesh.absolute_quantum};
+    const std::uint32_t first_point = place_points({true, *primitive.draco_view, primitive.draco_positions}, mesh.points.size(),
+                                                   grain, world, [&mesh](const auto& use) {
+                                                     for (const Vec3& p : mesh.points)
+                                                       use(p);
+                                                   });
+    const auto resolve = [&mesh, first_point](std::uint64_t i) {
+      const std::uint32_t index = mesh.corners[i];
+      return index < mesh.points.size() ? first_point + index : PolygonSoup::kInvalidVertex;
+    };
+    add_faces(Mode::triangles, mesh.corners.size(), world != nullptr && is_mirrored(*world), resolve);
+    const std::uint64_t promised =
+        primitive.indices && primitive.mode == Mode::triangles ? document_.accessors[*primitive.indices].count / 3 : 0;
+    if (promised > mesh.corners.size() / 3) count("faces promised beyond the Draco data") += promised - mesh.corners.size() / 3;
+    return first_point;
+  }
+
+  // Points and lines are counted, and done with.
+  bool count_if_no_faces(Mode mode, std::uint64_t corners) {
+    const std::uint64_t lines = corners < 2               ? 0
+                                : mode == Mode::lines     ? corners / 2
+                                : mode == Mode::line_loop ? corners
+                                                          : corners - 1;
+    if (mode == Mode::points) count("points") += corners;
+    if (mode == Mode::lines || mode == Mode::line_loop || mode == Mode::line_strip) count("line elements") += lines;
+    return mode < Mode::triangles;
+  }
+
+  // ---- points: those of an accessor once for each place that they are shown at, however many primitives share them
+
+  using PointsKey = std::tuple<bool, Index, std::uint32_t>;  // Draco or not, view or accessor, unique id
+
+  template <class ForEach>
+  std::uint32_t place_points(const PointsKey& source, std::uint64_t points, const Grain& grain, const Matrix* world,
+                             const ForEach& for_each) {
+    const auto [placed, is_new] = placed_.emplace(std::pair(source, world != nullptr ? *world : kIdentity),
+                                                  static_cast<std::uint32_t>(soup_.points.size()));
+    if (!is_new) return placed->second;
+    charge(points_, points);
+    make_room(soup_.points, points);
+    std::array<double, 3> largest{};
+    for_each([&](const Vec3& p) {
+      soup_.points.push_back(world != nullptr ? applied(*world, p) : p);
+      const std::array<double, 3> size = {std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)};
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (size[k] <= std::numeric_limits<double>::max()) largest[k] = std::max(largest[k], size[k]);
+      }
+    });
+    rounding_.note(grain, largest, world);
+    return placed->second;
+  }
+
+  // ---- faces
+
+  template <class Resolve>
+  void add_faces(Mode mode, std::uint64_t corners, bool is_flipped, const Resolve& corner) {
+    if (mode == Mode::triangles) {
+      charge(corners_, corners);
+      make_room(soup_.corners, corners);
+      make_room(soup_.face_first, corners / 3);
+      for (std::uint64_t i = 0; i + 2 < corners; i += 3)
+        add_face(corner(i), corner(i + 1), corner(i + 2), is_flipped);
+      if (corners % 3 != 0) count("corners left over after the last triangle") += corners % 3;
+      return;
+    }
+    if (corners < 3) {
+      if (corners > 0)
+        ++count(mode == Mode::triangle_fan ? "fans of fewer than three vertices" : "strips of fewer than three vertices");
+      return;
+    }
+    charge(corners_, 3 * (corners - 2));
+    make_room(soup_.corners, 3 * (corners - 2));
+    make_room(soup_.face_first, corners - 2);
+    for (std::uint64_t i = 0; i + 2 < corners; ++i) {
+      if (mode == Mode::triangle_fan) {
+        add_face(corner(0), corner(i + 1), corner(i + 2), is_flipped);
+      } else {
+        add_strip_face(corner(i), corner(i + 1), corner(i + 2), is_flipped != (i % 2 == 1));
+      }
+    }
+  }
+
+  // Strips are joined into one by repeating vertices: what has a vertex twice is no triangle but such a joint.
+  void add_strip_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool is_flipped) {
+    constexpr std::uint32_t kInvalid = PolygonSoup::kInvalidVertex;
+    const bool is_known = a != kInvalid && b != kInvalid && c != kInvalid;
+    if (is_known && (a == b || b == c || c == a)) {
+      ++count("strip joints");
+    } else {
+      add_face(a, b, c, is_flipped);
+    }
+  }
+
+  void add_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool is_flipped) {
+    if (is_flipped) std::swap(b, c);
+    for (const std::uint32_t corner : {a, b, c})
+      soup_.corners.push_back(corner);
+    soup_.face_first.push_back(static_cast<std::uint32_t>(soup_.corners.size()));
+  }
+
+  // ---- limits
+
+  [[nodiscard]] std::size_t file_bytes() const { return input_.bytes.size() + buffers_.outside_bytes(); }
+
+  struct Budget {
+    const char* what;
+    std::uint64_t cost;  // elements, of each
+    std::uint64_t most;  // that the soup can number
+    std::uint64_t used = 0;
+  };
+
+  void charge(Budget& budget, std::uint64_t more) const {
+    const std::uint64_t limit = (kFreeElements + kElementsPerByte * (file_bytes() + draco_bytes_)) / budget.cost;
+    if (more > limit - std::min(budget.used, limit)) {
+      throw Refusal{"shows more than " + std::to_string(limit) + " " + budget.what +
+                    ", the limit for a file of this size; export instances as meshes of their own"};
+    }
+    if (more > budget.most - budget.used) {
+      throw Refusal{"holds more than " + std::to_string(budget.most) + " " + budget.what + "; cut the mesh into parts"};
+    }
+    budget.used += more;
+  }
+
+  // As push_back would, but once for all: never a new allocation for each of many small primitives.
+  template <class T>
+  static void make_room(std::vector<T>& values, std::uint64_t more) {
+    const std::size_t wanted = values.size() + static_cast<std::size_t>(more);
+    if (wanted > values.capacity()) values.reserve(std::max(wanted, 2 * values.size()));
+  }
+
+  std::uint64_t& count(const std::string& what) { return ignored_[what]; }
+
+  const Document& document_;
+  Buffers& buffers_;
+  const MeshText& input_;
+  PolygonSoup& soup_;
+
+  std::vector<Index> shown_;     // nodes
+  std::vector<Index> world_of_;  // of each node that is shown: in worlds_; none: identity
+  std::vector<Matrix> worlds_;
+  std::map<DracoKey, std::size_t> draco_;  // in decoded_
+  DracoMeshes decoded_;
+  std::uint64_t draco_bytes_ = 0;
+  std::map<std::pair<PointsKey, Matrix>, std::uint32_t> placed_;
+  Budget points_{"points", 1, kMaxPoints}, corners_{"face corners", 1, kMaxCorners};
+  Budget primitives_{"primitives", kPrimitiveCost, kMaxCorners};
+  std::map<std::string, std::uint64_t> ignored_;
+  Rounding rounding_;
+  MaterialList materials_;
+};
+
+}  // namespace
+
+void build_scene(const Document& document, Buffers& buffers, const MeshText& input, PolygonSoup& soup) {
+  SceneBuilder(document, buffers, input, soup).build();
+}
+
+}  // namespace fdcg::bake::gltf

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mesh file -> polygon soup: which format is it, read it, say how fine its numbers are.
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <iterator>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "base/file_bytes.hpp"
+#include "base/sha256.hpp"
+#include "fdcg/bake.hpp"
+#include "import/soup_reader.hpp"
+
+namespace fdcg::bake {
+namespace {
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+bool is_obj_keyword(std::string_view word) {
+  constexpr std::array kKeywords = {"v", "vt", "vn", "vp",     "f",      "fo",     "l",  "p",
+                                    "o", "g",  "s",  "mtllib", "usemtl", "cstype", "deg"};
+  return std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
+}
+
+// What the content gives away, and no reader reads: the start of it, its name, and the remedy.
+struct ForeignKind {
+  std::string_view start, remedy;
+};
+constexpr ForeignKind kForeignKinds[] = {
+    {"\x1F\x8B", "is compressed with gzip; decompress it first (gunzip)"},
+    {"BZh", "is compressed with bzip2; decompress it first (bunzip2)"},
+    {"\xFD"
+     "7zXZ",
+     "is compressed with xz; decompress it first (unxz)"},
+    {"\x28\xB5\x2F\xFD", "is compressed with zstd; decompress it first (unzstd)"},
+    {"7z\xBC\xAF\x27\x1C", "is a 7z archive; unpack the mesh first"},
+    {"PK\x03\x04", "is a ZIP archive (3MF files are, too); unpack the mesh first, or export it in another format"},
+    {"Kaydara FBX Binary", "is FBX, which is not read; export it as glTF, OBJ or PLY"},
+    {"BLENDER", "is a Blender file, which is not read; export it as glTF, OBJ or PLY"},
+    {"version https://git-lfs.github.com/spec/", "is a Git LFS pointer and not the mesh itself; fetch it with 'git lfs pull'"},
+    {"ISO-10303-21;", "is a STEP file, which holds surfaces and no mesh; export it as STL or OBJ"},
+    {"<", "is XML (or HTML), in which no format that is read is written; export it as glTF, OBJ or PLY"},
+};
+
+const ForeignKind* foreign_kind(std::string_view bytes) {
+  if (has_binary_stl_size(bytes)) return nullptr;  // which may start with anything
+  const auto* const kind = std::find_if(std::begin(kForeignKinds), std::end(kForeignKinds),
+                                        [bytes](const ForeignKind& k) { return bytes.starts_with(k.start); });
+  return kind == std::end(kForeignKinds) ? nullptr : kind;
+}
+
+std::optional<Format> format_by_content(std::string_view bytes) {
+  if (bytes.starts_with("DRACO")) return Format::drc;
+  if (is_glb(bytes) || is_gltf_json(bytes)) return Format::gltf;
+  if (has_binary_stl_size(bytes)) return Format::stl;
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const std::string_view text = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+  if (text.size() > 3 && text.starts_with("ply") && kBlanks.find(text[3]) != std::string_view::npos) return Format::ply;
+  TextScanner scan(bytes, {.hash_comments = true});
+  if (!scan.find_token()) return std::nullopt;
+  const std::string_view word = scan.read_word();
+  if (is_off_keyword(word)) return Format::off;
+  if (is_obj_keyword(word)) return Format::obj;
+  if (word.size() == 5 && lower_case(word) == "solid") return Format::stl;
+  return std::nullopt;
+}
+
+std::optional<Format> format_by_ending(const std::string& name) {
+  const std::string ending = lower_case(std::filesystem::path(name).extension().string());
+  if (ending == ".off") return Format::off;
+  if (ending == ".obj") return Format::obj;
+  if (ending == ".ply") return Format::ply;
+  if (ending == ".stl") return Format::stl;
+  if (ending == ".gltf" || ending == ".glb") return Format::gltf;
+  if (ending == ".drc") return Format::drc;
+  return std::nullopt;
+}
+
+Result<PolygonSoup> read_as(Format format, const MeshText& input) {
+  switch (format) {
+    case Format::off:
+      return read_off(input);
+    case Format::obj:
+      return read_obj(input);
+    case Format::ply:
+      return read_ply(input);
+    case Format::stl:
+      return read_stl(input);
+    case Format::drc:
+      return read_drc(input);
+    case Format::gltf:
+      return read_gltf(input);
+  }
+  return Failure{4, "import: a format without a reader", {}};
+}
+
+bool is_float(double c) {
+  if (!std::isfinite(c)) return true;  // says nothing about the others
+  return std::fabs(c) <= FLT_MAX && static_cast<double>(static_cast<float>(c)) == c;
+}
+
+double relative_quantum(const std::vector<Vec3>& points) {
+  const bool all_floats =
+      std::all_of(points.begin(), points.end(), [](const Vec3& p) { return is_float(p.x) && is_float(p.y) && is_float(p.z); });
+  return all_floats ? 0x1p-24 : 0x1p-53;
+}
+
+// `file`: where the bytes are from; null: from memory.
+Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                                 const std::filesystem::path* file) {
+  if (bytes.empty()) return refuse(name, "is empty; export the mesh again", "empty-mesh");
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
+  }
+  if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
+  std::optional<Format> format = options.format;
+  if (!format) format = format_by_content(bytes);
+  if (!format) format = format_by_ending(name);
+  if (!format)
+    return refuse(name,
+                  "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read: export it as one of them");
+
+  Sha256Task hash(bytes);
+  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file});
+  if (!soup) return soup;
+  if (soup->face_count() == 0) {
+    return refuse(name, "holds no face, " + std::to_string(soup->points.size()) + " vertices; export the mesh with its faces",
+                  "empty-mesh");
+  }
+  if (soup->relative_quantum == 0) soup->relative_quantum = relative_quantum(soup->points);
+  soup->sha256 = hash.finish();
+  if (soup->sha256.empty()) return Failure{4, name + ": OpenSSL computes no SHA-256", {}};
+  if (options.progress) options.progress("import", 1.0);
+  return soup;
+}
+
+Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                                   const std::filesystem::path* file) {
+  try {
+    return import_bytes(bytes, name, options, file);
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return refuse(
+      name, "needs more memory than there is (" + std::to_string(bytes.size()) + " bytes of file); cut the mesh into parts");
+}
+
+}  // namespace
+
+Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options) {
+  const Result<FileBytes> file = FileBytes::open(path);
+  if (!file) return file.error();
+  return import_guarded(file->bytes(), path.string(), options, &path);
+}
+
+Result<PolygonSoup> import_memory(std::string_view bytes, std::string name, const ImportOptions& options) {
+  return import_guarded(bytes, name, options, nullptr);
+}
+
+}  // namespace fdcg::bake

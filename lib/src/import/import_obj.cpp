@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wavefront OBJ: the statements v and f (and its old name fo); o, g and usemtl name parts. Everything else speaks of looks, or
+// is counted.
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <string>
+
+#include "import/soup_reader.hpp"
+
+namespace fdcg::bake {
+namespace {
+
+// A statement that is not read, and what is lost with it; nothing where it speaks of looks or of the inside of a curve.
+struct Unread {
+  std::string_view keyword, what;
+};
+constexpr Unread kUnread[] = {
+    {"vn", ""},
+    {"vt", ""},
+    {"vp", ""},
+    {"s", ""},
+    {"mg", ""},
+    {"mtllib", ""},
+    {"usemap", ""},
+    {"maplib", ""},
+    {"bevel", ""},
+    {"c_interp", ""},
+    {"d_interp", ""},
+    {"lod", ""},
+    {"shadow_obj", ""},
+    {"trace_obj", ""},
+    {"ctech", ""},
+    {"stech", ""},
+    {"cstype", ""},
+    {"deg", ""},
+    {"bmat", ""},
+    {"step", ""},
+    {"parm", ""},
+    {"trim", ""},
+    {"hole", ""},
+    {"scrv", ""},
+    {"sp", ""},
+    {"end", ""},
+    {"con", ""},
+    {"res", ""},
+    {"l", "line elements"},
+    {"p", "point elements"},
+    {"curv", "free-form curves"},
+    {"curv2", "free-form curves"},
+    {"cdc", "free-form curves"},
+    {"cdp", "free-form curves"},
+    {"surf", "free-form surfaces"},
+    {"bzp", "free-form surfaces"},
+    {"bsp", "free-form surfaces"},
+    {"call", "calls of other files"},
+    {"csh", "calls of other programs"},
+};
+
+class ObjReader : TextSoupReader {
+ public:
+  explicit ObjReader(const MeshText& input)
+      : TextSoupReader(input, Format::obj, {.hash_comments = true, .continuation = true}) {}
+
+  Result<PolygonSoup> read() {
+    const bool is_read = read_statements();
+    if (is_read) drop_missing_vertices();
+    soup_.absolute_quantum = absolute_quantum();
+    return result(is_read);
+  }
+
+ private:
+  bool read_statements() {
+    while (scan_.find_token()) {
+      const std::string_view keyword = scan_.read_word();
+      if (keyword == "v") {
+        if (!read_vertex()) return false;
+      } else if (keyword == "f" || keyword == "fo") {
+        if (!read_face()) return false;
+      } else if (keyword != "vn" && keyword != "vt") {
+        read_other(keyword);
+      }
+      scan_.next_line();
+      advance(scan_.offset());
+    }
+    return true;
+  }
+
+  void read_other(std::string_view keyword) {
+    std::string* const name = keyword == "o" ? &object_ : keyword == "g" ? &group_ : keyword == "usemtl" ? &material_ : nullptr;
+    if (name != nullptr) {
+      const std::string_view given = scan_.read_rest_of_line();
+      *name = readable_name(given);
+      if (name == &material_) set_material(given);
+      is_new_part_ = true;
+      return;
+    }
+    const auto* const unread =
+        std::find_if(std::begin(kUnread), std::end(kUnread), [keyword](const Unread& u) { return u.keyword == keyword; });
+    if (unread == std::end(kUnread)) {
+      ignore("unknown statements");
+    } else if (!unread->what.empty()) {
+      ignore(unread->what);
+    }
+  }
+
+  // Object, group and material, as far as they have names; several switches before a face make one part.
+  void begin_named_part() {
+    is_new_part_ = false;
+    if (takes_no_parts()) return;
+    std::string name;
+    name.reserve(object_.size() + group_.size() + material_.size() + 2);
+    name = object_;
+    for (const std::string* const more : {&group_, &material_}) {
+      if (!name.empty() && !more->empty()) name += '/';
+      name += *more;
+    }
+    if (name != part_name()) begin_part(std::move(name));
+  }
+  [[nodiscard]] std::string_view part_name() const {
+    return soup_.parts.empty() ? std::string_view() : std::string_view(soup_.parts.back().name);
+  }
+
+  // x y z, perhaps followed by a weight or a colour.
+  bool read_vertex() {
+    const std::uint32_t line = scan_.line();
+    std::array<double, 3> xyz{};
+    for (double& value : xyz) {
+      if (scan_.line_done()) return fail_at_line(line, "a vertex needs three coordinates, but the line ends early");
+      if (!read_coordinate(value)) return fail_here("the vertex coordinate " + not_a_number());
+    }
+    if (soup_.points.size() >= kMaxPoints) return fail_here("more than 4,294,967,040 vertices; cut the mesh into parts");
+    soup_.points.push_back({xyz[0], xyz[1], xyz[2]});
+    soup_.point_line.push_back(line);
+    return true;
+  }
+
+  // v, v/vt, v//vn or v/vt/vn for each corner.
+  bool read_face() {
+    if (is_new_part_) begin_named_part();
+    soup_.face_line.push_back(scan_.line());
+    while (!scan_.line_done()) {
+      std::int64_t index = 0;
+      if (!scan_.read_integer_prefix(index))
+        return fail_here("the face corner " + scan_.quote() + " does not start with a vertex number");
+      if (!scan_.token_ended()) {
+        if (scan_.peek() != '/')
+          return fail_here("a face corner has " + scan_.quote() + " after its vertex number, in place of '/'");
+        scan_.read_word();
+      }
+      soup_.corners.push_back(resolve(index));
+    }
+    return close_face();
+  }
+
+  // Numbers count from 1, negative ones from the latest vertex backwards. A positive one may be of a vertex that is still to
+  // come.
+  std::uint32_t resolve(std::int64_t number) {
+    const auto known = static_cast<std::int64_t>(soup_.points.size());
+    const std::int64_t index = number < 0 ? known + number : number - 1;
+    if (index < 0 || index >= static_cast<std::int64_t>(kMaxPoints)) return PolygonSoup::kInvalidVertex;
+    largest_index_ = std::max(largest_index_, index);
+    return static_cast<std::uint32_t>(index);
+  }
+
+  void drop_missing_vertices() {
+    if (largest_index_ < static_cast<std::int64_t>(soup_.points.size())) return;
+    for (std::uint32_t& corner : soup_.corners) {
+      if (corner >= soup_.points.size()) corner = PolygonSoup::kInvalidVertex;
+    }
+  }
+
+  std::int64_t largest_index_ = -1;
+  std::string object_, group_, material_;  // at the cursor
+  bool is_new_part_ = false;
+};
+
+}  // namespace
+
+Result<PolygonSoup> read_obj(const MeshText& input) {
+  return ObjReader(input).read();
+}
+
+}  // namespace fdcg::bake

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drops faces that are an earlier face again: the same loop, in whichever direction.
+#include <algorithm>
+#include <map>
+
+#include "repair/repair.hpp"
+#include "topology/duplicates.hpp"
+
+namespace fdcg::bake {
+namespace {
+
+std::vector<VertexId> loop_of(const Mesh& mesh, FaceId f) {
+  return {mesh.corners.begin() + mesh.face_first[+f], mesh.corners.begin() + mesh.face_first[+f + 1]};
+}
+
+// Equal up to where they start. Loops of one face name few vertices twice: the number of places to try is small.
+bool is_rotation(const std::vector<VertexId>& a, const std::vector<VertexId>& b) {
+  for (std::size_t start = 0; start < b.size(); ++start) {
+    if (b[start] == a[0] && std::equal(b.begin() + static_cast<std::ptrdiff_t>(start), b.end(), a.begin()) &&
+        std::equal(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(start), a.end() - static_cast<std::ptrdiff_t>(start)))
+      return true;
+  }
+  return false;
+}
+
+bool is_same_loop(const std::vector<VertexId>& a, const std::vector<VertexId>& b) {
+  return is_rotation(a, b) || is_rotation(a, {b.rbegin(), b.rend()});
+}
+
+}  // namespace
+
+std::uint64_t drop_duplicates(Workpiece& piece, Tally& tally) {
+  const View view(piece);
+  tally.left.clear();
+  tally.reasons.clear();
+  FaceEdits edits;
+  // Of each first face, the loops on its vertices that stay: two polygons may go through the same vertices in another order.
+  std::map<FaceId, std::vector<std::vector<VertexId>>> kept;
+  for (const Duplicate& duplicate : duplicate_faces(view.mesh, view.topology, view.states)) {
+    const std::vector<VertexId> loop = loop_of(view.mesh, duplicate.copy);
+    std::vector<std::vector<VertexId>>& loops = kept[duplicate.first];
+    if (loops.empty()) loops.push_back(loop_of(view.mesh, duplicate.first));
+    if (std::any_of(loops.begin(), loops.end(), [&](const auto& other) { return is_same_loop(loop, other); })) {
+      edits.emplace_back(+duplicate.copy, std::vector<std::vector<std::uint32_t>>{});
+      tally.done.push_back(piece.source_face[+duplicate.copy]);
+    } else {
+      loops.push_back(loop);
+      tally.leave(piece.source_face[+duplicate.copy], "through the vertices of an earlier polygon in another order");
+    }
+  }
+  replace_faces(piece, edits);
+  return edits.size();
+}
+
+RepairAction drop_duplicates_action(const Workpiece& piece, Tally& tally) {
+  return action_of(piece, "drop-duplicates", Kind::faces,
+                   counted(tally.done.size(), "face was", "faces were") + " dropped: on the vertices of an earlier one", tally);
+}
+
+}  // namespace fdcg::bake

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// All pairs of boxes that meet, for a few million boxes: sorted along a space-filling curve, in a tree of four children a node
+// that is walked against itself.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/ids.hpp"
+#include "fdcg/bake.hpp"
+
+namespace fdcg::bake {
+
+// Three coordinates as whole numbers of 20 bits side by side in one word, each with a bit above it, so that three comparisons
+// are one subtraction.
+using Cell = std::uint64_t;
+inline constexpr unsigned kCellBits = 20;
+inline constexpr Cell kCellGuards =
+    (Cell{1} << kCellBits) | (Cell{1} << (2 * kCellBits + 1)) | (Cell{1} << (3 * kCellBits + 2));
+
+// Maps points to cells so that order is kept on each axis: whatever boxes of points meet, their boxes of cells meet too. The
+// cells are finer where there are more points, so that neither a point far away nor parts far apart make them too coarse.
+class CellGrid {
+ public:
+  // Of finite points only; others are passed over.
+  explicit CellGrid(const std::vector<Vec3>& points);
+  [[nodiscard]] Cell cell(const Vec3& p) const;
+
+ private:
+  static constexpr unsigned kPieceBits = 8;
+  static constexpr std::size_t kPieces = std::size_t{1} << kPieceBits;
+  struct Axis {
+    std::array<double, kPieces> start{};  // ascending; half of the coordinate, so that differences do not overflow
+    std::array<double, kPieces> cells_per_unit{};
+  };
+  static std::uint64_t place(const Axis& axis, double half);
+  std::array<Axis, 3> axes_;
+};
+
+struct CellBox {
+  Cell low = 0, high = kCellGuards;  // `high` with its guards set
+
+  [[nodiscard]] bool meets(const CellBox& other) const {
+    return ((other.high - low) & (high - other.low) & kCellGuards) == kCellGuards;
+  }
+  static CellBox around(Cell cell) { return {cell, cell | kCellGuards}; }
+  void add(const CellBox& other) {
+    const Cell below = fields_not_below(low, other.low),
+               above = fields_not_below(high & ~kCellGuards, other.high & ~kCellGuards);
+    low = (other.low & below) | (low & ~below);
+    high = (high & above) | (other.high & ~above) | kCellGuards;
+  }
+
+ private:
+  // All ones in the fields where a >= b.
+  static Cell fields_not_below(Cell a, Cell b) {
+    const Cell guards = ((a | kCellGuards) - b) & kCellGuards;
+    return guards - (guards >> kCellBits);
+  }
+};
+
+class BoxTree {
+ public:
+  // Pairs of boxes with the same label are left out and, where many have it, not even looked at. `labels`: of each box, kNone
+  // for none; or empty.
+  BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs);
+
+  // The work in parts that can be done side by side, and do not depend on the number of threads.
+  [[nodiscard]] std::size_t part_count() const { return levels_[part_level_].size(); }
+
+  // Calls visit(i, j) for the pairs of one part: numbers of boxes as given, in no particular order, each pair once in all
+  // parts.
+  template <class Visit>
+  void for_each_pair(std::size_t part, Visit visit) const {
+    within(part_level_, part, visit);
+    with_later_parts(levels_.size() - 1, 0, part, visit);
+  }
+
+ private:
+  static constexpr std::size_t kArity = 4;
+  static constexpr std::size_t kParts = 2048;  // at most; enough for a smooth progress bar and an even share of the work
+
+  struct Children {
+    std::size_t begin, end;
+  };
+  [[nodiscard]] Children children(std::size_t level, std::size_t node) const {
+    const std::size_t count = levels_[level - 1].size(), begin = node * kArity;
+    return {begin, begin + kArity < count ? begin + kArity : count};
+  }
+
+  // Pairs of boxes below one node.
+  template <class Visit>
+  void within(std::size_t level, std::size_t node, Visit& visit) const {
+    if (level == 0 || label(level, node) != kNone) return;
+    const auto [begin, end] = children(level, node);
+    for (std::size_t i = begin; i < end; ++i) {
+      within(level - 1, i, visit);
+      for (std::size_t j = i + 1; j < end; ++j) {
+        if (levels_[level - 1][i].meets(levels_[level - 1][j])) between(level - 1, i, j, visit);
+      }
+    }
+  }
+  // Pairs of a box below one node with a box below another that meets it.
+  template <class Visit>
+  void between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
+    if (have_same_label(level, a, b)) return;
+    if (level == 0) return visit(order_[a], order_[b]);
+    const CellBox* const below = levels_[level - 1].data();
+    const CellBox other = levels_[level][b];
+    const Children in_a = children(level, a), in_b = children(level, b);
+    for (std::size_t i = in_a.begin; i < in_a.end; ++i) {
+      const CellBox box = below[i];
+      if (!box.meets(other)) continue;
+      for (std::size_t j = in_b.begin; j < in_b.end; ++j) {
+        if (!box.meets(below[j])) continue;
+        if (level == 1) {
+          if (!have_same_label(0, i, j)) visit(order_[i], order_[j]);
+        } else {
+          between(level - 1, i, j, visit);
+        }
+      }
+    }
+  }
+  template <class Visit>
+  void with_later_parts(std::size_t level, std::size_t node, std::size_t part, Visit& visit) const {
+    if (!levels_[level][node].meets(levels_[part_level_][part])) return;
+    if (level == part_level_) {
+      if (node > part) between(level, part, node, visit);
+      return;
+    }
+    const auto [begin, end] = children(level, node);
+    for (std::size_t i = begin; i < end; ++i)
+      with_later_parts(level - 1, i, part, visit);
+  }
+
+  [[nodiscard]] std::uint32_t label(std::size_t level, std::size_t node) const {
+    return labels_.empty() ? kNone : labels_[level][node];
+  }
+  [[nodiscard]] bool have_same_label(std::size_t level, std::size_t a, std::size_t b) const {
+    return !labels_.empty() && labels_[level][a] == labels_[level][b] && labels_[level][a] != kNone;
+  }
+  void label_levels(const std::vector<std::uint32_t>& labels);
+
+  std::vector<std::uint32_t> order_;                // the number of each box along the curve
+  std::vector<std::vector<CellBox>> levels_;        // [0]: the boxes in that order
+  std::vector<std::vector<std::uint32_t>> labels_;  // likewise: what all boxes below have; empty where there are none
+  std::size_t part_level_ = 0;
+};
+
+}  // namespace fdcg::bake

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rules look at, and where they put what they find.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/mesh.hpp"
+#include "fdcg/bake.hpp"
+#include "report/fingerprint.hpp"
+#include "topology/duplicates.hpp"
+#include "topology/edges.hpp"
+#include "topology/face_geometry.hpp"
+#include "topology/patches.hpp"
+#include "topology/topology.hpp"
+
+namespace fdcg::bake {
+
+// A mesh under check, and what several rules need to know of it.
+struct Subject {
+  const PolygonSoup& soup;
+  const Mesh& mesh;
+  const Topology& topology;
+  const std::vector<FaceState>& states;
+  Precision precision;
+  unsigned jobs;                        // threads for the rules that run alone
+  const Progress& progress;             // for these too
+  FaceGeometry& geometry;               // is_flat() and is_fold() keep answers: for the rules of one thread only
+  std::vector<OddEdge> odd{};           // odd_edges()
+  Patches patches{};                    // find_patches(): for the rules of patches, and afterwards
+  std::vector<Duplicate> duplicates{};  // duplicate_faces(): for its rule, and afterwards
+
+  [[nodiscard]] VertexId start_of(HalfedgeId h) const { return mesh.corners[+h]; }
+  [[nodiscard]] VertexId end_of(HalfedgeId h) const { return mesh.corners[+next(mesh, topology.face(h), h)]; }
+  [[nodiscard]] const Vec3& source_point(VertexId v) const { return soup.points[mesh.source_point[+v]]; }
+};
+
+// Of one rule: counts all, lists the first few. Each call is one finding; faces, edges and vertices become the numbers, lines,
+// parts and coordinates of the source.
+class Findings {
+ public:
+  Findings(const Subject& subject, const Rule& rule, Severity severity, std::size_t max_elements, const EachElement& each);
+
+  void at_file();
+  void at_vertex(std::uint32_t source);  // also one that the weld joined to another
+  void at_face(FaceId f);
+  void at_face(FaceId f, FaceId original);              // a copy, and what it copies
+  void at_edge(std::span<const HalfedgeId> halfedges);  // all of one edge, at least one
+  void at_pair(FaceId a, FaceId b, const Vec3& point);  // two faces that meet; the point in the mesh's frame
+  void in_edge(VertexId v, HalfedgeId h);               // the vertex, the edge and its face
+  void at_patch(std::uint32_t patch);                   // ascending: of Subject::patches
+
+  // Findings beyond those listed.
+  void count_more(std::uint64_t unlisted) { issue_.total += unlisted; }
+
+  // In place of the catalogue's phrase and remedy; the total comes first.
+  void say(std::string message) { issue_.message = std::move(message); }
+  [[nodiscard]] std::uint64_t total() const { return issue_.total; }
+  // How many need to be located; the others may be counted by count_more().
+  [[nodiscard]] std::size_t max_elements() const { return each_ ? kAllElements : max_elements_; }
+
+  // The issue as it stands in the report. No findings: no message.
+  [[nodiscard]] Issue take() &&;
+
+ private:
+  // Counts one; null where it is neither listed nor shown to each_. It is complete when the next one is found, or at the end.
+  Element* found();
+  void finish_element();
+  void add_face(Element& element, FaceId f) const;
+  [[nodiscard]] Vec3 least_corner(std::uint32_t patch);
+
+  const Subject& subject_;
+  const Rule& rule_;
+  std::size_t max_elements_;
+  const EachElement& each_;
+  Issue issue_;
+  Element element_;                  // the last one found
+  Element* current_ = nullptr;       // that, or null
+  std::vector<Vec3> least_corners_;  // of each patch; empty until asked for
+};
+
+}  // namespace fdcg::bake

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hundreds of triangles around one vertex, or one edge, all meet there, and so do their boxes: looking at each pair of them
+// would take quadratic time. What else they have in common shows in the directions in which they leave.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "exact/triangle_contact.hpp"
+#include "validate/box_pairs.hpp"
+
+namespace fdcg::bake {
+
+// From so many triangles at a vertex on; below, looking at all pairs costs less.
+inline constexpr std::uint32_t kHubTriangles = 512;
+
+// Boxes of the directions from `hub`, a corner of all these triangles, to their points. Two of the triangles have more in
+// common than the hub only if these boxes meet.
+[[nodiscard]] std::vector<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTriangle>& triangles);
+
+// Boxes of the triangles' normals, turned so that the side of all of them from `from` to `to` runs the same way. Two of the
+// triangles have more in common than that side only if these boxes meet.
+[[nodiscard]] std::vector<CellBox> boxes_around(const Vec3* from, const Vec3* to,
+                                                const std::vector<ContactTriangle>& triangles);
+
+}  // namespace fdcg::bake

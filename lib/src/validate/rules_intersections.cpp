@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "validate/check_rules.hpp"
+#include "validate/self_intersection.hpp"
+
+namespace fdcg::bake::checks {
+
+void self_intersection(const Subject& subject, Findings& out) {
+  const SelfIntersections found =
+      find_self_intersections(subject.mesh, subject.geometry, {out.max_elements(), subject.jobs, subject.progress});
+  const std::uint64_t total = found.crossing + found.touching;
+  for (const MeetingFaces& pair : found.listed)
+    out.at_pair(pair.a, pair.b, pair.point);
+  out.count_more(total - found.listed.size());
+  const std::string remedy = ". " + std::string(find_rule("self-intersection")->remedy);
+  if (total == 1) {
+    out.say((found.crossing == 1 ? "1 pair of faces meets: they cross" : "1 pair of faces meets: they only touch") + remedy);
+  } else if (total > 1) {
+    out.say(std::to_string(total) + " pairs of faces meet: " + std::to_string(found.crossing) + " cross, " +
+            std::to_string(found.touching) + " only touch" + remedy);
+  }
+}
+
+}  // namespace fdcg::bake::checks

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a host is asked to run: a scene file's content (scene_json.hpp fills it), checked and with every file named in full.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fdcg/fdcg.h"
+#include "fdcg/surface.h"
+#include "tick/device_tick.hpp"
+#include "tick/soft.hpp"
+#include "transport/simulated_device.hpp"
+
+namespace fdcg::dev {
+
+// kDriven: by the caller, fdcg_host_set_pose. kBody: by what acts on it (fdcg/body.h).
+// kSoft: it stays, and gives way (soft.hpp).
+enum class MotionKind { kFixed, kSpin, kSwing, kDriven, kBody, kSoft };
+
+// Of kBody. Weighed by the first of mass and density that is above 0, or by the graph's file.
+struct BodyConfig {
+  double mass_kg = 0, density_kg_per_m3 = 0;
+  double linear_damping_per_s = 0, angular_damping_per_s = 0;
+  int points = 20;  // with which it touches the ground and other objects, 1 to 256
+};
+
+// Of an object, as a function of the time since the host started.
+struct Motion {
+  MotionKind kind = MotionKind::kFixed;
+  double axis[3] = {0, 0, 1};  // unit: of the spin, or the direction of the swing
+  double rate_hz = 0;          // turns or swings a second
+  double amplitude_m = 0;      // of the swing
+  BodyConfig body;
+  SoftConfig soft;
+};
+// Its pose is part of a tick's input.
+inline bool is_moved(const Motion& motion) {
+  return motion.kind == MotionKind::kSpin || motion.kind == MotionKind::kSwing || motion.kind == MotionKind::kDriven;
+}
+
+struct ObjectConfig {
+  std::string name, file;  // file: empty where it is a surface
+  bool is_surface = false;
+  fdcg_surface surface{};  // is_surface
+  fdcg_pose pose;
+  fdcg_params params;  // tick_s is set from each device's rate
+  Motion motion;
+};
+
+// What bodies fall onto: solid where normal . x < offset_m, world.
+struct GroundConfig {
+  bool is_there = false;
+  double normal[3] = {0, 0, 1};  // unit
+  double offset_m = 0;
+  fdcg_params params = fdcg_default_params();
+};
+
+enum class DeviceSource { kHid, kSimulated, kRecorded };
+
+struct DeviceConfig {
+  std::string name;
+  DeviceSource source = DeviceSource::kHid;
+  Profile profile;
+  std::string profile_text;               // its JSON, for the log
+  std::string serial, path;               // of the HID device; empty: the first that matches
+  std::string recording;                  // kRecorded: a session's log
+  bool is_recording_in_real_time = true;  // false: as fast as it is read (FastRun)
+  SimulationConfig simulation;            // kSimulated
+  Mapping mapping;
+  int contact_count = 1;
+  double contacts_m[kMaxContacts][3] = {};
+  double pads_m[kMaxContacts] = {};  // radius of each contact's pad; 0: a point
+  Grip grip;
+  double most_force_n = 0;
+};
+
+enum class HidBackend { kAny, kHidraw, kLibusb };
+
+struct LoopConfig {
+  int servo_priority = 80, writer_priority = 70;  // SCHED_FIFO; 0: ordinary scheduling
+  int cpu = -1;                                   // -1: any
+  bool lock_memory = true;
+  HidBackend backend = HidBackend::kAny;
+};
+
+struct HostConfig {
+  std::string scene_file, scene_text;
+  std::vector<ObjectConfig> objects;
+  std::vector<DeviceConfig> devices;
+  bool is_shared = false;  // all devices feel one scene, in one loop; else each has its own, and there may be no body
+  double gravity_m_per_s2[3] = {0, 0, -9.80665};
+  GroundConfig ground;
+  LoopConfig loop;
+  std::string log_file;      // empty: none
+  double log_megabytes = 0;  // the log ends there; 0: no limit
+};
+
+}  // namespace fdcg::dev

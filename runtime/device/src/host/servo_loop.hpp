@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device's servo loop: waits for a report, drains to the newest, gathers all that device_tick works on, hands the force to
+// the writer and the tick to the log. The thread sleeps in the read, 1 ms at most; while the device is away it ticks all the
+// same, so that commands and faults go on. No heap, no lock, no exception from the first tick to the last (but for what
+// hidapi's libusb back end does inside its read).
+//
+// Devices that share a scene have one thread: run_together ticks their loops as one. It waits for the clock's report
+// (scene_tick.hpp) and takes what is there of the others, so a device that is silent or away holds nobody up: at most 1 ms.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "base/mailbox.hpp"
+#include "base/threads.hpp"
+#include "host/status.hpp"
+#include "host/writer.hpp"
+#include "session/session_log.hpp"
+#include "tick/device_tick.hpp"
+#include "tick/link.hpp"
+#include "tick/transport.hpp"
+
+namespace fdcg::dev {
+
+struct ServoParts {
+  Transport* transport = nullptr;
+  Link* link = nullptr;
+  Writer* writer = nullptr;
+  LogRing* log = nullptr;                   // may be null
+  int log_place = 0;                        // among the ring's devices
+  Event* lost = nullptr;                    // signalled when the reader finds the device gone
+  std::vector<const ObjectConfig*> moving;  // in the order of DeviceSetup::driven
+  std::uint64_t start_ns = 0;               // the motions' time 0
+};
+
+class ServoLoop {
+ public:
+  // Before the thread runs. False with *error where the scene refuses the fingers. What `parts` points to must outlive it.
+  bool begin(const DeviceSetup& setup, const ServoParts& parts, fdcg_error* error);
+
+  // The thread's body, until request_stop; or tick by tick, by one thread.
+  void run();
+  void tick();
+  // The same for loops that share a scene, in the scene's order: until one of them is asked to stop. *clock: which of them is
+  // waited for; 0 at first.
+  static void run_together(ServoLoop* const* loops, int count);
+  static void tick_together(ServoLoop* const* loops, int count, int* clock);
+
+  // Anybody's. Both at once: disarmed.
+  void request_arm() { arm_.store(true, std::memory_order_release); }
+  void request_disarm() { disarm_.store(true, std::memory_order_release); }
+  void request_stop();
+  // The supervisor's sign to close: which opening of the link (Link::opened()) the reader has found gone. 0: none yet.
+  std::uint64_t lost_opening() const { return lost_opening_.load(std::memory_order_acquire); }
+
+  // One thread's at a time. `moving`: place in ServoParts::moving; only an object with MotionKind::kDriven heeds it.
+  void set_pose(int moving, const fdcg_pose& pose) { driven_poses_[moving].put(pose); }
+  bool take_status(DeviceStatus* status) { return status_.take(status); }
+
+ private:
+  void gather(bool waits);
+  void read_reports(bool waits);
+  bool read_one(int timeout_ms);
+  void set_poses();
+  void send_force();
+  void note_tick();
+  bool is_open() const { return !is_lost_ || parts_.link->opened() != seen_opened_; }
+  void publish(std::uint64_t now_ns);
+
+  ServoParts parts_;
+  DeviceState device_;
+  TickInput input_;
+  TickOutput output_;
+  DeviceStatus status_now_;
+  Mailbox<DeviceStatus> status_;
+  Mailbox<fdcg_pose> driven_poses_[kMaxDriven];
+  Event stop_;
+  std::atomic<bool> is_stopping_{false}, arm_{false}, disarm_{false};
+  std::atomic<std::uint64_t> lost_opening_{0};
+  std::uint64_t seen_opened_ = 0;  // Link::opened() at the last look
+  bool begins_ = false, is_lost_ = true, was_inside_ = false;
+  std::uint64_t last_good_ns_ = 0, published_ns_ = 0, done_ns_ = 0;
+  std::uint8_t scratch_[kMaxReportBytes + 1] = {};  // one more, so that a report that is too long shows
+};
+
+}  // namespace fdcg::dev

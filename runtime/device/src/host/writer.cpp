@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/writer.hpp"
+
+#include "profile/report_codec.hpp"
+
+namespace fdcg::dev {
+
+namespace {
+
+constexpr std::uint64_t kSilenceNs = static_cast<std::uint64_t>(kSilenceS * 1e9);
+constexpr std::uint64_t kPublishNs = 20'000'000;
+constexpr std::uint64_t kAwakeNs = 100'000'000;  // with nothing to do: often enough to see a stop, even if its wake were lost
+// A write may hold the thread for 5.1 s, and a host that is told to stop ends within 6 s: a device that does not take what it
+// is sent gets no further try after that.
+constexpr std::uint64_t kGoodbyeNs = 800'000'000;
+
+}  // namespace
+
+Writer::Writer(const Profile& profile, Transport& transport, Link& link)
+    : profile_(profile), transport_(transport), link_(link) {}
+
+void Writer::put(const GatedForce& force, std::uint32_t echo) {
+  Letter letter;
+  letter.force = force;
+  letter.echo = echo;
+  letter.number = ++put_number_;
+  letters_.put(letter);
+  put_.store(put_number_, std::memory_order_release);
+}
+
+std::uint64_t Writer::busy_ns(std::uint64_t now_ns) const {
+  const std::uint64_t began_ns = began_ns_.load(std::memory_order_acquire);
+  return began_ns == 0 || now_ns < began_ns ? 0 : now_ns - began_ns;
+}
+
+void Writer::request_stop() {
+  stop_ns_.store(monotonic_ns(), std::memory_order_release);
+  is_stopping_.store(true, std::memory_order_release);
+  wake_.signal();
+}
+
+void Writer::flush_within(std::uint64_t timeout_ns) {
+  constexpr std::uint64_t kStepNs = 500'000;
+  const std::uint64_t until_ns = monotonic_ns() + timeout_ns;
+  const std::uint64_t wanted = put_.load(std::memory_order_acquire);
+  Event never;
+  while (done_.load(std::memory_order_acquire) < wanted && monotonic_ns() < until_ns)
+    never.wait(kStepNs);
+}
+
+void Writer::run() {
+  Letter letter;
+  bool is_zeroed = true;  // nothing was sent that would have to be taken back
+  while (!is_stopping_.load(std::memory_order_acquire)) {
+    if (letters_.take(&letter)) {
+      send(letter.force, letter.echo);
+      done_.store(letter.number, std::memory_order_release);
+      is_zeroed = false;
+    } else if (!wake_.wait(is_zeroed ? kAwakeNs : kSilenceNs) && !is_zeroed) {
+      send(GatedForce(), letter.echo);
+      is_zeroed = true;
+    }
+    const std::uint64_t now_ns = monotonic_ns();
+    if (now_ns - published_ns_ >= kPublishNs) publish(now_ns);
+  }
+  say_goodbye();
+  publish(monotonic_ns());
+}
+
+bool Writer::send(const GatedForce& force, std::uint32_t echo) {
+  if (!profile_.has_output) return true;
+  Command command;
+  for (int axis = 0; axis < profile_.axis_count; ++axis)
+    command.effort[axis] = force.effort()[axis];
+  command.is_enabled = force.is_enabled();
+  command.echo = echo;
+  return timed([&] {
+    command.sequence = sequence_.fetch_add(1, std::memory_order_relaxed);
+    encode_output(profile_, command, report_);
+    return transport_.write(report_, profile_.output.bytes);
+  });
+}
+
+// A fixed report begins with its id, or with 0 where the device has none: a transport takes it without that 0.
+bool Writer::send_fixed(const FixedReport& report) {
+  const int skipped = report.bytes > 0 && report.data[0] == 0 ? 1 : 0;
+  return timed([&] {
+    return report.is_feature ? transport_.write_feature(report.data + skipped, report.bytes - skipped)
+                             : transport_.write(report.data + skipped, report.bytes - skipped);
+  });
+}
+
+// True also where the device is not there: that is the reader's to tell.
+template <class Write>
+bool Writer::timed(const Write& write) {
+  if (!link_.enter(Link::kWriter)) return true;
+  const std::uint64_t began_ns = monotonic_ns();
+  began_ns_.store(began_ns, std::memory_order_release);
+  const bool is_sent = is_muted_.load() || write();
+  has_failed_.store(!is_sent, std::memory_order_release);  // before it is no longer busy: one of the two is seen
+  began_ns_.store(0, std::memory_order_release);
+  link_.leave(Link::kWriter);
+  ++counts_.writes;
+  counts_.failures += !is_sent;
+  counts_.write.add(monotonic_ns() - began_ns);
+  return is_sent;
+}
+
+void Writer::publish(std::uint64_t now_ns) {
+  published_ns_ = now_ns;
+  status_.put(counts_);
+}
+
+void Writer::say_goodbye() {
+  const auto has_time = [&] { return monotonic_ns() - stop_ns_.load(std::memory_order_acquire) < kGoodbyeNs; };
+  // After a blocked write that the device took in the end it takes this one too.
+  bool is_taken = (!has_failed() || has_time()) && send(GatedForce(), 0);
+  has_left_zero_.store(is_taken || !link_.is_open(), std::memory_order_release);
+  for (int i = 0; i < profile_.safe_stop_count && (is_taken || has_time()); ++i) {
+    is_taken = send_fixed(profile_.safe_stop[i]);
+  }
+}
+
+}  // namespace fdcg::dev

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device's writer: a thread of its own, since a device that does not take output holds hid_write for 5 s. It always sends the
+// newest force. Nothing new for kSilenceS: it sends zero by itself, once, so that a servo thread that hangs leaves no force.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "base/mailbox.hpp"
+#include "base/threads.hpp"
+#include "host/status.hpp"
+#include "profile/profile.hpp"
+#include "tick/gate.hpp"
+#include "tick/link.hpp"
+#include "tick/transport.hpp"
+
+namespace fdcg::dev {
+
+struct WriterStatus {
+  std::uint64_t writes = 0, failures = 0;
+  TimeHistogram write;  // of a write call
+};
+
+class Writer {
+ public:
+  // All three must outlive it.
+  Writer(const Profile& profile, Transport& transport, Link& link);
+
+  // The servo thread's. No lock, no heap, no wait. What is put is sent by the thread's next look: wake has it look now (a call
+  // of the kernel's, of some microseconds, where the thread sleeps).
+  void put(const GatedForce& force, std::uint32_t echo);
+  void wake() { wake_.signal(); }
+  std::uint64_t busy_ns(std::uint64_t now_ns) const;  // for how long the write in progress has been going on; 0: there is none
+  bool has_failed() const { return has_failed_.load(std::memory_order_acquire); }  // the last write
+
+  // The thread's body, until request_stop: then zero force and the profile's safe-stop reports, and out.
+  void run();
+  void request_stop();
+  // After run: false where a device that is there did not take its zero force.
+  bool has_left_zero() const { return has_left_zero_.load(std::memory_order_acquire); }
+
+  // The supervisor's: waits until what was put last has been sent, or for that long.
+  void flush_within(std::uint64_t timeout_ns);
+  void forget_failure() { has_failed_.store(false, std::memory_order_release); }  // the device has been opened anew
+
+  // A crash's (emergency.hpp), async-signal-safe: nothing is sent from now on. Returns the sequence number of the next report.
+  std::uint32_t mute() {
+    is_muted_.store(true);
+    return sequence_.load();
+  }
+  // One thread's at a time. False: nothing new.
+  bool take_status(WriterStatus* status) { return status_.take(status); }
+
+ private:
+  struct Letter {
+    GatedForce force;
+    std::uint32_t echo = 0;
+    std::uint64_t number = 0;
+  };
+  bool send(const GatedForce& force, std::uint32_t echo);
+  bool send_fixed(const FixedReport& report);
+  template <class Write>
+  bool timed(const Write& write);
+  void publish(std::uint64_t now_ns);
+  void say_goodbye();
+
+  const Profile& profile_;
+  Transport& transport_;
+  Link& link_;
+  Mailbox<Letter> letters_;
+  Mailbox<WriterStatus> status_;
+  Event wake_;
+  std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false}, has_left_zero_{true};
+  std::atomic<std::uint64_t> stop_ns_{0};   // when the stop was asked for
+  std::atomic<std::uint64_t> began_ns_{0};  // of the write in progress
+  std::atomic<std::uint64_t> put_{0}, done_{0};
+  std::atomic<std::uint32_t> sequence_{1};
+  std::uint64_t put_number_ = 0;  // the servo thread's
+  WriterStatus counts_;
+  std::uint64_t published_ns_ = 0;
+  std::uint8_t report_[kMaxReportBytes] = {};
+};
+
+}  // namespace fdcg::dev

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "profile/report_codec.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "profile/crc.hpp"
+
+namespace fdcg::dev {
+namespace {
+
+// ---- Bytes, whatever the machine's own order and alignment
+
+std::uint32_t load(const std::uint8_t* data, int bytes, bool is_big_endian) {
+  std::uint32_t raw = 0;
+  for (int i = 0; i < bytes; ++i)
+    raw |= std::uint32_t{data[i]} << 8 * (is_big_endian ? bytes - 1 - i : i);
+  return raw;
+}
+
+void store(std::uint32_t raw, int bytes, bool is_big_endian, std::uint8_t* data) {
+  for (int i = 0; i < bytes; ++i)
+    data[i] = static_cast<std::uint8_t>(raw >> 8 * (is_big_endian ? bytes - 1 - i : i));
+}
+
+std::uint32_t load(const Field& field, const std::uint8_t* report) {
+  return load(report + field.offset, bytes_of(field.type), field.is_big_endian);
+}
+
+void store(const Field& field, std::uint32_t raw, std::uint8_t* report) {
+  store(raw, bytes_of(field.type), field.is_big_endian, report + field.offset);
+}
+
+// ---- Raw bits and numbers
+
+double number_of(NumberType type, std::uint32_t raw) {
+  switch (type) {
+    case NumberType::kU8:
+    case NumberType::kU16:
+    case NumberType::kU32:
+      return raw;
+    case NumberType::kI8:
+      return static_cast<std::int8_t>(raw);
+    case NumberType::kI16:
+      return static_cast<std::int16_t>(raw);
+    case NumberType::kI32:
+      return static_cast<std::int32_t>(raw);
+    case NumberType::kF32: {
+      float number = 0;
+      std::memcpy(&number, &raw, sizeof number);
+      return static_cast<double>(number);
+    }
+  }
+  return 0;
+}
+
+struct TypeRange {
+  double least, most;
+};
+
+TypeRange range_of(NumberType type) {
+  switch (type) {
+    case NumberType::kU8:
+      return {0, std::numeric_limits<std::uint8_t>::max()};
+    case NumberType::kI8:
+      return {std::numeric_limits<std::int8_t>::min(), std::numeric_limits<std::int8_t>::max()};
+    case NumberType::kU16:
+      return {0, std::numeric_limits<std::uint16_t>::max()};
+    case NumberType::kI16:
+      return {std::numeric_limits<std::int16_t>::min(), std::numeric_limits<std::int16_t>::max()};
+    case NumberType::kU32:
+      return {0, std::numeric_limits<std::uint32_t>::max()};
+    case NumberType::kI32:
+      return {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max()};
+    case NumberType::kF32:
+      return {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max()};
+  }
+  return {0, 0};
+}
+
+// Held in the type's range. Never NaN: that is 0.
+std::uint32_t raw_of(NumberType type, double number) {
+  const TypeRange range = range_of(type);
+  if (std::isnan(number)) number = 0;
+  number = number < range.least ? range.least : number > range.most ? range.most : number;
+  if (type == NumberType::kF32) {
+    const float narrow = static_cast<float>(number);
+    std::uint32_t raw = 0;
+    std::memcpy(&raw, &narrow, sizeof raw);
+    return raw;
+  }
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::nearbyint(number)));
+}
+
+double value_of(const Field& field, std::uint32_t raw) {
+  return number_of(field.type, raw) * field.scale + field.bias;
+}
+
+// Of a value that is not a number: the raw value of 0.
+std::uint32_t raw_of_value(const Field& field, double value) {
+  return raw_of(field.type, ((std::isnan(value) ? 0 : value) - field.bias) / field.scale);
+}
+
+// The device's clock goes round.
+std::uint32_t raw_of_time(const Field& field, double time_s) {
+  const double round = std::ldexp(1.0, 8 * bytes_of(field.type));
+  const double ticks = std::fmod(std::nearbyint(time_s / field.scale), round);
+  return raw_of(NumberType::kU32, ticks < 0 ? ticks + round : ticks);
+}
+
+// ---- Whole reports
+
+Verdict check_frame(const ReportLayout& layout, const std::uint8_t* data, int bytes) {
+  if (bytes != layout.bytes) return Verdict::kLength;
+  if (layout.id != 0 && data[0] != layout.id) return Verdict::kId;
+  const Crc& crc = layout.crc;
+  if (crc.kind != CrcKind::kNone &&
+      load(data + crc.offset, bytes_of(crc.kind), crc.is_big_endian) != crc_of(crc.kind, data + crc.first, crc.bytes))
+    return Verdict::kCrc;
+  for (int i = 0; i < layout.field_count; ++i) {
+    const Field& field = layout.fields[i];
+    if (field.role == Role::kConstant && load(field, data) != field.constant) return Verdict::kConstant;
+  }
+  return Verdict::kGood;
+}
+
+// `raw` of each field; the rest of the report is zero.
+template <class RawOf>
+void write_frame(const ReportLayout& layout, std::uint8_t* data, RawOf raw_of_field) {
+  std::memset(data, 0, layout.bytes);
+  if (layout.id != 0) data[0] = layout.id;
+  for (int i = 0; i < layout.field_count; ++i) {
+    const Field& field = layout.fields[i];
+    store(field, field.role == Role::kConstant ? field.constant : raw_of_field(field), data);
+  }
+  const Crc& crc = layout.crc;
+  if (crc.kind != CrcKind::kNone)
+    store(crc_of(crc.kind, data + crc.first, crc.bytes), bytes_of(crc.kind), crc.is_big_endian, data + crc.offset);
+}
+
+void read_into(const Field& field, std::uint32_t raw, Sample* sample) {
+  switch (field.role) {
+    case Role::kAxis:
+      sample->axis[field.axis] = value_of(field, raw);
+      break;
+    case Role::kSequence:
+      sample->sequence = raw;
+      break;
+    case Role::kEcho:
+      sample->echo = raw;
+      break;
+    case Role::kTime:
+      sample->time_s = number_of(field.type, raw) * field.scale;
+      break;
+    case Role::kButtons:
+      sample->buttons = raw;
+      break;
+    case Role::kStatus:
+      sample->has_fault = sample->has_fault || (raw & field.constant) != 0;
+      break;
+    case Role::kEffort:
+    case Role::kEnable:
+    case Role::kConstant:
+      break;
+  }
+}
+
+}  // namespace
+
+Verdict decode_input(const Profile& profile, const std::uint8_t* data, int bytes, Sample* sample) {
+  const ReportLayout& layout = profile.input;
+  *sample = {};
+  const Verdict verdict = check_frame(layout, data, bytes);
+  if (verdict != Verdict::kGood) return verdict;
+  for (int i = 0; i < layout.field_count; ++i)
+    read_into(layout.fields[i], load(layout.fields[i], data), sample);
+  for (const double value : sample->axis) {
+    if (!std::isfinite(value)) return Verdict::kNotFinite;
+  }
+  return Verdict::kGood;
+}
+
+void encode_output(const Profile& profile, const Command& command, std::uint8_t* data) {
+  write_frame(profile.output, data, [&command](const Field& field) -> std::uint32_t {
+    switch (field.role) {
+      case Role::kEffort:
+        return raw_of_value(field, command.effort[field.axis]);
+      case Role::kSequence:
+        return command.sequence;
+      case Role::kEcho:
+        return command.echo;
+      case Role::kEnable:
+        return command.is_enabled ? field.constant : 0;
+      default:
+        return 0;
+    }
+  });
+}
+
+void encode_input(const Profile& profile, const Sample& sample, std::uint8_t* data) {
+  write_frame(profile.input, data, [&sample](const Field& field) -> std::uint32_t {
+    switch (field.role) {
+      case Role::kAxis:
+        return raw_of_value(field, sample.axis[field.axis]);
+      case Role::kSequence:
+        return sample.sequence;
+      case Role::kEcho:
+        return sample.echo;
+      case Role::kTime:
+        return raw_of_time(field, sample.time_s);
+      case Role::kButtons:
+        return sample.buttons;
+      case Role::kStatus:
+        return sample.has_fault ? field.constant : 0;
+      default:
+        return 0;
+    }
+  });
+}
+
+bool decode_output(const Profile& profile, const std::uint8_t* data, int bytes, Command* command) {
+  const ReportLayout& layout = profile.output;
+  *command = {};
+  if (check_frame(layout, data, bytes) != Verdict::kGood) return false;
+  command->is_enabled = true;  // unless a field says otherwise
+  for (int i = 0; i < layout.field_count; ++i) {
+    const Field& field = layout.fields[i];
+    const std::uint32_t raw = load(field, data);
+    if (field.role == Role::kEffort) command->effort[field.axis] = value_of(field, raw);
+    if (field.role == Role::kSequence) command->sequence = raw;
+    if (field.role == Role::kEcho) command->echo = raw;
+    if (field.role == Role::kEnable && raw != field.constant) command->is_enabled = false;
+  }
+  for (const double effort : command->effort) {
+    if (!std::isfinite(effort)) return false;
+  }
+  return true;
+}
+
+}  // namespace fdcg::dev

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// A session's log: every TickInput and TickOutput of every device, so that it can be replayed bit for bit. The servo thread
+// puts records into a ring that was made at the start and never waits; a thread of its own writes them to the file. A full ring
+// or a full disk costs records, never a tick: they are counted, the status says so, and the replay ends before the gap.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "base/host_config.hpp"
+#include "tick/device_tick.hpp"
+
+namespace fdcg::dev {
+
+// One servo thread's way into the log, for one device or several.
+class LogRing {
+ public:
+  // bytes: a power of two, at least kLeastBytes for each device. Allocates and touches every page.
+  explicit LogRing(std::uint32_t bytes, int device_count = 1);
+  ~LogRing();
+  LogRing(const LogRing&) = delete;
+  LogRing& operator=(const LogRing&) = delete;
+  static constexpr std::uint32_t kLeastBytes = 1 << 15;  // more than two ticks with all that a tick can hold
+  // The servo thread's. False: the ring is full, and the tick is counted as dropped. No lock, no heap. device: among the
+  // ring's.
+  bool put(const TickInput& input, const TickOutput& output, int device = 0);
+  // One tick of every device of the ring, one after another in the log; or of none.
+  bool put_all(const Member* members);
+  // Whether the largest tick of every device would find room now: for a thread that may wait.
+  bool has_room() const;
+  std::uint64_t dropped(int device = 0) const { return dropped_[device].load(std::memory_order_relaxed); }
+  int device_count() const { return device_count_; }
+
+ private:
+  friend class SessionLog;
+  // The log's thread: the oldest tick into `payload` (kMostTickBytes); its bytes, or 0 where the ring is empty.
+  std::size_t take(std::uint64_t* tick, int* device, std::uint8_t* payload);
+  // The servo thread's: into the scratch memory, from `at` on. The bytes.
+  std::size_t encode(const TickInput& input, const TickOutput& output, int device, std::size_t at);
+  bool hand_over(std::size_t bytes);
+  void copy_in(std::uint64_t at, const std::uint8_t* from, std::size_t bytes);
+  void copy_out(std::uint64_t at, std::uint8_t* to, std::size_t bytes) const;
+
+  std::uint8_t* bytes_ = nullptr;
+  std::uint8_t* scratch_ = nullptr;  // the servo thread's: ticks being encoded
+  std::uint32_t capacity_ = 0;
+  int device_count_ = 1;
+  std::uint64_t ticks_[kMaxDevices] = {};           // the servo thread's: put so far, dropped ones too
+  alignas(64) std::atomic<std::uint64_t> head_{0};  // written by the servo thread
+  alignas(64) std::atomic<std::uint64_t> tail_{0};  // written by the log's thread
+  std::atomic<std::uint64_t> dropped_[kMaxDevices] = {};
+};
+
+// Whether a session of this scene could be logged where config.log_file says, as far as can be told without touching it. Empty:
+// it could, or there is no log. Otherwise why not: the name is that of an input or a folder, or in none; the scene could not be
+// read back.
+std::string log_problem(const HostConfig& config);
+
+// The file and its thread.
+class SessionLog {
+ public:
+  SessionLog();
+  ~SessionLog();  // stops
+  SessionLog(const SessionLog&) = delete;
+  SessionLog& operator=(const SessionLog&) = delete;
+  // Writes the header (the scene, the profiles, the graphs' checksums) and starts the thread. Rings: their devices are the
+  // scene's, in order. They must live until stop. Empty: fine. Otherwise why not.
+  std::string start(const HostConfig& config, LogRing* const* rings, int ring_count);
+  // After the servo threads have put their last tick. Writes what is left, closes the file. Empty, or what went wrong since the
+  // start ("disk full"). A log that has come to its limit is well.
+  std::string stop();
+  // The file takes no more: failure() says why, and how many ticks are not in it. Its limit counts here.
+  bool has_failed() const;
+  std::string failure() const;  // any thread
+
+ private:
+  struct Impl;
+  Impl* impl_;
+};
+
+}  // namespace fdcg::dev

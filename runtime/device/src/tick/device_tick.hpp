@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// One tick of one device as a pure function of what came in: reports -> judge -> kinematics -> world -> scene step -> gate.
+// The loop gathers a TickInput (every clock reading and every byte is in it), calls device_tick, hands the force to the writer
+// and the record to the log. So a session is replayed bit for bit by feeding the same inputs, and every fault can be tested
+// without a device. No heap, no lock, no clock.
+//
+// Bodies (fdcg/body.h) live in ticks: each tick with a good report moves them on by one period of the device, whatever the
+// clock says, and while no report comes they stand still. So a busy computer makes them slow, never wild.
+//
+// Devices that share a scene are ticked together, by group_tick (scene_tick.hpp has what is theirs in common). Each has its own
+// judge, gate and counters, as if it were alone.
+#pragma once
+
+#include <cstdint>
+
+#include "fdcg/pile.h"
+#include "profile/profile.hpp"
+#include "profile/report_codec.hpp"
+#include "tick/gate.hpp"
+#include "tick/grip.hpp"
+#include "tick/soft.hpp"
+#include "tick/transport.hpp"
+
+namespace fdcg::dev {
+
+inline constexpr int kMaxDrain = 64;     // reports in one tick: what hidraw keeps
+inline constexpr int kSamplesToArm = 8;  // good reports since the device was opened: by then it has taken an output that asks
+                                         // for no force, which many want before the first that does
+inline constexpr int kMaxDriven = 16;    // objects that something moves
+inline constexpr int kMaxSoft = 4;       // objects that give way
+inline constexpr int kMaxBodies = 16;    // objects that move by what acts on them
+inline constexpr int kMaxDevices = 16;   // of a scene
+
+struct RawReport {
+  std::uint64_t host_ns = 0;
+  std::uint16_t bytes = 0;  // as read; what is beyond kMaxReportBytes is cut off, and bytes is then kMaxReportBytes + 1
+  std::uint8_t data[kMaxReportBytes] = {};
+};
+
+struct TickInput {
+  std::uint64_t now_ns = 0;  // after the drain
+  ReadStatus read = ReadStatus::kTimeout;
+  bool arm = false, disarm = false;
+  bool begins = false;  // the device has just been opened (again): nothing is known of its sequence and clock
+  bool write_failed = false;
+  std::uint64_t write_busy_ns = 0;
+  std::uint32_t report_count = 0;
+  std::uint32_t pose_count = 0;  // of driven objects, in the order of DeviceSetup::driven
+  fdcg_pose poses[kMaxDriven];
+  RawReport reports[kMaxDrain];  // oldest first; only the first report_count are set
+};
+
+struct TickOutput {
+  GatedForce force;
+  std::uint32_t echo = 0;  // sequence of the report that the force answers
+  Phase phase = Phase::kDisarmed;
+  Fault fault = Fault::kNone;
+  bool arming_refused = false;
+  bool has_sample = false;
+  std::uint32_t state = 0;        // of the contact with the largest force: fdcg_state
+  double hip_world_m[3] = {};     // of the tip
+  double wanted_force_n[3] = {};  // world, before the gate
+  Sample sample;
+  std::uint32_t body_count = 0;
+  fdcg_pose bodies[kMaxBodies] = {};  // world, after the tick; in the order of DeviceSetup::bodies
+};
+
+struct TickCounters {
+  std::uint64_t ticks = 0;       // with a good report
+  std::uint64_t late = 0;        // more than 1.5 periods after the one before
+  std::uint64_t lost = 0;        // gaps in the device's sequence, in reports
+  std::uint64_t superseded = 0;  // good, but a newer one was there
+  std::uint64_t rejected[kVerdicts] = {};
+  std::uint64_t timeouts = 0;
+  std::uint64_t disarmed[kFaults] = {};
+  std::uint64_t bodies_lost = 0;  // 1: the runtime refused to move a body (beyond 1e12 m), and all have stood still since
+};
+
+// World = R (scale * device) + offset. Forces are turned, not scaled: a stiffness of K in the world is felt as scale * K.
+struct Mapping {
+  double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
+  double scale = 1;
+  double offset_m[3] = {};
+};
+
+struct DeviceSetup {
+  Profile profile;
+  Mapping mapping;
+  int contact_count = 1;
+  double contacts_m[kMaxContacts][3] = {};  // from the tip, device's frame, not scaled
+  double pads_m[kMaxContacts] = {};         // radius of each contact's pad, world; 0: a point
+  double most_force_n = 0;                  // the scene's limit; 0: the profile's
+  fdcg_scene* scene = nullptr;              // this device's own, or that of all devices
+  bool is_shared = false;                   // the scene is that of several devices: what follows the fingers is so too
+  fdcg_finger_id fingers[kMaxContacts] = {};
+  int driven_count = 0;
+  fdcg_object_id driven[kMaxDriven] = {};
+  Grip grip;
+  // Bodies: all of it in the DeviceScene's memory, which changes with every tick as the scene's does.
+  fdcg_scene_body* bodies = nullptr;
+  std::uint32_t body_count = 0;
+  std::uint32_t substeps = 1;  // of a tick at scene_rate_hz, 1 to FDCG_BODY_MAX_SUBSTEPS
+  double scene_rate_hz = 0;    // of the fastest device that shares the scene; 0: this one's
+  fdcg_pile* pile = nullptr;   // with the ground and all objects; null where there are no bodies
+  fdcg_reaction* reactions = nullptr;
+  std::uint32_t reaction_count = 0;
+  int soft_count = 0;  // objects that give way, in the DeviceScene's memory too
+  SoftObject* soft[kMaxSoft] = {};
+  fdcg_object_id soft_id[kMaxSoft] = {};
+};
+
+// All that a device's loop remembers from tick to tick, but for the scene's memory.
+struct DeviceState {
+  DeviceSetup setup;
+  Gate gate;
+  GateInput to_gate;  // of the tick that is going on
+  ReportJudge judge;
+  TickCounters counters;
+  int samples = 0;          // good reports since the device was opened, up to kSamplesToArm
+  bool has_place = false;   // fingers stand where the tip was last seen
+  bool has_left = false;    // is_shared: the fingers are out of the scene
+  bool is_waiting = false;  // is_shared: after a fault they stay out until the device is armed again
+  std::uint64_t last_good_ns = 0;
+  GripState grip;
+  double tip_m[3] = {};                   // device's frame, as of the last good report with a place
+  double places_m[kMaxContacts][3] = {};  // of the contacts, world, in the last tick
+  double turn_xyzw[4] = {0, 0, 0, 1};     // and how they were turned
+  // as of the last good report
+  Sample sample;
+  double tip_world_m[3] = {};
+  double wanted_n[3] = {};  // world
+  std::uint32_t state = 0;
+};
+
+// setup.scene's fingers are added here. False with *error where the scene refuses them.
+bool begin_device(const DeviceSetup& setup, DeviceState* device, fdcg_error* error);
+void device_tick(DeviceState& device, const TickInput& input, TickOutput* output);
+
+// One of the devices that share a scene, in the scene's order.
+struct Member {
+  DeviceState* device = nullptr;
+  const TickInput* input = nullptr;
+  TickOutput* output = nullptr;
+};
+// 1 to kMaxDevices of them, always the same; each has a tick, whatever came of it. Where it is one, it is device_tick. Returns
+// which of them is the clock: the loop waits for its next report, and takes what is there of the others.
+int group_tick(const Member* members, int count);
+
+}  // namespace fdcg::dev

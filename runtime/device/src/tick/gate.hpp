@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// The safety gate: the last stage before the device, and the only maker of a GatedForce, which is all that a writer takes.
+// Pure: the clock comes in as a number. No heap, no lock, every step bounded.
+//
+// What leaves it is finite; its norm is at most force_n; its efforts are at most effort[] each; and it is a force within slew
+// of the last one, or such a force made smaller: towards zero it may go at once. Not armed, or after a fault: zero.
+//
+// Armed by a command, near zero force; the force then grows over kRampS. kMissedTicksToFade periods without a good report: it
+// goes to zero within kFadeS, and comes back with the ramp when reports do. Everything else that goes wrong disarms, at once
+// and until the next command.
+#pragma once
+
+#include <cstdint>
+
+#include "profile/kinematics.hpp"
+#include "profile/profile.hpp"
+
+namespace fdcg::dev {
+
+inline constexpr int kMissedTicksToFade = 3;
+inline constexpr double kFadeS = 0.0015;             // from any force to zero
+inline constexpr double kRampS = 0.5;                // from zero to full after arming
+inline constexpr double kSilenceS = 0.010;           // without a good report: disarmed
+inline constexpr double kWriterStuckS = 0.005;       // in one write: disarmed
+inline constexpr double kArmForceShare = 0.05;       // of force_n: arming is granted only below it
+inline constexpr double kForceWithoutWatchdogN = 1;  // the most for a device that does not drop its force by itself ...
+inline constexpr double kLongestWatchdogS = 0.1;     // ... within this
+
+// Why there is no force. Part of the log and the status: never renumber.
+enum class Fault : std::uint8_t {
+  kNone = 0,
+  kUnknownLimit = 1,  // the profile does not say what the device and the hand can stand: never armed
+  kSilence = 2,
+  kWriterStuck = 3,
+  kWriteFailed = 4,
+  kReadFailed = 5,  // unplugged
+  kNotFinite = 6,   // a number of our own
+  kWorkspace = 7,   // the tip is where the device cannot be
+  kSpeed = 8,
+  kHostLate = 9,      // the host itself was away for kSilenceS or more
+  kDeviceFault = 10,  // the device says so itself
+  kCommanded = 11,    // disarmed by the user
+  kClock = 12,        // the host's clock went back
+};
+inline constexpr int kFaults = 13;
+const char* fault_name(Fault fault);  // "silence"
+const char* fault_text(Fault fault);  // one line: what happened and what to do
+
+enum class Phase : std::uint8_t { kDisarmed = 0, kRamping = 1, kArmed = 2, kFading = 3 };
+
+// Zero, or what the gate has let through.
+class GatedForce {
+ public:
+  GatedForce() = default;
+  const double* effort() const { return effort_; }    // kMaxAxes: N or N m
+  const double* force_n() const { return force_n_; }  // 3, device's frame
+  bool is_enabled() const { return is_enabled_; }     // the gate is armed
+
+ private:
+  friend class Gate;
+  double effort_[kMaxAxes] = {};
+  double force_n_[3] = {};
+  bool is_enabled_ = false;
+};
+
+struct GateInput {
+  std::uint64_t now_ns = 0;
+  bool has_sample = false;  // a good report came in this tick; tip is of it
+  TipPose tip;
+  bool is_tip_valid = true;
+  double wanted_force_n[3] = {};     // device's frame
+  bool arm = false, disarm = false;  // commands
+  bool device_fault = false;
+  bool read_failed = false, write_failed = false;
+  std::uint64_t write_busy_ns = 0;  // for how long the write in progress has been going on
+};
+
+class Gate {
+ public:
+  // The profile's limits, no larger than `most` where that is above 0 (the scene's), and with kForceWithoutWatchdogN.
+  void begin(const DeviceLimits& limits, int axis_count, double rate_hz, double most_force_n);
+  GatedForce step(const GateInput& input);
+
+  Phase phase() const { return phase_; }
+  Fault fault() const { return fault_; }                   // of the last disarming, until armed again
+  bool arming_refused() const { return arming_refused_; }  // in this step: pressed against something
+  const DeviceLimits& limits() const { return limits_; }   // those in force
+
+ private:
+  Fault fault_of(const GateInput& input, double since_step_s) const;
+  Fault fault_of_tip(const GateInput& input) const;
+  bool may_arm(const GateInput& input) const;
+  void disarm(Fault fault);
+  void move_share(const GateInput& input, double step_s);
+  GatedForce let_through(const double wanted_n[3], double step_s);
+
+  DeviceLimits limits_;
+  int axis_count_ = 0;
+  double period_s_ = 0;
+  bool knows_limits_ = false;
+  Phase phase_ = Phase::kDisarmed;
+  Fault fault_ = Fault::kCommanded;
+  bool arming_refused_ = false;
+  bool has_stepped_ = false, has_sample_ = false;
+  std::uint64_t last_step_ns_ = 0, last_sample_ns_ = 0;
+  TipPose tip_;       // of the last sample
+  double share_ = 0;  // of the wanted force: 0 to 1
+  double last_force_n_[3] = {};
+};
+
+}  // namespace fdcg::dev

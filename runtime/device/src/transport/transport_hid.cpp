@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device over hidapi.
+//
+// hidraw: three descriptors on one path. hidapi keeps a handle's last error as a string in the heap, which read and write both
+// free and set: two threads on ONE handle corrupt it when a device is pulled out. So reader and writer have a handle each, and
+// a third descriptor, of our own, is kept for a crash (emergency.hpp).
+//
+// libusb: an interface can be claimed once only, so there is ONE handle. That is safe: its hid_error is a constant, the handle
+// keeps no string, reads take reports from a queue under a mutex of the handle's, and writes are libusb transfers, which any
+// thread may make. That mutex is held for moments only, but it is one, and a report's memory is freed: on this back end hidapi
+// itself does so in the servo thread. Reports come in through a thread of hidapi's, which gets the servo thread's priority by
+// being started under it, or a busy machine would hold up every report. A read's time-out runs on the wall clock: when that is
+// set back, a read of a silent device lasts as much longer; the writer's own 10 ms take the force away then.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstring>
+
+#include "base/real_time.hpp"
+#include "transport/hid_devices.hpp"
+#include "transport/hid_library.hpp"
+#include "transport/make_transport.hpp"
+
+namespace fdcg::dev {
+
+namespace {
+
+class HidTransport final : public Transport {
+ public:
+  HidTransport(const DeviceConfig& config, const LoopConfig& loop)
+      : profile_(config.profile), serial_(config.serial), path_(config.path), loop_(loop) {}
+  ~HidTransport() override { HidTransport::close(); }
+
+  std::string open() override;
+  void close() override;
+  ReadResult read(std::uint8_t* data, int capacity, int timeout_ms) override;
+  bool write(const std::uint8_t* data, int bytes) override;
+  bool write_feature(const std::uint8_t* data, int bytes) override;
+  int emergency_descriptor() const override { return emergency_; }
+
+ private:
+  std::string open_with(HidBackend backend);
+  std::string open_handles(const HidDevice& device);
+  std::string send_init();
+  template <class Send>
+  bool with_id(const std::uint8_t* data, int bytes, const Send& send);
+
+  const Profile profile_;
+  const std::string serial_, path_;
+  const LoopConfig loop_;
+  const HidLibrary* library_ = nullptr;
+  hid_device* reader_ = nullptr;
+  hid_device* writer_ = nullptr;  // the same on libusb
+  int emergency_ = -1;
+};
+
+std::string HidTransport::open() {
+  if (loop_.backend != HidBackend::kAny) return open_with(loop_.backend);
+  const std::string hidraw_problem = open_with(HidBackend::kHidraw);
+  if (hidraw_problem.empty()) return {};
+  const std::string libusb_problem = open_with(HidBackend::kLibusb);
+  if (libusb_problem.empty()) return {};
+  return "hidraw: " + hidraw_problem + "; libusb: " + libusb_problem;
+}
+
+std::string HidTransport::open_with(HidBackend backend) {
+  std::string problem;
+  library_ = hid_library(backend, &problem);
+  if (library_ == nullptr) return problem;
+  // hidraw's list is read from the kernel's, so it can tell all that is there.
+  const Match& match = profile_.match;
+  const std::vector<HidDevice> devices =
+      library_->is_libusb ? list_hid_devices(*library_, match.vendor, match.product) : list_hid_devices(*library_);
+  const HidDevice* const device = choose_hid_device(devices, match, serial_, path_, &problem);
+  if (device == nullptr) return problem;
+  problem = open_handles(*device);
+  if (problem.empty()) problem = send_init();
+  if (!problem.empty()) close();
+  return problem.empty() ? problem : describe(*device) + ": " + problem;
+}
+
+std::string HidTransport::open_handles(const HidDevice& device) {
+  const char* const path = device.path.c_str();
+  const OwnPriority priority(library_->is_libusb ? loop_.servo_priority : 0);
+  reader_ = library_->open_path(path);
+  writer_ = library_->is_libusb ? reader_ : library_->open_path(path);
+  if (reader_ == nullptr || writer_ == nullptr) {
+    const std::string permission = permission_problem(device);
+    return permission.empty() ? "cannot be opened; does another program use it?" : permission;
+  }
+  if (!library_->is_libusb) emergency_ = ::open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  return {};
+}
+
+std::string HidTransport::send_init() {
+  for (int i = 0; i < profile_.init_count; ++i) {
+    const FixedReport& report = profile_.init[i];
+    const int sent = report.is_feature ? library_->send_feature_report(writer_, report.data, report.bytes)
+                                       : library_->write(writer_, report.data, report.bytes);
+    if (sent < 0) return "init report " + std::to_string(i + 1) + " of the profile was not taken; is it the right profile?";
+  }
+  return {};
+}
+
+void HidTransport::close() {
+  if (emergency_ >= 0) ::close(emergency_);
+  emergency_ = -1;
+  if (writer_ != nullptr && writer_ != reader_) library_->close(writer_);
+  if (reader_ != nullptr) library_->close(reader_);
+  reader_ = writer_ = nullptr;
+}
+
+ReadResult HidTransport::read(std::uint8_t* data, int capacity, int timeout_ms) {
+  const int bytes = library_->read_timeout(reader_, data, static_cast<std::size_t>(capacity), timeout_ms);
+  if (bytes > 0) return {ReadStatus::kReport, bytes};
+  return {bytes == 0 ? ReadStatus::kTimeout : ReadStatus::kLost, 0};
+}
+
+// hidapi wants a 0 where a device has no ids; the profile's bytes begin with data then.
+template <class Send>
+bool HidTransport::with_id(const std::uint8_t* data, int bytes, const Send& send) {
+  std::uint8_t with_zero[kMaxReportBytes + 1];
+  const bool has_ids = profile_.has_output ? profile_.output.id != 0 : profile_.input.id != 0;
+  if (bytes <= 0 || bytes > kMaxReportBytes) return false;
+  if (has_ids) return send(data, static_cast<std::size_t>(bytes)) >= 0;
+  with_zero[0] = 0;
+  std::memcpy(with_zero + 1, data, static_cast<std::size_t>(bytes));
+  return send(with_zero, static_cast<std::size_t>(bytes) + 1) >= 0;
+}
+
+bool HidTransport::write(const std::uint8_t* data, int bytes) {
+  return with_id(data, bytes,
+                 [this](const std::uint8_t* report, std::size_t size) { return library_->write(writer_, report, size); });
+}
+
+bool HidTransport::write_feature(const std::uint8_t* data, int bytes) {
+  return with_id(data, bytes, [this](const std::uint8_t* report, std::size_t size) {
+    return library_->send_feature_report(writer_, report, size);
+  });
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const LoopConfig& loop) {
+  return std::make_unique<HidTransport>(config, loop);
+}
+
+}  // namespace fdcg::dev

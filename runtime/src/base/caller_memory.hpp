@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory of the caller's, in which a struct lies in front of its arrays: found by offsets, so that a copy of the whole works as
+// it is.
+#pragma once
+
+#include "base/message.hpp"
+
+namespace fdcg {
+
+// Where the parts come to lie, one after the other, each at a multiple of 8.
+class MemoryLayout {
+ public:
+  static constexpr uint64_t kAlignment = 8;
+
+  // The offset of the next part: `count` things of `bytes` each.
+  uint64_t place(uint64_t count, uint64_t bytes) {
+    const uint64_t begin = end_;
+    end_ += (count * bytes + kAlignment - 1) / kAlignment * kAlignment;
+    return begin;
+  }
+  [[nodiscard]] uint64_t bytes() const { return end_; }
+
+ private:
+  uint64_t end_ = 0;
+};
+
+// Whether such a layout fits at `memory`, which is not null.
+inline fdcg_status check_room(const void* memory, uint64_t bytes, uint64_t needed, fdcg_error* error) {
+  if (reinterpret_cast<uintptr_t>(memory) % MemoryLayout::kAlignment != 0)
+    return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
+  if (bytes < needed)
+    return Message(error, FDCG_E_ARGUMENT).text("bytes is ").number(bytes).text(", this config needs ").number(needed);
+  return FDCG_OK;
+}
+
+// The part of what begins at `whole` that lies at an offset; const where `whole` is.
+template <class T, class Whole>
+inline T* part_at(Whole* whole, uint64_t offset) {
+  return reinterpret_cast<T*>(reinterpret_cast<char*>(whole) + offset);
+}
+template <class T, class Whole>
+inline const T* part_at(const Whole* whole, uint64_t offset) {
+  return reinterpret_cast<const T*>(reinterpret_cast<const char*>(whole) + offset);
+}
+
+}  // namespace fdcg

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/message.hpp"
+
+namespace fdcg {
+
+#if FDCG_WITH_MESSAGES
+
+Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : error_(error), status_(status) {
+  if (error_ == nullptr) return;
+  error_->status = status;
+  error_->offset = offset;
+  error_->message[0] = '\0';
+}
+
+void Message::put(char c) {
+  if (error_ == nullptr || used_ + 1 >= sizeof error_->message) return;
+  error_->message[used_++] = c;
+  error_->message[used_] = '\0';
+}
+
+Message& Message::text(const char* words) {
+  while (*words != '\0')
+    put(*words++);
+  return *this;
+}
+
+Message& Message::quoted(const char* words, int limit) {
+  put('\'');
+  for (int i = 0; i < limit && words[i] != '\0'; ++i)
+    put(words[i]);
+  put('\'');
+  return *this;
+}
+
+Message& Message::number(uint64_t value) {
+  char digits[20];
+  int count = 0;
+  do {
+    digits[count++] = static_cast<char>('0' + value % 10);
+    value /= 10;
+  } while (value != 0);
+  while (count > 0)
+    put(digits[--count]);
+  return *this;
+}
+
+Message& Message::real(double value) {
+  if (value != value) return text("NaN");
+  if (value < 0) {
+    put('-');
+    value = -value;
+  }
+  if (value > 1e300) return text("infinite");
+  int exponent = 0;
+  const bool has_exponent = value != 0 && (value >= 1e6 || value < 1e-3);
+  if (has_exponent) {
+    for (; value >= 10; value /= 10)
+      ++exponent;
+    for (; value < 1; value *= 10)
+      --exponent;
+  }
+  auto millionths = static_cast<uint64_t>(value * 1e6 + 0.5);
+  if (has_exponent && millionths >= 10000000) {  // by rounding: 1e-12, not 10e-13
+    millionths /= 10;
+    ++exponent;
+  }
+  number(millionths / 1000000);
+  uint64_t rest = millionths % 1000000;
+  if (rest != 0) put('.');
+  for (uint64_t unit = 100000; rest != 0; unit /= 10) {
+    put(static_cast<char>('0' + rest / unit));
+    rest %= unit;
+  }
+  if (exponent != 0) {
+    text(exponent < 0 ? "e-" : "e");
+    number(static_cast<uint64_t>(exponent < 0 ? -exponent : exponent));
+  }
+  return *this;
+}
+
+#else
+
+Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : status_(status) {
+  if (error == nullptr) return;
+  error->status = status;
+  error->offset = offset;
+  const char* words = fdcg_status_text(status);
+  uint32_t length = 0;
+  for (; words[length] != '\0' && length + 1 < sizeof error->message; ++length)
+    error->message[length] = words[length];
+  error->message[length] = '\0';
+}
+
+#endif
+
+}  // namespace fdcg

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Builds the one line of an fdcg_error, piece by piece, in the caller's memory: no heap, no stdio. Cut short where it would
+// not fit. Out of line and cold: refusals are many and rare, and their text is what makes loading large. Without
+// FDCG_WITH_MESSAGES the line is that of fdcg_status_text, and none of the words below is in the library.
+#pragma once
+
+#include "base/config.hpp"
+#include "fdcg/fdcg.h"
+
+namespace fdcg {
+
+#if FDCG_WITH_MESSAGES
+
+class Message {
+ public:
+  // `error` may be null: then nothing is written.
+  [[gnu::cold]] Message(fdcg_error* error, fdcg_status status, uint64_t offset = 0);
+  [[gnu::cold]] Message& text(const char* words);
+  // At most `limit` bytes of a text that came from outside.
+  [[gnu::cold]] Message& quoted(const char* words, int limit);
+  [[gnu::cold]] Message& number(uint64_t value);
+  // Six decimals, with a power of ten where the number is very large or small: enough to see what is wrong with a setting.
+  [[gnu::cold]] Message& real(double value);
+  operator fdcg_status() const { return status_; }  // NOLINT(google-explicit-constructor): `return Message(...).text(...)`
+
+ private:
+  void put(char c);
+
+  fdcg_error* error_;
+  fdcg_status status_;
+  uint32_t used_ = 0;
+};
+
+#else
+
+class Message {
+ public:
+  [[gnu::cold]] Message(fdcg_error* error, fdcg_status status, uint64_t offset = 0);
+  Message& text(const char*) { return *this; }
+  Message& quoted(const char*, int) { return *this; }
+  Message& number(uint64_t) { return *this; }
+  Message& real(double) { return *this; }
+  operator fdcg_status() const { return status_; }  // NOLINT(google-explicit-constructor): as above
+
+ private:
+  fdcg_status status_;
+};
+
+#endif
+
+}  // namespace fdcg

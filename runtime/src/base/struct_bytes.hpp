@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Public structs that callers fill in start with `uint32_t struct_bytes`, the caller's sizeof. Rule: fields are only ever
+// appended, in multiples of 8 bytes, and one that the caller's header does not know takes its default. So a program built
+// against an older header works with a newer library; the other way round is refused where parameters are checked.
+#pragma once
+
+#include <string.h>
+
+#include "base/message.hpp"
+#include "fdcg/fdcg.h"
+
+namespace fdcg {
+
+inline constexpr uint32_t kSmallestStruct = 8;  // struct_bytes itself and the field beside it
+
+// `given` where it is whole; else its fields over the defaults, in *room. Init: void(Struct*, uint32_t struct_bytes).
+template <class Struct, class Init>
+inline const Struct& in_full(const Struct& given, Struct* room, Init init) {
+  if (given.struct_bytes == sizeof(Struct)) return given;
+  init(room, uint32_t{sizeof(Struct)});
+  memcpy(static_cast<void*>(room), &given, given.struct_bytes < sizeof(Struct) ? given.struct_bytes : sizeof(Struct));
+  room->struct_bytes = sizeof(Struct);
+  return *room;
+}
+
+// Writes the defaults' first `struct_bytes` bytes over *to, which may be null; what lies beyond the library's own struct is
+// zeroed.
+template <class Struct>
+inline void fill_defaults(Struct* to, Struct defaults, uint32_t struct_bytes) {
+  if (to == nullptr) return;
+  const uint32_t known = struct_bytes < sizeof(Struct) ? struct_bytes : uint32_t{sizeof(Struct)};
+  defaults.struct_bytes = struct_bytes;
+  memcpy(static_cast<void*>(to), &defaults, known);
+  if (struct_bytes > known) memset(reinterpret_cast<unsigned char*>(to) + known, 0, struct_bytes - known);
+}
+
+// `what` names the struct and how to start from its defaults.
+inline fdcg_status check_struct_bytes(uint32_t struct_bytes, uint64_t library_bytes, const char* name, const char* remedy,
+                                      fdcg_error* error) {
+  if (struct_bytes >= kSmallestStruct && struct_bytes <= library_bytes && struct_bytes % 8 == 0) return FDCG_OK;
+  return Message(error, FDCG_E_ARGUMENT)
+      .text(name)
+      .text(".struct_bytes is ")
+      .number(struct_bytes)
+      .text(", allowed are multiples of 8 up to this library's ")
+      .number(library_bytes)
+      .text(struct_bytes > library_bytes ? "; the library is older than the header: update it" : remedy);
+}
+
+}  // namespace fdcg

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies that a scene's fingers push.
+#include "body/body_scene.hpp"
+#include "base/message.hpp"
+
+namespace fdcg {
+namespace {
+
+// Each must be made, have an object of its own, and find room for its reactions. Which body came first at an index is noted in
+// the reactions, which are zeroed before they are used, and here where a body is refused.
+fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fdcg_reaction* reactions, uint32_t reaction_count,
+                          fdcg_error* error) {
+  for (uint32_t i = 0; i < body_count; ++i) {
+    if (bodies[i].object.index < reaction_count) continue;
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("body ")
+        .number(i)
+        .text(": its object has index ")
+        .number(bodies[i].object.index)
+        .text(", there is room for the reactions of ")
+        .number(reaction_count);
+  }
+  for (uint32_t i = body_count; i-- > 0;)
+    reactions[bodies[i].object.index].force_n[0] = i;
+  uint32_t bad = 0, first = 0;
+  for (; bad < body_count; ++bad) {
+    first = static_cast<uint32_t>(reactions[bodies[bad].object.index].force_n[0]);
+    if (first != bad || !(bodies[bad].body.config.mass_kg > 0)) break;
+  }
+  if (bad == body_count) return FDCG_OK;
+  for (uint32_t i = 0; i < reaction_count; ++i)
+    reactions[i] = {};
+  Message message(error, FDCG_E_ARGUMENT);
+  message.text("body ").number(bad);
+  if (first == bad) return message.text(": has no mass; make it with fdcg_body_init");
+  return message.text(": its object is that of body ").number(first).text(" too; an object is one body's: give each its own");
+}
+
+}  // namespace
+
+fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction) {
+  const fdcg_pose pose = fdcg_body_pose(&body);
+  const Vector arm = vec(body.centre_m) - vec(pose.translation_m);
+  fdcg_reaction moved = reaction;
+  put(vec(reaction.torque_n_m) - cross(arm, vec(reaction.force_n)), moved.torque_n_m);
+  return moved;
+}
+
+fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_reaction& push, double dt_s, fdcg_error* error) {
+  const bool was_asleep = body->body.is_asleep != 0;
+  fdcg_body_step(&body->body, push.force_n, push.torque_n_m, dt_s);
+  if (was_asleep && body->body.is_asleep != 0) return FDCG_OK;  // it has not moved
+  const fdcg_pose pose = fdcg_body_pose(&body->body);
+  return fdcg_scene_set_pose(scene, body->object, &pose, error);
+}
+
+fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
+                         double tick_s, fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error) {
+  if (scene == nullptr || (bodies == nullptr && body_count > 0) || (reactions == nullptr && reaction_count > 0))
+    return Message(error, FDCG_E_ARGUMENT).text("scene, bodies or reactions: null pointer");
+  if (substeps == 0 || substeps > FDCG_BODY_MAX_SUBSTEPS) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("substeps is ")
+        .number(substeps)
+        .text(", allowed 1 to ")
+        .number(FDCG_BODY_MAX_SUBSTEPS)
+        .text(substeps == 0 ? "; where fdcg_body_substeps returns 0 too many would be needed: a" : "; a")
+        .text(" shorter tick, a softer contact or a heavier body needs fewer");
+  }
+  constexpr double kLeastStep_s = 1e-9, kLongestStep_s = 1;  // of fdcg_body_step
+  if (!(tick_s / substeps >= kLeastStep_s && tick_s / substeps <= kLongestStep_s)) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("tick_s is ")
+        .real(tick_s)
+        .text(", allowed for each of the substeps ")
+        .real(kLeastStep_s)
+        .text(" to ")
+        .real(kLongestStep_s)
+        .text(" s");
+  }
+  return check_objects(bodies, body_count, reactions, reaction_count, error);
+}
+
+}  // namespace fdcg
+
+extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count,
+                                              uint32_t substeps, double tick_s, fdcg_reaction* reactions,
+                                              uint32_t reaction_count, fdcg_error* error) {
+  fdcg_status status = fdcg::check_bodies(scene, bodies, body_count, substeps, tick_s, reactions, reaction_count, error);
+  for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
+    fdcg_scene_step(scene);
+    fdcg_scene_reactions(scene, reactions, reaction_count);
+    for (uint32_t i = 0; status == FDCG_OK && i < body_count; ++i) {
+      const fdcg_reaction push = fdcg::about_centre(bodies[i].body, reactions[bodies[i].object.index]);
+      status = fdcg::move_body(scene, bodies + i, push, tick_s / substeps, error);
+    }
+  }
+  return status;
+}

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// One touch of a pile: the god-object's step, and the spring between it and the point.
+#include "base/struct_bytes.hpp"
+#include "body/pile_memory.hpp"
+#include "scene/finger_tick.hpp"
+#include "step/friction.hpp"
+
+namespace fdcg {
+namespace {
+
+// Times the step squared and how easily the place moves, over all three directions: what stability can bear is 4 for all
+// springs that pull in one way, so 32 of them may.
+constexpr double kMostStiffness = 0.125;
+
+// Where the god-object and the spring are, and along what the load is measured.
+void place(PileTouch* touch, World god_object, World point, World normal, bool has_normal) {
+  const World spring = god_object - point;
+  const double length = norm(spring);
+  touch->god_object = god_object;
+  touch->has_normal = has_normal || length > 0;
+  touch->normal = has_normal ? normal : (length > 0 ? spring * (1 / length) : World{0, 0, 0});
+}
+
+// What acts between the two.
+struct Pair {
+  fdcg_material material;  // mu_static and stiffness are asked
+  bool follows_faces;      // it may be another in each step
+};
+
+// The spring between god-object and point.
+void press(const Meeting& meeting, const PileMember& owner, World point, const Pair& pair, bool was_pressing,
+           PileTouch* touch) {
+  if (!was_pressing) {
+    const PileMember* const other = touch->on == kGround ? nullptr : meeting.pile.members() + touch->on;
+    double looseness = looseness_at(&owner, other, touch->god_object);
+    // asleep: as a cube's corner
+    if (looseness == 0) looseness = 12 / meeting.bodies[owner.body].body.config.mass_kg;
+    touch->most_stiffness = kMostStiffness / (looseness * meeting.step_s * meeting.step_s);
+  }
+  if (!was_pressing || pair.follows_faces)
+    touch->stiffness_n_per_m = smaller(pair.material.stiffness_n_per_m, touch->most_stiffness);
+  touch->mu_static = pair.material.mu_static;
+  touch->force_n = (touch->god_object - point) * touch->stiffness_n_per_m;
+  touch->load_n = dot(touch->force_n, touch->normal);
+}
+
+fdcg_material material_of(const fdcg_params& params) {
+  return {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
+}
+
+struct GroundStep {
+  World normal, god_object, surface_point;
+  double depth;
+};
+
+// Where friction lets the god-object be.
+World slide(Friction<double>& friction, const GroundStep& step) {
+  const World off = step.god_object - step.surface_point, gap = off - step.normal * dot(off, step.normal);
+  const double gap2 = dot(gap, gap);
+  const Slip<double> slip = friction.slip(step.god_object, gap2, step.depth);
+  return slip.is_rest ? step.god_object : step.surface_point + gap * (slip.gap / root(gap2));
+}
+
+#if FDCG_WITH_TERMS
+// The same by the friction curve, as fdcg_step has it on a face.
+World slide_by_curve(const Meeting& meeting, const fdcg_material& own, Friction<double>& friction, const GroundStep& step,
+                     fdcg_contact* contact) {
+  fdcg_params params = meeting.pile.ground_params;
+  params.tick_s = meeting.step_s;
+  params.terms |= FDCG_TERM_FINGER;
+  params.finger = own;
+  FrictionTerms terms = terms_of(params, nullptr, *contact);
+  friction.terms = &terms;
+  const World to = slide(friction, step);
+  terms.go_on_to(to);
+  contact->slip_m_per_s = terms.has(FDCG_TERM_LAG) ? terms.lagged + terms.per_way * terms.way : 0;
+  return to;
+}
+
+// What acts where faces have materials, by the step's own rules: on an edge each face's coefficient by the load that it bears
+// and the softer one's stiffness; at a corner what was before or, where it begins there, what holds on a face beside it.
+// `across`: from the god-object to the HIP, object's frame.
+fdcg_material pair_by_faces(const Object& on, const fdcg_params& params, const fdcg_result& result, World across,
+                            const PileTouch& touch, bool was_pressing) {
+  FrictionTerms terms = terms_of(params, on.graph, touch.contact);
+  if (result.state == FDCG_FACE) {
+    terms.stand_on_face(result.feature);
+  } else if (result.state == FDCG_EDGE) {
+    const fdcg_connection_info edge = fdcg_get_connection(on.graph, result.feature);
+    const bool is_open = edge.node[1] == FDCG_NONE;
+    const double share = is_open ? 1
+                                 : share_of_load(vec(fdcg_get_node(on.graph, edge.node[0]).normal),
+                                                 vec(fdcg_get_node(on.graph, edge.node[1]).normal), across);
+    terms.stand_on_edge(edge.node[0], edge.node[1], share);
+  } else if (was_pressing) {
+    terms.material.mu_static = touch.mu_static;
+  } else {
+    uint32_t entry = 0;
+    fdcg_get_fan(on.graph, result.feature, &entry, 1);
+    terms.stand_on_face(fdcg_get_connection(on.graph, entry >> 1).node[0]);
+  }
+  terms.material.stiffness_n_per_m = touch.contact.stiffness_n_per_m;
+  return terms.material;
+}
+#endif
+
+// The rules of contact-model sections 4 and 5 on one plane that has no edge.
+bool step_on_ground(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
+  const fdcg_pile& pile = meeting.pile;
+  fdcg_contact& contact = touch->contact;
+  const bool was_pressing = !is_new && touch->is_pressing != 0;
+  const World n = pile.ground_normal;
+  const double depth = pile.ground_offset_m - dot(n, way.to);
+  const fdcg_material own = material_of(meeting.object(owner).params), ground = material_of(pile.ground_params);
+  const fdcg_material pair = fdcg_combine_materials(&own, &ground);
+  World god_object = was_pressing ? vec(contact.god_object) : way.to;
+  if (!(depth > 0)) return false;
+  if (!was_pressing) {
+    contact = {};
+    const double before = pile.ground_offset_m - dot(n, way.from);
+    // the point of entry; what began below it begins straight above
+    god_object = before <= 0 ? way.from + (way.to - way.from) * (before / (before - depth)) : way.to + n * depth;
+  }
+  const GroundStep step = {n, god_object, way.to + n * depth, depth};
+  Friction<double> friction = {pair.mu_static, pair.mu_dynamic, true, contact.slipping != 0};
+#if FDCG_WITH_TERMS
+  god_object = pile.ground_params.terms != 0 ? slide_by_curve(meeting, own, friction, step, &contact) : slide(friction, step);
+#else
+  god_object = slide(friction, step);
+#endif
+  put(god_object, contact.god_object);
+  contact.state = FDCG_FACE;
+  contact.slipping = friction.is_slipping ? 1 : 0;
+  touch->is_pressing = 1;
+  place(touch, god_object, way.to, n, true);
+  press(meeting, owner, way.to, {pair, false}, was_pressing, touch);
+  return true;
+}
+
+// Whether the step mixes the materials of faces and point itself.
+bool mixes_itself(const fdcg_params& params, const Object& on) {
+  return (params.terms & FDCG_TERM_MATERIALS) != 0 && on.graph != nullptr;
+}
+
+// What the step is told. Where faces have materials it mixes them itself, as with a finger of the point's material.
+fdcg_params pair_params(const Meeting& meeting, const Object& on, const fdcg_material& own) {
+  fdcg_params params = on.params;
+  const fdcg_material whole = material_of(on.params), pair = fdcg_combine_materials(&whole, &own);
+  params.damping_n_s_per_m = 0;  // the force is this file's affair
+  params.tick_s = meeting.step_s;
+  params.terms &= ~uint32_t{FDCG_TERM_FINGER};
+  measure_in_object(on.now.scale, &params);
+  if (mixes_itself(params, on)) {
+    params.terms |= FDCG_TERM_FINGER;
+    params.finger = own;
+    return params;
+  }
+  params.mu_static = pair.mu_static;
+  params.mu_dynamic = pair.mu_dynamic;
+  params.stiffness_n_per_m = pair.stiffness_n_per_m;
+  return params;
+}
+
+World turned(const Pose& pose, World v) {
+  return {dot(pose.row[0], v), dot(pose.row[1], v), dot(pose.row[2], v)};
+}
+
+bool step_on_object(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
+  const Object& on = meeting.object(meeting.pile.members()[touch->on]);
+  const fdcg_material own = material_of(meeting.object(owner).params);
+  const fdcg_params params = pair_params(meeting, on, own);
+  const bool may_skip = meeting.scene.skips(FDCG_SKIP_ROTATION);
+  const bool was_pressing = !is_new && touch->is_pressing != 0;
+  fdcg_contact& contact = touch->contact;
+  fdcg_result result;
+  World from, to;
+  if (is_new) {
+    if (!can_have_met(meeting, on, way.from, way.to, &from, &to)) return false;
+    contact = {};
+    step_object(on, &params, &contact, from, &result);
+  }
+  to = on.now.to_object(way.to, may_skip);
+  step_object(on, &params, &contact, to, &result);
+  touch->is_pressing = result.state != FDCG_FREE ? 1 : 0;
+  touch->force_n = touch->damper_n = {0, 0, 0};
+  touch->load_n = 0;
+  if (touch->is_pressing == 0) {
+    return (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0 || can_have_met(meeting, on, way.from, way.to, &from, &to);
+  }
+  const World reach = vec(result.god_object_m) - to;
+  const World spring = on.now.turned_to_world(reach, may_skip), normal = turned(on.now, object_normal(on, result));
+  place(touch, way.to + spring, way.to, normal, norm1(normal) > 0);
+  Pair pair = {{params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, mixes_itself(params, on)};
+#if FDCG_WITH_TERMS
+  if (pair.follows_faces) pair.material = pair_by_faces(on, params, result, reach * -1.0, *touch, was_pressing);
+#endif
+  press(meeting, owner, way.to, pair, was_pressing, touch);
+  return true;
+}
+
+}  // namespace
+
+bool step_touch(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
+  ++meeting.pile.counts.steps;
+  return touch->on == kGround ? step_on_ground(meeting, owner, way, is_new, touch)
+                              : step_on_object(meeting, owner, way, is_new, touch);
+}
+
+}  // namespace fdcg

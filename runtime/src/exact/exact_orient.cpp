@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// The filter decides where rounding cannot matter. Where it can, points that are one, and four that share a coordinate, lie in
+// a plane; of others the determinant is worked out once more in pairs of doubles, which tells all but zero from zero and points
+// within 2^-98 of their size of a plane. For those, the twelve coordinates are taken as what they are, whole multiples of one
+// small unit, and the determinant is worked out in whole numbers: of the processor's own size where the coordinates are near
+// enough to one another, else of as many limbs as it takes.
+#include "exact/exact_orient.hpp"
+
+#include <string.h>
+
+#include "base/work.hpp"
+
+namespace fdcg {
+namespace {
+
+// What products that fall below the normal numbers may lose, times a coordinate of 1e70: under 1e-252.
+constexpr double kUnderflow = 1e-250;
+
+#ifdef __SIZEOF_INT128__
+using Limb = uint64_t;
+__extension__ using TwoLimbs = unsigned __int128;
+#else
+using Limb = uint32_t;
+using TwoLimbs = uint64_t;
+#endif
+constexpr int kLimbBits = 8 * sizeof(Limb);
+
+// From the largest coordinate that a step lets pass (vec.hpp, kFar: 2^233) down to the last bit of the smallest double, with
+// two bits for the difference of two.
+constexpr int kLargestBits = 234 + 1074 + 2;
+constexpr int kLimbs = kLargestBits / kLimbBits + 1;
+
+// high + low, |low| at most half a unit in the last place of high. Products and sums of such pairs err by 2^-101 of the terms'
+// sizes at most, where no part falls below the normal numbers.
+struct Pair {
+  double high, low;
+};
+
+inline Pair exact_sum(double a, double b) {
+  const double sum = a + b, from_b = sum - a, from_a = sum - from_b;
+  return {sum, (a - from_a) + (b - from_b)};
+}
+
+// The same on every processor, with a fused multiplication or without.
+inline Pair exact_product(double a, double b) {
+  constexpr double kSplit = 0x1p27 + 1;
+  const double a_wide = kSplit * a, b_wide = kSplit * b;
+  const double a_high = a_wide - (a_wide - a), b_high = b_wide - (b_wide - b);
+  const double a_low = a - a_high, b_low = b - b_high, product = a * b;
+  return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
+}
+
+inline Pair joined(double high, double low) {
+  const double sum = high + low;
+  return {sum, low - (sum - high)};
+}
+
+inline Pair operator*(Pair a, Pair b) {
+  const Pair product = exact_product(a.high, b.high);
+  return joined(product.high, product.low + (a.high * b.low + a.low * b.high));
+}
+inline Pair operator+(Pair a, Pair b) {
+  const Pair sum = exact_sum(a.high, b.high);
+  return joined(sum.high, sum.low + (a.low + b.low));
+}
+inline Pair operator-(Pair a, Pair b) {
+  return a + Pair{-b.high, -b.low};
+}
+
+// A whole number: sign and size, lowest limb first, no zero limb on top.
+template <int kCapacity>
+struct Whole {
+  Limb limb[kCapacity];
+  int count = 0;
+  bool is_negative = false;
+
+  void trim() {
+    while (count > 0 && limb[count - 1] == 0)
+      --count;
+  }
+};
+
+// A double as mantissa * 2^exponent, the mantissa odd or zero.
+struct Parts {
+  uint64_t mantissa;
+  int exponent;
+  bool is_negative;
+};
+
+Parts parts_of(double x) {
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  const int biased = static_cast<int>(bits >> 52 & 0x7FF);
+  uint64_t mantissa = bits & ((uint64_t{1} << 52) - 1);
+  if (biased != 0) mantissa |= uint64_t{1} << 52;
+  if (mantissa == 0) return {0, 0, false};
+  const int zeros = __builtin_ctzll(mantissa);
+  return {mantissa >> zeros, (biased != 0 ? biased : 1) - 1075 + zeros, bits >> 63 != 0};
+}
+
+// parts / 2^unit, which is whole.
+Whole<kLimbs> whole_of(const Parts& parts, int unit) {
+  Whole<kLimbs> w;
+  w.is_negative = parts.is_negative;
+  if (parts.mantissa == 0) return w;
+  const int shift = parts.exponent - unit;
+  int bit = shift % kLimbBits;
+  for (; w.count < shift / kLimbBits; ++w.count)
+    w.limb[w.count] = 0;
+  for (uint64_t rest = parts.mantissa; rest != 0; bit = 0) {
+    w.limb[w.count++] = static_cast<Limb>(rest << bit);
+    const int taken = kLimbBits - bit;
+    rest = taken < 64 ? rest >> taken : 0;
+  }
+  return w;
+}
+
+// |a| + |b|, with the sign of a.
+template <int R, int A, int B>
+void join(const Whole<A>& a, const Whole<B>& b, Whole<R>& r) {
+  r.count = 0;
+  r.is_negative = a.is_negative;
+  TwoLimbs carry = 0;
+  for (; r.count < a.count || r.count < b.count; ++r.count) {
+    if (r.count < a.count) carry += a.limb[r.count];
+    if (r.count < b.count) carry += b.limb[r.count];
+    r.limb[r.count] = static_cast<Limb>(carry);
+    carry >>= kLimbBits;
+  }
+  if (carry != 0) r.limb[r.count++] = static_cast<Limb>(carry);
+}
+
+// The sign of |a| - |b|.
+template <int A, int B>
+int compare_sizes(const Whole<A>& a, const Whole<B>& b) {
+  if (a.count != b.count) return a.count < b.count ? -1 : 1;
+  for (int i = a.count; i-- > 0;) {
+    if (a.limb[i] != b.limb[i]) return a.limb[i] < b.limb[i] ? -1 : 1;
+  }
+  return 0;
+}
+
+// |large| - |small| >= 0, with the sign given.
+template <int R, int A, int B>
+void reduce(const Whole<A>& large, const Whole<B>& small, bool is_negative, Whole<R>& r) {
+  r.count = 0;
+  r.is_negative = is_negative;
+  Limb borrow = 0;
+  for (; r.count < large.count; ++r.count) {
+    const Limb from = large.limb[r.count], take = r.count < small.count ? small.limb[r.count] : 0;
+    const Limb less = from - take;
+    r.limb[r.count] = less - borrow;
+    borrow = from < take || less < borrow ? 1 : 0;
+  }
+  r.trim();
+}
+
+template <int R, int A, int B>
+void subtract(const Whole<A>& a, const Whole<B>& b, Whole<R>& r) {
+  static_assert(R > A && R > B);
+  if (a.is_negative != b.is_negative) {
+    join(a, b, r);
+  } else if (compare_sizes(a, b) >= 0) {
+    reduce(a, b, a.is_negative, r);
+  } else {
+    reduce(b, a, !a.is_negative, r);
+  }
+}
+
+template <int A, int B>
+Whole<A + B> product(const Whole<A>& a, const Whole<B>& b) {
+  Whole<A + B> r;
+  r.is_negative = a.is_negative != b.is_negative;
+  r.count = a.count + b.count;
+  for (int i = 0; i < r.count; ++i)
+    r.limb[i] = 0;
+  for (int i = 0; i < a.count; ++i) {
+    TwoLimbs carry = 0;
+    for (int j = 0; j < b.count; ++j) {
+      carry += static_cast<TwoLimbs>(a.limb[i]) * b.limb[j] + r.limb[i + j];
+      r.limb[i + j] = static_cast<Limb>(carry);
+      carry >>= kLimbBits;
+    }
+    r.limb[i + b.count] = static_cast<Limb>(carry);
+  }
+  r.trim();
+  return r;
+}
+
+// (a b - c d) e
+template <int N>
+Whole<3 * N + 1> minor_times(const Whole<N>& a, const Whole<N>& b, const Whole<N>& c, const Whole<N>& d, const Whole<N>& e) {
+  Whole<2 * N + 1> minor;
+  subtract(product(a, b), product(c, d), minor);
+  return product(minor, e);
+}
+
+// Four points in multiples of 2^unit.
+struct Multiples {
+  Parts part[4][3];
+  int unit;
+  int bits;  // of the largest
+};
+
+Multiples multiples_of(const Vec3<double> (&point)[4]) {
+  Multiples m;
+  m.unit = 4096;  // larger than any exponent
+  int top = -4096;
+  for (int p = 0; p < 4; ++p) {
+    const double x[3] = {point[p].x, point[p].y, point[p].z};
+    for (int k = 0; k < 3; ++k) {
+      const Parts part = m.part[p][k] = parts_of(x[k]);
+      if (part.mantissa == 0) continue;
+      const int end = part.exponent + 64 - __builtin_clzll(part.mantissa);
+      if (part.exponent < m.unit) m.unit = part.exponent;
+      if (end > top) top = end;
+    }
+  }
+  m.bits = top - m.unit;
+  return m;
+}
+
+// With 60 bits a coordinate has, differences have 61, two-by-two minors 123, and the determinant 186: a sum of high and low
+// halves, of at most 126 bits each. Work is counted by it on every processor, so that all reach a step's bound at one place.
+constexpr int kWordBits = 60;
+
+#ifdef __SIZEOF_INT128__
+int sign_in_words(const Multiples& m) {
+  __extension__ using Wide = __int128;
+  int64_t edge[3][3];
+  for (int k = 0; k < 3; ++k) {
+    const auto whole = [&](int p) {
+      const Parts& part = m.part[p][k];
+      const auto size = static_cast<int64_t>(part.mantissa << (part.mantissa != 0 ? part.exponent - m.unit : 0));
+      return part.is_negative ? -size : size;
+    };
+    for (int p = 0; p < 3; ++p)
+      edge[p][k] = whole(p + 1) - whole(0);
+  }
+  const auto &u = edge[0], &v = edge[1], &w = edge[2];
+  Wide high = 0, low = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    const Wide minor = static_cast<Wide>(u[i]) * v[j] - static_cast<Wide>(u[j]) * v[i];
+    high += (minor >> 64) * w[k];
+    low += static_cast<Wide>(static_cast<uint64_t>(minor)) * w[k];
+  }
+  high += low >> 64;
+  if (high != 0) return high < 0 ? -1 : 1;
+  return static_cast<uint64_t>(low) != 0 ? 1 : 0;
+}
+#endif
+
+int sign_in_limbs(const Multiples& m) {
+  constexpr int N = kLimbs + 1;
+  Whole<N> edge[3][3];  // from the first point to each other
+  for (int k = 0; k < 3; ++k) {
+    const Whole<kLimbs> first = whole_of(m.part[0][k], m.unit);
+    for (int p = 0; p < 3; ++p)
+      subtract(whole_of(m.part[p + 1][k], m.unit), first, edge[p][k]);
+  }
+  const auto &u = edge[0], &v = edge[1], &w = edge[2];
+  Whole<3 * N + 2> less;
+  Whole<3 * N + 3> sum;
+  subtract(minor_times(u[1], v[2], u[2], v[1], w[0]), minor_times(u[0], v[2], u[2], v[0], w[1]), less);
+  subtract(less, minor_times(u[1], v[0], u[0], v[1], w[2]), sum);
+  if (sum.count == 0) return 0;
+  return sum.is_negative ? -1 : 1;
+}
+
+// The determinant but for 2^-98 of the size of its products.
+[[gnu::noinline]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
+  Pair edge[3][3];
+  for (int p = 0; p < 3; ++p) {
+    const Vec3<double>&to = point[p + 1], &from = point[0];
+    edge[p][0] = exact_sum(to.x, -from.x);
+    edge[p][1] = exact_sum(to.y, -from.y);
+    edge[p][2] = exact_sum(to.z, -from.z);
+  }
+  const auto &u = edge[0], &v = edge[1], &w = edge[2];
+  Pair sum = {0, 0};
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    sum = sum + (u[i] * v[j] - u[j] * v[i]) * w[k];
+  }
+  return sum.high;
+}
+
+inline bool are_same(double a, double b, double c, double d) {
+  return a == b && a == c && a == d;
+}
+
+// What is in one plane at a glance: a way that begins in a corner meets all its edges there, and axes have planes.
+inline bool is_plainly_flat(const Vec3<double> (&point)[4]) {
+  const auto &a = point[0], &b = point[1], &c = point[2], &d = point[3];
+  for (int i = 1; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (point[i].x == point[j].x && point[i].y == point[j].y && point[i].z == point[j].z) return true;
+    }
+  }
+  return are_same(a.x, b.x, c.x, d.x) || are_same(a.y, b.y, c.y, d.y) || are_same(a.z, b.z, c.z, d.z);
+}
+
+// `bound`: of the filter, 4 epsilons of the products' size.
+[[gnu::noinline]] int exact_sign(const Vec3<double> (&point)[4], double bound, uint32_t* work_left) {
+  if (is_plainly_flat(point)) return 0;
+  if (work_left != nullptr) spend(work_left, kPairsWork);
+  constexpr double kOfFilter = 0x1p-48;  // 2^-98 of the size
+  const double det = determinant_in_pairs(point), least = kOfFilter * bound + kUnderflow;
+  if (det > least) return 1;
+  if (det < -least) return -1;
+  const Multiples m = multiples_of(point);
+  const bool is_narrow = m.bits <= kWordBits;
+  if (work_left != nullptr) spend(work_left, is_narrow ? kExactWork : kLongExactWork);
+#ifdef __SIZEOF_INT128__
+  if (is_narrow) return sign_in_words(m);
+#endif
+  return sign_in_limbs(m);
+}
+
+}  // namespace
+
+int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, const Vec3<double>& d,
+                  uint32_t* work_left) {
+  const Vec3<double> u = b - a, v = c - a, w = d - a;
+  const double yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
+  const double det = (yz - zy) * w.x + (zx - xz) * w.y + (xy - yx) * w.z;
+  const double size = (fabs(yz) + fabs(zy)) * fabs(w.x) + (fabs(zx) + fabs(xz)) * fabs(w.y) + (fabs(xy) + fabs(yx)) * fabs(w.z);
+  // Three differences, two products and three sums, each off by half an epsilon at most: under 7/2 epsilon of the size.
+  constexpr double kErrorBound = 4 * DBL_EPSILON;
+  const double bound = kErrorBound * size + kUnderflow;
+  if (det > bound) return 1;
+  if (det < -bound) return -1;
+  return exact_sign({a, b, c, d}, bound, work_left);
+}
+
+}  // namespace fdcg

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph/box_tree.hpp"
+
+#include "base/lanes.hpp"
+#include "graph/tree_rounding.hpp"
+
+namespace fdcg {
+
+BoxTree::BoxTree(uint32_t nodes)
+    : leaves(nodes / FDCG_LEAF_NODES + (nodes % FDCG_LEAF_NODES != 0 ? 1 : 0)), levels(0), records(0) {
+  uint32_t count = leaves;
+  do {
+    count = count / FDCG_TREE_WAYS + (count % FDCG_TREE_WAYS != 0 ? 1 : 0);
+    size[levels++] = count;
+  } while (count > 1);
+  for (int level = levels - 1; level >= 0; --level) {
+    first[level] = records;
+    records += size[level];
+  }
+}
+
+TreeWay tree_way(Vec3<float> from, Vec3<float> along, float pad) {
+  TreeWay way = {{from.x, from.y, from.z}, {along.x, along.y, along.z}, {}};
+  for (int k = 0; k < 3; ++k) {
+    // Less way than the pad along an axis is taken for as much: the boxes are grown by that too.
+    const bool is_backwards = way.per_way[k] < 0;
+    const float length = absolute(way.per_way[k]) < pad ? pad : absolute(way.per_way[k]), per_length = 1 / length;
+    way.per_way[k] = is_backwards ? -per_length : per_length;
+    way.grow[k] = 2 * pad * per_length;
+  }
+  return way;
+}
+
+bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begin, double* end) {
+  constexpr double kAround = 16;  // no box reaches further than 8
+  const Vec3<double> whole = to - from;
+  const double size = norm1(from) + norm1(to);
+  *begin = 0;
+  *end = 1;
+  if (size * DBL_EPSILON > 1.0 / 16) {
+    *way = {{0, 0, 0}, {0, 0, 0}, {1, 1, 1}};
+    return true;
+  }
+  const double at[3] = {from.x, from.y, from.z}, along[3] = {whole.x, whole.y, whole.z};
+  for (int k = 0; k < 3; ++k) {
+    if (absolute(along[k]) <= size * DBL_EPSILON) {  // too short to divide by: it stays where it is, but for rounding
+      if (absolute(at[k]) > kAround) return false;
+      continue;
+    }
+    const double low = (-kAround - at[k]) / along[k], high = (kAround - at[k]) / along[k];
+    const double in = low < high ? low : high, out = low < high ? high : low;
+    if (in > *begin) *begin = in;
+    if (out < *end) *end = out;
+  }
+  if (!(*begin < *end)) return false;
+  const Vec3<double> start = from + whole * *begin, part = whole * (*end - *begin);
+  const double near_size = norm1(start) + norm1(start + part);
+  *way = tree_way({static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(start.z)},
+                  {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)},
+                  static_cast<float>(tree_rounding(near_size, size * DBL_EPSILON)));
+  return true;
+}
+
+uint32_t touched_boxes(const fdcg_box8& boxes, const TreeWay& way, float limit, float (&entry)[FDCG_TREE_WAYS]) {
+  Lanes first = Lanes::all(0), last = Lanes::all(limit);
+  for (int k = 0; k < 3; ++k) {
+    const bool is_backwards = way.per_way[k] < 0;
+    const float start = (boxes.origin[k] - way.from[k]) * way.per_way[k];
+    const Lanes cell = Lanes::all(tree_cell(boxes.exponent[k]) * way.per_way[k]);
+    const Lanes near_cells = Lanes::of(is_backwards ? boxes.high[k] : boxes.low[k]);
+    const Lanes far_cells = Lanes::of(is_backwards ? boxes.low[k] : boxes.high[k]);
+    first = greater(Lanes::all(start - way.grow[k]) + cell * near_cells, first);
+    last = lesser(Lanes::all(start + way.grow[k]) + cell * far_cells, last);
+  }
+  first.store(entry);
+  return where_at_most(first, last);
+}
+
+void squared_distances(const fdcg_box8& boxes, const float (&point)[3], float (&distance2)[FDCG_TREE_WAYS]) {
+  const Lanes none = Lanes::all(0);
+  Lanes sum = none;
+  for (int k = 0; k < 3; ++k) {
+    const Lanes cell = Lanes::all(tree_cell(boxes.exponent[k])), start = Lanes::all(boxes.origin[k] - point[k]);
+    const Lanes below = start + cell * Lanes::of(boxes.low[k]), above = -(start + cell * Lanes::of(boxes.high[k]));
+    const Lanes gap = greater(greater(below, above), none);
+    sum = sum + gap * gap;
+  }
+  sum.store(distance2);
+}
+
+void WaitingBoxes::push(const Item& parent, uint32_t lanes, const float (&keys)[FDCG_TREE_WAYS]) {
+  const int first = count_;
+  for (uint32_t left = lanes; left != 0; left &= left - 1) {
+    const auto j = static_cast<uint32_t>(__builtin_ctz(left));
+    int at = count_++;
+    for (; at > first && items_[at - 1].key < keys[j]; --at)
+      items_[at] = items_[at - 1];
+    items_[at] = {keys[j], parent.index * FDCG_TREE_WAYS + j, parent.level - 1};
+  }
+}
+
+}  // namespace fdcg

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opening: header and section table are checked always, the rest by verify.cpp where the caller does not trust the file.
+#include <string.h>
+
+#include "base/config.hpp"
+#include "base/hooks.hpp"
+#include "base/message.hpp"
+#include "fdcg/fdcg.h"
+#include "graph/box_tree.hpp"
+#include "graph/graph_view.hpp"
+#include "graph/map_file.hpp"
+#include "graph/material_section.hpp"
+#include "graph/sections.hpp"
+#include "graph/verify.hpp"
+#include "shared/mass_record.hpp"
+
+namespace fdcg {
+namespace {
+
+constexpr uint32_t kMaxSections = 64;
+
+// Without a hierarchy the free-space sweep looks at every node, which must stay a bounded piece of work.
+constexpr uint32_t kMaxNodesWithoutHierarchy = 4096;
+
+// With more, connection << 1 would not fit into 32 bits.
+constexpr uint32_t kMaxConnections = 0x7FFFFFFFu;
+
+uint64_t padded(uint64_t bytes) {
+  return (bytes + FDCG_ALIGNMENT - 1) / FDCG_ALIGNMENT * FDCG_ALIGNMENT;
+}
+
+uint64_t table_bytes(const fdcg_header& header) {
+  return header.section_count * uint64_t{sizeof(fdcg_section)};
+}
+
+bool in_range(double value, double low, double high) {
+  return value >= low && value <= high;
+}
+
+// Beyond this, products of three coordinates would leave the range of a double (f64) or a float (f32); below its inverse the
+// squares of what rounding leaves of them would be lost.
+double largest_extent(const fdcg_header& header) {
+  return header.real_bytes == 8 ? FDCG_LARGEST_EXTENT_F64 : FDCG_LARGEST_EXTENT_F32;
+}
+
+fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
+  if (bytes < sizeof(fdcg_header)) {
+    return Message(error, FDCG_E_TRUNCATED, bytes)
+        .text("the file has ")
+        .number(bytes)
+        .text(" bytes, an FDCG header alone has 256; it is truncated or not an FDCG file");
+  }
+  const auto& header = *static_cast<const fdcg_header*>(data);
+  if (memcmp(header.magic, FDCG_MAGIC, sizeof header.magic) != 0) {
+    return Message(error, FDCG_E_MAGIC)
+        .text("the first 8 bytes are not those of an FDCG file; compile the mesh with fdcg compile");
+  }
+  if (header.format_version != FDCG_FORMAT_VERSION) {
+    return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, format_version))
+        .text("format version ")
+        .number(header.format_version)
+        .text(", this library reads version ")
+        .number(FDCG_FORMAT_VERSION)
+        .text("; compile the mesh again or update the library");
+  }
+  if (header.header_checksum != fdcg_checksum(&header, offsetof(fdcg_header, header_checksum))) {
+    return Message(error, FDCG_E_CHECKSUM, offsetof(fdcg_header, header_checksum))
+        .text("the header's checksum does not match; the file is damaged, compile the mesh again");
+  }
+  if (header.file_bytes != bytes) {
+    return Message(error, FDCG_E_TRUNCATED, bytes)
+        .text("the header promises ")
+        .number(header.file_bytes)
+        .text(" bytes, there are ")
+        .number(bytes)
+        .text("; copy the file again");
+  }
+  return FDCG_OK;
+}
+
+// Whether every node's block can have the size that the header gives: 0, or that of a node of so many sides.
+bool is_node_size(const fdcg_header& header) {
+  if (header.node_bytes == 0) return true;
+  const bool has_planes = (header.flags & FDCG_STORED_PLANES) != 0;
+  for (uint32_t sides = 3; sides <= FDCG_MAX_SIDES; ++sides) {
+    const uint32_t bytes =
+        header.real_bytes == 8 ? node_bytes<double>(sides, has_planes) : node_bytes<float>(sides, has_planes);
+    if (bytes == header.node_bytes) return header.side_count == header.node_count * uint64_t{sides};
+  }
+  return false;
+}
+
+fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
+  const auto refuse = [&](const char* field, uint64_t value) -> fdcg_status {
+    return Message(error, FDCG_E_LAYOUT)
+        .text("header.")
+        .text(field)
+        .text(" is ")
+        .number(value)
+        .text(", which no writer produces");
+  };
+  if (header.header_bytes != sizeof(fdcg_header)) return refuse("header_bytes", header.header_bytes);
+  if (header.real_bytes != 4 && header.real_bytes != 8) return refuse("real_bytes", header.real_bytes);
+  if (header.section_count > kMaxSections) return refuse("section_count", header.section_count);
+  if (header.node_count == 0) return refuse("node_count", header.node_count);
+  if ((header.flags & ~FDCG_STORED_PLANES) != 0) return refuse("flags", header.flags);
+  if (!is_node_size(header)) return refuse("node_bytes", header.node_bytes);
+  if (header.connection_count > kMaxConnections) return refuse("connection_count", header.connection_count);
+  if (!has_precision(header.real_bytes)) {
+    return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, real_bytes))
+        .text(FDCG_WITH_F32
+                  ? "the file holds 64-bit numbers, this library was built for 32-bit ones alone; compile the mesh with "
+                    "--precision f32, or the library with FDCG_WITH_F64"
+                  : "the file holds 32-bit numbers, this library was built for 64-bit ones alone; compile the mesh "
+                    "with --precision f64, or the library with FDCG_WITH_F32");
+  }
+  const double largest = largest_extent(header);
+  if (!in_range(header.extent, 1 / largest, largest)) {
+    return Message(error, FDCG_E_LAYOUT, offsetof(fdcg_header, extent))
+        .text("header.extent is ")
+        .real(header.extent)
+        .text(", allowed ")
+        .real(1 / largest)
+        .text(" to ")
+        .real(largest)
+        .text(header.real_bytes == 8 ? "; scale the mesh" : "; scale the mesh or compile it as f64");
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (!in_range(header.bounds_min[k], -largest, largest) || !in_range(header.bounds_max[k], header.bounds_min[k], largest) ||
+        !in_range(header.origin[k], -1e100, 1e100)) {
+      return Message(error, FDCG_E_LAYOUT).text("header: bounds or origin are not finite or too large");
+    }
+  }
+  if (!in_range(header.metres_per_unit, 1e-30, 1e30) || !in_range(header.max_deviation, 0, largest) ||
+      !in_range(header.quantum, 0, largest)) {
+    return Message(error, FDCG_E_LAYOUT).text("header: metres_per_unit, max_deviation or quantum is out of range");
+  }
+  return FDCG_OK;
+}
+
+enum class Presence { required, optional, of_mixed_nodes, of_busy_corners };
+
+struct SectionRule {
+  uint32_t id;
+  uint32_t record_f64, record_f32;  // bytes; 0: see record_bytes
+  Presence presence;
+};
+constexpr SectionRule kSectionRules[] = {
+    {FDCG_SECTION_NODES, 0, 0, Presence::required},
+    {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes},
+    {FDCG_SECTION_EDGES, sizeof(fdcg_edge_f64), sizeof(fdcg_edge_f32), Presence::optional},
+    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required},
+    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required},
+    {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners},
+    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), Presence::optional},
+    {FDCG_SECTION_SOURCE_MAP, 4, 4, Presence::optional},
+    {FDCG_SECTION_INFO, 1, 1, Presence::optional},
+    {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners},
+    {FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), sizeof(fdcg_busy_corner), Presence::of_busy_corners},
+    {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional},
+    {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional},
+    {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional},
+};
+
+uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
+  if (rule.id == FDCG_SECTION_NODES) return header.node_bytes != 0 ? header.node_bytes : header.real_bytes;
+  return header.real_bytes == 8 ? rule.record_f64 : rule.record_f32;
+}
+
+uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found) {
+  switch (id) {
+    case FDCG_SECTION_NODES:
+      return header.node_bytes != 0 ? header.node_count : found;
+    case FDCG_SECTION_NODE_OFFSETS:
+      return header.node_count;
+    case FDCG_SECTION_EDGES:
+    case FDCG_SECTION_CONNECTIONS:
+      return header.connection_count;
+    case FDCG_SECTION_CORNERS:
+      return header.corner_count;
+    case FDCG_SECTION_FANS:
+      return header.fan_count;
+    case FDCG_SECTION_HIERARCHY:
+      return BoxTree(header.node_count).records;
+    case FDCG_SECTION_SOURCE_MAP:
+      return header.source_face_count;
+    case FDCG_SECTION_FAN_BOXES:
+      return header.fan_box_count;
+    case FDCG_SECTION_BUSY_CORNERS:
+      return header.busy_count;
+    case FDCG_SECTION_MASS:
+      return 1;
+    case FDCG_SECTION_MATERIALS:
+      return header.node_count;
+    case FDCG_SECTION_MATERIAL_NAMES:
+      return found <= FDCG_NO_MATERIAL ? found : FDCG_NO_MATERIAL;
+    default:
+      return found;
+  }
+}
+
+// The sections follow one another without gaps, each padded to 64 bytes, up to the end of the file.
+fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& header, fdcg_error* error) {
+  uint64_t at = padded(sizeof(fdcg_header) + table_bytes(header));
+  for (uint32_t i = 0; i < header.section_count; ++i) {
+    const fdcg_section& section = sections[i];
+    const auto refuse = [&](const char* what) -> fdcg_status {
+      return Message(error, FDCG_E_LAYOUT, sizeof(fdcg_header) + i * sizeof(fdcg_section))
+          .text("section ")
+          .number(section.id)
+          .text(": ")
+          .text(what);
+    };
+    if (i > 0 && section.id <= sections[i - 1].id) return refuse("ids do not ascend");
+    if (section.offset != at) return refuse("does not start where the one before it ends");
+    if (section.reserved != 0) return refuse("reserved field is not zero");
+    if (section.record_bytes == 0 || section.record_count > (header.file_bytes - at) / section.record_bytes) {
+      return refuse("reaches beyond the end of the file");
+    }
+    at += padded(section.record_bytes * section.record_count);
+    if (at > header.file_bytes) return refuse("reaches beyond the end of the file");
+    for (const SectionRule& rule : kSectionRules) {
+      if (rule.id != section.id) continue;
+      if (section.record_bytes != record_bytes(rule, header))
+        return refuse("has records of a wrong size, as early drafts of the format had; compile the mesh again");
+      if (section.record_count != expected_records(section.id, header, section.record_count))
+        return refuse("has a wrong number of records");
+    }
+  }
+  if (at != header.file_bytes) {
+    return Message(error, FDCG_E_LAYOUT, at)
+        .text("the last section ends at ")
+        .number(at)
+        .text(", the file at ")
+        .number(header.file_bytes);
+  }
+  return FDCG_OK;
+}
+
+fdcg_status check_table(const void* data, const fdcg_header& header, fdcg_error* error) {
+  const uint64_t end = padded(sizeof(fdcg_header) + table_bytes(header));
+  if (end > header.file_bytes)
+    return Message(error, FDCG_E_LAYOUT).text("the section table reaches beyond the end of the file");
+  const auto* table = static_cast<const unsigned char*>(data) + sizeof(fdcg_header);
+  if (header.table_checksum != fdcg_checksum(table, end - sizeof(fdcg_header))) {
+    return Message(error, FDCG_E_CHECKSUM, sizeof(fdcg_header))
+        .text("the section table's checksum does not match; the file is damaged, compile the mesh again");
+  }
+  return check_sections(reinterpret_cast<const fdcg_section*>(table), header, error);
+}
+
+fdcg_graph view(const void* data, const fdcg_header& header) {
+  fdcg_graph graph = {};
+  const auto section = [&](uint32_t id) -> const void* {
+    const fdcg_section* found = find_section(header, id);
+    return found == nullptr ? nullptr : static_cast<const unsigned char*>(data) + found->offset;
+  };
+  graph.header = &header;
+  graph.nodes = section(FDCG_SECTION_NODES);
+  graph.node_offsets = static_cast<const uint32_t*>(section(FDCG_SECTION_NODE_OFFSETS));
+  graph.connections = static_cast<const fdcg_connection*>(section(FDCG_SECTION_CONNECTIONS));
+  graph.edges = section(FDCG_SECTION_EDGES);
+  graph.corners = section(FDCG_SECTION_CORNERS);
+  graph.busy_corners = static_cast<const fdcg_busy_corner*>(section(FDCG_SECTION_BUSY_CORNERS));
+  graph.fans = static_cast<const uint32_t*>(section(FDCG_SECTION_FANS));
+  graph.fan_boxes = section(FDCG_SECTION_FAN_BOXES);
+  graph.hierarchy = static_cast<const fdcg_box8*>(section(FDCG_SECTION_HIERARCHY));
+  graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
+  graph.info = static_cast<const char*>(section(FDCG_SECTION_INFO));
+  graph.node_materials = static_cast<const uint16_t*>(section(FDCG_SECTION_MATERIALS));
+  graph.materials = static_cast<const fdcg_material_record*>(section(FDCG_SECTION_MATERIAL_NAMES));
+  if (graph.materials != nullptr)
+    graph.material_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_MATERIAL_NAMES)->record_count);
+  if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;
+  return graph;
+}
+
+bool is_needed(Presence presence, const fdcg_header& header) {
+  return presence == Presence::required || (presence == Presence::of_mixed_nodes && header.node_bytes == 0) ||
+         (presence == Presence::of_busy_corners && header.busy_count != 0);
+}
+
+fdcg_status check_presence(const fdcg_header& header, fdcg_error* error) {
+  for (const SectionRule& rule : kSectionRules) {
+    const bool is_present = find_section(header, rule.id) != nullptr;
+    if (!is_present && is_needed(rule.presence, header)) {
+      return Message(error, FDCG_E_LAYOUT).text("section ").number(rule.id).text(" is missing, and this graph needs it");
+    }
+    if (is_present && rule.presence != Presence::optional && !is_needed(rule.presence, header)) {
+      return Message(error, FDCG_E_LAYOUT)
+          .text("section ")
+          .number(rule.id)
+          .text(" contradicts the header, which has no use for it");
+    }
+  }
+  if ((find_section(header, FDCG_SECTION_MATERIALS) == nullptr) !=
+      (find_section(header, FDCG_SECTION_MATERIAL_NAMES) == nullptr)) {
+    return Message(error, FDCG_E_LAYOUT).text("sections 13 and 14 (materials and their names) go together, one is missing");
+  }
+  if (header.node_count > kMaxNodesWithoutHierarchy && find_section(header, FDCG_SECTION_HIERARCHY) == nullptr) {
+    return Message(error, FDCG_E_LAYOUT)
+        .text("no hierarchy: only graphs of up to ")
+        .number(kMaxNodesWithoutHierarchy)
+        .text(" nodes may leave it out, this one has ")
+        .number(header.node_count)
+        .text("; compile the mesh without --without hierarchy");
+  }
+  return FDCG_OK;
+}
+
+fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
+  if (data == nullptr) return Message(error, FDCG_E_ARGUMENT).text("data: null pointer");
+  if (verify != FDCG_VERIFY_FULL && verify != FDCG_VERIFY_TRUSTED) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("verify is ")
+        .number(static_cast<uint32_t>(verify))
+        .text(", allowed FDCG_VERIFY_FULL (0) and FDCG_VERIFY_TRUSTED (1)");
+  }
+  if (reinterpret_cast<uintptr_t>(data) % alignof(fdcg_header) != 0) {
+    return Message(error, FDCG_E_ALIGNMENT)
+        .text("the memory must start at a multiple of 8 bytes; align the buffer (64 is best)");
+  }
+  fdcg_status status = check_header(data, bytes, error);
+  if (status != FDCG_OK) return status;
+  const auto& header = *static_cast<const fdcg_header*>(data);
+  status = check_header_values(header, error);
+  if (status == FDCG_OK) status = check_table(data, header, error);
+  if (status == FDCG_OK) status = check_presence(header, error);
+  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_checksums(data, header, error);
+  if (status != FDCG_OK) return status;
+  const fdcg_graph candidate = view(data, header);
+  if (verify == FDCG_VERIFY_FULL) status = verify_graph(candidate, error);
+  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_mass(header, error);
+  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_materials(candidate, error);
+  if (status == FDCG_OK) *graph = candidate;
+  return status;
+}
+
+// Tells the log handler how an opening went, and hands the status on.
+fdcg_status told(fdcg_status status, const fdcg_graph& graph, const fdcg_error& error) {
+  if (status != FDCG_OK) {
+    log(FDCG_LOG_ERROR, error.message);
+    return status;
+  }
+  fdcg_error line;
+  Message(&line, FDCG_OK).text("opened a graph of ").number(graph.header->node_count).text(" nodes");
+  log(FDCG_LOG_INFO, line.message);
+  return status;
+}
+
+}  // namespace
+}  // namespace fdcg
+
+extern "C" fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph,
+                                        fdcg_error* error) {
+  if (graph == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("graph: null pointer");
+  *graph = {};
+  fdcg_error why = {};
+  if (error == nullptr) error = &why;
+  return fdcg::told(fdcg::open_checked(data, bytes, verify, graph, error), *graph, *error);
+}
+
+extern "C" fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
+  if (graph == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("graph: null pointer");
+  *graph = {};
+  if (path == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("path: null pointer");
+  fdcg::MappedFile file;
+  fdcg_error why = {}, with_path = {};
+  if (error == nullptr) error = &with_path;
+  fdcg_status status = fdcg::map_file(path, &file, &why);
+  if (status == FDCG_OK) {
+    status = fdcg::open_checked(file.data, file.bytes, verify, graph, &why);
+    if (status != FDCG_OK) fdcg::unmap_file(file);
+  }
+  if (status != FDCG_OK) {
+    constexpr int kPathShown = 100;
+    fdcg::Message(error, status, why.offset).quoted(path, kPathShown).text(": ").text(why.message);
+  } else {
+    graph->mapping = file.data;
+    graph->mapping_bytes = file.bytes;
+  }
+  return fdcg::told(status, *graph, *error);
+}
+
+extern "C" void fdcg_close(fdcg_graph* graph) {
+  if (graph == nullptr) return;
+  if (graph->mapping != nullptr) fdcg::unmap_file({graph->mapping, graph->mapping_bytes});
+  *graph = {};
+}

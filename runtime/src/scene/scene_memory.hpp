@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene's memory holds:
+//
+//   fdcg_scene | Object[objects] | the scan's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
+//   | fdcg_contact[fingers][touches] | fdcg_touch[fingers][touches] | SoftFinger[fingers] | SoftTouch[fingers][touches]
+//
+// Found by offsets from the start, so that a copy of the whole is a scene again. With config.has_deforms each contact stands in
+// an fdcg_deform_contact, as its first member.
+#pragma once
+
+#include "base/caller_memory.hpp"
+#include "fdcg/deform.h"
+#include "fdcg/surface.h"
+#include "scene/pose.hpp"
+#include "scene/soft_finger.hpp"
+
+namespace fdcg {
+
+// Less than any reach, and finite, so that sums with it are.
+inline constexpr double kNoReach = -1e300;
+// The scan's arrays are looked at in runs of this many, a length that compilers make vectors of without being asked twice.
+inline constexpr uint32_t kRun = 16;
+
+// What is no plain graph steps by an address, and so does its normal: who adds no surface does not link surfaces, and likewise
+// deformable meshes.
+struct Object;
+using ShapeStep = void(const Object&, const fdcg_params*, fdcg_contact*, const double hip_object_m[3], fdcg_result*);
+using ShapeNormal = void(const Object&, const fdcg_result*, double normal[3]);
+struct Finger;
+using DeformStart = void(fdcg_scene&, Finger&);
+
+struct Object {
+  const fdcg_graph* graph;    // null: it is the surface. Of a deformable mesh its own: current where a step has just looked
+  ShapeStep* step_shape;      // null: it is the graph as it is
+  ShapeNormal* shape_normal;  // null: a graph's
+  fdcg_deform* deform;        // null: it is none
+  fdcg_surface surface;
+  fdcg_params params;
+  Bounds bounds;
+  fdcg_pose asked;  // the latest set
+  Pose now, last;   // of this tick and of the one before
+  uint32_t generation;
+  uint32_t is_used, is_enabled;
+  uint32_t is_changing;  // not 0: listed in `changing`. 2: its pose was set since the last advance; 1: before that one
+};
+
+// One of a finger's places for an object: one that it touches, or one near by.
+// Apart from the contacts, so that a finger's slots lie together.
+struct Slot {
+  uint32_t object;   // FDCG_NONE: empty
+  uint32_t is_held;  // touched, or a sweep carried over: the contact is more than the last HIP, and must be kept
+  uint32_t step;     // of the finger, when the contact was last stepped
+};
+
+// The first 112 bytes are all that a step reads of a finger out of reach.
+struct Finger {
+  World hip;      // asked for
+  World last;     // of the last step
+  World anchor;   // where it last looked at all objects
+  double limit;   // what then lay between it and the nearest object without a slot, plus fdcg_scene.travel of then
+  uint32_t look;  // fdcg_scene.look of then; another one now: the limit holds no more
+  uint32_t tick;  // of the last step
+  uint32_t busy;  // slots in use
+  uint32_t is_started;
+  uint32_t generation, is_used;
+  uint32_t step;  // counts steps
+  uint32_t flags;
+  uint32_t touch_count;
+  uint32_t idle_steps;  // in a row, in which no slot's object was in reach
+  World force;
+  uint64_t non_finite_steps, crowded_steps, missed_ticks, looks;
+  fdcg_material material;
+  uint32_t has_material, reserved;
+};
+
+}  // namespace fdcg
+
+struct fdcg_scene {
+  uint64_t bytes;
+  fdcg_scene_config config;
+  uint64_t objects_at, scan_at, changing_at, fingers_at, slots_at, contacts_at, touches_at;  // offsets
+  uint32_t object_end, finger_end;                                                           // indices in use lie below
+  uint32_t first_free_object, first_free_finger;                                             // no index below is free
+  uint32_t changing_count;
+  uint32_t tick;
+  uint32_t look;  // changes when objects come, go or change their size: then every finger looks anew
+  uint32_t contact_bytes;
+  fdcg::SoftStep* step_soft;  // null: no finger ever was soft
+  uint64_t soft_fingers_at, soft_touches_at;
+  fdcg::DeformStart* start_on_deforms;  // null: no deformable mesh ever was in it
+  double tick_travel;                   // the largest move of any object in this tick
+  double travel;                        // the sum of those, rounded up
+  double farthest;                      // the largest |x| + |y| + |z| of any object's place: scales rounding
+
+  fdcg::Object* objects() { return fdcg::part_at<fdcg::Object>(this, objects_at); }
+  const fdcg::Object* objects() const { return fdcg::part_at<fdcg::Object>(this, objects_at); }
+  // Centre x, y, z and reach of every object, array after array: what a look reads. The reach is the bounding sphere's radius
+  // and its move in this tick; kNoReach where there is nothing to meet.
+  double* scan(uint32_t array) { return fdcg::part_at<double>(this, scan_at) + array * scan_length(); }
+  const double* scan(uint32_t array) const { return fdcg::part_at<double>(this, scan_at) + array * scan_length(); }
+  uint64_t scan_length() const { return (uint64_t{config.object_capacity} + fdcg::kRun - 1) / fdcg::kRun * fdcg::kRun; }
+  uint32_t* changing() { return fdcg::part_at<uint32_t>(this, changing_at); }
+  fdcg::Finger* fingers() { return fdcg::part_at<fdcg::Finger>(this, fingers_at); }
+  const fdcg::Finger* fingers() const { return fdcg::part_at<fdcg::Finger>(this, fingers_at); }
+  fdcg::Slot* slots(uint32_t finger) {
+    return fdcg::part_at<fdcg::Slot>(this, slots_at) + finger * uint64_t{config.touches_per_finger};
+  }
+  // A slot's is contact_bytes behind that of the slot before it.
+  fdcg_contact* first_contact(uint32_t finger) {
+    return fdcg::part_at<fdcg_contact>(this, contacts_at + finger * config.touches_per_finger * uint64_t{contact_bytes});
+  }
+  fdcg_touch* touches(uint32_t finger) {
+    return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
+  const fdcg_touch* touches(uint32_t finger) const {
+    return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
+  bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
+  // Where config.has_soft_fingers says so.
+  fdcg::SoftFinger* soft_fingers() { return fdcg::part_at<fdcg::SoftFinger>(this, soft_fingers_at); }
+  fdcg::SoftTouch* soft_touches(uint32_t finger) {
+    return fdcg::part_at<fdcg::SoftTouch>(this, soft_touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
+  const fdcg::SoftTouch* soft_touches(uint32_t finger) const {
+    return fdcg::part_at<fdcg::SoftTouch>(this, soft_touches_at) + finger * uint64_t{config.touches_per_finger};
+  }
+};
+
+namespace fdcg {
+
+// scene_step.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a way,
+// the latest too.
+void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
+
+// scene_step.cpp: no finger has a slot for the object any more. One that comes before the next step may be given its index.
+void let_go_of(fdcg_scene& scene, uint32_t object);
+
+// Steps an object's contact to a place in its frame.
+inline void step_object(const Object& object, const fdcg_params* params, fdcg_contact* contact, World at, fdcg_result* result) {
+  const double local[3] = {at.x, at.y, at.z};
+  if (object.step_shape != nullptr) return object.step_shape(object, params, contact, local, result);
+  fdcg_step(object.graph, params, contact, local, result);
+}
+
+// Of an object where a step has just touched it; object's frame, unit. Zero where it has none: on a graph's edges and corners.
+inline World object_normal(const Object& object, const fdcg_result& result) {
+  if (object.shape_normal != nullptr) {
+    double normal[3];
+    object.shape_normal(object, &result, normal);
+    return vec(normal);
+  }
+  return result.state == FDCG_FACE ? vec(fdcg_get_node(object.graph, result.feature).normal) : World{0, 0, 0};
+}
+
+// scene.cpp: adds an object that is like `shape` in graph, surface or deformable mesh, and bounds.
+fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
+                       fdcg_object_id* object, fdcg_error* error);
+
+// scene.cpp: null, with the reason in *error, unless the finger is in the scene.
+Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);
+
+// The torque in the world that a finger's slot gives to the finger, or null where there is none.
+inline const SoftTouch* soft_touch(const fdcg_scene& scene, uint32_t finger, uint32_t slot) {
+  if (scene.step_soft == nullptr || (scene.fingers()[finger].flags & FDCG_FINGER_NON_FINITE) != 0) return nullptr;
+  const SoftTouch* const touch = scene.soft_touches(finger) + slot;
+  const Slot& held = part_at<Slot>(&scene, scene.slots_at)[finger * uint64_t{scene.config.touches_per_finger} + slot];
+  return touch->is_on != 0 && held.is_held != 0 && held.object == touch->object.index ? touch : nullptr;
+}
+
+// A HIP further away is no place: the squares of distances in the step stay finite below it.
+inline constexpr double kFarthestPlace_m = 1e100;
+inline bool is_place(World x) {
+  return norm1(x) <= kFarthestPlace_m;
+}
+
+}  // namespace fdcg

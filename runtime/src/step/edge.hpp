@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// The god-object on an edge (contact-model section 6; Melder 2004, sections 5d to 5f and 6).
+#pragma once
+
+#include "step/walk.hpp"
+
+namespace fdcg {
+
+// In a groove the two faces together press harder than the distance from the edge says, by 1 / sin(opening / 2). At most this
+// factor is allowed: an opening of 0.11 degrees.
+inline constexpr int kMaxWedgeFactor = 1024;
+
+// How a HIP lies to a connection's two faces.
+template <class Real>
+struct EdgeSides {
+  Real side[2];     // to the faces' planes
+  Real voronoi[2];  // to their Voronoi planes
+};
+
+// Not as a return value: four floats would come back two to a register, by way of memory, and wait there for one another.
+template <class Real>
+inline void look_at_sides(Walk<Real>& walk, ConnectionRef<Real> connection, EdgeSides<Real>* sides) {
+  walk.spend(kEdgeWork);
+  *sides = {};
+  const int faces = connection.type() == FDCG_BOUNDARY ? 1 : 2;
+  for (int k = 0; k < faces; ++k) {
+    const NodeRef<Real> node = walk.graph.node(connection.node(k));
+    sides->side[k] = walk.side(node);
+    sides->voronoi[k] = node.voronoi_plane(connection.side(k)).distance(walk.hip);
+  }
+}
+
+inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
+  return type == FDCG_CONCAVE ? !is_behind_a && !is_behind_b : !is_behind_a || !is_behind_b;
+}
+
+// The sum of the two normal loads of the groove, or the paper's distance of HIP from the edge. `across` is HIP from its foot on
+// the edge: from any other point of the edge it would be the same in theory, but merged faces may lie off their corners, and a
+// load that is not that of the force then errs by the way along the edge.
+template <class Real>
+inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
+  const Real distance = norm(across);
+  if (!walk.friction.has_wedge || connection.type() == FDCG_BOUNDARY) return distance;
+  const Vec3<Real> sum = walk.graph.node(connection.node(0)).normal() + walk.graph.node(connection.node(1)).normal();
+  const Real most = Real(kMaxWedgeFactor) * distance;
+  const Real sum2 = dot(sum, sum);
+  const Real load = -2 * dot(sum, across);
+  if (sum2 > 0 && !(load > 0)) return 0;
+  return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
+}
+
+template <class Real>
+[[gnu::noinline, gnu::cold]] void stand_on_edge(Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
+  const uint32_t a = connection.node(0), b = connection.node(1);
+  double share = 0.5;
+  if (b != FDCG_NONE)
+    share = share_of_load(widen(walk.graph.node(a).normal()), widen(walk.graph.node(b).normal()), widen(across));
+  walk.friction.terms->stand_on_edge(a, b, share);
+}
+
+// Behind one face of a convex edge, over it and not over the other, and yet in front of the other's plane: that is no place,
+// but for corners off a small face's plane, which far from it is anywhere. The face below decides.
+template <class Real>
+inline Feature face_despite_noise(const Walk<Real>& walk, ConnectionRef<Real> connection, const EdgeSides<Real>& s) {
+  if (!(walk.graph.header->max_deviation > 0) || connection.type() == FDCG_CONCAVE) return kFree;
+  for (uint32_t k = 0; k < 2; ++k) {
+    if (s.side[k] < 0 && s.voronoi[k] < 0 && s.voronoi[1 - k] > 0) return {FDCG_FACE, connection.node(k)};
+  }
+  return kFree;
+}
+
+// Cost: two face planes, two Voronoi planes.
+template <class Real>
+inline Decision edge_rule(Walk<Real>& walk) {
+  const uint32_t index = walk.active.index;
+  const ConnectionRef<Real> connection = walk.graph.connection(index);
+  EdgeSides<Real> s;
+  look_at_sides(walk, connection, &s);
+  const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
+  if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
+  if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0)) return go_to(face_despite_noise(walk, connection, s));
+  const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
+  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0])) return go_to({FDCG_FACE, connection.node(0)});
+  if (is_candidate_b) return go_to({FDCG_FACE, connection.node(1)});
+
+  const EdgeLine<Real> line(walk.graph, index);
+  const Real foot = line.parameter(walk.hip);
+  const Real ahead = line.parameter(walk.god_object) - foot;
+  const Vec3<Real> across = walk.hip - (line.start + line.direction * foot);
+  if constexpr (FDCG_WITH_TERMS) {
+    if (walk.friction.terms != nullptr) stand_on_edge(walk, connection, across);
+  }
+  const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, across));
+  if (slip.is_rest) return rest();
+  const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + slip.gap : foot - slip.gap);
+  return landed == walk.active ? rest() : go_to(landed);
+}
+
+}  // namespace fdcg

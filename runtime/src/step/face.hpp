@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// The god-object on a face (contact-model section 5; Melder 2004, sections 2, 5b and 5c).
+#pragma once
+
+#include "step/walk.hpp"
+
+namespace fdcg {
+
+// The first of the node's Voronoi planes that a move crosses; local_side is FDCG_NONE if there is none. GO sits on such planes
+// all the time, so a crossing is "ends on or beyond, and further out than it began", not a change of sign.
+//
+// A move that ends on a plane but for rounding has crossed it, if at all, anywhere on its way: one along a side from a corner
+// might be stopped in that corner, for ever. It crosses where it ends, unless it crosses another side before.
+template <class Real>
+struct Crossing {
+  uint32_t local_side = FDCG_NONE;
+  Real fraction = 1;
+};
+
+// Whether `to` is past the corner at which side k starts: before that side's start and beyond the end of the side before.
+template <class Real>
+[[gnu::noinline]] bool is_past_corner(NodeRef<Real> node, uint32_t k, Vec3<Real> to) {
+  const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());
+  const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
+  const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
+    const Real along = dot(from_corner, node.graph().edge(node, side).direction);
+    return sign * (node.which(side) == 0 ? along : -along) > rounding;
+  };
+  return is_ahead(k, -1) && is_ahead(node.previous(k), 1);
+}
+
+// Looks at the sides from the first on beyond whose plane the move ends. Or near it, by `bound` of rounding: towards the tip of
+// a face like a needle its two planes are one but for that, and a move might slide past the tip between them.
+template <class Real>
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to,
+                                                     Real bound) {
+  Crossing<Real> first;
+  for (; k < node.side_count(); ++k) {
+    const Plane<Real> plane = node.voronoi_plane(k);
+    const Real s1 = plane.distance(to);
+    if (!(s1 >= 0)) {
+      const bool is_near = s1 >= -bound && first.local_side == FDCG_NONE;
+      if (is_near && (is_past_corner(node, k, to) || is_past_corner(node, node.next(k), to))) first = {k, 1};
+      continue;
+    }
+    const Real s0 = plane.distance(from);
+    if (!(s1 > s0)) continue;
+    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());  // an offset may have cancelled to 0
+    const Real fraction = s1 <= rounding ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
+    if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
+  }
+  return first;
+}
+
+template <class Real>
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
+  for (uint32_t k = node.first_doubtful(to, bound); k < node.side_count(); ++k) {
+    if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to, bound);
+  }
+  return {};
+}
+
+// What becomes of a god-object on a face.
+template <class Real>
+struct FaceMove {
+  enum class Kind {
+    leaves,   // the HIP is not behind the face
+    rests,    // friction holds it
+    slides,   // to `target`, on the same face
+    crosses,  // on its way there it meets a side
+  } kind;
+  Vec3<Real> target;
+  Crossing<Real> crossing;
+};
+
+// `bound`: plane_rounding_bound of the HIP. `reach`: from the HIP to the god-object, more exactly than the two can say.
+// Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
+// Changes nothing but friction.is_slipping.
+template <class Real>
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real bound, Real side,
+                                     Vec3<Real> god_object, Vec3<Real> reach) {
+  using Kind = typename FaceMove<Real>::Kind;
+  if (!(side < 0)) return {Kind::leaves, god_object, {}};
+  const Vec3<Real> normal = node.normal();
+  const Vec3<Real> offset = reach - normal * dot(normal, reach);  // its part in the plane: from the surface point
+  const Real gap2 = dot(offset, offset), depth = -side;
+  const Slip<Real> slip = friction.slip(god_object, gap2, depth);
+  if (slip.is_rest) return {Kind::rests, god_object, {}};
+  const Real shrink = slip.gap > 0 ? slip.gap / root(gap2) : Real(0);
+  const Vec3<Real> surface_point = hip + normal * depth;
+  const Vec3<Real> target = surface_point + offset * shrink;
+  const Crossing<Real> crossing = first_crossing(node, god_object, target, bound);
+  return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
+}
+
+// A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.
+template <class Real>
+inline bool is_far(const GraphView<Real>& graph, Vec3<Real> hip) {
+  constexpr Real kNear = 16;  // extents
+  return norm1(hip) > kNear * Real(graph.header->extent);
+}
+
+// Seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have one plane but for
+// rounding: beyond the end of one the point is on the next.
+template <class Real>
+[[gnu::noinline]] Feature place_on_rim(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
+  EdgeLine<Real> line(walk.graph, node, side);
+  Real u = line.parameter(point);
+  for (uint32_t i = 0; i < node.side_count() && (u < 0 || u > line.length); ++i) {
+    walk.spend(kSideWork);
+    const bool is_ahead = (u > 0) == (node.which(side) == 0);  // in winding order
+    const uint32_t neighbour = is_ahead ? node.next(side) : node.previous(side);
+    const EdgeLine<Real> next(walk.graph, node, neighbour);
+    const Real v = next.parameter(point);
+    const bool begins_here = is_ahead == (node.which(neighbour) == 0);
+    if (!((begins_here ? v : next.length - v) > next.end_tolerance)) break;
+    side = neighbour;
+    line = next;
+    u = v;
+  }
+  return place_on_edge(walk, node.connection(side), line, u);
+}
+
+// The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
+template <class Real>
+inline uint32_t side_under(const Walk<Real>& walk, NodeRef<Real> node) {
+  const Real rounding = 8 * RealLimits<Real>::kEpsilon * (norm1(walk.god_object) + Real(walk.graph.header->extent));
+  for (uint32_t k = 0; k < node.side_count(); ++k) {
+    if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding) return k;
+  }
+  return FDCG_NONE;
+}
+
+// The face has lost the HIP: the seat's rule decides; without a seat this is Free. A god-object that slid to the face's rim but
+// for rounding may be behind the faces across, so it is seated there first.
+template <class Real>
+inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
+  if (!(walk.seat == kFree)) return walk.seat;
+  const uint32_t side = side_under(walk, node);
+  if (side == FDCG_NONE) return kFree;
+  return place_on_rim(walk, node, side, walk.god_object);
+}
+
+// Places the god-object where the move says. Returns what comes next.
+template <class Real>
+inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
+  using Kind = typename FaceMove<Real>::Kind;
+  const NodeRef<Real> node = walk.graph.node(walk.active.index);
+  if (move.kind == Kind::leaves) return go_to(leave_face(walk, node));
+  if (move.kind == Kind::slides) {
+    constexpr Real kMostOff = Real(1) / 1024;  // extents; beyond, the numbers cannot tell where the target is: no move
+    const Real off = is_far(walk.graph, walk.hip) ? node.plane().distance(move.target) : Real(0);
+    if (absolute(off) <= kMostOff * node.extent()) walk.place(move.target - node.normal() * off, kFree);
+  }
+  if (move.kind != Kind::crosses) return rest();
+  const uint32_t side = move.crossing.local_side;
+  walk.graph.prefetch_crossing(node, side);
+  const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.lost;
+  const Vec3<Real> ahead = walk.lost + way * move.crossing.fraction;  // from `from` to the crossing
+  const Feature landed = place_on_rim(walk, node, side, from + ahead);
+  if (landed.state == FDCG_EDGE) walk.lost = (from - walk.god_object) + ahead;
+  return go_to(landed);
+}
+
+template <class Real>
+inline Decision face_rule(Walk<Real>& walk) {
+  const NodeRef<Real> node = walk.graph.node(walk.active.index);
+  walk.spend(kSideWork * node.side_count());
+  if constexpr (FDCG_WITH_TERMS) {
+    if (walk.friction.terms != nullptr) walk.friction.terms->stand_on_face(walk.active.index);
+  }
+  const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.lost;
+  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, reach));
+}
+
+}  // namespace fdcg

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The way from a god-object in free space to the HIP (contact-model section 4): is a sweep needed, what becomes of what it met,
+// what is left for later ticks.
+#pragma once
+
+#include "step/clear_ball.hpp"
+#include "step/sweep.hpp"
+
+namespace fdcg {
+
+// A way that meets a merged face may begin behind its plane, within its slab, or meet it before: friction would hold the
+// god-object there.
+template <class Real>
+inline Vec3<Real> onto_slab(const Walk<Real>& walk, Vec3<Real> point, uint32_t n) {
+  const NodeRef<Real> node = walk.graph.node(n);
+  return node.is_inexact() ? point - node.normal() * node.plane().distance(point) : point;
+}
+
+// Puts the contact where the way met something first, or at its end.
+template <class Real>
+inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
+  const bool is_on_face = first.feature.state == FDCG_FACE;
+  const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;
+  Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
+  if (is_on_face) point = onto_slab(walk, point, first.feature.index);
+  walk.active = first.feature;
+  if (first.feature.state == FDCG_EDGE) {
+    const EdgeLine<Real> line(walk.graph, first.feature.index);
+    walk.active = place_on_edge(walk, first.feature.index, line, line.parameter(point));
+  } else {
+    walk.place(first.feature == kFree ? to : point, kFree);
+  }
+}
+
+// Goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has not moved.
+template <class Real>
+[[gnu::noinline]] bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
+  const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
+  FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
+  Sweep<Real> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature}, work_left);
+  const bool is_done = sweep.run_in_order(&first, &carried->next_leaf);
+  carried->fraction = first.fraction;
+  carried->node = first.node;
+  carried->state = first.feature.state;
+  carried->feature = first.feature.index;
+  if (!is_done) return false;
+  carried->is_carried = 0;
+  const Vec3<Real> from = walk.god_object;
+  arrive(walk, sweep, to, first);
+  const bool is_held = norm1(walk.hip - to) <= walk.hip_bound;  // a hand that has gone on may be let go by both
+  const bool is_where_it_was = is_held && first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
+  carried->in_place = is_where_it_was ? carried->in_place + 1 : 0;
+  return true;
+}
+
+// What free space costs and leaves for later ticks. It belongs to the contact but for the work.
+struct FreeSpace {
+  fdcg_carried_sweep* carried;
+  fdcg_clear_ball* ball;
+  bool looks_for_balls;
+  uint32_t work_left;
+};
+
+// Whether a ball that no face touches holds the whole way; it is kept. Where there was none, the next looks wait for longer and
+// longer: near the surface a sweep is cheaper.
+template <class Real>
+inline bool is_in_new_ball(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to, fdcg_clear_ball* ball) {
+  constexpr uint32_t kLongestWait = 15;
+  if (ball->wait > 0) {
+    --ball->wait;
+    return false;
+  }
+  const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way);
+  if (!(radius > way)) {
+    ball->wait = ball->next_wait;
+    ball->next_wait = ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait;
+    return false;
+  }
+  *ball = {{to.x, to.y, to.z}, radius * radius, 0, 0};
+  return true;
+}
+
+// A way that begins far away, cut to begin where it comes near the graph; `to` where it passes by, or where its numbers, which
+// out there are coarser than the object, cannot tell. A place computed from the whole way might be anywhere.
+template <class Real>
+[[gnu::noinline]] Vec3<Real> near_start(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to) {
+  constexpr Real kFar = 16, kBefore = 4;  // extents; the graph lies within less than two of the origin
+  const Real extent = static_cast<Real>(graph.header->extent);
+  if (!(norm1(from) > kFar * extent)) return from;
+  const Vec3<Real> way = to - from;
+  const Real length = norm(way);
+  if (!(length > 0)) return from;
+  const Real nearer = norm1(to) < norm1(from) ? norm1(to) : norm1(from);  // all places on the way are as coarse, or coarser
+  if (8 * RealLimits<Real>::kEpsilon * nearer > extent) return to;
+  const Vec3<Real> along = way * (1 / length);
+  const bool is_from_end = norm1(to) < norm1(from);                          // from the nearer end, where numbers are finer
+  const Real past = dot(is_from_end ? to : from, along) + kBefore * extent;  // how far that end is past the cut
+  if (is_from_end ? !(past < length) : !(past < 0)) return from;
+  if (is_from_end ? !(past > 0) : !(-past < length)) return to;
+  const Vec3<Real> start = (is_from_end ? to : from) - along * past;
+  return norm1(start) > kFar * extent ? to : start;
+}
+
+// From free space, or from the surface that was just left, on which the god-object `stood`: places the contact on what the way
+// to the HIP meets, or at the HIP. A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work
+// ran out, else 0.
+template <class Real>
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
+  fdcg_carried_sweep* carried = space->carried;
+  space->ball->radius2 = 0;
+  if (carried->is_carried != 0) {
+    if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
+    if (!(walk.active == kFree)) return 0;
+  }
+  // Two features at one point may hand the contact to one another by way of free space. Within a tick the trail sees that; here
+  // each turn has taken a tick, and the contact rests where it is.
+  constexpr uint32_t kMostInPlace = 4;
+  if (!(left == kFree) && carried->in_place >= kMostInPlace) {
+    carried->in_place = 0;
+    walk.active = left;
+    return 0;
+  }
+  const Vec3<Real> to = walk.hip, from = left == kFree ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
+  const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
+  const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy != nullptr;
+  if (is_still || (may_look && is_in_new_ball(walk.graph, from, to, space->ball))) {
+    walk.place(to, kFree);
+    carried->in_place = 0;
+    return 0;
+  }
+  walk.god_object = from;
+  Sweep<Real> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
+  FirstHit<Real> first;
+  if (sweep.run(&first)) {
+    arrive(walk, sweep, to, first);
+    if (walk.active == kFree) carried->in_place = 0;
+    return 0;
+  }
+  *carried = {
+      {to.x, to.y, to.z}, first.fraction, first.feature.state, first.feature.index, first.node, left.state, left.index, 0, 1,
+      carried->in_place};
+  walk.active = walk.seat = kFree;
+  if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
+  return 0;
+}
+
+}  // namespace fdcg

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coulomb friction as a cone (Melder 2004, section 2 and figure 4; contact-model section 5): the god-object rests while its gap
+// to the surface point is within the friction coefficient times the load that presses it on. No angle is ever computed.
+#pragma once
+
+#include "base/config.hpp"
+#include "shared/vec.hpp"
+#include "step/friction_terms.hpp"
+
+namespace fdcg {
+
+template <class Real>
+inline Real square(Real a) {
+  return a * a;
+}
+
+// What friction makes of a gap: rest, or slip until it is `gap`.
+template <class Real>
+struct Slip {
+  bool is_rest;
+  Real gap;
+};
+
+template <class Real>
+struct Friction {
+  Real mu_static, mu_dynamic;
+  bool has_wedge;                  // concave edges: contact-model section 6
+  bool is_slipping;                // dynamic friction holds
+  FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
+
+  // `gap2` is the squared distance of the god-object from the surface point, `load` the depth that presses it on. Slipping
+  // starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on
+  // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
+  // the rounding of its own place. Squares, so that rest costs no root.
+  Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
+    if constexpr (FDCG_WITH_TERMS) {
+      if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
+    }
+    constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
+    const Real gap = mu_dynamic * load;
+    if (is_slipping) {
+      if (gap2 <= square(kStickAgain * gap)) is_slipping = false;
+    } else if (gap2 > square(mu_static * load)) {
+      is_slipping = true;
+    }
+    const Real rounding = RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
+    return {!is_slipping || gap2 <= square(gap + rounding), gap};
+  }
+
+  [[gnu::noinline, gnu::cold]] Slip<Real> slip_with_terms(Vec3<Real> god_object, Real gap2, Real load) {
+    const TermSlip slip =
+        terms->slip({god_object.x, god_object.y, god_object.z}, gap2, load, RealLimits<Real>::kEpsilon, &is_slipping);
+    return {slip.is_rest, static_cast<Real>(slip.gap)};
+  }
+};
+
+}  // namespace fdcg

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/config.hpp"
+#include "base/message.hpp"
+#include "base/struct_bytes.hpp"
+#include "fdcg/fdcg.h"
+#include "graph/material_section.hpp"
+#include "step/friction_terms.hpp"
+
+namespace fdcg {
+namespace {
+
+constexpr double kLargest = 1e9;  // far beyond any device; keeps products finite
+constexpr double kLeast = 1e-9;
+
+struct Range {
+  const char* name;
+  double value, low, high;
+};
+
+// Whose fields are in question: params, params.finger, params.materials[index].
+struct Owner {
+  const char* name;
+  uint32_t index;  // FDCG_NONE: no index
+};
+
+Message& say(Message& message, const Owner& owner) {
+  message.text(owner.name);
+  if (owner.index != FDCG_NONE) message.text("[").number(owner.index).text("]");
+  return message;
+}
+
+fdcg_status check_ranges(const Owner& owner, const Range* ranges, uint32_t count, double mu_dynamic, fdcg_error* error) {
+  for (const Range* range = ranges; range != ranges + count; ++range) {
+    if (range->value >= range->low && range->value <= range->high) continue;
+    Message message(error, FDCG_E_ARGUMENT);
+    return say(message, owner)
+        .text(".")
+        .text(range->name)
+        .text(" is ")
+        .real(range->value)
+        .text(", allowed ")
+        .real(range->low)
+        .text(" to ")
+        .real(range->high)
+        .text(range->low == mu_dynamic && range->low > 0 ? " (at least mu_dynamic)" : "");
+  }
+  return FDCG_OK;
+}
+
+fdcg_status check_material(const Owner& owner, const fdcg_material& material, double least_stiffness, fdcg_error* error) {
+  const Range ranges[] = {{"mu_dynamic", material.mu_dynamic, 0, kLargest},
+                          {"mu_static", material.mu_static, material.mu_dynamic, kLargest},
+                          {"stiffness_n_per_m", material.stiffness_n_per_m, least_stiffness, kLargest}};
+  return check_ranges(owner, ranges, 3, material.mu_dynamic, error);
+}
+
+#if FDCG_WITH_TERMS
+// One solution at every speed, on this material.
+fdcg_status check_steepness(const fdcg_params& params, const Owner& owner, const fdcg_material& material, fdcg_error* error) {
+  const bool has_finger = (params.terms & FDCG_TERM_FINGER) != 0;
+  const Steepness steep = steepness_of(params, has_finger ? fdcg_combine_materials(&material, &params.finger) : material);
+  if (steep.fall <= steep.limit) return FDCG_OK;
+  Message message(error, FDCG_E_ARGUMENT);
+  message.text("the friction curve of ");
+  return say(message, owner)
+      .text(" falls by ")
+      .real(steep.fall)
+      .text(" s/m, allowed ")
+      .real(steep.limit)
+      .text(
+          " s/m to hold down to curve_depth_m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower "
+          "curve_depth_m");
+}
+
+fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
+  const auto has = [&](uint32_t term) { return (params.terms & term) != 0; };
+  const Owner owner = {"params", FDCG_NONE}, finger = {"params.finger", FDCG_NONE};
+  if (params.terms > FDCG_TERM_ALL) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.terms is ")
+        .number(params.terms)
+        .text(", allowed are sums of fdcg_term: 0 to ")
+        .number(FDCG_TERM_ALL);
+  }
+  const Range ranges[] = {{"stribeck_m_per_s", has(FDCG_TERM_STRIBECK) ? params.stribeck_m_per_s : 1, kLeast, kLargest},
+                          {"viscous_s_per_m", has(FDCG_TERM_VISCOUS) ? params.viscous_s_per_m : 0, 0, kLargest},
+                          {"presliding_n_per_m", has(FDCG_TERM_PRESLIDING) ? params.presliding_n_per_m : 1, kLeast, kLargest},
+                          {"friction_lag_s", has(FDCG_TERM_LAG) ? params.friction_lag_s : 0, 0, kLargest},
+                          {"curve_depth_m", has(FDCG_TERM_STRIBECK) ? params.curve_depth_m : 1, kLeast, kLargest}};
+  fdcg_status status = check_ranges(owner, ranges, sizeof ranges / sizeof ranges[0], -1, error);
+  if (status == FDCG_OK && has(FDCG_TERM_FINGER)) status = check_material(finger, params.finger, kLeast, error);
+  if (status == FDCG_OK)
+    status = check_steepness(params, owner, {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, error);
+  if (status != FDCG_OK || !has(FDCG_TERM_MATERIALS)) return status;
+  if (params.materials == nullptr && params.material_count > 0)
+    return Message(error, FDCG_E_ARGUMENT).text("params.materials: null pointer, though material_count is not 0");
+  for (uint32_t i = 0; i < params.material_count && status == FDCG_OK; ++i) {
+    const Owner row = {"params.materials", i};
+    status = check_material(row, params.materials[i], 0, error);
+    if (status == FDCG_OK) status = check_steepness(params, row, params.materials[i], error);
+  }
+  return status;
+}
+#else
+fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
+  if (params.terms == 0) return FDCG_OK;
+  return Message(error, FDCG_E_ARGUMENT)
+      .text("params.terms is ")
+      .number(params.terms)
+      .text(", but this library was built without them; build it with FDCG_WITH_TERMS");
+}
+#endif
+
+}  // namespace
+
+fdcg_status check_finger_material(const fdcg_material& material, fdcg_error* error) {
+  return check_material({"material", FDCG_NONE}, material, kLeast, error);
+}
+
+}  // namespace fdcg
+
+extern "C" void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes) {
+  fdcg_params defaults = {};
+  defaults.edge_friction = FDCG_EDGE_WEDGE;
+  defaults.mu_static = 0.6;
+  defaults.mu_dynamic = 0.4;
+  defaults.stiffness_n_per_m = 1000;
+  defaults.damping_n_s_per_m = 0;
+  defaults.tick_s = 0.001;
+  defaults.stribeck_m_per_s = 0.05;
+  defaults.viscous_s_per_m = 0.1;
+  defaults.presliding_n_per_m = 1e5;
+  defaults.friction_lag_s = 0.03;
+  defaults.curve_depth_m = 0.01;
+  defaults.finger = {1, 1, 1e4};
+  fdcg::fill_defaults(params, defaults, struct_bytes);
+}
+
+extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error) {
+  using namespace fdcg;
+  if (params == nullptr) return Message(error, FDCG_E_ARGUMENT).text("params: null pointer");
+  fdcg_params room;
+  if (const fdcg_status status =
+          check_struct_bytes(params->struct_bytes, sizeof(fdcg_params), "params", "; start from fdcg_default_params()", error);
+      status != FDCG_OK) {
+    return status;
+  }
+  params = &in_full(*params, &room, fdcg_init_params);
+  const Range ranges[] = {{"mu_dynamic", params->mu_dynamic, 0, kLargest},
+                          {"mu_static", params->mu_static, params->mu_dynamic, kLargest},
+                          {"stiffness_n_per_m", params->stiffness_n_per_m, 0, kLargest},
+                          {"damping_n_s_per_m", params->damping_n_s_per_m, 0, kLargest},
+                          {"tick_s", params->tick_s, kLeast, kLargest}};
+  const fdcg_status status =
+      check_ranges({"params", FDCG_NONE}, ranges, sizeof ranges / sizeof ranges[0], params->mu_dynamic, error);
+  if (status != FDCG_OK) return status;
+  if (params->disabled_skips > FDCG_STEP_SKIP_ALL) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.disabled_skips is ")
+        .number(params->disabled_skips)
+        .text(", allowed are sums of fdcg_step_skip: 0 to ")
+        .number(FDCG_STEP_SKIP_ALL);
+  }
+  if (params->edge_friction > FDCG_EDGE_PAPER) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.edge_friction is ")
+        .number(params->edge_friction)
+        .text(", allowed 0 (wedge) and 1 (paper)");
+  }
+  for (const uint32_t reserved : params->reserved) {
+    if (reserved == 0) continue;
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.reserved is ")
+        .number(reserved)
+        .text(", allowed 0; start from fdcg_default_params()");
+  }
+  return check_terms(*params, error);
+}

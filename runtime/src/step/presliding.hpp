@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Presliding: how far a contact that holds yields. The remembered place A is what the rules move, with cones wider by 1 / (1 -
+// l), l = k / (k + k_p), of the stiffness k and presliding's k_p; the god-object that is felt lies between it and the surface
+// point where the two springs balance:
+//   x = A + l (SP - A), within the face's concave edges or the edge's ends,
+// which is where k |x - HIP|^2 / 2 + k_p |x - A|^2 / 2 is least. So with A at rest the force is that of a potential, and no
+// creep comes of it. A concave edge bounds x because there the wall across bears what friction did: A comes to the edge with
+// nothing stored beyond it. Other edges do not: a triangulated plane feels like the plane.
+#pragma once
+
+#include "step/walk.hpp"
+
+namespace fdcg {
+
+// Out of the half-planes that the face's concave edges leave: the nearest point of them, exactly where one or two of them
+// count.
+template <class Real>
+[[gnu::noinline, gnu::cold]] Vec3<double> within_walls(const Walk<Real>& walk, NodeRef<Real> node, Vec3<double> x) {
+  struct Wall {
+    Vec3<double> normal;
+    double beyond;
+  };
+  const auto farthest = [&](Vec3<double> point) {
+    Wall worst = {{0, 0, 0}, 0};
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (node.across(k) == FDCG_NONE || walk.graph.connection(node.connection(k)).type() != FDCG_CONCAVE) continue;
+      const Plane<Real> plane = node.voronoi_plane(k);
+      const double beyond = dot(widen(plane.normal), point) + double{plane.offset};
+      if (beyond > worst.beyond) worst = {widen(plane.normal), beyond};
+    }
+    return worst;
+  };
+  const Wall first = farthest(x);
+  if (!(first.beyond > 0)) return x;
+  const Vec3<double> on_first = x - first.normal * first.beyond;
+  const Wall second = farthest(on_first);
+  const double rounding = 8 * RealLimits<Real>::kEpsilon * node.extent();
+  if (!(second.beyond > rounding)) return on_first;
+  // Where the two meet: x - a n_1 - b n_2, both distances 0.
+  const double c = dot(first.normal, second.normal), squared_sine = 1 - c * c;
+  const double out = second.beyond + c * first.beyond;  // of x, beyond the second
+  if (!(squared_sine > rounding)) return on_first;
+  const double a = (first.beyond - c * out) / squared_sine, b = (out - c * first.beyond) / squared_sine;
+  return a >= 0 ? x - first.normal * a - second.normal * b : x - second.normal * out;
+}
+
+// The material of a feature that no rule may have asked for in this tick. At a vertex the stiffness of before holds; a contact
+// that begins there has that of a face beside it.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void stand_on(const Walk<Real>& walk, Feature at) {
+  FrictionTerms& terms = *walk.friction.terms;
+  if (at.state == FDCG_FACE) terms.stand_on_face(at.index);
+  if (at.state == FDCG_EDGE) {
+    const ConnectionRef<Real> connection = walk.graph.connection(at.index);
+    terms.stand_on_edge(connection.node(0), connection.node(1), 0.5);
+  }
+  if (at.state == FDCG_VERTEX) {
+    const CornerRef<Real> corner = walk.graph.corner(at.index);
+    terms.stand_on_face(corner.is_busy() ? walk.graph.fan_entry(corner, 0).node : corner.first_node());
+    if (terms.held_stiffness > 0) terms.material.stiffness_n_per_m = terms.held_stiffness;
+  }
+}
+
+// From the remembered place to the god-object that is felt. Cost: one plane, and those of the face's concave edges.
+template <class Real>
+[[gnu::noinline, gnu::cold]] Vec3<double> yielding(const Walk<Real>& walk, Feature at, Vec3<double> anchor) {
+  const Vec3<double> stays = {0, 0, 0}, hip = widen(walk.hip);
+  const double share = 1 - 1 / walk.friction.terms->give();
+  if (!(share > 0)) return stays;
+  if (at.state == FDCG_FACE) {
+    const NodeRef<Real> node = walk.graph.node(at.index);
+    const Vec3<double> normal = widen(node.normal()), gap = hip - anchor;
+    const Vec3<double> x = anchor + (gap - normal * dot(normal, gap)) * share;
+    return within_walls(walk, node, x) - anchor;
+  }
+  if (at.state == FDCG_EDGE) {
+    const EdgeLine<Real> line(walk.graph, at.index);
+    const Vec3<double> direction = widen(line.direction);
+    const double begin = dot(anchor - widen(line.start), direction), end = begin + dot(hip - anchor, direction) * share;
+    return direction * ((end < 0 ? 0 : end > line.length ? double{line.length} : end) - begin);
+  }
+  return stays;
+}
+
+// Twice what the two springs store, for each newton per metre of stiffness.
+inline double stored(const FrictionTerms& terms, Vec3<double> gap, Vec3<double> yielded) {
+  const Vec3<double> spring = gap + yielded;
+  return dot(spring, spring) + (terms.give() > 1 ? dot(yielded, yielded) / (terms.give() - 1) : 0);
+}
+
+// The stiffness at the end of a tick, and how far the contact yields. Where the rules have moved the contact, from `before`
+// and the feature `was`, more may not be stored at this HIP than there: the stiffness holds back, and rises again where sliding
+// has lost as much. Two materials, or a wall that the yielding god-object meets behind a seam, would push the hand else.
+template <class Real>
+[[gnu::noinline, gnu::cold]] double settle(const Walk<Real>& walk, Feature was, Vec3<double> before) {
+  FrictionTerms& terms = *walk.friction.terms;
+  const Vec3<double> hip = widen(walk.hip), now = widen(walk.god_object);
+  double most = 0;
+  const bool has_held = terms.held_stiffness > 0;
+  const bool is_still = has_held && was == walk.active && before.x == now.x && before.y == now.y && before.z == now.z;
+  if (has_held && !is_still) {
+    stand_on(walk, was);
+    most = terms.held_stiffness * stored(terms, before - hip, yielding(walk, was, before));
+  }
+  stand_on(walk, walk.active);
+  terms.yielded = yielding(walk, walk.active, now);
+  const double own = terms.material.stiffness_n_per_m;
+  if (!has_held) return own;
+  if (is_still) return terms.held_stiffness < own ? terms.held_stiffness : own;
+  const double is = stored(terms, now - hip, terms.yielded);
+  return own * is <= most ? own : most / is;
+}
+
+}  // namespace fdcg

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What damping makes of the spring between hand and god-object (contact-model section 8), on graphs and surfaces alike.
+#pragma once
+
+#include "fdcg/fdcg.h"
+#include "shared/vec.hpp"
+
+namespace fdcg {
+
+// Where damping takes from the spring: the speed along it, times the coefficient. Newtons per metre, >= 0 in all.
+inline double damped(const fdcg_params& params, double stiffness, Vec3<double> spring, Vec3<double> moved) {
+  const double length2 = dot(spring, spring);
+  if (!(length2 > 0)) return stiffness;
+  const double left = stiffness - params.damping_n_s_per_m * (dot(moved, spring) / length2) / params.tick_s;
+  return left > 0 ? left : 0;  // never a pull
+}
+
+}  // namespace fdcg

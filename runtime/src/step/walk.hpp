@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
+// of contact-model sections 5, 6 and 7, free_space.hpp and sweep.hpp that of section 4; servo_step.cpp drives them.
+#pragma once
+
+#include "base/work.hpp"
+#include "graph/graph_view.hpp"
+#include "step/friction.hpp"
+
+namespace fdcg {
+inline namespace FDCG_VIEW {
+
+// Where the god-object is: free, or on a node, a connection or a corner.
+struct Feature {
+  uint32_t state = FDCG_FREE;  // fdcg_state
+  uint32_t index = FDCG_NONE;
+
+  friend bool operator==(Feature a, Feature b) { return a.state == b.state && a.index == b.index; }
+};
+inline constexpr Feature kFree = {};
+
+template <class Real>
+struct Walk {
+  GraphView<Real> graph;
+  Friction<Real> friction;
+  Vec3<Real> hip;
+  Real hip_bound;  // plane_rounding_bound of hip
+  Vec3<Real> god_object;
+  Feature active;
+  Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
+  uint32_t work_left;  // for the rules, see work.hpp
+  // What rounding took from the god-object when it was placed on the edge by which it crossed into the active face. The way
+  // goes on from god_object + lost: else a tick across hundreds of needle faces adds up their roundings.
+  Vec3<Real> lost = {0, 0, 0};
+
+  [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
+  void spend(uint32_t units) { fdcg::spend(&work_left, units); }
+
+  // A move on a face's inside or along an edge.
+  void place(Vec3<Real> point, Feature new_seat) {
+    god_object = point;
+    seat = new_seat;
+    lost = {0, 0, 0};
+  }
+};
+
+// What a rule decides: stay (rest), or go on at another feature. One word: of parts written one by one the caller would wait
+// for the whole.
+class Decision {
+ public:
+  static constexpr Decision rest() { return Decision(kRest); }
+  static constexpr Decision go_to(Feature next) { return Decision(uint64_t{next.index} << 32 | next.state); }
+
+  [[nodiscard]] bool is_rest() const { return word_ == kRest; }
+  [[nodiscard]] Feature next() const { return {static_cast<uint32_t>(word_), static_cast<uint32_t>(word_ >> 32)}; }
+
+ private:
+  static constexpr uint64_t kRest = ~uint64_t{0};  // no state has such a number
+
+  explicit constexpr Decision(uint64_t word) : word_(word) {}
+
+  uint64_t word_;
+};
+inline Decision rest() {
+  return Decision::rest();
+}
+inline Decision go_to(Feature next) {
+  return Decision::go_to(next);
+}
+
+// A connection's line, and how near to an end the vertex is meant (contact-model section 5).
+template <class Real>
+struct EdgeLine : Edge<Real> {
+  Real end_tolerance;
+
+  // `where`: a connection, or a node and a side of it.
+  template <class... Where>
+  explicit EdgeLine(const GraphView<Real>& graph, Where... where) {
+    graph.read_edge(where..., this);
+    end_tolerance = 8 * RealLimits<Real>::kEpsilon * (norm1(this->start) + this->length);
+  }
+
+  [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
+};
+
+// Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. A god-object
+// put there would lose more distance than a step may; it stays at u, and the corner's rule decides all the same: two edges of a
+// needle's tip would hand it to one another.
+template <class Real>
+[[gnu::noinline]] bool leads_back(const Walk<Real>& walk, const EdgeLine<Real>& line, uint32_t end, Real from_end) {
+  if (from_end <= 8 * RealLimits<Real>::kEpsilon * static_cast<Real>(walk.graph.header->extent)) return false;
+  const Real foot = line.parameter(walk.hip);
+  return 2 * (end == 0 ? foot : line.length - foot) > from_end;
+}
+
+// Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
+template <class Real>
+[[gnu::noinline]] Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
+  for (uint32_t end = 0; end < 2; ++end) {
+    const Real from_end = end == 0 ? u : line.length - u;
+    if (!(from_end <= line.end_tolerance)) continue;
+    const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
+    walk.place(leads_back(walk, line, end, from_end) ? line.start + line.direction * u : walk.graph.corner_point(vertex.index),
+               vertex);
+    return vertex;
+  }
+  const Feature edge = {FDCG_EDGE, connection_index};
+  walk.place(line.start + line.direction * u, edge);
+  return edge;
+}
+
+}  // namespace FDCG_VIEW
+}  // namespace fdcg

@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: Apache-2.0
+// The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind. Over 400
+// lines: a case for each thing that a device or a program may do, on one rig.
+#include "host/host.hpp"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include <fstream>
+
+#include "device_c11.h"
+#include "fake_device.hpp"
+#include "fdcg/bake.hpp"
+#include "host/emergency.hpp"
+#include "meshes.hpp"
+
+using namespace fdcg::dev;
+using namespace fdcg::dev::test;
+
+namespace {
+
+// A graph in the folder for temporary files, of this process: tests run side by side.
+class CubeFile {
+ public:
+  CubeFile() : path_(std::filesystem::temp_directory_path() / ("fdcg_host_test_" + std::to_string(getpid()) + ".fdcg")) {
+    const auto compiled = fdcg::bake::compile(fdcg::test::cube(), {});
+    REQUIRE(compiled);
+    std::ofstream file(path_, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(compiled->bytes.data()), static_cast<std::streamsize>(compiled->bytes.size()));
+  }
+  ~CubeFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string cube_file() {
+  static const CubeFile file;
+  return file.path();
+}
+
+constexpr std::uint64_t kPatienceNs = 60'000'000'000;  // for a machine that is busy with other things
+
+// A host with devices of its own.
+struct Hosted {
+  std::vector<std::unique_ptr<FakeDevice>> devices;
+  HostConfig config = fake_config(cube_file());
+  std::size_t made = 0;
+  Host host{[this](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(*devices[made++]); }};
+
+  explicit Hosted(int count = 1) {
+    for (int i = 0; i < count; ++i)
+      devices.push_back(std::make_unique<FakeDevice>());
+    config.loop.servo_priority = 80;  // where it is granted a busy machine is no matter
+    config.loop.writer_priority = 70;
+    while (static_cast<int>(config.devices.size()) < count)
+      config.devices.push_back(config.devices[0]);
+  }
+  // All of them in one loop.
+  void share() {
+    config.is_shared = true;
+    for (auto& device : devices)
+      device->answers_polls = true;
+  }
+  void start() {
+    REQUIRE(host.open(config) == "");
+    REQUIRE(host.start() == "");
+    for (auto& device : devices) {
+      FakeDevice& one = *device;
+      if (one.is_plugged) REQUIRE(within_ms(5000, [&] { return one.is_open && one.echo > 2; }));
+    }
+  }
+  FakeDevice& device(int index = 0) { return *devices[static_cast<std::size_t>(index)]; }
+  Phase phase(int index = 0) { return host.status(index).last.phase; }
+  Fault fault(int index = 0) { return host.status(index).last.fault; }
+
+  // A machine that is busy may be 10 ms late, which disarms: then once more.
+  void press(int index = 0) {
+    const std::uint64_t until_ns = monotonic_ns() + kPatienceNs;
+    while (monotonic_ns() < until_ns) {
+      device(index).tip_z_m = 0.01;
+      sleep_ms(30);
+      host.arm(index);
+      sleep_ms(60);
+      within_ms(3000, [&] { return phase(index) == Phase::kArmed || phase(index) == Phase::kDisarmed; });
+      if (phase(index) != Phase::kArmed) continue;
+      device(index).tip_z_m = -0.002;
+      if (within_ms(500, [&] { return device(index).force_n > 1.5; })) return;
+    }
+    FAIL("no force in a minute: " << fault_text(fault(index)));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a host starts and stops, again and again, and every device is closed") {
+  for (int round = 0; round < 20; ++round) {
+    Hosted hosted(round % 3 + 1);
+    hosted.start();
+    CHECK(hosted.host.stop() == "");
+    CHECK(hosted.host.stop() == "");
+    for (const auto& device : hosted.devices) {
+      CHECK(device->closed == device->opened);
+      CHECK(device->safe_stops == 1);
+      CHECK(device->force_n == 0);
+      CHECK(device->misused == 0);
+    }
+  }
+}
+
+TEST_CASE("a host that is destroyed without a stop leaves zero force") {
+  FakeDevice device;
+  {
+    Host host([&](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(device); });
+    REQUIRE(host.open(fake_config(cube_file())) == "");
+    REQUIRE(host.start() == "");
+    REQUIRE(within_ms(5000, [&] { return device.echo > 2; }));
+  }
+  CHECK(device.safe_stops == 1);
+  CHECK_FALSE(device.is_open);
+}
+
+TEST_CASE("what is pressed is felt, and a stop takes it away") {
+  Hosted hosted;
+  hosted.start();
+  CHECK(hosted.fault() == Fault::kCommanded);
+  hosted.press();
+  CHECK(hosted.device().is_enabled);
+  CHECK(hosted.device().force_n == Approx(2).margin(0.1));
+  CHECK(within_ms(1000, [&] { return hosted.host.status(0).last.state == FDCG_FACE; }));
+  const std::uint64_t before_ns = monotonic_ns();
+  CHECK(hosted.host.stop() == "");
+  CHECK(monotonic_ns() - before_ns < 1'000'000'000);
+  CHECK(hosted.device().force_n == 0);
+  CHECK_FALSE(hosted.device().is_enabled);
+  CHECK(hosted.device().safe_stops == 1);
+  const DeviceStatus status = hosted.host.status(0);
+  CHECK(status.writes == hosted.device().writes);
+  CHECK(status.write.total == status.writes);
+  CHECK(status.interval.total > 100);
+  CHECK(status.work.total > status.interval.total);
+}
+
+TEST_CASE("a disarm takes the force away, and arming again brings it back from zero") {
+  Hosted hosted;
+  hosted.start();
+  hosted.press();
+  hosted.host.disarm(kAllDevices);
+  CHECK(within_ms(1000, [&] { return hosted.device().force_n == 0; }));
+  CHECK(within_ms(1000, [&] { return hosted.phase() == Phase::kDisarmed; }));
+  sleep_ms(50);
+  CHECK(hosted.device().force_n == 0);
+  hosted.host.arm(0);  // pressed against the cube: refused
+  sleep_ms(50);
+  CHECK(hosted.device().force_n == 0);
+  hosted.press();
+}
+
+TEST_CASE("a device that is pulled out is closed, and opened again when it is back, with no force until it is armed") {
+  Hosted hosted;
+  hosted.start();
+  for (int round = 1; round <= 5; ++round) {
+    if (round == 1) hosted.press();
+    hosted.device().is_plugged = false;
+    REQUIRE(within_ms(5000, [&] { return !hosted.device().is_open; }));
+    REQUIRE(within_ms(5000, [&] { return hosted.host.connection(0).problem == "not plugged in"; }));
+    CHECK(within_ms(1000, [&] { return hosted.host.status(0).connection == Connection::kAbsent; }));
+    if (round == 1) CHECK(hosted.fault() == Fault::kReadFailed);
+    hosted.device().is_plugged = true;
+    REQUIRE(within_ms(5000, [&] { return hosted.device().opened == round + 1; }));
+    REQUIRE(within_ms(5000, [&] { return hosted.host.status(0).opened == static_cast<std::uint64_t>(round) + 1; }));
+    CHECK(hosted.host.connection(0).problem == "");
+    sleep_ms(20);
+    CHECK(hosted.device().force_n == 0);
+    CHECK_FALSE(hosted.device().is_enabled);
+  }
+  hosted.press();
+  CHECK(hosted.host.stop() == "");
+  CHECK(hosted.device().misused == 0);
+  CHECK(hosted.device().closed == hosted.device().opened);
+}
+
+TEST_CASE("a device that is not there at the start is waited for") {
+  Hosted hosted(2);
+  hosted.device(1).is_plugged = false;
+  hosted.start();
+  CHECK(within_ms(2000, [&] { return hosted.host.connection(1).problem == "not plugged in"; }));
+  CHECK(hosted.host.connection(0).connection == Connection::kOpen);
+  hosted.press(0);
+  hosted.device(1).is_plugged = true;
+  CHECK(within_ms(5000, [&] { return hosted.host.connection(1).connection == Connection::kOpen; }));
+  hosted.press(1);
+  CHECK(hosted.host.stop() == "");
+}
+
+TEST_CASE("a device that goes silent gets zero and is disarmed") {
+  Hosted hosted;
+  hosted.start();
+  hosted.press();
+  hosted.device().is_silent = true;
+  const std::uint64_t silent_ns = monotonic_ns();
+  REQUIRE(within_ms(2000, [&] { return hosted.device().force_n == 0; }));
+  WARN("zero after " << static_cast<double>(monotonic_ns() - silent_ns) * 1e-6 << " ms of silence");
+  CHECK(within_ms(1000, [&] { return hosted.phase() == Phase::kDisarmed; }));
+}
+
+TEST_CASE("a writer that is held does not hold the servo thread, disarms it, and sends zero first when it is let go") {
+  Hosted hosted;
+  hosted.start();
+  hosted.press();
+  hosted.device().holds_writes = true;
+  CHECK(within_ms(2000, [&] { return hosted.phase() == Phase::kDisarmed; }));
+  CHECK((hosted.fault() == Fault::kWriterStuck || hosted.fault() == Fault::kHostLate));
+  const std::uint64_t ticks = hosted.host.status(0).counters.ticks;
+  CHECK(within_ms(2000, [&] { return hosted.host.status(0).counters.ticks > ticks + 50; }));
+  hosted.device().holds_writes = false;
+  CHECK(within_ms(1000, [&] { return hosted.device().force_n == 0; }));
+  CHECK(hosted.host.stop() == "");
+}
+
+TEST_CASE("a device that takes no output does not keep the host from stopping within 6 s", "[slow]") {
+  auto device = std::make_unique<FakeDevice>();
+  {
+    Hosted hosted;
+    hosted.devices[0].swap(device);
+    hosted.start();
+    hosted.press();
+    hosted.device().holds_writes = true;
+    REQUIRE(within_ms(1000, [&] { return hosted.device().inside_writes == 1; }));
+    const std::uint64_t before_ns = monotonic_ns();
+    const std::string problem = hosted.host.stop();
+    CHECK(static_cast<double>(monotonic_ns() - before_ns) * 1e-9 < Host::kStopS);
+    CHECK(problem.find("takes no output") != std::string::npos);
+    CHECK(hosted.device().closed == 0);  // somebody is inside
+    hosted.devices[0].swap(device);
+  }
+  // The thread that was left alone lives on what it kept, though the host is gone.
+  device->holds_writes = false;
+  CHECK(within_ms(5000, [&] { return device->inside_writes == 0; }));
+  sleep_ms(50);
+  CHECK(device->misused == 0);
+}
+
+TEST_CASE("a device that refuses its last zero force is told of") {
+  Hosted hosted;
+  hosted.start();
+  hosted.device().refuses_writes = true;
+  CHECK(hosted.host.stop().find("may not have got its zero force") != std::string::npos);
+  CHECK_FALSE(hosted.device().is_open);
+
+  Hosted gone;
+  gone.start();
+  gone.device().is_plugged = false;
+  REQUIRE(within_ms(5000, [&] { return !gone.device().is_open; }));
+  CHECK(gone.host.stop() == "");
+}
+
+TEST_CASE("a read that does not return leaves no force, and does not keep the host from stopping", "[slow]") {
+  auto device = std::make_unique<FakeDevice>();
+  {
+    Hosted hosted;
+    hosted.devices[0].swap(device);
+    hosted.start();
+    hosted.press();
+    hosted.device().holds_reads = true;
+    const std::uint64_t held_ns = monotonic_ns();
+    REQUIRE(within_ms(2000, [&] { return hosted.device().force_n == 0; }));
+    WARN("zero " << static_cast<double>(monotonic_ns() - held_ns) * 1e-6 << " ms after the reader hung");
+    const std::uint64_t before_ns = monotonic_ns();
+    const std::string problem = hosted.host.stop();
+    CHECK(static_cast<double>(monotonic_ns() - before_ns) * 1e-9 < Host::kStopS);
+    CHECK(problem.find("does not return") != std::string::npos);
+    CHECK(hosted.device().safe_stops == 1);
+    hosted.devices[0].swap(device);
+  }
+  device->holds_reads = false;
+  CHECK(within_ms(5000, [&] { return device->inside_reads == 0; }));
+  sleep_ms(50);
+  CHECK(device->misused == 0);
+}
+
+TEST_CASE("of devices that share a scene one that is silent or pulled out takes no force from another, and comes back") {
+  Hosted hosted(3);
+  hosted.share();
+  hosted.start();
+  for (int i = 0; i < 3; ++i)
+    hosted.press(i);
+  for (const int dead : {0, 2}) {  // 0 is the clock
+    INFO(dead);
+    hosted.device(dead).is_silent = true;
+    CHECK(within_ms(2000, [&] { return hosted.device(dead).force_n == 0 && hosted.phase(dead) == Phase::kDisarmed; }));
+    CHECK(hosted.fault(dead) == Fault::kSilence);
+    hosted.press(1);  // at once, where the machine is not too busy
+    hosted.device(dead).is_silent = false;
+    hosted.device(dead).is_plugged = false;
+    REQUIRE(within_ms(5000, [&] { return !hosted.device(dead).is_open; }));
+    hosted.press(1);
+    hosted.device(dead).is_plugged = true;
+    REQUIRE(within_ms(5000, [&] { return hosted.device(dead).is_open.load(); }));
+    hosted.press(dead);
+    CHECK(hosted.device(1).force_n > 1.5);
+  }
+  CHECK(hosted.host.stop() == "");
+  for (int i = 0; i < 3; ++i) {
+    CHECK(hosted.device(i).force_n == 0);
+    CHECK(hosted.device(i).misused == 0);
+  }
+}
+
+TEST_CASE("a read that does not return takes the force from all that share the scene, until it returns") {
+  Hosted hosted(2);
+  hosted.share();
+  hosted.start();
+  hosted.press(0);
+  hosted.press(1);
+  hosted.device(1).holds_reads = true;
+  CHECK(within_ms(2000, [&] { return hosted.device(0).force_n == 0 && hosted.device(1).force_n == 0; }));
+  hosted.device(1).holds_reads = false;
+  hosted.press(0);
+  hosted.press(1);
+  CHECK(hosted.host.stop() == "");
+  CHECK(hosted.device(0).misused + hosted.device(1).misused == 0);
+}
+
+TEST_CASE("an object that spins or is driven is where its motion says, for every device") {
+  Hosted hosted(2);
+  hosted.config.objects[0].motion.kind = MotionKind::kDriven;
+  hosted.start();
+  hosted.press(0);
+  fdcg_pose away = fdcg_identity_pose();
+  away.translation_m[2] = -0.05;
+  CHECK(hosted.host.set_pose("cube", away) == "");
+  CHECK(within_ms(1000, [&] { return hosted.device(0).force_n == 0; }));
+  CHECK(hosted.host.set_pose("ball", away).find("'ball'") != std::string::npos);
+  CHECK(hosted.host.stop() == "");
+
+  Hosted fixed;
+  fixed.start();
+  CHECK(fixed.host.set_pose("cube", away).find("driven") != std::string::npos);
+}
+
+TEST_CASE("a stop that is asked for ends the wait at once, from any thread or signal") {
+  Hosted hosted;
+  hosted.start();
+  CHECK_FALSE(hosted.host.wait_ms(10));
+  const std::uint64_t before_ns = monotonic_ns();
+  Thread other;
+  REQUIRE(other
+              .start("stopper",
+                     [&] {
+                       sleep_ms(20);
+                       hosted.host.request_stop();
+                     })
+              .empty());
+  CHECK(hosted.host.wait_ms(20'000));
+  CHECK(monotonic_ns() - before_ns < 5'000'000'000);
+  CHECK(hosted.host.is_stopping());
+  CHECK(hosted.host.wait_ms(20'000));
+  CHECK(other.join_within(1'000'000'000));
+}
+
+TEST_CASE("a scene that cannot be run is refused with its reason") {
+  Host host;
+  HostConfig config = fake_config("no_such_file.fdcg");
+  CHECK(host.open(config).find("no_such_file.fdcg") != std::string::npos);
+  CHECK(host.start() == "no scene is open");
+  FakeDevice device;
+  Host other([&](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(device); });
+  REQUIRE(other.open(fake_config("")) == "");
+  REQUIRE(other.start() == "");
+  CHECK(other.start() == "the host is running already");
+  CHECK(other.open(fake_config("")).find("stop it first") != std::string::npos);
+  CHECK(other.stop() == "");
+  CHECK(other.start() == "the host has stopped; open the scene again");
+  REQUIRE(other.open(fake_config("")) == "");
+  CHECK(other.start() == "");
+  config = fake_config("");
+  config.devices.clear();
+  CHECK(host.open(config).find("devices") != std::string::npos);
+  config.devices.assign(kMaxDevices + 1, fake_config("").devices[0]);
+  CHECK(host.open(config).find("at most 16") != std::string::npos);
+}
+
+TEST_CASE("the C API refuses what is not right, with the reason") {
+  CHECK(refuses_from_c() == 0);
+}
+
+TEST_CASE("a C program runs a host") {
+  const std::string scene = R"({"fdcg_scene": 1,
+    "objects": [{"name": "cube", "file": ")" +
+                            cube_file() + R"(", "motion": {"kind": "driven"}}],
+    "devices": [{"name": "toy", "source": "simulated", "mapping": {"offset_m": [0, 0, 5]}}],
+    "loop": {"servo_priority": 80, "writer_priority": 70, "lock_memory": false}})";
+  CHECK(runs_from_c(scene.c_str(), "cube") == 0);
+}
+
+// In a process of its own: crashes with a force on. The descriptor stands for a hidraw node.
+static void crash_with_force(int descriptor, int crash) try {
+  for (const int one : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
+    signal(one, SIG_DFL);  // the test framework has its own
+  Hosted hosted;
+  hosted.device().emergency = descriptor;
+  install_crash_handlers();
+  hosted.start();
+  hosted.press();
+  raise(crash);
+} catch (...) {  // a check that failed
+  _exit(3);
+}
+
+TEST_CASE("a crash sends zero force and the safe stop on the descriptor kept for it, then dies of its signal") {
+  static_cast<void>(cube_file());
+  for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) {
+    int ends[2];
+    REQUIRE(pipe(ends) == 0);
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      close(ends[0]);
+      crash_with_force(ends[1], crash);
+      _exit(0);
+    }
+    close(ends[1]);
+    std::uint8_t data[256];
+    std::size_t count = 0;
+    for (ssize_t n = 0; (n = read(ends[0], data + count, sizeof data - count)) > 0;)
+      count += static_cast<std::size_t>(n);
+    close(ends[0]);
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    CHECK(WIFSIGNALED(status));
+    CHECK(WTERMSIG(status) == crash);
+    const Profile profile = fake_profile();
+    REQUIRE(count == static_cast<std::size_t>(profile.output.bytes) + profile.safe_stop[0].bytes);
+    Command command;
+    REQUIRE(decode_output(profile, data, profile.output.bytes, &command));
+    CHECK(command.effort[2] == 0);
+    CHECK_FALSE(command.is_enabled);
+    CHECK(command.sequence > 100);  // goes on from the writer's, so that the device takes it
+    CHECK(data[profile.output.bytes] == 9);
+  }
+}

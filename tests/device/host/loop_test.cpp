@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: Apache-2.0
+// The threads of one device: events, the link, the writer, the servo loop, the supervisor. The host as a whole: host_test.cpp.
+#include <catch2/catch.hpp>
+#include <thread>
+
+#include "fake_device.hpp"
+#include "host/servo_loop.hpp"
+#include "host/supervisor.hpp"
+#include "host/writer.hpp"
+#include "scene/scene_build.hpp"
+#include "thread_calls.hpp"
+#include "tick/link.hpp"
+
+using namespace fdcg::dev;
+using namespace fdcg::dev::test;
+
+namespace {
+
+constexpr std::uint64_t kMsNs = 1'000'000;
+
+// A device, opened, and the parts of a host around it.
+struct Rig {
+  FakeDevice device;
+  FakeTransport transport{device};
+  Profile profile = fake_profile();
+  Link link;
+  Writer writer{profile, transport, link};
+  HostConfig config = fake_config("");
+  SceneGraphs graphs;
+  DeviceScene scene;
+  Event lost;
+  ServoLoop servo;
+
+  Rig() {
+    REQUIRE(graphs.open(config).empty());
+    REQUIRE(build_device_scene(config, {}, graphs, &scene).empty());
+    ServoParts parts;
+    parts.transport = &transport;
+    parts.link = &link;
+    parts.writer = &writer;
+    parts.lost = &lost;
+    parts.start_ns = monotonic_ns();
+    REQUIRE(servo.begin(scene.setups[0], parts, nullptr));
+  }
+  void send(const GatedForce& force, std::uint32_t echo) {
+    writer.put(force, echo);
+    writer.wake();
+  }
+  void open() {
+    REQUIRE(transport.open().empty());
+    link.open();
+  }
+};
+
+// A force that the gate has let through: only a gate can make one.
+GatedForce gated_force() {
+  const Profile profile = fake_profile();
+  Gate gate;
+  gate.begin(profile.limits, profile.axis_count, profile.rate_hz, 0);
+  GateInput input;
+  for (int axis = 0; axis < 3; ++axis)
+    input.tip.jacobian[axis][axis] = 1;
+  input.has_sample = true;
+  GatedForce force;
+  for (int tick = 0; tick < 2000; ++tick) {
+    input.now_ns += kMsNs;
+    input.arm = tick == 1;
+    input.wanted_force_n[2] = tick > 2 ? 2 : 0;
+    force = gate.step(input);
+  }
+  REQUIRE(force.is_enabled());
+  REQUIRE(force.effort()[2] == Approx(2));
+  return force;
+}
+
+struct Running {
+  Thread thread;
+  explicit Running(std::function<void()> body) { REQUIRE(thread.start("test", std::move(body)).empty()); }
+  bool ends_within_ms(int ms) { return thread.join_within(static_cast<std::uint64_t>(ms) * kMsNs); }
+};
+
+}  // namespace
+
+TEST_CASE("an event keeps a signal until it is waited for, and a wait without one ends in time") {
+  Event event;
+  event.signal();
+  event.signal();
+  CHECK(event.wait(0));
+  const std::uint64_t before_ns = monotonic_ns();
+  CHECK_FALSE(event.wait(20 * kMsNs));
+  CHECK(monotonic_ns() - before_ns >= 20 * kMsNs);
+}
+
+TEST_CASE("an event wakes its waiter, every time") {
+  Event ping, pong;
+  std::atomic<int> missed{0};
+  Running other([&] {
+    for (int i = 0; i < 5000; ++i) {
+      missed += !ping.wait(10'000 * kMsNs);
+      pong.signal();
+    }
+  });
+  for (int i = 0; i < 5000; ++i) {
+    ping.signal();
+    missed += !pong.wait(10'000 * kMsNs);
+  }
+  CHECK(other.ends_within_ms(10'000));
+  CHECK(missed == 0);
+}
+
+TEST_CASE("a thread that does not end is reported, and can be left alone") {
+  std::atomic<bool> ends{false}, has_ended{false};
+  Thread thread;
+  REQUIRE(thread
+              .start("slow",
+                     [&] {
+                       while (!ends)
+                         sleep_ms(1);
+                       has_ended = true;
+                     })
+              .empty());
+  CHECK_FALSE(thread.join_within(5 * kMsNs));
+  thread.abandon();
+  CHECK_FALSE(thread.is_started());
+  CHECK(thread.join_within(0));
+  ends = true;
+  CHECK(within_ms(5000, [&] { return has_ended.load(); }));
+}
+
+TEST_CASE("nobody is inside a link when it is closed") {
+  Link link;
+  std::atomic<bool> is_usable{false}, ends{false};
+  std::atomic<int> wrong{0};
+  std::atomic<std::uint64_t> entered{0};
+  const auto visit = [&](Link::Party party) {
+    while (!ends) {
+      if (!link.enter(party)) {
+        std::this_thread::yield();
+        continue;
+      }
+      wrong += !is_usable;
+      ++entered;
+      wrong += !is_usable;
+      link.leave(party);
+    }
+  };
+  Running reader([&] { visit(Link::kReader); });
+  Running writer([&] { visit(Link::kWriter); });
+  const std::uint64_t until_ns = monotonic_ns() + 1000 * kMsNs;
+  std::uint64_t rounds = 0;
+  for (; rounds < 20'000 && (rounds < 50 || monotonic_ns() < until_ns); ++rounds) {
+    is_usable = true;
+    link.open();
+    const std::uint64_t before = entered;
+    while (entered == before)
+      std::this_thread::yield();
+    link.close();
+    while (!link.is_empty())
+      std::this_thread::yield();
+    is_usable = false;
+  }
+  ends = true;
+  CHECK(reader.ends_within_ms(5000));
+  CHECK(writer.ends_within_ms(5000));
+  CHECK(wrong == 0);
+  CHECK(link.opened() == rounds);
+}
+
+TEST_CASE("the writer sends each force at once, numbered, with the echo, and zero by itself 10 ms after the last") {
+  Rig rig;
+  rig.open();
+  const GatedForce force = gated_force();
+  Running writer([&] { rig.writer.run(); });
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    rig.send(force, 1000 + i);
+    REQUIRE(within_ms(5000, [&] { return rig.device.echo == 1000 + i; }));
+  }
+  REQUIRE(within_ms(5000, [&] { return rig.device.force_n == 0; }));
+  sleep_ms(50);
+  const std::uint64_t writes = rig.device.writes;
+  const std::vector<Written> written = rig.device.all_written();
+  std::uint32_t forces = 0;
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const Command& command = written[i].command;
+    if (command.is_enabled) {
+      CHECK(command.effort[2] == Approx(2));
+      CHECK(command.echo == 1000 + forces++);
+    } else {  // by itself; more than one only where this test was held up
+      CHECK(command.effort[2] == 0);
+      REQUIRE(i > 0);
+      CHECK(written[i - 1].command.is_enabled);
+      CHECK(written[i].ns - written[i - 1].ns >= 10 * kMsNs);
+    }
+  }
+  CHECK(forces == 50);
+  CHECK_FALSE(written.back().command.is_enabled);
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+  CHECK(rig.device.safe_stops == 1);
+  CHECK(rig.device.misused == 0);
+  WriterStatus status;
+  REQUIRE(rig.writer.take_status(&status));
+  CHECK(writes == written.size());
+  CHECK(status.writes == writes + 2);  // zero and the safe stop
+  CHECK(status.failures == 0);
+  CHECK(status.write.total == status.writes);
+}
+
+TEST_CASE("after a write that was held the first thing sent is the newest") {
+  Rig rig;
+  rig.open();
+  const GatedForce force = gated_force();
+  Running writer([&] { rig.writer.run(); });
+  rig.device.holds_writes = true;
+  rig.send(force, 1);
+  REQUIRE(within_ms(1000, [&] { return rig.device.inside_writes == 1; }));
+  sleep_ms(8);
+  CHECK(rig.writer.busy_ns(monotonic_ns()) >= 7 * kMsNs);
+  for (std::uint32_t echo = 2; echo <= 500; ++echo)
+    rig.send(GatedForce(), echo);
+  rig.device.holds_writes = false;
+  REQUIRE(within_ms(1000, [&] { return rig.device.writes >= 2; }));
+  CHECK(rig.device.echo == 500);
+  CHECK(rig.device.force_n == 0);
+  CHECK(within_ms(1000, [&] { return rig.writer.busy_ns(monotonic_ns()) == 0; }));  // the write counts before it returns
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+}
+
+TEST_CASE("a refused write shows until one is taken, and a closed link is no failure") {
+  Rig rig;
+  Running writer([&] { rig.writer.run(); });
+  rig.send(GatedForce(), 1);
+  rig.writer.flush_within(1000 * kMsNs);
+  CHECK(rig.device.writes == 0);
+  CHECK_FALSE(rig.writer.has_failed());
+  rig.open();
+  rig.device.refuses_writes = true;
+  rig.send(GatedForce(), 2);
+  rig.writer.flush_within(1000 * kMsNs);
+  CHECK(rig.writer.has_failed());
+  rig.device.refuses_writes = false;
+  rig.send(GatedForce(), 3);
+  rig.writer.flush_within(1000 * kMsNs);
+  CHECK_FALSE(rig.writer.has_failed());
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+}
+
+TEST_CASE("a writer that is muted sends nothing more, not even its farewell") {
+  Rig rig;
+  rig.open();
+  Running writer([&] { rig.writer.run(); });
+  rig.send(gated_force(), 1);
+  rig.writer.flush_within(1000 * kMsNs);
+  const std::uint32_t next = rig.writer.mute();
+  CHECK(next > rig.device.sequence);
+  const std::uint64_t writes = rig.device.writes;
+  rig.send(gated_force(), 2);
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+  CHECK(rig.device.writes == writes);
+}
+
+TEST_CASE("a tick drains to the newest report and counts the others") {
+  Rig rig;
+  rig.open();
+  rig.device.burst = 10;
+  rig.servo.tick();
+  rig.device.burst = 100;  // more than one tick drains
+  rig.servo.tick();
+  rig.servo.tick();
+  sleep_ms(25);
+  rig.servo.tick();
+  DeviceStatus status;
+  REQUIRE(rig.servo.take_status(&status));
+  CHECK(status.counters.superseded == 9 + 63 + 35);
+  CHECK(status.counters.ticks == 4);
+  CHECK(status.counters.lost == 0);
+}
+
+TEST_CASE("a report that is too long is refused, however long") {
+  for (const int excess : {1, 100, 111, 112, 1000}) {
+    Rig rig;
+    rig.open();
+    rig.device.excess = excess;
+    rig.device.burst = 5;
+    rig.servo.tick();
+    sleep_ms(25);
+    rig.device.excess = 0;
+    rig.servo.tick();
+    DeviceStatus status;
+    REQUIRE(rig.servo.take_status(&status));
+    CHECK(status.counters.rejected[static_cast<int>(Verdict::kLength)] == 5);
+  }
+}
+
+TEST_CASE("a loss is told once, after its zero force is on the way, and the device is left alone until it is opened anew") {
+  Rig rig;
+  rig.open();
+  rig.servo.tick();
+  CHECK_FALSE(rig.lost.wait(0));
+  rig.device.is_plugged = false;
+  rig.servo.tick();
+  CHECK(rig.lost.wait(0));
+  CHECK(rig.servo.lost_opening() == 1);
+  const std::uint64_t reads = rig.device.reads, before_ns = monotonic_ns();
+  for (int i = 0; i < 20; ++i)
+    rig.servo.tick();
+  CHECK(rig.device.reads == reads);
+  CHECK(monotonic_ns() - before_ns >= 20 * kMsNs);  // asleep, not spinning
+  CHECK_FALSE(rig.lost.wait(0));
+  DeviceStatus status;
+  REQUIRE(rig.servo.take_status(&status));
+  CHECK(status.connection == Connection::kAbsent);
+  CHECK(status.last.fault == Fault::kCommanded);
+
+  rig.link.close();
+  rig.transport.close();
+  rig.device.is_plugged = true;
+  rig.open();
+  sleep_ms(25);
+  rig.servo.tick();
+  REQUIRE(rig.servo.take_status(&status));
+  CHECK(status.connection == Connection::kOpen);
+  CHECK(status.opened == 2);
+  CHECK(status.counters.lost == 0);  // the sequence begins anew
+  CHECK(rig.device.misused == 0);
+}
+
+TEST_CASE("the servo thread calls no heap and takes no lock, whatever happens to the device") {
+  if (!can_count_thread_calls()) return;
+  Rig rig;
+  LogRing log(1u << 16);  // too small for all of it: a full ring is part of the test
+  rig.open();
+  Running writer([&] { rig.writer.run(); });
+  ThreadCalls calls;
+  std::atomic<bool> ends{false};
+  std::uint64_t ticks = 0;
+  Running servo([&] {
+    count_calls_of_this_thread(true);
+    while (!ends) {
+      rig.servo.tick();
+      ++ticks;
+    }
+    count_calls_of_this_thread(false);
+    calls = thread_calls();
+  });
+  rig.servo.request_arm();
+  sleep_ms(50);
+  rig.device.is_silent = true;
+  sleep_ms(30);
+  rig.device.is_silent = false;
+  rig.device.burst = 200;
+  rig.device.excess = 3;
+  sleep_ms(30);
+  rig.device.excess = 0;
+  rig.device.refuses_writes = true;
+  rig.servo.request_arm();
+  sleep_ms(30);
+  rig.device.is_plugged = false;
+  sleep_ms(50);
+  rig.servo.request_disarm();
+  ends = true;
+  CHECK(servo.ends_within_ms(1000));
+  CHECK(ticks > 10);
+  CHECK(calls.heap == 0);
+  CHECK(calls.locks == 0);
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+}
+
+TEST_CASE("the counters of heap and locks count") {
+  if (!can_count_thread_calls()) return;
+  const ThreadCalls before = thread_calls();
+  count_calls_of_this_thread(true);
+  std::mutex mutex;
+  delete new std::string(100, 'x');
+  mutex.lock();
+  mutex.unlock();
+  count_calls_of_this_thread(false);
+  CHECK(thread_calls().heap - before.heap >= 2);
+  CHECK(thread_calls().locks - before.locks == 1);
+}

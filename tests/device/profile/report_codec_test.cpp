@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reports to values and back by a profile's table, and checksums against their published values.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "profile/crc.hpp"
+#include "profile/report_codec.hpp"
+#include "random_profile.hpp"
+
+namespace {
+
+using namespace fdcg::dev;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// One axis, and one effort, at offset 1 of a report with id 7; axis 1 and 2 where they are asked for.
+Profile single(NumberType type, bool is_big_endian, double scale, double bias) {
+  Profile profile;
+  profile.axis_count = 1;
+  profile.rate_hz = 1000;
+  profile.has_output = true;
+  for (ReportLayout* layout : {&profile.input, &profile.output}) {
+    layout->id = 7;
+    layout->bytes = static_cast<std::uint16_t>(1 + bytes_of(type));
+    layout->field_count = 1;
+    Field& field = layout->fields[0];
+    field.role = layout == &profile.input ? Role::kAxis : Role::kEffort;
+    field.type = type;
+    field.is_big_endian = is_big_endian;
+    field.offset = 1;
+    field.scale = scale;
+    field.bias = bias;
+  }
+  return profile;
+}
+
+std::vector<std::uint8_t> encoded(const Profile& profile, double effort) {
+  Command command;
+  command.effort[0] = effort;
+  std::vector<std::uint8_t> data(profile.output.bytes);
+  encode_output(profile, command, data.data());
+  return data;
+}
+
+using Bytes = std::vector<std::uint8_t>;
+
+// The largest error that rounding to the field's counts makes, for values within its range.
+double half_count(const Field& field, double value) {
+  if (field.type != NumberType::kF32) return std::fabs(field.scale) * 0.5000001;
+  return (std::fabs(value) + std::fabs(field.bias)) * 1.2e-7 + std::fabs(field.scale) * 1e-37;
+}
+
+// A value in the middle half of what the field can say.
+double value_within(const Field& field, std::mt19937_64& random) {
+  const double most = field.type == NumberType::kF32 ? 1000 : std::ldexp(1.0, 8 * bytes_of(field.type) - 1) - 1;
+  const bool is_signed = field.type != NumberType::kU8 && field.type != NumberType::kU16 && field.type != NumberType::kU32;
+  const double raw = std::uniform_real_distribution<double>(is_signed ? -most : 0, most)(random);
+  return raw * field.scale + field.bias;
+}
+
+std::uint32_t mask_of(const Field& field) {
+  return 0xFFFFFFFFU >> (32 - 8 * bytes_of(field.type));
+}
+
+const Field* field_of(const ReportLayout& layout, Role role) {
+  const Field* end = layout.fields + layout.field_count;
+  const Field* found = std::find_if(layout.fields, end, [role](const Field& field) { return field.role == role; });
+  return found == end ? nullptr : found;
+}
+
+void check_numbers(const ReportLayout& layout, Role role, const double* in, const double* out) {
+  for (int i = 0; i < layout.field_count; ++i) {
+    const Field& field = layout.fields[i];
+    if (field.role == role) CHECK(std::fabs(out[field.axis] - in[field.axis]) <= half_count(field, in[field.axis]));
+  }
+}
+
+void check_counter(const ReportLayout& layout, Role role, std::uint32_t in, std::uint32_t out) {
+  const Field* field = field_of(layout, role);
+  CHECK(out == (field == nullptr ? 0 : in & mask_of(*field)));
+}
+
+}  // namespace
+
+TEST_CASE("checksums have their published check values") {
+  const auto* digits = reinterpret_cast<const std::uint8_t*>("123456789");
+  CHECK(crc_of(CrcKind::kCrc16CcittFalse, digits, 9) == 0x29B1);
+  CHECK(crc_of(CrcKind::kCrc16Modbus, digits, 9) == 0x4B37);
+  CHECK(crc_of(CrcKind::kCrc32, digits, 9) == 0xCBF43926);
+  CHECK(crc_of(CrcKind::kCrc8, digits, 9) == 0xF4);
+  CHECK(crc_of(CrcKind::kSum8, digits, 9) == 0xDD);
+  CHECK(crc_of(CrcKind::kXor8, digits, 9) == 0x31);
+  CHECK(crc_of(CrcKind::kNone, digits, 9) == 0);
+  CHECK(crc_of(CrcKind::kCrc16CcittFalse, digits, 0) == 0xFFFF);
+  CHECK(crc_of(CrcKind::kCrc32, digits, 0) == 0);
+}
+
+TEST_CASE("numbers stand in the report as their type and byte order say") {
+  CHECK(encoded(single(NumberType::kU8, false, 1, 0), 200) == Bytes{7, 200});
+  CHECK(encoded(single(NumberType::kI8, false, 1, 0), -2) == Bytes{7, 0xFE});
+  CHECK(encoded(single(NumberType::kU16, false, 1, 0), 0x1234) == Bytes{7, 0x34, 0x12});
+  CHECK(encoded(single(NumberType::kU16, true, 1, 0), 0x1234) == Bytes{7, 0x12, 0x34});
+  CHECK(encoded(single(NumberType::kI16, false, 0.5, 1), -1) == Bytes{7, 0xFC, 0xFF});
+  CHECK(encoded(single(NumberType::kI32, true, -1, 0), 2) == Bytes{7, 0xFF, 0xFF, 0xFF, 0xFE});
+  CHECK(encoded(single(NumberType::kU32, false, 1e-3, 0), 4294967.295) == Bytes{7, 0xFF, 0xFF, 0xFF, 0xFF});
+  CHECK(encoded(single(NumberType::kF32, false, 1, 0), -1.25) == Bytes{7, 0, 0, 0xA0, 0xBF});
+  CHECK(encoded(single(NumberType::kF32, true, 2, 1), -1.5) == Bytes{7, 0xBF, 0xA0, 0, 0});
+}
+
+TEST_CASE("an effort is rounded to the nearest count and held in the range of its field") {
+  CHECK(encoded(single(NumberType::kI16, false, 1, 0), 1.4) == Bytes{7, 1, 0});
+  CHECK(encoded(single(NumberType::kI16, false, 1, 0), -1.6) == Bytes{7, 0xFE, 0xFF});
+  for (const double large : {1e9, 1e300, kInfinity}) {
+    CHECK(encoded(single(NumberType::kI16, false, 1, 0), large) == Bytes{7, 0xFF, 0x7F});
+    CHECK(encoded(single(NumberType::kI16, false, 1, 0), -large) == Bytes{7, 0, 0x80});
+    CHECK(encoded(single(NumberType::kI16, false, -1, 0), large) == Bytes{7, 0, 0x80});
+    CHECK(encoded(single(NumberType::kU8, false, 1, 0), -large) == Bytes{7, 0});
+    CHECK(encoded(single(NumberType::kU32, false, 1e-3, 0), large) == Bytes{7, 0xFF, 0xFF, 0xFF, 0xFF});
+    CHECK(encoded(single(NumberType::kI32, false, 1e-3, 0), -large) == Bytes{7, 0, 0, 0, 0x80});
+  }
+  CHECK(encoded(single(NumberType::kF32, false, 1, 0), 1e300) == Bytes{7, 0xFF, 0xFF, 0x7F, 0x7F});
+  CHECK(encoded(single(NumberType::kF32, false, 1, 0), kInfinity) == Bytes{7, 0xFF, 0xFF, 0x7F, 0x7F});
+}
+
+TEST_CASE("an effort that is no number is no force") {
+  CHECK(encoded(single(NumberType::kI16, false, 1, 0), kNan) == Bytes{7, 0, 0});
+  CHECK(encoded(single(NumberType::kF32, false, 1, 0), kNan) == Bytes{7, 0, 0, 0, 0});
+  CHECK(encoded(single(NumberType::kU8, false, 1, -128), kNan) == Bytes{7, 128});  // where 128 is the raw value of no force
+}
+
+TEST_CASE("a report is refused by what is wrong with it") {
+  Profile profile = single(NumberType::kF32, false, 1, 0);
+  ReportLayout& layout = profile.input;
+  layout.bytes = 9;
+  layout.fields[1] = {Role::kConstant, NumberType::kU16, true, 0, 5, 1, 0, 0xBEEF};
+  layout.field_count = 2;
+  layout.crc = {CrcKind::kCrc16CcittFalse, true, 7, 0, 7};
+  Sample sample;
+  sample.axis[0] = 0.25;
+  Bytes good(9);
+  encode_input(profile, sample, good.data());
+  CHECK(decode_input(profile, good.data(), 9, &sample) == Verdict::kGood);
+  CHECK(sample.axis[0] == 0.25);
+  for (const int bytes : {-1, 0, 1, 8, 10, 128, 129})
+    CHECK(decode_input(profile, Bytes(200).data(), bytes, &sample) == Verdict::kLength);
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      Bytes bad = good;
+      bad[i] = static_cast<std::uint8_t>(bad[i] ^ 1 << bit);
+      CHECK(decode_input(profile, bad.data(), 9, &sample) == (i == 0 ? Verdict::kId : Verdict::kCrc));
+    }
+  }
+  layout.crc.kind = CrcKind::kNone;
+  Bytes bad = good;
+  bad[6] ^= 1;
+  CHECK(decode_input(profile, bad.data(), 9, &sample) == Verdict::kConstant);
+  for (const float number : {float(kNan), float(kInfinity), -float(kInfinity)}) {
+    bad = good;
+    std::memcpy(&bad[1], &number, 4);
+    CHECK(decode_input(profile, bad.data(), 9, &sample) == Verdict::kNotFinite);
+  }
+}
+
+TEST_CASE("status bits of the mask are a fault, others are not; several fields add up") {
+  Profile profile;
+  profile.input.bytes = 3;
+  profile.input.fields[0] = {Role::kStatus, NumberType::kU16, true, 0, 0, 1, 0, 0x0180};
+  profile.input.fields[1] = {Role::kStatus, NumberType::kU8, false, 0, 2, 1, 0, 0x04};
+  profile.input.field_count = 2;
+  const auto has_fault = [&profile](Bytes data) {
+    Sample sample;
+    CHECK(decode_input(profile, data.data(), 3, &sample) == Verdict::kGood);
+    return sample.has_fault;
+  };
+  CHECK_FALSE(has_fault({0, 0, 0}));
+  CHECK_FALSE(has_fault({0xFE, 0x7F, 0xFB}));
+  CHECK(has_fault({0x01, 0, 0}));
+  CHECK(has_fault({0, 0x80, 0}));
+  CHECK(has_fault({0, 0, 0x04}));
+}
+
+TEST_CASE("an output report says that forces are on only where the gate is armed") {
+  Profile profile = single(NumberType::kI16, false, 1, 0);
+  profile.output.bytes = 4;
+  profile.output.fields[1] = {Role::kEnable, NumberType::kU8, false, 0, 3, 1, 0, 0xAA};
+  profile.output.field_count = 2;
+  Command command;
+  Bytes data(4, 0x55);
+  encode_output(profile, command, data.data());
+  CHECK(data == Bytes{7, 0, 0, 0});
+  command.is_enabled = true;
+  encode_output(profile, command, data.data());
+  CHECK(data == Bytes{7, 0, 0, 0xAA});
+  CHECK(decode_output(profile, data.data(), 4, &command));
+  CHECK(command.is_enabled);
+  data[3] = 0xAB;
+  CHECK(decode_output(profile, data.data(), 4, &command));
+  CHECK_FALSE(command.is_enabled);
+  CHECK_FALSE(decode_output(profile, data.data(), 3, &command));
+  data[0] = 8;
+  CHECK_FALSE(decode_output(profile, data.data(), 4, &command));
+}
+
+TEST_CASE("what a random profile encodes it decodes again, and every byte of it is its own") {
+  const unsigned seed = 20260101;
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 20000; ++i) {
+    INFO("seed " << seed << ", profile " << i);
+    const Profile profile = random_profile(random);
+    Sample sample;
+    for (int f = 0; f < profile.input.field_count; ++f) {
+      const Field& field = profile.input.fields[f];
+      if (field.role == Role::kAxis) sample.axis[field.axis] = value_within(field, random);
+    }
+    sample.sequence = static_cast<std::uint32_t>(random());
+    sample.echo = static_cast<std::uint32_t>(random());
+    sample.buttons = static_cast<std::uint32_t>(random());
+    sample.has_fault = random() % 2 != 0;
+    sample.time_s = std::uniform_real_distribution<double>(0, 1e6)(random);
+    std::vector<std::uint8_t> data(profile.input.bytes);
+    encode_input(profile, sample, data.data());
+    Sample read;
+    REQUIRE(decode_input(profile, data.data(), profile.input.bytes, &read) == Verdict::kGood);
+    check_numbers(profile.input, Role::kAxis, sample.axis, read.axis);
+    check_counter(profile.input, Role::kSequence, sample.sequence, read.sequence);
+    check_counter(profile.input, Role::kEcho, sample.echo, read.echo);
+    check_counter(profile.input, Role::kButtons, sample.buttons, read.buttons);
+    CHECK(read.has_fault == (sample.has_fault && field_of(profile.input, Role::kStatus) != nullptr));
+    if (const Field* time = field_of(profile.input, Role::kTime)) {
+      const double round_s = std::ldexp(time->scale, 8 * bytes_of(time->type));
+      const double off = std::remainder(read.time_s - sample.time_s, round_s);
+      CHECK(std::fabs(off) <= time->scale * 0.5 + 1e-8);
+    }
+
+    Command command;
+    for (int f = 0; f < profile.output.field_count; ++f) {
+      const Field& field = profile.output.fields[f];
+      if (field.role == Role::kEffort) command.effort[field.axis] = value_within(field, random);
+    }
+    command.sequence = static_cast<std::uint32_t>(random());
+    command.echo = static_cast<std::uint32_t>(random());
+    command.is_enabled = random() % 2 != 0;
+    data.resize(profile.output.bytes);
+    encode_output(profile, command, data.data());
+    Command taken;
+    REQUIRE(decode_output(profile, data.data(), profile.output.bytes, &taken));
+    check_numbers(profile.output, Role::kEffort, command.effort, taken.effort);
+    check_counter(profile.output, Role::kSequence, command.sequence, taken.sequence);
+    check_counter(profile.output, Role::kEcho, command.echo, taken.echo);
+    CHECK(taken.is_enabled == (command.is_enabled || field_of(profile.output, Role::kEnable) == nullptr));
+  }
+}

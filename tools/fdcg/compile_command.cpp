@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+// fdcg compile: a mesh in, an FDCG file out, or a report and nothing written.
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <numbers>
+
+#include "../common/atomic_file.hpp"
+#include "../common/heap.hpp"
+#include "../common/terminal.hpp"
+#include "fdcg/bake.hpp"
+#include "fdcg/fdcg.h"
+#include "fdcg_commands.hpp"
+#include "mesh_input.hpp"
+#include "mesh_options.hpp"
+
+namespace fdcg::tools {
+namespace {
+
+struct CompileArguments {
+  std::string mesh;
+  std::string output;
+  std::string depfile;
+  std::string report;
+  std::string unit_text = "metres (the default)";
+  std::optional<bake::Format> input_format;
+  bake::CompileOptions options;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+// Spaces, # and $ as Make and Ninja want them in a file name.
+std::string escaped_for_make(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == ' ' || c == '#' || c == '\\') text += '\\';
+    if (c == '$') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string plural(std::uint64_t count, const std::string& singular) {
+  return grouped(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+// Of the file as it stands in memory: what it weighs, or why it does not say.
+std::string mass_summary(const bake::Compiled& compiled) {
+  fdcg_graph graph{};
+  fdcg_mass mass{};
+  const bool has_mass =
+      fdcg_open_memory(compiled.file().data(), compiled.file().size(), FDCG_VERIFY_TRUSTED, &graph, nullptr) == FDCG_OK &&
+      fdcg_get_mass(&graph, &mass, nullptr) == FDCG_OK;
+  if (!has_mass) return compiled.no_mass.empty() ? "" : "no mass properties: " + compiled.no_mass + "\n";
+  const std::string volume = "volume " + number(mass.volume_m3) + " m^3";
+  if (mass.mass_kg == 0) return volume + "; its mass is not known (--density, --mass)\n";
+  return volume + ", " + number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + number(mass.mass_kg) + " kg\n";
+}
+
+// What came out, for a person: sizes, types, and everything that was changed on the way.
+std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
+  fdcg_header header;
+  std::memcpy(&header, compiled.file().data(), sizeof header);
+  const double scale = header.metres_per_unit;
+  std::string size;
+  for (int axis = 0; axis < 3; ++axis) {
+    size += (axis == 0 ? "" : " x ") + number((header.bounds_max[axis] - header.bounds_min[axis]) * scale);
+  }
+  const std::uint32_t* const types = header.connection_type_count;
+  std::string text = soup.name + ": " + plural(soup.points.size(), "point") + ", " + plural(soup.face_count(), "face") + "\n";
+  text += "units: " + arguments.unit_text + ", so the object measures " + size + " m\n";
+  const auto changed = [&text](std::uint64_t count, const std::string& what) {
+    if (count != 0) text += plural(count, "face") + " " + what + "\n";
+  };
+  changed(compiled.flipped_faces, "turned round by --orient");
+  changed(compiled.split_faces, "split: not convex or not planar");
+  changed(compiled.merged_faces, "merged with coplanar neighbours");
+  text += "corners lie within " + number(header.max_deviation * scale) + " m of their nodes' planes\n";
+  text += mass_summary(compiled);
+  text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") +
+          " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
+          grouped(types[FDCG_COPLANAR]) + " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " +
+          plural(header.corner_count, "corner") + ", " + plural(header.file_bytes, "byte") + "\n";
+  return text;
+}
+
+// A large --coplanar ANGLE flattens what is not flat. Empty where that is no more than a hand may overlook: a step of a
+// thousandth of the object, 0.1 mm on one of 0.1 m, is 0.1 N at 1 N/mm, which is felt.
+std::string deviation_warning(const bake::Compiled& compiled) {
+  constexpr double kLargestShare = 1e-3;
+  fdcg_header header;
+  std::memcpy(&header, compiled.file().data(), sizeof header);
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  if (!(header.max_deviation > kLargestShare * size)) return {};
+  return "planes lie up to " + number(header.max_deviation * header.metres_per_unit) + " m off the corners of their faces, " +
+         number(100 * header.max_deviation / size) + " % of the object's size (warned of above " + number(100 * kLargestShare) +
+         " %); --coplanar with a smaller angle keeps the shape";
+}
+
+std::string_view as_text(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Everything is written before anything gets its name, so that a failure leaves nothing.
+int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report,
+                  const std::vector<std::string>& other_files, const std::vector<std::byte>& buffer, AtomicFile& out) {
+  out.write(as_text(buffer));  // empty where the file was made in place
+  std::optional<AtomicFile> depfile, report;
+  if (!arguments.depfile.empty()) {
+    depfile.emplace(arguments.depfile);
+    std::string rule = escaped_for_make(arguments.output) + ": " + escaped_for_make(arguments.mesh);
+    for (const std::string& file : other_files)
+      rule += " " + escaped_for_make(file);
+    depfile->write(rule + "\n");
+    if (!depfile->ok()) return fail(kFile, depfile->error());
+  }
+  if (!arguments.report.empty()) {
+    report.emplace(arguments.report);
+    report->write(bake::report_json({mesh_report}));
+    if (!report->ok()) return fail(kFile, report->error());
+  }
+  if (report && !report->commit()) return fail(kFile, report->error());
+  if (depfile && !depfile->commit()) return fail(kFile, depfile->error());
+  if (!out.commit()) return fail(kFile, out.error());
+  return kClean;
+}
+
+// The mesh is refused: its report on standard error, and in --report.
+int refuse(const CompileArguments& arguments, const bake::Report& report) {
+  const std::string text = bake::report_text(report, wants_colour(Stream::standard_error));
+  std::fputs(text.c_str(), stderr);
+  if (arguments.report.empty()) return kFindings;
+  AtomicFile file(arguments.report);
+  file.write(bake::report_json({report}));
+  return file.commit() ? kFindings : fail(kFile, file.error());
+}
+
+int check_paths(const CompileArguments& arguments) {
+  if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; it is empty");
+  const auto is_same = [](const std::string& a, const std::string& b) { return !a.empty() && (a == b || is_same_file(a, b)); };
+  if (is_same(arguments.output, arguments.report) || is_same(arguments.output, arguments.depfile) ||
+      is_same(arguments.report, arguments.depfile))
+    return fail(kUsage, "-o, --report and --depfile must be different files");
+  for (const std::string* path : {&arguments.output, &arguments.depfile, &arguments.report}) {
+    if (is_same_file(arguments.mesh, *path)) return fail(kUsage, "'" + *path + "' would overwrite the mesh itself");
+  }
+  for (const std::string* path : {&arguments.mesh, &arguments.output}) {
+    if (arguments.depfile.empty() || path->find_first_of("\r\n") == std::string::npos) continue;
+    std::string shown = *path;
+    std::replace_if(
+        shown.begin(), shown.end(), [](char c) { return c == '\r' || c == '\n'; }, '?');
+    return fail(kUsage, "--depfile: neither Make nor Ninja can name '" + shown + "', which has a line break; rename the file");
+  }
+  if (arguments.mesh == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a mesh file, not -");
+  if (arguments.output == "-" && !arguments.depfile.empty()) return fail(kUsage, "--depfile needs a file name after -o, not -");
+  return kClean;
+}
+
+// What was asked for may be more than the runtime accepts (a large graph without its hierarchy): better known now than there.
+int check_loads(const bake::Compiled& compiled) {
+  fdcg_graph graph{};
+  fdcg_error error{};
+  if (fdcg_open_memory(compiled.file().data(), compiled.file().size(), FDCG_VERIFY_TRUSTED, &graph, &error) == FDCG_OK)
+    return kClean;
+  return fail(kUsage, std::string("these options make a file that the runtime refuses: ") + error.message);
+}
+
+// The output file itself where it can be mapped; else a buffer, to be written at the end.
+std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<std::byte>& buffer) {
+  const std::span<std::byte> mapped = out.map(bytes);
+  if (!mapped.empty() || !out.ok()) return mapped;
+  buffer.resize(bytes);
+  return buffer;
+}
+
+int compile_mesh(CompileArguments& arguments) {
+  if (const int code = check_paths(arguments); code != kClean) return code;
+  AtomicFile out(arguments.output);
+  if (!out.ok()) return fail(kFile, out.error());
+  keep_large_arrays();
+  ProgressBar bar(!arguments.quiet);
+  bake::ImportOptions import_options{arguments.input_format, {}};
+  import_options.progress =
+      arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
+  const auto soup = import_input(arguments.mesh, import_options);
+  bar.wipe();
+  if (!soup) return fail(soup.error().exit_code, soup.error().message);
+  for (const std::string& file : soup->other_files) {
+    if (is_same_file(file, arguments.output))
+      return fail(kUsage, "'" + arguments.output + "' would overwrite a part of the mesh");
+  }
+  out.expect(bake::likely_file_bytes(*soup, arguments.options));
+  std::vector<std::byte> buffer;
+  arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };
+  const auto compiled = bake::compile(*soup, arguments.options);
+  bar.wipe();
+  if (!out.ok()) return fail(kFile, out.error());
+  if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
+  if (compiled->file().empty()) return refuse(arguments, compiled->report);
+  if (const int code = check_loads(*compiled); code != kClean) return code;
+  const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
+  const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
+  const std::string warning = deviation_warning(*compiled);
+  if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
+  if (arguments.quiet) return kClean;
+  std::FILE* const stream = is_streamed ? stderr : stdout;
+  if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
+    const bool colour = wants_colour(is_streamed ? Stream::standard_error : Stream::standard_output);
+    std::fputs(bake::report_text(compiled->report, colour).c_str(), stream);
+  }
+  std::fputs(what_was_written.c_str(), stream);
+  if (!warning.empty()) std::fprintf(stderr, "fdcg: warning: %s: %s\n", arguments.mesh.c_str(), warning.c_str());
+  return kClean;
+}
+
+int run_compile(CompileArguments& arguments) {
+  try {
+    return compile_mesh(arguments);
+  } catch (const std::bad_alloc&) {
+    return fail(kFile, arguments.mesh +
+                           ": not enough memory to compile it; cut the mesh into parts, simplify it, or use a "
+                           "machine (or a limit) with more");
+  }
+}
+
+void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
+  add_precision_option(command, arguments->options.precision, "Numbers in the file; default: f64");
+  const auto parse_coplanar = [arguments](const std::string& text) {
+    if (text == "exact" || text == "quantum") {
+      arguments->options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};
+      return;
+    }
+    const auto degrees = parse_number_between(text, 0, 90);
+    if (!degrees) {
+      throw CLI::ValidationError("--coplanar",
+                                 "'" + text + "' is none of exact, quantum, or an angle between 0 and 90 degrees");
+    }
+    arguments->options.coplanar = {bake::Coplanar::Kind::angle, *degrees * std::numbers::pi / 180};
+  };
+  command
+      .add_option_function<std::string>(
+          "--coplanar", parse_coplanar,
+          "Which edges are flat: exactly; within the input's own rounding (quantum, the default); "
+          "within ANGLE degrees")
+      ->type_name("exact|quantum|ANGLE");
+  const CLI::Option* const merge = command.add_flag("--merge,!--no-merge", arguments->options.merge,
+                                                    "Merge coplanar faces into convex polygons; default: yes");
+  command
+      .add_flag("--triangles", arguments->options.triangles,
+                "Make every face triangles and merge nothing: for a mesh that is to be deformed (fdcg/deform.h)")
+      ->excludes("--coplanar");
+  command.final_callback([arguments, merge] {
+    if (arguments->options.triangles && merge->count() > 0 && arguments->options.merge)
+      throw CLI::ExcludesError("--triangles", "--merge");
+  });
+  const auto parse_planes = [arguments](const std::string& text) {
+    require_choice("--planes", text, {"stored", "derived"});
+    arguments->options.store_planes = text == "stored";
+  };
+  command
+      .add_option_function<std::string>(
+          "--planes", parse_planes,
+          "edge vectors, end and Voronoi planes in the file (stored, the default), or computed in the step: a smaller file")
+      ->type_name("stored|derived");
+  const auto parse_without = [arguments](const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      require_choice("--without", name, {"hierarchy", "source-map", "info", "mass", "materials"});
+      arguments->options.without.insert(name);
+    }
+  };
+  command.add_option_function<std::vector<std::string>>("--without", parse_without, "Leave SECTION out; may be repeated")
+      ->type_name("hierarchy|source-map|info|mass|materials")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_mass_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
+  const auto add = [&](const char* name, double& value, const char* unit, const char* help) {
+    const auto parse = [&value, name, unit](const std::string& text) {
+      const auto given = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
+      if (!given) throw CLI::ValidationError(name, "'" + text + "' is no number above 0 (" + unit + ")");
+      value = *given;
+    };
+    return command.add_option_function<std::string>(name, parse, help);
+  };
+  CLI::Option* const density = add("--density", arguments->options.density_kg_per_m3, "kilograms for a cubic metre",
+                                   "What the body is made of; its mesh must be closed. Default: not known");
+  density->type_name("KG_PER_M3");
+  add("--mass", arguments->options.mass_kg, "kilograms", "What the body weighs, in place of --density")
+      ->type_name("KG")
+      ->excludes(density);
+}
+
+}  // namespace
+
+Command add_compile(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand("compile", "Compile a mesh into an FDCG file");
+  command->footer(R"(
+Examples:
+  fdcg compile bunny.off -o bunny.fdcg
+  fdcg compile part.stl -o part.fdcg --units mm --coplanar 0.5 --precision f32
+  fdcg compile scan.ply -o scan.fdcg --orient --depfile scan.d --report scan.json
+  fdcg compile cube.obj -o - | fdcg inspect -
+  fdcg compile hammer.stl -o hammer.fdcg --units mm --density 7850
+
+A mesh with errors is refused with the report that 'fdcg validate' prints, and nothing is written.
+The same mesh and options give the same bytes.)");
+  const auto arguments = std::make_shared<CompileArguments>();
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco; - is standard input")
+      ->required()
+      ->type_name("MESH");
+  command->add_option("-o,--output", arguments->output, "The file to write; - is standard output")
+      ->required()
+      ->type_name("FILE");
+  add_input_format_option(*command, arguments->input_format);
+  add_unit_options(*command, arguments->options.metres_per_unit, arguments->unit_text);
+  add_graph_options(*command, arguments);
+  add_mass_options(*command, arguments);
+  add_weld_option(*command, arguments->options.weld);
+  command->add_flag("--self-intersections", arguments->options.self_intersections,
+                    "Also look for faces that cross or touch others, and report them as warnings");
+  command->add_flag("--orient", arguments->options.orient, "Make the winding consistent and outward, and say what was turned");
+  add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
+  command->add_option("--depfile", arguments->depfile, "Write the dependency for Make and Ninja")->type_name("FILE");
+  command->add_option("--report", arguments->report, "Write the JSON report")->type_name("FILE");
+  command->add_option("--jobs", arguments->options.jobs, "Threads; default: one a core. The bytes do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  CLI::Option* const quiet = command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command->add_flag("-v,--verbose", arguments->verbose, "Print the whole report")->excludes(quiet);
+  return {command, [arguments] { return run_compile(*arguments); }};
+}
+
+}  // namespace fdcg::tools

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// fdcg explain: what a rule means, why it matters at contact, what to do.
+#include <algorithm>
+#include <cstdio>
+
+#include "../common/atomic_file.hpp"
+#include "../common/nearest.hpp"
+#include "fdcg/bake.hpp"
+#include "fdcg_commands.hpp"
+
+namespace fdcg::tools {
+namespace {
+
+std::string_view severity_name(bake::Severity severity) {
+  switch (severity) {
+    case bake::Severity::note:
+      return "note";
+    case bake::Severity::warning:
+      return "warning";
+    case bake::Severity::error:
+      break;
+  }
+  return "error";
+}
+
+std::string nearest_rule(std::string_view name) {
+  std::vector<std::string> names;
+  for (const bake::Rule& rule : bake::rules())
+    names.emplace_back(rule.name);
+  return nearest(name, names);
+}
+
+std::string list_of_rules() {
+  std::string text;
+  for (const bake::Rule& rule : bake::rules()) {
+    std::string line(rule.name);
+    line.resize(std::max<std::size_t>(line.size(), 24), ' ');
+    std::string severity(severity_name(rule.severity));
+    severity.resize(9, ' ');
+    text += line + severity + std::string(rule.meaning) + "\n";
+  }
+  return text;
+}
+
+std::string explanation(const bake::Rule& rule) {
+  std::string text = std::string(rule.name) + " (" + std::string(severity_name(rule.severity)) + ")\n\n";
+  text += "What it counts\n  " + std::string(rule.meaning) + "\n\n";
+  text += "Why it matters\n  " + std::string(rule.why) + "\n\n";
+  text += "What to do\n  " + std::string(rule.remedy) + "\n";
+  if (rule.severity == bake::Severity::error) {
+    text += rule.can_be_allowed ? "\n'fdcg compile --allow " + std::string(rule.name) + "' lets it pass.\n"
+                                : std::string("\n'fdcg compile' always refuses it.\n");
+  }
+  return text;
+}
+
+}  // namespace
+
+Command add_explain(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand("explain", "What a rule means, why it matters for contact, how to fix it");
+  command->footer("\nExamples:\n  fdcg explain                      the list of rules\n  fdcg explain winding-inconsistent");
+  const auto name = std::make_shared<std::string>();
+  command->add_option("rule", *name, "Name of a rule, as validate prints it; none: list them all")->type_name("RULE");
+  const auto run = [name]() -> int {
+    const bake::Rule* const rule = bake::find_rule(*name);
+    if (!name->empty() && rule == nullptr) {
+      return fail(kUsage,
+                  "'" + *name + "' is no rule; the nearest is '" + nearest_rule(*name) + "', 'fdcg explain' lists them all");
+    }
+    AtomicFile out("-");
+    out.write(rule == nullptr ? list_of_rules() : explanation(*rule));
+    return out.commit() ? kClean : fail(kFile, out.error());
+  };
+  return {command, run};
+}
+
+}  // namespace fdcg::tools

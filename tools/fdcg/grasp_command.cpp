@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// fdcg grasp: do these contacts hold this object, and how well?
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "../common/atomic_file.hpp"
+#include "fdcg/grasp.hpp"
+#include "fdcg_commands.hpp"
+#include "grasp_contacts.hpp"
+#include "grasp_object.hpp"
+#include "grasp_report.hpp"
+#include "mesh_options.hpp"
+
+namespace fdcg::tools {
+namespace {
+
+using bake::Vec3;
+
+struct GraspArguments {
+  std::string object, contacts;
+  std::string output = "-";
+  std::string unit_text;
+  bake::CompileOptions compile;
+  std::optional<double> mu, torsion_m, cap_n, torque_scale_m, mass_kg, grip_n;
+  std::optional<Vec3> centre_m, gravity_m_per_s2;
+  std::optional<grasp::Wrench> load;
+  grasp::Effort effort = grasp::Effort::together;
+  std::uint64_t cones = 200'000;
+  bool json = false;
+};
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+// The numbers of "a,b,c"; a ValidationError where there are not as many as one of `counts`.
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<double> numbers;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    const auto value = parse_number_between(text.substr(start, comma - start), -kInfinity, kInfinity);
+    if (!value) throw CLI::ValidationError(option, "'" + text + "' is no list of numbers such as 0,0,-9.81");
+    numbers.push_back(*value);
+    start = comma + 1;
+  }
+  if (std::find(counts.begin(), counts.end(), numbers.size()) == counts.end())
+    throw CLI::ValidationError(option, "'" + text + "' has " + std::to_string(numbers.size()) + " numbers, not " +
+                                           std::to_string(counts.front()) + (counts.size() > 1 ? " or 6" : ""));
+  return numbers;
+}
+
+// A length that is far beyond the object's: of the file or of the option, whichever said it.
+int check_torsion(const GraspArguments& arguments, const NamedContact& asked, double torsion_m, double torque_scale_m) {
+  const double most_m = grasp::kMostTorsionScales * torque_scale_m;
+  if (torsion_m <= most_m) return kClean;
+  const std::string words =
+      number(torsion_m) + ", allowed 0 to " + number(most_m) + " m, " + number(grasp::kMostTorsionScales) + " torque scales";
+  if (asked.torsion_m) return fail(kFile, arguments.contacts + ": " + asked.name + ": torsion is " + words);
+  return fail(kUsage, "--torsion is " + words);
+}
+
+// The report's contacts: on the surface, with what the file or the command line says of them.
+int place_contacts(const GraspArguments& arguments, const GraspObject& object, GraspReport& report) {
+  for (const NamedContact& asked : report.asked) {
+    const SurfacePoint found = object.nearest(asked.point_m);
+    const auto mu = asked.mu ? asked.mu : arguments.mu;
+    if (!mu) return fail(kUsage, arguments.contacts + ": " + asked.name + " has no mu; give it there or with --mu");
+    grasp::Contact contact;
+    contact.point_m = found.point_m;
+    contact.inward = asked.inward ? *asked.inward : Vec3{0 - found.outward.x, 0 - found.outward.y, 0 - found.outward.z};
+    contact.mu = *mu;
+    contact.torsion_m = asked.torsion_m.value_or(arguments.torsion_m.value_or(0));
+    if (const int code = check_torsion(arguments, asked, contact.torsion_m, report.grasp.torque_scale_m); code != kClean)
+      return code;
+    contact.cap_n = asked.cap_n.value_or(arguments.cap_n.value_or(std::numeric_limits<double>::infinity()));
+    report.grasp.contacts.push_back(contact);
+    report.found.push_back(found);
+    constexpr double kFar = 0.01;  // of the object's size: more likely a slip of the pen than a rounding
+    if (found.distance_m > kFar * object.size_m()) {
+      report.warnings.push_back(asked.name + " was moved " + number(found.distance_m) + " m to the surface, " +
+                                number(100 * found.distance_m / object.size_m()) + " % of the object's size");
+    }
+    if (found.is_on_edge && !asked.inward) {
+      report.warnings.push_back(asked.name + " lies on an edge; its normal is that of node " + std::to_string(found.node) +
+                                ". Move it, or give its normal");
+    }
+  }
+  return kClean;
+}
+
+int set_frame(const GraspArguments& arguments, const GraspObject& object, GraspReport& report) {
+  const auto centroid = object.centroid_m();
+  if (arguments.centre_m) {
+    report.grasp.centre_m = *arguments.centre_m;
+    report.centre_from = "option";
+  } else if (centroid) {
+    report.grasp.centre_m = *centroid;
+    report.centre_from = "volume";
+  } else {
+    return fail(kUsage, arguments.object + ": the surface encloses no volume, so it has no centroid; give --centre X,Y,Z");
+  }
+  report.torque_scale_from = arguments.torque_scale_m ? "option" : "size";
+  report.grasp.torque_scale_m = arguments.torque_scale_m.value_or(object.farthest_from(report.grasp.centre_m));
+  return kClean;
+}
+
+int set_load(const GraspArguments& arguments, const GraspObject& object, GraspReport& report) {
+  constexpr double kStandardGravity = 9.80665;  // m/s^2
+  if (arguments.load) {
+    report.load = *arguments.load;
+    report.load_text = "option";
+  } else {
+    const Vec3 g = arguments.gravity_m_per_s2.value_or(Vec3{0, 0, -kStandardGravity});
+    const double mass = arguments.mass_kg.value_or(object.mass_kg().value_or(1));
+    report.load.force_n = {mass * g.x, mass * g.y, mass * g.z};
+    report.load_text = "the weight of " + number(mass) + " kg";
+  }
+  if (const auto problem = grasp::problem_of(report.load, report.grasp.torque_scale_m))
+    return fail(kUsage, *problem + " (--load, --gravity, --mass)");
+  return kClean;
+}
+
+bool has_grip(const GraspArguments& arguments, const grasp::Grasp& grasp) {
+  return arguments.grip_n.has_value() || std::all_of(grasp.contacts.begin(), grasp.contacts.end(),
+                                                     [](const auto& contact) { return std::isfinite(contact.cap_n); });
+}
+
+int run_grasp(const GraspArguments& arguments) {
+  if (arguments.object == "-" && arguments.contacts == "-")
+    return fail(kUsage,
+                "OBJECT and --contacts are both '-', and standard input can be only one of them; name a file for the other");
+  for (const std::string* input : {&arguments.object, &arguments.contacts}) {
+    if (is_same_file(*input, arguments.output)) return fail(kUsage, "'" + arguments.output + "' would overwrite an input");
+  }
+  if (!arguments.unit_text.empty() && is_graph_file(arguments.object))
+    return fail(kUsage, "--units and --scale are for meshes; '" + arguments.object + "' is an FDCG file, which is in metres");
+  const auto contacts = read_contacts(arguments.contacts);
+  if (!contacts) return fail(contacts.error().exit_code, contacts.error().message);
+  const auto object = GraspObject::load(arguments.object, arguments.compile);
+  if (!object) {
+    if (object.error().exit_code != kFindings) return fail(object.error().exit_code, object.error().message);
+    std::fputs(object.error().message.c_str(), stderr);
+    return kFindings;
+  }
+  GraspReport report;
+  report.object = arguments.object;
+  report.faces = object->face_count();
+  report.asked = *contacts;
+  if (const int code = set_frame(arguments, *object, report); code != kClean) return code;
+  if (const int code = place_contacts(arguments, *object, report); code != kClean) return code;
+  if (const auto problem = grasp::problem_of(report.grasp))  // what is left is a matter of the centre and the scale
+    return fail(kUsage, *problem + " (--centre, --torque-scale)");
+  if (const int code = set_load(arguments, *object, report); code != kClean) return code;
+  report.closure = grasp::force_closure(report.grasp);
+  report.effort = arguments.effort;
+  report.epsilon = grasp::ferrari_canny(report.grasp, arguments.effort, arguments.cones);
+  report.grip_n = arguments.grip_n;
+  if (has_grip(arguments, report.grasp)) {
+    report.margin =
+        grasp::slip_margin(report.grasp, report.load, arguments.grip_n.value_or(std::numeric_limits<double>::infinity()));
+  }
+  AtomicFile out(arguments.output);
+  out.write(arguments.json ? grasp_report_json(report) : grasp_report_text(report));
+  if (!out.commit()) return fail(kFile, out.error());
+  for (const std::string& warning : report.warnings)
+    std::fprintf(stderr, "fdcg: warning: %s\n", warning.c_str());
+  const bool slips = report.margin && !(report.margin->load_factor >= 1);
+  return report.closure.verdict == grasp::Verdict::closure && !slips ? kClean : kFindings;
+}
+
+void add_number(CLI::App& command, const std::string& name, std::optional<double>& value, bool may_be_zero,
+                const std::string& help, const std::string& type, double most = std::numeric_limits<double>::max()) {
+  const auto parse = [name, &value, may_be_zero, most](const std::string& text) {
+    const auto parsed =
+        parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+    constexpr double kLeast = grasp::kLeastForce_n;  // smaller ones lose digits
+    const bool has_most = most < std::numeric_limits<double>::max();
+    if (!parsed || *parsed < 0 || (*parsed < kLeast && !may_be_zero) || *parsed > most)
+      throw CLI::ValidationError(
+          name, "'" + text + "' is no number " + (may_be_zero ? "from 0 " : "above 0") +
+                    (has_most ? (may_be_zero ? "to " : " and up to ") + number(most) : (may_be_zero ? "up" : "")));
+    value = parsed;
+  };
+  command.add_option_function<std::string>(name, parse, help)->type_name(type);
+}
+
+void add_vector(CLI::App& command, const std::string& name, std::optional<Vec3>& value, const std::string& help) {
+  const auto parse = [name, &value](const std::string& text) {
+    const auto v = parse_numbers(name, text, {3});
+    value = Vec3{v[0], v[1], v[2]};
+  };
+  command.add_option_function<std::string>(name, parse, help)->type_name("X,Y,Z");
+}
+
+void add_load_options(CLI::App& command, GraspArguments& arguments) {
+  add_number(command, "--grip", arguments.grip_n, false, "The most that all contacts press together; asks for the margin", "N",
+             grasp::kMostForce_n);
+  add_number(command, "--cap", arguments.cap_n, false, "The most that each contact presses; asks for the margin", "N",
+             grasp::kMostForce_n);
+  const auto parse_load = [&arguments](const std::string& text) {
+    const auto v = parse_numbers("--load", text, {3, 6});
+    grasp::Wrench load;
+    load.force_n = {v[0], v[1], v[2]};
+    if (v.size() == 6) load.torque_nm = {v[3], v[4], v[5]};
+    arguments.load = load;
+  };
+  CLI::Option* const load = command.add_option_function<std::string>(
+      "--load", parse_load, "Force and torque about the centre that pull at the object; default: gravity");
+  load->type_name("FX,FY,FZ[,TX,TY,TZ]");
+  add_number(command, "--mass", arguments.mass_kg, false,
+             "The object's mass; default: the FDCG file's, else 1, so that the load factor is in kg", "KG");
+  add_vector(command, "--gravity", arguments.gravity_m_per_s2, "Its acceleration; default: 0,0,-9.80665");
+  load->excludes("--mass")->excludes("--gravity");
+}
+
+}  // namespace
+
+Command add_grasp(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand("grasp", "Whether contacts hold an object, and how well");
+  command->footer(R"(
+Examples:
+  fdcg grasp cube.fdcg --contacts fingers.csv --mu 0.5
+  fdcg grasp part.stl --units mm --contacts fingers.json --mu 0.4 --torsion 0.003 --grip 20 --mass 0.3
+  fdcg grasp cube.fdcg --contacts fingers.csv --mu 0.5 --cap 10 --load 0,0,-5,0.1,0,0 --json
+
+Contacts (CSV with a header of x,y,z and any of mu,torsion,cap,nx,ny,nz,name; or JSON with "contacts": [{"point": [x,y,z], ..}])
+are in metres in the object's frame, and are moved to the nearest point of the surface.
+Exit code 0: force closure, and the load holds if a grip is given; 1: not, or the mesh has errors; 2: an option is wrong; 3: a
+file is.)");
+  const auto arguments = std::make_shared<GraspArguments>();
+  command->add_option("object", arguments->object, "FDCG file, or a mesh without errors")->required()->type_name("OBJECT");
+  command->add_option("--contacts", arguments->contacts, "Where it is touched: JSON or CSV; - is standard input")
+      ->required()
+      ->type_name("FILE");
+  add_number(*command, "--mu", arguments->mu, true, "Friction of contacts that do not say theirs", "MU", grasp::kMostMu);
+  add_number(*command, "--torsion", arguments->torsion_m, true,
+             "Soft fingers: the most moment about the normal for each newton pressed; default: 0, hard", "METRES");
+  add_load_options(*command, *arguments);
+  add_vector(*command, "--centre", arguments->centre_m, "What torques are about; default: the volume's centroid");
+  add_number(*command, "--torque-scale", arguments->torque_scale_m, false,
+             "The torque that counts as 1 N; default: the largest distance from the centre", "METRES");
+  const auto parse_epsilon = [arguments](const std::string& text) {
+    require_choice("--epsilon", text, {"together", "each"});
+    arguments->effort = text == "each" ? grasp::Effort::each : grasp::Effort::together;
+  };
+  command->add_option_function<std::string>("--epsilon", parse_epsilon, "1 N of normal force for all (the default) or for each")
+      ->type_name("together|each");
+  command->add_option("--cones", arguments->cones, "Directions looked at for epsilon, at most; default: 200000")
+      ->type_name("N")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100'000'000}));
+  add_unit_options(*command, arguments->compile.metres_per_unit, arguments->unit_text);
+  command->add_flag("--json", arguments->json, "JSON, as schemas/grasp-report.schema.json has it");
+  command->add_option("-o,--output", arguments->output, "Where the report goes; default: standard output")->type_name("FILE");
+  return {command, [arguments] { return run_grasp(*arguments); }};
+}
+
+}  // namespace fdcg::tools

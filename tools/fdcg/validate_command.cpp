@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+// fdcg validate: every check on every file, each defect located, in the formats that people and CI systems read.
+#include <algorithm>
+#include <ctime>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "../common/atomic_file.hpp"
+#include "../common/expand_paths.hpp"
+#include "../common/terminal.hpp"
+#include "baseline.hpp"
+#include "fdcg/bake.hpp"
+#include "fdcg_commands.hpp"
+#include "mesh_options.hpp"
+#include "validate_config.hpp"
+#include "validate_run.hpp"
+#include "validate_settings.hpp"
+
+namespace fdcg::tools {
+namespace {
+
+struct Output {
+  bake::ReportFormat format;
+  std::string path;
+};
+
+struct ValidateArguments {
+  std::vector<std::string> meshes;
+  std::optional<bake::ReportFormat> format;  // of -o
+  std::vector<Output> files;                 // FORMAT=FILE
+  std::string output = "-";
+  std::string full;
+  std::string config;
+  bool no_config = false;
+  ValidateSettings settings;
+  std::optional<bake::Format> input_format;
+  bake::Precision precision = bake::Precision::f64;
+  bool is_oriented = false;
+  bool sarif_each = false;
+  unsigned jobs = 0;
+  bool quiet = false;
+};
+
+const std::map<std::string, bake::ReportFormat> kFormats{{"text", bake::ReportFormat::text},
+                                                         {"json", bake::ReportFormat::json},
+                                                         {"sarif", bake::ReportFormat::sarif},
+                                                         {"junit", bake::ReportFormat::junit}};
+
+std::string now_utc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[sizeof "2000-01-01T00:00:00"];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
+  return text;
+}
+
+// ---- what is to be done
+
+std::vector<Output> outputs_of(const ValidateArguments& arguments) {
+  std::vector<Output> outputs{{arguments.format.value_or(bake::ReportFormat::text), arguments.output}};
+  outputs.insert(outputs.end(), arguments.files.begin(), arguments.files.end());
+  return outputs;
+}
+
+int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>& meshes) {
+  std::vector<std::string> paths;
+  for (const Output& output : outputs_of(arguments))
+    paths.push_back(output.path);
+  if (!arguments.full.empty()) paths.push_back(arguments.full);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (paths[i].empty()) return fail(kUsage, "an output needs the name of a file; it is empty");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (paths[i] == paths[j] || is_same_file(paths[i], paths[j]))
+        return fail(kUsage, "two reports would both be written to '" + paths[i] + "'; name another file for one of them");
+    }
+    if (paths[i] == "-") continue;
+    for (const NamedFile& mesh : meshes) {
+      if (is_same_file(mesh.path, paths[i])) return fail(kUsage, "'" + paths[i] + "' would overwrite the mesh itself");
+    }
+  }
+  return kClean;
+}
+
+// Settings of each mesh: its configuration file's, and over them the command line's.
+bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& arguments, const std::vector<NamedFile>& meshes,
+                                                 std::vector<std::string>& baselines) {
+  ConfigFinder finder;
+  std::vector<ValidateTask> tasks;
+  for (const NamedFile& mesh : meshes) {
+    bake::Result<ValidateConfig> config = ValidateConfig{};
+    if (!arguments.config.empty()) {
+      config = read_config(arguments.config);
+    } else if (!arguments.no_config) {
+      config = finder.for_mesh(mesh.path);
+    }
+    if (!config) return config.error();
+    const ValidateSettings settings = combined(config->settings, arguments.settings);
+    ValidateTask task;
+    task.mesh = mesh.path;
+    task.problem = mesh.problem;
+    task.config = config->path;
+    task.options.weld = settings.weld.value_or(bake::Weld{});
+    task.options.precision = arguments.precision;
+    task.options.orient = arguments.is_oriented;
+    task.options.allow = settings.allow;
+    task.options.severities = settings.severities;
+    if (settings.fail_on) task.options.fail_on = *settings.fail_on;
+    task.has_baseline = settings.baseline.has_value();
+    tasks.push_back(std::move(task));
+    baselines.push_back(settings.baseline.value_or(""));
+  }
+  return tasks;
+}
+
+// Reads each baseline once and gives every task its part; `loaded` keeps them.
+std::optional<bake::Failure> load_baselines(const std::vector<std::string>& paths, std::vector<ValidateTask>& tasks,
+                                            std::deque<bake::Result<Baseline>>& loaded) {
+  std::map<std::string, std::vector<std::size_t>> users;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (!paths[i].empty()) users[paths[i]].push_back(i);
+  }
+  for (const auto& [path, indices] : users) {
+    loaded.push_back(Baseline::read(path));
+    if (!loaded.back()) return loaded.back().error();
+    std::vector<std::string> meshes;
+    for (const std::size_t i : indices)
+      meshes.push_back(tasks[i].mesh);
+    const auto files = loaded.back()->files_for(meshes);
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      tasks[indices[i]].known = files[i];
+  }
+  return std::nullopt;
+}
+
+// ---- what comes out
+
+// The reports that were asked for, each to its file.
+class Outputs {
+ public:
+  explicit Outputs(const ValidateArguments& arguments) : is_quiet_(arguments.quiet) {
+    bake::ReportOptions options;
+    std::error_code ignored;
+    options.source_root = std::filesystem::current_path(ignored).string();
+    options.result_per_element = arguments.sarif_each;
+    options.timestamp = now_utc();
+    for (const Output& output : outputs_of(arguments)) {
+      options.colour = output.path == "-" && wants_colour(Stream::standard_output);
+      AtomicFile& file = files_.emplace_back(output.path);
+      writers_.push_back({output.format, bake::make_report_writer(
+                                             output.format, [&file](std::string_view piece) { file.write(piece); }, options)});
+    }
+    if (arguments.full.empty()) return;
+    AtomicFile& file = files_.emplace_back(arguments.full);
+    full_.emplace([&file](std::string_view piece) { file.write(piece); });
+  }
+
+  void add(Validated& result) {
+    for (Writer& writer : writers_) {
+      const bool is_wanted = !is_quiet_ || writer.format != bake::ReportFormat::text || !result.report.passes();
+      if (is_wanted) writer.to->add(result.report);
+    }
+    if (full_ && !full_->add(result.report, result.spool)) lost_elements_ = true;
+  }
+  // An error's line, or nothing.
+  std::string finish(int exit_code) {
+    for (Writer& writer : writers_) {
+      if (!is_quiet_ || writer.format != bake::ReportFormat::text) writer.to->finish(exit_code);
+    }
+    if (full_) full_->finish();
+    if (lost_elements_) return "--full needs room for temporary files (TMPDIR), and there is none left";
+    std::string first = error();
+    for (AtomicFile& file : files_) {
+      if (first.empty() && !file.commit()) first = file.error();
+    }
+    return first;
+  }
+  [[nodiscard]] std::string error() const {
+    for (const AtomicFile& file : files_) {
+      if (!file.ok()) return file.error();
+    }
+    return "";
+  }
+
+ private:
+  struct Writer {
+    bake::ReportFormat format;
+    std::unique_ptr<bake::ReportWriter> to;
+  };
+  bool is_quiet_;
+  bool lost_elements_ = false;
+  std::deque<AtomicFile> files_;  // stay where they are
+  std::vector<Writer> writers_;
+  std::optional<bake::FullReportWriter> full_;
+};
+
+int run_validate(const ValidateArguments& arguments) {
+  const std::vector<NamedFile> meshes = expand_paths(arguments.meshes, mesh_endings());
+  if (const int code = check_paths(arguments, meshes); code != kClean) return code;
+  std::vector<std::string> baselines;
+  auto tasks = tasks_of(arguments, meshes, baselines);
+  if (!tasks) return fail(tasks.error().exit_code, tasks.error().message);
+  std::deque<bake::Result<Baseline>> loaded;
+  if (const auto failure = load_baselines(baselines, *tasks, loaded)) return fail(failure->exit_code, failure->message);
+  Outputs outputs(arguments);
+  if (const std::string error = outputs.error(); !error.empty()) return fail(kFile, error);
+  ValidateRun run;
+  run.tasks = std::move(*tasks);
+  run.input_format = arguments.input_format;
+  run.jobs = arguments.jobs;
+  run.wants_all_elements = !arguments.full.empty();
+  run.shows_progress = !arguments.quiet;
+  int code = kClean;
+  validate_all(run, [&](Validated& result) {
+    if (!result.error.empty()) fail(result.exit_code, result.error);
+    code = std::max(code, result.exit_code);
+    outputs.add(result);
+  });
+  const std::string error = outputs.finish(code);
+  return error.empty() ? code : std::max<int>(code, fail(kFile, error));
+}
+
+// ---- options
+
+void add_report_options(CLI::App& command, const std::shared_ptr<ValidateArguments>& arguments) {
+  const auto add_format = [arguments](const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      const std::size_t equals = value.find('=');
+      const std::string name = value.substr(0, equals);
+      require_choice("--format", name, {"text", "json", "sarif", "junit"});
+      if (equals != std::string::npos) {
+        arguments->files.push_back({kFormats.at(name), value.substr(equals + 1)});
+      } else if (arguments->format) {
+        throw CLI::ValidationError("--format", "two formats for one output; write --format " + name + "=FILE for one of them");
+      } else {
+        arguments->format = kFormats.at(name);
+      }
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--format", add_format, "Format of the report (default: text); FORMAT=FILE writes one more, and may be repeated")
+      ->type_name("text|json|sarif|junit[=FILE]")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("-o,--output", arguments->output, "Write the report to FILE; - is standard output (default)")
+      ->type_name("FILE");
+  command.add_option("--full", arguments->full, "Write every finding, however many, as JSON; serves as a baseline")
+      ->type_name("FILE");
+  command.add_flag("--sarif-each", arguments->sarif_each,
+                   "SARIF: a result for each listed finding, so that code scanning marks each line; default: one a rule");
+}
+
+void add_verdict_options(CLI::App& command, const std::shared_ptr<ValidateArguments>& arguments) {
+  const auto set_baseline = [arguments](const std::string& path) { arguments->settings.baseline = path; };
+  command
+      .add_option_function<std::string>("--baseline", set_baseline,
+                                        "Findings that FILE (from --full) has are known: only new ones fail")
+      ->type_name("FILE");
+  const auto set_fail_on = [arguments](const std::string& value) {
+    const auto level = parse_fail_on(value);
+    if (!level) throw CLI::ValidationError("--fail-on", level.error().message);
+    arguments->settings.fail_on = *level;
+  };
+  command
+      .add_option_function<std::string>("--fail-on", set_fail_on,
+                                        "Findings from this severity on give exit code 1; default: error")
+      ->type_name("error|warning|note|never");
+  const auto set_severities = [arguments](const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      const std::size_t equals = std::min(value.find('='), value.size());
+      if (equals == value.size()) {
+        throw CLI::ValidationError("--severity", "'" + value + "' is no RULE=LEVEL; write boundary-edge=error, say");
+      }
+      const std::string rule = value.substr(0, equals);
+      const auto level = parse_severity(rule, value.substr(equals + 1));
+      if (!level) throw CLI::ValidationError("--severity", level.error().message);
+      arguments->settings.severities[rule] = *level;
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--severity", set_severities,
+                                                     "What findings of RULE are: error, warning, note, or off; may be repeated")
+      ->type_name("RULE=LEVEL")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_allow_option(command, arguments->settings.allow, Allowable::also_warnings_and_notes);
+  CLI::Option* const config =
+      command.add_option("--config", arguments->config, "Take settings from FILE instead of " + std::string(kConfigName))
+          ->type_name("FILE");
+  command
+      .add_flag("--no-config", arguments->no_config,
+                "Do not look for " + std::string(kConfigName) + " in the mesh's folder and those above")
+      ->excludes(config);
+}
+
+}  // namespace
+
+Command add_validate(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand("validate", "Every check on meshes, every defect located");
+  command->footer(R"(
+Examples:
+  fdcg validate part.stl
+  fdcg validate 'meshes/**/*.{stl,obj}' --format junit=report.xml --format sarif=report.sarif
+  fdcg validate --fail-on warning --allow boundary-edge scan.obj
+  fdcg validate meshes --full known.json; fdcg validate meshes --baseline known.json
+  convert part.step | fdcg validate - --input-format stl
+
+Settings may stand in a file .fdcg-validate.json in the mesh's folder or one above; the command line overrides it.)");
+  const auto arguments = std::make_shared<ValidateArguments>();
+  command
+      ->add_option(
+          "mesh", arguments->meshes,
+          "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to be searched; - is standard input")
+      ->required()
+      ->type_name("MESH");
+  add_report_options(*command, arguments);
+  add_verdict_options(*command, arguments);
+  add_weld_option(*command, arguments->settings.weld);
+  add_precision_option(*command, arguments->precision, "Judge the mesh as a graph of this precision stores it; default: f64");
+  command->add_flag("--orient", arguments->is_oriented, "Judge the mesh as 'compile --orient' leaves it");
+  add_input_format_option(*command, arguments->input_format);
+  command->add_option("--jobs", arguments->jobs, "Threads; default: one a core. The report does not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("-q,--quiet", arguments->quiet, "Text: only files that fail; no progress bar");
+  return {command, [arguments] { return run_validate(*arguments); }};
+}
+
+}  // namespace fdcg::tools
