@@ -105,7 +105,7 @@ Wish wish_at(double t) {
 // The hand goes over the picture as it wishes and presses so that the spring of a frictionless contact keeps the wished length.
 void write_path(const Graph& graph) {
   const Camera camera(graph);
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.mu_static = params.mu_dynamic = 0;
   fdcg_contact contact{};
   fdcg_result result{};

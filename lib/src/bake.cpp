@@ -31,28 +31,28 @@
 namespace fdcg::bake {
 namespace {
 
-std::string said(double value) {
+std::string format_number(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%g", value);
   return text.data();
 }
 
 // Why the options make no sense; empty where they do.
-std::string contradiction_in(const CompileOptions& options) {
+std::string check_options(const CompileOptions& options) {
   constexpr double kLargestScale = 1e30;  // what the runtime takes
   if (!(options.metres_per_unit >= 1 / kLargestScale && options.metres_per_unit <= kLargestScale))
-    return "the scale is " + said(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
+    return "the scale is " + format_number(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
   if (options.coplanar.kind == Coplanar::Kind::angle &&
       !(options.coplanar.angle_rad >= 0 && options.coplanar.angle_rad < std::numbers::pi / 2))
-    return "the coplanar angle is " + said(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
+    return "the coplanar angle is " + format_number(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
   if (options.weld.kind == Weld::Kind::distance && !(options.weld.distance >= 0 && std::isfinite(options.weld.distance)))
-    return "the weld distance is " + said(options.weld.distance) + "; it must be at least 0 and finite";
+    return "the weld distance is " + format_number(options.weld.distance) + "; it must be at least 0 and finite";
   constexpr std::array<std::string_view, 5> kOptional{"hierarchy", "source-map", "info", "mass", "materials"};
   for (const std::string& section : options.without) {
     if (std::find(kOptional.begin(), kOptional.end(), section) == kOptional.end())
       return "the section '" + section + "' cannot be left out; hierarchy, source-map, info, mass and materials can";
   }
-  return mass_contradiction_in(options);
+  return check_mass_options(options);
 }
 
 // Of one coordinate at the object's extent: what the header tells.
@@ -124,13 +124,13 @@ std::string out_of_range(const Graph& graph, const SerialiseInput& input) {
   for (const Vec3& point : graph.points)
     extent = std::max(extent, largest_component(point));
   if (!(extent >= 1 / largest && extent <= largest && input.quantum <= largest)) {
-    return "the object reaches " + said(extent) + " from its middle, in coordinates known to within " + said(input.quantum) +
-           "; the format holds " + said(1 / largest) + " to " + said(largest) + ": scale the mesh" +
-           (is_f32 ? ", or compile it with --precision f64" : "");
+    return "the object reaches " + format_number(extent) + " from its middle, in coordinates known to within " +
+           format_number(input.quantum) + "; the format holds " + format_number(1 / largest) + " to " + format_number(largest) +
+           ": scale the mesh" + (is_f32 ? ", or compile it with --precision f64" : "");
   }
   if (!(largest_component(input.origin) <= kLargestOrigin)) {
-    return "the object lies " + said(largest_component(input.origin)) + " from the origin, the format holds up to " +
-           said(kLargestOrigin) + ": move the mesh";
+    return "the object lies " + format_number(largest_component(input.origin)) + " from the origin, the format holds up to " +
+           format_number(kLargestOrigin) + ": move the mesh";
   }
   return {};
 }
@@ -193,7 +193,9 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
   const bool is_f32 = options.precision == Precision::f32;
   const std::size_t node = is_f32 ? offsetof(fdcg_node_f32, sides) : offsetof(fdcg_node_f64, sides);
   const std::size_t plane = !options.store_planes ? 0 : is_f32 ? sizeof(fdcg_plane_f32) : sizeof(fdcg_plane_f64);
-  const std::size_t edge = !options.store_planes ? 0 : is_f32 ? sizeof(fdcg_edge_f32) : sizeof(fdcg_edge_f64);
+  const std::size_t edge = !options.store_planes ? 0
+                           : is_f32              ? sizeof(fdcg_connection_geometry_f32)
+                                                 : sizeof(fdcg_connection_geometry_f64);
   const std::size_t corner = is_f32 ? sizeof(fdcg_corner_f32) : sizeof(fdcg_corner_f64);
   const std::size_t hierarchy = sizeof(fdcg_box8) / (FDCG_LEAF_NODES * (FDCG_TREE_WAYS - 1)) + 1;
   const std::size_t per_face = node + hierarchy + sizeof(std::uint32_t);
@@ -203,7 +205,7 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
 }
 
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options) {
-  if (std::string reason = contradiction_in(options); !reason.empty()) return Failure{2, std::move(reason)};
+  if (std::string reason = check_options(options); !reason.empty()) return Failure{2, std::move(reason)};
   const unsigned jobs = resolve_jobs(options.jobs);
   const auto stage = [&](std::string_view name, double fraction) {
     if (options.progress) options.progress(name, fraction);

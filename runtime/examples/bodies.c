@@ -13,9 +13,9 @@ static void check(fdcg_status status, const fdcg_error* error) {
 
 int main(void) {
   static uint64_t scene_memory[16 * 1024], pile_memory[16 * 1024];
-  const fdcg_scene_config scene_config = fdcg_default_scene_config();
-  const fdcg_pile_config pile_config = fdcg_default_pile_config();
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_scene_config scene_config = fdcg_make_scene_config();
+  const fdcg_pile_config pile_config = fdcg_make_pile_config();
+  const fdcg_params params = fdcg_make_params();
   const double up[3] = {0, 0, 1};
   fdcg_graph cube;
   fdcg_scene* scene;
@@ -25,8 +25,8 @@ int main(void) {
   fdcg_reaction reactions[1];
   fdcg_mass mass;
   fdcg_error error;
-  fdcg_body_config config = fdcg_default_body_config();
-  fdcg_pose pose = fdcg_identity_pose();
+  fdcg_body_config config = fdcg_make_body_config();
+  fdcg_pose pose = fdcg_make_identity_pose();
   double points[20][3], hip_m[3] = {-0.005, 0.005, 0.005};
   uint32_t count;
   pose.translation_m[2] = 0.01;
@@ -51,7 +51,8 @@ int main(void) {
     check(fdcg_scene_step_pile(scene, pile, bodies, 1, 1, 0.001, reactions, 1, &error), &error);
     if (tick % 400 == 0) {
       const fdcg_body* body = &bodies[0].body;
-      printf("%.1f s: centre at %.4f %.4f m, asleep %u\n", tick / 1000.0, body->centre_m[0], body->centre_m[2], body->is_asleep);
+      printf("%.1f s: centre at %.4f %.4f m, asleep %u\n", tick / 1000.0, body->centre_m[0], body->centre_m[2],
+             body->is_asleep);
     }
   }
   fdcg_close(&cube);

@@ -13,8 +13,8 @@ static void check(fdcg_status status, const fdcg_error* error) {
 
 int main(void) {
   static uint64_t memory[4 * 1024];
-  const fdcg_deform_config config = fdcg_default_deform_config();
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_deform_config config = fdcg_make_deform_config();
+  const fdcg_params params = fdcg_make_params();
   const double hip_m[3] = {0.006, 0.006, 0.011}; /* 1 mm above the top */
   double vertex_m[3] = {0.01, 0.01, 0.01};
   fdcg_graph cube;

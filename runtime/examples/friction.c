@@ -11,8 +11,8 @@ int main(void) {
     fprintf(stderr, "%s\n", error.message);
     return 1;
   }
-  fdcg_params params = fdcg_default_params();
-  params.terms = FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG | FDCG_TERM_PRESLIDING;
+  fdcg_params params = fdcg_make_params();
+  params.friction_flags = FDCG_FRICTION_STRIBECK | FDCG_FRICTION_VISCOUS | FDCG_FRICTION_LAG | FDCG_FRICTION_PRESLIDING;
   params.stribeck_m_per_s = 0.05; /* half of the fall from mu_static to mu_dynamic is done */
   params.viscous_s_per_m = 0.1;
   if (fdcg_check_params(&params, &error) != FDCG_OK) fprintf(stderr, "%s\n", error.message);

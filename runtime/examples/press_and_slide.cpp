@@ -11,7 +11,7 @@ int main() {
     std::fprintf(stderr, "%s\n", why.message);
     return 1;
   }
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   fdcg::Contact contact;
   for (int tick = 0; tick < 6; ++tick) {
     const std::array<double, 3> hip_m = {0.004 + 0.0003 * tick, 0.005, tick == 0 ? 0.011 : 0.009};

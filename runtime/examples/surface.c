@@ -13,9 +13,9 @@ static void check(fdcg_status status, const fdcg_error* error) {
 
 int main(void) {
   static uint64_t memory[16 * 1024];
-  const fdcg_scene_config config = fdcg_default_scene_config();
-  const fdcg_params params = fdcg_default_params();
-  const fdcg_pose pose = fdcg_identity_pose();
+  const fdcg_scene_config config = fdcg_make_scene_config();
+  const fdcg_params params = fdcg_make_params();
+  const fdcg_pose pose = fdcg_make_identity_pose();
   fdcg_scene* scene;
   fdcg_object_id object;
   fdcg_finger_id finger;
@@ -32,7 +32,7 @@ int main(void) {
     fdcg_finger_result felt;
     check(fdcg_scene_move_finger(scene, finger, hip_m, &error), &error);
     fdcg_scene_step(scene);
-    check(fdcg_scene_result(scene, finger, &felt, &error), &error);
+    check(fdcg_scene_get_result(scene, finger, &felt, &error), &error);
     printf("tick %d: touches %u, force %.3f %.3f %.3f N\n", tick, felt.touch_count, felt.force_n[0], felt.force_n[1],
            felt.force_n[2]);
     hip_m[0] += 0.0005;

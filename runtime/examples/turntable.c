@@ -21,9 +21,9 @@ int main(void) {
   fdcg_scene* scene;
   fdcg_object_id table, block;
   fdcg_finger_id finger;
-  const fdcg_scene_config config = fdcg_default_scene_config();
-  const fdcg_params params = fdcg_default_params();
-  fdcg_pose table_pose = fdcg_identity_pose(), block_pose = fdcg_identity_pose();
+  const fdcg_scene_config config = fdcg_make_scene_config();
+  const fdcg_params params = fdcg_make_params();
+  fdcg_pose table_pose = fdcg_make_identity_pose(), block_pose = fdcg_make_identity_pose();
   table_pose.translation_m[2] = -0.002; /* it is a centimetre high: its top begins 1 mm below the finger */
   block_pose.translation_m[0] = 0.020;
 
@@ -43,7 +43,7 @@ int main(void) {
     check(fdcg_scene_set_pose(scene, table, &table_pose, &error), &error);
     check(fdcg_scene_set_pose(scene, block, &block_pose, &error), &error);
     fdcg_scene_step(scene);
-    check(fdcg_scene_result(scene, finger, &felt, &error), &error);
+    check(fdcg_scene_get_result(scene, finger, &felt, &error), &error);
     printf("tick %d: touches %u, force %.3f %.3f %.3f N\n", tick, felt.touch_count, felt.force_n[0], felt.force_n[1],
            felt.force_n[2]);
   }

@@ -9,8 +9,8 @@
 int main() {
   static std::array<std::byte, 128 * 1024> memory;  // the scene's: it never asks for more
   const std::array<double, 3> hip_m = {0.006, 0.004, 0.009};
-  const fdcg_params params = fdcg_default_params();
-  fdcg_pose table_pose = fdcg_identity_pose(), block_pose = fdcg_identity_pose();
+  const fdcg_params params = fdcg_make_params();
+  fdcg_pose table_pose = fdcg_make_identity_pose(), block_pose = fdcg_make_identity_pose();
   table_pose.translation_m[2] = -0.002;
   block_pose.translation_m[0] = 0.020;
 
@@ -19,7 +19,7 @@ int main() {
   fdcg_object_id table, block;
   fdcg_finger_id finger;
   fdcg_error why;
-  if (!cube.open_file("cube.fdcg", &why) || !scene.create(memory, fdcg_default_scene_config(), &why) ||
+  if (!cube.open_file("cube.fdcg", &why) || !scene.create(memory, fdcg_make_scene_config(), &why) ||
       !scene.add_object(cube, params, table_pose, &table, &why) || !scene.add_object(cube, params, block_pose, &block, &why) ||
       !scene.add_finger(hip_m, &finger, &why)) {
     std::fprintf(stderr, "%s\n", why.message);

@@ -30,7 +30,7 @@ static void pose_at(const fdcg_graph* graph, uint32_t object, int32_t tick, uint
 }
 
 static int step_through_scene(const fdcg_graph* graphs_of_scene, uint32_t count, hash_t* hash) {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   fdcg_scene* scene;
   fdcg_error error;
   fdcg_object_id objects[kSceneObjects];
@@ -39,13 +39,13 @@ static int step_through_scene(const fdcg_graph* graphs_of_scene, uint32_t count,
   double hip[kSceneFingers][3] = {{0.7, 0, 0}, {0, 0.6, 0.1}, {-0.5, 0, 0.7}};
   uint64_t random = 88172645463325252u;
   uint32_t touches = 0;
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.damping_n_s_per_m = 1;
   config.object_capacity = count;
   config.finger_capacity = kSceneFingers;
   if (fdcg_scene_create(scene_memory, sizeof scene_memory, &config, &scene, &error) != FDCG_OK) return 4;
   for (uint32_t i = 0; i < count; ++i) {
-    poses[i] = fdcg_identity_pose();
+    poses[i] = fdcg_make_identity_pose();
     pose_at(&graphs_of_scene[i], i, 0, &random, &poses[i]);
     if (fdcg_scene_add_object(scene, &graphs_of_scene[i], &params, &poses[i], &objects[i], &error) != FDCG_OK) return 5;
   }
@@ -65,7 +65,7 @@ static int step_through_scene(const fdcg_graph* graphs_of_scene, uint32_t count,
     fdcg_scene_step(scene);
     for (int f = 0; f < kSceneFingers; ++f) {
       fdcg_finger_result felt;
-      if (fdcg_scene_result(scene, fingers[f], &felt, &error) != FDCG_OK) return 8;
+      if (fdcg_scene_get_result(scene, fingers[f], &felt, &error) != FDCG_OK) return 8;
       for (int k = 0; k < 3; ++k)
         absorb_real(hash, felt.force_n[k]);
       absorb(hash, felt.touch_count | (uint64_t)felt.flags << 32);

@@ -48,7 +48,7 @@ int main(void) {
       say(why.message), say("\n");
       return 1;
     }
-    const fdcg_params params = fdcg_default_params();
+    const fdcg_params params = fdcg_make_params();
     fdcg_contact contact;
     memset(&contact, 0, sizeof contact);
     int count = 0;

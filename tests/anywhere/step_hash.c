@@ -96,7 +96,7 @@ static void vary(fdcg_params* params, int32_t way) {
   params->mu_dynamic = params->mu_static * 0.7;
   params->edge_friction = way / 4 % 2 == 0 ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
   params->damping_n_s_per_m = way / 8 % 2;
-  params->terms = way / 6 % 3 == 2 ? (uint32_t)way % 16 : 0; /* all four terms of the friction curve, in all combinations */
+  params->friction_flags = way / 6 % 3 == 2 ? (uint32_t)way % 16 : 0; /* all four terms of the friction curve, in all combinations */
 }
 
 static void step_through(const fdcg_graph* graph, hash_t* hash, uint32_t ticks_in_state[4]) {
@@ -109,7 +109,7 @@ static void step_through(const fdcg_graph* graph, hash_t* hash, uint32_t ticks_i
     hand.centre[k] = ((header->bounds_min[k] + header->bounds_max[k]) * 0.5 + header->origin[k]) * header->metres_per_unit;
     if (!(hand.size[k] > 0)) hand.size[k] = 0.1 * header->extent * header->metres_per_unit; /* a flat patch */
   }
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   fdcg_contact contact;
   fdcg_result result;
   memset(&contact, 0, sizeof contact);

@@ -175,11 +175,11 @@ int main(int argc, char** argv) {
   fdcg_graph graph;
   fdcg_error error;
   if (argc < 2 || fdcg_open_file(argv[1], FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) return 1;
-  const fdcg_scene_config config = fdcg_default_scene_config();
+  const fdcg_scene_config config = fdcg_make_scene_config();
   const uint64_t bytes = fdcg_scene_bytes(&config);
   fdcg_scene* scene;
-  fdcg_params params = fdcg_default_params();
-  const fdcg_pose pose = fdcg_identity_pose();
+  fdcg_params params = fdcg_make_params();
+  const fdcg_pose pose = fdcg_make_identity_pose();
   const fdcg_material soft = {0.6, 0.4, 1000}, bad = {0.1, 0.2, 100};
   const double above[3] = {0.5, 0.5, 2}, within[3] = {0.5, 0.5, 0.99};
   fdcg_object_id object;
@@ -194,7 +194,7 @@ int main(int argc, char** argv) {
   fdcg_scene_step(scene);
   fdcg_scene_move_finger(scene, finger, within, &error);
   fdcg_scene_step(scene);
-  fdcg_scene_result(scene, finger, &felt, &error);
+  fdcg_scene_get_result(scene, finger, &felt, &error);
   printf(" %.6f\\n", felt.force_n[2]);
   return 0;
 }

@@ -108,7 +108,7 @@ Times run(const Case& c, int ticks) {
     p.z = c.way == Way::skims ? wave_at(c.height, p.x, p.y, 0) : p.z;
   const BenchGraph compiled_still(still, options);
   std::vector<std::uint64_t> memory(fdcg_deform_bytes(&graph) / 8 + 1);
-  const fdcg_deform_config config = fdcg_default_deform_config();
+  const fdcg_deform_config config = fdcg_make_deform_config();
   fdcg_deform* deform = nullptr;
   if (fdcg_deform_create(memory.data(), memory.size() * 8, &graph, &config, &deform, nullptr) != FDCG_OK) std::abort();
   std::vector<std::uint32_t> corner_of(sheet.points.size());
@@ -117,7 +117,7 @@ Times run(const Case& c, int ticks) {
     if (fdcg_deform_find(deform, at, &corner_of[v], nullptr) != FDCG_OK) std::abort();
   }
   const auto motions = motions_of(c, sheet, corner_of, ticks);
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   fdcg_deform_contact contact = {};
   fdcg_contact rigid = {};
   const Stopwatch watch;

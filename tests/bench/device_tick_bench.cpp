@@ -31,11 +31,11 @@ struct Hand {
   fdcg_scene* scene = nullptr;
 
   explicit Hand(const fdcg_graph& graph) {
-    const fdcg_scene_config config = fdcg_default_scene_config();
+    const fdcg_scene_config config = fdcg_make_scene_config();
     memory.resize(fdcg_scene_bytes(&config) / 8 + 1);
     fdcg_scene_create(memory.data(), memory.size() * 8, &config, &scene, nullptr);
-    const fdcg_params params = fdcg_default_params();
-    const fdcg_pose pose = fdcg_identity_pose();
+    const fdcg_params params = fdcg_make_params();
+    const fdcg_pose pose = fdcg_make_identity_pose();
     fdcg_object_id object;
     fdcg_scene_add_object(scene, &graph, &params, &pose, &object, nullptr);
   }

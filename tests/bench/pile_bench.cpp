@@ -22,7 +22,7 @@ struct Row {
   const char* name;
   bool is_held_still = false;
   bool sleeps = true;
-  std::uint32_t disabled_skips = 0;
+  std::uint32_t disabled_optimizations = 0;
   int bystanders = 0;  // fixed objects far away
   std::uint32_t substeps = 1;
 };
@@ -37,7 +37,7 @@ struct Outcome {
 class Table {
  public:
   explicit Table(const Row& row) : rig_(config(row)), row_(row) {
-    fdcg_body_config like = fdcg_default_body_config();
+    fdcg_body_config like = fdcg_make_body_config();
     if (!row.sleeps) like.sleep_after_s = 0;
     const fdcg_params params = friction(0.8, 0.7, kStiffness);
     const auto ball = rig_.shape(scaled(ico_sphere(3), 0.03)), box = rig_.box(0.06, 0.06, 0.04);
@@ -74,7 +74,7 @@ class Table {
         if (touch.object.index == rig_.object(i).index || touch.on.index == rig_.object(i).index)
           springs += touch.stiffness_n_per_m;
       }
-      most = std::max(most, fdcg_body_substeps(&rig_.body(i), springs, reach_m, 1e-3));
+      most = std::max(most, fdcg_body_get_substeps(&rig_.body(i), springs, reach_m, 1e-3));
     }
     return most;
   }
@@ -87,8 +87,8 @@ class Table {
 
  private:
   static fdcg_pile_config config(const Row& row) {
-    fdcg_pile_config config = fdcg_default_pile_config();
-    config.disabled_skips = row.disabled_skips;
+    fdcg_pile_config config = fdcg_make_pile_config();
+    config.disabled_optimizations = row.disabled_optimizations;
     return config;
   }
   static Place hip(int finger, double t, double away) {
@@ -137,7 +137,7 @@ Outcome run(const Row& row, int replays, const Stopwatch& watch) {
         add(outcome.hash, body.body.angular_momentum);
         if (tick >= kWarmUp) outcome.asleep += body.body.is_asleep / double{kTicks};
       }
-      if (tick >= kWarmUp) outcome.touches += fdcg_pile_touches(table.rig().pile(), nullptr, 0) / double{kTicks};
+      if (tick >= kWarmUp) outcome.touches += fdcg_pile_get_touches(table.rig().pile(), nullptr, 0) / double{kTicks};
     }
     outcome.heap_calls += heap_calls() - heap_before;
   }
@@ -165,11 +165,11 @@ int main(int argc, char** argv) {
   asked.rig().ticks(kWarmUp);
   const Row rows[] = {{"moving"},
                       {"moving, 4 substeps", false, true, 0, 0, 4},
-                      {"moving, each asks all", false, true, FDCG_PILE_SKIP_FAR},
+                      {"moving, each asks all", false, true, FDCG_PILE_OPT_FAR},
                       {"moving, 60 bystanders", false, true, 0, 60},
-                      {"moving, 60, each asks all", false, true, FDCG_PILE_SKIP_FAR, 60},
+                      {"moving, 60, each asks all", false, true, FDCG_PILE_OPT_FAR, 60},
                       {"held still, asleep", true},
-                      {"held still, asleep, stepped", true, true, FDCG_PILE_SKIP_STILL},
+                      {"held still, asleep, stepped", true, true, FDCG_PILE_OPT_STILL},
                       {"held still, awake", true, false}};
   std::printf(
       "Five fingers, three bodies, ground: ns a tick (each tick's least of %d; bar %.0f). Springs of %.0f N/m ask for %u "
@@ -183,7 +183,8 @@ int main(int argc, char** argv) {
     std::uint64_t& first = row.is_held_still ? still : moving;
     const bool may_differ = row.substeps != 1 || (row.is_held_still && !row.sleeps);
     if (first == 0) first = one.hash;
-    const bool is_same = one.hash == first, is_fast = row.substeps > 1 || row.disabled_skips != 0 || one.p99_ns <= kBar_ns;
+    const bool is_same = one.hash == first,
+               is_fast = row.substeps > 1 || row.disabled_optimizations != 0 || one.p99_ns <= kBar_ns;
     std::printf("%-28s %9.0f %9.0f %9.0f %8.1f %8.1f %7.1f %s%s\n", row.name, one.median_ns, one.p99_ns, one.largest_ns,
                 one.touches, one.finger_touches, one.asleep,
                 is_same      ? "same bits"

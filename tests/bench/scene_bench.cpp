@@ -152,17 +152,17 @@ Outcome run(const Script& script, const Switches& switches, int replays, const S
     graphs.push_back(std::make_unique<BenchGraph>(body, switches.file));
     outcome.file_bytes += graphs.back()->view().header->file_bytes;
   }
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.object_capacity = static_cast<std::uint32_t>(script.objects.size());
   config.finger_capacity = static_cast<std::uint32_t>(script.fingers.size());
   config.touches_per_finger = script.touches_per_finger;
-  config.disabled_skips = switches.scene;
+  config.disabled_optimizations = switches.scene;
   outcome.scene_bytes = fdcg_scene_bytes(&config);
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.mu_static = switches.mu_static;
   params.mu_dynamic = switches.mu_dynamic;
   params.damping_n_s_per_m = switches.damping;
-  params.disabled_skips = switches.step;
+  params.disabled_optimizations = switches.step;
 
   std::vector<float> least(static_cast<std::size_t>(script.ticks), 1e30F);
   for (int replay = 0; replay < replays; ++replay) {
@@ -223,20 +223,20 @@ struct Row {
 
 std::vector<Row> rows() {
   std::vector<Row> all = {{"everything skipped", {}}};
-  const std::pair<const char*, std::uint32_t> scene_skips[] = {{"looks when out of reach", FDCG_SKIP_OUT_OF_REACH},
-                                                               {"objects far away", FDCG_SKIP_FAR_OBJECTS},
-                                                               {"still objects", FDCG_SKIP_STILL},
-                                                               {"rotation of unturned", FDCG_SKIP_ROTATION},
-                                                               {"renewal of contacts", FDCG_SKIP_RENEWAL}};
+  const std::pair<const char*, std::uint32_t> scene_skips[] = {{"looks when out of reach", FDCG_OPT_OUT_OF_REACH},
+                                                               {"objects far away", FDCG_OPT_FAR_OBJECTS},
+                                                               {"still objects", FDCG_OPT_STILL},
+                                                               {"rotation of unturned", FDCG_OPT_ROTATION},
+                                                               {"renewal of contacts", FDCG_OPT_RENEWAL}};
   for (const auto& [name, bits] : scene_skips) {
     all.push_back({name, {}});
     all.back().switches.scene = bits;
   }
   all.push_back({"clear balls of the sweep", {}});
-  all.back().switches.step = FDCG_STEP_SKIP_ALL;
+  all.back().switches.step = FDCG_STEP_OPT_ALL;
   all.push_back({"all of the above", {}});
-  all.back().switches.scene = FDCG_SKIP_ALL;
-  all.back().switches.step = FDCG_STEP_SKIP_ALL;
+  all.back().switches.scene = FDCG_OPT_ALL;
+  all.back().switches.step = FDCG_STEP_OPT_ALL;
   all.push_back({"file: hierarchy", {}});
   all.back().switches.file.without = {"hierarchy"};
   all.back().needs_longer_sweeps = true;
@@ -312,7 +312,7 @@ bool print_free_bars(const Stopwatch& watch) {
     holds = print_bar("  nothing in reach: median", far.median_ns, 15, "ns") && holds;
     holds = print_bar("  nothing in reach: largest (the first look)", far.largest_ns, 5000, "ns") && holds;
     Switches looking;
-    looking.scene = FDCG_SKIP_OUT_OF_REACH;
+    looking.scene = FDCG_OPT_OUT_OF_REACH;
     holds = print_bar("  a look: median", run(script, looking, kReplays, watch).median_ns, 3000, "ns") && holds;
     script.hip = [](const Actor&, int tick) {
       const auto at = [tick](std::uint64_t k) { return 3 * hashed_unit(k, static_cast<std::uint64_t>(tick)); };

@@ -51,7 +51,7 @@ fdcg_contact first_contact(const fdcg_graph& graph, const fdcg_params& params, c
 }
 
 Measured measure(const fdcg_graph& graph, const Path& path, const Stopwatch& watch, int replays) {
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   const std::size_t ticks = path.size() - 1;
   std::vector<float> tick(ticks), own(ticks), held;
   held.reserve(ticks);

@@ -115,7 +115,7 @@ std::vector<Hand> slide(const Shape& shape, int ticks) {
     for (std::size_t k = 0; k < 3; ++k)
       on.god_object_m[k] = here[k];
     Hand hand = {here, {}};
-    fdcg_surface_normal(&shape.surface, &on, hand.normal.data());
+    fdcg_surface_get_normal(&shape.surface, &on, hand.normal.data());
     hands.push_back(hand);
     constexpr double kStep = 1e-6;
     const double first = kWay_m / (distance(point(t + kStep), here) / kStep);
@@ -254,7 +254,7 @@ int main(int argc, char** argv) {
       const std::vector<Place> path = path_of(hands, way);
       for (const bool has_friction : {true, false}) {
         if (!options.friction.empty() && options.friction != (has_friction ? "yes" : "no")) continue;
-        fdcg_params params = fdcg_default_params();
+        fdcg_params params = fdcg_make_params();
         if (!has_friction) params.mu_static = params.mu_dynamic = 0;
         const Measured m = measure(shape.surface, params, path, watch, options.replays);
         const std::string missed = judge(shape, way, m, has_friction, options.judges_times);

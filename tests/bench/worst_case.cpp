@@ -102,7 +102,7 @@ struct Cost {
 };
 
 fdcg_params params_of(const Case& c) {
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.mu_static = c.mu_static;
   params.mu_dynamic = c.mu_dynamic;
   return params;

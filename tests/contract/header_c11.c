@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   fdcg_graph graph;
   fdcg_error error;
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   fdcg_contact contact = {0};
   fdcg_result result;
   const double outside[3] = {0.5, 0.5, 1.5}, inside[3] = {0.5, 0.5, 0.75};

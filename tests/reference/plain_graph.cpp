@@ -15,14 +15,14 @@ namespace {
 struct TraitsF64 {
   using Number = double;
   using Node = fdcg_node_f64;
-  using Edge = fdcg_edge_f64;
+  using Edge = fdcg_connection_geometry_f64;
   using Corner = fdcg_corner_f64;
   using Plane = fdcg_plane_f64;
 };
 struct TraitsF32 {
   using Number = float;
   using Node = fdcg_node_f32;
-  using Edge = fdcg_edge_f32;
+  using Edge = fdcg_connection_geometry_f32;
   using Corner = fdcg_corner_f32;
   using Plane = fdcg_plane_f32;
 };

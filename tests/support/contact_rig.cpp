@@ -61,7 +61,7 @@ CompiledMesh::CompiledMesh(const bake::PolygonSoup& soup, const bake::CompileOpt
 }
 
 fdcg_params contact_params(double mu_static, double mu_dynamic, std::uint32_t edge_friction) {
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.mu_static = mu_static;
   params.mu_dynamic = mu_dynamic;
   params.edge_friction = edge_friction;

@@ -131,8 +131,8 @@ void read_records(const std::vector<std::byte>& bytes, WalkedGraph& g) {
     out.corner[1] = g.side_corner[node.first_side + (c.side[0] + 1u) % node.side_count];
     return out;
   });
-  const auto edges = records<Edge, fdcg_edge_f64>(bytes, FDCG_SECTION_EDGES, [](const Edge& e) {
-    return fdcg_edge_f64{{e.direction[0], e.direction[1], e.direction[2]}, e.length};
+  const auto edges = records<Edge, fdcg_connection_geometry_f64>(bytes, FDCG_SECTION_EDGES, [](const Edge& e) {
+    return fdcg_connection_geometry_f64{{e.direction[0], e.direction[1], e.direction[2]}, e.length};
   });
   if (!edges.empty() && edges.size() != g.connections.size()) g.layout_faults.push_back("edge count");
   for (std::size_t c = 0; c < std::min(edges.size(), g.connections.size()); ++c) {
@@ -154,9 +154,9 @@ WalkedGraph read_graph(const std::vector<std::byte>& bytes) {
   if (bytes.size() < sizeof g.header) return g;
   std::memcpy(&g.header, bytes.data(), sizeof g.header);
   if (g.header.real_bytes == 4) {
-    read_records<float, fdcg_plane_f32, fdcg_edge_f32, fdcg_corner_f32>(bytes, g);
+    read_records<float, fdcg_plane_f32, fdcg_connection_geometry_f32, fdcg_corner_f32>(bytes, g);
   } else {
-    read_records<double, fdcg_plane_f64, fdcg_edge_f64, fdcg_corner_f64>(bytes, g);
+    read_records<double, fdcg_plane_f64, fdcg_connection_geometry_f64, fdcg_corner_f64>(bytes, g);
   }
   const auto number = [](std::uint32_t x) { return x; };
   g.source_map = records<std::uint32_t, std::uint32_t>(bytes, FDCG_SECTION_SOURCE_MAP, number);

@@ -38,7 +38,7 @@ inline Place place(const double (&v)[3]) {
 }
 
 inline fdcg_params friction(double mu_static, double mu_dynamic, double stiffness_n_per_m = 1000) {
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.mu_static = mu_static;
   params.mu_dynamic = mu_dynamic;
   params.stiffness_n_per_m = stiffness_n_per_m;
@@ -48,8 +48,8 @@ inline fdcg_params friction(double mu_static, double mu_dynamic, double stiffnes
 // Throws where anything is refused.
 class PileRig {
  public:
-  explicit PileRig(const fdcg_pile_config& config = fdcg_default_pile_config(),
-                   const fdcg_scene_config& scene = fdcg_default_scene_config())
+  explicit PileRig(const fdcg_pile_config& config = fdcg_make_pile_config(),
+                   const fdcg_scene_config& scene = fdcg_make_scene_config())
       : scene_(scene), memory_((fdcg_pile_bytes(&config) + 7) / 8) {
     expect(fdcg_pile_create(memory_.data(), memory_.size() * 8, &config, &pile_, &error_));
   }
@@ -75,7 +75,7 @@ class PileRig {
   }
   // Its index among bodies().
   std::size_t add_body(std::size_t shape, double mass_kg, const fdcg_params& params, const fdcg_pose& pose,
-                       const fdcg_body_config& like = fdcg_default_body_config(), std::uint32_t most_points = 20) {
+                       const fdcg_body_config& like = fdcg_make_body_config(), std::uint32_t most_points = 20) {
     const fdcg_graph& graph = shapes_.at(shape).graph;
     fdcg_scene_body body = {};
     body.object = scene_.add(graph, params, pose);
@@ -111,8 +111,8 @@ class PileRig {
   [[nodiscard]] Place centre(std::size_t i) const { return place(bodies_.at(i).body.centre_m); }
   [[nodiscard]] Place velocity(std::size_t i) const { return place(bodies_.at(i).body.velocity_m_per_s); }
   [[nodiscard]] std::vector<fdcg_pile_touch> touches() const {
-    std::vector<fdcg_pile_touch> list(fdcg_pile_touches(pile_, nullptr, 0));
-    fdcg_pile_touches(pile_, list.data(), static_cast<std::uint32_t>(list.size()));
+    std::vector<fdcg_pile_touch> list(fdcg_pile_get_touches(pile_, nullptr, 0));
+    fdcg_pile_get_touches(pile_, list.data(), static_cast<std::uint32_t>(list.size()));
     return list;
   }
   [[nodiscard]] SceneRig& scene() { return scene_; }

@@ -64,7 +64,7 @@ class SceneRig {
   void step() { fdcg_scene_step(scene_); }
   [[nodiscard]] fdcg_finger_result result(fdcg_finger_id finger) {
     fdcg_finger_result result;
-    expect(fdcg_scene_result(scene_, finger, &result, &error_));
+    expect(fdcg_scene_get_result(scene_, finger, &result, &error_));
     return result;
   }
   [[nodiscard]] fdcg_scene* get() const { return scene_; }

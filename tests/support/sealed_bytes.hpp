@@ -47,7 +47,7 @@ inline void seal(AlignedBytes& file) {
 // Steps a contact back and forth through the whole object and beyond: whatever the file says, nothing undefined may happen.
 inline void touch_everywhere(const fdcg_graph& graph, std::uint32_t steps) {
   const fdcg_header& header = *graph.header;
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   const fdcg_material materials[2] = {{0.9, 0.5, 400}, {0.1, 0.1, 3000}};
   params.materials = materials;
   params.material_count = 2;
@@ -64,7 +64,7 @@ inline void touch_everywhere(const fdcg_graph& graph, std::uint32_t steps) {
     }
     params.mu_static = params.mu_dynamic = i % 3 == 0 ? 0 : 0.4;
     params.edge_friction = i % 2;
-    params.terms = i / 16 % 2 == 0 ? 0 : FDCG_TERM_ALL;
+    params.friction_flags = i / 16 % 2 == 0 ? 0 : FDCG_FRICTION_ALL;
     fdcg_step(&graph, &params, &contact, hip, &result);
   }
 }

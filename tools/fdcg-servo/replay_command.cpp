@@ -34,7 +34,7 @@ struct ReplayArguments {
   std::string graph;
   std::string trajectory;
   std::string log;
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   bool has_mu_dynamic = false;
   bool quiet = false;
   std::string graphs, touches, rewritten;  // of a session's log

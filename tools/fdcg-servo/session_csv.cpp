@@ -38,7 +38,7 @@ std::vector<Touch> touches_of(const dev::DeviceSetup& setup) {
   std::vector<Touch> touches;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result finger{};
-    const bool is_there = fdcg_scene_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK;
+    const bool is_there = fdcg_scene_get_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK;
     for (std::uint32_t i = 0; is_there && i < finger.touch_count; ++i)
       if (finger.touches[i].state != FDCG_FREE) touches.push_back({finger.touches + i, contact});
   }

@@ -112,10 +112,10 @@ Json materials_of(const fdcg_graph& graph) {
   if (graph.node_materials == nullptr) return nullptr;
   std::vector<std::uint32_t> nodes(graph.material_count + 1, 0);
   for (std::uint32_t n = 0; n < graph.header->node_count; ++n)
-    ++nodes[std::min(fdcg_node_material(&graph, n), graph.material_count)];
+    ++nodes[std::min(fdcg_get_node_material(&graph, n), graph.material_count)];
   Json list = Json::array();
   for (std::uint32_t i = 0; i < graph.material_count; ++i)
-    list.push_back({{"name", fdcg_material_name(&graph, i)}, {"nodes", nodes[i]}});
+    list.push_back({{"name", fdcg_get_material_name(&graph, i)}, {"nodes", nodes[i]}});
   return {{"list", list}, {"nodes_without", nodes.back()}};
 }
 

@@ -31,7 +31,7 @@ struct Records64 {
   using Real = double;
   using Plane = fdcg_plane_f64;
   using Node = fdcg_node_f64;
-  using Edge = fdcg_edge_f64;
+  using Edge = fdcg_connection_geometry_f64;
   using Corner = fdcg_corner_f64;
   using FanBox = fdcg_fan_box_f64;
 };
@@ -39,7 +39,7 @@ struct Records32 {
   using Real = float;
   using Plane = fdcg_plane_f32;
   using Node = fdcg_node_f32;
-  using Edge = fdcg_edge_f32;
+  using Edge = fdcg_connection_geometry_f32;
   using Corner = fdcg_corner_f32;
   using FanBox = fdcg_fan_box_f32;
 };

@@ -29,7 +29,7 @@ std::string inside_out_patches_in(const Report& report) {
 
 }  // namespace
 
-std::string mass_contradiction_in(const CompileOptions& options) {
+std::string check_mass_options(const CompileOptions& options) {
   constexpr double kLargest = 1e30;
   const auto is_out = [](double x) { return x != 0 && !(x >= 1 / kLargest && x <= kLargest); };
   if (is_out(options.density_kg_per_m3))

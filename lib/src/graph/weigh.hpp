@@ -13,7 +13,7 @@
 namespace fdcg::bake {
 
 // Why the options about mass make no sense; empty where they do.
-[[nodiscard]] std::string mass_contradiction_in(const CompileOptions& options);
+[[nodiscard]] std::string check_mass_options(const CompileOptions& options);
 
 // The record of section MASS for a mesh of triangles that has passed the checks of compiled.report, before its regions are
 // merged. Where there can be none the reason goes to compiled.no_mass, or is a failure (1) if a mass or density was asked for.

@@ -25,7 +25,7 @@ int main(void) {
     board_print(error.message);
     return 1;
   }
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   fdcg_contact contact = {0};
   fdcg_result result;
   for (int tick = 0; tick < 6; ++tick) { /* a servo loop reads its device here and writes result.force_n to it */

@@ -2,7 +2,7 @@
 /*
  * Rigid bodies: what the fingers of a scene lift, turn and let fall. In one screen:
  *
- *   fdcg_body_config config = fdcg_default_body_config();          gravity along -z, no damping
+ *   fdcg_body_config config = fdcg_make_body_config();          gravity along -z, no damping
  *   fdcg_get_mass(&graph, &mass, &error);
  *   fdcg_body_set_mass(&config, &mass, 0, pose.scale, &error);     what the file says it weighs, or a density of yours
  *   fdcg_body_init(&bodies[0].body, &config, &pose, &error);
@@ -31,7 +31,7 @@ extern "C" {
 #define FDCG_BODY_MAX_SUBSTEPS 64u /* of one tick */
 
 typedef struct fdcg_body_config {
-  uint32_t struct_bytes; /* the caller's sizeof(fdcg_body_config); fdcg_default_body_config sets it */
+  uint32_t struct_bytes; /* the caller's sizeof(fdcg_body_config); fdcg_make_body_config sets it */
   uint32_t reserved;     /* 0 */
   double mass_kg;
   double centre_m[3];           /* of mass, in the object's frame, before the pose's scale */
@@ -48,10 +48,10 @@ typedef struct fdcg_body_config {
 
 /* Sets the first `struct_bytes` bytes of *config: 1 kg, a ball's inertia of radius 0.1 m, gravity -9.80665 along z, no damping,
  * asleep after 0.5 s below 1e-5 m/s and 1e-4 rad/s, awake at 1e-3 m/s^2. */
-void fdcg_init_body_config(fdcg_body_config* config, uint32_t struct_bytes);
-static inline fdcg_body_config fdcg_default_body_config(void) {
+void fdcg_body_config_init(fdcg_body_config* config, uint32_t struct_bytes);
+static inline fdcg_body_config fdcg_make_body_config(void) {
   fdcg_body_config config;
-  fdcg_init_body_config(&config, (uint32_t)sizeof config);
+  fdcg_body_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
@@ -69,7 +69,7 @@ typedef struct fdcg_body {
   double velocity_m_per_s[3];
   double angular_momentum[3]; /* kg m^2/s about the centre of mass, world: of a free body the same bits for ever */
   double spin_rad_per_s[3];   /* angular velocity in the middle of the last step, axes of the object */
-  double given_n_s[3];        /* impulse that the last step gave ahead, as if its forces stayed */
+  double predicted_impulse_n_s[3];        /* impulse that the last step gave ahead, as if its forces stayed */
   double given_n_m_s[3];
   double rest_force_n[3]; /* under which it fell asleep */
   double rest_torque_n_m[3];
@@ -95,17 +95,17 @@ fdcg_status fdcg_body_set_motion(fdcg_body* body, const double velocity_m_per_s[
 void fdcg_body_step(fdcg_body* body, const double force_n[3], const double torque_n_m[3], double dt_s);
 
 /* Where its object is: for fdcg_scene_set_pose. */
-fdcg_pose fdcg_body_pose(const fdcg_body* body);
+fdcg_pose fdcg_body_get_pose(const fdcg_body* body);
 
 /* Angular velocity now, world. */
-void fdcg_body_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]);
+void fdcg_body_get_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]);
 
 /* Of motion and turn together, without gravity's. */
-double fdcg_body_kinetic_energy_j(const fdcg_body* body);
+double fdcg_body_get_kinetic_energy_j(const fdcg_body* body);
 
 /* How many steps a tick of tick_s takes so that springs of this stiffness in all, at points no farther than reach_m from the
  * centre of mass, stay at half of the bound above: 1 to FDCG_BODY_MAX_SUBSTEPS; 0 where more would be needed. */
-uint32_t fdcg_body_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s);
+uint32_t fdcg_body_get_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s);
 
 /* ---- bodies in a scene ------------------------------------------------------------------------------------------------- */
 

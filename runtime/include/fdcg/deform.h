@@ -66,17 +66,17 @@ extern "C" {
 typedef struct fdcg_deform fdcg_deform;
 
 typedef struct fdcg_deform_config {
-  uint32_t struct_bytes; /* the caller's sizeof(fdcg_deform_config); fdcg_default_deform_config sets it */
+  uint32_t struct_bytes; /* the caller's sizeof(fdcg_deform_config); fdcg_make_deform_config sets it */
   uint32_t reserved;     /* 0 */
   double margin_m; /* how far beyond the graph's bounds, along each axis, a vertex may be moved; 0, the default: as far as the
                       bounds' largest side. It adds to the extent, which scales rounding */
 } fdcg_deform_config;
 
 /* Sets the first `struct_bytes` bytes of *config: the default margin. */
-void fdcg_init_deform_config(fdcg_deform_config* config, uint32_t struct_bytes);
-static inline fdcg_deform_config fdcg_default_deform_config(void) {
+void fdcg_deform_config_init(fdcg_deform_config* config, uint32_t struct_bytes);
+static inline fdcg_deform_config fdcg_make_deform_config(void) {
   fdcg_deform_config config;
-  fdcg_init_deform_config(&config, (uint32_t)sizeof config);
+  fdcg_deform_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
@@ -127,7 +127,7 @@ void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_defor
 
 /* The whole mesh brought up to date, to look at: fdcg_get_node and its like. Good until a vertex is moved. Not for fdcg_step
  * where a triangle has no area. Not to be closed. Cost: linear in the mesh. */
-const fdcg_graph* fdcg_deform_graph(fdcg_deform* deform);
+const fdcg_graph* fdcg_deform_get_graph(fdcg_deform* deform);
 
 /* As fdcg_scene_add_object; the mesh must outlive the scene, and stays where it was created. FDCG_E_ARGUMENT unless the scene
  * was created with config.has_deforms. All else of scene.h takes the object as any other, poses too: then it moves as a whole,

@@ -4,7 +4,7 @@
  *
  *   fdcg_graph graph;                                          a view, in your memory, of a file in yours or mapped
  *   fdcg_open_file("bunny.fdcg", FDCG_VERIFY_FULL, &graph, &error);
- *   fdcg_params params = fdcg_default_params();                friction, stiffness, damping
+ *   fdcg_params params = fdcg_make_params();                friction, stiffness, damping
  *   fdcg_contact contact = {0};                                one contact point; zero is its start
  *   each tick:  fdcg_step(&graph, &params, &contact, hip_object_m, &result);   ->  result.force_n
  *   fdcg_close(&graph);
@@ -15,7 +15,7 @@
  *   fdcg_scene_add_object(scene, &graph, &params, &pose, &object, &error);      a pose: rotation, translation, scale
  *   fdcg_scene_add_finger(scene, hip_world_m, &finger, &error);
  *   each tick:  fdcg_scene_set_pose(scene, object, &pose, &error);  fdcg_scene_move_finger(scene, finger, hip_world_m, &error);
- *               fdcg_scene_step(scene);  fdcg_scene_result(scene, finger, &felt, &error);           ->  felt.force_n
+ *               fdcg_scene_step(scene);  fdcg_scene_get_result(scene, finger, &felt, &error);           ->  felt.force_n
  *
  * fdcg_step is the friction-cone god-object algorithm of Melder and Harwin (2004) with its gaps closed. It never allocates,
  * locks, logs, throws, recurses or reads a clock, and every loop in it is bounded. Several contacts may step on one graph at
@@ -191,8 +191,8 @@ fdcg_status fdcg_get_mass(const fdcg_graph* graph, fdcg_mass* mass, fdcg_error* 
 
 /* The materials of the mesh file, by the names that it gives them (OBJ usemtl, glTF material). A face without one, or in a file
  * without materials, has FDCG_NONE. */
-uint32_t fdcg_node_material(const fdcg_graph* graph, uint32_t node);        /* node: below the header's count */
-const char* fdcg_material_name(const fdcg_graph* graph, uint32_t material); /* NULL: there is no such material */
+uint32_t fdcg_get_node_material(const fdcg_graph* graph, uint32_t node);        /* node: below the header's count */
+const char* fdcg_get_material_name(const fdcg_graph* graph, uint32_t material); /* NULL: there is no such material */
 uint32_t fdcg_find_material(const fdcg_graph* graph, const char* name);     /* FDCG_NONE: there is no such name */
 
 /* The checksum of the format: `bytes` bytes at `data`. Any change of one byte changes it (schemas/fdcg-v1.md). */
@@ -208,8 +208,8 @@ typedef enum fdcg_edge_friction { FDCG_EDGE_WEDGE = 0, FDCG_EDGE_PAPER = 1 } fdc
 
 /* What the step may skip. Forces and god-objects are the same bit for bit without. */
 typedef enum fdcg_step_skip {
-  FDCG_STEP_SKIP_CLEAR_BALL = 1, /* in free space: no look at the hierarchy in a ball that no face touches */
-  FDCG_STEP_SKIP_ALL = 1
+  FDCG_STEP_OPT_CLEAR_BALL = 1, /* in free space: no look at the hierarchy in a ball that no face touches */
+  FDCG_STEP_OPT_ALL = 1
 } fdcg_step_skip;
 
 /* Friction beyond two coefficients and one stiffness: which of the fields below count. 0: none, at no cost.
@@ -232,26 +232,26 @@ typedef enum fdcg_step_skip {
  * and a slide at steady speed settles on it, while
  *   (0.65 (mu_static - mu_dynamic) / stribeck_m_per_s - viscous_s_per_m) depth_m <= friction_lag_s + tick_s / 4
  * (0.65: 3 sqrt(3) / 8; with presliding the depth counts 1 + stiffness / presliding_n_per_m times), which fdcg_check_params
- * asks for at curve_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any; so it does
- * where a finger's material makes the curve steeper. The default numbers hold with FDCG_TERM_LAG; without it raise
+ * asks for at unique_solution_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any; so it does
+ * where a finger's material makes the curve steeper. The default numbers hold with FDCG_FRICTION_LAG; without it raise
  * stribeck_m_per_s. Passive whatever the numbers: a slip only ever takes the god-object nearer to the HIP.
  *
- * Materials: `materials` says what a node's material (fdcg_node_material) is like, in place of mu_static, mu_dynamic and
+ * Materials: `materials` says what a node's material (fdcg_get_node_material) is like, in place of mu_static, mu_dynamic and
  * stiffness_n_per_m, which hold for nodes without one and for materials beyond the table. On a concave edge each face's
  * coefficient counts by the load that it bears, and the softer face's stiffness holds; at a vertex that of the feature before.
  * A stiffness that rises under a pressed contact would push the hand: it falls at once and rises only by as much as sliding
  * loses meanwhile, the sampling's term k |dx|^2 / 2 included; a new contact has its own.
  *
  * Finger: what touches, combined with what is touched (fdcg_combine_materials). */
-typedef enum fdcg_term {
-  FDCG_TERM_STRIBECK = 1,
-  FDCG_TERM_VISCOUS = 2,
-  FDCG_TERM_PRESLIDING = 4,
-  FDCG_TERM_LAG = 8,
-  FDCG_TERM_MATERIALS = 16,
-  FDCG_TERM_FINGER = 32,
-  FDCG_TERM_ALL = 63
-} fdcg_term;
+typedef enum fdcg_friction_flag {
+  FDCG_FRICTION_STRIBECK = 1,
+  FDCG_FRICTION_VISCOUS = 2,
+  FDCG_FRICTION_PRESLIDING = 4,
+  FDCG_FRICTION_LAG = 8,
+  FDCG_FRICTION_MATERIALS = 16,
+  FDCG_FRICTION_FINGER = 32,
+  FDCG_FRICTION_ALL = 63
+} fdcg_friction_flag;
 
 typedef struct fdcg_material {
   double mu_static;         /* >= mu_dynamic */
@@ -264,20 +264,20 @@ typedef struct fdcg_material {
 fdcg_material fdcg_combine_materials(const fdcg_material* surface, const fdcg_material* finger);
 
 typedef struct fdcg_params {
-  uint32_t struct_bytes;          /* the caller's sizeof(fdcg_params); fdcg_default_params sets it */
+  uint32_t struct_bytes;          /* the caller's sizeof(fdcg_params); fdcg_make_params sets it */
   uint32_t edge_friction;         /* fdcg_edge_friction */
   double mu_static;               /* >= mu_dynamic */
   double mu_dynamic;              /* >= 0 */
   double stiffness_n_per_m;       /* >= 0 */
   double damping_n_s_per_m;       /* >= 0; acts along the spring's direction and never pulls. 0: off */
   double tick_s;                  /* time between ticks; read only where damping or a term of the curve is on */
-  uint32_t disabled_skips;        /* fdcg_step_skip: those not to be made. 0: none */
-  uint32_t terms;                 /* fdcg_term: which of the following count. 0: none */
+  uint32_t disabled_optimizations;        /* fdcg_step_skip: those not to be made. 0: none */
+  uint32_t friction_flags;                 /* fdcg_friction_flag: which of the following count. 0: none */
   double stribeck_m_per_s;        /* > 0: where half of the fall from mu_static to mu_dynamic is done */
   double viscous_s_per_m;         /* >= 0 */
   double presliding_n_per_m;      /* > 0 */
   double friction_lag_s;          /* >= 0 */
-  double curve_depth_m;           /* > 0: down to it the curve is as written */
+  double unique_solution_depth_m;           /* > 0: down to it the curve is as written */
   fdcg_material finger;           /* its stiffness > 0 */
   const fdcg_material* materials; /* by material; outlives the params. NULL where there are none */
   uint32_t material_count;
@@ -287,10 +287,10 @@ typedef struct fdcg_params {
 /* Sets the first `struct_bytes` bytes of *params: mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge, no terms;
  * for those: Stribeck 0.05 m/s, viscous 0.1 s/m, presliding 100,000 N/m, lag 0.03 s, depth 0.01 m, a finger of mu 1 and
  * 10,000 N/m, no materials. */
-void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes);
-static inline fdcg_params fdcg_default_params(void) {
+void fdcg_params_init(fdcg_params* params, uint32_t struct_bytes);
+static inline fdcg_params fdcg_make_params(void) {
   fdcg_params params;
-  fdcg_init_params(&params, (uint32_t)sizeof params);
+  fdcg_params_init(&params, (uint32_t)sizeof params);
   return params;
 }
 
@@ -311,7 +311,7 @@ typedef struct fdcg_carried_sweep {
   uint32_t left_feature;
   uint32_t next_leaf;  /* leaf of the hierarchy, or node where there is none */
   uint32_t is_carried; /* 0: there is no such sweep */
-  uint32_t in_place;   /* sweeps in a row, each over several ticks, that have ended where they began */
+  uint32_t stalled_sweeps; /* sweeps in a row, each over several ticks, that have ended where they began */
 } fdcg_carried_sweep;
 
 /* A ball in free space that no face touches. The last HIP is in it where there is one. */

@@ -126,7 +126,7 @@ class Scene {
   // All zero for a finger that is not in the scene.
   [[nodiscard]] fdcg_finger_result result(fdcg_finger_id finger) const noexcept {
     fdcg_finger_result result = {};
-    fdcg_scene_result(scene_, finger, &result, nullptr);
+    fdcg_scene_get_result(scene_, finger, &result, nullptr);
     return result;
   }
   [[nodiscard]] std::span<const fdcg_touch> touches(fdcg_finger_id finger) const noexcept {
@@ -135,7 +135,7 @@ class Scene {
   }
   // By object index; see fdcg_scene_reactions.
   void reactions(std::span<fdcg_reaction> sums) const noexcept {
-    fdcg_scene_reactions(scene_, sums.data(), static_cast<std::uint32_t>(sums.size()));
+    fdcg_scene_get_reactions(scene_, sums.data(), static_cast<std::uint32_t>(sums.size()));
   }
 
   [[nodiscard]] fdcg_scene* c_scene() const noexcept { return scene_; }

@@ -56,7 +56,7 @@ enum fdcg_section_id {
   FDCG_SECTION_NODES = 1,          /* node blocks, node_count of them, in Hilbert order of their centres */
   FDCG_SECTION_NODE_OFFSETS = 2,   /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
                                       are of one size, header.node_bytes */
-  FDCG_SECTION_EDGES = 3,          /* fdcg_edge_f64 or _f32, one a connection. Optional: derived from the corners */
+  FDCG_SECTION_EDGES = 3,          /* fdcg_connection_geometry_f64 or _f32, one a connection. Optional: derived from the corners */
   FDCG_SECTION_CONNECTIONS = 4,    /* fdcg_connection, connection_count of them, by first use */
   FDCG_SECTION_CORNERS = 5,        /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
   FDCG_SECTION_FANS = 6,           /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
@@ -173,12 +173,12 @@ typedef struct fdcg_connection {
 /* EdgeVector and EndPlanes of the paper: d = corner 1 - corner 0, length = sqrt(d.d), direction = d / length, each operation
  * rounded once in the file's precision (where d.d is below FDCG_TINY_SQUARE, d is scaled first: schemas/fdcg-v1.md). The end
  * planes have the normals -direction at corner 0 and +direction at corner 1, `length` apart. */
-typedef struct fdcg_edge_f64 {
+typedef struct fdcg_connection_geometry_f64 {
   double direction[3], length;
-} fdcg_edge_f64;
-typedef struct fdcg_edge_f32 {
+} fdcg_connection_geometry_f64;
+typedef struct fdcg_connection_geometry_f32 {
   float direction[3], length;
-} fdcg_edge_f32;
+} fdcg_connection_geometry_f32;
 #define FDCG_TINY_SQUARE_F64 1e-280 /* d is multiplied by 2^700 */
 #define FDCG_TINY_SQUARE_F32 1e-30  /* d is multiplied by 2^100 */
 
@@ -270,7 +270,7 @@ FDCG_STATIC_ASSERT(sizeof(fdcg_plane_f64) == 32 && sizeof(fdcg_plane_f32) == 16,
 FDCG_STATIC_ASSERT(sizeof(fdcg_side) == 12 && sizeof(fdcg_connection) == 8, "side: 12 bytes, connection: 8");
 FDCG_STATIC_ASSERT(sizeof(fdcg_node_f64) == 72 && sizeof(fdcg_node_f32) == 56, "node of three sides: 72 or 56 bytes");
 FDCG_STATIC_ASSERT(offsetof(fdcg_node_f64, sides) == 36 && offsetof(fdcg_node_f32, sides) == 20, "node.sides at 36 or 20");
-FDCG_STATIC_ASSERT(sizeof(fdcg_edge_f64) == 32 && sizeof(fdcg_edge_f32) == 16, "edge: 32 or 16 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_connection_geometry_f64) == 32 && sizeof(fdcg_connection_geometry_f32) == 16, "edge: 32 or 16 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_corner_f64) == 40 && sizeof(fdcg_corner_f32) == 24, "corner: 40 or 24 bytes");
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f64, first) == 24 && offsetof(fdcg_corner_f64, fan) == 35, "corner_f64");
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corner_f32, fan) == 23, "corner_f32");

@@ -2,7 +2,7 @@
 /*
  * Bodies that meet: on the ground, on fixed objects, on one another. In one screen, after a scene and its bodies (body.h):
  *
- *   fdcg_pile_config config = fdcg_default_pile_config();                  how many objects, points and touches at most
+ *   fdcg_pile_config config = fdcg_make_pile_config();                  how many objects, points and touches at most
  *   void* memory = malloc(fdcg_pile_bytes(&config));                       or a static array: the pile never asks for more
  *   fdcg_pile_create(memory, bytes, &config, &pile, &error);
  *   fdcg_pile_set_ground(pile, normal, 0, &params, &error);                the half-space below normal . x = 0
@@ -18,7 +18,7 @@
  * along what lies on it.
  *
  * What acts between two: the parameters of both objects (fdcg_scene_add_object) together, as fdcg_combine_materials has it: of
- * the object touched those of the faces' materials where its terms say so (FDCG_TERM_MATERIALS), on edges and corners by the
+ * the object touched those of the faces' materials where its terms say so (FDCG_FRICTION_MATERIALS), on edges and corners by the
  * step's own rules (fdcg.h), of the point's object the general ones. The friction curve counts on graphs and on the ground, not
  * on surfaces (surface.h). A touch keeps the stiffness that it began with; where
  * faces have materials it follows them. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
@@ -51,27 +51,27 @@ typedef struct fdcg_pile fdcg_pile;
 
 /* What a pile leaves undone where it cannot matter. Each can be switched off: every motion stays the same, bit for bit. */
 typedef enum fdcg_pile_skip {
-  FDCG_PILE_SKIP_FAR = 1,   /* between looks only the objects near by are asked */
-  FDCG_PILE_SKIP_STILL = 2, /* touches between two that have not moved keep their forces */
-  FDCG_PILE_SKIP_ALL = 3
+  FDCG_PILE_OPT_FAR = 1,   /* between looks only the objects near by are asked */
+  FDCG_PILE_OPT_STILL = 2, /* touches between two that have not moved keep their forces */
+  FDCG_PILE_OPT_ALL = 3
 } fdcg_pile_skip;
 
 typedef struct fdcg_pile_config {
-  uint32_t struct_bytes;    /* the caller's sizeof(fdcg_pile_config); fdcg_default_pile_config sets it */
+  uint32_t struct_bytes;    /* the caller's sizeof(fdcg_pile_config); fdcg_make_pile_config sets it */
   uint32_t object_capacity; /* 1 to 1,000,000: the scene's objects of smaller index can be in the pile */
   uint32_t point_capacity;  /* 1 to 1,000,000, of all bodies together */
   uint32_t touch_capacity;  /* 1 to 1,000,000: points on, or within the box of, something, at once */
   double damping_ratio;     /* 0 to 1,000; 1: critical for each contact by itself */
   double leaving_ratio;     /* the same for the way out */
-  uint32_t disabled_skips;  /* fdcg_pile_skip bits that are off; 0: skip all that can be skipped */
+  uint32_t disabled_optimizations;  /* fdcg_pile_skip bits that are off; 0: skip all that can be skipped */
   uint32_t reserved;        /* 0 */
 } fdcg_pile_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 128 points, 128 touches, ratios 1 and 4; some 70 KB. */
-void fdcg_init_pile_config(fdcg_pile_config* config, uint32_t struct_bytes);
-static inline fdcg_pile_config fdcg_default_pile_config(void) {
+void fdcg_pile_config_init(fdcg_pile_config* config, uint32_t struct_bytes);
+static inline fdcg_pile_config fdcg_make_pile_config(void) {
   fdcg_pile_config config;
-  fdcg_init_pile_config(&config, (uint32_t)sizeof config);
+  fdcg_pile_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
@@ -82,7 +82,7 @@ uint64_t fdcg_pile_bytes(const fdcg_pile_config* config);
 fdcg_status fdcg_pile_create(void* memory, uint64_t bytes, const fdcg_pile_config* config, fdcg_pile** pile, fdcg_error* error);
 
 /* The ground: solid where normal . x < offset_m, world; a normal of unit length within 1e-3 (made exactly so). params NULL
- * takes it away. Of them count the two coefficients, the stiffness and the friction curve (FDCG_TERM_STRIBECK, _VISCOUS, _LAG);
+ * takes it away. Of them count the two coefficients, the stiffness and the friction curve (FDCG_FRICTION_STRIBECK, _VISCOUS, _LAG);
  * it has no edges, no faces with materials, and no presliding. A point that begins below it is pushed out. */
 fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal[3], double offset_m, const fdcg_params* params,
                                  fdcg_error* error);
@@ -130,11 +130,11 @@ typedef struct fdcg_pile_touch {
 } fdcg_pile_touch;
 
 /* Copies at most `capacity` of them, by object and point, and returns how many there are. Cost: the points. */
-uint32_t fdcg_pile_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity);
+uint32_t fdcg_pile_get_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity);
 
 typedef struct fdcg_pile_counts { /* since the pile was made */
-  uint64_t crowded;               /* points that met something while touch_capacity was used up, and were not felt */
-  uint64_t looks;                 /* of a body at all objects */
+  uint64_t overflowed_contacts;             /* points that met something while touch_capacity was used up, and were not felt */
+  uint64_t broadphase_updates;                 /* of a body at all objects */
   uint64_t steps;                 /* of touches */
 } fdcg_pile_counts;
 fdcg_pile_counts fdcg_pile_get_counts(const fdcg_pile* pile);

@@ -2,7 +2,7 @@
 /*
  * A scene: objects with poses, and fingers that feel all of them. In one screen:
  *
- *   fdcg_scene_config config = fdcg_default_scene_config();               how many objects and fingers at most
+ *   fdcg_scene_config config = fdcg_make_scene_config();               how many objects and fingers at most
  *   void* memory = malloc(fdcg_scene_bytes(&config));                     or a static array: the scene never asks for more
  *   fdcg_scene_create(memory, bytes, &config, &scene, &error);
  *   fdcg_scene_add_object(scene, &graph, &params, &pose, &object, &error);
@@ -10,7 +10,7 @@
  *   each tick:  fdcg_scene_set_pose(scene, object, &pose, &error);        where something moves it
  *               fdcg_scene_move_finger(scene, finger, hip_world_m, &error);
  *               fdcg_scene_step(scene);
- *               fdcg_scene_result(scene, finger, &result, &error);        ->  result.force_n, in the world
+ *               fdcg_scene_get_result(scene, finger, &result, &error);        ->  result.force_n, in the world
  *
  * An object is a graph (any number of objects may share one), a surface (surface.h) or a deformable mesh (deform.h), with
  * parameters and a pose: rotation, translation, uniform scale. A finger is one contact point; it has a contact (fdcg_contact)
@@ -70,35 +70,35 @@ typedef struct fdcg_pose {
 } fdcg_pose;
 
 /* No rotation, no translation, scale 1. */
-fdcg_pose fdcg_identity_pose(void);
+fdcg_pose fdcg_make_identity_pose(void);
 
 /* What a scene leaves undone where it cannot matter. Each can be switched off in the config: every force stays the same, bit
  * for bit, and the difference in time is what it saves. */
 typedef enum fdcg_scene_skip {
-  FDCG_SKIP_OUT_OF_REACH = 1, /* no look at any object until one could be reached */
-  FDCG_SKIP_FAR_OBJECTS = 2,  /* between looks only the objects near by are asked, and a look asks the others by sphere only */
-  FDCG_SKIP_STILL = 4,        /* an object that was not moved: no new rotation matrix, centre, inverse */
-  FDCG_SKIP_ROTATION = 8,     /* an object that is not turned or scaled: no rotation, no division */
-  FDCG_SKIP_RENEWAL = 16,     /* a near object's free contact is kept from tick to tick, not made anew */
-  FDCG_SKIP_ALL = 31
+  FDCG_OPT_OUT_OF_REACH = 1, /* no look at any object until one could be reached */
+  FDCG_OPT_FAR_OBJECTS = 2,  /* between looks only the objects near by are asked, and a look asks the others by sphere only */
+  FDCG_OPT_STILL = 4,        /* an object that was not moved: no new rotation matrix, centre, inverse */
+  FDCG_OPT_ROTATION = 8,     /* an object that is not turned or scaled: no rotation, no division */
+  FDCG_OPT_RENEWAL = 16,     /* a near object's free contact is kept from tick to tick, not made anew */
+  FDCG_OPT_ALL = 31
 } fdcg_scene_skip;
 
 typedef struct fdcg_scene_config {
-  uint32_t struct_bytes;       /* the caller's sizeof(fdcg_scene_config); fdcg_default_scene_config sets it */
+  uint32_t struct_bytes;       /* the caller's sizeof(fdcg_scene_config); fdcg_make_scene_config sets it */
   uint32_t object_capacity;    /* 1 to 1,000,000 */
   uint32_t finger_capacity;    /* 1 to 10,000,000 */
   uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
-  uint32_t disabled_skips;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
+  uint32_t disabled_optimizations;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
   uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
   uint32_t has_deforms;        /* 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
   uint32_t reserved;           /* 0 */
 } fdcg_scene_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 57 KB. */
-void fdcg_init_scene_config(fdcg_scene_config* config, uint32_t struct_bytes);
-static inline fdcg_scene_config fdcg_default_scene_config(void) {
+void fdcg_scene_config_init(fdcg_scene_config* config, uint32_t struct_bytes);
+static inline fdcg_scene_config fdcg_make_scene_config(void) {
   fdcg_scene_config config;
-  fdcg_init_scene_config(&config, (uint32_t)sizeof config);
+  fdcg_scene_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
@@ -138,7 +138,7 @@ fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, con
 
 /* What the finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the next
  * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. A library
- * built without FDCG_WITH_TERMS does it too: faces have no materials of their own there, and the object's are combined. */
+ * built without FDCG_WITH_FRICTION_TERMS does it too: faces have no materials of their own there, and the object's are combined. */
 fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
                                            fdcg_error* error);
 
@@ -158,7 +158,7 @@ fdcg_status fdcg_scene_step_finger(fdcg_scene* scene, fdcg_finger_id finger, fdc
 
 typedef enum fdcg_finger_flag {
   FDCG_FINGER_NON_FINITE = 1, /* the HIP was no usable number: it stood still, no force */
-  FDCG_FINGER_CROWDED = 2,    /* more objects in reach than touches_per_finger: the touched ones and the nearest were felt */
+  FDCG_FINGER_CONTACT_OVERFLOW = 2,    /* more objects in reach than touches_per_finger: the touched ones and the nearest were felt */
   FDCG_FINGER_MISSED_TICK = 4,
   FDCG_FINGER_BOUNDED = 8 /* some contact carries work over to the next tick: see fdcg_touch.flags */
 } fdcg_finger_flag;
@@ -182,12 +182,12 @@ typedef struct fdcg_finger_result {
   uint32_t touch_count;
   const fdcg_touch* touches; /* ascending object index; in the scene's memory, good until the finger's next step */
   uint64_t non_finite_steps; /* since the finger was added */
-  uint64_t crowded_steps;
+  uint64_t overflowed_steps;
   uint64_t missed_ticks;
-  uint64_t looks; /* at all objects: what FDCG_SKIP_OUT_OF_REACH keeps few */
+  uint64_t broadphase_updates; /* at all objects: what FDCG_OPT_OUT_OF_REACH keeps few */
 } fdcg_finger_result;
 
-fdcg_status fdcg_scene_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result, fdcg_error* error);
+fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result, fdcg_error* error);
 
 /* What the fingers do to the objects: force and torque in the world, the torque about the origin of the object's frame. Zeroes
  * `reactions` and adds the fingers' last results up, in ascending order. On request only: costs a look at every finger.
@@ -196,7 +196,7 @@ typedef struct fdcg_reaction {
   double force_n[3];
   double torque_n_m[3];
 } fdcg_reaction;
-void fdcg_scene_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count);
+void fdcg_scene_get_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count);
 
 #ifdef __cplusplus
 }

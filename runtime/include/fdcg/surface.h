@@ -79,14 +79,14 @@ typedef struct fdcg_surface {
 } fdcg_surface;
 
 /* Sets the first `struct_bytes` bytes of *surface: a plane, which is all zero but for struct_bytes. */
-static inline void fdcg_init_surface(fdcg_surface* surface, uint32_t struct_bytes) {
+static inline void fdcg_surface_init(fdcg_surface* surface, uint32_t struct_bytes) {
   if (surface == NULL) return;
   memset((void*)surface, 0, struct_bytes);
   surface->struct_bytes = struct_bytes;
 }
 static inline fdcg_surface fdcg_make_surface(fdcg_surface_kind kind, double radius_m, double length_m) {
   fdcg_surface surface;
-  fdcg_init_surface(&surface, (uint32_t)sizeof surface);
+  fdcg_surface_init(&surface, (uint32_t)sizeof surface);
   surface.kind = (uint32_t)kind;
   surface.radius_m = radius_m;
   surface.length_m = length_m;
@@ -133,17 +133,17 @@ static inline fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m,
 fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_error* error);
 
 /* Moves the contact to the HIP of this tick and says what the hand should feel: fdcg_step for a surface. Of *params neither
- * disabled_skips nor `terms` count: friction is that of the two coefficients. */
+ * disabled_optimizations nor `terms` count: friction is that of the two coefficients. */
 void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* contact,
                        const double hip_object_m[3], fdcg_result* result);
 
 /* The unit normal, away from the material, at result->god_object_m; on an edge or a vertex the direction of the sum of those of
  * its faces. Zero where the result is FDCG_FREE. */
-void fdcg_surface_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]);
+void fdcg_surface_get_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]);
 
 /* Volume, centroid and inertia in closed form; the density is the caller's (fdcg_body_set_mass). FDCG_E_ABSENT for a plane and
  * what is hollow: they have no end. */
-fdcg_status fdcg_surface_mass(const fdcg_surface* surface, fdcg_mass* mass, fdcg_error* error);
+fdcg_status fdcg_surface_get_mass(const fdcg_surface* surface, fdcg_mass* mass, fdcg_error* error);
 
 /* As fdcg_scene_add_object; the scene keeps a copy of the surface. All else of scene.h takes the object as any other. A plane
  * is in reach of every finger near it or below it, and takes one of its touches_per_finger there; a plane that is turned, or

@@ -30,10 +30,10 @@
 #define FDCG_WITH_MESSAGES 1
 #endif
 
-// fdcg_params.terms: the friction curve, materials. Without them the library is smaller (README.md), and fdcg_check_params
-// refuses them.
-#ifndef FDCG_WITH_TERMS
-#define FDCG_WITH_TERMS 1
+// fdcg_params.friction_flags: the friction curve, materials. Without them the library is smaller (README.md), and
+// fdcg_check_params refuses them.
+#ifndef FDCG_WITH_FRICTION_TERMS
+#define FDCG_WITH_FRICTION_TERMS 1
 #endif
 
 // FDCG_ASSERT: our own faults are looked for, in the step too. CMake sets it in debug builds.

@@ -112,7 +112,7 @@ Vector spin_now(const fdcg_body& body) {
 using fdcg::Message;
 using fdcg::Vector;
 
-extern "C" void fdcg_init_body_config(fdcg_body_config* config, uint32_t struct_bytes) {
+extern "C" void fdcg_body_config_init(fdcg_body_config* config, uint32_t struct_bytes) {
   fdcg_body_config defaults = {};
   defaults.mass_kg = 1;
   for (int k = 0; k < 3; ++k)
@@ -158,12 +158,12 @@ extern "C" fdcg_status fdcg_body_init(fdcg_body* body, const fdcg_body_config* c
   if (body == nullptr || config == nullptr || pose == nullptr)
     return Message(error, FDCG_E_ARGUMENT).text("body, config or pose: null pointer");
   if (const fdcg_status status = fdcg::check_struct_bytes(config->struct_bytes, sizeof(fdcg_body_config), "config",
-                                                          "; start from fdcg_default_body_config()", error);
+                                                          "; start from fdcg_make_body_config()", error);
       status != FDCG_OK) {
     return status;
   }
   fdcg_body_config room;
-  const fdcg_body_config& whole = fdcg::in_full(*config, &room, fdcg_init_body_config);
+  const fdcg_body_config& whole = fdcg::in_full(*config, &room, fdcg_body_config_init);
   fdcg_status status = fdcg::check_config(whole, error);
   if (status == FDCG_OK) status = fdcg::check_pose(*pose, error);
   if (status != FDCG_OK) return status;
@@ -202,7 +202,7 @@ extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double veloci
   return FDCG_OK;
 }
 
-extern "C" fdcg_pose fdcg_body_pose(const fdcg_body* body) {
+extern "C" fdcg_pose fdcg_body_get_pose(const fdcg_body* body) {
   fdcg_pose pose = {};
   if (body == nullptr) return pose;
   for (int k = 0; k < 4; ++k)
@@ -213,7 +213,7 @@ extern "C" fdcg_pose fdcg_body_pose(const fdcg_body* body) {
   return pose;
 }
 
-extern "C" void fdcg_body_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]) {
+extern "C" void fdcg_body_get_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]) {
   if (angular_rad_per_s == nullptr) return;
   Vector spin = {0, 0, 0};
   if (body != nullptr) spin = fdcg::rotation_of(body->rotation_xyzw) * fdcg::spin_now(*body);
@@ -221,13 +221,13 @@ extern "C" void fdcg_body_angular_velocity(const fdcg_body* body, double angular
     angular_rad_per_s[k] = fdcg::component(spin, k);
 }
 
-extern "C" double fdcg_body_kinetic_energy_j(const fdcg_body* body) {
+extern "C" double fdcg_body_get_kinetic_energy_j(const fdcg_body* body) {
   if (body == nullptr) return 0;
   const Vector velocity = fdcg::vec(body->velocity_m_per_s), spin = fdcg::spin_now(*body);
   return (body->config.mass_kg * dot(velocity, velocity) + dot(spin, fdcg::tensor_of(body->config.inertia_kg_m2) * spin)) / 2;
 }
 
-extern "C" uint32_t fdcg_body_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s) {
+extern "C" uint32_t fdcg_body_get_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s) {
   if (body == nullptr) return 0;
   const double least = fdcg::least_moment(body->config.inertia_kg_m2);
   const double steps =

@@ -39,7 +39,7 @@ fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fd
 }  // namespace
 
 fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction) {
-  const fdcg_pose pose = fdcg_body_pose(&body);
+  const fdcg_pose pose = fdcg_body_get_pose(&body);
   const Vector arm = vec(body.centre_m) - vec(pose.translation_m);
   fdcg_reaction moved = reaction;
   put(vec(reaction.torque_n_m) - cross(arm, vec(reaction.force_n)), moved.torque_n_m);
@@ -50,7 +50,7 @@ fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_react
   const bool was_asleep = body->body.is_asleep != 0;
   fdcg_body_step(&body->body, push.force_n, push.torque_n_m, dt_s);
   if (was_asleep && body->body.is_asleep != 0) return FDCG_OK;  // it has not moved
-  const fdcg_pose pose = fdcg_body_pose(&body->body);
+  const fdcg_pose pose = fdcg_body_get_pose(&body->body);
   return fdcg_scene_set_pose(scene, body->object, &pose, error);
 }
 
@@ -89,7 +89,7 @@ extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body
   fdcg_status status = fdcg::check_bodies(scene, bodies, body_count, substeps, tick_s, reactions, reaction_count, error);
   for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
     fdcg_scene_step(scene);
-    fdcg_scene_reactions(scene, reactions, reaction_count);
+    fdcg_scene_get_reactions(scene, reactions, reaction_count);
     for (uint32_t i = 0; status == FDCG_OK && i < body_count; ++i) {
       const fdcg_reaction push = fdcg::about_centre(bodies[i].body, reactions[bodies[i].object.index]);
       status = fdcg::move_body(scene, bodies + i, push, tick_s / substeps, error);

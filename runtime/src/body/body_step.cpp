@@ -132,7 +132,7 @@ void move(fdcg_body* body, Vector force, Vector torque, double h) {
   const double lightness = 1 / config.mass_kg;
   Vector kick = half_kick, twist = half_twist;
   if (body->has_given != 0) {
-    kick = kick + (half_kick - vec(body->given_n_s));
+    kick = kick + (half_kick - vec(body->predicted_impulse_n_s));
     twist = twist + (half_twist - vec(body->given_n_m_s));
   }
   Vector velocity = vec(body->velocity_m_per_s) + kick * lightness + fall;
@@ -143,7 +143,7 @@ void move(fdcg_body* body, Vector force, Vector torque, double h) {
   turn_freely(body, h);
   put(velocity * kept_speed + half_kick * lightness + fall, body->velocity_m_per_s);
   put(vec(body->angular_momentum) * kept_turn + half_twist, body->angular_momentum);
-  put(half_kick, body->given_n_s);
+  put(half_kick, body->predicted_impulse_n_s);
   put(half_twist, body->given_n_m_s);
   body->has_given = 1;
 }

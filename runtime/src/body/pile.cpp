@@ -30,9 +30,9 @@ fdcg_status check_range(const char* name, double value, double low, double high,
 fdcg_status checked_config(const fdcg_pile_config* given, fdcg_pile_config* config, fdcg_error* error) {
   if (given == nullptr) return refuse(error, "config: null pointer");
   fdcg_status status =
-      check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_default_pile_config()", error);
+      check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_make_pile_config()", error);
   if (status != FDCG_OK) return status;
-  *config = in_full(*given, config, fdcg_init_pile_config);
+  *config = in_full(*given, config, fdcg_pile_config_init);
   struct Range {
     const char* name;
     double value, low, high;
@@ -42,7 +42,7 @@ fdcg_status checked_config(const fdcg_pile_config* given, fdcg_pile_config* conf
                           {"config.touch_capacity", double(config->touch_capacity), 1, kMost},
                           {"config.damping_ratio", config->damping_ratio, 0, kMostRatio},
                           {"config.leaving_ratio", config->leaving_ratio, 0, kMostRatio},
-                          {"config.disabled_skips", double(config->disabled_skips), 0, FDCG_PILE_SKIP_ALL},
+                          {"config.disabled_optimizations", double(config->disabled_optimizations), 0, FDCG_PILE_OPT_ALL},
                           {"config.reserved", double(config->reserved), 0, 0}};
   for (const Range& range : ranges) {
     if (status == FDCG_OK) status = check_range(range.name, range.value, range.low, range.high, error);
@@ -137,7 +137,7 @@ void leave_pile(fdcg_pile& pile, uint32_t index) {
 
 using namespace fdcg;
 
-extern "C" void fdcg_init_pile_config(fdcg_pile_config* config, uint32_t struct_bytes) {
+extern "C" void fdcg_pile_config_init(fdcg_pile_config* config, uint32_t struct_bytes) {
   fdcg_pile_config defaults = {};
   defaults.object_capacity = 64;
   defaults.point_capacity = defaults.touch_capacity = 128;
@@ -181,8 +181,8 @@ extern "C" fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal
     if (status == FDCG_OK) status = fdcg_check_params(params, error);
     if (status != FDCG_OK) return status;
     fdcg_params room;
-    pile->ground_params = in_full(*params, &room, fdcg_init_params);
-    pile->ground_params.terms &= FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
+    pile->ground_params = in_full(*params, &room, fdcg_params_init);
+    pile->ground_params.friction_flags &= FDCG_FRICTION_STRIBECK | FDCG_FRICTION_VISCOUS | FDCG_FRICTION_LAG;
     pile->ground_params.materials = nullptr;  // of faces, which it has not: nothing outside the pile's memory is kept
     pile->ground_params.material_count = 0;
     pile->ground_normal = {up.x / length, up.y / length, up.z / length};
@@ -250,7 +250,7 @@ extern "C" fdcg_status fdcg_pile_remove(fdcg_pile* pile, fdcg_object_id object, 
   return FDCG_OK;
 }
 
-extern "C" uint32_t fdcg_pile_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity) {
+extern "C" uint32_t fdcg_pile_get_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity) {
   if (pile == nullptr) return 0;
   if (touches == nullptr) capacity = 0;
   uint32_t count = 0;

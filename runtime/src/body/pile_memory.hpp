@@ -81,7 +81,7 @@ struct fdcg_pile {
   fdcg_params ground_params;
   fdcg_pile_counts counts;
 
-  bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
+  bool skips(uint32_t what) const { return (config.disabled_optimizations & what) == 0; }
   fdcg::PileMember* members() { return fdcg::part_at<fdcg::PileMember>(this, members_at); }
   const fdcg::PileMember* members() const { return fdcg::part_at<fdcg::PileMember>(this, members_at); }
   fdcg::PilePoint* points() { return fdcg::part_at<fdcg::PilePoint>(this, points_at); }

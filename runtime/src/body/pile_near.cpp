@@ -26,7 +26,7 @@ double distance(const Object& object, World at) {
 
 void find_near(const Meeting& meeting, PileMember* member) {
   fdcg_pile& pile = meeting.pile;
-  if (!pile.skips(FDCG_PILE_SKIP_FAR)) {
+  if (!pile.skips(FDCG_PILE_OPT_FAR)) {
     member->near_count = PileMember::kMostNear + 1;
     return;
   }
@@ -51,7 +51,7 @@ void find_near(const Meeting& meeting, PileMember* member) {
   }
   member->look = pile.look;
   member->limit_m = (pile.travel_m + nearest_far / 2) * (1 - kRounding);
-  ++pile.counts.looks;
+  ++pile.counts.broadphase_updates;
 }
 
 Cull cull_of(const Meeting& meeting, const PileMember& owner, const PileMember& other) {
@@ -86,7 +86,7 @@ GroundCull ground_cull_of(const Meeting& meeting, const PileMember& owner) {
 
 bool can_have_met(const Meeting& meeting, const Object& object, World from_world, World to_world, World* from, World* to) {
   const Pose &now = object.now, &before = object.last;
-  const bool may_skip = meeting.scene.skips(FDCG_SKIP_ROTATION);
+  const bool may_skip = meeting.scene.skips(FDCG_OPT_ROTATION);
   const double radius = larger(now.radius, before.radius);
   if (!object.bounds.is_endless && !(way_distance2(from_world - before.centre, to_world - now.centre) <= radius * radius))
     return false;

@@ -83,11 +83,11 @@ void begin(const Meeting& meeting) {
 }
 
 // Whether what is between the two can be otherwise than in the last substep.
-bool is_astir(const fdcg_pile& pile, const PileMember& member) {
-  return member.is_moving != 0 || !pile.skips(FDCG_PILE_SKIP_STILL);
+bool is_awake(const fdcg_pile& pile, const PileMember& member) {
+  return member.is_moving != 0 || !pile.skips(FDCG_PILE_OPT_STILL);
 }
-bool is_astir(const fdcg_pile& pile, const PileMember& member, uint32_t on) {
-  return is_astir(pile, member) || (on != kGround && pile.members()[on].is_moving != 0);
+bool is_awake(const fdcg_pile& pile, const PileMember& member, uint32_t on) {
+  return is_awake(pile, member) || (on != kGround && pile.members()[on].is_moving != 0);
 }
 
 bool has_touch(const fdcg_pile& pile, const PilePoint& point, uint32_t on) {
@@ -107,7 +107,7 @@ void try_new_touch(const Meeting& meeting, PileMember* owner, PilePoint* point, 
   touch = {};
   touch.on = on;
   const bool meets = step_touch(meeting, *owner, way, true, &touch);
-  if (meets && index == FDCG_NONE) ++pile.counts.crowded;
+  if (meets && index == FDCG_NONE) ++pile.counts.overflowed_contacts;
   if (!meets || index == FDCG_NONE) {
     touch.next = next_free;
     return;
@@ -124,7 +124,7 @@ void step_touches(const Meeting& meeting, PileMember* owner, PilePoint* point, c
   uint32_t* link = &point->touch;
   while (*link != FDCG_NONE) {
     PileTouch& touch = pile.touches()[*link];
-    if (!is_astir(pile, *owner, touch.on) || step_touch(meeting, *owner, way, false, &touch)) {
+    if (!is_awake(pile, *owner, touch.on) || step_touch(meeting, *owner, way, false, &touch)) {
       link = &touch.next;
       continue;
     }
@@ -171,14 +171,14 @@ void step_points(const Meeting& meeting, PileMember* owner, bool is_near_ground)
     PilePoint& point = pile.points()[owner->first_point + p];
     if (point.touch != FDCG_NONE) step_touches(meeting, owner, &point, way_of(object, point));
   }
-  if (is_near_ground && is_astir(pile, *owner)) meet_ground(meeting, owner);
+  if (is_near_ground && is_awake(pile, *owner)) meet_ground(meeting, owner);
   const bool asks_all = owner->near_count > PileMember::kMostNear;
   const uint32_t near_count = asks_all ? pile.member_end : owner->near_count;
   for (uint32_t i = 0; i < near_count; ++i) {
     const uint32_t on = asks_all ? i : owner->near[i];
     const PileMember& other = pile.members()[on];
     if (&other == owner || other.is_used == 0 || other.is_enabled == 0) continue;
-    if (is_astir(pile, *owner, on)) meet_member(meeting, owner, on);
+    if (is_awake(pile, *owner, on)) meet_member(meeting, owner, on);
   }
 }
 
@@ -206,11 +206,11 @@ void for_each_touch(fdcg_pile& pile, PileMember* member, Act act) {
 // Whether the member, or anybody near it or touched by it, is astir.
 bool has_to_step(fdcg_pile& pile, PileMember* member, bool is_near_ground) {
   if (member->near_count == 0 && !is_near_ground && member->touch_count == 0) return false;
-  if (is_astir(pile, *member) || member->near_count > PileMember::kMostNear) return true;
+  if (is_awake(pile, *member) || member->near_count > PileMember::kMostNear) return true;
   bool has = false;
   for (uint32_t i = 0; i < member->near_count; ++i)
     has = has || pile.members()[member->near[i]].is_moving != 0;
-  for_each_touch(pile, member, [&](PileTouch* touch) { has = has || is_astir(pile, *member, touch->on); });
+  for_each_touch(pile, member, [&](PileTouch* touch) { has = has || is_awake(pile, *member, touch->on); });
   return has;
 }
 
@@ -281,7 +281,7 @@ extern "C" fdcg_status fdcg_scene_step_pile(fdcg_scene* scene, fdcg_pile* pile, 
   const Meeting meeting = {*scene, *pile, bodies, tick_s / substeps};
   for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
     fdcg_scene_step(scene);
-    fdcg_scene_reactions(scene, reactions, reaction_count);
+    fdcg_scene_get_reactions(scene, reactions, reaction_count);
     meet(meeting);
     status = move_all(meeting, body_count, reactions, error);
   }

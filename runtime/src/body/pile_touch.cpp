@@ -61,19 +61,19 @@ World slide(Friction<double>& friction, const GroundStep& step) {
   return slip.is_rest ? step.god_object : step.surface_point + gap * (slip.gap / root(gap2));
 }
 
-#if FDCG_WITH_TERMS
+#if FDCG_WITH_FRICTION_TERMS
 // The same by the friction curve, as fdcg_step has it on a face.
 World slide_by_curve(const Meeting& meeting, const fdcg_material& own, Friction<double>& friction, const GroundStep& step,
                      fdcg_contact* contact) {
   fdcg_params params = meeting.pile.ground_params;
   params.tick_s = meeting.step_s;
-  params.terms |= FDCG_TERM_FINGER;
+  params.friction_flags |= FDCG_FRICTION_FINGER;
   params.finger = own;
   FrictionTerms terms = terms_of(params, nullptr, *contact);
   friction.terms = &terms;
   const World to = slide(friction, step);
   terms.go_on_to(to);
-  contact->slip_m_per_s = terms.has(FDCG_TERM_LAG) ? terms.lagged + terms.per_way * terms.way : 0;
+  contact->slip_m_per_s = terms.has(FDCG_FRICTION_LAG) ? terms.lagged + terms.per_way * terms.way : 0;
   return to;
 }
 
@@ -84,20 +84,20 @@ fdcg_material pair_by_faces(const Object& on, const fdcg_params& params, const f
                             const PileTouch& touch, bool was_pressing) {
   FrictionTerms terms = terms_of(params, on.graph, touch.contact);
   if (result.state == FDCG_FACE) {
-    terms.stand_on_face(result.feature);
+    terms.select_material_of_face(result.feature);
   } else if (result.state == FDCG_EDGE) {
     const fdcg_connection_info edge = fdcg_get_connection(on.graph, result.feature);
     const bool is_open = edge.node[1] == FDCG_NONE;
     const double share = is_open ? 1
                                  : share_of_load(vec(fdcg_get_node(on.graph, edge.node[0]).normal),
                                                  vec(fdcg_get_node(on.graph, edge.node[1]).normal), across);
-    terms.stand_on_edge(edge.node[0], edge.node[1], share);
+    terms.select_material_of_edge(edge.node[0], edge.node[1], share);
   } else if (was_pressing) {
     terms.material.mu_static = touch.mu_static;
   } else {
     uint32_t entry = 0;
     fdcg_get_fan(on.graph, result.feature, &entry, 1);
-    terms.stand_on_face(fdcg_get_connection(on.graph, entry >> 1).node[0]);
+    terms.select_material_of_face(fdcg_get_connection(on.graph, entry >> 1).node[0]);
   }
   terms.material.stiffness_n_per_m = touch.contact.stiffness_n_per_m;
   return terms.material;
@@ -123,8 +123,9 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
   }
   const GroundStep step = {n, god_object, way.to + n * depth, depth};
   Friction<double> friction = {pair.mu_static, pair.mu_dynamic, true, contact.slipping != 0};
-#if FDCG_WITH_TERMS
-  god_object = pile.ground_params.terms != 0 ? slide_by_curve(meeting, own, friction, step, &contact) : slide(friction, step);
+#if FDCG_WITH_FRICTION_TERMS
+  god_object =
+      pile.ground_params.friction_flags != 0 ? slide_by_curve(meeting, own, friction, step, &contact) : slide(friction, step);
 #else
   god_object = slide(friction, step);
 #endif
@@ -139,7 +140,7 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
 
 // Whether the step mixes the materials of faces and point itself.
 bool mixes_itself(const fdcg_params& params, const Object& on) {
-  return (params.terms & FDCG_TERM_MATERIALS) != 0 && on.graph != nullptr;
+  return (params.friction_flags & FDCG_FRICTION_MATERIALS) != 0 && on.graph != nullptr;
 }
 
 // What the step is told. Where faces have materials it mixes them itself, as with a finger of the point's material.
@@ -148,10 +149,10 @@ fdcg_params pair_params(const Meeting& meeting, const Object& on, const fdcg_mat
   const fdcg_material whole = material_of(on.params), pair = fdcg_combine_materials(&whole, &own);
   params.damping_n_s_per_m = 0;  // the force is this file's affair
   params.tick_s = meeting.step_s;
-  params.terms &= ~uint32_t{FDCG_TERM_FINGER};
+  params.friction_flags &= ~uint32_t{FDCG_FRICTION_FINGER};
   measure_in_object(on.now.scale, &params);
   if (mixes_itself(params, on)) {
-    params.terms |= FDCG_TERM_FINGER;
+    params.friction_flags |= FDCG_FRICTION_FINGER;
     params.finger = own;
     return params;
   }
@@ -169,7 +170,7 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   const Object& on = meeting.object(meeting.pile.members()[touch->on]);
   const fdcg_material own = material_of(meeting.object(owner).params);
   const fdcg_params params = pair_params(meeting, on, own);
-  const bool may_skip = meeting.scene.skips(FDCG_SKIP_ROTATION);
+  const bool may_skip = meeting.scene.skips(FDCG_OPT_ROTATION);
   const bool was_pressing = !is_new && touch->is_pressing != 0;
   fdcg_contact& contact = touch->contact;
   fdcg_result result;
@@ -191,7 +192,7 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   const World spring = on.now.turned_to_world(reach, may_skip), normal = turned(on.now, object_normal(on, result));
   place(touch, way.to + spring, way.to, normal, norm1(normal) > 0);
   Pair pair = {{params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, mixes_itself(params, on)};
-#if FDCG_WITH_TERMS
+#if FDCG_WITH_FRICTION_TERMS
   if (pair.follows_faces) pair.material = pair_by_faces(on, params, result, reach * -1.0, *touch, was_pressing);
 #endif
   press(meeting, owner, way.to, pair, was_pressing, touch);

@@ -91,11 +91,11 @@ struct Layout {
 fdcg_status checked_config(const fdcg_deform_config* given, fdcg_deform_config* config, fdcg_error* error) {
   if (given == nullptr) return refuse(error, FDCG_E_ARGUMENT, "config: null pointer");
   if (const fdcg_status status =
-          check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_default_deform_config()", error);
+          check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_make_deform_config()", error);
       status != FDCG_OK) {
     return status;
   }
-  *config = in_full(*given, config, fdcg_init_deform_config);
+  *config = in_full(*given, config, fdcg_deform_config_init);
   constexpr double kLargest = 1e90;
   if (config->reserved != 0)
     return Message(error, FDCG_E_ARGUMENT).text("config.reserved is ").number(config->reserved).text(", allowed 0");
@@ -269,7 +269,7 @@ void fill_in(const fdcg_graph& graph, fdcg_deform* deform) {
 }  // namespace
 }  // namespace fdcg
 
-extern "C" void fdcg_init_deform_config(fdcg_deform_config* config, uint32_t struct_bytes) {
+extern "C" void fdcg_deform_config_init(fdcg_deform_config* config, uint32_t struct_bytes) {
   fdcg::fill_defaults(config, fdcg_deform_config{}, struct_bytes);
 }
 
@@ -318,7 +318,7 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
   return FDCG_OK;
 }
 
-extern "C" const fdcg_graph* fdcg_deform_graph(fdcg_deform* deform) {
+extern "C" const fdcg_graph* fdcg_deform_get_graph(fdcg_deform* deform) {
   if (deform == nullptr) return nullptr;
   fdcg::with_real_of(deform->header, [&](auto real) { fdcg::bring_all_up_to_date<decltype(real)>(deform); });
   return &deform->graph;

@@ -151,7 +151,7 @@ inline void seat_on(uint32_t n, fdcg_contact* contact) {
   contact->seat_feature = FDCG_NONE;
   contact->slipping = 0;
   contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
-  contact->sweep.in_place = 0;
+  contact->sweep.stalled_sweeps = 0;
 }
 
 // A sweep that ran out of work begins anew, on the mesh as it is, and goes half as far (shorten): from the feature that let the
@@ -209,7 +209,7 @@ template <class Real>
     ride(upkeep, saw_before, &contact->contact);
   } else {
     Vec3<double> hip;
-    const bool looks_for_balls = (params.disabled_skips & FDCG_STEP_SKIP_CLEAR_BALL) == 0 &&
+    const bool looks_for_balls = (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0 &&
                                  to_local(deform.header, hip_object_m, RealLimits<Real>::kFar, &hip);
     if (wait_for_faces(upkeep, travel, saw_before, looks_for_balls ? &hip : nullptr, contact)) flags |= FDCG_DEFORM_CAUGHT;
   }
@@ -279,7 +279,7 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
   }
   if (contact->contact.state == FDCG_FACE && upkeep.is_sliver(contact->contact.feature)) {
     leave_sliver(upkeep, &contact->contact);
-    say_where(deform->header, contact->contact, result);
+    write_position(deform->header, contact->contact, result);
   }
   result->flags |= flags;
 }
@@ -290,7 +290,7 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
 extern "C" void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_deform_contact* contact,
                                  const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
-  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
+  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_params_init);
   fdcg::with_real_of(deform->header,
                      [&](auto real) { fdcg::step_on<decltype(real)>(deform, all_params, contact, hip_object_m, result); });
 }

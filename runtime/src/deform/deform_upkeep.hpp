@@ -91,7 +91,7 @@ inline bool bounds_nothing(Vec3<Real> direction, Vec3<Real> normal, Real length)
   return length == 0 || norm1(cross(direction, normal)) == 0;
 }
 
-// Whether a triangle's corners are in one line, but for rounding: its normal means nothing, and may be turned over.
+// Whether a triangle's corners are in one line, up to rounding error: its normal means nothing, and may be turned over.
 template <class Real>
 FDCG_HOT bool is_line(Vec3<double> a, Vec3<double> b, Vec3<double> c, double extent) {
   constexpr double kRounding = 8 * double{RealLimits<Real>::kEpsilon};

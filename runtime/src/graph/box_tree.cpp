@@ -43,7 +43,7 @@ bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begi
   }
   const double at[3] = {from.x, from.y, from.z}, along[3] = {whole.x, whole.y, whole.z};
   for (int k = 0; k < 3; ++k) {
-    if (absolute(along[k]) <= size * DBL_EPSILON) {  // too short to divide by: it stays where it is, but for rounding
+    if (absolute(along[k]) <= size * DBL_EPSILON) {  // too short to divide by: it stays where it is, up to rounding error
       if (absolute(at[k]) > kAround) return false;
       continue;
     }

@@ -148,7 +148,7 @@ struct SectionRule {
 constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_NODES, 0, 0, Presence::required},
     {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes},
-    {FDCG_SECTION_EDGES, sizeof(fdcg_edge_f64), sizeof(fdcg_edge_f32), Presence::optional},
+    {FDCG_SECTION_EDGES, sizeof(fdcg_connection_geometry_f64), sizeof(fdcg_connection_geometry_f32), Presence::optional},
     {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required},
     {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required},
     {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners},

@@ -42,12 +42,12 @@ fdcg_status verify_materials(const fdcg_graph& graph, fdcg_error* error) {
 
 }  // namespace fdcg
 
-extern "C" uint32_t fdcg_node_material(const fdcg_graph* graph, uint32_t node) {
+extern "C" uint32_t fdcg_get_node_material(const fdcg_graph* graph, uint32_t node) {
   const bool has = graph->node_materials != nullptr && graph->node_materials[node] != FDCG_NO_MATERIAL;
   return has ? graph->node_materials[node] : FDCG_NONE;
 }
 
-extern "C" const char* fdcg_material_name(const fdcg_graph* graph, uint32_t material) {
+extern "C" const char* fdcg_get_material_name(const fdcg_graph* graph, uint32_t material) {
   return material < graph->material_count ? graph->materials[material].name : nullptr;
 }
 

@@ -36,7 +36,7 @@ inline uint32_t own_bits(const fdcg_scene& scene, const Finger& finger) {
 inline void measure_in_object(double scale, fdcg_params* params) {
   params->stribeck_m_per_s /= scale;
   params->viscous_s_per_m *= scale;
-  params->curve_depth_m /= scale;
+  params->unique_solution_depth_m /= scale;
 }
 
 // The object's parameters as this finger meets them: with its material, and speeds and depths in the object's metres.

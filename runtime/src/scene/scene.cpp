@@ -34,11 +34,11 @@ bool is_within(double value, double low, double high) {
 fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* config, fdcg_error* error) {
   if (given == nullptr) return refuse(error, "config: null pointer");
   if (const fdcg_status status =
-          check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_default_scene_config()", error);
+          check_struct_bytes(given->struct_bytes, sizeof *given, "config", "; start from fdcg_make_scene_config()", error);
       status != FDCG_OK) {
     return status;
   }
-  *config = in_full(*given, config, fdcg_init_scene_config);
+  *config = in_full(*given, config, fdcg_scene_config_init);
   struct Range {
     const char* name;
     uint32_t value, low, high;
@@ -46,7 +46,7 @@ fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* co
   const Range ranges[] = {{"config.object_capacity", config->object_capacity, 1, kMostObjects},
                           {"config.finger_capacity", config->finger_capacity, 1, kMostFingers},
                           {"config.touches_per_finger", config->touches_per_finger, 1, kMostTouches},
-                          {"config.disabled_skips", config->disabled_skips, 0, FDCG_SKIP_ALL},
+                          {"config.disabled_optimizations", config->disabled_optimizations, 0, FDCG_OPT_ALL},
                           {"config.has_soft_fingers", config->has_soft_fingers, 0, 1},
                           {"config.has_deforms", config->has_deforms, 0, 1},
                           {"config.reserved", config->reserved, 0, 0}};
@@ -170,7 +170,7 @@ fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params
   added->surface = shape.surface;
   added->bounds = shape.bounds;
   fdcg_params room;
-  added->params = in_full(*params, &room, fdcg_init_params);
+  added->params = in_full(*params, &room, fdcg_params_init);
   added->asked = checked;
   added->is_used = added->is_enabled = 1;
   if (++added->generation == 0) added->generation = 1;
@@ -193,14 +193,14 @@ Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error) {
 
 using namespace fdcg;
 
-extern "C" fdcg_pose fdcg_identity_pose(void) {
+extern "C" fdcg_pose fdcg_make_identity_pose(void) {
   fdcg_pose pose = {};
   pose.rotation_xyzw[3] = 1;
   pose.scale = 1;
   return pose;
 }
 
-extern "C" void fdcg_init_scene_config(fdcg_scene_config* config, uint32_t struct_bytes) {
+extern "C" void fdcg_scene_config_init(fdcg_scene_config* config, uint32_t struct_bytes) {
   fdcg_scene_config defaults = {};
   defaults.object_capacity = 64;
   defaults.finger_capacity = 8;
@@ -269,7 +269,7 @@ extern "C" fdcg_status fdcg_scene_set_params(fdcg_scene* scene, fdcg_object_id i
   if (object == nullptr) return FDCG_E_ARGUMENT;
   const fdcg_status status = fdcg_check_params(params, error);
   fdcg_params room;
-  if (status == FDCG_OK) object->params = in_full(*params, &room, fdcg_init_params);
+  if (status == FDCG_OK) object->params = in_full(*params, &room, fdcg_params_init);
   return status;
 }
 
@@ -344,8 +344,8 @@ extern "C" fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id
   return FDCG_OK;
 }
 
-extern "C" fdcg_status fdcg_scene_result(const fdcg_scene* scene, fdcg_finger_id id, fdcg_finger_result* result,
-                                         fdcg_error* error) {
+extern "C" fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id id, fdcg_finger_result* result,
+                                             fdcg_error* error) {
   const Finger* const finger = find_finger(const_cast<fdcg_scene*>(scene), id, error);
   if (finger == nullptr) return FDCG_E_ARGUMENT;
   if (result == nullptr) return refuse(error, "result: null pointer");
@@ -354,13 +354,13 @@ extern "C" fdcg_status fdcg_scene_result(const fdcg_scene* scene, fdcg_finger_id
              finger->touch_count,
              scene->touches(id.index),
              finger->non_finite_steps,
-             finger->crowded_steps,
+             finger->overflowed_steps,
              finger->missed_ticks,
-             finger->looks};
+             finger->broadphase_updates};
   return FDCG_OK;
 }
 
-extern "C" void fdcg_scene_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count) {
+extern "C" void fdcg_scene_get_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count) {
   for (uint32_t i = 0; reactions != nullptr && i < count; ++i)
     reactions[i] = {};
   if (scene == nullptr || reactions == nullptr) return;

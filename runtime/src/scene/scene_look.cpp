@@ -6,7 +6,7 @@ namespace fdcg {
 namespace {
 
 LocalWay local_way(const Tick& tick, const Object& object) {
-  const bool may_skip = tick.scene.skips(FDCG_SKIP_ROTATION);
+  const bool may_skip = tick.scene.skips(FDCG_OPT_ROTATION);
   return {tick.pose_before(object).to_object(tick.finger.last, may_skip), object.now.to_object(tick.hip, may_skip)};
 }
 
@@ -52,7 +52,7 @@ Approach approach(const Tick& tick, const Object& object) {
   // Where the box alone keeps them apart, the HIP is within two radii of the centre, and within three until the gap is used up:
   // largest_move counts on it.
   if (!result.is_in_reach && outside < now.radius) {
-    const World local = now.to_object(tick.hip, tick.scene.skips(FDCG_SKIP_ROTATION)) - object.bounds.centre;
+    const World local = now.to_object(tick.hip, tick.scene.skips(FDCG_OPT_ROTATION)) - object.bounds.centre;
     result.gap = larger(outside, smaller(box_distance(local, object.bounds.half) * now.scale, now.radius));
   }
   return result;
@@ -68,7 +68,7 @@ struct Candidates {
   Candidate best[kMost];
   uint32_t count = 0, room;
   double nearest_gap_left_out = HUGE_VAL;
-  bool is_crowded = false;
+  bool has_overflowed = false;
 
   explicit Candidates(uint32_t room_for) : room(room_for) {}
 
@@ -82,7 +82,7 @@ struct Candidates {
     nearest_gap_left_out = smaller(nearest_gap_left_out, candidate.approach.gap);
     if (!candidate.approach.is_in_reach) return;
     nearest_gap_left_out = -HUGE_VAL;
-    is_crowded = true;
+    has_overflowed = true;
   }
 
   void add(const Candidate& candidate) {
@@ -102,7 +102,7 @@ struct Run {
 };
 
 // A loop without branches, so that compilers make vectors of it; each lane computes what a scalar would. The way's parameter is
-// clamped to 0 .. 1 by means of absolute values, which is exact but for rounding.
+// clamped to 0 .. 1 by means of absolute values, which is exact up to rounding error.
 void scan_run(const fdcg_scene& scene, World from, World way, double ahead, uint32_t first, Run* __restrict run) {
   const double* const cx = scene.scan(0) + first;
   const double* const cy = scene.scan(1) + first;
@@ -141,7 +141,7 @@ bool has_slot(const Tick& tick, uint32_t object) {
 // is always near.
 double find_candidates(const Tick& tick, double ahead, double rounding, Candidates* found) {
   const fdcg_scene& scene = tick.scene;
-  const bool by_sphere = scene.skips(FDCG_SKIP_FAR_OBJECTS);
+  const bool by_sphere = scene.skips(FDCG_OPT_FAR_OBJECTS);
   const World from = tick.finger.last, way = tick.hip - from;
   double least = HUGE_VAL;
   Run run;
@@ -208,18 +208,18 @@ void look(const Tick& tick) {
   Candidates found(scene.config.touches_per_finger - held);
   double clear = find_candidates(tick, kTicksAhead * (step_length + scene.tick_travel), rounding, &found);
   clear = smaller(clear, found.nearest_gap_left_out);
-  if (!scene.skips(FDCG_SKIP_FAR_OBJECTS) && (found.count > 0 || held > 0)) clear = -HUGE_VAL;  // look every tick
+  if (!scene.skips(FDCG_OPT_FAR_OBJECTS) && (found.count > 0 || held > 0)) clear = -HUGE_VAL;  // look every tick
   assign_slots(tick, found);
-  if (found.is_crowded) {
-    finger.flags |= FDCG_FINGER_CROWDED;
-    ++finger.crowded_steps;
+  if (found.has_overflowed) {
+    finger.flags |= FDCG_FINGER_CONTACT_OVERFLOW;
+    ++finger.overflowed_steps;
   }
   finger.anchor = tick.hip;
   // up to a quarter of the distance early
   finger.limit = clear * (kHoldBack - own_bits(scene, finger) * 0x1p-18) - rounding + scene.travel;
   finger.look = scene.look;
   finger.idle_steps = 0;
-  ++finger.looks;
+  ++finger.broadphase_updates;
 }
 
 }  // namespace fdcg

@@ -68,7 +68,7 @@ struct Finger {
   uint32_t touch_count;
   uint32_t idle_steps;  // in a row, in which no slot's object was in reach
   World force;
-  uint64_t non_finite_steps, crowded_steps, missed_ticks, looks;
+  uint64_t non_finite_steps, overflowed_steps, missed_ticks, broadphase_updates;
   fdcg_material material;
   uint32_t has_material, reserved;
 };
@@ -115,7 +115,7 @@ struct fdcg_scene {
   const fdcg_touch* touches(uint32_t finger) const {
     return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
   }
-  bool skips(uint32_t what) const { return (config.disabled_skips & what) == 0; }
+  bool skips(uint32_t what) const { return (config.disabled_optimizations & what) == 0; }
   // Where config.has_soft_fingers says so.
   fdcg::SoftFinger* soft_fingers() { return fdcg::part_at<fdcg::SoftFinger>(this, soft_fingers_at); }
   fdcg::SoftTouch* soft_touches(uint32_t finger) {

@@ -52,10 +52,10 @@ void settle_endless(fdcg_scene& scene, uint32_t index) {
 
 fdcg_params params_met(const Object& object, const Finger& finger) {
   fdcg_params params = object.params;
-  constexpr uint32_t kMixedInTheStep = FDCG_TERM_MATERIALS | FDCG_TERM_FINGER;
-  if (finger.has_material != 0 && object.graph != nullptr && (params.terms & kMixedInTheStep) != 0) {
+  constexpr uint32_t kMixedInTheStep = FDCG_FRICTION_MATERIALS | FDCG_FRICTION_FINGER;
+  if (finger.has_material != 0 && object.graph != nullptr && (params.friction_flags & kMixedInTheStep) != 0) {
     params.finger = finger.material;
-    params.terms |= FDCG_TERM_FINGER;
+    params.friction_flags |= FDCG_FRICTION_FINGER;
   } else if (finger.has_material != 0) {
     const fdcg_material own = {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
     const fdcg_material both = fdcg_combine_materials(&own, &finger.material);
@@ -115,7 +115,7 @@ void store(World from, double (&to)[3]) {
 void step_contact(const Object& object, const Finger& finger, fdcg_contact* contact, World at, fdcg_result* result) {
   fdcg_params room;
   const fdcg_params* params = &object.params;
-  if ((finger.has_material | params->terms) != 0) {
+  if ((finger.has_material | params->friction_flags) != 0) {
     room = params_met(object, finger);
     params = &room;
   }
@@ -127,7 +127,7 @@ void step_contact(const Object& object, const Finger& finger, fdcg_contact* cont
 // first on (deform_scene.cpp). One that is made anew comes from outside of all places where the mesh can be.
 bool is_renewed(const Tick& tick, const Object& object, const Slot& slot, bool missed) {
   if (slot.step != tick.finger.step) return true;
-  return object.deform == nullptr && (missed || !tick.scene.skips(FDCG_SKIP_RENEWAL));
+  return object.deform == nullptr && (missed || !tick.scene.skips(FDCG_OPT_RENEWAL));
 }
 
 void renew(const Object& object, fdcg_contact* contact) {
@@ -144,7 +144,7 @@ bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed,
   const Object& object = scene.objects()[slot.object];
   LocalWay way;
   if (slot.is_held != 0) {
-    way.to = object.now.to_object(tick.hip, scene.skips(FDCG_SKIP_ROTATION));
+    way.to = object.now.to_object(tick.hip, scene.skips(FDCG_OPT_ROTATION));
   } else {
     if (!can_have_met(tick, object, &way)) return false;
     if (is_renewed(tick, object, slot, missed)) {
@@ -168,7 +168,7 @@ bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed,
 
 fdcg_touch touch_of(const fdcg_scene& scene, uint32_t index, const fdcg_result& result) {
   const Object& object = scene.objects()[index];
-  const bool may_skip = scene.skips(FDCG_SKIP_ROTATION);
+  const bool may_skip = scene.skips(FDCG_OPT_ROTATION);
   fdcg_touch touch = {};
   touch.object = {index, object.generation};
   store(object.now.turned_to_world(vec(result.force_n), may_skip), touch.force_n);
@@ -227,7 +227,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
   const uint32_t missed = tick.is_second ? 0 : scene.tick - finger.tick - 1;
   if (missed > 0) finger.flags |= FDCG_FINGER_MISSED_TICK;
   finger.missed_ticks += missed;
-  if (!is_out_of_reach(scene, finger, tick.hip) || !scene.skips(FDCG_SKIP_OUT_OF_REACH)) look(tick);
+  if (!is_out_of_reach(scene, finger, tick.hip) || !scene.skips(FDCG_OPT_OUT_OF_REACH)) look(tick);
   if (finger.busy > 0) step_slots(tick, missed > 0, is_felt);
   finger.last = tick.hip;
   finger.tick = scene.tick;
@@ -236,7 +236,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
 
 inline void step_finger(fdcg_scene& scene, Finger& finger) {
   const bool is_in_step = scene.tick - finger.tick <= 1 && finger.is_started != 0 && finger.flags == 0;
-  if (finger.busy == 0 && is_in_step && is_out_of_reach(scene, finger, finger.hip) && scene.skips(FDCG_SKIP_OUT_OF_REACH)) {
+  if (finger.busy == 0 && is_in_step && is_out_of_reach(scene, finger, finger.hip) && scene.skips(FDCG_OPT_OUT_OF_REACH)) {
     finger.last = finger.hip;
     finger.tick = scene.tick;
     ++finger.step;
@@ -252,7 +252,7 @@ extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
   if (scene == nullptr) return;
   ++scene->tick;
   scene->tick_travel = 0;
-  if (!scene->skips(FDCG_SKIP_STILL)) {
+  if (!scene->skips(FDCG_OPT_STILL)) {
     for (uint32_t i = 0; i < scene->object_end; ++i) {
       if (scene->objects()[i].is_used != 0) fdcg::settle_object(*scene, i, true);
     }

@@ -132,7 +132,7 @@ void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_obj
   if (was_on) {
     tangent = twist_of(now, touch.reference, touch.normal);
     const Stretch stretch(touch.god_object - hip, touch.normal, object.now.scale, finger.radius_m, tangent);
-    if (stretch.depth > 0 && params.terms == 0) {
+    if (stretch.depth > 0 && params.friction_flags == 0) {
       const double share = kept(params, stretch, &touch.is_slipping);
       share_friction(stretch, share, touch.is_slipping != 0, &params);
       if (share < 1) {
@@ -155,7 +155,7 @@ void step_soft(fdcg_scene* scene, uint32_t finger_index, uint32_t slot, fdcg_obj
   if (!was_on) touch.is_slipping = 0;
   if (is_elsewhere) touch.reference = reference_for(now, normal, tangent);
   take_torque(object, met, finger, now, gap, tangent, &touch);
-  if (params.terms == 0) result->slipping = touch.is_slipping;
+  if (params.friction_flags == 0) result->slipping = touch.is_slipping;
 }
 
 fdcg_status no_room(fdcg_error* error) {
@@ -168,7 +168,7 @@ fdcg_status no_room(fdcg_error* error) {
 
 using namespace fdcg;
 
-extern "C" fdcg_status fdcg_scene_soften_finger(fdcg_scene* scene, fdcg_finger_id id, double radius_m, fdcg_error* error) {
+extern "C" fdcg_status fdcg_scene_set_finger_radius(fdcg_scene* scene, fdcg_finger_id id, double radius_m, fdcg_error* error) {
   if (find_finger(scene, id, error) == nullptr) return FDCG_E_ARGUMENT;
   if (scene->config.has_soft_fingers == 0) return no_room(error);
   if (radius_m != 0 && !(radius_m >= kLeastRadius_m && radius_m <= kMostRadius_m))
@@ -180,8 +180,8 @@ extern "C" fdcg_status fdcg_scene_soften_finger(fdcg_scene* scene, fdcg_finger_i
   return FDCG_OK;
 }
 
-extern "C" fdcg_status fdcg_scene_turn_finger(fdcg_scene* scene, fdcg_finger_id id, const double rotation_xyzw[4],
-                                              fdcg_error* error) {
+extern "C" fdcg_status fdcg_scene_set_finger_rotation(fdcg_scene* scene, fdcg_finger_id id, const double rotation_xyzw[4],
+                                                      fdcg_error* error) {
   if (find_finger(scene, id, error) == nullptr) return FDCG_E_ARGUMENT;
   if (scene->config.has_soft_fingers == 0) return no_room(error);
   if (rotation_xyzw == nullptr) return Message(error, FDCG_E_ARGUMENT).text("rotation_xyzw: null pointer");
@@ -200,8 +200,8 @@ extern "C" fdcg_status fdcg_scene_turn_finger(fdcg_scene* scene, fdcg_finger_id 
   return FDCG_OK;
 }
 
-extern "C" fdcg_status fdcg_scene_finger_torque(const fdcg_scene* scene, fdcg_finger_id id, double torque_n_m[3],
-                                                fdcg_error* error) {
+extern "C" fdcg_status fdcg_scene_get_finger_torque(const fdcg_scene* scene, fdcg_finger_id id, double torque_n_m[3],
+                                                    fdcg_error* error) {
   if (find_finger(const_cast<fdcg_scene*>(scene), id, error) == nullptr) return FDCG_E_ARGUMENT;
   if (torque_n_m == nullptr) return Message(error, FDCG_E_ARGUMENT).text("torque_n_m: null pointer");
   World sum = {0, 0, 0};

@@ -19,9 +19,9 @@ inline bool is_in_clear_ball(const fdcg_clear_ball& ball, Vec3<double> hip) {
   return dot(gap, gap) < ball.radius2;  // false where there is none
 }
 
-// How near a node may be; exact but for rounding where its nearest point is on its inside or on a side. Not asked to be nearer
-// than `nearest`: only what may be is worth its sides. A node whose corners lie off its plane is as near as that slab: a way
-// may enter it from beside.
+// How near a node may be; exact up to rounding error where its nearest point is on its inside or on a side. Not asked to be
+// nearer than `nearest`: only what may be is worth its sides. A node whose corners lie off its plane is as near as that slab: a
+// way may enter it from beside.
 template <class Real>
 inline Real node_distance(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> at, Real nearest) {
   const Real from_plane = absolute(node.plane().distance(at));

@@ -133,7 +133,7 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
       stack[waiting++] = first;
     }
   }
-  // Boxes cannot tell apart what reaches as far but for rounding; the neighbours of the one found may yet be nearer.
+  // Boxes cannot tell apart what reaches as far up to rounding error; the neighbours of the one found may yet be nearer.
   const uint32_t entries = corner.fan_count();
   for (bool goes_on = best.feature.state != FDCG_FREE; goes_on && work < kFanSearchWork; work += 2 * kFanWork) {
     const uint32_t here = best_entry;
@@ -144,10 +144,10 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
   return best;
 }
 
-// HIP is in front of the face that is nearest: free, but for rounding. Where it stands on a concave edge of that face at the
-// corner and behind the face across, edge and faces are as near as one another, and any of them may have been found: then it is
-// the edge's to say, unless it stands before the edge's end: the edge would hand the god-object back to the corner. So are the
-// two walls of a narrow slit that it stands between: one of them may hold it.
+// HIP is in front of the face that is nearest: free, up to rounding error. Where it stands on a concave edge of that face at
+// the corner and behind the face across, edge and faces are as near as one another, and any of them may have been found: then
+// it is the edge's to say, unless it stands before the edge's end: the edge would hand the god-object back to the corner. So
+// are the two walls of a narrow slit that it stands between: one of them may hold it.
 template <class Real>
 [[gnu::noinline]] Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner, Vec3<Real> t) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -192,9 +192,9 @@ inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<R
   return dot(t, corner.normal()) < 0 ? walk.active : kFree;
 }
 
-// A god-object beside the corner `point`, where an edge's rule left it (walk.hpp, leads_back), as far from the corner on `next`
-// instead, straight down: so it is no farther from the HIP than it was, which at the corner it might be. Free, the way begins
-// at the corner, lest it pass below a face of it. `t`: from the corner to the HIP.
+// A god-object beside the corner `point`, where an edge's rule left it (walk.hpp, snapping_increases_distance), as far from the
+// corner on `next` instead, straight down: so it is no farther from the HIP than it was, which at the corner it might be. Free,
+// the way begins at the corner, lest it pass below a face of it. `t`: from the corner to the HIP.
 template <class Real>
 [[gnu::noinline]] Vec3<Real> moved_beside(const Walk<Real>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
   if (next == kFree) return point;

@@ -50,12 +50,12 @@ inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Ve
 }
 
 template <class Real>
-[[gnu::noinline, gnu::cold]] void stand_on_edge(Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
+[[gnu::noinline, gnu::cold]] void select_material_of_edge(Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
   const uint32_t a = connection.node(0), b = connection.node(1);
   double share = 0.5;
   if (b != FDCG_NONE)
     share = share_of_load(widen(walk.graph.node(a).normal()), widen(walk.graph.node(b).normal()), widen(across));
-  walk.friction.terms->stand_on_edge(a, b, share);
+  walk.friction.terms->select_material_of_edge(a, b, share);
 }
 
 // Behind one face of a convex edge, over it and not over the other, and yet in front of the other's plane: that is no place,
@@ -87,8 +87,8 @@ inline Decision edge_rule(Walk<Real>& walk) {
   const Real foot = line.parameter(walk.hip);
   const Real ahead = line.parameter(walk.god_object) - foot;
   const Vec3<Real> across = walk.hip - (line.start + line.direction * foot);
-  if constexpr (FDCG_WITH_TERMS) {
-    if (walk.friction.terms != nullptr) stand_on_edge(walk, connection, across);
+  if constexpr (FDCG_WITH_FRICTION_TERMS) {
+    if (walk.friction.terms != nullptr) select_material_of_edge(walk, connection, across);
   }
   const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, across));
   if (slip.is_rest) return rest();

@@ -9,8 +9,8 @@ namespace fdcg {
 // The first of the node's Voronoi planes that a move crosses; local_side is FDCG_NONE if there is none. GO sits on such planes
 // all the time, so a crossing is "ends on or beyond, and further out than it began", not a change of sign.
 //
-// A move that ends on a plane but for rounding has crossed it, if at all, anywhere on its way: one along a side from a corner
-// might be stopped in that corner, for ever. It crosses where it ends, unless it crosses another side before.
+// A move that ends on a plane up to rounding error has crossed it, if at all, anywhere on its way: one along a side from a
+// corner might be stopped in that corner, for ever. It crosses where it ends, unless it crosses another side before.
 template <class Real>
 struct Crossing {
   uint32_t local_side = FDCG_NONE;
@@ -155,10 +155,10 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;
   walk.graph.prefetch_crossing(node, side);
-  const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.lost;
-  const Vec3<Real> ahead = walk.lost + way * move.crossing.fraction;  // from `from` to the crossing
+  const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.rounding_residual;
+  const Vec3<Real> ahead = walk.rounding_residual + way * move.crossing.fraction;  // from `from` to the crossing
   const Feature landed = place_on_rim(walk, node, side, from + ahead);
-  if (landed.state == FDCG_EDGE) walk.lost = (from - walk.god_object) + ahead;
+  if (landed.state == FDCG_EDGE) walk.rounding_residual = (from - walk.god_object) + ahead;
   return go_to(landed);
 }
 
@@ -166,10 +166,10 @@ template <class Real>
 inline Decision face_rule(Walk<Real>& walk) {
   const NodeRef<Real> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
-  if constexpr (FDCG_WITH_TERMS) {
-    if (walk.friction.terms != nullptr) walk.friction.terms->stand_on_face(walk.active.index);
+  if constexpr (FDCG_WITH_FRICTION_TERMS) {
+    if (walk.friction.terms != nullptr) walk.friction.terms->select_material_of_face(walk.active.index);
   }
-  const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.lost;
+  const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.rounding_residual;
   return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, reach));
 }
 

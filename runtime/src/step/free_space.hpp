@@ -49,7 +49,7 @@ template <class Real>
   arrive(walk, sweep, to, first);
   const bool is_held = norm1(walk.hip - to) <= walk.hip_bound;  // a hand that has gone on may be let go by both
   const bool is_where_it_was = is_held && first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
-  carried->in_place = is_where_it_was ? carried->in_place + 1 : 0;
+  carried->stalled_sweeps = is_where_it_was ? carried->stalled_sweeps + 1 : 0;
   return true;
 }
 
@@ -114,9 +114,9 @@ template <class Real>
   }
   // Two features at one point may hand the contact to one another by way of free space. Within a tick the trail sees that; here
   // each turn has taken a tick, and the contact rests where it is.
-  constexpr uint32_t kMostInPlace = 4;
-  if (!(left == kFree) && carried->in_place >= kMostInPlace) {
-    carried->in_place = 0;
+  constexpr uint32_t kMostStalledSweeps = 4;
+  if (!(left == kFree) && carried->stalled_sweeps >= kMostStalledSweeps) {
+    carried->stalled_sweeps = 0;
     walk.active = left;
     return 0;
   }
@@ -125,7 +125,7 @@ template <class Real>
   const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy != nullptr;
   if (is_still || (may_look && is_in_new_ball(walk.graph, from, to, space->ball))) {
     walk.place(to, kFree);
-    carried->in_place = 0;
+    carried->stalled_sweeps = 0;
     return 0;
   }
   walk.god_object = from;
@@ -133,12 +133,19 @@ template <class Real>
   FirstHit<Real> first;
   if (sweep.run(&first)) {
     arrive(walk, sweep, to, first);
-    if (walk.active == kFree) carried->in_place = 0;
+    if (walk.active == kFree) carried->stalled_sweeps = 0;
     return 0;
   }
-  *carried = {
-      {to.x, to.y, to.z}, first.fraction, first.feature.state, first.feature.index, first.node, left.state, left.index, 0, 1,
-      carried->in_place};
+  *carried = {{to.x, to.y, to.z},
+              first.fraction,
+              first.feature.state,
+              first.feature.index,
+              first.node,
+              left.state,
+              left.index,
+              0,
+              1,
+              carried->stalled_sweeps};
   walk.active = walk.seat = kFree;
   if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
   return 0;

@@ -33,7 +33,7 @@ struct Friction {
   // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
   // the rounding of its own place. Squares, so that rest costs no root.
   Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
-    if constexpr (FDCG_WITH_TERMS) {
+    if constexpr (FDCG_WITH_FRICTION_TERMS) {
       if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
     }
     constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);

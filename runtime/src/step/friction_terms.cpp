@@ -10,19 +10,19 @@
 
 #include "base/config.hpp"
 
-#if FDCG_WITH_TERMS
+#if FDCG_WITH_FRICTION_TERMS
 namespace fdcg {
 namespace {
 
 constexpr double kSteepest = 0.6495190528383290;  // 3 sqrt(3) / 8: of 1 / (1 + x^2), at x = 1 / sqrt(3)
 constexpr double kStickAgain = 1 - 0x1p-20;       // as in friction.hpp, where sticking and slipping are two coefficients
 
-// How steeply the curve may fall for one solution down to curve_depth_m, in seconds a metre.
+// How steeply the curve may fall for one solution down to unique_solution_depth_m, in seconds a metre.
 double steepest_allowed(const fdcg_params& params, const fdcg_material& material) {
-  const auto has = [&](uint32_t term) { return (params.terms & term) != 0; };
-  const double give = has(FDCG_TERM_PRESLIDING) ? 1 + material.stiffness_n_per_m / params.presliding_n_per_m : 1;
-  const double time_s = (has(FDCG_TERM_LAG) ? params.friction_lag_s : 0) + params.tick_s / 4;
-  return time_s / (give * params.curve_depth_m);
+  const auto has = [&](uint32_t term) { return (params.friction_flags & term) != 0; };
+  const double give = has(FDCG_FRICTION_PRESLIDING) ? 1 + material.stiffness_n_per_m / params.presliding_n_per_m : 1;
+  const double time_s = (has(FDCG_FRICTION_LAG) ? params.friction_lag_s : 0) + params.tick_s / 4;
+  return time_s / (give * params.unique_solution_depth_m);
 }
 
 fdcg_material own_material(const fdcg_params& params) {
@@ -37,11 +37,11 @@ FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph* graph, const
   terms.graph = graph;
   terms.unit_m = graph != nullptr ? graph->header->metres_per_unit : 1;
   terms.material = own_material(params);
-  if (terms.has(FDCG_TERM_FINGER)) terms.material = fdcg_combine_materials(&terms.material, &params.finger);
+  if (terms.has(FDCG_FRICTION_FINGER)) terms.material = fdcg_combine_materials(&terms.material, &params.finger);
   if (terms.has_springs()) terms.held_stiffness = contact.stiffness_n_per_m;
-  const double share = terms.has(FDCG_TERM_LAG) ? params.tick_s / (params.tick_s + params.friction_lag_s) : 1;
+  const double share = terms.has(FDCG_FRICTION_LAG) ? params.tick_s / (params.tick_s + params.friction_lag_s) : 1;
   terms.per_way = share / params.tick_s;
-  terms.lagged = terms.has(FDCG_TERM_LAG) ? (1 - share) * contact.slip_m_per_s / terms.unit_m : 0;
+  terms.lagged = terms.has(FDCG_FRICTION_LAG) ? (1 - share) * contact.slip_m_per_s / terms.unit_m : 0;
   return terms;
 }
 
@@ -49,15 +49,15 @@ fdcg_material FrictionTerms::material_of(uint32_t node) const {
   fdcg_material found = own_material(*params);
   if (graph->node_materials != nullptr && graph->node_materials[node] < params->material_count)
     found = params->materials[graph->node_materials[node]];
-  return has(FDCG_TERM_FINGER) ? fdcg_combine_materials(&found, &params->finger) : found;
+  return has(FDCG_FRICTION_FINGER) ? fdcg_combine_materials(&found, &params->finger) : found;
 }
 
-void FrictionTerms::stand_on_face(uint32_t node) {
-  if (has(FDCG_TERM_MATERIALS)) material = material_of(node);
+void FrictionTerms::select_material_of_face(uint32_t node) {
+  if (has(FDCG_FRICTION_MATERIALS)) material = material_of(node);
 }
 
-void FrictionTerms::stand_on_edge(uint32_t a, uint32_t b, double share) {
-  if (!has(FDCG_TERM_MATERIALS)) return;
+void FrictionTerms::select_material_of_edge(uint32_t a, uint32_t b, double share) {
+  if (!has(FDCG_FRICTION_MATERIALS)) return;
   material = material_of(a);
   if (b == FDCG_NONE) return;
   const fdcg_material other = material_of(b);
@@ -68,20 +68,20 @@ void FrictionTerms::stand_on_edge(uint32_t a, uint32_t b, double share) {
 
 double FrictionTerms::mu(double speed, double stribeck) const {
   double sum = material.mu_dynamic;
-  if (has(FDCG_TERM_STRIBECK)) {
+  if (has(FDCG_FRICTION_STRIBECK)) {
     const double x = speed / stribeck;
     sum += (material.mu_static - material.mu_dynamic) / (1 + x * x);
   }
-  return has(FDCG_TERM_VISCOUS) ? sum + params->viscous_s_per_m * unit_m * speed : sum;
+  return has(FDCG_FRICTION_VISCOUS) ? sum + params->viscous_s_per_m * unit_m * speed : sum;
 }
 
 double FrictionTerms::fall(double speed, double stribeck) const {
   double sum = 0;
-  if (has(FDCG_TERM_STRIBECK)) {
+  if (has(FDCG_FRICTION_STRIBECK)) {
     const double x = speed / stribeck, y = 1 + x * x;
     sum = (material.mu_static - material.mu_dynamic) * 2 * x / (y * y * stribeck);
   }
-  return has(FDCG_TERM_VISCOUS) ? sum - params->viscous_s_per_m * unit_m : sum;
+  return has(FDCG_FRICTION_VISCOUS) ? sum - params->viscous_s_per_m * unit_m : sum;
 }
 
 // Newton's steps, kept between bounds that hold the solution; should they ever be slow, every other step halves these.
@@ -111,17 +111,17 @@ void FrictionTerms::go_on_to(Vec3<double> god_object) {
 
 // No smaller than has one solution at this depth, whatever two materials come to.
 double FrictionTerms::stribeck_at(double load) const {
-  if (!has(FDCG_TERM_STRIBECK)) return 1;
-  const double limit = steepest_allowed(*params, material) + (has(FDCG_TERM_VISCOUS) ? params->viscous_s_per_m : 0);
+  if (!has(FDCG_FRICTION_STRIBECK)) return 1;
+  const double limit = steepest_allowed(*params, material) + (has(FDCG_FRICTION_VISCOUS) ? params->viscous_s_per_m : 0);
   const double least = kSteepest * (material.mu_static - material.mu_dynamic) / limit;
-  return larger(params->stribeck_m_per_s, least) / unit_m * larger(1, load * unit_m / params->curve_depth_m);
+  return larger(params->stribeck_m_per_s, least) / unit_m * larger(1, load * unit_m / params->unique_solution_depth_m);
 }
 
 TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, double epsilon, bool* is_slipping) {
   go_on_to(god_object);
   const double reach = load * give(), gap = root(gap2), from = lagged + per_way * way;
   const double stribeck = stribeck_at(load);
-  if (has(FDCG_TERM_STRIBECK)) {
+  if (has(FDCG_FRICTION_STRIBECK)) {
     *is_slipping = gap > reach * mu(from, stribeck);
   } else {
     const double dynamic = mu(from, stribeck), more = larger(0, material.mu_static - material.mu_dynamic);
@@ -133,15 +133,15 @@ TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, 
     left = reach * mu(from + per_way * solve(gap, reach, from, stribeck), stribeck);
     is_rest = gap <= left + epsilon * (norm1(god_object) / 2 + 4 * left);
   }
-  if (has(FDCG_TERM_STRIBECK) && way > 0) *is_slipping = true;
+  if (has(FDCG_FRICTION_STRIBECK) && way > 0) *is_slipping = true;
   return {is_rest, left};
 }
 
 Steepness steepness_of(const fdcg_params& params, const fdcg_material& material) {
-  const auto has = [&](uint32_t term) { return (params.terms & term) != 0; };
+  const auto has = [&](uint32_t term) { return (params.friction_flags & term) != 0; };
   double fall = 0;
-  if (has(FDCG_TERM_STRIBECK)) fall += kSteepest * (material.mu_static - material.mu_dynamic) / params.stribeck_m_per_s;
-  if (has(FDCG_TERM_VISCOUS)) fall -= params.viscous_s_per_m;
+  if (has(FDCG_FRICTION_STRIBECK)) fall += kSteepest * (material.mu_static - material.mu_dynamic) / params.stribeck_m_per_s;
+  if (has(FDCG_FRICTION_VISCOUS)) fall -= params.viscous_s_per_m;
   return {fall, steepest_allowed(params, material)};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Friction beyond two coefficients: the curve over slip speed, presliding, and materials (fdcg_term). What a tick knows of
-// them; the rules ask it through Friction::slip. Lengths in the graph's units, in double precision whatever the graph's.
+// Friction beyond two coefficients: the curve over slip speed, presliding, and materials (fdcg_friction_flag). What a tick
+// knows of them; the rules ask it through Friction::slip. Lengths in the graph's units, in double precision whatever the
+// graph's.
 #pragma once
 
 #include "fdcg/fdcg.h"
@@ -27,17 +28,17 @@ struct FrictionTerms {
   bool has_last;
   Vec3<double> yielded;  // in the end: from the remembered place to the god-object that is felt
 
-  [[nodiscard]] bool has(uint32_t term) const { return (params->terms & term) != 0; }
+  [[nodiscard]] bool has(uint32_t term) const { return (params->friction_flags & term) != 0; }
   // Whether what the contact stores may change but by the hand: see settle() in yield.hpp.
-  [[nodiscard]] bool has_springs() const { return has(FDCG_TERM_MATERIALS | FDCG_TERM_PRESLIDING); }
+  [[nodiscard]] bool has_springs() const { return has(FDCG_FRICTION_MATERIALS | FDCG_FRICTION_PRESLIDING); }
   // What presliding makes of a cone: the remembered place may be so much further from the surface point.
   [[nodiscard]] double give() const {
-    return has(FDCG_TERM_PRESLIDING) ? 1 + material.stiffness_n_per_m / params->presliding_n_per_m : 1;
+    return has(FDCG_FRICTION_PRESLIDING) ? 1 + material.stiffness_n_per_m / params->presliding_n_per_m : 1;
   }
 
-  void stand_on_face(uint32_t node);
+  void select_material_of_face(uint32_t node);
   // `share`: of the load that node a bears.
-  void stand_on_edge(uint32_t a, uint32_t b, double share);
+  void select_material_of_edge(uint32_t a, uint32_t b, double share);
   // Friction::slip with terms. Cost: a few hundred instructions, at most kMostSolveSteps times some 50.
   TermSlip slip(Vec3<double> god_object, double gap2, double load, double epsilon, bool* is_slipping);
   void go_on_to(Vec3<double> god_object);

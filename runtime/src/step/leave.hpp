@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the way to the HIP starts when a feature lets the god-object go (contact-model section 4).
 //
-// The god-object is on its face or edge but for rounding, which may put it into the solid. From there the way could pass below
-// the face that it should pass over, and under the rim beyond, without ever meeting the surface from outside. So it starts in
-// front, by exact sign, of those faces of which the HIP is: the faces that are left out of the sweep then lie behind it.
+// The god-object is on its face or edge up to rounding error, which may put it into the solid. From there the way could pass
+// below the face that it should pass over, and under the rim beyond, without ever meeting the surface from outside. So it
+// starts in front, by exact sign, of those faces of which the HIP is: the faces that are left out of the sweep then lie behind
+// it.
 #pragma once
 
 #include "step/walk.hpp"

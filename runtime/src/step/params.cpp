@@ -54,10 +54,10 @@ fdcg_status check_material(const Owner& owner, const fdcg_material& material, do
   return check_ranges(owner, ranges, 3, material.mu_dynamic, error);
 }
 
-#if FDCG_WITH_TERMS
+#if FDCG_WITH_FRICTION_TERMS
 // One solution at every speed, on this material.
 fdcg_status check_steepness(const fdcg_params& params, const Owner& owner, const fdcg_material& material, fdcg_error* error) {
-  const bool has_finger = (params.terms & FDCG_TERM_FINGER) != 0;
+  const bool has_finger = (params.friction_flags & FDCG_FRICTION_FINGER) != 0;
   const Steepness steep = steepness_of(params, has_finger ? fdcg_combine_materials(&material, &params.finger) : material);
   if (steep.fall <= steep.limit) return FDCG_OK;
   Message message(error, FDCG_E_ARGUMENT);
@@ -68,30 +68,31 @@ fdcg_status check_steepness(const fdcg_params& params, const Owner& owner, const
       .text(" s/m, allowed ")
       .real(steep.limit)
       .text(
-          " s/m to hold down to curve_depth_m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower "
-          "curve_depth_m");
+          " s/m to hold down to unique_solution_depth_m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower "
+          "unique_solution_depth_m");
 }
 
 fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
-  const auto has = [&](uint32_t term) { return (params.terms & term) != 0; };
+  const auto has = [&](uint32_t term) { return (params.friction_flags & term) != 0; };
   const Owner owner = {"params", FDCG_NONE}, finger = {"params.finger", FDCG_NONE};
-  if (params.terms > FDCG_TERM_ALL) {
+  if (params.friction_flags > FDCG_FRICTION_ALL) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("params.terms is ")
-        .number(params.terms)
-        .text(", allowed are sums of fdcg_term: 0 to ")
-        .number(FDCG_TERM_ALL);
+        .text("params.friction_flags is ")
+        .number(params.friction_flags)
+        .text(", allowed are sums of fdcg_friction_flag: 0 to ")
+        .number(FDCG_FRICTION_ALL);
   }
-  const Range ranges[] = {{"stribeck_m_per_s", has(FDCG_TERM_STRIBECK) ? params.stribeck_m_per_s : 1, kLeast, kLargest},
-                          {"viscous_s_per_m", has(FDCG_TERM_VISCOUS) ? params.viscous_s_per_m : 0, 0, kLargest},
-                          {"presliding_n_per_m", has(FDCG_TERM_PRESLIDING) ? params.presliding_n_per_m : 1, kLeast, kLargest},
-                          {"friction_lag_s", has(FDCG_TERM_LAG) ? params.friction_lag_s : 0, 0, kLargest},
-                          {"curve_depth_m", has(FDCG_TERM_STRIBECK) ? params.curve_depth_m : 1, kLeast, kLargest}};
+  const Range ranges[] = {
+      {"stribeck_m_per_s", has(FDCG_FRICTION_STRIBECK) ? params.stribeck_m_per_s : 1, kLeast, kLargest},
+      {"viscous_s_per_m", has(FDCG_FRICTION_VISCOUS) ? params.viscous_s_per_m : 0, 0, kLargest},
+      {"presliding_n_per_m", has(FDCG_FRICTION_PRESLIDING) ? params.presliding_n_per_m : 1, kLeast, kLargest},
+      {"friction_lag_s", has(FDCG_FRICTION_LAG) ? params.friction_lag_s : 0, 0, kLargest},
+      {"unique_solution_depth_m", has(FDCG_FRICTION_STRIBECK) ? params.unique_solution_depth_m : 1, kLeast, kLargest}};
   fdcg_status status = check_ranges(owner, ranges, sizeof ranges / sizeof ranges[0], -1, error);
-  if (status == FDCG_OK && has(FDCG_TERM_FINGER)) status = check_material(finger, params.finger, kLeast, error);
+  if (status == FDCG_OK && has(FDCG_FRICTION_FINGER)) status = check_material(finger, params.finger, kLeast, error);
   if (status == FDCG_OK)
     status = check_steepness(params, owner, {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, error);
-  if (status != FDCG_OK || !has(FDCG_TERM_MATERIALS)) return status;
+  if (status != FDCG_OK || !has(FDCG_FRICTION_MATERIALS)) return status;
   if (params.materials == nullptr && params.material_count > 0)
     return Message(error, FDCG_E_ARGUMENT).text("params.materials: null pointer, though material_count is not 0");
   for (uint32_t i = 0; i < params.material_count && status == FDCG_OK; ++i) {
@@ -103,11 +104,11 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
 }
 #else
 fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
-  if (params.terms == 0) return FDCG_OK;
+  if (params.friction_flags == 0) return FDCG_OK;
   return Message(error, FDCG_E_ARGUMENT)
-      .text("params.terms is ")
-      .number(params.terms)
-      .text(", but this library was built without them; build it with FDCG_WITH_TERMS");
+      .text("params.friction_flags is ")
+      .number(params.friction_flags)
+      .text(", but this library was built without them; build it with FDCG_WITH_FRICTION_TERMS");
 }
 #endif
 
@@ -119,7 +120,7 @@ fdcg_status check_finger_material(const fdcg_material& material, fdcg_error* err
 
 }  // namespace fdcg
 
-extern "C" void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes) {
+extern "C" void fdcg_params_init(fdcg_params* params, uint32_t struct_bytes) {
   fdcg_params defaults = {};
   defaults.edge_friction = FDCG_EDGE_WEDGE;
   defaults.mu_static = 0.6;
@@ -131,7 +132,7 @@ extern "C" void fdcg_init_params(fdcg_params* params, uint32_t struct_bytes) {
   defaults.viscous_s_per_m = 0.1;
   defaults.presliding_n_per_m = 1e5;
   defaults.friction_lag_s = 0.03;
-  defaults.curve_depth_m = 0.01;
+  defaults.unique_solution_depth_m = 0.01;
   defaults.finger = {1, 1, 1e4};
   fdcg::fill_defaults(params, defaults, struct_bytes);
 }
@@ -141,11 +142,11 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
   if (params == nullptr) return Message(error, FDCG_E_ARGUMENT).text("params: null pointer");
   fdcg_params room;
   if (const fdcg_status status =
-          check_struct_bytes(params->struct_bytes, sizeof(fdcg_params), "params", "; start from fdcg_default_params()", error);
+          check_struct_bytes(params->struct_bytes, sizeof(fdcg_params), "params", "; start from fdcg_make_params()", error);
       status != FDCG_OK) {
     return status;
   }
-  params = &in_full(*params, &room, fdcg_init_params);
+  params = &in_full(*params, &room, fdcg_params_init);
   const Range ranges[] = {{"mu_dynamic", params->mu_dynamic, 0, kLargest},
                           {"mu_static", params->mu_static, params->mu_dynamic, kLargest},
                           {"stiffness_n_per_m", params->stiffness_n_per_m, 0, kLargest},
@@ -154,12 +155,12 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
   const fdcg_status status =
       check_ranges({"params", FDCG_NONE}, ranges, sizeof ranges / sizeof ranges[0], params->mu_dynamic, error);
   if (status != FDCG_OK) return status;
-  if (params->disabled_skips > FDCG_STEP_SKIP_ALL) {
+  if (params->disabled_optimizations > FDCG_STEP_OPT_ALL) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("params.disabled_skips is ")
-        .number(params->disabled_skips)
+        .text("params.disabled_optimizations is ")
+        .number(params->disabled_optimizations)
         .text(", allowed are sums of fdcg_step_skip: 0 to ")
-        .number(FDCG_STEP_SKIP_ALL);
+        .number(FDCG_STEP_OPT_ALL);
   }
   if (params->edge_friction > FDCG_EDGE_PAPER) {
     return Message(error, FDCG_E_ARGUMENT)
@@ -172,7 +173,7 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
     return Message(error, FDCG_E_ARGUMENT)
         .text("params.reserved is ")
         .number(reserved)
-        .text(", allowed 0; start from fdcg_default_params()");
+        .text(", allowed 0; start from fdcg_make_params()");
   }
   return check_terms(*params, error);
 }

@@ -47,23 +47,23 @@ template <class Real>
 // The material of a feature that no rule may have asked for in this tick. At a vertex the stiffness of before holds; a contact
 // that begins there has that of a face beside it.
 template <class Real>
-[[gnu::noinline, gnu::cold]] void stand_on(const Walk<Real>& walk, Feature at) {
+[[gnu::noinline, gnu::cold]] void select_material(const Walk<Real>& walk, Feature at) {
   FrictionTerms& terms = *walk.friction.terms;
-  if (at.state == FDCG_FACE) terms.stand_on_face(at.index);
+  if (at.state == FDCG_FACE) terms.select_material_of_face(at.index);
   if (at.state == FDCG_EDGE) {
     const ConnectionRef<Real> connection = walk.graph.connection(at.index);
-    terms.stand_on_edge(connection.node(0), connection.node(1), 0.5);
+    terms.select_material_of_edge(connection.node(0), connection.node(1), 0.5);
   }
   if (at.state == FDCG_VERTEX) {
     const CornerRef<Real> corner = walk.graph.corner(at.index);
-    terms.stand_on_face(corner.is_busy() ? walk.graph.fan_entry(corner, 0).node : corner.first_node());
+    terms.select_material_of_face(corner.is_busy() ? walk.graph.fan_entry(corner, 0).node : corner.first_node());
     if (terms.held_stiffness > 0) terms.material.stiffness_n_per_m = terms.held_stiffness;
   }
 }
 
 // From the remembered place to the god-object that is felt. Cost: one plane, and those of the face's concave edges.
 template <class Real>
-[[gnu::noinline, gnu::cold]] Vec3<double> yielding(const Walk<Real>& walk, Feature at, Vec3<double> anchor) {
+[[gnu::noinline, gnu::cold]] Vec3<double> presliding_offset(const Walk<Real>& walk, Feature at, Vec3<double> anchor) {
   const Vec3<double> stays = {0, 0, 0}, hip = widen(walk.hip);
   const double share = 1 - 1 / walk.friction.terms->give();
   if (!(share > 0)) return stays;
@@ -99,11 +99,11 @@ template <class Real>
   const bool has_held = terms.held_stiffness > 0;
   const bool is_still = has_held && was == walk.active && before.x == now.x && before.y == now.y && before.z == now.z;
   if (has_held && !is_still) {
-    stand_on(walk, was);
-    most = terms.held_stiffness * stored(terms, before - hip, yielding(walk, was, before));
+    select_material(walk, was);
+    most = terms.held_stiffness * stored(terms, before - hip, presliding_offset(walk, was, before));
   }
-  stand_on(walk, walk.active);
-  terms.yielded = yielding(walk, walk.active, now);
+  select_material(walk, walk.active);
+  terms.yielded = presliding_offset(walk, walk.active, now);
   const double own = terms.material.stiffness_n_per_m;
   if (!has_held) return own;
   if (is_still) return terms.held_stiffness < own ? terms.held_stiffness : own;

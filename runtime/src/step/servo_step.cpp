@@ -55,11 +55,11 @@ class Trail {
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
 
-  // Where the step would rest. The next tick knows nothing of Walk::lost: a rest must be one without it. So it is forgotten,
-  // and the way goes on as that tick would go; once for each time that the god-object came nearer.
-  bool begins_again(Walk<Real>& walk) {
-    if (has_begun_again_ || norm1(walk.lost) == 0) return false;
-    walk.lost = {0, 0, 0};
+  // Where the step would rest. The next tick knows nothing of Walk::rounding_residual: a rest must be one without it. So it is
+  // forgotten, and the way goes on as that tick would go; once for each time that the god-object came nearer.
+  bool retry_without_residual(Walk<Real>& walk) {
+    if (has_begun_again_ || norm1(walk.rounding_residual) == 0) return false;
+    walk.rounding_residual = {0, 0, 0};
     has_begun_again_ = true;
     visited_[0] = key(walk.active);
     count_ = 1;
@@ -114,22 +114,22 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
     if (decision.is_rest()) {
-      if (trail.begins_again(walk)) continue;
-      space->carried->in_place = 0;
+      if (trail.retry_without_residual(walk)) continue;
+      space->carried->stalled_sweeps = 0;
       return progress;
     }
     walk.active = decision.next();
     ++progress.transitions;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
-      if (trail.has_come_nearer()) space->carried->in_place = 0;
+      if (trail.has_come_nearer()) space->carried->stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       step_clear_of(walk, at);
       progress.flags |= sweep_to_hip(walk, at, stood, space);
       if (walk.active == kFree) return progress;
       ++progress.transitions;
     }
-    if (trail.has_met_again(walk) && !trail.begins_again(walk)) return progress;
+    if (trail.has_met_again(walk) && !trail.retry_without_residual(walk)) return progress;
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
       progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
@@ -216,7 +216,7 @@ inline void store(Vec3<Real> from, double (&to)[3]) {
   to[2] = from.z;
 }
 
-inline void say_where(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
+inline void write_position(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
   store((vec(contact.god_object) + vec(header.origin)) * header.metres_per_unit, result->god_object_m);
   result->state = contact.state;
   result->feature = contact.state == FDCG_FREE ? FDCG_NONE : contact.feature;  // a contact of zeros is free, and on nothing
@@ -245,8 +245,8 @@ inline Friction<Real> friction_of(const fdcg_params& params, const fdcg_contact&
 }
 
 // The force of so much spring, damped along the same line. Call before the contact learns of the new HIP.
-inline void push(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, double newtons_per_metre,
-                 Vec3<double> local_hip, Vec3<double> spring, fdcg_result* result) {
+inline void spring_damper_force(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact,
+                                double newtons_per_metre, Vec3<double> local_hip, Vec3<double> spring, fdcg_result* result) {
   if (params.damping_n_s_per_m > 0) {
     newtons_per_metre = damped(params, newtons_per_metre, spring, local_hip - vec(contact.hip));
   }
@@ -258,7 +258,7 @@ template <class Real>
 inline void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, Vec3<Real> hip,
                     Vec3<Real> god_object, fdcg_result* result) {
   const Vec3<double> local_hip = widen(hip);
-  push(header, params, contact, params.stiffness_n_per_m, local_hip, widen(god_object) - local_hip, result);
+  spring_damper_force(header, params, contact, params.stiffness_n_per_m, local_hip, widen(god_object) - local_hip, result);
 }
 
 // The same with terms of friction.
@@ -269,11 +269,11 @@ template <class Real>
   contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
   if (walk.active == kFree) return;
   if (terms.has_last) terms.go_on_to(widen(walk.god_object));
-  if (terms.has(FDCG_TERM_LAG)) contact->slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
+  if (terms.has(FDCG_FRICTION_LAG)) contact->slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
   const double stiffness = settle(walk, {contact->state, contact->feature}, vec(contact->god_object));
   if (terms.has_springs()) contact->stiffness_n_per_m = stiffness;
   const Vec3<double> hip = widen(walk.hip), spring = widen(walk.god_object) - hip + terms.yielded;
-  push(*walk.graph.header, params, *contact, stiffness, hip, spring, result);
+  spring_damper_force(*walk.graph.header, params, *contact, stiffness, hip, spring, result);
 }
 
 // The long way: drives the rules from where the contact stands. `move` is null, or what its face has already made of it.
@@ -284,7 +284,7 @@ template <class Real>
   const Feature start = walk.active;
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
-  FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_skips & FDCG_STEP_SKIP_CLEAR_BALL) == 0,
+  FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
                      kSweepWork};
   const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &space);
   FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
@@ -295,7 +295,7 @@ template <class Real>
   const bool is_free = walk.active == kFree;
   if (walk.friction.terms == nullptr) {
     if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
-  } else if constexpr (FDCG_WITH_TERMS) {
+  } else if constexpr (FDCG_WITH_FRICTION_TERMS) {
     respond_with_terms(walk, contact, result);
   }
   store(walk.god_object, contact->god_object);
@@ -325,7 +325,7 @@ template <class Real>
                      kRuleWork},
                     nullptr, params, contact, result);
   store(hip, contact->hip);
-  say_where(*raw.header, *contact, result);
+  write_position(*raw.header, *contact, result);
   store(vec(result->god_object_m) + terms.yielded * raw.header->metres_per_unit, result->god_object_m);
 }
 
@@ -340,18 +340,19 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   if (!to_local(header, hip_object_m, RealLimits<Real>::kFar, &local_hip)) {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
-    say_where(header, *contact, result);
+    write_position(header, *contact, result);
     return;
   }
   Vec3<Real> hip;
   round_to(local_hip, &hip);
   if (contact->started == 0) {
     start(hip, contact);
-  } else if (is_in_clear_ball(contact->clear_ball, local_hip) && (params.disabled_skips & FDCG_STEP_SKIP_CLEAR_BALL) == 0) {
+  } else if (is_in_clear_ball(contact->clear_ball, local_hip) &&
+             (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0) {
     store(hip, contact->god_object);  // free: a contact that is not has no such ball
     store(hip, contact->hip);
-  } else if (FDCG_WITH_TERMS && params.terms != 0) {
-    if constexpr (FDCG_WITH_TERMS) return step_with_terms<Real>(raw, params, hip, contact, result);
+  } else if (FDCG_WITH_FRICTION_TERMS && params.friction_flags != 0) {
+    if constexpr (FDCG_WITH_FRICTION_TERMS) return step_with_terms<Real>(raw, params, hip, contact, result);
   } else {
     const GraphView<Real> graph(raw);
     const Real bound = plane_rounding_bound(graph, hip);
@@ -366,7 +367,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
       contact->slipping = friction.is_slipping ? 1 : 0;
-      contact->sweep.in_place = 0;
+      contact->sweep.stalled_sweeps = 0;
       respond(header, params, *contact, hip, move.target, result);
       store(move.target, contact->god_object);
     } else {
@@ -382,7 +383,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     }
     store(hip, contact->hip);
   }
-  say_where(header, *contact, result);
+  write_position(header, *contact, result);
 }
 
 }  // namespace
@@ -392,7 +393,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
-  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_init_params);
+  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_params_init);
   fdcg::with_real_of(*graph->header,
                      [&](auto real) { fdcg::step<decltype(real)>(*graph, all_params, contact, hip_object_m, result); });
 }

@@ -63,8 +63,8 @@ class Sweep {
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
   static constexpr Real kNever = 2;  // a fraction after the end
-  // Where a way that passes inside a node's loop, and comes in at `fraction` but for rounding, surely is over the face: of one
-  // that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
+  // Where a way that passes inside a node's loop, and comes in at `fraction` up to rounding error, surely is over the face: of
+  // one that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
   // kNever where it is nowhere over the face: a loop that is not flat is passed, seen edge-on, by ways that end before it, and
   // by ways that pass it by.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
@@ -393,7 +393,7 @@ class Sweep {
   // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, may pass inside
   // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
   // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
-  // inwards but for rounding included, winds about the way: that is still to be asked, once for all sides.
+  // inwards up to rounding error included, winds about the way: that is still to be asked, once for all sides.
   [[nodiscard, gnu::noinline]] bool is_open(NodeRef<Real> node, uint32_t k, Real fraction, bool* must_wind) const {
     if (!(graph_.header->max_deviation > 0)) return false;
     spend(work_left_, kNodeWork);

@@ -30,8 +30,8 @@ struct Walk {
   Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
   uint32_t work_left;  // for the rules, see work.hpp
   // What rounding took from the god-object when it was placed on the edge by which it crossed into the active face. The way
-  // goes on from god_object + lost: else a tick across hundreds of needle faces adds up their roundings.
-  Vec3<Real> lost = {0, 0, 0};
+  // goes on from god_object + rounding_residual: else a tick across hundreds of needle faces adds up their roundings.
+  Vec3<Real> rounding_residual = {0, 0, 0};
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
   void spend(uint32_t units) { fdcg::spend(&work_left, units); }
@@ -40,7 +40,7 @@ struct Walk {
   void place(Vec3<Real> point, Feature new_seat) {
     god_object = point;
     seat = new_seat;
-    lost = {0, 0, 0};
+    rounding_residual = {0, 0, 0};
   }
 };
 
@@ -87,7 +87,8 @@ struct EdgeLine : Edge<Real> {
 // put there would lose more distance than a step may; it stays at u, and the corner's rule decides all the same: two edges of a
 // needle's tip would hand it to one another.
 template <class Real>
-[[gnu::noinline]] bool leads_back(const Walk<Real>& walk, const EdgeLine<Real>& line, uint32_t end, Real from_end) {
+[[gnu::noinline]] bool snapping_increases_distance(const Walk<Real>& walk, const EdgeLine<Real>& line, uint32_t end,
+                                                   Real from_end) {
   if (from_end <= 8 * RealLimits<Real>::kEpsilon * static_cast<Real>(walk.graph.header->extent)) return false;
   const Real foot = line.parameter(walk.hip);
   return 2 * (end == 0 ? foot : line.length - foot) > from_end;
@@ -100,7 +101,8 @@ template <class Real>
     const Real from_end = end == 0 ? u : line.length - u;
     if (!(from_end <= line.end_tolerance)) continue;
     const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
-    walk.place(leads_back(walk, line, end, from_end) ? line.start + line.direction * u : walk.graph.corner_point(vertex.index),
+    walk.place(snapping_increases_distance(walk, line, end, from_end) ? line.start + line.direction * u
+                                                                      : walk.graph.corner_point(vertex.index),
                vertex);
     return vertex;
   }

@@ -122,7 +122,7 @@ extern "C" fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_erro
     return status;
   }
   fdcg_surface room;
-  const fdcg_surface& whole = fdcg::in_full(*surface, &room, fdcg_init_surface);
+  const fdcg_surface& whole = fdcg::in_full(*surface, &room, fdcg_surface_init);
   if (whole.kind > FDCG_SURFACE_ELLIPSOID)
     return fdcg::refuse("surface.kind", whole.kind, ", allowed are the values of fdcg_surface_kind: 0 to 7", error);
   const bool is_plane = whole.kind == FDCG_SURFACE_PLANE;
@@ -134,13 +134,13 @@ extern "C" fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_erro
   return fdcg::check_sizes(whole, error);
 }
 
-extern "C" fdcg_status fdcg_surface_mass(const fdcg_surface* surface, fdcg_mass* mass, fdcg_error* error) {
+extern "C" fdcg_status fdcg_surface_get_mass(const fdcg_surface* surface, fdcg_mass* mass, fdcg_error* error) {
   using namespace fdcg;
   if (mass == nullptr) return Message(error, FDCG_E_ARGUMENT).text("mass: null pointer");
   *mass = {};
   if (const fdcg_status status = fdcg_check_surface(surface, error); status != FDCG_OK) return status;
   fdcg_surface room;
-  const fdcg_surface& s = in_full(*surface, &room, fdcg_init_surface);
+  const fdcg_surface& s = in_full(*surface, &room, fdcg_surface_init);
   if (s.kind == FDCG_SURFACE_PLANE || s.is_hollow != 0) {
     return Message(error, FDCG_E_ABSENT)
         .text(s.is_hollow != 0 ? "a hollow surface is a cavity in endless material: it has no mass"

@@ -78,7 +78,7 @@ struct Sphere {
   }
   FDCG_HOT bool slide_quickly(uint32_t, Touch& touch) const { return slide_on_ball(touch, 0, radius, sign) == Slid::kRests; }
   Decision rule(SurfaceWalk& walk) const { return decide(slide_on_ball(walk, 0, radius, sign), kFree); }
-  // x is on the sphere but for rounding.
+  // x is on the sphere up to rounding error.
   [[nodiscard]] Point normal(Feature, Point x, Point) const {
     const Point near = x * (1 / radius);
     return near * (sign * inverse_root_near_1(squared(near) - 1));

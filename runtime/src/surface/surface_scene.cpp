@@ -14,7 +14,7 @@ void step_surface(const Object& object, const fdcg_params* params, fdcg_contact*
   fdcg_surface_step(&object.surface, params, contact, hip_object_m, result);
 }
 void surface_normal(const Object& object, const fdcg_result* result, double normal[3]) {
-  fdcg_surface_normal(&object.surface, result, normal);
+  fdcg_surface_get_normal(&object.surface, result, normal);
 }
 
 Bounds bounds_of(const fdcg_surface& s) {
@@ -44,7 +44,7 @@ extern "C" fdcg_status fdcg_scene_add_surface(fdcg_scene* scene, const fdcg_surf
   if (const fdcg_status status = fdcg_check_surface(surface, error); status != FDCG_OK) return status;
   fdcg::Object shape = {};
   fdcg_surface room;
-  shape.surface = fdcg::in_full(*surface, &room, fdcg_init_surface);
+  shape.surface = fdcg::in_full(*surface, &room, fdcg_surface_init);
   shape.step_shape = fdcg::step_surface;
   shape.shape_normal = fdcg::surface_normal;
   shape.bounds = fdcg::bounds_of(shape.surface);

@@ -223,8 +223,8 @@ extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params
   if (is_usable_place(hip_object_m)) {
     fdcg_surface surface_room;
     fdcg_params params_room;
-    const fdcg_surface& whole = in_full(*surface, &surface_room, fdcg_init_surface);
-    kind_of(whole).step(&whole, &in_full(*params, &params_room, fdcg_init_params), contact, hip_object_m, result);
+    const fdcg_surface& whole = in_full(*surface, &surface_room, fdcg_surface_init);
+    kind_of(whole).step(&whole, &in_full(*params, &params_room, fdcg_params_init), contact, hip_object_m, result);
   } else {
     ++contact->non_finite_ticks;
     result->flags = FDCG_RESULT_NON_FINITE;
@@ -232,12 +232,12 @@ extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params
   }
 }
 
-extern "C" void fdcg_surface_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]) {
+extern "C" void fdcg_surface_get_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]) {
   using namespace fdcg;
   Point n = {0, 0, 0};
   if (result->state != FDCG_FREE) {
     fdcg_surface room;
-    const fdcg_surface& whole = in_full(*surface, &room, fdcg_init_surface);
+    const fdcg_surface& whole = in_full(*surface, &room, fdcg_surface_init);
     n = kind_of(whole).normal(whole, *result);
   }
   normal[0] = n.x;

@@ -79,7 +79,7 @@ inline Marks quadratic_marks(const Polynomial<2>& f) {
 }
 
 // The first t in 0 to 1 at which f falls below zero from above; 2 where there is none. Between the marks, found from the second
-// derivative up, f is monotonic: no root is passed over. What begins above but for rounding, and falls, falls at 0.
+// derivative up, f is monotonic: no root is passed over. What begins above up to rounding error, and falls, falls at 0.
 [[gnu::noinline]] inline double first_fall(const Polynomial<4>& f, bool begins_above) {
   const Polynomial<3> slope = f.derivative();
   const Marks marks = roots_between(slope, quadratic_marks(slope.derivative()));

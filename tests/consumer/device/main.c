@@ -24,7 +24,7 @@ int main(void) {
     fdcg_host_get_status(host, 0, &status);
   }
   if (fdcg_host_stop(host, &message) != FDCG_OK) return 2;
-  printf("%s: %s\n", fdcg_host_device_name(host, 0), status.ticks >= 100 ? "ticks" : "stands still");
+  printf("%s: %s\n", fdcg_host_get_device_name(host, 0), status.ticks >= 100 ? "ticks" : "stands still");
   fdcg_host_close(host);
   return 0;
 }

@@ -23,22 +23,22 @@ int refuses_from_c(void) {
   if (!fails_with(fdcg_host_stop(NULL, &message), &message, "host is NULL")) return 9;
   if (!fails_with(fdcg_host_set_pose(NULL, "cube", NULL, &message), &message, "host is NULL")) return 22;
   if (fdcg_host_get_status(NULL, 0, NULL) != FDCG_E_ARGUMENT || fdcg_host_wait(NULL, 1) != 1) return 23;
-  if (fdcg_host_device_count(NULL) != 0 || fdcg_host_device_name(NULL, 0) != NULL) return 24;
+  if (fdcg_host_get_device_count(NULL) != 0 || fdcg_host_get_device_name(NULL, 0) != NULL) return 24;
   fdcg_host_arm(NULL, 0);
   fdcg_host_disarm(NULL, 0);
   fdcg_host_request_stop(NULL);
   fdcg_host_close(NULL);
-  if (fdcg_device_profile_name(fdcg_device_profile_count()) != NULL) return 5;
+  if (fdcg_device_get_profile_name(fdcg_device_get_profile_count()) != NULL) return 5;
   return strlen(fdcg_fault_text(2)) > 10 && strlen(fdcg_fault_text(99)) > 10 ? 0 : 6;
 }
 
 static int run(fdcg_host* host, const char* moved) {
   fdcg_host_message message;
   fdcg_device_status status;
-  fdcg_pose pose = fdcg_identity_pose();
+  fdcg_pose pose = fdcg_make_identity_pose();
   int tries;
   status.struct_bytes = (uint32_t)sizeof status;
-  if (fdcg_host_device_count(host) != 1 || !fdcg_host_device_name(host, 0) || fdcg_host_device_name(host, 1)) return 11;
+  if (fdcg_host_get_device_count(host) != 1 || !fdcg_host_get_device_name(host, 0) || fdcg_host_get_device_name(host, 1)) return 11;
   if (fdcg_host_get_status(host, 1, &status) != FDCG_E_ARGUMENT) return 12;
   if (fdcg_host_start(host, &message) != FDCG_OK) return 13;
   if (fdcg_host_start(host, &message) == FDCG_OK) return 14;

@@ -93,10 +93,10 @@ HostConfig scene_of(std::uint64_t seed, bool is_shared) {
   ObjectConfig cube;
   cube.name = "cube";
   cube.file = FDCG_CUBE;
-  cube.pose = fdcg_identity_pose();
+  cube.pose = fdcg_make_identity_pose();
   cube.pose.translation_m[0] = cube.pose.translation_m[1] = -0.5;
   cube.pose.translation_m[2] = -1;
-  cube.params = fdcg_default_params();
+  cube.params = fdcg_make_params();
   cube.params.stiffness_n_per_m = 500;
   config.objects.push_back(cube);
   for (const Case& c : kCases)

@@ -335,7 +335,7 @@ TEST_CASE("an object that spins or is driven is where its motion says, for every
   hosted.config.objects[0].motion.kind = MotionKind::kDriven;
   hosted.start();
   hosted.press(0);
-  fdcg_pose away = fdcg_identity_pose();
+  fdcg_pose away = fdcg_make_identity_pose();
   away.translation_m[2] = -0.05;
   CHECK(hosted.host.set_pose("cube", away) == "");
   CHECK(within_ms(1000, [&] { return hosted.device(0).force_n == 0; }));

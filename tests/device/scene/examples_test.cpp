@@ -81,7 +81,7 @@ Held replay(const std::string& log, double from_s, double to_s) {
     const DeviceSetup& setup = tick.state->setup;
     for (int contact = 0; contact < setup.contact_count; ++contact) {
       fdcg_finger_result finger{};
-      REQUIRE(fdcg_scene_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK);
+      REQUIRE(fdcg_scene_get_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK);
       CAPTURE(time_s, contact);
       REQUIRE(finger.touch_count == 1);
       const fdcg_touch& touch = finger.touches[0];
@@ -226,7 +226,7 @@ TEST_CASE("a soft sheet dents under a finger, holds its god-object, and comes ba
       // it rides on the sheet, which has given way: well below where the sheet was
       REQUIRE(tick.output->wanted_force_n[2] > 0);
       fdcg_finger_result finger{};
-      REQUIRE(fdcg_scene_result(tick.state->setup.scene, tick.state->setup.fingers[0], &finger, nullptr) == FDCG_OK);
+      REQUIRE(fdcg_scene_get_result(tick.state->setup.scene, tick.state->setup.fingers[0], &finger, nullptr) == FDCG_OK);
       REQUIRE(finger.touch_count == 1);
       held_z_m = std::min(held_z_m, finger.touches[0].god_object_m[2]);
     }
@@ -253,9 +253,9 @@ TEST_CASE("two contacts press one sheet beside a ball, and the sheet bears what 
   ball.name = "ball";
   ball.is_surface = true;
   ball.surface = fdcg_make_sphere(0.01);
-  ball.pose = fdcg_identity_pose();
+  ball.pose = fdcg_make_identity_pose();
   ball.pose.translation_m[0] = -0.03;
-  ball.params = fdcg_default_params();
+  ball.params = fdcg_make_params();
   config.objects.push_back(ball);
   DeviceConfig& device = config.devices[0];
   device.contact_count = 2;
@@ -270,7 +270,7 @@ TEST_CASE("two contacts press one sheet beside a ball, and the sheet bears what 
     int on_sheet = 0;
     for (int contact = 0; contact < 2; ++contact) {
       fdcg_finger_result finger{};
-      REQUIRE(fdcg_scene_result(tick.state->setup.scene, tick.state->setup.fingers[contact], &finger, nullptr) == FDCG_OK);
+      REQUIRE(fdcg_scene_get_result(tick.state->setup.scene, tick.state->setup.fingers[contact], &finger, nullptr) == FDCG_OK);
       for (std::uint32_t t = 0; t < finger.touch_count; ++t) {
         on_sheet += finger.touches[t].object.index == 0;
         on_ball += finger.touches[t].object.index == 1;

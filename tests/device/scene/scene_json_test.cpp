@@ -151,9 +151,9 @@ TEST_CASE("every key of a scene is read") {
 TEST_CASE("what a scene leaves out takes its default") {
   HostConfig config;
   REQUIRE(parse_scene(small().dump(), "s.json", &config) == "");
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   CHECK(std::memcmp(&config.objects[0].params, &params, sizeof params) == 0);
-  const fdcg_pose pose = fdcg_identity_pose();
+  const fdcg_pose pose = fdcg_make_identity_pose();
   CHECK(std::memcmp(&config.objects[0].pose, &pose, sizeof pose) == 0);
   CHECK(config.objects[0].file == "cube.fdcg");
   CHECK(config.devices[0].contact_count == 1);

@@ -211,8 +211,8 @@ inline HostConfig fake_config(const std::string& file) {
     ObjectConfig object;
     object.name = "cube";
     object.file = file;
-    object.pose = fdcg_identity_pose();
-    object.params = fdcg_default_params();
+    object.pose = fdcg_make_identity_pose();
+    object.params = fdcg_make_params();
     config.objects.push_back(object);
   }
   config.loop.servo_priority = config.loop.writer_priority = 0;

@@ -22,8 +22,8 @@ inline dev::HostConfig config_of(const std::vector<double>& rates_hz) {
   box.name = "box";
   box.is_surface = true;
   box.surface = fdcg_make_box(kHalf_m, kHalf_m, kHalf_m);
-  box.pose = fdcg_identity_pose();
-  box.params = fdcg_default_params();
+  box.pose = fdcg_make_identity_pose();
+  box.params = fdcg_make_params();
   box.params.mu_static = 0.8;
   box.params.mu_dynamic = 0.6;
   box.params.damping_n_s_per_m = 2;

@@ -43,13 +43,13 @@ struct Rig {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       setup.contacts_m[i][0] = contacts[i].x, setup.contacts_m[i][1] = contacts[i].y, setup.contacts_m[i][2] = contacts[i].z;
     }
-    const fdcg_scene_config config = fdcg_default_scene_config();
+    const fdcg_scene_config config = fdcg_make_scene_config();
     memory.resize(fdcg_scene_bytes(&config) / 8 + 1);
     REQUIRE(fdcg_scene_create(memory.data(), memory.size() * 8, &config, &setup.scene, nullptr) == FDCG_OK);
-    fdcg_params params = fdcg_default_params();
+    fdcg_params params = fdcg_make_params();
     params.mu_static = params.mu_dynamic = 0;
     params.stiffness_n_per_m = kStiffness;
-    const fdcg_pose pose = fdcg_identity_pose();
+    const fdcg_pose pose = fdcg_make_identity_pose();
     REQUIRE(fdcg_scene_add_object(setup.scene, &graph, &params, &pose, &object, nullptr) == FDCG_OK);
     if (is_driven) {
       setup.driven_count = 1;
@@ -242,7 +242,7 @@ TEST_CASE("a driven object that moves onto the hand is felt") {
   Rig rig({}, {{0, 0, 0}}, true);
   rig.at(0.1, 0.1, 0.505);
   rig.input.pose_count = 1;
-  rig.input.poses[0] = fdcg_identity_pose();
+  rig.input.poses[0] = fdcg_make_identity_pose();
   rig.input.poses[0].translation_m[2] = 0.007;
   rig.at(0.1, 0.1, 0.505);
   CHECK(rig.output.wanted_force_n[2] == Approx(2));

@@ -69,7 +69,7 @@ struct Rig {
     }
     return clock;
   }
-  fdcg_pose body() const { return fdcg_body_pose(&scene.bodies[0].body); }
+  fdcg_pose body() const { return fdcg_body_get_pose(&scene.bodies[0].body); }
   double height_m() const { return body().translation_m[2]; }
   double wanted_n(std::size_t device) const {
     const double* const f = outputs[device].wanted_force_n;
@@ -78,7 +78,7 @@ struct Rig {
   // Whether its finger is in the scene.
   bool is_in(std::size_t device) const {
     fdcg_finger_result felt{};
-    return fdcg_scene_result(scene.setups[0].scene, devices[device]->setup.fingers[0], &felt, nullptr) == FDCG_OK;
+    return fdcg_scene_get_result(scene.setups[0].scene, devices[device]->setup.fingers[0], &felt, nullptr) == FDCG_OK;
   }
   // Both beside the box, armed at once, and on it before it has fallen by 2 mm.
   void press_both() {

@@ -71,7 +71,7 @@ struct Rig {
   fdcg_graph graph;
   SoftObject sheet;
   SceneRig scene;
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   std::vector<fdcg_finger_id> fingers;
   fdcg_object_id object;
 
@@ -81,11 +81,11 @@ struct Rig {
     return options;
   }
   static fdcg_scene_config config() {
-    fdcg_scene_config config = fdcg_default_scene_config();
+    fdcg_scene_config config = fdcg_make_scene_config();
     config.has_deforms = 1;
     return config;
   }
-  Rig(int n, const SoftConfig& soft, double mu, const fdcg_pose& pose = fdcg_identity_pose())
+  Rig(int n, const SoftConfig& soft, double mu, const fdcg_pose& pose = fdcg_make_identity_pose())
       : compiled(compile_whole(plane_grid(n, n), triangles())), scene(config()) {
     fdcg_error error;
     REQUIRE(fdcg_open_memory(compiled.bytes.data(), compiled.bytes.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_OK);
@@ -108,7 +108,7 @@ struct Rig {
   }
   // The steepest that the sheet is anywhere.
   double steepest() {
-    const fdcg_graph& now = *fdcg_deform_graph(sheet.deform());
+    const fdcg_graph& now = *fdcg_deform_get_graph(sheet.deform());
     double least = 1;
     for (std::uint32_t n = 0; n < now.header->node_count; ++n)
       least = std::min(least, fdcg_get_node(&now, n).normal[2]);

@@ -86,7 +86,7 @@ AccuracyOutcome replayed(const AccuracySetting& setting, const bake::PolygonSoup
   return out;
 }
 
-// Whether for a HIP next to this one the god-object would be a minimum, but for rounding: backward error.
+// Whether for a HIP next to this one the god-object would be a minimum, up to rounding error: backward error.
 bool holds_nearby(const Certificate& certificate, const fdcg_contact& contact, const Hip& hip, double most, double ulp) {
   Random random(1);
   for (double size = 1; size <= most; size *= 2) {

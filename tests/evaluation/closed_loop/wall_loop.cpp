@@ -33,7 +33,7 @@ class Renderer {
 
  private:
   const Wall& wall_;
-  fdcg_params params_ = fdcg_default_params();
+  fdcg_params params_ = fdcg_make_params();
   fdcg_contact contact_{};
   fdcg_result result_{};
 };

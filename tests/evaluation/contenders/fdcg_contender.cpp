@@ -42,7 +42,7 @@ class FdcgContender : public Contender {
 
   void reset() override { contact_ = {}; }
   void set_friction(double mu_static, double mu_dynamic) override {
-    params_ = fdcg_default_params();
+    params_ = fdcg_make_params();
     params_.mu_static = mu_static;
     params_.mu_dynamic = mu_dynamic;
     params_.stiffness_n_per_m = kStiffness_n_per_m;

@@ -68,7 +68,7 @@ std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFric
 }
 
 std::vector<TrueBody::Tick> TrueBody::follow_by_runtime(const Way& way, const ReferenceFriction& friction) const {
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.mu_static = friction.mu_static;
   params.mu_dynamic = friction.mu_dynamic;
   params.stiffness_n_per_m = kStiffness_n_per_m;

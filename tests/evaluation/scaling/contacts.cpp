@@ -66,7 +66,7 @@ class OnGraph final : public Contacts {
 
  private:
   const fdcg_graph& graph_;
-  const fdcg_params params_ = fdcg_default_params();
+  const fdcg_params params_ = fdcg_make_params();
   const std::vector<Point>* hips_ = nullptr;
   std::vector<fdcg_contact> contacts_;
   std::vector<fdcg_result> results_;
@@ -75,12 +75,12 @@ class OnGraph final : public Contacts {
 class InScene final : public Contacts {
  public:
   InScene(const fdcg_graph& graph, const std::vector<Point>& hips) : scene_(config(hips.size())) {
-    scene_.add(graph, fdcg_default_params(), fdcg_identity_pose());
+    scene_.add(graph, fdcg_make_params(), fdcg_make_identity_pose());
     for (const Point& hip : hips)
       fingers_.push_back(scene_.add(hip));
   }
   static fdcg_scene_config config(std::size_t fingers) {
-    fdcg_scene_config config = fdcg_default_scene_config();
+    fdcg_scene_config config = fdcg_make_scene_config();
     config.object_capacity = 1;
     config.finger_capacity = static_cast<std::uint32_t>(fingers);
     config.touches_per_finger = 1;

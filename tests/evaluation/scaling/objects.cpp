@@ -30,7 +30,7 @@ struct Crowd {
 // What one finger, or the objects, do in the ticks of a case.
 struct Case {
   const char* name;
-  std::uint32_t disabled_skips;
+  std::uint32_t disabled_optimizations;
   bool moves_objects;
   bool is_promised_flat;
   std::function<Place(const Crowd&, int tick)> hip;
@@ -49,7 +49,7 @@ std::vector<Case> cases(std::uint64_t seed) {
     return Place{at(1), at(2), at(3)};
   };
   return {{"far", 0, false, true, far},
-          {"look", FDCG_SKIP_OUT_OF_REACH, false, false, far},
+          {"look", FDCG_OPT_OUT_OF_REACH, false, false, far},
           {"touch", 0, false, true, touch},
           {"jump", 0, false, false, jump},
           {"all move", 0, true, false, far}};
@@ -65,10 +65,10 @@ struct Outcome {
 Outcome run_case(const Case& what, const Crowd& crowd, const fdcg_graph& graph, int ticks, int replays,
                  const Stopwatch& watch) {
   Outcome outcome;
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.object_capacity = static_cast<std::uint32_t>(crowd.count);
   config.finger_capacity = 1;
-  config.disabled_skips = what.disabled_skips;
+  config.disabled_optimizations = what.disabled_optimizations;
   outcome.scene_bytes = fdcg_scene_bytes(&config);
   std::vector<float> least(static_cast<std::size_t>(ticks), 1e30F);
   for (int replay = 0; replay < replays; ++replay) {
@@ -78,7 +78,7 @@ Outcome run_case(const Case& what, const Crowd& crowd, const fdcg_graph& graph, 
     const std::uint64_t heap_before = heap_calls();
     const std::uint64_t add_begin = Stopwatch::now();
     for (int i = 0; i < crowd.count; ++i)
-      objects.push_back(scene.add(graph, fdcg_default_params(), posed(crowd.home(i))));
+      objects.push_back(scene.add(graph, fdcg_make_params(), posed(crowd.home(i))));
     const double add_ns = watch.nanoseconds(add_begin, Stopwatch::now()) / crowd.count;
     outcome.add_ns = replay == 0 ? add_ns : std::min(outcome.add_ns, add_ns);
     const fdcg_finger_id finger = scene.add(what.hip(crowd, 0));

@@ -50,7 +50,7 @@ class Stepper {
  private:
   const fdcg_graph& graph_;
   const Path& path_;
-  const fdcg_params params_ = fdcg_default_params();
+  const fdcg_params params_ = fdcg_make_params();
   fdcg_contact contact_ = {};
   fdcg_result result_ = {};
   StepTimes times_;

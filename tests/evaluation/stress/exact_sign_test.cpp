@@ -25,7 +25,7 @@ int sign_in_rationals(const std::array<Hip, 4>& p) {
                     e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]));
 }
 
-// In one plane but for rounding, or exactly; far away, small, of few bits, or as they come.
+// In one plane up to rounding error, or exactly; far away, small, of few bits, or as they come.
 std::array<Hip, 4> nearly_flat(Random& random) {
   std::array<Hip, 4> p;
   const double size = std::exp2(random.uniform(-40, 40)),

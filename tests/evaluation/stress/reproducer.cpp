@@ -102,7 +102,7 @@ Reproducer read_reproducer(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path + ": cannot be read; is it there, and yours?");
   Reproducer r;
-  r.params = fdcg_default_params();
+  r.params = fdcg_make_params();
   std::vector<bake::Vec3> points;
   std::vector<Polygon> faces;
   std::string text, word;

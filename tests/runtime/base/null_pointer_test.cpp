@@ -20,32 +20,32 @@ using Catch::Matchers::Contains;
 namespace {
 
 fdcg_scene_config roomy() {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.has_soft_fingers = config.has_deforms = 1;
   return config;
 }
 
 // One of everything, so that of a call one argument alone is null.
 struct World {
-  PileRig rig{fdcg_default_pile_config(), roomy()};
+  PileRig rig{fdcg_make_pile_config(), roomy()};
   bake::Compiled triangles;
   fdcg_graph graph{};
   std::vector<std::uint64_t> memory;
   fdcg_deform* deform = nullptr;
   fdcg_error error{};
-  fdcg_params params = fdcg_default_params();
-  fdcg_pose pose = fdcg_identity_pose();
+  fdcg_params params = fdcg_make_params();
+  fdcg_pose pose = fdcg_make_identity_pose();
   double place[3] = {0, 0, 1};
   fdcg_finger_id finger = rig.scene().add({0, 0, 1});
   fdcg_object_id object = rig.add_fixed(rig.box(1, 1, 1), params, pose);
   fdcg_surface ball = fdcg_make_sphere(1);
   fdcg_mass mass{};
-  fdcg_body_config body_config = fdcg_default_body_config();
+  fdcg_body_config body_config = fdcg_make_body_config();
   fdcg_scene_body body{};
   fdcg_reaction reactions[2]{};
-  fdcg_deform_config deform_config = fdcg_default_deform_config();
-  fdcg_pile_config pile_config = fdcg_default_pile_config();
-  fdcg_scene_config scene_config = fdcg_default_scene_config();
+  fdcg_deform_config deform_config = fdcg_make_deform_config();
+  fdcg_pile_config pile_config = fdcg_make_pile_config();
+  fdcg_scene_config scene_config = fdcg_make_scene_config();
   std::uint32_t corner = 0;
 
   World() {
@@ -55,7 +55,7 @@ struct World {
     REQUIRE(fdcg_open_memory(triangles.bytes.data(), triangles.bytes.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_OK);
     memory.resize(fdcg_deform_bytes(&graph) / 8 + 8);
     REQUIRE(fdcg_deform_create(memory.data(), memory.size() * 8, &graph, &deform_config, &deform, &error) == FDCG_OK);
-    REQUIRE(fdcg_surface_mass(&ball, &mass, &error) == FDCG_OK);
+    REQUIRE(fdcg_surface_get_mass(&ball, &mass, &error) == FDCG_OK);
     body.object = object;
     REQUIRE(fdcg_body_init(&body.body, &body_config, &pose, &error) == FDCG_OK);
   }
@@ -117,21 +117,22 @@ const std::vector<Call> kObjectsAndFingers = {
     {"scene",
      [](World& w, fdcg_error* e) {
        fdcg_finger_result r;
-       return fdcg_scene_result(nullptr, w.finger, &r, e);
+       return fdcg_scene_get_result(nullptr, w.finger, &r, e);
      }},
-    {"result", [](World& w, fdcg_error* e) { return fdcg_scene_result(w.scene(), w.finger, nullptr, e); }},
-    {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_soften_finger(nullptr, w.finger, 0, e); }},
-    {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_turn_finger(nullptr, w.finger, w.pose.rotation_xyzw, e); }},
-    {"rotation_xyzw", [](World& w, fdcg_error* e) { return fdcg_scene_turn_finger(w.scene(), w.finger, nullptr, e); }},
-    {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_finger_torque(nullptr, w.finger, w.place, e); }},
-    {"torque_n_m", [](World& w, fdcg_error* e) { return fdcg_scene_finger_torque(w.scene(), w.finger, nullptr, e); }},
+    {"result", [](World& w, fdcg_error* e) { return fdcg_scene_get_result(w.scene(), w.finger, nullptr, e); }},
+    {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_set_finger_radius(nullptr, w.finger, 0, e); }},
+    {"scene",
+     [](World& w, fdcg_error* e) { return fdcg_scene_set_finger_rotation(nullptr, w.finger, w.pose.rotation_xyzw, e); }},
+    {"rotation_xyzw", [](World& w, fdcg_error* e) { return fdcg_scene_set_finger_rotation(w.scene(), w.finger, nullptr, e); }},
+    {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_get_finger_torque(nullptr, w.finger, w.place, e); }},
+    {"torque_n_m", [](World& w, fdcg_error* e) { return fdcg_scene_get_finger_torque(w.scene(), w.finger, nullptr, e); }},
 };
 
 const std::vector<Call> kShapesAndBodies = {
     {"params", [](World&, fdcg_error* e) { return fdcg_check_params(nullptr, e); }},
     {"surface", [](World&, fdcg_error* e) { return fdcg_check_surface(nullptr, e); }},
-    {"surface", [](World& w, fdcg_error* e) { return fdcg_surface_mass(nullptr, &w.mass, e); }},
-    {"mass", [](World& w, fdcg_error* e) { return fdcg_surface_mass(&w.ball, nullptr, e); }},
+    {"surface", [](World& w, fdcg_error* e) { return fdcg_surface_get_mass(nullptr, &w.mass, e); }},
+    {"mass", [](World& w, fdcg_error* e) { return fdcg_surface_get_mass(&w.ball, nullptr, e); }},
     {"graph", [](World& w, fdcg_error* e) { return fdcg_get_mass(nullptr, &w.mass, e); }},
     {"mass", [](World& w, fdcg_error* e) { return fdcg_get_mass(&w.graph, nullptr, e); }},
     {"config", [](World& w, fdcg_error* e) { return fdcg_body_set_mass(nullptr, &w.mass, 1, 1, e); }},
@@ -234,31 +235,31 @@ TEST_CASE("without a status a null pointer does nothing, or gives zeros") {
   fdcg_body_step(&world.body.body, world.place, nullptr, 1e-3);
   CHECK(world.body.body.refused_steps == 2);
   CHECK(world.body.body.centre_m[2] == before.centre_m[2]);
-  CHECK(fdcg_body_pose(nullptr).scale == 0);
-  CHECK(fdcg_body_kinetic_energy_j(nullptr) == 0);
-  CHECK(fdcg_body_substeps(nullptr, 1, 1, 1) == 0);
+  CHECK(fdcg_body_get_pose(nullptr).scale == 0);
+  CHECK(fdcg_body_get_kinetic_energy_j(nullptr) == 0);
+  CHECK(fdcg_body_get_substeps(nullptr, 1, 1, 1) == 0);
   double spin[3] = {1, 1, 1};
-  fdcg_body_angular_velocity(&world.body.body, nullptr);
-  fdcg_body_angular_velocity(nullptr, spin);
+  fdcg_body_get_angular_velocity(&world.body.body, nullptr);
+  fdcg_body_get_angular_velocity(nullptr, spin);
   CHECK(spin[0] == 0);
   CHECK(fdcg_pile_bytes(nullptr) == 0);
-  CHECK(fdcg_pile_touches(nullptr, nullptr, 3) == 0);
-  CHECK(fdcg_pile_touches(world.rig.pile(), nullptr, 3) == 0);
-  CHECK(fdcg_pile_get_counts(nullptr).looks == 0);
+  CHECK(fdcg_pile_get_touches(nullptr, nullptr, 3) == 0);
+  CHECK(fdcg_pile_get_touches(world.rig.pile(), nullptr, 3) == 0);
+  CHECK(fdcg_pile_get_counts(nullptr).broadphase_updates == 0);
   CHECK(fdcg_scene_bytes(nullptr) == 0);
   fdcg_scene_step(nullptr);
   fdcg_scene_advance(nullptr);
   fdcg_reaction reaction = {{1, 1, 1}, {1, 1, 1}};
-  fdcg_scene_reactions(world.scene(), nullptr, 1);
-  fdcg_scene_reactions(nullptr, &reaction, 1);
+  fdcg_scene_get_reactions(world.scene(), nullptr, 1);
+  fdcg_scene_get_reactions(nullptr, &reaction, 1);
   CHECK(reaction.force_n[0] == 0);
   CHECK(fdcg_deform_bytes(nullptr) == 0);
-  CHECK(fdcg_deform_graph(nullptr) == nullptr);
-  fdcg_init_params(nullptr, 8);
-  fdcg_init_scene_config(nullptr, 8);
-  fdcg_init_pile_config(nullptr, 8);
-  fdcg_init_body_config(nullptr, 8);
-  fdcg_init_deform_config(nullptr, 8);
-  fdcg_init_surface(nullptr, 8);
+  CHECK(fdcg_deform_get_graph(nullptr) == nullptr);
+  fdcg_params_init(nullptr, 8);
+  fdcg_scene_config_init(nullptr, 8);
+  fdcg_pile_config_init(nullptr, 8);
+  fdcg_body_config_init(nullptr, 8);
+  fdcg_deform_config_init(nullptr, 8);
+  fdcg_surface_init(nullptr, 8);
   fdcg_close(nullptr);
 }

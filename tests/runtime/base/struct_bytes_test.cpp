@@ -69,7 +69,7 @@ std::vector<double> forces(const fdcg_graph& graph, const fdcg_params* params) {
 TEST_CASE("an older, shorter struct is filled, checked and stepped with, and its memory is not left") {
   const LastBytes memory(sizeof(OlderParams));
   fdcg_params* params = memory.params();
-  fdcg_init_params(params, sizeof(OlderParams));
+  fdcg_params_init(params, sizeof(OlderParams));
   CHECK(params->struct_bytes == sizeof(OlderParams));
   CHECK(params->mu_static == 0.6);
   params->mu_static = 0.9;
@@ -85,7 +85,7 @@ TEST_CASE("an older, shorter struct is filled, checked and stepped with, and its
   AlignedBytes file(compiled->bytes);
   fdcg_graph graph;
   REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_OK);
-  fdcg_params whole = fdcg_default_params();
+  fdcg_params whole = fdcg_make_params();
   whole.mu_static = 0.9;
   whole.mu_dynamic = 0.7;
   CHECK(forces(graph, params) == forces(graph, &whole));
@@ -97,7 +97,7 @@ TEST_CASE("an older, shorter struct is filled, checked and stepped with, and its
 TEST_CASE("every length that a header may have had is accepted, others and longer ones are refused") {
   fdcg_error error = {};
   for (std::uint32_t bytes = 0; bytes <= sizeof(fdcg_params) + 16; ++bytes) {
-    fdcg_params params = fdcg_default_params();
+    fdcg_params params = fdcg_make_params();
     params.struct_bytes = bytes;
     const bool is_known = bytes >= 8 && bytes % 8 == 0 && bytes <= sizeof params;
     CAPTURE(bytes);
@@ -110,7 +110,7 @@ TEST_CASE("a newer, longer struct is given defaults where the library knows them
   alignas(8) unsigned char longer[sizeof(fdcg_params) + 16];
   std::memset(longer, 0xA5, sizeof longer);
   auto* params = reinterpret_cast<fdcg_params*>(longer);
-  fdcg_init_params(params, sizeof longer - 8);
+  fdcg_params_init(params, sizeof longer - 8);
   CHECK(params->struct_bytes == sizeof longer - 8);
   CHECK(params->tick_s == 0.001);
   for (std::size_t i = sizeof(fdcg_params); i < sizeof longer; ++i)
@@ -121,13 +121,13 @@ TEST_CASE("a surface of an older, shorter struct is stepped on as the whole one,
   constexpr std::uint32_t kOlderBytes = offsetof(fdcg_surface, top_radius_m);  // no length yet: its default is 0
   const LastBytes memory(kOlderBytes);
   auto* const older = memory.as<fdcg_surface>();
-  fdcg_init_surface(older, kOlderBytes);
+  fdcg_surface_init(older, kOlderBytes);
   older->kind = FDCG_SURFACE_CAPSULE;
   older->radius_m = 0.05;
   fdcg_error error = {};
   REQUIRE(fdcg_check_surface(older, &error) == FDCG_OK);
   const fdcg_surface whole = fdcg_make_capsule(0.05, 0);
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   fdcg_contact contacts[2] = {};
   for (int tick = 0; tick < 60; ++tick) {
     const double hip_m[3] = {0.001 * tick, 0.0005 * tick, tick == 0 ? 0.06 : 0.045};
@@ -135,14 +135,14 @@ TEST_CASE("a surface of an older, shorter struct is stepped on as the whole one,
     double normals[2][3];
     fdcg_surface_step(older, &params, &contacts[0], hip_m, &felt[0]);
     fdcg_surface_step(&whole, &params, &contacts[1], hip_m, &felt[1]);
-    fdcg_surface_normal(older, &felt[0], normals[0]);
-    fdcg_surface_normal(&whole, &felt[1], normals[1]);
+    fdcg_surface_get_normal(older, &felt[0], normals[0]);
+    fdcg_surface_get_normal(&whole, &felt[1], normals[1]);
     if (tick > 0 && tick < 15) REQUIRE(felt[1].state == FDCG_FACE);
     REQUIRE(std::memcmp(&felt[0], &felt[1], sizeof felt[0]) == 0);
     REQUIRE(std::memcmp(normals[0], normals[1], sizeof normals[0]) == 0);
   }
   fdcg_mass masses[2];
-  REQUIRE(fdcg_surface_mass(older, &masses[0], &error) == FDCG_OK);
-  REQUIRE(fdcg_surface_mass(&whole, &masses[1], &error) == FDCG_OK);
+  REQUIRE(fdcg_surface_get_mass(older, &masses[0], &error) == FDCG_OK);
+  REQUIRE(fdcg_surface_get_mass(&whole, &masses[1], &error) == FDCG_OK);
   CHECK(std::memcmp(&masses[0], &masses[1], sizeof masses[0]) == 0);
 }

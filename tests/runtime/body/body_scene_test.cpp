@@ -23,18 +23,18 @@ class Grip {
  public:
   Grip(double mu, double deep_m, double mass_kg = 0.05, double lean_rad = 0)
       : compiled_(compile_whole(cube(), options(mass_kg))),
-        rig_(fdcg_default_scene_config()),
+        rig_(fdcg_make_scene_config()),
         deep_(deep_m),
         up_{0, -std::sin(lean_rad), std::cos(lean_rad)} {
     fdcg_error error;
     REQUIRE(fdcg_open_memory(compiled_.bytes.data(), compiled_.bytes.size(), FDCG_VERIFY_FULL, &graph_, &error) == FDCG_OK);
-    fdcg_params params = fdcg_default_params();
+    fdcg_params params = fdcg_make_params();
     params.mu_static = params.mu_dynamic = mu;
-    const fdcg_pose pose = fdcg_identity_pose();
+    const fdcg_pose pose = fdcg_make_identity_pose();
     body_.object = rig_.add(graph_, params, pose);
     fdcg_mass mass;
     REQUIRE(fdcg_get_mass(&graph_, &mass, &error) == FDCG_OK);
-    fdcg_body_config config = fdcg_default_body_config();
+    fdcg_body_config config = fdcg_make_body_config();
     config.linear_damping_per_s = config.angular_damping_per_s = 20;
     config.sleep_after_s = 0;
     for (int k = 0; k < 3; ++k)
@@ -68,7 +68,7 @@ class Grip {
   }
   // The cube's corner that is farthest from the fingers, so that turning shows as well.
   [[nodiscard]] Place corner() const {
-    const fdcg_pose pose = fdcg_body_pose(&body_.body);
+    const fdcg_pose pose = fdcg_body_get_pose(&body_.body);
     const Place along = turned_corner(pose);
     return {along[0] + pose.translation_m[0], along[1] + pose.translation_m[1], along[2] + pose.translation_m[2]};
   }
@@ -225,7 +225,7 @@ TEST_CASE("a held cube falls asleep, keeps every bit, and wakes when the fingers
 
 TEST_CASE("a tick of bodies that cannot be is refused by name") {
   Grip grip(0.6, 0.001);
-  SceneRig rig(fdcg_default_scene_config());
+  SceneRig rig(fdcg_make_scene_config());
   fdcg_scene_body body{};
   fdcg_reaction reaction;
   fdcg_error error = {};

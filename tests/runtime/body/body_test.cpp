@@ -23,7 +23,7 @@ Triple triple(const double (&v)[3]) {
 }
 
 fdcg_body_config weightless() {
-  fdcg_body_config config = fdcg_default_body_config();
+  fdcg_body_config config = fdcg_make_body_config();
   config.gravity_m_per_s2[2] = 0;
   config.sleep_after_s = 0;
   return config;
@@ -43,7 +43,7 @@ fdcg_body_config lopsided() {
 fdcg_body made(const fdcg_body_config& config, const Triple& velocity, const Triple& spin) {
   fdcg_body body;
   fdcg_error error;
-  const fdcg_pose pose = fdcg_identity_pose();
+  const fdcg_pose pose = fdcg_make_identity_pose();
   REQUIRE(fdcg_body_init(&body, &config, &pose, &error) == FDCG_OK);
   REQUIRE(fdcg_body_set_motion(&body, velocity.data(), spin.data(), &error) == FDCG_OK);
   return body;
@@ -61,7 +61,7 @@ double apart(const fdcg_body& a, const fdcg_body& b) {
 
 std::string refusal(const std::function<void(fdcg_body_config&, fdcg_pose&)>& change) {
   fdcg_body_config config = weightless();
-  fdcg_pose pose = fdcg_identity_pose();
+  fdcg_pose pose = fdcg_make_identity_pose();
   change(config, pose);
   fdcg_body body;
   fdcg_error error = {};
@@ -74,12 +74,12 @@ std::string refusal(const std::function<void(fdcg_body_config&, fdcg_pose&)>& ch
 TEST_CASE("a free asymmetric body keeps energy and angular momentum over 10^6 ticks") {
   for (const Triple& spin : {Triple{20, 1, -3}, Triple{0.01, 30, 0.01}, Triple{-4, 2, 60}, Triple{300, -200, 400}}) {
     fdcg_body body = made(lopsided(), {0.3, -0.1, 0.2}, spin);
-    const double energy = fdcg_body_kinetic_energy_j(&body);
+    const double energy = fdcg_body_get_kinetic_energy_j(&body);
     const Triple momentum = triple(body.angular_momentum);
     double worst = 0;
     for (int tick = 0; tick < 1000000; ++tick) {
       fdcg_body_step(&body, kNothing, kNothing, 1e-3);
-      if (tick % 1000 == 999) worst = std::max(worst, std::abs(fdcg_body_kinetic_energy_j(&body) / energy - 1));
+      if (tick % 1000 == 999) worst = std::max(worst, std::abs(fdcg_body_get_kinetic_energy_j(&body) / energy - 1));
     }
     CAPTURE(spin);
     WARN("energy off by at most " << worst << " of itself");
@@ -99,7 +99,7 @@ TEST_CASE("a free turn, a heavy top and a spring are followed at second order") 
   const Way ways[] = {{"free", [](const fdcg_body&, double(&)[3], double(&)[3]) {}},
                       {"top",
                        [](const fdcg_body& body, double(&)[3], double(&torque)[3]) {
-                         const fdcg_pose pose = fdcg_body_pose(&body);  // hung at the object's origin, by its weight of 4 N
+                         const fdcg_pose pose = fdcg_body_get_pose(&body);  // hung at the object's origin, by its weight of 4 N
                          const double x = body.centre_m[0] - pose.translation_m[0],
                                       y = body.centre_m[1] - pose.translation_m[1];
                          torque[0] = -4 * y, torque[1] = 4 * x;
@@ -180,12 +180,12 @@ TEST_CASE("a spring is stable up to the stated bound and not beyond; substeps ke
   CHECK(farthest(2.01) >= 1);
 
   const fdcg_body body = made(weightless(), {0, 0, 0}, {0, 0, 0});  // 1 kg, 0.004 kg m^2
-  CHECK(fdcg_body_substeps(&body, 1000, 0, 1e-3) == 1);
-  CHECK(fdcg_body_substeps(&body, 1e6, 0, 1e-3) == 1);
-  CHECK(fdcg_body_substeps(&body, 4.1e6, 0, 1e-3) == 3);
-  CHECK(fdcg_body_substeps(&body, 1e6, 0.2, 1e-3) == 4);  // sqrt(1 + 0.04 / 0.004) = 3.3
-  CHECK(fdcg_body_substeps(&body, 1e12, 0, 1e-3) == 0);
-  CHECK(fdcg_body_substeps(&body, std::nan(""), 0, 1e-3) == 0);
+  CHECK(fdcg_body_get_substeps(&body, 1000, 0, 1e-3) == 1);
+  CHECK(fdcg_body_get_substeps(&body, 1e6, 0, 1e-3) == 1);
+  CHECK(fdcg_body_get_substeps(&body, 4.1e6, 0, 1e-3) == 3);
+  CHECK(fdcg_body_get_substeps(&body, 1e6, 0.2, 1e-3) == 4);  // sqrt(1 + 0.04 / 0.004) = 3.3
+  CHECK(fdcg_body_get_substeps(&body, 1e12, 0, 1e-3) == 0);
+  CHECK(fdcg_body_get_substeps(&body, std::nan(""), 0, 1e-3) == 0);
 }
 
 TEST_CASE("a body at rest falls asleep, stays where it is to the bit, and wakes when pushed otherwise") {
@@ -270,7 +270,7 @@ TEST_CASE("mass from a file becomes a body's, by density, by mass and by scale")
   mass.centroid_m[1] = 0.5;
   for (int k = 0; k < 3; ++k)
     mass.inertia_per_density_m5[k] = 0.25;
-  fdcg_body_config config = fdcg_default_body_config();
+  fdcg_body_config config = fdcg_make_body_config();
   fdcg_error error = {};
   CHECK(fdcg_body_set_mass(&config, &mass, 0, 1, &error) == FDCG_E_ARGUMENT);
   CHECK(std::string(error.message).find("--density") != std::string::npos);
@@ -310,7 +310,7 @@ TEST_CASE("mass from a file becomes a body's, by density, by mass and by scale")
   REQUIRE(fdcg_body_init(&body, &config, &pose, &error) == FDCG_OK);
   CHECK(body.centre_m[0] == Approx(0).margin(1e-15));
   CHECK(body.centre_m[1] == Approx(2));
-  const fdcg_pose back = fdcg_body_pose(&body);
+  const fdcg_pose back = fdcg_body_get_pose(&body);
   for (int k = 0; k < 3; ++k)
     CHECK(back.translation_m[k] == Approx(pose.translation_m[k]));
 }

@@ -25,7 +25,7 @@ double stiffness(const fdcg_material& a, const fdcg_material& b) {
 
 fdcg_params with_table() {
   fdcg_params params = friction(0, 0, 5000);
-  params.terms = FDCG_TERM_MATERIALS;
+  params.friction_flags = FDCG_FRICTION_MATERIALS;
   params.materials = kTable;
   params.material_count = 2;
   return params;
@@ -51,8 +51,8 @@ bake::PolygonSoup painted(bake::PolygonSoup soup, Choose choose) {
 class Bead {
  public:
   Bead(const bake::PolygonSoup& solid, const Place& at) {
-    rig_.add_fixed(rig_.shape(solid), with_table(), fdcg_identity_pose());
-    fdcg_body_config config = fdcg_default_body_config();
+    rig_.add_fixed(rig_.shape(solid), with_table(), fdcg_make_identity_pose());
+    fdcg_body_config config = fdcg_make_body_config();
     config.sleep_after_s = 0;
     rig_.add_body(rig_.box(0.02, 0.02, 0.02), kMass_kg, friction(kOwn.mu_static, kOwn.mu_dynamic, kOwn.stiffness_n_per_m),
                   posed(at), config, 8);
@@ -149,7 +149,7 @@ TEST_CASE("what slides from one material to another has the other's friction and
     CHECK(bead.touch().stiffness_n_per_m == Approx(stiffness(first, kOwn)));
     bead.push({1.5, 0, 0});
     const auto energy = [&] {
-      return fdcg_body_kinetic_energy_j(&bead.rig().body(0)) + kMass_kg * kGravity * bead.rig().centre(0)[2];
+      return fdcg_body_get_kinetic_energy_j(&bead.rig().body(0)) + kMass_kg * kGravity * bead.rig().centre(0)[2];
     };
     const double first_energy = energy();
     double most = 0;
@@ -175,7 +175,7 @@ TEST_CASE("the ground has no faces: a table of materials is not kept, and change
     {
       std::vector<fdcg_material> table = {{0.1, 0.1, 100}};
       if (has_table) {
-        params.terms = FDCG_TERM_MATERIALS | FDCG_TERM_PRESLIDING | FDCG_TERM_FINGER;
+        params.friction_flags = FDCG_FRICTION_MATERIALS | FDCG_FRICTION_PRESLIDING | FDCG_FRICTION_FINGER;
         params.materials = table.data();
         params.material_count = 1;
       }
@@ -197,22 +197,23 @@ TEST_CASE("the ground has no faces: a table of materials is not kept, and change
 
 TEST_CASE("a block slides to rest on the ground as the friction curve has it") {
   struct Curve {
-    std::uint32_t terms;
+    std::uint32_t friction_flags;
     double stribeck_m_per_s, viscous_s_per_m, lag_s;
   };
-  for (const Curve& curve : {Curve{FDCG_TERM_VISCOUS, 1, 0.3, 0}, Curve{FDCG_TERM_STRIBECK | FDCG_TERM_LAG, 0.1, 0, 0.02},
-                             Curve{FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG, 0.3, 0.2, 0.001}}) {
+  for (const Curve& curve :
+       {Curve{FDCG_FRICTION_VISCOUS, 1, 0.3, 0}, Curve{FDCG_FRICTION_STRIBECK | FDCG_FRICTION_LAG, 0.1, 0, 0.02},
+        Curve{FDCG_FRICTION_STRIBECK | FDCG_FRICTION_VISCOUS | FDCG_FRICTION_LAG, 0.3, 0.2, 0.001}}) {
     for (const std::uint32_t substeps : {1U, 4U}) {
       constexpr double kStatic = 0.5, kDynamic = 0.3, kFirst = 1;
       fdcg_params params = friction(kStatic, kDynamic);
-      params.terms = curve.terms;
+      params.friction_flags = curve.friction_flags;
       params.stribeck_m_per_s = curve.stribeck_m_per_s;
       params.viscous_s_per_m = curve.viscous_s_per_m;
       params.friction_lag_s = curve.lag_s;
-      params.curve_depth_m = 0.001;
+      params.unique_solution_depth_m = 0.001;
       PileRig rig;
       rig.ground({0, 0, 1}, 0, params);
-      fdcg_body_config config = fdcg_default_body_config();
+      fdcg_body_config config = fdcg_make_body_config();
       config.sleep_after_s = 0;
       rig.add_body(rig.box(0.08, 0.08, 0.01), kMass_kg, friction(kStatic, kDynamic), posed({0, 0, 0.005}), config, 8);
       rig.ticks(400, substeps);
@@ -225,15 +226,16 @@ TEST_CASE("a block slides to rest on the ground as the friction curve has it") {
         for (int piece = 0; piece < 100; ++piece) {
           const double x = lagged / curve.stribeck_m_per_s;
           double mu = kDynamic;
-          if ((curve.terms & FDCG_TERM_STRIBECK) != 0) mu += (kStatic - kDynamic) / (1 + x * x);
-          if ((curve.terms & FDCG_TERM_VISCOUS) != 0) mu += curve.viscous_s_per_m * lagged;
+          if ((curve.friction_flags & FDCG_FRICTION_STRIBECK) != 0) mu += (kStatic - kDynamic) / (1 + x * x);
+          if ((curve.friction_flags & FDCG_FRICTION_VISCOUS) != 0) mu += curve.viscous_s_per_m * lagged;
           expected -= kGravity * mu * 1e-5;
-          lagged += (curve.terms & FDCG_TERM_LAG) != 0 ? (expected - lagged) * 1e-5 / (curve.lag_s + 1e-5) : expected - lagged;
+          lagged += (curve.friction_flags & FDCG_FRICTION_LAG) != 0 ? (expected - lagged) * 1e-5 / (curve.lag_s + 1e-5)
+                                                                    : expected - lagged;
         }
         rig.tick(substeps);
         worst = std::max(worst, std::abs(rig.velocity(0)[0] - expected));
       }
-      CAPTURE(curve.terms, substeps, worst);
+      CAPTURE(curve.friction_flags, substeps, worst);
       CHECK(worst < 0.01 * kFirst);
       rig.ticks(400, substeps);
       CHECK(norm(rig.velocity(0)) < 1e-6);

@@ -14,7 +14,7 @@ constexpr double kGravity = 9.80665;
 constexpr double kSide = 0.04, kMass_kg = 0.05;
 
 fdcg_body_config wakeful() {
-  fdcg_body_config config = fdcg_default_body_config();
+  fdcg_body_config config = fdcg_make_body_config();
   config.sleep_after_s = 0;
   return config;
 }
@@ -47,7 +47,7 @@ class Ramp {
   void ticks(int count) { rig_.ticks(count); }
   // Of the middle of its lower side, which does not move where it only rocks.
   [[nodiscard]] double x() {
-    const fdcg_pose pose = fdcg_body_pose(&rig_.body(0));
+    const fdcg_pose pose = fdcg_body_get_pose(&rig_.body(0));
     const double* q = pose.rotation_xyzw;
     return pose.translation_m[0] - 2 * (q[0] * q[2] + q[1] * q[3]) * 0.005;
   }
@@ -69,7 +69,7 @@ double energy_j(PileRig& rig) {
   double sum = 0;
   for (std::size_t i = 0; i < rig.bodies().size(); ++i) {
     const fdcg_body& body = rig.body(i);
-    sum += fdcg_body_kinetic_energy_j(&body) + body.config.mass_kg * kGravity * rig.centre(i)[2];
+    sum += fdcg_body_get_kinetic_energy_j(&body) + body.config.mass_kg * kGravity * rig.centre(i)[2];
   }
   for (const fdcg_pile_touch& touch : rig.touches())
     sum += touch.load_n * touch.load_n / (2 * touch.stiffness_n_per_m);
@@ -239,7 +239,7 @@ TEST_CASE("a stack on a tilted table does not creep, on graphs of either precisi
 TEST_CASE("a heap of all sorts of bodies thrown on a slope and the ground comes to rest, gains no energy and sleeps") {
   for (const std::uint32_t substeps : {1U, 4U}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      fdcg_pile_config config = fdcg_default_pile_config();
+      fdcg_pile_config config = fdcg_make_pile_config();
       config.point_capacity = config.touch_capacity = 400;
       PileRig rig(config);
       Random random(seed);

@@ -63,7 +63,7 @@ TEST_CASE("clear balls over a sheet that moves change nothing that is felt") {
     Random random(43);
     const fdcg_params params = contact_params(0.5, 0.3);
     fdcg_params looks = params;
-    looks.disabled_skips = FDCG_STEP_SKIP_CLEAR_BALL;
+    looks.disabled_optimizations = FDCG_STEP_OPT_CLEAR_BALL;
     std::vector<Finger> fingers(kFingers);
     for (Finger& finger : fingers)
       finger.hip = {random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0.01, 0.06)};

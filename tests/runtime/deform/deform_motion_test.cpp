@@ -111,7 +111,7 @@ class Sheet {
     places_.clear();
   }
 
-  // The surface's height at a place, but for rounding; on request the cosine of its slope.
+  // The surface's height at a place, up to rounding error; on request the cosine of its slope.
   [[nodiscard]] double height_at(double x, double y, double* cosine = nullptr) const {
     double best = -1, height = 0;
     const auto& points = mesh.points();
@@ -215,7 +215,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
       hip[0] = std::min(std::max(hip[0], -0.35), 0.35);
       hip[1] = std::min(std::max(hip[1], -0.35), 0.35);
       hip[2] = std::min(std::max(hip[2], -0.3), 0.4);
-      // close over the sheet, or on it but for rounding, where the next tick's motion may pass it
+      // close over the sheet, or on it up to rounding error, where the next tick's motion may pass it
       if (random.chance(0.1)) hip[2] = sheet.height_at(hip[0], hip[1]) + (random.chance(0.3) ? 0 : random.uniform(0, 0.05));
     }
     const FpTrap trap(hip.data());

@@ -60,7 +60,7 @@ class DeformableMesh {
     const std::uint64_t bytes = fdcg_deform_bytes(&compiled_.view());
     REQUIRE(bytes > 0);
     memory_.resize(bytes / 8 + 1);
-    fdcg_deform_config config = fdcg_default_deform_config();
+    fdcg_deform_config config = fdcg_make_deform_config();
     config.margin_m = margin_m;
     fdcg_error error;
     const fdcg_status status = fdcg_deform_create(memory_.data(), bytes, &compiled_.view(), &config, &deform_, &error);
@@ -101,11 +101,11 @@ class DeformableMesh {
 
   [[nodiscard]] fdcg_deform* deform() { return deform_; }
   [[nodiscard]] const fdcg_graph& compiled() const { return compiled_.view(); }
-  [[nodiscard]] const fdcg_graph& updated() { return *fdcg_deform_graph(deform_); }
+  [[nodiscard]] const fdcg_graph& updated() { return *fdcg_deform_get_graph(deform_); }
   // The numbers of a mesh made anew from the same file, whose vertices are where this one's are.
   [[nodiscard]] std::vector<unsigned char> bytes_anew() const {
     std::vector<std::uint64_t> memory(memory_.size());
-    const fdcg_deform_config config = fdcg_default_deform_config();
+    const fdcg_deform_config config = fdcg_make_deform_config();
     fdcg_deform* anew = nullptr;
     fdcg_error error;
     if (fdcg_deform_create(memory.data(), memory.size() * 8, &compiled_.view(), &config, &anew, &error) != FDCG_OK)
@@ -114,7 +114,7 @@ class DeformableMesh {
       const double at[3] = {points_[v].x, points_[v].y, points_[v].z};
       if (fdcg_deform_move(anew, corner_of_[v], at, &error) != FDCG_OK) FAIL(error.message);
     }
-    return bytes_of(*fdcg_deform_graph(anew));
+    return bytes_of(*fdcg_deform_get_graph(anew));
   }
   [[nodiscard]] std::uint32_t corner_of(std::size_t vertex) const { return corner_of_[vertex]; }
   [[nodiscard]] const std::vector<bake::Vec3>& points() const { return points_; }

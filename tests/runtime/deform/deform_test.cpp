@@ -30,7 +30,7 @@ void lift(DeformableMesh& sheet, const bake::PolygonSoup& rest, double z, double
 TEST_CASE("a graph with other faces than triangles, or a corner of too many, is refused with the remedy") {
   fdcg_deform* deform = nullptr;
   fdcg_error error;
-  const fdcg_deform_config config = fdcg_default_deform_config();
+  const fdcg_deform_config config = fdcg_make_deform_config();
   alignas(64) unsigned char memory[64];
   const CompiledMesh quads(cube());
   CHECK(fdcg_deform_bytes(&quads.view()) == 0);
@@ -51,7 +51,7 @@ TEST_CASE("memory and settings out of range are refused") {
   std::vector<std::uint64_t> memory(bytes / 8 + 2);
   fdcg_deform* deform = nullptr;
   fdcg_error error;
-  fdcg_deform_config config = fdcg_default_deform_config();
+  fdcg_deform_config config = fdcg_make_deform_config();
   CHECK(fdcg_deform_create(memory.data(), bytes - 1, &mesh.view(), &config, &deform, &error) == FDCG_E_ARGUMENT);
   CHECK(fdcg_deform_create(reinterpret_cast<char*>(memory.data()) + 4, bytes, &mesh.view(), &config, &deform, &error) ==
         FDCG_E_ALIGNMENT);
@@ -62,10 +62,10 @@ TEST_CASE("memory and settings out of range are refused") {
     CHECK(fdcg_deform_create(memory.data(), bytes, &mesh.view(), &config, &deform, &error) == FDCG_E_ARGUMENT);
     CHECK(says(error, "margin_m"));
   }
-  config = fdcg_default_deform_config();
+  config = fdcg_make_deform_config();
   config.struct_bytes = 4;
   CHECK(fdcg_deform_create(memory.data(), bytes, &mesh.view(), &config, &deform, &error) == FDCG_E_ARGUMENT);
-  config = fdcg_default_deform_config();
+  config = fdcg_make_deform_config();
   CHECK(fdcg_deform_create(memory.data(), bytes, &mesh.view(), &config, &deform, nullptr) == FDCG_OK);
 }
 

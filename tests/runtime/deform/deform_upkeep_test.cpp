@@ -84,7 +84,7 @@ TEST_CASE("a deformable mesh keeps to its memory, and begins at a line of the ca
   const std::uint64_t bytes = fdcg_deform_bytes(&sheet.view());
   constexpr std::size_t kMost = 8, kMargin = 8;  // eights of bytes
   constexpr std::uint64_t kUntouched = 0x5A5A5A5A5A5A5A5A;
-  const fdcg_deform_config config = fdcg_default_deform_config();
+  const fdcg_deform_config config = fdcg_make_deform_config();
   for (std::size_t first = kMargin; first < kMargin + kMost; ++first) {
     std::vector<std::uint64_t> room(bytes / 8 + 2 * kMargin + kMost, kUntouched);
     fdcg_deform* deform = nullptr;
@@ -93,7 +93,7 @@ TEST_CASE("a deformable mesh keeps to its memory, and begins at a line of the ca
     CHECK(fdcg_deform_create(&room[first], bytes - 1, &sheet.view(), &config, &deform, &error) == FDCG_E_ARGUMENT);
     REQUIRE(fdcg_deform_create(&room[first], bytes, &sheet.view(), &config, &deform, &error) == FDCG_OK);
     CHECK(reinterpret_cast<std::uintptr_t>(deform) % 64 == 0);
-    (void)fdcg_deform_graph(deform);
+    (void)fdcg_deform_get_graph(deform);
     for (std::size_t i = 0; i < room.size(); ++i) {
       if (i < first || i >= first + bytes / 8) CHECK(room[i] == kUntouched);
     }
@@ -118,7 +118,7 @@ TEST_CASE("lazy steps are those on a mesh computed anew as a whole, bit for bit"
           wobble(lazy, rest, share, 0.02, motion);
           wobble(whole, rest, share, 0.02, same_motion);
         }
-        (void)fdcg_deform_graph(whole.deform());
+        (void)fdcg_deform_get_graph(whole.deform());
         const Hip hip = walk.next(god_object);
         const FpTrap trap(hip.data());
         const fdcg_result result = lazy.step(params, &contact, hip);

@@ -297,7 +297,7 @@ TEST_CASE("optional sections may be absent, and the step feels the same") {
   CHECK(b.edges == nullptr);
   CHECK((a.header->flags & FDCG_STORED_PLANES) != 0);
   CHECK((b.header->flags & FDCG_STORED_PLANES) == 0);
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   fdcg_contact contact_a = {}, contact_b = {};
   std::uint32_t touching = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -366,7 +366,7 @@ TEST_CASE("a later version of the format is refused by its number") {
 }
 
 TEST_CASE("parameters out of range are refused with field, value and limit") {
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   fdcg_error error = {};
   REQUIRE(fdcg_check_params(&params, &error) == FDCG_OK);
   params.mu_static = 0.3;
@@ -374,14 +374,14 @@ TEST_CASE("parameters out of range are refused with field, value and limit") {
   CHECK(std::string(error.message) == "params.mu_static is 0.3, allowed 0.4 to 1e9 (at least mu_dynamic)");
   params.mu_static = std::numeric_limits<double>::quiet_NaN();
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  params = fdcg_default_params();
+  params = fdcg_make_params();
   params.stiffness_n_per_m = -1;
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  params = fdcg_default_params();
+  params = fdcg_make_params();
   params.reserved[0] = 7;
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  CHECK(std::string(error.message) == "params.reserved is 7, allowed 0; start from fdcg_default_params()");
-  params = fdcg_default_params();
+  CHECK(std::string(error.message) == "params.reserved is 7, allowed 0; start from fdcg_make_params()");
+  params = fdcg_make_params();
   params.edge_friction = 7;
   CHECK(fdcg_check_params(&params, nullptr) == FDCG_E_ARGUMENT);
   CHECK(fdcg_check_params(nullptr, &error) == FDCG_E_ARGUMENT);

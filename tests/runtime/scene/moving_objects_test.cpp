@@ -165,7 +165,7 @@ TEST_CASE("a scene gives the bits of contacts stepped by hand") {
         fdcg_params params = contact_params(0.5, 0.3);
         params.damping_n_s_per_m = 0.5;
         Encounter encounter(motion, size, 11);
-        SceneRig scene(fdcg_default_scene_config());
+        SceneRig scene(fdcg_make_scene_config());
         const fdcg_object_id object = scene.add(mesh.view(), params, encounter.pose);
         const fdcg_finger_id finger = scene.add(encounter.hip);
         ByHand hand;
@@ -207,7 +207,7 @@ TEST_CASE("nothing falls through") {
         Encounter encounter(motion, size * scale, 23);
         encounter.pose.scale = scale;
         if (motion.growth > 0 && scale != 1) continue;
-        SceneRig scene(fdcg_default_scene_config());
+        SceneRig scene(fdcg_make_scene_config());
         const fdcg_object_id object = scene.add(mesh.view(), contact_params(0.3, 0.2), encounter.pose);
         const fdcg_finger_id finger = scene.add(encounter.hip);
         for (int i = 0; i < ticks_of_a_run(600); ++i) {

@@ -21,7 +21,7 @@ namespace {
 
 // A cube of 1 m about its origin, frictionless, 1,000 N/m.
 struct Rig {
-  explicit Rig(const fdcg_scene_config& config = fdcg_default_scene_config(), const fdcg_pose& pose = posed({0, 0, 0}))
+  explicit Rig(const fdcg_scene_config& config = fdcg_make_scene_config(), const fdcg_pose& pose = posed({0, 0, 0}))
       : mesh(cube()), params(contact_params(0, 0)), scene(config), object(scene.add(mesh.view(), params, pose)) {}
 
   // Two steps: first above the top face, then there.
@@ -61,7 +61,7 @@ std::string refusal_of(const fdcg_scene_config& config) {
 
 TEST_CASE("a finger feels an object where its pose puts it") {
   // turned by 90 degrees about x, twice as large, away from the origin: its top lies at z = 5 + 1
-  Rig rig(fdcg_default_scene_config(), posed({3, 4, 5}, {1, 0, 0}, 1.5707963267948966, 2));
+  Rig rig(fdcg_make_scene_config(), posed({3, 4, 5}, {1, 0, 0}, 1.5707963267948966, 2));
   const fdcg_finger_id finger = rig.scene.add({3.1, 4.2, 7});
   rig.scene.step();
   rig.scene.move(finger, {3.1, 4.2, 5.99});
@@ -152,7 +152,7 @@ TEST_CASE("forces of several objects add up in the order of the objects") {
   CHECK(wall.index == 1);
 
   std::vector<fdcg_reaction> reactions(3);
-  fdcg_scene_reactions(rig.scene.get(), reactions.data(), 3);
+  fdcg_scene_get_reactions(rig.scene.get(), reactions.data(), 3);
   const fdcg_touch& touch = felt.touches[1];
   const double arm[3] = {touch.god_object_m[0], touch.god_object_m[1], touch.god_object_m[2] - 0.9};
   for (int k = 0; k < 3; ++k) {
@@ -261,8 +261,8 @@ TEST_CASE("what is taken away and put back between two steps is as if just added
 // The contact's feature is one of hundreds, and the other object has a dozen.
 TEST_CASE("an object that takes the index of one removed between two steps does not get its contacts") {
   const CompiledMesh large(ico_sphere(3)), small(ico_sphere(0));
-  SceneRig scene(fdcg_default_scene_config());
-  const fdcg_params params = fdcg_default_params();
+  SceneRig scene(fdcg_make_scene_config());
+  const fdcg_params params = fdcg_make_params();
   const fdcg_object_id before = scene.add(large.view(), params, posed({0, 0, 0}));
   std::vector<fdcg_finger_id> fingers;
   for (double x = -0.6; x < 0.7; x += 0.2)
@@ -299,7 +299,7 @@ TEST_CASE("names of what was removed are not found again") {
 }
 
 TEST_CASE("what is added takes the lowest free place") {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.finger_capacity = 4;
   Rig rig(config);
   fdcg_scene* const scene = rig.scene.get();
@@ -348,27 +348,27 @@ TEST_CASE("a bad pose is refused with its reason, and the old one stays") {
 }
 
 TEST_CASE("a config out of range is refused with its reason") {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.object_capacity = 0;
   CHECK_THAT(refusal_of(config), Equals("config.object_capacity is 0, allowed 1 to 1e6"));
-  config = fdcg_default_scene_config();
+  config = fdcg_make_scene_config();
   config.touches_per_finger = 33;
   CHECK_THAT(refusal_of(config), Equals("config.touches_per_finger is 33, allowed 1 to 32"));
-  config = fdcg_default_scene_config();
-  config.disabled_skips = 32;
-  CHECK_THAT(refusal_of(config), Equals("config.disabled_skips is 32, allowed 0 to 31"));
-  config = fdcg_default_scene_config();
+  config = fdcg_make_scene_config();
+  config.disabled_optimizations = 32;
+  CHECK_THAT(refusal_of(config), Equals("config.disabled_optimizations is 32, allowed 0 to 31"));
+  config = fdcg_make_scene_config();
   config.struct_bytes = 0;
-  CHECK_THAT(refusal_of(config), Contains("config.struct_bytes is 0") && Contains("fdcg_default_scene_config"));
+  CHECK_THAT(refusal_of(config), Contains("config.struct_bytes is 0") && Contains("fdcg_make_scene_config"));
   // a program built against a shorter struct: what it does not know takes its default
-  config = fdcg_default_scene_config();
+  config = fdcg_make_scene_config();
   config.struct_bytes = 8;
   config.touches_per_finger = 99;
   CHECK(fdcg_scene_bytes(&config) > 0);
 }
 
 TEST_CASE("memory that is too small or badly placed is refused") {
-  const fdcg_scene_config config = fdcg_default_scene_config();
+  const fdcg_scene_config config = fdcg_make_scene_config();
   const std::uint64_t bytes = fdcg_scene_bytes(&config);
   std::vector<std::uint64_t> memory(bytes / 8 + 2);
   fdcg_scene* scene = nullptr;
@@ -383,7 +383,7 @@ TEST_CASE("memory that is too small or badly placed is refused") {
   REQUIRE(fdcg_scene_create(memory.data(), bytes, &config, &scene, &error) == FDCG_OK);
   const CompiledMesh mesh(cube());
   const fdcg_params params = contact_params(0.5, 0.4);
-  const fdcg_pose pose = fdcg_identity_pose();
+  const fdcg_pose pose = fdcg_make_identity_pose();
   fdcg_object_id object;
   fdcg_finger_id finger;
   const double above[3] = {0, 0, 0.6}, below[3] = {0, 0, 0.49};
@@ -399,16 +399,16 @@ TEST_CASE("memory that is too small or badly placed is refused") {
     fdcg_scene_move_finger(scene, {i, finger.generation}, below, &error);
   fdcg_scene_step(scene);
   fdcg_finger_result felt;
-  REQUIRE(fdcg_scene_result(scene, finger, &felt, &error) == FDCG_OK);
+  REQUIRE(fdcg_scene_get_result(scene, finger, &felt, &error) == FDCG_OK);
   CHECK(felt.touch_count == config.touches_per_finger);
-  CHECK(felt.flags == FDCG_FINGER_CROWDED);
-  CHECK(felt.crowded_steps == 1);
+  CHECK(felt.flags == FDCG_FINGER_CONTACT_OVERFLOW);
+  CHECK(felt.overflowed_steps == 1);
   CHECK(memory[bytes / 8] == 0xA5A5A5A5A5A5A5A5u);
   CHECK(memory[bytes / 8 + 1] == 0xA5A5A5A5A5A5A5A5u);
 }
 
 TEST_CASE("where places are short the touched objects keep theirs, and the nearest get the others") {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.touches_per_finger = 2;
   Rig rig(config);
   const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});
@@ -423,7 +423,7 @@ TEST_CASE("where places are short the touched objects keep theirs, and the neare
     rig.scene.pose(others[i], posed({0.4 * ends[i], 0, 0.49}));
   rig.scene.step();
   const fdcg_finger_result felt = rig.scene.result(finger);
-  CHECK(felt.flags == FDCG_FINGER_CROWDED);
+  CHECK(felt.flags == FDCG_FINGER_CONTACT_OVERFLOW);
   REQUIRE(felt.touch_count == 2);
   CHECK(felt.touches[0].object.index == rig.object.index);
   CHECK(felt.touches[1].object.index == others[1].index);
@@ -439,7 +439,7 @@ TEST_CASE("a copy of a scene's memory goes its own way") {
   REQUIRE(fdcg_scene_move_finger(other, finger, hip, nullptr) == FDCG_OK);
   fdcg_scene_step(other);
   fdcg_finger_result felt;
-  REQUIRE(fdcg_scene_result(other, finger, &felt, nullptr) == FDCG_OK);
+  REQUIRE(fdcg_scene_get_result(other, finger, &felt, nullptr) == FDCG_OK);
   CHECK(felt.force_n[2] == Approx(20));
   CHECK(felt.touches >= static_cast<void*>(copy.data()));
   CHECK(felt.touches < static_cast<void*>(copy.data() + copy.size()));
@@ -469,7 +469,7 @@ TEST_CASE("a finger may be stepped several times in a tick, and is told of ticks
 }
 
 TEST_CASE("fingers on threads feel what they feel one after the other") {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.finger_capacity = 16;
   Rig one(config), many(config);
   std::vector<fdcg_finger_id> fingers;
@@ -504,7 +504,7 @@ TEST_CASE("fingers on threads feel what they feel one after the other") {
 }
 
 TEST_CASE("out of reach nobody looks, however many objects there are") {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.object_capacity = 1000;
   Rig rig(config);
   for (int i = 1; i < 1000; ++i)
@@ -514,12 +514,12 @@ TEST_CASE("out of reach nobody looks, however many objects there are") {
     rig.scene.move(finger, {-10 + 0.001 * i * 8 / 9, 0, 0});
     rig.scene.step();
   }
-  CHECK(rig.scene.result(finger).looks < 10);
+  CHECK(rig.scene.result(finger).broadphase_updates < 10);
 }
 
 TEST_CASE("after a scene's memory is there the heap is never called") {
   if (!can_count_heap_calls()) return;
-  const fdcg_scene_config config = fdcg_default_scene_config();
+  const fdcg_scene_config config = fdcg_make_scene_config();
   const CompiledMesh mesh(star_sphere(2, 0.3, 5));
   std::vector<std::uint64_t> memory(fdcg_scene_bytes(&config) / 8 + 1);
   const std::uint64_t before = heap_calls();
@@ -529,11 +529,11 @@ TEST_CASE("after a scene's memory is there the heap is never called") {
   fdcg_finger_id fingers[2];
   fdcg_reaction reactions[3];
   fdcg_finger_result felt;
-  const fdcg_params params = fdcg_default_params();
+  const fdcg_params params = fdcg_make_params();
   std::uint32_t touches = 0;
   fdcg_status status = fdcg_scene_create(memory.data(), memory.size() * 8, &config, &scene, &error);
   for (fdcg_object_id& object : objects) {
-    const fdcg_pose pose = fdcg_identity_pose();
+    const fdcg_pose pose = fdcg_make_identity_pose();
     if (status == FDCG_OK) status = fdcg_scene_add_object(scene, &mesh.view(), &params, &pose, &object, &error);
   }
   const double far[3] = {5, 0, 0};
@@ -552,9 +552,9 @@ TEST_CASE("after a scene's memory is there the heap is never called") {
     }
     fdcg_scene_step(scene);
     for (const fdcg_finger_id finger : fingers) {
-      if (fdcg_scene_result(scene, finger, &felt, &error) == FDCG_OK) touches += felt.touch_count;
+      if (fdcg_scene_get_result(scene, finger, &felt, &error) == FDCG_OK) touches += felt.touch_count;
     }
-    fdcg_scene_reactions(scene, reactions, 3);
+    fdcg_scene_get_reactions(scene, reactions, 3);
     if (tick == 1000) status = fdcg_scene_remove_object(scene, objects[2], &error);
   }
   const std::uint64_t calls = heap_calls() - before;
@@ -564,7 +564,7 @@ TEST_CASE("after a scene's memory is there the heap is never called") {
 }
 
 TEST_CASE("the C++ scene does what the C functions do") {
-  const fdcg_scene_config config = fdcg_default_scene_config();
+  const fdcg_scene_config config = fdcg_make_scene_config();
   std::vector<std::byte> memory(fdcg::Scene::bytes(config));
   const auto compiled = fdcg::bake::compile(cube(), {});
   fdcg::Graph graph;
@@ -575,7 +575,7 @@ TEST_CASE("the C++ scene does what the C functions do") {
   fdcg_object_id object;
   fdcg_finger_id finger;
   const double above[3] = {0, 0, 0.6}, below[3] = {0, 0, 0.49};
-  REQUIRE(scene.add_object(graph, contact_params(0, 0), fdcg_identity_pose(), &object, &why));
+  REQUIRE(scene.add_object(graph, contact_params(0, 0), fdcg_make_identity_pose(), &object, &why));
   REQUIRE(scene.add_finger(above, &finger, &why));
   scene.step();
   REQUIRE(scene.move(finger, below));

@@ -17,7 +17,7 @@ namespace {
 constexpr double kStiffness = 1000, kSide = 0.1;
 
 fdcg_scene_config with_soft_fingers() {
-  fdcg_scene_config config = fdcg_default_scene_config();
+  fdcg_scene_config config = fdcg_make_scene_config();
   config.has_soft_fingers = 1;
   return config;
 }
@@ -26,12 +26,12 @@ fdcg_scene_config with_soft_fingers() {
 class Press {
  public:
   Press(double mu_static, double mu_dynamic, double radius_m, double depth_m)
-      : rig_(fdcg_default_pile_config(), with_soft_fingers()), radius_m_(radius_m), depth_m_(depth_m) {
+      : rig_(fdcg_make_pile_config(), with_soft_fingers()), radius_m_(radius_m), depth_m_(depth_m) {
     object_ =
         rig_.add_fixed(rig_.box(kSide, kSide, kSide), friction(mu_static, mu_dynamic, kStiffness), posed({0, 0, -kSide / 2}));
     finger_ = rig_.scene().add({0.001, 0.002, 0.01});
     fdcg_error error;
-    REQUIRE(fdcg_scene_soften_finger(scene(), finger_, radius_m, &error) == FDCG_OK);
+    REQUIRE(fdcg_scene_set_finger_radius(scene(), finger_, radius_m, &error) == FDCG_OK);
     rig_.scene().step();
     at(0, 0, 0);
   }
@@ -39,14 +39,14 @@ class Press {
   void at(double x, double y, double angle_rad) {
     const fdcg_pose turn = posed({0, 0, 0}, {0, 0, 1}, angle_rad);
     fdcg_error error;
-    REQUIRE(fdcg_scene_turn_finger(scene(), finger_, turn.rotation_xyzw, &error) == FDCG_OK);
+    REQUIRE(fdcg_scene_set_finger_rotation(scene(), finger_, turn.rotation_xyzw, &error) == FDCG_OK);
     rig_.scene().move(finger_, {0.001 + x, 0.002 + y, -depth_m_});
     rig_.scene().step();
   }
   [[nodiscard]] Place torque() {
     double torque[3];
     fdcg_error error;
-    REQUIRE(fdcg_scene_finger_torque(scene(), finger_, torque, &error) == FDCG_OK);
+    REQUIRE(fdcg_scene_get_finger_torque(scene(), finger_, torque, &error) == FDCG_OK);
     return place(torque);
   }
   [[nodiscard]] Place force() { return place(rig_.scene().result(finger_).force_n); }
@@ -90,7 +90,7 @@ TEST_CASE("a soft finger that is turned bears mu N a before it slips, and mu_d N
         CHECK_FALSE(press.slips());
         CHECK(press.torque()[2] == Approx(-0.999 * bears).epsilon(1e-9));
         fdcg_reaction reaction;
-        fdcg_scene_reactions(press.scene(), &reaction, 1);
+        fdcg_scene_get_reactions(press.scene(), &reaction, 1);
         const Place arm = {0.001, 0.002, 0.05};
         CHECK(reaction.torque_n_m[2] - cross(arm, press.force() * -1.0)[2] == Approx(-press.torque()[2]).epsilon(1e-9));
         press.at(0, 0, angle_for(1.001 * mu * depth / (2 * radius)));
@@ -168,8 +168,8 @@ TEST_CASE("two soft fingers hold a beam off its middle up to the load at which e
     lever = aside * std::cos(2 * std::atan(holds_kg * 9.80665 * lever / 2 / (2 * kStiffness * radius * radius)));
   }
   for (const double share : {0.999, 1.001}) {
-    PileRig rig(fdcg_default_pile_config(), with_soft_fingers());
-    fdcg_body_config config = fdcg_default_body_config();
+    PileRig rig(fdcg_make_pile_config(), with_soft_fingers());
+    fdcg_body_config config = fdcg_make_body_config();
     config.linear_damping_per_s = config.angular_damping_per_s = 30;
     config.sleep_after_s = 0;
     config.gravity_m_per_s2[2] = 0;
@@ -179,7 +179,7 @@ TEST_CASE("two soft fingers hold a beam off its middle up to the load at which e
     fdcg_error error;
     for (int i = 0; i < 2; ++i) {
       fingers[i] = rig.scene().add({i == 0 ? -0.02 : 0.02, aside, 0});
-      REQUIRE(fdcg_scene_soften_finger(rig.scene().get(), fingers[i], radius, &error) == FDCG_OK);
+      REQUIRE(fdcg_scene_set_finger_radius(rig.scene().get(), fingers[i], radius, &error) == FDCG_OK);
     }
     rig.scene().step();
     for (int i = 0; i < 2; ++i)
@@ -202,21 +202,21 @@ TEST_CASE("two soft fingers hold a beam off its middle up to the load at which e
 TEST_CASE("room for soft fingers changes no bit of those that are not, and what cannot be is refused") {
   for (int soft = 0; soft < 2; ++soft) {
     static std::vector<Place> forces;
-    SceneRig scene(soft == 0 ? fdcg_default_scene_config() : with_soft_fingers());
+    SceneRig scene(soft == 0 ? fdcg_make_scene_config() : with_soft_fingers());
     PileRig shapes;
     const auto box = shapes.box(kSide, kSide, kSide);
     scene.add(shapes.graph(box), friction(0.5, 0.4), posed({0, 0, 0}));
     const fdcg_finger_id finger = scene.add({0, 0, 0.06}), other = scene.add({0, 0, 1});
     fdcg_error error = {};
     if (soft == 0) {
-      CHECK(fdcg_scene_soften_finger(scene.get(), other, 0.01, &error) == FDCG_E_ARGUMENT);
+      CHECK(fdcg_scene_set_finger_radius(scene.get(), other, 0.01, &error) == FDCG_E_ARGUMENT);
       CHECK(std::string(error.message).find("has no room for soft fingers; set config.has_soft_fingers") != std::string::npos);
     } else {
-      CHECK(fdcg_scene_soften_finger(scene.get(), other, 0.01, &error) == FDCG_OK);
-      CHECK(fdcg_scene_soften_finger(scene.get(), other, -1, &error) == FDCG_E_ARGUMENT);
+      CHECK(fdcg_scene_set_finger_radius(scene.get(), other, 0.01, &error) == FDCG_OK);
+      CHECK(fdcg_scene_set_finger_radius(scene.get(), other, -1, &error) == FDCG_E_ARGUMENT);
       CHECK(std::string(error.message) == "radius_m is -1, allowed 0 and 1e-9 to 1e3");
       const double twice[4] = {0, 0, 0, 2};
-      CHECK(fdcg_scene_turn_finger(scene.get(), other, twice, &error) == FDCG_E_ARGUMENT);
+      CHECK(fdcg_scene_set_finger_rotation(scene.get(), other, twice, &error) == FDCG_E_ARGUMENT);
       CHECK(std::string(error.message).find("rotation_xyzw's length is 2") == 0);
     }
     for (std::size_t tick = 0; tick < 2000; ++tick) {

@@ -22,7 +22,7 @@ int ticks() {
 
 fdcg_params with_skips(std::uint32_t disabled) {
   fdcg_params params = contact_params(0.4, 0.3);
-  params.disabled_skips = disabled;
+  params.disabled_optimizations = disabled;
   return params;
 }
 
@@ -61,7 +61,7 @@ Tally compare(const PolygonSoup& soup, Precision precision, std::uint64_t seed) 
   CompileOptions options;
   options.precision = precision;
   const CompiledMesh mesh(soup, options);
-  Contact with(mesh.view(), with_skips(0)), without(mesh.view(), with_skips(FDCG_STEP_SKIP_CLEAR_BALL));
+  Contact with(mesh.view(), with_skips(0)), without(mesh.view(), with_skips(FDCG_STEP_OPT_CLEAR_BALL));
   Drift drift(extent(soup), seed);
   Hip surface = point_of(soup.points[0]);
   Tally tally;
@@ -161,10 +161,10 @@ TEST_CASE("copied and reset contacts go their own way with their ball") {
 }
 
 TEST_CASE("a skip that there is not is refused") {
-  fdcg_params params = fdcg_default_params();
-  CHECK(params.disabled_skips == 0);
-  params.disabled_skips = FDCG_STEP_SKIP_ALL;
+  fdcg_params params = fdcg_make_params();
+  CHECK(params.disabled_optimizations == 0);
+  params.disabled_optimizations = FDCG_STEP_OPT_ALL;
   CHECK(fdcg_check_params(&params, nullptr) == FDCG_OK);
-  params.disabled_skips = FDCG_STEP_SKIP_ALL + 1;
+  params.disabled_optimizations = FDCG_STEP_OPT_ALL + 1;
   CHECK(fdcg_check_params(&params, nullptr) == FDCG_E_ARGUMENT);
 }

@@ -20,11 +20,11 @@ using fdcg::bake::Precision;
 
 namespace {
 
-constexpr std::uint32_t kCurve = FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
+constexpr std::uint32_t kCurve = FDCG_FRICTION_STRIBECK | FDCG_FRICTION_VISCOUS | FDCG_FRICTION_LAG;
 
 fdcg_params curve_params(std::uint32_t terms, double mu_static = 0.7, double mu_dynamic = 0.45) {
   fdcg_params params = contact_params(mu_static, mu_dynamic);
-  params.terms = terms;
+  params.friction_flags = terms;
   params.friction_lag_s = 0.04;
   return params;
 }
@@ -39,11 +39,11 @@ void require_sound(const fdcg_params& params) {
 // The coefficient that the header promises for a steady slide.
 double curve(const fdcg_params& p, double speed, double depth) {
   double mu = p.mu_dynamic;
-  if ((p.terms & FDCG_TERM_STRIBECK) != 0) {
-    const double x = speed / (p.stribeck_m_per_s * std::max(1.0, depth / p.curve_depth_m));
+  if ((p.friction_flags & FDCG_FRICTION_STRIBECK) != 0) {
+    const double x = speed / (p.stribeck_m_per_s * std::max(1.0, depth / p.unique_solution_depth_m));
     mu += (p.mu_static - p.mu_dynamic) / (1 + x * x);
   }
-  return (p.terms & FDCG_TERM_VISCOUS) != 0 ? mu + p.viscous_s_per_m * speed : mu;
+  return (p.friction_flags & FDCG_FRICTION_VISCOUS) != 0 ? mu + p.viscous_s_per_m * speed : mu;
 }
 
 Hip along(const Hip& p, const Hip& d, double s) {
@@ -83,18 +83,18 @@ double steady_ratio(const Plane& plane, const fdcg_params& params, double speed,
 }  // namespace
 
 TEST_CASE("at steady speed the ratio of forces lies on the curve, whatever its terms") {
-  const std::uint32_t all[] = {FDCG_TERM_VISCOUS,
-                               FDCG_TERM_STRIBECK | FDCG_TERM_LAG,
+  const std::uint32_t all[] = {FDCG_FRICTION_VISCOUS,
+                               FDCG_FRICTION_STRIBECK | FDCG_FRICTION_LAG,
                                kCurve,
-                               kCurve | FDCG_TERM_PRESLIDING,
-                               FDCG_TERM_VISCOUS | FDCG_TERM_LAG,
-                               FDCG_TERM_STRIBECK};
+                               kCurve | FDCG_FRICTION_PRESLIDING,
+                               FDCG_FRICTION_VISCOUS | FDCG_FRICTION_LAG,
+                               FDCG_FRICTION_STRIBECK};
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     const Plane plane(seed);
     for (const std::uint32_t terms : all) {
       fdcg_params params = curve_params(terms);
-      if (terms == FDCG_TERM_STRIBECK) params.stribeck_m_per_s = 2;  // without the lag it must fall gently
-      if (terms == FDCG_TERM_STRIBECK) params.curve_depth_m = 3e-3;
+      if (terms == FDCG_FRICTION_STRIBECK) params.stribeck_m_per_s = 2;  // without the lag it must fall gently
+      if (terms == FDCG_FRICTION_STRIBECK) params.unique_solution_depth_m = 3e-3;
       require_sound(params);
       for (const double depth : {1e-3, 3e-3, 2e-2}) {
         for (const double speed : {0.02, 0.05, 0.2, 1.0, 5.0}) {
@@ -112,7 +112,7 @@ TEST_CASE("a groove's slide lies on the curve by the load of its two walls") {
   for (const double opening : {0.6, 1.5}) {
     const PlainGraph graph(v_groove(opening), Precision::f64);
     for (const std::uint32_t rule : {FDCG_EDGE_WEDGE, FDCG_EDGE_PAPER}) {
-      fdcg_params params = curve_params(kCurve | FDCG_TERM_PRESLIDING);
+      fdcg_params params = curve_params(kCurve | FDCG_FRICTION_PRESLIDING);
       params.edge_friction = rule;
       const double h = 4e-3, speed = 0.3;
       const double load = rule == FDCG_EDGE_WEDGE ? h / std::sin(opening / 2) : h;
@@ -128,7 +128,7 @@ TEST_CASE("a groove's slide lies on the curve by the load of its two walls") {
 
 TEST_CASE("slip begins at the static limit without a jump, and the curve is felt continuously in speed") {
   const Plane plane(7);
-  const fdcg_params params = curve_params(FDCG_TERM_STRIBECK | FDCG_TERM_LAG);
+  const fdcg_params params = curve_params(FDCG_FRICTION_STRIBECK | FDCG_FRICTION_LAG);
   require_sound(params);
   const double depth = 2e-3;
   const Hip start = along({0, 0, 0}, plane.normal, -depth);
@@ -175,7 +175,7 @@ TEST_CASE("a path does not depend on how a plane is cut up, with the curve on") 
 
 TEST_CASE("presliding yields by the stiffness it is given, comes back, and never creeps") {
   const Plane plane(11);
-  fdcg_params params = curve_params(FDCG_TERM_PRESLIDING);
+  fdcg_params params = curve_params(FDCG_FRICTION_PRESLIDING);
   params.presliding_n_per_m = 2e4;
   require_sound(params);
   const double depth = 5e-3, k = params.stiffness_n_per_m, kp = params.presliding_n_per_m;
@@ -214,7 +214,7 @@ TEST_CASE("presliding yields by the stiffness it is given, comes back, and never
 TEST_CASE("with all terms a held contact is still to the last bit over a million ticks") {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     const Plane plane(13, precision);
-    Contact contact(plane.graph.view(), curve_params(kCurve | FDCG_TERM_PRESLIDING));
+    Contact contact(plane.graph.view(), curve_params(kCurve | FDCG_FRICTION_PRESLIDING));
     const double depth = 5e-3;
     const Hip start = along({0, 0, 0}, plane.normal, -depth);
     contact.step(along(start, plane.normal, 2 * depth));
@@ -235,7 +235,7 @@ TEST_CASE("with all terms a held contact is still to the last bit over a million
 
 TEST_CASE("after a slide the hold comes back as the lag's memory fades") {
   const Plane plane(17);
-  fdcg_params params = curve_params(FDCG_TERM_STRIBECK | FDCG_TERM_LAG);
+  fdcg_params params = curve_params(FDCG_FRICTION_STRIBECK | FDCG_FRICTION_LAG);
   const double depth = 3e-3;
   const auto hold_after = [&](int ticks) {
     Contact contact(plane.graph.view(), params);
@@ -277,8 +277,8 @@ TEST_CASE("no term gives the hand work: closed loops over many bodies") {
                                            saddle_block(),
                                            star_sphere(2, 0.3, 8),
                                            plane_jittered(6, 2)};
-  const std::uint32_t all[] = {FDCG_TERM_STRIBECK, FDCG_TERM_VISCOUS, FDCG_TERM_PRESLIDING, kCurve,
-                               kCurve | FDCG_TERM_PRESLIDING};
+  const std::uint32_t all[] = {FDCG_FRICTION_STRIBECK, FDCG_FRICTION_VISCOUS, FDCG_FRICTION_PRESLIDING, kCurve,
+                               kCurve | FDCG_FRICTION_PRESLIDING};
   Random random(9);
   for (const PolygonSoup& soup : bodies) {
     const PlainGraph graph(soup, Precision::f64);
@@ -290,7 +290,7 @@ TEST_CASE("no term gives the hand work: closed loops over many bodies") {
         params.stribeck_m_per_s = std::exp(random.uniform(-5, 2));
         params.viscous_s_per_m = std::exp(random.uniform(-4, 0));
         params.presliding_n_per_m = params.stiffness_n_per_m * std::exp(random.uniform(-1, 5));
-        params.curve_depth_m = 0.1;
+        params.unique_solution_depth_m = 0.1;
         const std::vector<Hip> hips = elliptic_loop(random, extent(soup), 400);
         const LoopAccount account = account_of(graph.view(), params, hips);
         INFO(soup.name << " terms " << terms << ", loop " << loop);
@@ -314,7 +314,7 @@ TEST_CASE("what two springs store grows by the hand's work alone, tick by tick, 
   for (const PolygonSoup& soup : bodies) {
     const PlainGraph graph(soup, Precision::f64);
     for (const double kp : {300.0, 3e3, 1e5}) {  // from softer than the contact to all but rigid
-      fdcg_params params = curve_params(kCurve | FDCG_TERM_PRESLIDING, 0.8, 0.5);
+      fdcg_params params = curve_params(kCurve | FDCG_FRICTION_PRESLIDING, 0.8, 0.5);
       params.presliding_n_per_m = kp;
       const double k = params.stiffness_n_per_m;
       Contact contact(graph.view(), params);
@@ -358,7 +358,7 @@ TEST_CASE("terms that are off leave every bit as it is, whatever their fields sa
   odd.stribeck_m_per_s = 0;
   odd.viscous_s_per_m = -1;
   odd.presliding_n_per_m = 0;
-  odd.curve_depth_m = 0;
+  odd.unique_solution_depth_m = 0;
   odd.finger = {-1, -1, -1};
   require_sound(odd);
   Contact one(graph.view(), plain), other(graph.view(), odd);
@@ -377,7 +377,7 @@ TEST_CASE("terms that add nothing come to what the step without them does") {
   const PolygonSoup soup = star_sphere(2, 0.3, 8);
   const PlainGraph graph(soup, Precision::f64);
   fdcg_params plain = contact_params(0.5, 0.5), terms = plain;
-  terms.terms = FDCG_TERM_ALL & ~FDCG_TERM_FINGER;
+  terms.friction_flags = FDCG_FRICTION_ALL & ~FDCG_FRICTION_FINGER;
   terms.viscous_s_per_m = 0;
   terms.presliding_n_per_m = 1e9;
   terms.stiffness_n_per_m = plain.stiffness_n_per_m = 1;
@@ -404,23 +404,23 @@ TEST_CASE("terms that add nothing come to what the step without them does") {
 }
 
 TEST_CASE("a curve that would have two solutions is refused with the limit") {
-  fdcg_params params = curve_params(FDCG_TERM_STRIBECK);
+  fdcg_params params = curve_params(FDCG_FRICTION_STRIBECK);
   fdcg_error error = {};
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
   CHECK_THAT(error.message,
              Catch::Contains("falls by 3.247") && Catch::Contains("0.025 s/m") && Catch::Contains("raise stribeck_m_per_s"));
   // Just inside and just outside of 0.65 (mu_s - mu_d) / v_s depth <= lag + tick / 4.
-  params.terms |= FDCG_TERM_LAG;
-  const double steepest = 3 * std::sqrt(3.0) / 8 * (0.7 - 0.45) * params.curve_depth_m;
+  params.friction_flags |= FDCG_FRICTION_LAG;
+  const double steepest = 3 * std::sqrt(3.0) / 8 * (0.7 - 0.45) * params.unique_solution_depth_m;
   params.stribeck_m_per_s = steepest / (params.friction_lag_s + params.tick_s / 4) * (1 + 1e-9);
   CHECK(fdcg_check_params(&params, &error) == FDCG_OK);
   params.stribeck_m_per_s *= 1 - 2e-9;
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  params.terms |= FDCG_TERM_VISCOUS;
+  params.friction_flags |= FDCG_FRICTION_VISCOUS;
   CHECK(fdcg_check_params(&params, &error) == FDCG_OK);
   params = curve_params(64);
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  params = curve_params(FDCG_TERM_PRESLIDING);
+  params = curve_params(FDCG_FRICTION_PRESLIDING);
   params.presliding_n_per_m = std::nan("");
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
   CHECK(std::string(error.message).find("presliding_n_per_m") != std::string::npos);

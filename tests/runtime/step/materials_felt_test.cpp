@@ -16,8 +16,8 @@ namespace bake = fdcg::bake;
 namespace {
 
 fdcg_params with_table(const std::vector<fdcg_material>& table) {
-  fdcg_params params = fdcg_default_params();
-  params.terms = FDCG_TERM_MATERIALS;
+  fdcg_params params = fdcg_make_params();
+  params.friction_flags = FDCG_FRICTION_MATERIALS;
   params.materials = table.data();
   params.material_count = static_cast<std::uint32_t>(table.size());
   fdcg_error error = {};
@@ -114,9 +114,9 @@ TEST_CASE("with any materials and terms, what is stored grows by the hand's work
     });
     const CompiledMesh mesh(soup);
     const std::vector<fdcg_material> table = {{0.9, 0.5, 200}, {0.2, 0.1, 5000}, {0, 0, 1000}};
-    for (const std::uint32_t terms : {0u, unsigned{FDCG_TERM_PRESLIDING}, unsigned{FDCG_TERM_ALL}}) {
+    for (const std::uint32_t terms : {0u, unsigned{FDCG_FRICTION_PRESLIDING}, unsigned{FDCG_FRICTION_ALL}}) {
       fdcg_params params = with_table(table);
-      params.terms |= terms;
+      params.friction_flags |= terms;
       params.presliding_n_per_m = 4000;
       const double kp = params.presliding_n_per_m;
       Contact contact(mesh.view(), params);
@@ -130,21 +130,21 @@ TEST_CASE("with any materials and terms, what is stored grows by the hand's work
         const double gap = distance(contact.god_object(), at), yielded = distance(contact.god_object(), anchor);
         const double k = gap > 0 ? norm(contact.force()) / gap : contact.state.stiffness_n_per_m;
         double whole = k;  // of the material
-        if ((terms & FDCG_TERM_PRESLIDING) != 0 && yielded > 0) {
+        if ((terms & FDCG_FRICTION_PRESLIDING) != 0 && yielded > 0) {
           if (contact.result.state == FDCG_FACE) {
-            const std::uint32_t m = fdcg_node_material(&mesh.view(), contact.result.feature);
+            const std::uint32_t m = fdcg_get_node_material(&mesh.view(), contact.result.feature);
             fdcg_material own = m < 3 ? table[m] : fdcg_material{params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
-            if ((terms & FDCG_TERM_FINGER) != 0) own = fdcg_combine_materials(&own, &params.finger);
+            if ((terms & FDCG_FRICTION_FINGER) != 0) own = fdcg_combine_materials(&own, &params.finger);
             whole = own.stiffness_n_per_m;
           } else {
             const fdcg_connection_info edge = fdcg_get_connection(&mesh.view(), contact.result.feature);
             whole = 1e300;
             for (const std::uint32_t n : edge.node) {
               if (n == FDCG_NONE) continue;
-              const std::uint32_t m = fdcg_node_material(&mesh.view(), n);
+              const std::uint32_t m = fdcg_get_node_material(&mesh.view(), n);
               fdcg_material own =
                   m < 3 ? table[m] : fdcg_material{params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
-              if ((terms & FDCG_TERM_FINGER) != 0) own = fdcg_combine_materials(&own, &params.finger);
+              if ((terms & FDCG_FRICTION_FINGER) != 0) own = fdcg_combine_materials(&own, &params.finger);
               whole = std::min(whole, own.stiffness_n_per_m);
             }
           }
@@ -184,7 +184,7 @@ TEST_CASE("a finger's material is combined with what it touches: geometric mean,
     double felt[2] = {0, 0};
     const double depth = 0.01;
     if (!in_scene) {
-      params.terms |= FDCG_TERM_FINGER;
+      params.friction_flags |= FDCG_FRICTION_FINGER;
       params.finger = finger;
       Contact contact(mesh.view(), params);
       contact.step(1, 0, depth);
@@ -192,13 +192,13 @@ TEST_CASE("a finger's material is combined with what it touches: geometric mean,
         contact.step(1 + 0.001 * tick, 0, -depth);
       felt[0] = -contact.force()[0], felt[1] = contact.force()[2];
     } else {
-      params.terms = FDCG_TERM_MATERIALS;
-      fdcg_scene_config config = fdcg_default_scene_config();
+      params.friction_flags = FDCG_FRICTION_MATERIALS;
+      fdcg_scene_config config = fdcg_make_scene_config();
       std::vector<std::uint64_t> memory(fdcg_scene_bytes(&config) / 8 + 1);
       fdcg_scene* scene = nullptr;
       fdcg_error error = {};
       REQUIRE(fdcg_scene_create(memory.data(), memory.size() * 8, &config, &scene, &error) == FDCG_OK);
-      fdcg_pose pose = fdcg_identity_pose();
+      fdcg_pose pose = fdcg_make_identity_pose();
       pose.scale = 3;
       fdcg_object_id object;
       fdcg_finger_id id;
@@ -216,7 +216,7 @@ TEST_CASE("a finger's material is combined with what it touches: geometric mean,
         fdcg_scene_step(scene);
       }
       fdcg_finger_result result;
-      REQUIRE(fdcg_scene_result(scene, id, &result, &error) == FDCG_OK);
+      REQUIRE(fdcg_scene_get_result(scene, id, &result, &error) == FDCG_OK);
       felt[0] = -result.force_n[0], felt[1] = result.force_n[2];
     }
     CHECK(felt[1] == Approx(depth * 500 * 3000 / 3500).epsilon(1e-9));
@@ -226,15 +226,15 @@ TEST_CASE("a finger's material is combined with what it touches: geometric mean,
 
 TEST_CASE("the curve's speeds are those in the world, whatever the object's scale") {
   const CompiledMesh mesh(imported(kStrip));
-  fdcg_params params = fdcg_default_params();
-  params.terms = FDCG_TERM_STRIBECK | FDCG_TERM_VISCOUS | FDCG_TERM_LAG;
+  fdcg_params params = fdcg_make_params();
+  params.friction_flags = FDCG_FRICTION_STRIBECK | FDCG_FRICTION_VISCOUS | FDCG_FRICTION_LAG;
   for (const double scale : {0.25, 1.0, 50.0}) {
-    fdcg_scene_config config = fdcg_default_scene_config();
+    fdcg_scene_config config = fdcg_make_scene_config();
     std::vector<std::uint64_t> memory(fdcg_scene_bytes(&config) / 8 + 1);
     fdcg_scene* scene = nullptr;
     fdcg_error error = {};
     REQUIRE(fdcg_scene_create(memory.data(), memory.size() * 8, &config, &scene, &error) == FDCG_OK);
-    fdcg_pose pose = fdcg_identity_pose();
+    fdcg_pose pose = fdcg_make_identity_pose();
     pose.scale = scale;
     fdcg_object_id object;
     fdcg_finger_id id;
@@ -249,7 +249,7 @@ TEST_CASE("the curve's speeds are those in the world, whatever the object's scal
       fdcg_scene_step(scene);
     }
     fdcg_finger_result result;
-    REQUIRE(fdcg_scene_result(scene, id, &result, &error) == FDCG_OK);
+    REQUIRE(fdcg_scene_get_result(scene, id, &result, &error) == FDCG_OK);
     const double expected = 0.4 + 0.2 / (1 + 9) + 0.1 * speed;
     CHECK(-result.force_n[0] / result.force_n[2] == Approx(expected).epsilon(1e-9));
   }
@@ -257,8 +257,8 @@ TEST_CASE("the curve's speeds are those in the world, whatever the object's scal
 
 TEST_CASE("a table that makes no sense is refused with the row") {
   std::vector<fdcg_material> table = {{0.9, 0.8, 1000}, {0.2, 0.3, 500}};
-  fdcg_params params = fdcg_default_params();
-  params.terms = FDCG_TERM_MATERIALS;
+  fdcg_params params = fdcg_make_params();
+  params.friction_flags = FDCG_FRICTION_MATERIALS;
   params.materials = table.data();
   params.material_count = 2;
   fdcg_error error = {};

@@ -25,9 +25,9 @@ TEST_CASE("usemtl is kept from the mesh file to the nodes, and faces of two mate
   REQUIRE(mesh.view().material_count == 2);
   CHECK(fdcg_find_material(&mesh.view(), "ice") == 1);
   CHECK(fdcg_find_material(&mesh.view(), "ic") == FDCG_NONE);
-  CHECK(fdcg_material_name(&mesh.view(), 2) == nullptr);
+  CHECK(fdcg_get_material_name(&mesh.view(), 2) == nullptr);
   for (std::uint32_t f = 0; f < 2; ++f)
-    CHECK(fdcg_node_material(&mesh.view(), mesh.view().source_map[f]) == f);
+    CHECK(fdcg_get_node_material(&mesh.view(), mesh.view().source_map[f]) == f);
   int flat = 0;
   for (std::uint32_t c = 0; c < mesh.view().header->connection_count; ++c)
     flat += fdcg_get_connection(&mesh.view(), c).type == FDCG_COPLANAR;
@@ -36,7 +36,7 @@ TEST_CASE("usemtl is kept from the mesh file to the nodes, and faces of two mate
   const CompiledMesh merged(soup, options);
   CHECK(merged.view().header->node_count == 1);
   CHECK(merged.view().node_materials == nullptr);
-  CHECK(fdcg_node_material(&merged.view(), 0) == FDCG_NONE);
+  CHECK(fdcg_get_node_material(&merged.view(), 0) == FDCG_NONE);
 }
 
 TEST_CASE("a mesh without materials has no section of them; faces before the first usemtl have none") {
@@ -45,10 +45,10 @@ TEST_CASE("a mesh without materials has no section of them; faces before the fir
       imported("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nusemtl  felt, grey \nf 2 3 4\nusemtl\nf 1 4 3\n");
   const CompiledMesh mesh(soup);
   REQUIRE(mesh.view().material_count == 1);
-  CHECK_THAT(fdcg_material_name(&mesh.view(), 0), Catch::Equals("felt, grey"));
+  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 0), Catch::Equals("felt, grey"));
   const std::uint32_t expected[] = {FDCG_NONE, FDCG_NONE, 0, FDCG_NONE};
   for (std::uint32_t f = 0; f < 4; ++f)
-    CHECK(fdcg_node_material(&mesh.view(), mesh.view().source_map[f]) == expected[f]);
+    CHECK(fdcg_get_node_material(&mesh.view(), mesh.view().source_map[f]) == expected[f]);
 }
 
 TEST_CASE("however faces are merged, each source face's node has its material, and pieces of a plane share it to the bit") {
@@ -73,12 +73,12 @@ TEST_CASE("however faces are merged, each source face's node has its material, a
       for (std::uint32_t f = 0; f < soup.face_count(); ++f) {
         const std::uint32_t expected =
             soup.face_material[f] == bake::PolygonSoup::kNoMaterial ? FDCG_NONE : soup.face_material[f];
-        REQUIRE(fdcg_node_material(&graph, graph.source_map[f]) == expected);
+        REQUIRE(fdcg_get_node_material(&graph, graph.source_map[f]) == expected);
       }
       int between = 0;
       for (std::uint32_t c = 0; c < graph.header->connection_count; ++c) {
         const fdcg_connection_info edge = fdcg_get_connection(&graph, c);
-        if (fdcg_node_material(&graph, edge.node[0]) == fdcg_node_material(&graph, edge.node[1])) continue;
+        if (fdcg_get_node_material(&graph, edge.node[0]) == fdcg_get_node_material(&graph, edge.node[1])) continue;
         if (edge.type != FDCG_COPLANAR) continue;
         const fdcg_node_info a = fdcg_get_node(&graph, edge.node[0]), b = fdcg_get_node(&graph, edge.node[1]);
         ++between;
@@ -137,10 +137,10 @@ TEST_CASE("names that are long or no UTF-8 are told apart, in 63 bytes") {
   REQUIRE(mesh.view().material_count == 4);
   std::map<std::string, int> names;
   for (std::uint32_t i = 0; i < 4; ++i)
-    ++names[fdcg_material_name(&mesh.view(), i)];
+    ++names[fdcg_get_material_name(&mesh.view(), i)];
   CHECK(names.size() == 4);
-  CHECK_THAT(fdcg_material_name(&mesh.view(), 0), Catch::Equals(stem + "one"));
-  CHECK_THAT(fdcg_material_name(&mesh.view(), 1), Catch::StartsWith(stem.substr(0, 54) + "~"));
+  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 0), Catch::Equals(stem + "one"));
+  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 1), Catch::StartsWith(stem.substr(0, 54) + "~"));
 }
 
 TEST_CASE("a file whose materials are out of range is refused, by name") {

@@ -19,7 +19,7 @@ FLAGS = ["-std=c++20", "-O1", "-w", "-ffp-contract=off", "-fno-math-errno", "-fn
 # (tag of the test, what is taken out, then for each place: file, the text as it stands, what replaces it)
 MUTANTS = [
     ("met-again", "a feature met again is a rest", "step/servo_step.cpp",
-     "if (trail.has_met_again(walk) && !trail.begins_again(walk)) return progress;", ""),
+     "if (trail.has_met_again(walk) && !trail.retry_without_residual(walk)) return progress;", ""),
     ("crossing", "crossed means on or beyond, and further out than before: the paper's change of sign instead", "step/face.hpp",
      "if (!(s1 > s0)) continue;", "if (!(s1 * s0 < 0)) continue;"),
     ("crossing", "... or from not beyond to beyond instead", "step/face.hpp",
@@ -27,7 +27,7 @@ MUTANTS = [
     ("first-crossing", "the first crossing, not the last", "step/face.hpp",
      "|| fraction < first.fraction)", "|| fraction > first.fraction)"),
     ("along-side", "a way along a side ends where it ends", "step/face.hpp", "s1 <= rounding ? Real(1)", "false ? Real(1)"),
-    ("lost", "what rounding takes at an edge is not lost", "step/face.hpp", "walk.lost = (from - walk.god_object) + ahead", "(void)0"),
+    ("lost", "what rounding takes at an edge is not lost", "step/face.hpp", "walk.rounding_residual = (from - walk.god_object) + ahead", "(void)0"),
     ("on-plane", "on a face's plane is outside", "step/face.hpp", "if (!(side < 0)) return", "if (side > 0) return"),
     ("seat", "the seat's rule decides, and where it is not asked the other wall holds", "step/face.hpp",
      "return go_to(leave_face(walk, node));", "return go_to(kFree);",

@@ -59,7 +59,7 @@ class SurfaceContact {
   }
   [[nodiscard]] Place normal() const {
     Place n;
-    fdcg_surface_normal(&surface_, &result, n.data());
+    fdcg_surface_get_normal(&surface_, &result, n.data());
     return n;
   }
   [[nodiscard]] Place god_object() const { return {result.god_object_m[0], result.god_object_m[1], result.god_object_m[2]}; }
@@ -71,7 +71,7 @@ class SurfaceContact {
 
  private:
   fdcg_surface surface_;
-  fdcg_params params_ = fdcg_default_params();
+  fdcg_params params_ = fdcg_make_params();
 };
 
 // A hand about a surface of this extent: slow and quick strokes, tremor, standstill, jumps, and the places where shapes have

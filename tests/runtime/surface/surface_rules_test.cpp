@@ -221,7 +221,7 @@ TEST_CASE("in a hollow box the god-object goes along walls into edges and corner
 TEST_CASE("on a hollow box's edge friction along it is that of both loads, or the paper's") {
   for (const std::uint32_t edge_friction : {FDCG_EDGE_WEDGE, FDCG_EDGE_PAPER}) {
     const fdcg_surface surface = hollow(fdcg_make_box(0.1, 0.1, 0.1));
-    fdcg_params params = fdcg_default_params();
+    fdcg_params params = fdcg_make_params();
     params.mu_static = params.mu_dynamic = 0.3;
     params.edge_friction = edge_friction;
     fdcg_contact contact = {};

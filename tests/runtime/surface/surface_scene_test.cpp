@@ -27,15 +27,15 @@ void hash(std::uint64_t* sum, const void* data, std::size_t bytes) {
 }
 
 struct Outcome {
-  std::uint64_t hash = 0xCBF29CE484222325u, touches = 0, looks = 0;
+  std::uint64_t hash = 0xCBF29CE484222325u, touches = 0, broadphase_updates = 0;
 };
 
 // Every kind of surface, some on the move, and fingers among them.
-Outcome play(std::uint64_t seed, std::uint32_t disabled_skips, bool has_plane, bool plane_turns) {
+Outcome play(std::uint64_t seed, std::uint32_t disabled_optimizations, bool has_plane, bool plane_turns) {
   constexpr std::uint32_t kFingers = 6, kKinds = 8, kTicks = 1500;
   Random random(seed);
-  fdcg_scene_config config = fdcg_default_scene_config();
-  config.disabled_skips = disabled_skips;
+  fdcg_scene_config config = fdcg_make_scene_config();
+  config.disabled_optimizations = disabled_optimizations;
   config.finger_capacity = kFingers;
   SceneRig rig(config);
   std::vector<fdcg_object_id> objects;
@@ -43,7 +43,7 @@ Outcome play(std::uint64_t seed, std::uint32_t disabled_skips, bool has_plane, b
   for (std::uint32_t i = has_plane ? 0 : 1; i < 3 * kKinds; ++i) {
     const std::uint32_t kind = i % kKinds;
     if (kind == FDCG_SURFACE_PLANE && i > 0) continue;
-    fdcg_params params = fdcg_default_params();
+    fdcg_params params = fdcg_make_params();
     params.mu_static = params.mu_dynamic = random.uniform(0, 1);
     const double room = kind == FDCG_SURFACE_PLANE ? 0 : 1;
     fdcg_pose pose =
@@ -78,7 +78,7 @@ Outcome play(std::uint64_t seed, std::uint32_t disabled_skips, bool has_plane, b
     }
   }
   for (const fdcg_finger_id finger : fingers)
-    outcome.looks += rig.result(finger).looks;
+    outcome.broadphase_updates += rig.result(finger).broadphase_updates;
   return outcome;
 }
 
@@ -104,8 +104,8 @@ TEST_CASE("a scene gives the bits of a contact stepped by hand") {
     Random random(kind);
     const fdcg_surface surface = random_surface(kind, kind % 2 != 0, 1, 3, random);
     SurfaceContact by_hand(surface, 0.5, 0.4);
-    SceneRig rig(fdcg_default_scene_config());
-    const fdcg_object_id object = add(rig, surface, by_hand.params(), fdcg_identity_pose());
+    SceneRig rig(fdcg_make_scene_config());
+    const fdcg_object_id object = add(rig, surface, by_hand.params(), fdcg_make_identity_pose());
     SurfaceHand hand(1, kind + 50);
     const Place start = hand.next();
     const fdcg_finger_id finger = rig.add(start);
@@ -133,14 +133,14 @@ TEST_CASE("a scene gives the bits of a contact stepped by hand") {
 }
 
 TEST_CASE("a finger high above a plane looks at it now and then only") {
-  SceneRig rig(fdcg_default_scene_config());
-  add(rig, fdcg_make_plane(), fdcg_default_params(), fdcg_identity_pose());
+  SceneRig rig(fdcg_make_scene_config());
+  add(rig, fdcg_make_plane(), fdcg_make_params(), fdcg_make_identity_pose());
   const fdcg_finger_id finger = rig.add({0, 0, 1});
   for (int i = 0; i < 10000; ++i) {
     rig.move(finger, {1e-4 * i, 0, 1});
     rig.step();
   }
-  CHECK(rig.result(finger).looks < 100);
+  CHECK(rig.result(finger).broadphase_updates < 100);
   rig.move(finger, {1, 0, -0.01});
   rig.step();
   CHECK(rig.result(finger).touch_count == 1);
@@ -149,15 +149,15 @@ TEST_CASE("a finger high above a plane looks at it now and then only") {
 
 TEST_CASE("two fingers hold a ball for a million ticks in place") {
   const fdcg_surface ball = fdcg_make_sphere(0.03);
-  SceneRig rig(fdcg_default_scene_config());
-  fdcg_params params = fdcg_default_params();
-  const fdcg_pose pose = fdcg_identity_pose();
+  SceneRig rig(fdcg_make_scene_config());
+  fdcg_params params = fdcg_make_params();
+  const fdcg_pose pose = fdcg_make_identity_pose();
   fdcg_scene_body body = {};
   body.object = add(rig, ball, params, pose);
   fdcg_mass mass;
   fdcg_error error;
-  REQUIRE(fdcg_surface_mass(&ball, &mass, &error) == FDCG_OK);
-  fdcg_body_config config = fdcg_default_body_config();
+  REQUIRE(fdcg_surface_get_mass(&ball, &mass, &error) == FDCG_OK);
+  fdcg_body_config config = fdcg_make_body_config();
   config.linear_damping_per_s = config.angular_damping_per_s = 20;
   config.sleep_after_s = 0;
   REQUIRE(fdcg_body_set_mass(&config, &mass, 500, 1, &error) == FDCG_OK);

@@ -23,7 +23,7 @@ std::string refused(const fdcg_surface& surface) {
 fdcg_mass mass_of(const fdcg_surface& surface) {
   fdcg_mass mass;
   fdcg_error error;
-  if (fdcg_surface_mass(&surface, &mass, &error) != FDCG_OK) FAIL(error.message);
+  if (fdcg_surface_get_mass(&surface, &mass, &error) != FDCG_OK) FAIL(error.message);
   return mass;
 }
 
@@ -164,7 +164,7 @@ TEST_CASE("what has no end has no mass") {
   for (const fdcg_surface& surface : {fdcg_make_plane(), cavity}) {
     fdcg_mass mass;
     fdcg_error error;
-    CHECK(fdcg_surface_mass(&surface, &mass, &error) == FDCG_E_ABSENT);
+    CHECK(fdcg_surface_get_mass(&surface, &mass, &error) == FDCG_E_ABSENT);
     CHECK(mass.volume_m3 == 0);
   }
 }

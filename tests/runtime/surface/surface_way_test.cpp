@@ -53,7 +53,7 @@ LongPlace descend(const fdcg_surface& s, LongPlace p, const LongPlace& hip) {
 
 // One tick of a god-object that slips at p.
 fdcg_result tick(const fdcg_surface& s, const LongPlace& p, const Place& hip) {
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
   params.mu_static = params.mu_dynamic = kMu;
   fdcg_contact contact = {};
   contact.started = 1;

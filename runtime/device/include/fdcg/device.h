@@ -68,9 +68,9 @@ void fdcg_device_install_crash_handlers(void);
 
 #define FDCG_ALL_DEVICES (-1)
 
-int32_t fdcg_host_device_count(const fdcg_host* host);
+int32_t fdcg_host_get_device_count(const fdcg_host* host);
 /* As the scene has it; NULL for an index out of range. Valid until the host is closed. */
-const char* fdcg_host_device_name(const fdcg_host* host, int32_t device);
+const char* fdcg_host_get_device_name(const fdcg_host* host, int32_t device);
 
 void fdcg_host_arm(fdcg_host* host, int32_t device);
 void fdcg_host_disarm(fdcg_host* host, int32_t device);
@@ -109,8 +109,8 @@ const char* fdcg_fault_text(uint32_t fault);
 
 /* ---- profiles that are built in ------------------------------------------------------------------------------------------ */
 
-uint32_t fdcg_device_profile_count(void);
-const char* fdcg_device_profile_name(uint32_t index); /* NULL for an index out of range */
+uint32_t fdcg_device_get_profile_count(void);
+const char* fdcg_device_get_profile_name(uint32_t index); /* NULL for an index out of range */
 
 #ifdef __cplusplus
 }

@@ -52,7 +52,7 @@ struct GroundConfig {
   bool is_there = false;
   double normal[3] = {0, 0, 1};  // unit
   double offset_m = 0;
-  fdcg_params params = fdcg_default_params();
+  fdcg_params params = fdcg_make_params();
 };
 
 enum class DeviceSource { kHid, kSimulated, kRecorded };

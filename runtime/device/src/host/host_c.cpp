@@ -144,12 +144,12 @@ void fdcg_device_install_crash_handlers(void) {
   install_crash_handlers();
 }
 
-int32_t fdcg_host_device_count(const fdcg_host* host) {
+int32_t fdcg_host_get_device_count(const fdcg_host* host) {
   return host == nullptr ? 0 : host->host.device_count();
 }
 
-const char* fdcg_host_device_name(const fdcg_host* host, int32_t device) {
-  return device < 0 || device >= fdcg_host_device_count(host) ? nullptr : host->host.device(device).name.c_str();
+const char* fdcg_host_get_device_name(const fdcg_host* host, int32_t device) {
+  return device < 0 || device >= fdcg_host_get_device_count(host) ? nullptr : host->host.device(device).name.c_str();
 }
 
 void fdcg_host_arm(fdcg_host* host, int32_t device) {
@@ -185,11 +185,11 @@ const char* fdcg_fault_text(uint32_t fault) {
   return fault < kFaults ? fault_text(static_cast<Fault>(fault)) : "a fault that this version does not know";
 }
 
-uint32_t fdcg_device_profile_count(void) {
+uint32_t fdcg_device_get_profile_count(void) {
   return static_cast<std::uint32_t>(profile_names().size());
 }
 
-const char* fdcg_device_profile_name(uint32_t index) {
+const char* fdcg_device_get_profile_name(uint32_t index) {
   return index < profile_names().size() ? profile_names()[index].c_str() : nullptr;
 }
 }

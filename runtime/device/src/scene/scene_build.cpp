@@ -73,7 +73,7 @@ std::string judge_rates(const HostConfig& config, const DeviceRange& devices, co
 // Room for every finger of the devices, and the scene's switches.
 fdcg_scene_config capacities_for(const HostConfig& config, const SceneLoad& load) {
   const auto object_count = static_cast<std::uint32_t>(config.objects.size());
-  fdcg_scene_config capacities = fdcg_default_scene_config();
+  fdcg_scene_config capacities = fdcg_make_scene_config();
   capacities.object_capacity = std::max(1u, object_count);
   capacities.finger_capacity = static_cast<std::uint32_t>(load.contact_count);
   capacities.touches_per_finger = std::clamp(object_count, 1u, kMostTouches);

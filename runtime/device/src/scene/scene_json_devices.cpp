@@ -12,7 +12,7 @@ namespace fdcg::dev {
 namespace {
 
 constexpr double kOrthonormalTolerance = 1e-9;  // of a rotation matrix
-constexpr double kLeastPad_m = 1e-9;            // of fdcg_scene_soften_finger
+constexpr double kLeastPad_m = 1e-9;            // of fdcg_scene_set_finger_radius
 constexpr Keys kMappingKeys = {"scale", "rotation_xyzw", "rotation_matrix", "offset_m"};
 constexpr Keys kContactKeys = {"offset_m", "closed_m", "pad_radius_m"};
 constexpr Keys kGripKeys = {"button", "seconds"};

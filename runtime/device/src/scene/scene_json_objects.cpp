@@ -38,14 +38,14 @@ void SceneParser::read_object(const JsonObject& from) {
   } else {
     object.file = beside(file_name_, from.text("file", kLongestPath));
   }
-  object.pose = fdcg_identity_pose();
+  object.pose = fdcg_make_identity_pose();
   if (from.has("pose")) {
     const JsonObject pose = from.object("pose", kPoseKeys);
     if (pose.has("rotation_xyzw")) read_unit(pose, "rotation_xyzw", object.pose.rotation_xyzw, 4, kUnitTolerance);
     if (pose.has("translation_m")) pose.numbers("translation_m", object.pose.translation_m, 3, kLengths);
     object.pose.scale = pose.number_or("scale", 1, {1e-9, 1e9});
   }
-  object.params = fdcg_default_params();
+  object.params = fdcg_make_params();
   fdcg_params& params = object.params;
   params.damping_n_s_per_m = from.number_or("damping_n_s_per_m", params.damping_n_s_per_m, from_0(1e6, "N s/m"));
   read_friction(from, &params);
@@ -70,7 +70,7 @@ void SceneParser::read_object(const JsonObject& from) {
 void SceneParser::read_surface(const JsonObject& from, ObjectConfig* object) {
   fdcg_surface& surface = object->surface;
   object->is_surface = true;
-  fdcg_init_surface(&surface, sizeof surface);
+  fdcg_surface_init(&surface, sizeof surface);
   surface.kind = static_cast<std::uint32_t>(
       from.choice("kind", {"plane", "sphere", "cylinder", "capsule", "box", "cone", "torus", "ellipsoid"}));
   surface.is_hollow = from.boolean_or("hollow", false) ? 1 : 0;

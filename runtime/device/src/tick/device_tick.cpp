@@ -89,7 +89,7 @@ void tell(const DeviceState& device, TickOutput* output) {
   std::copy_n(device.wanted_n, 3, output->wanted_force_n);
   output->body_count = device.setup.body_count;
   for (std::uint32_t i = 0; i < output->body_count; ++i)
-    output->bodies[i] = fdcg_body_pose(&device.setup.bodies[i].body);
+    output->bodies[i] = fdcg_body_get_pose(&device.setup.bodies[i].body);
 }
 
 void pass_gate(const Member& member) {

@@ -135,7 +135,7 @@ class Builder {
 };
 
 bool Builder::make_pile(std::uint32_t points) {
-  fdcg_pile_config capacities = fdcg_default_pile_config();
+  fdcg_pile_config capacities = fdcg_make_pile_config();
   capacities.object_capacity = static_cast<std::uint32_t>(objects_.size());
   capacities.point_capacity = points;
   capacities.touch_capacity = kTouchesPerPoint * points;
@@ -150,7 +150,7 @@ bool Builder::make_pile(std::uint32_t points) {
 std::string Builder::weigh(std::size_t index, fdcg_body_config* body) {
   const ObjectConfig& object = config_.objects[index];
   fdcg_mass mass{};
-  const fdcg_status status = object.is_surface ? fdcg_surface_mass(&object.surface, &mass, &error_)
+  const fdcg_status status = object.is_surface ? fdcg_surface_get_mass(&object.surface, &mass, &error_)
                                                : fdcg_get_mass(&graphs_.of_object(index), &mass, &error_);
   if (status != FDCG_OK) return error_.message;
   const double scale = object.pose.scale;
@@ -181,7 +181,7 @@ bool Builder::add_points(std::size_t index) {
 std::string Builder::add_body(std::size_t index) {
   const ObjectConfig& object = config_.objects[index];
   const BodyConfig& from = object.motion.body;
-  fdcg_body_config config = fdcg_default_body_config();
+  fdcg_body_config config = fdcg_make_body_config();
   if (std::string problem = weigh(index, &config); !problem.empty()) return problem;
   std::copy_n(config_.gravity_m_per_s2, 3, config.gravity_m_per_s2);
   config.linear_damping_per_s = from.linear_damping_per_s;
@@ -197,7 +197,7 @@ std::string Builder::add_body(std::size_t index) {
                                          : reach_of(graphs_.of_object(index), config, object.pose.scale);
   // A pad's spring against turning has its stiffness times its radius squared.
   const double arm_m = std::hypot(far_m, load_.pad_m);
-  const std::uint32_t substeps = fdcg_body_substeps(&body.body, stiffness_n_per_m, arm_m, tick_s);
+  const std::uint32_t substeps = fdcg_body_get_substeps(&body.body, stiffness_n_per_m, arm_m, tick_s);
   if (substeps == 0) {
     return "with " + shown_number(config.mass_kg) + " kg it is too light for " + std::to_string(load_.contact_count) +
            (load_.contact_count == 1 ? " contact of " : " contacts of ") + shown_number(object.params.stiffness_n_per_m) +

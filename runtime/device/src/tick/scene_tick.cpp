@@ -37,7 +37,7 @@ void turn_of_contacts(const DeviceSetup& setup, const GripState& grip, double tu
 // Pads resist being turned against what they touch, so they have to know how they stand.
 void turn_pads(const DeviceSetup& setup, const double turn_xyzw[4]) {
   for (int contact = 0; contact < setup.contact_count; ++contact)
-    if (setup.pads_m[contact] > 0) fdcg_scene_turn_finger(setup.scene, setup.fingers[contact], turn_xyzw, nullptr);
+    if (setup.pads_m[contact] > 0) fdcg_scene_set_finger_rotation(setup.scene, setup.fingers[contact], turn_xyzw, nullptr);
 }
 
 bool add_fingers(DeviceState& device, const double (*places_m)[3], fdcg_error* error) {
@@ -46,7 +46,7 @@ bool add_fingers(DeviceState& device, const double (*places_m)[3], fdcg_error* e
     fdcg_finger_id* const finger = &setup.fingers[contact];
     if (fdcg_scene_add_finger(setup.scene, places_m[contact], finger, error) != FDCG_OK) return false;
     const double pad_m = setup.pads_m[contact];
-    if (pad_m > 0 && fdcg_scene_soften_finger(setup.scene, *finger, pad_m, error) != FDCG_OK) return false;
+    if (pad_m > 0 && fdcg_scene_set_finger_radius(setup.scene, *finger, pad_m, error) != FDCG_OK) return false;
   }
   return true;
 }
@@ -151,7 +151,7 @@ void sum_touches(DeviceState& device) {
   device.state = 0;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result felt;
-    if (fdcg_scene_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
+    if (fdcg_scene_get_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
     for (int i = 0; i < 3; ++i)
       device.wanted_n[i] += felt.force_n[i];
     for (std::uint32_t t = 0; t < felt.touch_count; ++t) {
@@ -171,7 +171,7 @@ void yield_to(const Member* members, int count, const DeviceSetup& clock) {
       const DeviceState& device = *members[m].device;
       for (int contact = 0; device.has_place && contact < device.setup.contact_count; ++contact) {
         fdcg_finger_result felt;
-        if (fdcg_scene_result(clock.scene, device.setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
+        if (fdcg_scene_get_result(clock.scene, device.setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
         for (std::uint32_t t = 0; t < felt.touch_count; ++t)
           if (felt.touches[t].object.index == clock.soft_id[soft].index) clock.soft[soft]->press(felt.touches[t]);
       }

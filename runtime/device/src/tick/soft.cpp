@@ -43,7 +43,7 @@ std::string SoftObject::begin(const fdcg_graph& graph, const SoftConfig& config,
   pose_ = pose;
   rows_of(pose.rotation_xyzw, turn_);
   fdcg_error error{};
-  fdcg_deform_config deform = fdcg_default_deform_config();
+  fdcg_deform_config deform = fdcg_make_deform_config();
   deform.margin_m = config.depth_m / pose.scale;
   memory_.assign(static_cast<std::size_t>(fdcg_deform_bytes(&graph) / sizeof(std::uint64_t) + 1), 0);
   if (fdcg_deform_create(memory_.data(), memory_.size() * sizeof(std::uint64_t), &graph, &deform, &deform_, &error) !=
