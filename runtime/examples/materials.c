@@ -13,9 +13,10 @@ int main(void) {
   }
   fdcg_params params = fdcg_make_params();
   fdcg_material table[8]; /* by number; an entry of zeros would have no stiffness, and not be felt */
+  const fdcg_material plain = {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
   for (int i = 0; i < 8; ++i)
-    table[i] = (fdcg_material){params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
-  uint32_t rubber = fdcg_find_material(&graph, "rubber");
+    table[i] = plain;
+  const uint32_t rubber = fdcg_find_material(&graph, "rubber");
   if (rubber < 8) table[rubber] = (fdcg_material){.mu_static = 0.9, .mu_dynamic = 0.7, .stiffness_n_per_m = 600};
   params.materials = table;
   params.material_count = 8; /* materials beyond are as mu_static, mu_dynamic and stiffness_n_per_m say */
