@@ -67,9 +67,9 @@ typedef struct fdcg_body {
   double rotation_xyzw[4];
   double centre_m[3]; /* of mass, world */
   double velocity_m_per_s[3];
-  double angular_momentum[3]; /* kg m^2/s about the centre of mass, world: of a free body the same bits for ever */
-  double spin_rad_per_s[3];   /* angular velocity in the middle of the last step, axes of the object */
-  double predicted_impulse_n_s[3];        /* impulse that the last step gave ahead, as if its forces stayed */
+  double angular_momentum[3];      /* kg m^2/s about the centre of mass, world: of a free body the same bits for ever */
+  double spin_rad_per_s[3];        /* angular velocity in the middle of the last step, axes of the object */
+  double predicted_impulse_n_s[3]; /* impulse that the last step gave ahead, as if its forces stayed */
   double given_n_m_s[3];
   double rest_force_n[3]; /* under which it fell asleep */
   double rest_torque_n_m[3];

@@ -193,7 +193,7 @@ fdcg_status fdcg_get_mass(const fdcg_graph* graph, fdcg_mass* mass, fdcg_error* 
  * without materials, has FDCG_NONE. */
 uint32_t fdcg_get_node_material(const fdcg_graph* graph, uint32_t node);        /* node: below the header's count */
 const char* fdcg_get_material_name(const fdcg_graph* graph, uint32_t material); /* NULL: there is no such material */
-uint32_t fdcg_find_material(const fdcg_graph* graph, const char* name);     /* FDCG_NONE: there is no such name */
+uint32_t fdcg_find_material(const fdcg_graph* graph, const char* name);         /* FDCG_NONE: there is no such name */
 
 /* The checksum of the format: `bytes` bytes at `data`. Any change of one byte changes it (schemas/fdcg-v1.md). */
 uint64_t fdcg_checksum(const void* data, uint64_t bytes);
@@ -232,8 +232,8 @@ typedef enum fdcg_step_skip {
  * and a slide at steady speed settles on it, while
  *   (0.65 (mu_static - mu_dynamic) / stribeck_m_per_s - viscous_s_per_m) depth_m <= friction_lag_s + tick_s / 4
  * (0.65: 3 sqrt(3) / 8; with presliding the depth counts 1 + stiffness / presliding_n_per_m times), which fdcg_check_params
- * asks for at unique_solution_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any; so it does
- * where a finger's material makes the curve steeper. The default numbers hold with FDCG_FRICTION_LAG; without it raise
+ * asks for at unique_solution_depth_m. Pressed in deeper, stribeck_m_per_s grows with the depth, so that it holds at any; so it
+ * does where a finger's material makes the curve steeper. The default numbers hold with FDCG_FRICTION_LAG; without it raise
  * stribeck_m_per_s. Passive whatever the numbers: a slip only ever takes the god-object nearer to the HIP.
  *
  * Materials: `materials` says what a node's material (fdcg_get_node_material) is like, in place of mu_static, mu_dynamic and
@@ -264,22 +264,22 @@ typedef struct fdcg_material {
 fdcg_material fdcg_combine_materials(const fdcg_material* surface, const fdcg_material* finger);
 
 typedef struct fdcg_params {
-  uint32_t struct_bytes;          /* the caller's sizeof(fdcg_params); fdcg_make_params sets it */
-  uint32_t edge_friction;         /* fdcg_edge_friction */
-  double mu_static;               /* >= mu_dynamic */
-  double mu_dynamic;              /* >= 0 */
-  double stiffness_n_per_m;       /* >= 0 */
-  double damping_n_s_per_m;       /* >= 0; acts along the spring's direction and never pulls. 0: off */
-  double tick_s;                  /* time between ticks; read only where damping or a term of the curve is on */
-  uint32_t disabled_optimizations;        /* fdcg_step_skip: those not to be made. 0: none */
-  uint32_t friction_flags;                 /* fdcg_friction_flag: which of the following count. 0: none */
-  double stribeck_m_per_s;        /* > 0: where half of the fall from mu_static to mu_dynamic is done */
-  double viscous_s_per_m;         /* >= 0 */
-  double presliding_n_per_m;      /* > 0 */
-  double friction_lag_s;          /* >= 0 */
-  double unique_solution_depth_m;           /* > 0: down to it the curve is as written */
-  fdcg_material finger;           /* its stiffness > 0 */
-  const fdcg_material* materials; /* by material; outlives the params. NULL where there are none */
+  uint32_t struct_bytes;           /* the caller's sizeof(fdcg_params); fdcg_make_params sets it */
+  uint32_t edge_friction;          /* fdcg_edge_friction */
+  double mu_static;                /* >= mu_dynamic */
+  double mu_dynamic;               /* >= 0 */
+  double stiffness_n_per_m;        /* >= 0 */
+  double damping_n_s_per_m;        /* >= 0; acts along the spring's direction and never pulls. 0: off */
+  double tick_s;                   /* time between ticks; read only where damping or a term of the curve is on */
+  uint32_t disabled_optimizations; /* fdcg_step_skip: those not to be made. 0: none */
+  uint32_t friction_flags;         /* fdcg_friction_flag: which of the following count. 0: none */
+  double stribeck_m_per_s;         /* > 0: where half of the fall from mu_static to mu_dynamic is done */
+  double viscous_s_per_m;          /* >= 0 */
+  double presliding_n_per_m;       /* > 0 */
+  double friction_lag_s;           /* >= 0 */
+  double unique_solution_depth_m;  /* > 0: down to it the curve is as written */
+  fdcg_material finger;            /* its stiffness > 0 */
+  const fdcg_material* materials;  /* by material; outlives the params. NULL where there are none */
   uint32_t material_count;
   uint32_t reserved[sizeof(void*) == 8 ? 1 : 2]; /* 0 */
 } fdcg_params;
@@ -309,8 +309,8 @@ typedef struct fdcg_carried_sweep {
   uint32_t node;       /* ... the node through which it was met */
   uint32_t left_state; /* the feature that the way starts on; FDCG_FREE: none */
   uint32_t left_feature;
-  uint32_t next_leaf;  /* leaf of the hierarchy, or node where there is none */
-  uint32_t is_carried; /* 0: there is no such sweep */
+  uint32_t next_leaf;      /* leaf of the hierarchy, or node where there is none */
+  uint32_t is_carried;     /* 0: there is no such sweep */
   uint32_t stalled_sweeps; /* sweeps in a row, each over several ticks, that have ended where they began */
 } fdcg_carried_sweep;
 
@@ -364,11 +364,11 @@ typedef struct fdcg_result {
  *
  * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 600, whatever the mesh; with the
  * friction curve some 1,500, with presliding 1,900. At most,
- * two budgets together (src/base/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the library
- * is compiled) let a tick run to some 75,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick with a valid
- * god-object. A budget is looked at between pieces of work, of which the largest is a node that the way meets within rounding:
- * an exact sign for each of its sides, of which fdcg compile gives a node at most 16. The dearest tick that a search over 23
- * awkward bodies has found takes 11 us (tests/bench/worst_case.cpp), all but a few under 5. */
+ * two budgets together (src/base/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the
+ * library is compiled) let a tick run to some 75,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick with
+ * a valid god-object. A budget is looked at between pieces of work, of which the largest is a node that the way meets within
+ * rounding: an exact sign for each of its sides, of which fdcg compile gives a node at most 16. The dearest tick that a search
+ * over 23 awkward bodies has found takes 11 us (tests/bench/worst_case.cpp), all but a few under 5. */
 void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
                fdcg_result* result);
 

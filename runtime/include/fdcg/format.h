@@ -53,17 +53,17 @@ extern "C" {
 
 /* What a section holds. A reader skips ids that it does not know; a writer never reuses one. */
 enum fdcg_section_id {
-  FDCG_SECTION_NODES = 1,          /* node blocks, node_count of them, in Hilbert order of their centres */
-  FDCG_SECTION_NODE_OFFSETS = 2,   /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
-                                      are of one size, header.node_bytes */
-  FDCG_SECTION_EDGES = 3,          /* fdcg_connection_geometry_f64 or _f32, one a connection. Optional: derived from the corners */
-  FDCG_SECTION_CONNECTIONS = 4,    /* fdcg_connection, connection_count of them, by first use */
-  FDCG_SECTION_CORNERS = 5,        /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
-  FDCG_SECTION_FANS = 6,           /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
-  FDCG_SECTION_HIERARCHY = 7,      /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
-  FDCG_SECTION_SOURCE_MAP = 8,     /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
-  FDCG_SECTION_INFO = 9,           /* UTF-8 JSON: source, options, verdict. Optional */
-  FDCG_SECTION_FAN_BOXES = 10,     /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
+  FDCG_SECTION_NODES = 1,        /* node blocks, node_count of them, in Hilbert order of their centres */
+  FDCG_SECTION_NODE_OFFSETS = 2, /* uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
+                                    are of one size, header.node_bytes */
+  FDCG_SECTION_EDGES = 3,       /* fdcg_connection_geometry_f64 or _f32, one a connection. Optional: derived from the corners */
+  FDCG_SECTION_CONNECTIONS = 4, /* fdcg_connection, connection_count of them, by first use */
+  FDCG_SECTION_CORNERS = 5,     /* fdcg_corner_f64 or _f32, corner_count of them, by first use */
+  FDCG_SECTION_FANS = 6,        /* uint32_t: connection << 1 | end, the busy corners' fans, fan_count entries in all */
+  FDCG_SECTION_HIERARCHY = 7,   /* fdcg_box8: the implicit bounding-volume tree. Optional for few nodes: all are looked at */
+  FDCG_SECTION_SOURCE_MAP = 8,  /* uint32_t: the node of each source face, or FDCG_NONE. Optional */
+  FDCG_SECTION_INFO = 9,        /* UTF-8 JSON: source, options, verdict. Optional */
+  FDCG_SECTION_FAN_BOXES = 10,  /* fdcg_fan_box_f64 or _f32: the busy corners' trees */
   FDCG_SECTION_BUSY_CORNERS = 11,  /* fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
   FDCG_SECTION_MASS = 12,          /* fdcg_mass_record, one. Optional: of closed meshes that enclose a solid */
   FDCG_SECTION_MATERIALS = 13,     /* uint16_t: the material of each node, or FDCG_NO_MATERIAL. Optional, with the next */
@@ -270,7 +270,8 @@ FDCG_STATIC_ASSERT(sizeof(fdcg_plane_f64) == 32 && sizeof(fdcg_plane_f32) == 16,
 FDCG_STATIC_ASSERT(sizeof(fdcg_side) == 12 && sizeof(fdcg_connection) == 8, "side: 12 bytes, connection: 8");
 FDCG_STATIC_ASSERT(sizeof(fdcg_node_f64) == 72 && sizeof(fdcg_node_f32) == 56, "node of three sides: 72 or 56 bytes");
 FDCG_STATIC_ASSERT(offsetof(fdcg_node_f64, sides) == 36 && offsetof(fdcg_node_f32, sides) == 20, "node.sides at 36 or 20");
-FDCG_STATIC_ASSERT(sizeof(fdcg_connection_geometry_f64) == 32 && sizeof(fdcg_connection_geometry_f32) == 16, "edge: 32 or 16 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_connection_geometry_f64) == 32 && sizeof(fdcg_connection_geometry_f32) == 16,
+                   "edge: 32 or 16 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_corner_f64) == 40 && sizeof(fdcg_corner_f32) == 24, "corner: 40 or 24 bytes");
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f64, first) == 24 && offsetof(fdcg_corner_f64, fan) == 35, "corner_f64");
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corner_f32, fan) == 23, "corner_f32");

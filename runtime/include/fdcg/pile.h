@@ -18,19 +18,19 @@
  * along what lies on it.
  *
  * What acts between two: the parameters of both objects (fdcg_scene_add_object) together, as fdcg_combine_materials has it: of
- * the object touched those of the faces' materials where its terms say so (FDCG_FRICTION_MATERIALS), on edges and corners by the
- * step's own rules (fdcg.h), of the point's object the general ones. The friction curve counts on graphs and on the ground, not
- * on surfaces (surface.h). A touch keeps the stiffness that it began with; where
- * faces have materials it follows them. Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no
- * stiffer than an eighth of the bound of the step, 1 / (8 h^2 w), where w says how easily the place moves (1/kg, over three
- * directions): so no pile runs away while fewer than 32 touches pull at two bodies that meet. The other parameters
- * (edge_friction, ...) are those of the object touched; damping_n_s_per_m is the fingers' affair. Damping: of the approach by
- * damping_ratio of the critical value for the mass that this contact moves, of the way back out by leaving_ratio of it, so that
- * what falls does not bounce; of what sticks, sideways, by twice damping_ratio. Each damper is solved implicitly after the
- * other: none adds energy at any step. A contact never pulls, and what a damper adds sideways stays inside the cone. Slipping
- * is damped by friction alone: the god-object's cone is measured by the spring, whose push is the load wherever the approach is
- * over. Each point has its own cone: where static friction is above dynamic, a body on several points gives way when the least
- * loaded of them does; where they are equal, all of them bear what they can before it slides.
+ * the object touched those of the faces' materials where its terms say so (FDCG_FRICTION_MATERIALS), on edges and corners by
+ * the step's own rules (fdcg.h), of the point's object the general ones. The friction curve counts on graphs and on the ground,
+ * not on surfaces (surface.h). A touch keeps the stiffness that it began with; where faces have materials it follows them.
+ * Stiffness: the two springs one behind the other, k1 k2 / (k1 + k2); but no stiffer than an eighth of the bound of the step, 1
+ * / (8 h^2 w), where w says how easily the place moves (1/kg, over three directions): so no pile runs away while fewer than 32
+ * touches pull at two bodies that meet. The other parameters (edge_friction, ...) are those of the object touched;
+ * damping_n_s_per_m is the fingers' affair. Damping: of the approach by damping_ratio of the critical value for the mass that
+ * this contact moves, of the way back out by leaving_ratio of it, so that what falls does not bounce; of what sticks, sideways,
+ * by twice damping_ratio. Each damper is solved implicitly after the other: none adds energy at any step. A contact never
+ * pulls, and what a damper adds sideways stays inside the cone. Slipping is damped by friction alone: the god-object's cone is
+ * measured by the spring, whose push is the load wherever the approach is over. Each point has its own cone: where static
+ * friction is above dynamic, a body on several points gives way when the least loaded of them does; where they are equal, all
+ * of them bear what they can before it slides.
  *
  * Cost: two bodies far apart cost nothing between looks (1 to 2 ns an object, when they have used up the distance last seen);
  * near one another, some 5 ns a point that is out of the other's box; a touch 0.1 to 0.2 us with its damper. What lies still is
@@ -57,14 +57,14 @@ typedef enum fdcg_pile_skip {
 } fdcg_pile_skip;
 
 typedef struct fdcg_pile_config {
-  uint32_t struct_bytes;    /* the caller's sizeof(fdcg_pile_config); fdcg_make_pile_config sets it */
-  uint32_t object_capacity; /* 1 to 1,000,000: the scene's objects of smaller index can be in the pile */
-  uint32_t point_capacity;  /* 1 to 1,000,000, of all bodies together */
-  uint32_t touch_capacity;  /* 1 to 1,000,000: points on, or within the box of, something, at once */
-  double damping_ratio;     /* 0 to 1,000; 1: critical for each contact by itself */
-  double leaving_ratio;     /* the same for the way out */
-  uint32_t disabled_optimizations;  /* fdcg_pile_skip bits that are off; 0: skip all that can be skipped */
-  uint32_t reserved;        /* 0 */
+  uint32_t struct_bytes;           /* the caller's sizeof(fdcg_pile_config); fdcg_make_pile_config sets it */
+  uint32_t object_capacity;        /* 1 to 1,000,000: the scene's objects of smaller index can be in the pile */
+  uint32_t point_capacity;         /* 1 to 1,000,000, of all bodies together */
+  uint32_t touch_capacity;         /* 1 to 1,000,000: points on, or within the box of, something, at once */
+  double damping_ratio;            /* 0 to 1,000; 1: critical for each contact by itself */
+  double leaving_ratio;            /* the same for the way out */
+  uint32_t disabled_optimizations; /* fdcg_pile_skip bits that are off; 0: skip all that can be skipped */
+  uint32_t reserved;               /* 0 */
 } fdcg_pile_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 128 points, 128 touches, ratios 1 and 4; some 70 KB. */
@@ -82,8 +82,8 @@ uint64_t fdcg_pile_bytes(const fdcg_pile_config* config);
 fdcg_status fdcg_pile_create(void* memory, uint64_t bytes, const fdcg_pile_config* config, fdcg_pile** pile, fdcg_error* error);
 
 /* The ground: solid where normal . x < offset_m, world; a normal of unit length within 1e-3 (made exactly so). params NULL
- * takes it away. Of them count the two coefficients, the stiffness and the friction curve (FDCG_FRICTION_STRIBECK, _VISCOUS, _LAG);
- * it has no edges, no faces with materials, and no presliding. A point that begins below it is pushed out. */
+ * takes it away. Of them count the two coefficients, the stiffness and the friction curve (FDCG_FRICTION_STRIBECK, _VISCOUS,
+ * _LAG); it has no edges, no faces with materials, and no presliding. A point that begins below it is pushed out. */
 fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal[3], double offset_m, const fdcg_params* params,
                                  fdcg_error* error);
 
@@ -133,8 +133,8 @@ typedef struct fdcg_pile_touch {
 uint32_t fdcg_pile_get_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity);
 
 typedef struct fdcg_pile_counts { /* since the pile was made */
-  uint64_t overflowed_contacts;             /* points that met something while touch_capacity was used up, and were not felt */
-  uint64_t broadphase_updates;                 /* of a body at all objects */
+  uint64_t overflowed_contacts;   /* points that met something while touch_capacity was used up, and were not felt */
+  uint64_t broadphase_updates;    /* of a body at all objects */
   uint64_t steps;                 /* of touches */
 } fdcg_pile_counts;
 fdcg_pile_counts fdcg_pile_get_counts(const fdcg_pile* pile);

@@ -84,14 +84,14 @@ typedef enum fdcg_scene_skip {
 } fdcg_scene_skip;
 
 typedef struct fdcg_scene_config {
-  uint32_t struct_bytes;       /* the caller's sizeof(fdcg_scene_config); fdcg_make_scene_config sets it */
-  uint32_t object_capacity;    /* 1 to 1,000,000 */
-  uint32_t finger_capacity;    /* 1 to 10,000,000 */
-  uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
-  uint32_t disabled_optimizations;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
-  uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
-  uint32_t has_deforms;        /* 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
-  uint32_t reserved;           /* 0 */
+  uint32_t struct_bytes;           /* the caller's sizeof(fdcg_scene_config); fdcg_make_scene_config sets it */
+  uint32_t object_capacity;        /* 1 to 1,000,000 */
+  uint32_t finger_capacity;        /* 1 to 10,000,000 */
+  uint32_t touches_per_finger;     /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
+  uint32_t disabled_optimizations; /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
+  uint32_t has_soft_fingers;       /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
+  uint32_t has_deforms; /* 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
+  uint32_t reserved;    /* 0 */
 } fdcg_scene_config;
 
 /* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 57 KB. */
@@ -138,7 +138,8 @@ fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, con
 
 /* What the finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the next
  * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. A library
- * built without FDCG_WITH_FRICTION_TERMS does it too: faces have no materials of their own there, and the object's are combined. */
+ * built without FDCG_WITH_FRICTION_TERMS does it too: faces have no materials of their own there, and the object's are
+ * combined. */
 fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
                                            fdcg_error* error);
 
@@ -158,7 +159,8 @@ fdcg_status fdcg_scene_step_finger(fdcg_scene* scene, fdcg_finger_id finger, fdc
 
 typedef enum fdcg_finger_flag {
   FDCG_FINGER_NON_FINITE = 1, /* the HIP was no usable number: it stood still, no force */
-  FDCG_FINGER_CONTACT_OVERFLOW = 2,    /* more objects in reach than touches_per_finger: the touched ones and the nearest were felt */
+  FDCG_FINGER_CONTACT_OVERFLOW =
+      2, /* more objects in reach than touches_per_finger: the touched ones and the nearest were felt */
   FDCG_FINGER_MISSED_TICK = 4,
   FDCG_FINGER_BOUNDED = 8 /* some contact carries work over to the next tick: see fdcg_touch.flags */
 } fdcg_finger_flag;
@@ -187,7 +189,8 @@ typedef struct fdcg_finger_result {
   uint64_t broadphase_updates; /* at all objects: what FDCG_OPT_OUT_OF_REACH keeps few */
 } fdcg_finger_result;
 
-fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result, fdcg_error* error);
+fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result,
+                                  fdcg_error* error);
 
 /* What the fingers do to the objects: force and torque in the world, the torque about the origin of the object's frame. Zeroes
  * `reactions` and adds the fingers' last results up, in ascending order. On request only: costs a look at every finger.

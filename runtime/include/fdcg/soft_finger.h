@@ -4,8 +4,8 @@
  *
  *   config.has_soft_fingers = 1;                                     before fdcg_scene_create: 0.1 KB more a touch
  *   fdcg_scene_set_finger_radius(scene, finger, 0.004, &error);          a touch like a pad of 4 mm radius
- *   each tick:  fdcg_scene_set_finger_rotation(scene, finger, rotation_xyzw, &error);   where the fingertip points, beside move_finger
- *               fdcg_scene_step(scene);                              or a tick of bodies (body.h, pile.h)
+ *   each tick:  fdcg_scene_set_finger_rotation(scene, finger, rotation_xyzw, &error);   where the fingertip points, beside
+ * move_finger fdcg_scene_step(scene);                              or a tick of bodies (body.h, pile.h)
  *               fdcg_scene_get_finger_torque(scene, finger, torque_n_m, &error);    what the hand should feel beside force_n
  *
  * A touch remembers how finger and object stood to each other when it began. Turned out of that about the normal by an angle, a
@@ -37,10 +37,12 @@ fdcg_status fdcg_scene_set_finger_radius(fdcg_scene* scene, fdcg_finger_id finge
 
 /* Where the finger points in the next step: world, a unit quaternion within 1e-3, real part last. At first none: 0, 0, 0, 1.
  * Not turned, it stays. Less than half a turn from tick to tick. */
-fdcg_status fdcg_scene_set_finger_rotation(fdcg_scene* scene, fdcg_finger_id finger, const double rotation_xyzw[4], fdcg_error* error);
+fdcg_status fdcg_scene_set_finger_rotation(fdcg_scene* scene, fdcg_finger_id finger, const double rotation_xyzw[4],
+                                           fdcg_error* error);
 
 /* World, on the finger: the sum over its touches in the last step. Zero for a finger that is not soft. */
-fdcg_status fdcg_scene_get_finger_torque(const fdcg_scene* scene, fdcg_finger_id finger, double torque_n_m[3], fdcg_error* error);
+fdcg_status fdcg_scene_get_finger_torque(const fdcg_scene* scene, fdcg_finger_id finger, double torque_n_m[3],
+                                         fdcg_error* error);
 
 #ifdef __cplusplus
 }
