@@ -28,8 +28,8 @@ def slug(heading):
 
 
 class Page:
-    def __init__(self, root, page, pages, files):
-        self.root, self.page, self.pages, self.files = root, page, pages, files
+    def __init__(self, root, page, pages, files, pictures):
+        self.root, self.page, self.pages, self.files, self.pictures = root, page, pages, files, pictures
         self.name = label(root, page)
         self.seen = {}
 
@@ -51,6 +51,7 @@ class Page:
         name, _, anchor = target.partition("#")
         path = (self.page.parent / name).resolve() if name else self.page
         if picture:
+            self.pictures.add(path)
             return f"![{text}]({path.name})"
         if path in self.pages:
             return f"[{text}](@ref {label(self.root, path)}{'-' + anchor if anchor else ''})"
@@ -78,11 +79,16 @@ class Page:
 
 def main():
     root, staged, site = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
-    pages, files = set(sources(root)), set()
+    pages, files, pictures = set(sources(root)), set(), set()
     for page in sorted(pages):
         target = staged / page.relative_to(root)
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(Page(root, page, pages, files).staged())
+        target.write_text(Page(root, page, pages, files, pictures).staged())
+    site.mkdir(parents=True, exist_ok=True)
+    for picture in pictures:  # pages and pictures lie in one folder there
+        if (site / picture.name).exists():
+            sys.exit(f"{picture}: another picture has this name")
+        shutil.copy(picture, site / picture.name)
     for relative in files:
         target = site / "files" / relative
         target.parent.mkdir(parents=True, exist_ok=True)
