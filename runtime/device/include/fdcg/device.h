@@ -70,8 +70,11 @@ void fdcg_host_close(fdcg_host* host);
 int fdcg_host_wait(fdcg_host* host, int milliseconds);
 /** Asks for a stop: fdcg_host_wait returns. From any thread, and from a signal handler. */
 void fdcg_host_request_stop(fdcg_host* host);
-/** Installs handlers for a process that crashes (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT): they send zero force as their last
- * act where the way to the device allows (hidraw), then pass on to the handlers that there were. */
+/** Installs handlers for a process that a signal ends: they send zero force as its last act where the way to the device allows
+ * (hidraw). They are for crashes (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS), which they pass on to the
+ * handlers that there were, and for every other signal that ends a process by default (SIGINT, SIGTERM, SIGQUIT, SIGUSR1 ...)
+ * and is neither handled nor ignored. The process dies of its signal. Call it once a process, from its main thread, which gets
+ * a stack for handlers unless it has one. */
 void fdcg_device_install_crash_handlers(void);
 
 /* ---- while it runs ------------------------------------------------------------------------------------------------------ */
