@@ -234,7 +234,7 @@ typedef enum fdcg_state {
   FDCG_VERTEX = 3 /**< at a vertex: a corner */
 } fdcg_state;
 
-/** How friction in a groove (on a concave edge) is reckoned. */
+/** How friction in a groove (on a concave edge) is computed (contact-model EDGE-4). */
 typedef enum fdcg_edge_friction {
   FDCG_EDGE_WEDGE = 0, /**< by the sum of both faces' normal loads, at most 1,024 times the paper's */
   FDCG_EDGE_PAPER = 1  /**< by the distance from the edge, as in the 2004 paper */
