@@ -21,7 +21,13 @@ if(NOT FDCG_RUNTIME_ONLY)
   fdcg_install_component(bake fdcg_bake)
   install(DIRECTORY lib/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   fdcg_install_component(device fdcg_device)
-  install(DIRECTORY runtime/device/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  # the C++ headers there are for fdcg-servo alone
+  install(DIRECTORY runtime/device/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+  if(NOT CMAKE_CROSSCOMPILING)
+    install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/tools/share/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+    install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/tools/share/bash-completion ${CMAKE_CURRENT_BINARY_DIR}/tools/share/zsh
+            DESTINATION ${CMAKE_INSTALL_DATAROOTDIR})
+  endif()
 endif()
 install(FILES LICENSE README.md CHANGELOG.md schemas/fdcg-v1.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
