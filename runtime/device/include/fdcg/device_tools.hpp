@@ -59,6 +59,7 @@ std::string make_udev_rules(const std::vector<std::string>& profile_files, std::
 struct DeviceLook {
   std::string name;
   bool is_recorded = false;  // it plays a log
+  bool takes_output = false;
   bool is_open = false;
   bool is_over = false;  // a recording that has ended
   std::string problem;   // why it is not open; empty: it is, or nobody has tried yet

@@ -13,6 +13,7 @@ DeviceLook look_at(const DeviceConfig& device, const DeviceStatus& status) {
   DeviceLook look;
   look.name = device.name;
   look.is_recorded = device.source == DeviceSource::kRecorded;
+  look.takes_output = device.profile.has_output;
   look.is_open = status.connection == Connection::kOpen;
   look.phase = status.last.phase;
   look.fault = status.last.fault;
