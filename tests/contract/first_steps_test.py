@@ -100,7 +100,7 @@ class Slide(Case):
     def test_the_example_path_slides_over_the_cube(self):
         graph = self.path("cube.fdcg")
         examples = ROOT / "runtime" / "examples"
-        self.fdcg("compile", str(examples / "cube.obj"), "-o", graph, "-q")
+        self.fdcg("compile", str(examples / "cube.obj"), "-o", graph, "-q", "--units", "cm")
         done = self.servo("replay", graph, "--trajectory", str(examples / "cube_slide.csv"), "-o", self.path("log.csv"))
         self.assertEqual(b"", done.stderr)
         with open(self.path("log.csv"), newline="", encoding="ascii") as file:
