@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step on a surface without a mesh: the same states, friction and response as servo_step.hpp, with shapes in place of a
 // graph's features.
-#include "base/near_zero.hpp"
+#include "step/near_zero.hpp"
 #include "base/struct_bytes.hpp"
 #include "step/response.hpp"
 #include "surface/surface_box.hpp"
