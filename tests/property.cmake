@@ -42,6 +42,7 @@ find_package(nlohmann_json REQUIRED)
 fdcg_test(surface SOURCES runtime/surface/surface_test.cpp runtime/surface/surface_deep_test.cpp runtime/surface/surface_rules_test.cpp runtime/surface/surface_scene_test.cpp runtime/surface/surface_tessellation_test.cpp
           runtime/surface/surface_way_test.cpp runtime/surface/surface_shape_test.cpp LIBRARIES fdcg_test_property_support)
 
+fdcg_test(primitives SOURCES lib/graph/primitives_test.cpp LIBRARIES fdcg_bake fdcg_test_meshes fdcg_test_walker)
 fdcg_test(verdict SOURCES lib/validate/verdict_test.cpp LIBRARIES fdcg_bake nlohmann_json::nlohmann_json TIMEOUT 36000)
 
 # Each rule taken out of a copy of the runtime must make its test fail.

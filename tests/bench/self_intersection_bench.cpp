@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "parallel.hpp"
+#include "base/parallel.hpp"
 #include "soups.hpp"
 #include "topology/topology.hpp"
 #include "topology/weld.hpp"

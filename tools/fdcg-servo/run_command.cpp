@@ -2,11 +2,9 @@
 // fdcg-servo run: the devices of a scene, until a signal, the command quit, or the time is over. A little over 400
 // lines: one loop, and what it tells its user.
 #include <poll.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -19,6 +17,7 @@
 #include "run_fast.hpp"
 #include "scene/scene_json.hpp"
 #include "servo_commands.hpp"
+#include "signals.hpp"
 #include "status_text.hpp"
 
 namespace fdcg::servo {
@@ -30,6 +29,8 @@ constexpr int kLookMs = 50;  // how soon a command, a fault or a device is notic
 constexpr double kTerminalStatusS = 0.2, kPlainStatusS = 1;
 constexpr double kArmAgainS = 0.2;      // between requests, until the gate has granted the first
 constexpr double kRefusedAfterS = 0.3;  // a request is granted in a tick, or is not
+constexpr double kNewStatusS = 0.05;    // after a command, until no status is from before it
+constexpr double kStopS = 1;            // that devices get to take their zero before the process is stopped
 constexpr std::size_t kLongestCommand = 200;
 
 enum class StatusKind { kText, kJson, kNone };
@@ -40,29 +41,6 @@ struct RunArguments {
   double for_s = 0;           // 0: no end
   double status_every_s = 0;  // 0: the default
   StatusKind status = StatusKind::kText;
-};
-
-std::atomic<dev::Host*> the_host{nullptr};
-
-void on_signal(int) {
-  if (dev::Host* const host = the_host.load()) host->request_stop();
-}
-
-// Signals ask the host to stop while this lives. A reader that goes away, or a file limit, is an error where it is written.
-class Signals {
- public:
-  explicit Signals(dev::Host* host) {
-    the_host.store(host);
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    for (const int number : {SIGINT, SIGTERM, SIGHUP})
-      sigaction(number, &action, nullptr);
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN);
-  }
-  ~Signals() { the_host.store(nullptr); }
-  Signals(const Signals&) = delete;
-  Signals& operator=(const Signals&) = delete;
 };
 
 // Commands on standard input, a line each. Its end ends nothing.
@@ -95,9 +73,10 @@ class CommandInput {
 
 class Session {
  public:
-  Session(const RunArguments& arguments, dev::Host& host, std::string log_file)
+  Session(const RunArguments& arguments, dev::Host& host, Signals& signals, std::string log_file)
       : arguments_(arguments),
         host_(host),
+        signals_(signals),
         log_file_(std::move(log_file)),
         is_terminal_(tools::wants_colour(tools::Stream::standard_output)) {
     const auto count = static_cast<std::size_t>(host.device_count());
@@ -130,6 +109,9 @@ class Session {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
   bool says_text() const { return arguments_.status == StatusKind::kText && !arguments_.quiet; }
   void obey(const std::string& command);
+  void disarm();
+  bool has_left_zero(std::size_t device, std::uint64_t* first_zero);
+  void stop_disarmed(int signal);
   void look();
   void notice(std::size_t device);
   void notice_connection(std::size_t device);
@@ -141,6 +123,7 @@ class Session {
 
   const RunArguments& arguments_;
   dev::Host& host_;
+  Signals& signals_;
   const std::string log_file_;  // empty: none
   const bool is_terminal_;
   const Clock::time_point started_ = Clock::now();
@@ -282,15 +265,49 @@ void Session::obey(const std::string& line) {
     }
     host_.arm(dev::kAllDevices);
   } else if (command == "disarm") {
-    for (Seen& seen : seen_)
-      seen.wants_arming = false;
-    host_.disarm(dev::kAllDevices);
+    disarm();
   } else if (command == "quit") {
     host_.request_stop();
   } else if (!command.empty()) {
     wipe();
     std::fprintf(stderr, "fdcg-servo: no such command; one of arm, disarm, quit, and Enter\n");
   }
+}
+
+void Session::disarm() {
+  for (Seen& seen : seen_)
+    seen.wants_arming = false;
+  host_.disarm(dev::kAllDevices);
+}
+
+// Disarmed, and it has taken reports since: `first_zero`, 0 at first, keeps the number of the first that is surely zero.
+bool Session::has_left_zero(std::size_t device, std::uint64_t* first_zero) {
+  const int index = static_cast<int>(device);
+  if (host_.connection(index).connection != dev::Connection::kOpen || !host_.device(index).profile.has_output) return true;
+  const dev::DeviceStatus status = host_.status(index);
+  if (status.last.phase != dev::Phase::kDisarmed) return false;
+  constexpr std::uint64_t kUnderWay = 2;  // one that is being sent, one that the tick before has put
+  if (*first_zero == 0) *first_zero = status.writes + kUnderWay;
+  return status.writes > *first_zero;
+}
+
+// A stopped process sends nothing: what its devices took last is what they would go on pushing with.
+void Session::stop_disarmed(int signal) {
+  disarm();
+  const double asked_s = seconds();
+  std::vector<std::uint64_t> first_zeros(looks_.size());
+  const auto all_have_left = [&] {
+    bool all = true;
+    for (std::size_t i = 0; i < looks_.size(); ++i)
+      all = has_left_zero(i, &first_zeros[i]) && all;
+    return all;
+  };
+  while (seconds() - asked_s < kNewStatusS || (!all_have_left() && seconds() - asked_s < kStopS)) {
+    if (host_.wait_ms(1)) return;  // it is to end
+  }
+  say("disarmed and stopped by a signal");
+  signals_.stop_process(signal);
+  say("continued: there is no force until you type arm and Enter");
 }
 
 void Session::run() {
@@ -307,6 +324,7 @@ void Session::run() {
     for (const std::string& command : commands)
       obey(command);
     if (host_.wait_ms(has_waited ? 0 : wait_ms)) break;
+    if (const int signal = signals_.take_stop(); signal != 0) stop_disarmed(signal);
     look();
   }
 }
@@ -371,7 +389,7 @@ int run_scene(const RunArguments& arguments) {
   const std::string log_file = config.log_file;
   dev::Host host;
   if (const std::string problem = host.open(std::move(config)); !problem.empty()) return fail(kFile, problem);
-  const Signals signals(&host);
+  Signals signals(&host);
   if (const std::string problem = host.start(); !problem.empty()) return fail(kFile, problem);
   for (const std::vector<std::string>& list : {warnings, host.warnings()})
     for (const std::string& warning : list)
@@ -379,7 +397,7 @@ int run_scene(const RunArguments& arguments) {
   if (!arguments.arm && !arguments.quiet && arguments.status == StatusKind::kText) {
     std::puts("Not armed: there is no force until you type arm and Enter (disarm, quit), or start with --arm.");
   }
-  Session session(arguments, host, log_file);
+  Session session(arguments, host, signals, log_file);
   session.run();
   const std::string problem = host.stop();
   return session.end(problem);
@@ -397,6 +415,7 @@ Examples:
   fdcg-servo run scene.json --status json --status-every 0.1 | jq .devices[0].rate_hz
 
 Commands on standard input, a line each: arm, disarm, quit. Its end does not end the run; Ctrl-C does, with zero force.
+Any other signal that ends the program leaves zero force too (not kill -9); Ctrl-Z disarms before it stops.
 Nothing is pushed until a device is armed, and after a fault until it is armed again. A log that is there is overwritten.
 
 Exit codes: 0 clean (a recording that has ended is no fault); 1 a device ended disarmed by a fault, or was never there;

@@ -138,14 +138,7 @@ class Merger {
       if (next_[diagonal.slot] == kNone && sides_[r] > kMaxMergedSides) spare[r].push_back(diagonal.slot);
     }
     for (auto& [r, slots] : spare) {
-      std::uint32_t first = kNone;
-      for (std::uint32_t slot = 0; slot < 3 && first == kNone; ++slot)
-        first = next_[3 * r + slot] != kNone ? 3 * r + slot : kNone;
-      // The root triangle may have lost all its sides: then any end of a dropped diagonal leads to the loop.
-      for (std::size_t i = 0; i < slots.size() && first == kNone; ++i) {
-        for (const std::uint32_t slot : {slots[i] / 3 * 3, slots[i] / 3 * 3 + 1, slots[i] / 3 * 3 + 2})
-          first = first == kNone && next_[slot] != kNone ? slot : first;
-      }
+      const std::uint32_t first = find_side(r, slots);
       std::vector<std::uint32_t> loop;
       std::uint32_t slot = first;
       do {
@@ -154,6 +147,24 @@ class Merger {
       } while (slot != first);
       split(loop, slots);
     }
+  }
+
+  // A half-edge of the triangle that is not dropped, else kNone.
+  [[nodiscard]] std::uint32_t side_of(std::uint32_t triangle) const {
+    for (std::uint32_t slot = 3 * triangle; slot < 3 * triangle + 3; ++slot)
+      if (next_[slot] != kNone) return slot;
+    return kNone;
+  }
+
+  // A side of a merged polygon. Triangles in its middle have lost all of theirs, the root's may be one of them; but each of its
+  // triangles lies on one side or the other of a dropped diagonal, so the two sides of all diagonals lead to every triangle.
+  [[nodiscard]] std::uint32_t find_side(std::uint32_t root_triangle, const std::vector<std::uint32_t>& dropped) const {
+    std::uint32_t side = side_of(root_triangle);
+    for (std::size_t i = 0; i < dropped.size() && side == kNone; ++i)
+      side = side_of(dropped[i] / 3);
+    for (std::size_t i = 0; i < dropped.size() && side == kNone; ++i)
+      side = side_of(+topology_.twin[dropped[i]] / 3);
+    return side;
   }
 
   void split(const std::vector<std::uint32_t>& loop, std::vector<std::uint32_t>& spare) {

@@ -1,105 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind. Over 400
-// lines: a case for each thing that a device or a program may do, on one rig.
-#include "host/host.hpp"
-
+// The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind.
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-
-#include <fstream>
 
 #include "device_c11.h"
-#include "fake_device.hpp"
-#include "fdcg/bake.hpp"
-#include "host/emergency.hpp"
-#include "meshes.hpp"
+#include "hosted.hpp"
 
 using namespace fdcg::dev;
 using namespace fdcg::dev::test;
-
-namespace {
-
-// A graph in the folder for temporary files, of this process: tests run side by side.
-class CubeFile {
- public:
-  CubeFile() : path_(std::filesystem::temp_directory_path() / ("fdcg_host_test_" + std::to_string(getpid()) + ".fdcg")) {
-    const auto compiled = fdcg::bake::compile(fdcg::test::cube(), {});
-    REQUIRE(compiled);
-    std::ofstream file(path_, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(compiled->bytes.data()), static_cast<std::streamsize>(compiled->bytes.size()));
-  }
-  ~CubeFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string cube_file() {
-  static const CubeFile file;
-  return file.path();
-}
-
-constexpr std::uint64_t kPatienceNs = 60'000'000'000;  // for a machine that is busy with other things
-
-// A host with devices of its own.
-struct Hosted {
-  std::vector<std::unique_ptr<FakeDevice>> devices;
-  HostConfig config = fake_config(cube_file());
-  std::size_t made = 0;
-  Host host{[this](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(*devices[made++]); }};
-
-  explicit Hosted(int count = 1) {
-    for (int i = 0; i < count; ++i)
-      devices.push_back(std::make_unique<FakeDevice>());
-    config.loop.servo_priority = 80;  // where it is granted a busy machine is no matter
-    config.loop.writer_priority = 70;
-    while (static_cast<int>(config.devices.size()) < count)
-      config.devices.push_back(config.devices[0]);
-  }
-  // All of them in one loop.
-  void share() {
-    config.is_shared = true;
-    for (auto& device : devices)
-      device->answers_polls = true;
-  }
-  void start() {
-    REQUIRE(host.open(config) == "");
-    REQUIRE(host.start() == "");
-    for (auto& device : devices) {
-      FakeDevice& one = *device;
-      if (one.is_plugged) REQUIRE(within_ms(5000, [&] { return one.is_open && one.echo > 2; }));
-    }
-  }
-  FakeDevice& device(int index = 0) { return *devices[static_cast<std::size_t>(index)]; }
-  Phase phase(int index = 0) { return host.status(index).last.phase; }
-  Fault fault(int index = 0) { return host.status(index).last.fault; }
-
-  // A machine that is busy may be 10 ms late, which disarms: then once more.
-  void press(int index = 0) {
-    const std::uint64_t until_ns = monotonic_ns() + kPatienceNs;
-    while (monotonic_ns() < until_ns) {
-      device(index).tip_z_m = 0.01;
-      sleep_ms(30);
-      host.arm(index);
-      sleep_ms(60);
-      within_ms(3000, [&] { return phase(index) == Phase::kArmed || phase(index) == Phase::kDisarmed; });
-      if (phase(index) != Phase::kArmed) continue;
-      device(index).tip_z_m = -0.002;
-      if (within_ms(500, [&] { return device(index).force_n > 1.5; })) return;
-    }
-    FAIL("no force in a minute: " << fault_text(fault(index)));
-  }
-};
-
-}  // namespace
 
 TEST_CASE("a host starts and stops, again and again, and every device is closed") {
   for (int round = 0; round < 20; ++round) {
@@ -400,51 +309,4 @@ TEST_CASE("a C program runs a host") {
     "devices": [{"name": "toy", "source": "simulated", "mapping": {"offset_m": [0, 0, 5]}}],
     "loop": {"servo_priority": 80, "writer_priority": 70, "lock_memory": false}})";
   CHECK(runs_from_c(scene.c_str(), "cube") == 0);
-}
-
-// In a process of its own: crashes with a force on. The descriptor stands for a hidraw node.
-static void crash_with_force(int descriptor, int crash) try {
-  for (const int one : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
-    signal(one, SIG_DFL);  // the test framework has its own
-  Hosted hosted;
-  hosted.device().emergency = descriptor;
-  install_crash_handlers();
-  hosted.start();
-  hosted.press();
-  raise(crash);
-} catch (...) {  // a check that failed
-  _exit(3);
-}
-
-TEST_CASE("a crash sends zero force and the safe stop on the descriptor kept for it, then dies of its signal") {
-  static_cast<void>(cube_file());
-  for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) {
-    int ends[2];
-    REQUIRE(pipe(ends) == 0);
-    const pid_t child = fork();
-    REQUIRE(child >= 0);
-    if (child == 0) {
-      close(ends[0]);
-      crash_with_force(ends[1], crash);
-      _exit(0);
-    }
-    close(ends[1]);
-    std::uint8_t data[256];
-    std::size_t count = 0;
-    for (ssize_t n = 0; (n = read(ends[0], data + count, sizeof data - count)) > 0;)
-      count += static_cast<std::size_t>(n);
-    close(ends[0]);
-    int status = 0;
-    REQUIRE(waitpid(child, &status, 0) == child);
-    CHECK(WIFSIGNALED(status));
-    CHECK(WTERMSIG(status) == crash);
-    const Profile profile = fake_profile();
-    REQUIRE(count == static_cast<std::size_t>(profile.output.bytes) + profile.safe_stop[0].bytes);
-    Command command;
-    REQUIRE(decode_output(profile, data, profile.output.bytes, &command));
-    CHECK(command.effort[2] == 0);
-    CHECK_FALSE(command.is_enabled);
-    CHECK(command.sequence > 100);  // goes on from the writer's, so that the device takes it
-    CHECK(data[profile.output.bytes] == 9);
-  }
 }

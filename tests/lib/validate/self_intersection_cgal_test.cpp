@@ -20,8 +20,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "meshes.hpp"
-#include "parallel.hpp"
 #include "random.hpp"
 #include "real_files.hpp"
 #include "topology/topology.hpp"

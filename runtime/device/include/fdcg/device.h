@@ -60,8 +60,11 @@ void fdcg_host_close(fdcg_host* host);
 int fdcg_host_wait(fdcg_host* host, int milliseconds);
 /* Any thread's, and a signal handler's. */
 void fdcg_host_request_stop(fdcg_host* host);
-/* For a process that crashes (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT): handlers that send zero force as their last act where
- * the way to the device allows (hidraw), then pass on to the handlers that there were. */
+/* For a process that a signal ends: handlers that send zero force as its last act where the way to the device allows (hidraw).
+ * Of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS), which they pass on to the handlers that there were,
+ * and of every other signal that ends a process by default (SIGINT, SIGTERM, SIGQUIT, SIGUSR1 ...), where nobody handles or
+ * ignores it. The process dies of its signal. Once a process; from its main thread, which gets a stack for handlers unless it
+ * has one. */
 void fdcg_device_install_crash_handlers(void);
 
 /* ---- while it runs ------------------------------------------------------------------------------------------------------ */

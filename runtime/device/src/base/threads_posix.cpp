@@ -11,6 +11,8 @@
 #include <cstring>
 #include <vector>
 
+#include "base/crash_signals.hpp"
+
 namespace fdcg::dev {
 
 namespace {
@@ -92,7 +94,7 @@ std::string Thread::start(const char* name, std::function<void()> body) {
   pthread_attr_setstacksize(&attributes, kStackBytes);
   sigset_t all, before;
   sigfillset(&all);
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
+  for (const int signal : kCrashSignals)
     sigdelset(&all, signal);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const int failure = pthread_create(&state_->thread, &attributes, fdcg_run_thread, share.get());

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/emergency.hpp"
 
+#include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 
 #ifdef __linux__
@@ -11,6 +13,8 @@
 #include <sys/ioctl.h>
 #endif
 
+#include "base/crash_signals.hpp"
+#include "base/threads.hpp"
 #include "profile/report_codec.hpp"
 
 namespace fdcg::dev {
@@ -19,9 +23,21 @@ namespace {
 
 std::atomic<EmergencyExit*> exits[kMaxEmergencyExits];
 
-constexpr int kCrashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-constexpr int kCrashCount = sizeof kCrashes / sizeof kCrashes[0];
-struct sigaction handled_before[kCrashCount];
+// Others that end a process by default. SIGKILL cannot be handled.
+constexpr int kEndings[] = {
+    SIGHUP, SIGINT,    SIGQUIT, SIGPIPE, SIGALRM, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ, SIGPROF, SIGPOLL, SIGVTALRM,
+#ifdef __linux__
+    SIGPWR, SIGSTKFLT,
+#endif
+};
+constexpr int kMostSignal = 64;
+struct sigaction handled_before[kMostSignal + 1];
+
+constexpr std::size_t kHandlerStackBytes = 64 * 1024;
+constexpr std::uint64_t kInFlightNs = 20'000'000;  // that a write which has begun gets; a device that takes output needs 1 ms
+
+enum class LastWord : int { kUnsaid, kBeingSaid, kSaid };
+std::atomic<LastWord> last_word{LastWord::kUnsaid};
 
 // hidraw wants the report id first, 0 where the device has none, as hid_write does.
 void write_report(int descriptor, const std::uint8_t* report, int bytes, bool has_id) {
@@ -54,13 +70,45 @@ void send_zero(int descriptor, const Profile& profile, std::uint32_t sequence) {
   write_report(descriptor, report, profile.output.bytes, profile.output.id != 0);
 }
 
-void on_crash(int signal) {
-  send_emergency_zeros();
-  // Back to what was there before: it meets the same fault again when this handler returns, or this signal raised anew.
-  for (int i = 0; i < kCrashCount; ++i) {
-    if (kCrashes[i] == signal) sigaction(signal, &handled_before[i], nullptr);
+// Threads may crash together: the first speaks, the others must not end the process under it. A fault within the handler ends
+// it at once, since every signal is blocked.
+void on_last_signal(int signal) {
+  LastWord unsaid = LastWord::kUnsaid;
+  if (last_word.compare_exchange_strong(unsaid, LastWord::kBeingSaid)) {
+    send_emergency_zeros();
+    last_word.store(LastWord::kSaid);
   }
+  while (last_word.load() != LastWord::kSaid)
+    poll(nullptr, 0, 1);
+  // Back to what was there before: it meets this signal, raised anew, when this handler returns. A host that has been muted
+  // must not live on because somebody ignored the signal.
+  struct sigaction before = handled_before[signal];
+  if ((before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_IGN) before.sa_handler = SIG_DFL;
+  sigaction(signal, &before, nullptr);
   raise(signal);
+}
+
+void install(int signal, bool is_crash) {
+  struct sigaction& before = handled_before[signal];
+  if (sigaction(signal, nullptr, &before) != 0) return;  // the system's own
+  const bool is_default = (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_DFL;
+  if (!is_crash && !is_default) return;
+  struct sigaction action {};
+  action.sa_handler = on_last_signal;
+  action.sa_flags = SA_ONSTACK;
+  sigfillset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);
+}
+
+// Where the calling thread's own stack is what ran out.
+void give_handler_stack() {
+  alignas(16) static char bytes[kHandlerStackBytes];
+  stack_t now{};
+  if (sigaltstack(nullptr, &now) != 0 || (now.ss_flags & SS_DISABLE) == 0) return;  // it has one
+  stack_t own{};
+  own.ss_sp = bytes;
+  own.ss_size = sizeof bytes;
+  sigaltstack(&own, nullptr);
 }
 
 }  // namespace
@@ -82,14 +130,26 @@ void remove_emergency_exit(EmergencyExit* exit) {
 
 void send_emergency_zeros() noexcept {
   int descriptors[kMaxEmergencyExits];
+  bool was_sending[kMaxEmergencyExits] = {};
   // Zero everywhere first: a safe stop may take its time.
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
     descriptors[i] = -1;
     EmergencyExit* const exit = exits[i].load();
     if (exit == nullptr) continue;
     const std::uint32_t sequence = exit->writer->mute();
+    was_sending[i] = exit->writer->is_sending();
     descriptors[i] = exit->descriptor.exchange(-1);
     if (descriptors[i] >= 0) send_zero(descriptors[i], *exit->profile, sequence);
+  }
+  // A force that was on its way may have come behind that zero. Where the writer's thread itself is the one that was
+  // interrupted this waits in vain, once.
+  const std::uint64_t until_ns = monotonic_ns() + kInFlightNs;
+  for (int i = 0; i < kMaxEmergencyExits; ++i) {
+    EmergencyExit* const exit = exits[i].load();
+    if (exit == nullptr || descriptors[i] < 0 || !was_sending[i]) continue;
+    while (exit->writer->is_sending() && monotonic_ns() < until_ns)
+      poll(nullptr, 0, 1);
+    send_zero(descriptors[i], *exit->profile, exit->writer->mute());
   }
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
     EmergencyExit* const exit = exits[i].load();
@@ -102,12 +162,15 @@ void send_emergency_zeros() noexcept {
 void install_crash_handlers() {
   static std::atomic<bool> is_installed{false};
   if (is_installed.exchange(true)) return;
-  struct sigaction action {};
-  action.sa_handler = on_crash;
-  action.sa_flags = SA_ONSTACK | SA_RESETHAND;
-  sigemptyset(&action.sa_mask);
-  for (int i = 0; i < kCrashCount; ++i)
-    sigaction(kCrashes[i], &action, &handled_before[i]);
+  give_handler_stack();
+  for (const int signal : kCrashSignals)
+    install(signal, true);
+  for (const int signal : kEndings)
+    install(signal, false);
+#ifdef SIGRTMIN
+  for (int signal = SIGRTMIN; signal <= std::min(SIGRTMAX, kMostSignal); ++signal)
+    install(signal, false);
+#endif
 }
 
 }  // namespace fdcg::dev

@@ -95,7 +95,7 @@ template <class Write>
 bool Writer::timed(const Write& write) {
   if (!link_.enter(Link::kWriter)) return true;
   const std::uint64_t began_ns = monotonic_ns();
-  began_ns_.store(began_ns, std::memory_order_release);
+  began_ns_.store(began_ns);  // in one order with is_muted_: a crash sees this write, or this write sees the crash
   const bool is_sent = is_muted_.load() || write();
   has_failed_.store(!is_sent, std::memory_order_release);  // before it is no longer busy: one of the two is seen
   began_ns_.store(0, std::memory_order_release);

@@ -43,11 +43,13 @@ class Writer {
   void flush_within(std::uint64_t timeout_ns);
   void forget_failure() { has_failed_.store(false, std::memory_order_release); }  // the device has been opened anew
 
-  // A crash's (emergency.hpp), async-signal-safe: nothing is sent from now on. Returns the sequence number of the next report.
+  // A crash's (emergency.hpp), async-signal-safe: nothing is sent from now on, but what is_sending says is under way. Returns
+  // the sequence number of the next report, another one each time.
   std::uint32_t mute() {
     is_muted_.store(true);
-    return sequence_.load();
+    return sequence_.fetch_add(1);
   }
+  bool is_sending() const { return began_ns_.load() != 0; }
   // One thread's at a time. False: nothing new.
   bool take_status(WriterStatus* status) { return status_.take(status); }
 

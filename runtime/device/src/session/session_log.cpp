@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/crash_signals.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_reader.hpp"
 #include "tick/tick_bytes.hpp"
@@ -337,9 +338,11 @@ std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, i
   // A crash must leave a log that can be read: it is written in place as the session goes, unlike other outputs.
   impl_->descriptor = ::open(config.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (impl_->descriptor < 0) return cannot_write(config) + std::strerror(errno);
-  // The thread takes no signals: those of the process belong to others, and SIGXFSZ becomes an error of write.
+  // The thread takes no signals but of its own crash: the process' belong to others, and SIGXFSZ becomes an error of write.
   sigset_t all{}, before{};
   sigfillset(&all);
+  for (const int signal : kCrashSignals)
+    sigdelset(&all, signal);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const std::string first = encode_session_header(header);
   impl_->add(reinterpret_cast<const std::uint8_t*>(first.data()), first.size());

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "signals.hpp"
+
+#include <signal.h>
+
+#include <atomic>
+
+#include "host/emergency.hpp"
+
+namespace fdcg::servo {
+namespace {
+
+std::atomic<dev::Host*> the_host{nullptr};
+std::atomic<int> the_stop{0};
+
+void on_end(int) {
+  if (dev::Host* const host = the_host.load()) host->request_stop();
+}
+
+void on_stop(int number) {
+  the_stop.store(number);
+}
+
+// Without SA_RESTART: what waits for a command returns and looks.
+void handle(int number, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigaction(number, &action, nullptr);
+}
+
+bool is_ignored(int number) {
+  struct sigaction action {};
+  sigaction(number, nullptr, &action);
+  return action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+Signals::Signals(dev::Host* host) {
+  the_host.store(host);
+  the_stop.store(0);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP})
+    handle(number, on_end);
+  for (const int number : {SIGPIPE, SIGXFSZ, SIGTTOU})
+    handle(number, SIG_IGN);
+  for (const int number : {SIGTSTP, SIGTTIN})
+    if (!is_ignored(number)) handle(number, on_stop);
+  dev::install_crash_handlers();  // last: they take what nobody has
+}
+
+Signals::~Signals() {
+  the_host.store(nullptr);
+}
+
+int Signals::take_stop() {
+  return the_stop.exchange(0);
+}
+
+void Signals::stop_process(int signal) {
+  handle(signal, SIG_DFL);
+  raise(signal);
+  handle(signal, on_stop);
+}
+
+}  // namespace fdcg::servo

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What signals do to fdcg-servo run while it drives devices.
+//
+//   SIGINT, SIGTERM, SIGHUP   the host is asked to stop: zero force, in order
+//   SIGTSTP, SIGTTIN          kept until take_stop(): a stopped process sends nothing, so its devices are disarmed first
+//   SIGPIPE, SIGXFSZ, SIGTTOU ignored: a reader that goes away, or a file limit, is an error where it is written; output of a
+//                             background job is let through
+//   a crash, and every other  zero force as the last act of the process, which dies of the signal (emergency.hpp)
+//   that ends a process
+#pragma once
+
+#include "host/host.hpp"
+
+namespace fdcg::servo {
+
+// One at a time. Made in the main thread, before the host's threads run.
+class Signals {
+ public:
+  explicit Signals(dev::Host* host);
+  ~Signals();
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+
+  // The signal that asked for the process to be stopped since the last call; 0: none.
+  int take_stop();
+  // Stops the process by that signal, as its default action does. Returns when it is continued.
+  void stop_process(int signal);
+};
+
+}  // namespace fdcg::servo
