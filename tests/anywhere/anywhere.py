@@ -31,7 +31,7 @@ def qemu(processor, *options):
 ONE_SPHERE = {"surface", "surface_sphere", "surface_step", "params", "friction_terms", "message", "version"}
 ONE_GRAPH = {"box_tree", "checksum", "exact_orient", "friction_terms", "hooks", "load", "map_file_none", "map_file_posix",
              "mass_record", "material_section", "message", "params", "records", "servo_step", "verify", "version"}
-OTHER_PARTS = r"scene|soft_finger|deform|body|pile|plane|cylinder|capsule|cone|torus|ellipsoid"
+OTHER_PARTS = r"scene|soft_finger|deform|body|pile|_of_plane|step_plane|[Cc]ylinder|[Cc]apsule|[Cc]one[^a-z]|[Tt]orus|[Ee]llipsoid"
 
 
 def linked_objects(link_map):
