@@ -87,7 +87,7 @@ class Parts(WeightCase):
     PROGRAMS = ("one_sphere", "one_graph")
     # Bytes of code and constants, the start of the program and the C library included.
     X86 = {"one_sphere": 24 * KB, "one_graph": 160 * KB}
-    M7 = {"one_sphere": 24 * KB, "one_graph": 64 * KB}
+    M7 = {"one_sphere": 12 * KB, "one_graph": 48 * KB}
 
     def embedded(self, *options):
         """The folder with block.h and block.c."""
@@ -114,6 +114,43 @@ class Parts(WeightCase):
             text = self.text("size", program)
             print(f"x86-64, f64 and f32: {name}: {text} bytes of code and constants")
             self.assertLess(text, self.X86[name])
+
+    BY_NUMBER = """
+#include <stdio.h>
+#include <string.h>
+#include "fdcg/surface.h"
+int main(void) {
+  const double outside_m[3] = {0, 0, 0.06}, inside_m[3] = {0, 0, 0.04};
+  const fdcg_params params = fdcg_make_params();
+  fdcg_contact contact = {0};
+  fdcg_result felt;
+  fdcg_error error;
+  fdcg_surface ball;
+  double normal[3];
+  MAKE
+  ball.kind = FDCG_SURFACE_SPHERE;
+  ball.radius_m = 0.05;
+  printf("%d ", (int)fdcg_check_surface(&ball, &error));
+  fdcg_surface_step(&ball, &params, &contact, outside_m, &felt);
+  fdcg_surface_step(&ball, &params, &contact, inside_m, &felt);
+  fdcg_surface_get_normal(&ball, &felt, normal);
+  printf("%u %.0f %.0f %s\\n", felt.state, felt.force_n[2], normal[2], error.message);
+  return 0;
+}
+"""
+
+    def test_a_kind_by_number(self):
+        library = self.library("both")
+        for name, make, expected in (("init", "fdcg_surface_init(&ball, sizeof ball);", "0 1 10 1"),
+                                     ("make", "ball = fdcg_make_surface(FDCG_SURFACE_SPHERE, 0.05, 0);", "0 1 10 1"),
+                                     ("plain", "memset(&ball, 0, sizeof ball); ball.struct_bytes = sizeof ball;",
+                                      r"1 0 0 0 surface\.kind is 1, which this program does not link; start from")):
+            program = self.path(name)
+            source = self.write(name + ".c", self.BY_NUMBER.replace("MAKE", make))
+            self.run_program("cc", *C, "-I", str(RUNTIME / "include"), source, library, "-lm", "-o", program)
+            self.assertRegex(self.run_program(program).stdout.decode(), "^" + expected)
+            objects = self.run_program("nm", "--defined-only", program).stdout
+            self.assertEqual(name != "plain", b"step_torus" in objects)
 
     def test_cortex_m7(self):
         self.need("arm-none-eabi-g++", "arm-none-eabi-size")
