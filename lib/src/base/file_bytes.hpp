@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file's bytes as one range of memory. The platform's part of the import: map_file.cpp is the POSIX one.
+// A file's bytes as one range of memory. The platform's part of the import: file_bytes.cpp is the POSIX one.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a step counts, so that it ends in bounded time whatever the mesh: units of some 15 instructions. The rules that move the
 // god-object over the surface have one budget, the sweeps through free space another; the step goes on until one is spent, and
-// then a little further, to the end of the piece of work at hand.
+// then a little further, to the end of the piece of work at hand (contact-model BOUND-1 to BOUND-3).
 #pragma once
 
 #include <stdint.h>

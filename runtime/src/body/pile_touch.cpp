@@ -104,7 +104,7 @@ fdcg_material pair_by_faces(const Object& on, const fdcg_params& params, const f
 }
 #endif
 
-// The rules of contact-model sections 4 and 5 on one plane that has no edge.
+// Of the rules what is left on one plane that has no edge: contact-model FREE-3, FACE-1 to FACE-4.
 bool step_on_ground(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
   const fdcg_pile& pile = meeting.pile;
   fdcg_contact& contact = touch->contact;

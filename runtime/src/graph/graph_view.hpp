@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A graph with its records typed: what the step reads, and the few expressions that every rule shares. Rules see nodes,
-// connections, edges and corners; where their numbers lie in the file, and which of them are derived, is known here alone.
+// A graph with its records typed (contact-model GRAPH-1): what the step reads, and the few expressions that every rule shares.
+// Rules see nodes, connections, edges and corners; where their numbers lie in the file, and which of them are derived, is known
+// here alone.
 //
 // The step is compiled twice: for graphs as they are, and (FDCG_DEFORMABLE, deform_step.cpp) for those whose corners move.
 // There a number that depends on a corner's place is brought up to date before it is handed out, here, so that no rule can see
@@ -52,7 +53,7 @@ class NodeRef {
   [[nodiscard]] Real extent() const {
     return static_cast<Real>(graph_->header->extent);
   }
-  // Its corners lie off its plane, by up to header.max_deviation.
+  // Its corners lie off its plane, by up to header.max_deviation (contact-model GRAPH-4).
   [[nodiscard]] bool is_inexact() const {
     return (up_to_date().flags & FDCG_NODE_INEXACT) != 0;
   }
@@ -100,7 +101,7 @@ class NodeRef {
     return k + 1 < side_count() ? k + 1 : 0;
   }
 
-  // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model section 2).
+  // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model GRAPH-3).
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
     if (__builtin_expect(graph_->has_planes, true)) {
       const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
@@ -440,9 +441,9 @@ template <class Real>
   return orient3d_sign(corner[0], corner[1], corner[2], widen(x), work_left);
 }
 
-// side(x) of the contact model: the distance of x from the face's plane, with its exact sign where the face is exactly planar.
-// `bound` is plane_rounding_bound of x. One expression wherever it is asked, so that no two rules disagree. An exact sign
-// spends from *work_left; null: not counted.
+// side(x) of contact-model SIDE-1: the distance of x from the face's plane, with its exact sign where the face is exactly
+// planar. `bound` is plane_rounding_bound of x. One expression wherever it is asked, so that no two rules disagree. An exact
+// sign spends from *work_left; null: not counted.
 template <class Real>
 FDCG_HOT Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, Real bound, uint32_t* work_left) {
   const Real distance = node.plane().distance(x);

@@ -9,7 +9,7 @@
 //
 // Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
 // the skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
-// section 4), so it can be made anew whenever it is wanted.
+// FREE-1), so it can be made anew whenever it is wanted.
 #include "scene/finger_tick.hpp"
 
 namespace fdcg {

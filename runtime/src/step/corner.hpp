@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The god-object on a vertex (contact-model section 7; replaces Melder 2004, 5g and the vertex rules of its section 7).
+// The god-object on a vertex (contact-model CORNER-1 to CORNER-7; in place of Melder 2004, sections 5g and 7).
 #pragma once
 
 #include "graph/implicit_tree.hpp"
@@ -16,7 +16,8 @@ struct Steepest {
   Real reach2 = 0;
   Real distance2 = 0;  // of the HIP from it
 
-  // Of the two squares the smaller tells best: near a groove all reaches are one number, far from it all distances are.
+  // contact-model CORNER-2: of the two squares the smaller tells best: near a groove all reaches are one number, far from it
+  // all distances are.
   void take_steeper(const Steepest& other, Real half_t2) {
     const bool are_near = distance2 < half_t2 && other.distance2 < half_t2;
     if (are_near ? other.distance2 < distance2 : other.reach2 > reach2) *this = other;
@@ -76,8 +77,9 @@ inline Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
   return in_ball < in_box ? in_ball : in_box;
 }
 
-// Branch and bound over a busy corner's tree: a box whose best direction reaches no further than what is found, but for
-// rounding, is left out. So one of several directions that tie is taken: at the apex of a regular fan they all do.
+// contact-model CORNER-7: branch and bound over a busy corner's tree: a box whose best direction reaches no further than what
+// is found, but for rounding, is left out. So one of several directions that tie is taken: at the apex of a regular fan they
+// all do.
 template <class Real>
 inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
   const GraphView<Real>& graph = walk.graph;
@@ -144,10 +146,10 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
   return best;
 }
 
-// HIP is in front of the face that is nearest: free, up to rounding error. Where it stands on a concave edge of that face at
-// the corner and behind the face across, edge and faces are as near as one another, and any of them may have been found: then
-// it is the edge's to say, unless it stands before the edge's end: the edge would hand the god-object back to the corner. So
-// are the two walls of a narrow slit that it stands between: one of them may hold it.
+// contact-model CORNER-4: HIP is in front of the face that is nearest: free, up to rounding error. Where it stands on a concave
+// edge of that face at the corner and behind the face across, edge and faces are as near as one another, and any of them may
+// have been found: then it is the edge's to say, unless it stands before the edge's end: the edge would hand the god-object
+// back to the corner. So are the two walls of a narrow slit that it stands between: one of them may hold it.
 template <class Real>
 [[gnu::noinline]] Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner, Vec3<Real> t) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -170,7 +172,7 @@ template <class Real>
   return kFree;
 }
 
-// What the steepest descent comes to: where to go on, or the corner itself.
+// What the steepest descent comes to: where to go on, or the corner itself (contact-model CORNER-3, CORNER-5).
 template <class Real>
 inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
   const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
@@ -192,9 +194,10 @@ inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<R
   return dot(t, corner.normal()) < 0 ? walk.active : kFree;
 }
 
-// A god-object beside the corner `point`, where an edge's rule left it (walk.hpp, snapping_increases_distance), as far from the
-// corner on `next` instead, straight down: so it is no farther from the HIP than it was, which at the corner it might be. Free,
-// the way begins at the corner, lest it pass below a face of it. `t`: from the corner to the HIP.
+// contact-model CORNER-6: a god-object beside the corner `point`, where an edge's rule left it (walk.hpp,
+// snapping_increases_distance), as far from the corner on `next` instead, straight down: so it is no farther from the HIP than
+// it was, which at the corner it might be. Free, the way begins at the corner, lest it pass below a face of it. `t`: from the
+// corner to the HIP.
 template <class Real>
 [[gnu::noinline]] Vec3<Real> moved_beside(const Walk<Real>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
   if (next == kFree) return point;

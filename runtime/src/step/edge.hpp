@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The god-object on an edge (contact-model section 6; Melder 2004, sections 5d to 5f and 6).
+// The god-object on an edge (contact-model EDGE-1 to EDGE-7; Melder 2004, sections 5d to 5f and 6).
 #pragma once
 
 #include "step/walk.hpp"
@@ -30,13 +30,14 @@ inline void look_at_sides(Walk<Real>& walk, ConnectionRef<Real> connection, Edge
   }
 }
 
+// contact-model EDGE-1, SIDE-2
 inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
   return type == FDCG_CONCAVE ? !is_behind_a && !is_behind_b : !is_behind_a || !is_behind_b;
 }
 
-// The sum of the two normal loads of the groove, or the paper's distance of HIP from the edge. `across` is HIP from its foot on
-// the edge: from any other point of the edge it would be the same in theory, but merged faces may lie off their corners, and a
-// load that is not that of the force then errs by the way along the edge.
+// contact-model EDGE-4: the sum of the two normal loads of the groove, or the paper's distance of HIP from the edge. `across`
+// is HIP from its foot on the edge: from any other point of the edge it would be the same in theory, but merged faces may lie
+// off their corners, and a load that is not that of the force then errs by the way along the edge.
 template <class Real>
 inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
   const Real distance = norm(across);
@@ -58,8 +59,8 @@ template <class Real>
   walk.friction.terms->select_material_of_edge(a, b, share);
 }
 
-// Behind one face of a convex edge, over it and not over the other, and yet in front of the other's plane: that is no place,
-// but for corners off a small face's plane, which far from it is anywhere. The face below decides.
+// contact-model EDGE-7: behind one face of a convex edge, over it and not over the other, and yet in front of the other's
+// plane: that is no place, but for corners off a small face's plane, which far from it is anywhere. The face below decides.
 template <class Real>
 inline Feature face_despite_noise(const Walk<Real>& walk, ConnectionRef<Real> connection, const EdgeSides<Real>& s) {
   if (!(walk.graph.header->max_deviation > 0) || connection.type() == FDCG_CONCAVE) return kFree;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The god-object on a face (contact-model section 5; Melder 2004, sections 2, 5b and 5c).
+// The god-object on a face (contact-model FACE-1 to FACE-8; Melder 2004, sections 2, 5b and 5c).
 #pragma once
 
 #include "step/walk.hpp"
 
 namespace fdcg {
 
-// The first of the node's Voronoi planes that a move crosses; local_side is FDCG_NONE if there is none. GO sits on such planes
-// all the time, so a crossing is "ends on or beyond, and further out than it began", not a change of sign.
+// contact-model FACE-5: the first of the node's Voronoi planes that a move crosses; local_side is FDCG_NONE if there is none.
+// GO sits on such planes all the time, so a crossing is "ends on or beyond, and further out than it began", not a change of
+// sign.
 //
 // A move that ends on a plane up to rounding error has crossed it, if at all, anywhere on its way: one along a side from a
 // corner might be stopped in that corner, for ever. It crosses where it ends, unless it crosses another side before.
@@ -17,7 +18,8 @@ struct Crossing {
   Real fraction = 1;
 };
 
-// Whether `to` is past the corner at which side k starts: before that side's start and beyond the end of the side before.
+// contact-model FACE-8: whether `to` is past the corner at which side k starts: before that side's start and beyond the end of
+// the side before.
 template <class Real>
 [[gnu::noinline]] bool is_past_corner(NodeRef<Real> node, uint32_t k, Vec3<Real> to) {
   const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());
@@ -60,7 +62,7 @@ FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3
   return {};
 }
 
-// What becomes of a god-object on a face.
+// What becomes of a god-object on a face (contact-model FACE-1 to FACE-4).
 template <class Real>
 struct FaceMove {
   enum class Kind {
@@ -100,8 +102,8 @@ inline bool is_far(const GraphView<Real>& graph, Vec3<Real> hip) {
   return norm1(hip) > kNear * Real(graph.header->extent);
 }
 
-// Seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have one plane but for
-// rounding: beyond the end of one the point is on the next.
+// contact-model FACE-6: seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have
+// one plane but for rounding: beyond the end of one the point is on the next.
 template <class Real>
 [[gnu::noinline]] Feature place_on_rim(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
   EdgeLine<Real> line(walk.graph, node, side);
@@ -131,8 +133,8 @@ inline uint32_t side_under(const Walk<Real>& walk, NodeRef<Real> node) {
   return FDCG_NONE;
 }
 
-// The face has lost the HIP: the seat's rule decides; without a seat this is Free. A god-object that slid to the face's rim but
-// for rounding may be behind the faces across, so it is seated there first.
+// contact-model FACE-1: the face has lost the HIP: the seat's rule decides; without a seat this is Free. A god-object that slid
+// to the face's rim but for rounding may be behind the faces across, so it is seated there first.
 template <class Real>
 inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
   if (!(walk.seat == kFree)) return walk.seat;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way from a god-object in free space to the HIP (contact-model section 4): is a sweep needed, what becomes of what it met,
-// what is left for later ticks.
+// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-7, LEAVE-1, BOUND-2): is a sweep needed,
+// what becomes of what it met, what is left for later ticks. docs/internals/sweep.md tells it in order.
 #pragma once
 
 #include "step/clear_ball.hpp"
@@ -32,7 +32,8 @@ inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, co
   }
 }
 
-// Goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has not moved.
+// contact-model FREE-2, BOUND-2: goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has
+// not moved.
 template <class Real>
 [[gnu::noinline]] bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
   const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
@@ -80,8 +81,9 @@ inline bool is_in_new_ball(const GraphView<Real>& graph, Vec3<Real> from, Vec3<R
   return true;
 }
 
-// A way that begins far away, cut to begin where it comes near the graph; `to` where it passes by, or where its numbers, which
-// out there are coarser than the object, cannot tell. A place computed from the whole way might be anywhere.
+// contact-model FREE-5: a way that begins far away, cut to begin where it comes near the graph; `to` where it passes by, or
+// where its numbers, which out there are coarser than the object, cannot tell. A place computed from the whole way might be
+// anywhere.
 template <class Real>
 [[gnu::noinline]] Vec3<Real> near_start(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to) {
   constexpr Real kFar = 16, kBefore = 4;  // extents; the graph lies within less than two of the origin
@@ -113,7 +115,7 @@ template <class Real>
     if (!(walk.active == kFree)) return 0;
   }
   // Two features at one point may hand the contact to one another by way of free space. Within a tick the trail sees that; here
-  // each turn has taken a tick, and the contact rests where it is.
+  // each turn has taken a tick, and the contact rests where it is (contact-model LEAVE-4).
   constexpr uint32_t kMostStalledSweeps = 4;
   if (!(left == kFree) && carried->stalled_sweeps >= kMostStalledSweeps) {
     carried->stalled_sweeps = 0;

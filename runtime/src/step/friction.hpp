@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coulomb friction as a cone (Melder 2004, section 2 and figure 4; contact-model section 5): the god-object rests while its gap
-// to the surface point is within the friction coefficient times the load that presses it on. No angle is ever computed.
+// Coulomb friction as a cone (Melder 2004, section 2 and figure 4; contact-model FRIC-1 to FRIC-5): the god-object rests while
+// its gap to the surface point is within the friction coefficient times the load that presses it on. No angle is ever computed.
 #pragma once
 
 #include "base/config.hpp"
@@ -24,11 +24,12 @@ struct Slip {
 template <class Real>
 struct Friction {
   Real mu_static, mu_dynamic;
-  bool has_wedge;                  // concave edges: contact-model section 6
+  bool has_wedge;                  // on edges: contact-model EDGE-4
   bool is_slipping;                // dynamic friction holds
   FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
 
-  // `gap2` is the squared distance of the god-object from the surface point, `load` the depth that presses it on. Slipping
+  // contact-model FRIC-1 to FRIC-4. `gap2` is the squared distance of the god-object from the surface point, `load` the depth
+  // that presses it on. Slipping
   // starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on
   // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
   // the rounding of its own place. Squares, so that rest costs no root.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slip with terms is an equation: of the gap r that the god-object has, it goes a way s at a speed u(s), and
+// contact-model CURVE-2: a slip with terms is an equation: of the gap r that the god-object has, it goes a way s at a speed
+// u(s), and
 //   r - s = reach mu(u(s)),   u(s) = lagged + per_way (way + s),   reach = load, or a little more where presliding gives.
 // Its left side falls by 1 for each unit of s, its right side by less as long as reach per_way times the curve's steepest fall
 // is below 1: so there is one solution, it lies between 0 and r, and it changes continuously with all that goes in. At s = 0 it

@@ -9,6 +9,8 @@
 namespace fdcg {
 namespace {
 
+// contact-model RESP-4
+
 constexpr double kLargest = 1e9;  // far beyond any device; keeps products finite
 constexpr double kLeast = 1e-9;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presliding: how far a contact that holds yields. The remembered place A is what the rules move, with cones wider by 1 / (1 -
-// l), l = k / (k + k_p), of the stiffness k and presliding's k_p; the god-object that is felt lies between it and the surface
-// point where the two springs balance:
+// Presliding (contact-model CURVE-5): how far a contact that holds yields. The remembered place A is what the rules move, with
+// cones wider by 1 / (1 - l), l = k / (k + k_p), of the stiffness k and presliding's k_p; the god-object that is felt lies
+// between it and the surface point where the two springs balance:
 //   x = A + l (SP - A), within the face's concave edges or the edge's ends,
 // which is where k |x - HIP|^2 / 2 + k_p |x - A|^2 / 2 is least. So with A at rest the force is that of a potential, and no
 // creep comes of it. A concave edge bounds x because there the wall across bears what friction did: A comes to the edge with
@@ -88,9 +88,10 @@ inline double stored(const FrictionTerms& terms, Vec3<double> gap, Vec3<double> 
   return dot(spring, spring) + (terms.give() > 1 ? dot(yielded, yielded) / (terms.give() - 1) : 0);
 }
 
-// The stiffness at the end of a tick, and how far the contact yields. Where the rules have moved the contact, from `before`
-// and the feature `was`, more may not be stored at this HIP than there: the stiffness holds back, and rises again where sliding
-// has lost as much. Two materials, or a wall that the yielding god-object meets behind a seam, would push the hand else.
+// contact-model CURVE-7: the stiffness at the end of a tick, and how far the contact yields. Where the rules have moved the
+// contact, from `before` and the feature `was`, more may not be stored at this HIP than there: the stiffness holds back, and
+// rises again where sliding has lost as much. Two materials, or a wall that the yielding god-object meets behind a seam, would
+// push the hand else.
 template <class Real>
 [[gnu::noinline, gnu::cold]] double settle(const Walk<Real>& walk, Feature was, Vec3<double> before) {
   FrictionTerms& terms = *walk.friction.terms;

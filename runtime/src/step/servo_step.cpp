@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step: the friction-cone god-object algorithm of Melder and Harwin (2004) on a Face Directed Connection Graph.
+// The step: the friction-cone god-object algorithm of Melder and Harwin (2004) on a Face Directed Connection Graph. Its rules:
+// docs/internals/contact-model.md; how these files follow them: docs/internals/step.md.
 //
 //   Free --sweep--> Face | Edge | Vertex          free_space.hpp, sweep.hpp: where does the hand's way first meet the surface?
 //   Face  -> rest | Edge | Vertex | Free          face.hpp     slide to the friction circle, or to the first edge on the way
@@ -8,7 +9,7 @@
 //   ... -> Free                                   leave.hpp    in front, by exact sign, of what is left
 //
 // Each rule moves the god-object nearer to the HIP or hands over to a neighbour that climbs further; the step ends where a rule
-// rests. Every loop is bounded: work left over is carried to the next tick with a valid god-object.
+// rests (contact-model TICK-1). Every loop is bounded: work left over is carried to the next tick with a valid god-object.
 #include "base/config.hpp"
 #include "base/hooks.hpp"
 #include "base/struct_bytes.hpp"
@@ -24,7 +25,7 @@ namespace fdcg {
 namespace {
 
 // The features visited since the god-object last came nearer to the HIP. To meet one of them again is to go round in a circle
-// that only rounding can make: the step rests there (contact-model section 1).
+// that only rounding can make: the step rests there (contact-model TICK-5).
 template <class Real>
 class Trail {
  public:
@@ -55,8 +56,9 @@ class Trail {
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
 
-  // Where the step would rest. The next tick knows nothing of Walk::rounding_residual: a rest must be one without it. So it is
-  // forgotten, and the way goes on as that tick would go; once for each time that the god-object came nearer.
+  // Where the step would rest (contact-model TICK-6). The next tick knows nothing of Walk::rounding_residual: a rest must be
+  // one without it. So it is forgotten, and the way goes on as that tick would go; once for each time that the god-object came
+  // nearer.
   bool retry_without_residual(Walk<Real>& walk) {
     if (has_begun_again_ || norm1(walk.rounding_residual) == 0) return false;
     walk.rounding_residual = {0, 0, 0};
@@ -90,7 +92,7 @@ Decision apply_rule(Walk<Real>& walk) {
   }
 }
 
-// What a step did besides moving the god-object.
+// What a step did besides moving the god-object (contact-model RESP-3).
 struct Progress {
   uint32_t transitions;  // changes of state
   uint32_t flags;        // fdcg_result_flag: what was cut short
@@ -139,11 +141,11 @@ Progress move_god_object(Walk<Real>& walk, Feature start, Vec3<Real> start_gap, 
 }
 
 // A HIP further away than this is nowhere near any graph (load.cpp limits scale and origin), and its arithmetic might
-// overflow before it is found out.
+// overflow before it is found out (contact-model TICK-2).
 constexpr double kFarthestHip_m = 1e110;
 
 // A coordinate smaller than this share of the extent is zero: no hand can tell, and exact signs need not look at bits that
-// stand further apart than a few machine words hold.
+// stand further apart than a few machine words hold (contact-model TICK-4).
 constexpr double kLeastShare = 0x1p-70;
 
 // A double rounded to a float, in a way that no compiler sees through: GCC 12's basic-block vectoriser (-O2) drops the rounding
@@ -223,7 +225,7 @@ inline void write_position(const fdcg_header& header, const fdcg_contact& contac
   result->slipping = contact.slipping;
 }
 
-// First tick: free, with the god-object at the HIP.
+// First tick: free, with the god-object at the HIP (contact-model TICK-3).
 template <class Real>
 inline void start(Vec3<Real> hip, fdcg_contact* contact) {
   store(hip, contact->hip);
@@ -253,7 +255,7 @@ inline void spring_damper_force(const fdcg_header& header, const fdcg_params& pa
   store(spring * (newtons_per_metre * header.metres_per_unit), result->force_n);
 }
 
-// F = k (GO - HIP) (contact-model section 8).
+// F = k (GO - HIP) (contact-model RESP-1).
 template <class Real>
 inline void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, Vec3<Real> hip,
                     Vec3<Real> god_object, fdcg_result* result) {
@@ -329,7 +331,7 @@ template <class Real>
   store(vec(result->god_object_m) + terms.yielded * raw.header->metres_per_unit, result->god_object_m);
 }
 
-// A god-object that stays on its face, at rest or sliding, is what a servo loop meets most: nothing else is set up for it.
+// A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7).
 template <class Real>
 void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
           fdcg_result* result) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The free-space sweep (contact-model section 4): what a straight move from one point to another meets first.
+// The free-space sweep (contact-model FREE-3, FREE-4; docs/internals/sweep.md): what a straight move from one point to another
+// meets first.
 //
 // A sweep looks at the nearest boxes first. Where its work runs out (work.hpp, free_space.hpp) it is carried over to later
 // ticks, which look at the leaves in index order instead: one number then says how far they have come, and each tick gets on by
@@ -265,6 +266,7 @@ class Sweep {
     return side_of(graph_, node, x, bound, work_left_);
   }
 
+  // contact-model LEAVE-1
   [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
     if (left_.state == FDCG_FACE) return left_.index == n;
     if (left_.state == FDCG_EDGE) {
@@ -278,8 +280,9 @@ class Sweep {
     return false;
   }
 
-  // A slit may be narrower than the rounding of the god-object's place, which then is behind the other wall; and that must
-  // hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over it.
+  // contact-model LEAVE-3: a slit may be narrower than the rounding of the god-object's place, which then is behind the other
+  // wall; and that must hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over
+  // it.
   [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Real> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is

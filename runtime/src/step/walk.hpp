@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
-// of contact-model sections 5, 6 and 7, free_space.hpp and sweep.hpp that of section 4; servo_step.cpp drives them.
+// contact-model FACE-1 to FACE-8, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
+// servo_step.cpp drives them.
 #pragma once
 
 #include "base/work.hpp"
@@ -29,8 +30,9 @@ struct Walk {
   Feature active;
   Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
   uint32_t work_left;  // for the rules, see work.hpp
-  // What rounding took from the god-object when it was placed on the edge by which it crossed into the active face. The way
-  // goes on from god_object + rounding_residual: else a tick across hundreds of needle faces adds up their roundings.
+  // contact-model FACE-7: what rounding took from the god-object when it was placed on the edge by which it crossed into the
+  // active face. The way goes on from god_object + rounding_residual: else a tick across hundreds of needle faces adds up their
+  // roundings.
   Vec3<Real> rounding_residual = {0, 0, 0};
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
@@ -68,7 +70,7 @@ inline Decision go_to(Feature next) {
   return Decision::go_to(next);
 }
 
-// A connection's line, and how near to an end the vertex is meant (contact-model section 5).
+// A connection's line, and how near to an end the vertex is meant (contact-model FACE-6).
 template <class Real>
 struct EdgeLine : Edge<Real> {
   Real end_tolerance;

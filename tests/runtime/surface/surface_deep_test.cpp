@@ -56,7 +56,7 @@ void wander(const SurfaceContact& given, Random& random, Count* count) {
       REQUIRE(cone.ratio <= mu_s * (1 + 1e-12L));
       continue;
     }
-    // What friction holds within the bound of section 5 still counts as slipping; what it has moved is on the cone.
+    // What friction holds within the bound of contact-model FRIC-4 still counts as slipping; what it has moved is on the cone.
     const bool has_moved =
         before.state == FDCG_FACE && felt.transitions == 0 &&
         contact.god_object() != Place{before.god_object_m[0], before.god_object_m[1], before.god_object_m[2]};
