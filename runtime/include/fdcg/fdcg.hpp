@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <span>
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 namespace fdcg {
 
