@@ -35,7 +35,7 @@
 #ifndef FDCG_DEVICE_H
 #define FDCG_DEVICE_H
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 #ifdef __cplusplus
 extern "C" {
