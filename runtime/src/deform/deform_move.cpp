@@ -3,7 +3,7 @@
 // computed here.
 #include "base/config.hpp"
 #include "base/message.hpp"
-#include "base/near_zero.hpp"
+#include "step/near_zero.hpp"
 #include "deform/deform_upkeep.hpp"
 
 namespace fdcg {

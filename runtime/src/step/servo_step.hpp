@@ -18,7 +18,7 @@
 
 #include "base/config.hpp"
 #include "base/hooks.hpp"
-#include "base/near_zero.hpp"
+#include "step/near_zero.hpp"
 #include "step/corner.hpp"
 #include "step/edge.hpp"
 #include "step/face.hpp"
