@@ -101,12 +101,12 @@ void check_last_words(const std::function<void()>& crash, int number) {
 
 }  // namespace
 
-TEST_CASE("a crash sends zero force and the safe stop on the descriptor kept for it, then dies of its signal") {
+TEST_CASE("crash handler: sends zero force and the safe stop, then the process ends by its signal") {
   for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGUSR1})
     check_last_words([crash] { raise(crash); }, crash);
 }
 
-TEST_CASE("a stack that has run out, and threads that crash together, leave zero force too") {
+TEST_CASE("crash handler: stack overflow and simultaneous crashes leave zero force") {
   check_last_words(
       [] {
         volatile char more = 1;

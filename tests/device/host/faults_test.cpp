@@ -213,10 +213,10 @@ void strike_all(bool is_shared) {
 
 }  // namespace
 
-TEST_CASE("thirteen devices, each with its fault, twenty times: the force goes, and comes back only when it is armed") {
+TEST_CASE("thirteen devices with one fault each: force goes to zero, and returns only after arming") {
   strike_all(false);
 }
 
-TEST_CASE("the same thirteen devices in one scene: each is struck alone") {
+TEST_CASE("thirteen devices in one scene: each fault affects its device only") {
   strike_all(true);
 }

@@ -120,7 +120,7 @@ void run_random(std::uint64_t ticks, std::uint64_t seed, Promise& promise, std::
 }  // namespace
 
 // FDCG_GATE_INPUTS: how many; the suite makes a million, 10^8 were made for each release.
-TEST_CASE("whatever comes in, what leaves the gate keeps its promise") {
+TEST_CASE("gate: with any input the output is within its guarantees") {
   const char* const asked = std::getenv("FDCG_GATE_INPUTS");
   const std::uint64_t ticks = asked ? std::strtoull(asked, nullptr, 10) : 1'000'000;
   Promise promise;

@@ -63,7 +63,7 @@ TEST_CASE("every good mesh is read") {
   }
 }
 
-TEST_CASE("a bad mesh is refused under the rule in its name, or shows the defect that its name says") {
+TEST_CASE("a bad mesh is refused under the rule in its name, or has the defect in its name") {
   int refused = 0, defective = 0;
   for (const auto& path : files_in(testdata() / "meshes" / "bad")) {
     INFO(path);
@@ -150,7 +150,7 @@ TEST_CASE("every fuzz find is a soup or a refusal in every format") {
   CHECK(finds > 0);
 }
 
-TEST_CASE("real meshes are read, where there are any") {
+TEST_CASE("real meshes are read, if available") {
   const auto meshes = real_meshes();
   WARN(meshes.size() << " real meshes found");
   for (const auto& path : meshes) {

@@ -169,7 +169,7 @@ TEST_CASE("closed surfaces keep their shape within the distance, from both sides
   check_promises(hollow, 0.05, 3000);
 }
 
-TEST_CASE("what is not a manifold of triangles wound alike is left, and the reason said") {
+TEST_CASE("simplify: a mesh that is no oriented triangle manifold is left, with the reason") {
   const auto reason = [](const PolygonSoup& soup) {
     const Repaired r = simplified(soup, 0.1);
     CHECK(r.actions[0].total == 0);
@@ -192,7 +192,7 @@ TEST_CASE("what is not a manifold of triangles wound alike is left, and the reas
   CHECK(reason(pinched).find("more than one fan") != std::string::npos);
 }
 
-TEST_CASE("an error that is no number above 0 is refused") {
+TEST_CASE("simplify: an error that is not a positive number is refused") {
   for (const double error : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
     RepairOptions options;
     options.simplify_error = error;
@@ -202,12 +202,12 @@ TEST_CASE("an error that is no number above 0 is refused") {
   }
 }
 
-TEST_CASE("a distance below what doubles tell apart changes nothing") {
+TEST_CASE("simplify: a distance below double precision changes nothing") {
   const PolygonSoup sphere = bumpy_sphere(10, 12);
   CHECK(simplified(sphere, 1e-12).soup.corners == sphere.corners);
 }
 
-TEST_CASE("real meshes keep every promise") {
+TEST_CASE("simplify: every guarantee holds on real meshes") {
   const char* asked = std::getenv("FDCG_SIMPLIFY_FACES");  // of the largest mesh to be tried
   const std::size_t largest = asked != nullptr ? std::strtoul(asked, nullptr, 10) : 6000;
   std::size_t found = 0, checked = 0, faces_before = 0, faces_after = 0;

@@ -41,7 +41,7 @@ AlignedBytes compiled_cube() {
 
 }  // namespace
 
-TEST_CASE("the log handler is told of each graph opened or refused, with the error's own message") {
+TEST_CASE("the log handler is called for each graph opened or refused, with the error's message") {
   const Handlers restore;
   AlignedBytes file = compiled_cube();
   fdcg_graph graph;
@@ -61,7 +61,7 @@ TEST_CASE("the log handler is told of each graph opened or refused, with the err
   CHECK(lines[3].second.find("/no/such/file.fdcg") != std::string::npos);
 }
 
-TEST_CASE("without a log handler nothing is told, and the step never tells") {
+TEST_CASE("without a log handler nothing is logged, and the step never logs") {
   const Handlers restore;
   AlignedBytes file = compiled_cube();
   Lines lines;
@@ -74,7 +74,7 @@ TEST_CASE("without a log handler nothing is told, and the step never tells") {
   CHECK(lines.empty());
 }
 
-TEST_CASE("a sound step finds no fault of the library's own") {
+TEST_CASE("a valid step triggers no assertion") {
   const Handlers restore;
   std::string faults;
   fdcg_set_assert_handler([](void* context, const char* condition, const char*,
@@ -87,7 +87,7 @@ TEST_CASE("a sound step finds no fault of the library's own") {
   CHECK(faults == "");
 }
 
-TEST_CASE("a fault of the library's own reaches the handler with its place, and traps where there is none") {
+TEST_CASE("a failed assertion calls the handler with its place, and traps without one") {
   const Handlers restore;
   struct Seen {
     std::string condition, file;

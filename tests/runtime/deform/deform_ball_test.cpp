@@ -53,7 +53,7 @@ void move_finger(Finger* finger, Random& random) {
 }  // namespace
 
 // More fingers than the mesh watches balls of; some are copied over others.
-TEST_CASE("clear balls over a sheet that moves change nothing that is felt") {
+TEST_CASE("clear balls over a moving sheet do not change any force") {
   constexpr int kFingers = 20;
   const std::uint64_t steps = steps_or(6000);
   for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
@@ -96,7 +96,7 @@ TEST_CASE("clear balls over a sheet that moves change nothing that is felt") {
 }
 
 // The number of a tick once took 32 bits, and what counted from one tick to the next began anew.
-TEST_CASE("nothing happens to a contact when the count of ticks passes 2^32") {
+TEST_CASE("a contact is not affected when the tick count passes 2^32") {
   const bake::PolygonSoup rest = plane_grid(12, 12);
   DeformableMesh young(rest), old(rest);
   constexpr std::uint64_t kBefore = 40;

@@ -207,7 +207,7 @@ std::uint64_t place_everywhere(std::uint32_t disabled_optimizations, bake::Preci
 
 }  // namespace
 
-TEST_CASE("what a scene skips among deformable meshes leaves no trace, nor does the order of fingers") {
+TEST_CASE("optimizations among deformable meshes, and the order of fingers, do not change results") {
   const Outcome quick = play(0, false);
   CHECK(quick.on_soft > 1000);
   CHECK(quick.caught > 20);
@@ -261,7 +261,7 @@ TEST_CASE("a scene gives the bits of a contact with a deformable mesh stepped by
   }
 }
 
-TEST_CASE("a finger just put somewhere is caught by what passes over it in the next tick, in a scene as by hand") {
+TEST_CASE("a new finger is caught by a surface passing over it in the next tick, in a scene as by hand") {
   CHECK(place_everywhere(0, bake::Precision::f64, steps_or(3000)) > 100);
   CHECK(place_everywhere(0, bake::Precision::f32, steps_or(1000)) > 30);
   for (const std::uint32_t off : {1u, 2u, 4u, 8u, 16u, 31u}) {
@@ -314,7 +314,7 @@ TEST_CASE("no finger is within a ball that breathes, moves and turns without bei
   CHECK(inside > 1000);
 }
 
-TEST_CASE("a force on a deformable mesh is in the world's measure, and its object feels the opposite") {
+TEST_CASE("a force on a deformable mesh is in world units, and its object gets the opposite") {
   DeformableMesh sheet(plane_grid(4, 4));
   SceneRig rig(config_of());
   fdcg_params params = fdcg_make_params();
@@ -335,7 +335,7 @@ TEST_CASE("a force on a deformable mesh is in the world's measure, and its objec
   CHECK(reaction.torque_n_m[1] == Approx(0.3 * 10 - 0.3 * 20));
 }
 
-TEST_CASE("a deformable mesh is refused where there is no room for it, and by piles") {
+TEST_CASE("a deformable mesh is refused without room for it, and by piles") {
   DeformableMesh sheet(plane_grid(2, 2));
   const fdcg_params params = fdcg_make_params();
   const fdcg_pose pose = fdcg_make_identity_pose();

@@ -218,7 +218,7 @@ class Performance {
 
 }  // namespace
 
-TEST_CASE("every combination of skips gives the same forces") {
+TEST_CASE("every combination of optimizations gives the same forces") {
   const Place here = {0, 0, 0};
   const Play plays[] = {
       {1, 1, 4, 3, 0.2, 0, here, false, false},                    // one finger, one still object
