@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real meshes, where they are at hand: the folder that FDCG_REAL_MESHES names, else ../shared/meshes beside the project, and
-// the data of Debian's libcgal-dev if it was unpacked into such a folder. Tests pass without them and say how many they found.
+// Real meshes, if available: the folder in FDCG_REAL_MESHES, else ../shared/meshes beside the project, and the data of Debian's
+// libcgal-dev if it was unpacked into such a folder. Tests pass without them and report how many they found.
 #pragma once
 
 #include <algorithm>

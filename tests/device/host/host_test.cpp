@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind.
+// The whole host, on devices in memory: start, forces, faults of devices, and zero force at the end.
 #include <signal.h>
 
 #include <catch2/catch.hpp>
@@ -151,7 +151,7 @@ TEST_CASE("host: stops within 6 s although a device takes no output", "[slow]") 
     CHECK(hosted.device().closed == 0);  // somebody is inside
     hosted.devices[0].swap(device);
   }
-  // The thread that was left alone lives on what it kept, though the host is gone.
+  // The detached thread still uses the data that it keeps alive, although the host is destroyed.
   device->holds_writes = false;
   CHECK(within_ms(5000, [&] { return device->inside_writes == 0; }));
   sleep_ms(50);

@@ -127,7 +127,7 @@ TEST_CASE("kinematics: the Jacobian equals finite differences") {
     }
 }
 
-// What the motors do in a small motion is what the hand feels: effort . dq = force . dx, to the second order.
+// Virtual work: in a small motion effort . dq = force . dx, to second order.
 TEST_CASE("kinematics: efforts do the work of the force") {
   Random random(62);
   for (const Case& c : kCases)

@@ -56,7 +56,7 @@ double half_count(const Field& field, double value) {
   return (std::fabs(value) + std::fabs(field.bias)) * 1.2e-7 + std::fabs(field.scale) * 1e-37;
 }
 
-// A value in the middle half of what the field can say.
+// A value in the middle half of the field's range.
 double value_within(const Field& field, std::mt19937_64& random) {
   const double most = field.type == NumberType::kF32 ? 1000 : std::ldexp(1.0, 8 * bytes_of(field.type) - 1) - 1;
   const bool is_signed = field.type != NumberType::kU8 && field.type != NumberType::kU16 && field.type != NumberType::kU32;

@@ -88,7 +88,7 @@ Held replay(const std::string& log, double from_s, double to_s) {
       REQUIRE(touch.state == FDCG_FACE);
       held.slipping += touch.slipping;
       held.least_force_n = std::min(held.least_force_n, std::hypot(touch.force_n[0], touch.force_n[1], touch.force_n[2]));
-      // A touch is told with the pose before the last substep: the two can be compared where the body is at rest.
+      // A touch is reported in the pose before the last substep, so it is compared only while the body is at rest.
       const fdcg_body& body = tick.state->setup.bodies[0].body;
       const double *const v = body.velocity_m_per_s, *const turn = body.spin_rad_per_s;
       if (std::hypot(v[0], v[1], v[2]) > kStill || std::hypot(turn[0], turn[1], turn[2]) * kSize > kStill) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: what is read, what is refused and how it is told, and that what is written reads back. Over 400 lines: a
+// Scenes: reading, refusals with their messages, and writing with reading back. Over 400 lines: a
 // case for each kind of thing that a scene may hold.
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A session's log: the ring, the file, and what its reader makes of damage.
+// A session's log: the ring, the file, and its reader on damaged files.
 #include "session/session_log.hpp"
 
 #include <sys/resource.h>
@@ -41,7 +41,7 @@ void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
-// What a log of `count` ticks of one device is, and what start and stop said.
+// A log of `count` ticks of one device, and the results of start and stop.
 struct Written {
   std::string started, stopped;
 };

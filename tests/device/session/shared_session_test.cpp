@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices that share a scene, as whole sessions on simulated ones: what becomes of the cube when one of them dies, their log,
-// and what is refused.
+// Devices that share a scene, as whole sessions on simulated ones: the cube when one of them fails, their log, and refusals.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pure tick: from reports to a gated force, and what it counts on the way.
+// The pure tick: from reports to a gated force, and its counters.
 #include "tick/device_tick.hpp"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ struct Rig {
     report(x, y, z);
     return tick();
   }
-  // As many reports as arming wants.
+  // As many reports as arming needs.
   void begin_at(double x, double y, double z) {
     for (int i = 0; i < kSamplesToArm; ++i)
       at(x, y, z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate's promise, kept whatever comes in.
+// The gate's guarantees under random input.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -45,7 +45,7 @@ struct Violation {
   }
 };
 
-// The promise at the top of gate.hpp, recomputed from outside.
+// The guarantees at the top of gate.hpp, checked independently.
 struct Promise {
   DeviceLimits limits;
   double last_n[3] = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The safety gate: what it lets through, and everything that makes it let through nothing.
+// The safety gate: its output limits, and every fault that makes it give zero.
 #include "tick/gate.hpp"
 
 #include <catch2/catch.hpp>
@@ -60,7 +60,7 @@ void check_is_zero(const GatedForce& force) {
   CHECK_FALSE(force.is_enabled());
 }
 
-// After `fault`: no force, now and for ever, until armed again.
+// After `fault`: no force until armed again.
 void check_is_latched(Rig& rig, Fault fault) {
   CHECK(rig.gate.phase() == Phase::kDisarmed);
   CHECK(rig.gate.fault() == fault);

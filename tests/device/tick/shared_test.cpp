@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices that share a scene, tick by tick: whose report moves it on, who touches what is in it. Whole sessions:
+// Devices that share a scene, tick by tick: the clock device, and the fingers that take part. Whole sessions:
 // shared_session_test.cpp.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soft sheets: how a load is spread over them, and that a hand gets no more work out of one than it put in.
+// Soft sheets: the distribution of a load, and passivity (a hand gains no work).
 #include "tick/soft.hpp"
 
 #include <algorithm>
@@ -106,7 +106,7 @@ struct Rig {
     }
     sheet.relax(0.001);
   }
-  // The steepest that the sheet is anywhere.
+  // The largest slope of the sheet.
   double steepest() {
     const fdcg_graph& now = *fdcg_deform_get_graph(sheet.deform());
     double least = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices over hidapi: which one is meant, what is sent, what is said when it cannot be. hidapi is a fake one, found before the
-// real one on this program's run path (tests/device/vm tries the real one on a real kernel).
+// Devices over hidapi: selection, reports, and messages on failure. hidapi is a fake library, found before the real one on this
+// program's run path (tests/device/vm tests the real one on a real kernel).
 #include <dlfcn.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -51,7 +51,7 @@ LoopConfig loop_with(HidBackend backend) {
   return loop;
 }
 
-// root may do everything: asked by a process that has given that up.
+// root may do everything, so the check runs in a process that has dropped its privileges.
 std::string problem_of_nobody(const HidDevice& device) {
   if (geteuid() != 0) return permission_problem(device);
   constexpr uid_t kNobody = 65534;

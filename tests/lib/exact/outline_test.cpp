@@ -19,7 +19,7 @@ namespace {
 
 using Loop = std::vector<Vec3>;
 
-// CGAL's word for the loop in the plane z = 0, whichever way it runs.
+// CGAL's result for the loop in the plane z = 0, in either orientation.
 bool is_simple_2(const Loop& loop) {
   std::vector<Kernel::Point_2> points;
   for (const Vec3& p : loop)

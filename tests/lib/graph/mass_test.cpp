@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mass properties: against formulas, against rationals, and against themselves on the same solid cut, turned and moved. A few
-// lines over 400: solids and what they weigh, one after another.
+// Mass properties: against formulas, against rational arithmetic, and invariance under triangulation, rotation and translation.
+// A few lines over 400: a list of solids with their mass.
 #include <gmpxx.h>
 
 #include <catch2/catch.hpp>

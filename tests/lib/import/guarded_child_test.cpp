@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The child is limited in memory and time, dies alone, and leaves nothing behind.
+// The guarded child: limits on memory and time, isolation of crashes, no leaked resources.
 #include <dirent.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -82,7 +82,7 @@ TEST_CASE("guarded child: the memory limit is enforced") {
     say(answer, pieces[0]);
   });
   CHECK(bit_by_bit.trouble() == result.trouble());
-  // And what it is given, it has, however much this process holds.
+  // Its allowance does not depend on the memory used by this process.
   const std::vector<char> ours(256 * kMebibyte, 'y');
   const ChildResult fits = run_guarded(kLimits, [&ours](ChildAnswer& answer) {
     const std::vector<char> some(48 * kMebibyte, 'x');

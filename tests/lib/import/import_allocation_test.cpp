@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of its own, because it replaces operator new: the import asks for no more memory than the file's bytes can fill.
+// A separate program, because it replaces operator new: import allocates no more memory than the file's bytes can fill.
 #include <cstdlib>
 #include <new>
 

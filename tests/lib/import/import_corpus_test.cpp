@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes and fuzz finds under testdata: the good ones agree, each bad one is what its name says, none of their truncations
-// and single-byte changes leads anywhere but to a soup or a refusal (run with the sanitizers, that is a proof for these bytes).
+// The meshes and fuzz finds under testdata: the good ones agree, each bad one has the defect in its name, and all truncations
+// and single-byte changes give a soup or a refusal (with the sanitizers this excludes memory errors for these bytes).
 #include <cmath>
 
 #include "../../support/import_support.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Format kFormats[] = {Format::off, Format::obj, Format::ply, Format::stl, Format::gltf, Format::drc};
 
-// Either a sound soup or a proper refusal.
+// Either a valid soup or a refusal with its message.
 void check_any(std::string_view bytes, std::optional<Format> format) {
   const Result<PolygonSoup> soup = import_memory(bytes, "mesh", {format, {}});
   if (soup) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What simplify promises, measured by others: distances by CGAL's AABB tree, topology by counting.
+// The guarantees of simplify, measured independently: distances by CGAL's AABB tree, topology by counting.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -97,7 +97,7 @@ Repaired simplified(const PolygonSoup& soup, double error) {
   return *result;
 }
 
-// Everything that is promised of `r`, simplified from `soup`.
+// All guarantees for `r`, simplified from `soup`.
 std::size_t check_promises(const PolygonSoup& soup, const Repaired& r, double error, std::size_t samples) {
   INFO(r.actions[0].message << " " << r.actions[0].left_message);
   REQUIRE(r.actions[0].left == 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The official schema is checked by tests/contract/validate_cli_test.py; this is what the schema cannot say.
+// The official schema is checked by tests/contract/validate_cli_test.py; these are properties that the schema cannot express.
 #include <catch2/catch.hpp>
 #include <string>
 

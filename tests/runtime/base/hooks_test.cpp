@@ -25,7 +25,7 @@ void keep_line(void* context, fdcg_log_level level, const char* text) {
   static_cast<Lines*>(context)->emplace_back(level, text);
 }
 
-// Takes the handlers away again, whatever a test does.
+// Resets the handlers after each test.
 struct Handlers {
   ~Handlers() {
     fdcg_set_log_handler(nullptr, nullptr);
@@ -54,7 +54,7 @@ TEST_CASE("the log handler is called for each graph opened or refused, with the 
   CHECK(fdcg_open_memory(file.data(), file.size() - 1, FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_TRUNCATED);
   REQUIRE(lines.size() == 2);
   CHECK(lines[1] == std::make_pair(FDCG_LOG_ERROR, std::string(error.message)));
-  // a caller who does not ask for the message is told by the log
+  // a caller without an error struct gets the message in the log
   CHECK(fdcg_open_memory(file.data(), 3, FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_E_TRUNCATED);
   CHECK(fdcg_open_file("/no/such/file.fdcg", FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_E_IO);
   REQUIRE(lines.size() == 4);

@@ -20,7 +20,7 @@ namespace bake = fdcg::bake;
 
 namespace {
 
-// fdcg_params as a header of long ago would have had it.
+// fdcg_params as in an early header.
 struct OlderParams {
   std::uint32_t struct_bytes;
   std::uint32_t edge_friction;

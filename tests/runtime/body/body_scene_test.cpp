@@ -72,7 +72,7 @@ class Grip {
     const Place along = turned_corner(pose);
     return {along[0] + pose.translation_m[0], along[1] + pose.translation_m[1], along[2] + pose.translation_m[2]};
   }
-  // How far its centre hangs below where it was gripped.
+  // The distance of its centre below its position when gripped.
   [[nodiscard]] double sunk() const { return -(body_.body.centre_m[1] * up_[1] + body_.body.centre_m[2] * up_[2]); }
   void pull(double gravity) {
     for (int k = 0; k < 3; ++k)
@@ -176,7 +176,7 @@ TEST_CASE("a cube slips from two fingers exactly when it weighs more than fricti
         for (const double share : {0.999, 1.001}) {
           CAPTURE(mu, lean_rad, deep, share);
           Grip grip(mu, deep, holds_kg * share, lean_rad);
-          // let down as slowly as it is damped: no swing beyond the load itself
+          // loaded as slowly as it is damped: no overshoot
           constexpr int kLowering = 20000;
           for (int tick = 0; tick < kLowering; ++tick) {
             grip.pull(kGravity * (tick + 1) / kLowering);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rigid body: what it conserves, how fast it converges, where it stays stable, when it sleeps, what it refuses.
+// One rigid body: conservation, order of convergence, stability, sleep, refusals.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two bodies are made of: of faces, on edges and corners too, and on the ground the friction curve.
+// Materials of two bodies in contact: of faces, on edges and corners too; and the friction curve on the ground.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kGravity = 9.80665, kMass_kg = 0.05;
 const fdcg_material kOwn = {0.64, 0.49, 4000};  // of the body
-// Rubber and ice; what has neither, and so is never asked in what follows, would hold nothing.
+// Rubber and ice; the default material, not used by these tests, has no friction.
 const fdcg_material kTable[2] = {{0.9, 0.8, 2000}, {0.2, 0.1, 800}};
 
 double coefficient(double a, double b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies on the ground, on ramps, on one another: what sticks, what slides and how fast, what comes to rest and stays.
+// Bodies on the ground, on ramps, on one another: sticking, sliding and its speed, coming to rest and staying at rest.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -33,7 +33,7 @@ class Ramp {
     rig_.add_body(block, kMass_kg, friction(mu_static, mu_dynamic), posed({-9, 0, 0.005}), wakeful(), 8);
     rig_.ticks(400);
   }
-  // As slowly as it takes for nothing to swing: the last bit by bit.
+  // So slowly that nothing oscillates, at the end in ever smaller steps.
   void lean(double angle_rad) {
     constexpr int kLeaning = 300;
     const double from = angle_rad_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pile is made of, what it conserves, what it leaves undone, what it refuses.
+// Piles: contact points, conservation, skipped work, refusals.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -30,7 +30,7 @@ Totals totals(PileRig& rig) {
   Totals sum;
   for (std::size_t i = 0; i < rig.bodies().size(); ++i) {
     const fdcg_body& body = rig.body(i);
-    // less what the last step gave ahead
+    // without the predicted impulse of the last step
     const Place momentum = rig.velocity(i) * body.config.mass_kg - place(body.predicted_impulse_n_s);
     sum.momentum = sum.momentum + momentum;
     sum.angular = sum.angular + place(body.angular_momentum) - place(body.given_n_m_s) + cross(rig.centre(i), momentum);

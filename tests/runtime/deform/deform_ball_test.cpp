@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable meshes: clear balls change nothing that is felt, whose ever they are; the count of ticks has no seam.
+// Deformable meshes: clear balls of any contact do not change forces; the tick count may pass 2^32.
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -95,7 +95,7 @@ TEST_CASE("clear balls over a moving sheet do not change any force") {
   }
 }
 
-// The number of a tick once took 32 bits, and what counted from one tick to the next began anew.
+// Regression: with a 32-bit tick number, state counted from tick to tick was lost at the wrap.
 TEST_CASE("a contact is not affected when the tick count passes 2^32") {
   const bake::PolygonSoup rest = plane_grid(12, 12);
   DeformableMesh young(rest), old(rest);

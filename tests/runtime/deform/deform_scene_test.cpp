@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable meshes as objects of a scene: felt as by hand, by several fingers, beside graphs and surfaces, at rest and on the
-// move; nothing falls through.
+// Deformable meshes as objects of a scene: same forces as when stepped by hand, several fingers, beside graphs and surfaces, at
+// rest and in motion; no finger falls through.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -32,7 +32,7 @@ fdcg_object_id add(SceneRig& rig, DeformableMesh& mesh, const fdcg_params& param
   return id;
 }
 
-// Every vertex of a sheet as high as a wave that runs over it says.
+// Sets every vertex of a sheet to the height of a travelling wave.
 void heave(DeformableMesh& sheet, double height, double phase) {
   for (std::size_t v = 0; v < sheet.points().size(); ++v) {
     const bake::Vec3& p = sheet.points()[v];
@@ -40,7 +40,7 @@ void heave(DeformableMesh& sheet, double height, double phase) {
   }
 }
 
-// A ball that breathes and is dented: every vertex at its own distance from the middle.
+// A ball that expands, shrinks and is dented: every vertex has its own distance from the centre.
 void breathe(DeformableMesh& ball, const std::vector<bake::Vec3>& unit, double phase) {
   for (std::size_t v = 0; v < unit.size(); ++v) {
     const bake::Vec3& p = unit[v];
@@ -137,8 +137,8 @@ struct Placed {
 };
 
 // Fingers near a sheet that heaves are put somewhere else all the time and stay there for a few ticks, at rest or on the move.
-// Whether a finger is placed before the vertices move, after that, or between advance and step, `turn` says, and who is stepped
-// first. Returns how many were caught in the tick after their placing.
+// `turn` selects whether a finger is placed before the vertices move, after that, or between advance and step, and the order of
+// the steps. Returns how many were caught in the tick after their placing.
 std::uint64_t place_everywhere(std::uint32_t disabled_optimizations, bake::Precision precision, std::uint64_t ticks) {
   constexpr std::size_t kFingers = 4;
   DeformableMesh in_scene(plane_grid(10, 10), triangle_options(precision)),

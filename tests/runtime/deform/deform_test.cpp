@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C API of deformable meshes: what it refuses, and a flat sheet whose contact can be computed by hand.
+// The C API of deformable meshes: refusals, and a flat sheet whose contact has a closed form.
 #include <cmath>
 #include <limits>
 #include <set>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable meshes: what is brought up to date lazily is what a computation of the whole gives, bit for bit.
+// Deformable meshes: lazy updates give the bits of a full computation.
 #include <cmath>
 #include <cstring>
 #include <sstream>

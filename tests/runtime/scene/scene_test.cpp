@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene call by call. Over 400 lines: short cases, one for each promise of scene.h, in its order.
+// The functions of a scene. Over 400 lines: short cases, one for each guarantee of scene.h, in its order.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
@@ -360,7 +360,7 @@ TEST_CASE("a config out of range is refused with its reason") {
   config = fdcg_make_scene_config();
   config.struct_bytes = 0;
   CHECK_THAT(refusal_of(config), Contains("config.struct_bytes is 0") && Contains("fdcg_make_scene_config"));
-  // a program built against a shorter struct: what it does not know takes its default
+  // a program built against a shorter struct: missing fields have their defaults
   config = fdcg_make_scene_config();
   config.struct_bytes = 8;
   config.touches_per_finger = 99;

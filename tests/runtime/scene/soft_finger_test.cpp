@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soft fingers: what torque they bear, together with a pull sideways; that they do not creep and give no energy; a beam held by
-// two of them.
+// Soft fingers: the limit of torque combined with tangential force; no creep and no energy gain; a beam held by two of them.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One test for each rule of the contact model that an implementer gets wrong; each fails when its rule is taken out. The rule's
-// name stands in brackets as a tag. Over 400 lines: the list of rules stays in one place, in the model's order.
+// One test for each rule of the contact model that is easily implemented wrong; each fails when its rule is removed. The rule's
+// name is the tag in brackets. Over 400 lines: the list of rules stays in one place, in the model's order.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

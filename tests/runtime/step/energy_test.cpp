@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passivity: what the spring stores never rises at a fixed HIP, a closed loop gives the user no more than sampling allows, and
-// a contact at rest is still to the last bit.
+// Passivity: at a fixed HIP the spring energy never rises, a closed loop gives the user no more energy than sampling allows,
+// and a contact at rest does not change by a bit.
 #include <catch2/catch.hpp>
 #include <limits>
 

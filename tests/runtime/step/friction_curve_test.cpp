@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The friction curve: what is felt at steady speed lies on it, it has one solution and no jump, nothing creeps while it holds,
-// and no term gives the hand work. The laws are written down here anew; the runtime's functions are not asked. Over 400 lines,
-// since all of it holds the step against that one curve.
+// The friction curve: forces at steady speed lie on it, it has one solution and no jump, there is no creep while sticking, and
+// no term does work on the hand. The laws are implemented here independently of the runtime's functions. Over 400 lines: all
+// cases compare the step with one curve.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -303,8 +303,8 @@ TEST_CASE("friction terms: closed loops over many bodies give the hand no work")
   }
 }
 
-// Tick by tick, which is stronger than the sum over a loop: what is stored never grows by more than the hand's work and the
-// hold's term. With presliding two springs store.
+// Tick by tick, which is stronger than the sum over a loop: stored energy never grows by more than the hand's work plus the
+// zero-order-hold term. With presliding two springs store energy.
 TEST_CASE("the energy of both springs grows by at most the hand's work in each tick, on every body") {
   const Rotation tilt = random_rotation(31);
   const std::vector<PolygonSoup> bodies = {cube(),         transformed(triangulated(corner_pit()), tilt),
@@ -372,7 +372,7 @@ TEST_CASE("disabled friction terms do not change any bit, whatever their fields"
   }
 }
 
-// Every term on, and none of them with anything to add: a curve that is flat, a bristle that is all but rigid.
+// Every term enabled with zero effect: a flat curve, a nearly rigid bristle.
 TEST_CASE("friction terms with zero effect give the result of the step without them") {
   const PolygonSoup soup = star_sphere(2, 0.3, 8);
   const PlainGraph graph(soup, Precision::f64);

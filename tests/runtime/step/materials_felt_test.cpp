@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials as they are felt: where they are, combined as the header says, and no change of stiffness pushes the hand.
+// Materials in the step: by place, combined as the header specifies, and no change of stiffness does work on the hand.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -18,8 +18,8 @@ constexpr double kInside = 0.999;  // winding number beyond which rounding at th
 
 struct Walked {
   std::uint64_t contacts = 0;
-  // HIPs put within rounding of the surface, judged outside there, and moved inside unseen: where coordinates are noise, the
-  // surface is. Until HIP has been outside again nothing is asked.
+  // HIPs placed within rounding error of the surface may count as outside and then move inside undetected. Nothing is checked
+  // until the HIP has been outside again.
   std::uint64_t slipped_in = 0;
 };
 
@@ -56,7 +56,7 @@ Walked check_never_through(const PolygonSoup& soup, const fdcg_graph& graph, dou
   return walked;
 }
 
-// Where the corners are dyadic and the faces axis-aligned, nothing rounds and nobody may slip in.
+// With dyadic corners and axis-aligned faces nothing rounds, so no HIP may get inside.
 void check_body(const PolygonSoup& soup, int ticks = 1500, std::uint64_t allowed_slips = 0) {
   const PlainGraph graph(soup, Precision::f64);
   for (const auto& [mu_s, mu_d] : {std::pair(0.0, 0.0), std::pair(0.6, 0.4), std::pair(2.0, 1.0)}) {
