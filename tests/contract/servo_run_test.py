@@ -472,7 +472,7 @@ class Check(ServoCase):
 
 
 class Examples(ServoCase):
-    """Each from end to end on the command line, as tools/examples runs it; what they do: tests/device/examples_test.cpp."""
+    """Each from end to end on the command line, as tools/examples runs it; what they do: tests/device/scene/examples_test.cpp."""
 
     def test_each_runs_without_waiting_replays_and_is_told_as_csv(self):
         scenes = EXAMPLE.parent

@@ -253,8 +253,8 @@ void ReferenceWalker<Real>::step_face() {
   move_on_face(face, surface_point + q * Real(friction_.mu_dynamic * depth / r));
 }
 
-// Sections 5 and 6 alike: whether the god-object, r away from the surface point under a load, stays where it is. Keeps the slip
-// flag. load_error: how much the load may be off for one unit of rounding.
+// contact-model FRIC-1 to FRIC-5: whether the god-object, r away from the surface point under a load, stays where it is. Keeps
+// the slip flag. load_error: how much the load may be off for one unit of rounding.
 template <class Real>
 auto ReferenceWalker<Real>::decide_friction(const Real& r, const Real& load, const Real& load_error) -> Friction {
   const Real static_limit = friction_.mu_static * load, dynamic_limit = friction_.mu_dynamic * load;

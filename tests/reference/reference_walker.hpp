@@ -40,7 +40,7 @@ struct ReferenceStep {
   // parallel, rounding is magnified by this much. The largest of the step, at least 1.
   double amplification = 1;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> visited;  // state and feature, in order
-  bool met_again = false;                                        // ended by the rule of section 1 against cycles
+  bool met_again = false;                                        // ended by contact-model TICK-5
 };
 
 template <class Real>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closed loops of the HIP, and the energy that a hand gets out of one. With the force held between ticks the work done on the
-// user is at most (contact-model section 8)
+// user is at most (docs/internals/contact-model.md#9-what-holds-of-every-tick)
 //   sum over the intervals in contact of k |dx|^2 / 2  +  sum over the first contacts of k |GO - HIP|^2 / 2.
 #pragma once
 

@@ -262,7 +262,8 @@ struct Weld {
   double distance = 0;  // source units
 };
 
-// Which edges count as flat, beyond those that are so exactly (contact-model section 2, anchors: three tiers).
+// Which edges count as flat, beyond those that are so exactly (contact-model GRAPH-2;
+// docs/internals/exactness.md#tiers-of-coplanarity).
 struct Coplanar {
   enum class Kind { exact, quantum, angle } kind = Kind::quantum;
   double angle_rad = 0;

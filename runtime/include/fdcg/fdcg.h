@@ -202,7 +202,7 @@ uint64_t fdcg_checksum(const void* data, uint64_t bytes);
 
 typedef enum fdcg_state { FDCG_FREE = 0, FDCG_FACE = 1, FDCG_EDGE = 2, FDCG_VERTEX = 3 } fdcg_state;
 
-/* How much friction a concave edge gives (contact-model section 6): the sum of the two normal loads of the groove (at most
+/* How much friction a concave edge gives (contact-model EDGE-4): the sum of the two normal loads of the groove (at most
  * 1,024 times the paper's), or the distance from the edge as the paper has it. */
 typedef enum fdcg_edge_friction { FDCG_EDGE_WEDGE = 0, FDCG_EDGE_PAPER = 1 } fdcg_edge_friction;
 
@@ -364,11 +364,11 @@ typedef struct fdcg_result {
  *
  * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 600, whatever the mesh; with the
  * friction curve some 1,500, with presliding 1,900. At most,
- * two budgets together (src/base/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the library
- * is compiled) let a tick run to some 75,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick with a valid
- * god-object. A budget is looked at between pieces of work, of which the largest is a node that the way meets within rounding:
- * an exact sign for each of its sides, of which fdcg compile gives a node at most 16. The dearest tick that a search over 23
- * awkward bodies has found takes 11 us (tests/bench/worst_case.cpp), all but a few under 5. */
+ * two budgets together (src/base/work.hpp: FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set them when the
+ * library is compiled) let a tick run to some 75,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick with
+ * a valid god-object. A budget is looked at between pieces of work, of which the largest is a node that the way meets within
+ * rounding: an exact sign for each of its sides, of which fdcg compile gives a node at most 16. The dearest tick that a search
+ * over 23 awkward bodies has found takes 11 us (tests/bench/worst_case.cpp), all but a few under 5. */
 void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
                fdcg_result* result);
 

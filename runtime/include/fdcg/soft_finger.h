@@ -12,9 +12,9 @@
  * spring of stiffness_n_per_m * radius_m^2 resists with the torque T. It is limited together with the tangential force F by the
  * ellipsoid (F / (mu N))^2 + (T / (mu N radius_m))^2 <= 1, N the load along the normal (Howe and Cutkosky 1996): beyond it with
  * mu_static both slip at once, each by the same share, to the ellipsoid of mu_dynamic; they stick again as a god-object does
- * (contact-model section 5). What sticks is not touched, so it does not creep; a slip only takes energy from the springs. The
- * angle is measured as 2 tan(angle / 2), of the turn's part about the normal. Where the contact goes on to another feature the
- * twist goes with it, about the new normal. On an edge or a corner of a graph the normal is the spring's direction.
+ * (contact-model FRIC-1 to FRIC-5). What sticks is not touched, so it does not creep; a slip only takes energy from the
+ * springs. The angle is measured as 2 tan(angle / 2), of the turn's part about the normal. Where the contact goes on to another
+ * feature the twist goes with it, about the new normal. On an edge or a corner of a graph the normal is the spring's direction.
  *
  * The object gets the opposite torque (fdcg_scene_reactions). Friction is that of the object's mu_static and mu_dynamic; for an
  * object with terms (fdcg_friction_flag) the tangential force keeps its own limit, and the torque gets what that leaves.

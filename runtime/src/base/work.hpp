@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The work budgets of a step, by which it ends in bounded time on any mesh: units of some 15 instructions. The rules that move
 // the god-object over the surface have one budget, the sweeps through free space another. The step continues until one is
-// spent, and then finishes the current piece of work.
+// spent, and then finishes the current piece of work (contact-model BOUND-1 to BOUND-3).
 #pragma once
 
 #include <stdint.h>

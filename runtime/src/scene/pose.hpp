@@ -7,6 +7,9 @@
 
 namespace fdcg {
 
+// How far the length of a unit vector or quaternion that a caller gives may be from 1.
+inline constexpr double kUnitTolerance = 1e-3;
+
 using World = Vec3<double>;
 
 // A graph's bounds in its object's frame, in metres; enlarged by more than rounding (also that of a float graph) can move a

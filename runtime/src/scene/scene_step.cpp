@@ -9,7 +9,7 @@
 //
 // Which contacts are stepped depends only on the positions of this tick and the last, never on the time of the last broad-phase
 // update, so the optimizations do not change any force. The state of a free contact is only the HIP's last position in the
-// object's frame (contact-model section 4), so it can be created again at any time.
+// object's frame (contact-model FREE-1), so it can be created again at any time.
 #include "scene/finger_tick.hpp"
 
 namespace fdcg {
@@ -106,12 +106,6 @@ inline bool is_out_of_reach(const fdcg_scene& scene, const Finger& finger, World
 // ---- stepping
 // ----------------------------------------------------------------------------------------------------------------
 
-void store(World from, double (&to)[3]) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
-
 void step_contact(const Object& object, const Finger& finger, fdcg_contact* contact, World at, fdcg_result* result) {
   fdcg_params room;
   const fdcg_params* params = &object.params;
@@ -194,7 +188,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
     Slot& slot = tick.slots[s];
     fdcg_result result;
     if (slot.object == FDCG_NONE || !step_slot(tick, slot, contact, missed, &result)) continue;
-    if (!is_felt) store({0, 0, 0}, result.force_n);
+    if (!is_felt) store(World{0, 0, 0}, result.force_n);
     if ((result.flags & kCarriedOver) != 0) finger.flags |= FDCG_FINGER_BOUNDED;
     uint32_t place = finger.touch_count++;
     for (; place > 0 && touches[place - 1].object.index > slot.object; --place)

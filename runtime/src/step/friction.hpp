@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coulomb friction as a cone (Melder 2004, section 2 and figure 4; contact-model section 5): the god-object rests while its gap
-// to the surface point is within the friction coefficient times the load that presses it on. No angle is ever computed.
+// Coulomb friction as a cone (Melder 2004, section 2 and figure 4; contact-model FRIC-1 to FRIC-5): the god-object rests while
+// its gap to the surface point is within the friction coefficient times the load that presses it on. No angle is ever computed.
 #pragma once
 
 #include "base/config.hpp"
+#include "base/mutation.hpp"
 #include "shared/vec.hpp"
 #include "step/friction_terms.hpp"
 
@@ -24,11 +25,12 @@ struct Slip {
 template <class Real>
 struct Friction {
   Real mu_static, mu_dynamic;
-  bool has_wedge;                  // concave edges: contact-model section 6
+  bool has_wedge;                  // on edges: contact-model EDGE-4
   bool is_slipping;                // dynamic friction holds
   FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
 
-  // `gap2` is the squared distance of the god-object from the surface point, `load` the depth that presses it on. Slipping
+  // contact-model FRIC-1 to FRIC-4. `gap2` is the squared distance of the god-object from the surface point, `load` the depth
+  // that presses it on. Slipping
   // starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on
   // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
   // the rounding of its own place. Squares, so that rest costs no root.
@@ -36,14 +38,18 @@ struct Friction {
     if constexpr (FDCG_WITH_FRICTION_TERMS) {
       if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
     }
-    constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
+    constexpr Real kStickAgain = Real(kStickAgainShare);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {
-      if (gap2 <= square(kStickAgain * gap)) is_slipping = false;
+      if (gap2 <= square(FDCG_MUTANT("stick-factor") ? gap + RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap)
+                                                     : kStickAgain * gap))
+        is_slipping = false;
     } else if (gap2 > square(mu_static * load)) {
       is_slipping = true;
+      if (FDCG_MUTANT("slip-later")) return {false, mu_static * load};
     }
     const Real rounding = RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
+    if (FDCG_MUTANT("rest-untouched")) return {false, is_slipping ? gap : root(gap2)};
     return {!is_slipping || gap2 <= square(gap + rounding), gap};
   }
 

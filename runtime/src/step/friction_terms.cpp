@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slip with terms is an equation: of the gap r that the god-object has, it goes a way s at a speed u(s), and
+// contact-model CURVE-2: a slip with terms is an equation: of the gap r that the god-object has, it goes a way s at a speed
+// u(s), and
 //   r - s = reach mu(u(s)),   u(s) = lagged + per_way (way + s),   reach = load, or a little more where presliding gives.
 // Its left side falls by 1 for each unit of s, its right side by less as long as reach per_way times the curve's steepest fall
 // is below 1: so there is one solution, it lies between 0 and r, and it changes continuously with all that goes in. At s = 0 it
@@ -15,7 +16,6 @@ namespace fdcg {
 namespace {
 
 constexpr double kSteepest = 0.6495190528383290;  // 3 sqrt(3) / 8: of 1 / (1 + x^2), at x = 1 / sqrt(3)
-constexpr double kStickAgain = 1 - 0x1p-20;       // as in friction.hpp, where sticking and slipping are two coefficients
 
 // How steeply the curve may fall for one solution down to unique_solution_depth_m, in seconds a metre.
 double steepest_allowed(const fdcg_params& params, const fdcg_material& material) {
@@ -125,7 +125,7 @@ TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, 
     *is_slipping = gap > reach * mu(from, stribeck);
   } else {
     const double dynamic = mu(from, stribeck), more = larger(0, material.mu_static - material.mu_dynamic);
-    *is_slipping = *is_slipping ? gap > kStickAgain * reach * dynamic : gap > reach * (dynamic + more);
+    *is_slipping = *is_slipping ? gap > kStickAgainShare * reach * dynamic : gap > reach * (dynamic + more);
   }
   double left = gap;
   bool is_rest = !*is_slipping;

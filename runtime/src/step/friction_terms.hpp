@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Friction beyond two coefficients: the curve over slip speed, presliding, and materials (fdcg_friction_flag). What a tick
-// knows of them; the rules ask it through Friction::slip. Lengths in the graph's units, in double precision whatever the
-// graph's.
+// Friction beyond two coefficients: the curve over slip speed, presliding, and materials (fdcg_friction_flag; contact-model
+// CURVE-1 to CURVE-7). What a tick knows of them; the rules ask it through Friction::slip. Lengths in the graph's units, in
+// double precision whatever the graph's.
 #pragma once
 
 #include "fdcg/fdcg.h"
 #include "shared/vec.hpp"
 
 namespace fdcg {
+
+// A contact that slips sticks again within this share of the circle in which it would have stuck: rounding must not toss a coin
+// every tick.
+inline constexpr double kStickAgainShare = 1 - 0x1p-20;
 
 // A god-object that slides until its gap is `gap`, or rests.
 struct TermSlip {
@@ -29,7 +33,7 @@ struct FrictionTerms {
   Vec3<double> yielded;  // in the end: from the remembered place to the god-object that is felt
 
   [[nodiscard]] bool has(uint32_t term) const { return (params->friction_flags & term) != 0; }
-  // Whether what the contact stores may change but by the hand: see settle() in yield.hpp.
+  // Whether what the contact stores may change but by the hand: see settle() in presliding.hpp.
   [[nodiscard]] bool has_springs() const { return has(FDCG_FRICTION_MATERIALS | FDCG_FRICTION_PRESLIDING); }
   // What presliding makes of a cone: the remembered place may be so much further from the surface point.
   [[nodiscard]] double give() const {
@@ -57,7 +61,7 @@ inline constexpr int kMostSolveSteps = 120;
 FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph* graph, const fdcg_contact& contact);
 
 // On an edge, `across` from the foot to the HIP is -(load_a n_a + load_b n_b) and something along the edge; load_a's share. The
-// sum of the loads is -2 S.across / S.S with S = n_a + n_b (contact-model section 6), their difference the same with n_a - n_b.
+// sum of the loads is -2 S.across / S.S with S = n_a + n_b (contact-model EDGE-4), their difference the same with n_a - n_b.
 inline double share_of_load(Vec3<double> n_a, Vec3<double> n_b, Vec3<double> across) {
   const Vec3<double> sum = n_a + n_b, difference = n_a - n_b;
   const double both = dot(sum, across) * dot(difference, difference), more = dot(difference, across) * dot(sum, sum);

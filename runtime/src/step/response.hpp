@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What damping makes of the spring between hand and god-object (contact-model section 8), on graphs and surfaces alike.
+// What damping makes of the spring between hand and god-object (contact-model RESP-2), on graphs and surfaces alike.
 #pragma once
 
 #include "fdcg/fdcg.h"

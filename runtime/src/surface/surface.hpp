@@ -6,7 +6,7 @@
 //   bool is_outside(x)                  in free space, the surface included; one expression wherever it is asked
 //   Entry enter(from, to, begins_outside)    what a way meets first from its front; `from` may be on the surface
 //   bool is_clear(x, way)               in free space and farther than that from the surface
-//   Decision rule(walk)                 the rules of contact-model sections 5 to 7 at walk.active
+//   Decision rule(walk)                 as contact-model FACE-1, EDGE-1, CORNER-1 and on, at walk.active
 //   bool slide_quickly(face, touch)     on a face, what a tick most often is: the god-object rests, moved or not; false where
 //                                       the rules must say
 //   Point normal(feature, x, hip)       away from the material; of the HIP a direction from x is enough, at an apex

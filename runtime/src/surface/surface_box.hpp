@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The box. Its faces are planes across the axes, so that the rules of contact-model sections 5 to 7 take each axis for itself:
-// a wall is active where the god-object is on it and the HIP behind it.
+// The box. Its faces are planes across the axes, so that the rules (contact-model FACE-1, EDGE-1, CORNER-1 and on) take each
+// axis for itself: a wall is active where the god-object is on it and the HIP behind it.
 #pragma once
 
 #include "surface/surface.hpp"

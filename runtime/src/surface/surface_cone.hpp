@@ -206,7 +206,7 @@ struct ConeSurface {
     const double out = off - radius[end], up = end == 0 ? z + half : z - half, towards = end == 0 ? -1 : 1;
     return {sign * (along_z * out - along_r * up), sign * towards * up, towards * (along_r * out + along_z * up), out};
   }
-  // Contact-model section 6, round a circle.
+  // contact-model EDGE-3, round a circle.
   Decision rim_rule(SurfaceWalk& walk) const {
     const uint32_t end = walk.active.index;
     const Decision here = leave_rim(walk, end);
@@ -222,7 +222,7 @@ struct ConeSurface {
     if (may_be_side && !(may_be_disc && at.beyond_disc < at.beyond_side)) return go_to({FDCG_FACE, kSide});
     return may_be_disc ? go_to({FDCG_FACE, 1 + end}) : rest();
   }
-  // The loads of both faces together are base - lift * cos(angle), by contact-model section 6.
+  // The loads of both faces together are base - lift * cos(angle), by contact-model EDGE-4.
   // True where the god-object was moved.
   bool slide_on_rim(SurfaceWalk& walk, uint32_t end) const {
     const Point outward = outward_at(walk.god_object, walk.hip), round = {-outward.y, outward.x, 0};
@@ -248,7 +248,7 @@ struct ConeSurface {
         rim_point({towards.x * stop.cosine - towards.y * turn, towards.y * stop.cosine + towards.x * turn, 0}, end);
     return true;
   }
-  // Contact-model section 7: the steepest line of the side is the one in the HIP's plane.
+  // contact-model CORNER-1: the steepest line of the side is the one in the HIP's plane.
   Decision apex_rule(SurfaceWalk& walk) const {
     const uint32_t end = walk.active.index;
     const RimSides at = rim_sides(end, from_axis(walk.hip), walk.hip.z);

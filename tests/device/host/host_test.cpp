@@ -2,8 +2,7 @@
 // The whole host, on devices in memory: start, forces, faults of devices, and zero force at the end.
 #include <signal.h>
 
-#include <catch2/catch.hpp>
-
+#include "catch.hpp"
 #include "device_c11.h"
 #include "hosted.hpp"
 

@@ -2,12 +2,12 @@
 // Scenes: reading, refusals with their messages, and writing with reading back. Over 400 lines: a
 // case for each kind of thing that a scene may hold.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "catch.hpp"
 #include "profile/profile_json.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"

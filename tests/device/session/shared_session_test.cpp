@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Devices that share a scene, as whole sessions on simulated ones: the cube when one of them fails, their log, and refusals.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "base/rotation.hpp"
+#include "catch.hpp"
 #include "host/fast_run.hpp"
 #include "host/host.hpp"
 #include "scene/scene_build.hpp"

@@ -56,14 +56,14 @@ struct FdcgVariant {
 // This project's runtime on a graph in memory, without the sections that a step does not use.
 std::unique_ptr<Contender> make_fdcg(const bake::PolygonSoup& soup, const FdcgVariant& variant);
 
-// Melder and Harwin 2004 as printed, with only its signs repaired (depth, Voronoi and end planes, the comparison of figure 4);
-// then with the contact model's corrections added one after the other, to show what each buys. fdcg has them all: the sweep of
-// every release and the seat as well. What the paper calls "the collision detection algorithm" is Embree's ray.
+// Melder and Harwin 2004 as printed, with only its signs repaired (contact-model PAPER-1 to PAPER-3: depth, the comparison of
+// slip, planes); then with the other corrections added one after the other, to show what each buys. fdcg has them all: the
+// sweep of every release and the seat as well. What the paper calls "the collision detection algorithm" is Embree's ray.
 enum class PaperLevel {
   printed,    // paper
-  crossings,  // paper_crossings: and the first crossing along the way, by the signs that a god-object on a plane keeps
-  edges,      // paper_edges: and an edge's rule of contact-model section 6, which looks at the faces' planes too
-  vertices    // paper_vertices: and a vertex's of section 7, the steepest descent
+  crossings,  // paper_crossings: and the first crossing along the way (contact-model PAPER-4, PAPER-5)
+  edges,      // paper_edges: and an edge's rule of contact-model EDGE-1, EDGE-2, which looks at the faces' planes too
+  vertices    // paper_vertices: and a vertex's of contact-model CORNER-1, the steepest descent
 };
 std::unique_ptr<Contender> make_paper(const bake::PolygonSoup& soup, PaperLevel level = PaperLevel::printed);
 

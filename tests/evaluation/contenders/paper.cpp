@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The algorithm as the paper has it, section by section. Repaired are the signs alone: the depth is positive inside, Voronoi
-// and end planes point out of their feature, slip begins when the god-object is outside the friction circle. At
-// PaperLevel::printed all else is as it stands there: the product test of 5, that any crossing will do (5c), no sight of the
-// face's plane in 5d, the vertex's rules of 5g and 7. At every level a load on edges ignores the wedge (6), and free space is
-// entered without a look (7).
+// The algorithm as the paper has it, section by section. Repaired are the signs alone (contact-model PAPER-1 to PAPER-3): the
+// depth is positive inside, Voronoi and end planes point out of their feature, slip begins when the god-object is outside the
+// friction circle. At PaperLevel::printed all else is as it stands there: the product test (Melder 2004, section 5), that any
+// crossing will do (5c), no sight of the face's plane in 5d, the vertex's rules of 5g and 7. At every level a load on edges
+// ignores the wedge (6), and free space is entered without a look (7).
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -22,8 +22,8 @@ using namespace plain;
 
 namespace {
 
-// Section 7 changes state "until the god-object does not need to be moved" and sets no bound; this is one, for a program that
-// must end. Its cycles run into it.
+// Melder 2004, section 7, changes state "until the god-object does not need to be moved" and sets no bound; this is one, for a
+// program that must end. Its cycles run into it.
 constexpr std::uint32_t kMostChanges = 100;
 
 struct Plane {
@@ -201,7 +201,7 @@ class Paper : public Contender {
     return change(FDCG_FACE, node);
   }
 
-  // Section 2, steps 3 to 5: where the god-object goes about a surface point under such a load.
+  // Melder 2004, section 2, steps 3 to 5: where the god-object goes about a surface point under such a load.
   Point after_friction(const Point& surface_point, double load) {
     const double r = length(god_object_ - surface_point);
     if (!is_slipping_ && r > mu_static_ * load)

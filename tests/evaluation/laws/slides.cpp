@@ -23,7 +23,7 @@ constexpr double kLeastMu = 0.1, kMostMu = 2;     // mu_s; mu_d anywhere below i
 constexpr double kGrooveMuStatic = 0.7, kGrooveMuDynamic = 0.45;
 constexpr double kWay_m = 0.03;  // radius of the circle on a flat ramp, half of the way to and fro in a groove
 // A god-object that the circle of friction reaches again from inside stays at rest until it is this much inside: the servo
-// step's hysteresis (contact-model section 5).
+// step's hysteresis (contact-model FRIC-3).
 constexpr double kStickAgain = 1 - 0x1p-20;
 
 // On what is slid.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the CSV tables of a run of tools/bench, writes results.json and report.html beside them (schemas/evaluation.md)."""
+"""Reads the CSV tables of a run of tools/bench, writes results.json and report.html beside them (schemas/evaluation-results.schema.json)."""
 import argparse
 import json
 import os

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands that look for trouble: each motion is one kind of it from contact-model section 10.
+// Hands that look for trouble: each motion is one kind of it that docs/internals/contact-model.md#9-what-holds-of-every-tick
+// names.
 #pragma once
 
 #include <cstdint>

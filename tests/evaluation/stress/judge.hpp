@@ -45,7 +45,7 @@ inline constexpr double kPerDeviation = 4;   // where merging moved faces: so ma
 struct Verdicts {
   std::array<std::uint64_t, kFaults> count{};
   std::uint64_t shallow = 0;       // Free, and inside by less than kShallow_eps
-  std::uint64_t met_again = 0;     // rests where a feature was met again, as contact-model section 1 has it
+  std::uint64_t met_again = 0;     // rests where a feature was met again, as contact-model TICK-5 has it
   std::uint64_t most_carried = 0;  // ticks in a row
   double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fdcg_stress: runs the step on every case of contact-model section 10, judges every tick, and says how to repeat what fails.
+// fdcg_stress: runs the step on every case of stress_case.hpp, judges every tick, and says how to repeat what fails.
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cases of contact-model section 10, one row each: which bodies, which hands, and what must hold beside the bars that hold
-// for all of them.
+// The cases of docs/internals/contact-model.md#9-what-holds-of-every-tick, one row each: which bodies, which hands, and what
+// must hold beside the bars that hold for all of them.
 #pragma once
 
 #include <functional>

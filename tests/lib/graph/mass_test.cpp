@@ -3,10 +3,10 @@
 // A few lines over 400: a list of solids with their mass.
 #include <gmpxx.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "meshes.hpp"
 #include "random.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One rigid body: conservation, order of convergence, stability, sleep, refusals.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/body.h"
 
 namespace {

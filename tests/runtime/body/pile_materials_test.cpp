@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials of two bodies in contact: of faces, on edges and corners too; and the friction curve on the ground.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "pile_rig.hpp"
 
 using namespace fdcg;

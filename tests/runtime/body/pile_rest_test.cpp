@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies on the ground, on ramps, on one another: sticking, sliding and its speed, coming to rest and staying at rest.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "pile_rig.hpp"
 
 using namespace fdcg;

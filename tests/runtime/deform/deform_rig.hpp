@@ -3,11 +3,11 @@
 // soup; arithmetic on positions; the number of steps.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "fdcg/deform.h"
 

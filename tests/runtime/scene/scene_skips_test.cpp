@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Optimizations of a scene do not change results: logs of scenes full of events are the same bit for bit for every combination
 // of flags. FDCG_SCENE_TICKS in the environment sets the ticks of each run.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "scene_rig.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Soft fingers: the limit of torque combined with tangential force; no creep and no energy gain; a beam held by two of them.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/soft_finger.h"
 #include "pile_rig.hpp"
 

@@ -2,11 +2,11 @@
 // One test for each rule of the contact model that is easily implemented wrong; each fails when its rule is removed. The rule's
 // name is the tag in brackets. Over 400 lines: the list of rules stays in one place, in the model's order.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"
@@ -66,7 +66,7 @@ PolygonSoup tilted(const PolygonSoup& soup, std::uint64_t seed) {
 
 }  // namespace
 
-// ---- section 1 -------------------------------------------------------------------------------------------------------------
+// ---- the tick: contact-model TICK-5 ----------------------------------------------------------------------------------------
 
 TEST_CASE("no step cycles, with HIP exactly on features and god-objects on seams", "[met-again]") {
   std::uint64_t transitions = 0;
@@ -92,7 +92,7 @@ TEST_CASE("no step cycles, with HIP exactly on features and god-objects on seams
   CHECK(transitions > 10000);
 }
 
-// ---- section 3 -------------------------------------------------------------------------------------------------------------
+// ---- crossings, planes, seats: contact-model FACE-1, FACE-5, FACE-7, SIDE-2 ------------------------------------------------
 
 TEST_CASE("a god-object on or within rounding error beyond a Voronoi plane still crosses it", "[crossing]") {
   const PlainGraph graph(cube(), Precision::f64);
@@ -279,7 +279,7 @@ TEST_CASE("a seam held by friction releases only by its own rule", "[seat]") {
   CHECK(held == 400);
 }
 
-// ---- section 4 -------------------------------------------------------------------------------------------------------------
+// ---- free space: contact-model FREE-1 to FREE-4, LEAVE-1 -------------------------------------------------------------------
 
 TEST_CASE("an object that moves onto a still HIP is met", "[last-tick-segment]") {
   const PlainGraph graph(thin_plate(1e-3), Precision::f64);
@@ -407,7 +407,7 @@ TEST_CASE("a HIP that leaves contact towards a nearby wall does not pass through
   CHECK(std::abs(contact.god_object()[1]) < 1e-8);
 }
 
-// ---- section 5 -------------------------------------------------------------------------------------------------------------
+// ---- friction: contact-model FRIC-2, FRIC-3, FRIC-5, FACE-3, FACE-6 --------------------------------------------------------
 
 TEST_CASE("dynamic friction holds in the tick of breakaway", "[slip-at-once]") {
   const PlainGraph graph(plane_quad(), Precision::f64);
@@ -516,7 +516,7 @@ TEST_CASE("a move that lands on an edge's end activates the corner", "[lands-on-
   CHECK(distance(contact.god_object(), {0, 0, 0}) == 0);
 }
 
-// ---- section 6 -------------------------------------------------------------------------------------------------------------
+// ---- edges: contact-model EDGE-2 -------------------------------------------------------------------------------------------
 
 TEST_CASE("behind both faces of a convex edge the steeper descent is taken", "[steeper-face]") {
   const PlainGraph graph(wedge(2.0), Precision::f64);  // obtuse knife along x at y = z = 0
@@ -537,7 +537,7 @@ TEST_CASE("behind both faces of a convex edge the steeper descent is taken", "[s
   }
 }
 
-// ---- section 7 -------------------------------------------------------------------------------------------------------------
+// ---- corners: contact-model CORNER-1, CORNER-5 -----------------------------------------------------------------------------
 
 TEST_CASE("open corners: free beyond the border, in contact beneath the patch", "[open-corner]") {
   const PlainGraph graph(plane_quad(), Precision::f64);

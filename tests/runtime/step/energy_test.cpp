@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Passivity: at a fixed HIP the spring energy never rises, a closed loop gives the user no more energy than sampling allows,
 // and a contact at rest does not change by a bit.
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "hip_loop.hpp"
 #include "meshes.hpp"

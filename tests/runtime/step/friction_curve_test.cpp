@@ -3,12 +3,12 @@
 // no term does work on the hand. The laws are implemented here independently of the runtime's functions. Over 400 lines: all
 // cases compare the step with one curve.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "hip_loop.hpp"
 #include "meshes.hpp"

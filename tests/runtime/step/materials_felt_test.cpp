@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials in the step: by place, combined as the header specifies, and no change of stiffness does work on the hand.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "materials_rig.hpp"
 #include "random.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The runtime does not use the heap: neither opening nor stepping nor building up and taking down a scene.
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "../../bench/heap_count.hpp"
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/pile.h"
 #include "meshes.hpp"

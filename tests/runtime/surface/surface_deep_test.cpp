@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slides of a hand deep in the material, beyond an axis or a centre of curvature, where there are several places at which
 // friction would hold the god-object, or none near by. FDCG_STEPS in the environment sets the hands of each kind.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 
+#include "catch.hpp"
 #include "surface_rig.hpp"
 
 using namespace fdcg::test;
@@ -56,7 +56,7 @@ void wander(const SurfaceContact& given, Random& random, Count* count) {
       REQUIRE(cone.ratio <= mu_s * (1 + 1e-12L));
       continue;
     }
-    // What friction holds within the bound of section 5 still counts as slipping; what it has moved is on the cone.
+    // What friction holds within the bound of contact-model FRIC-4 still counts as slipping; what it has moved is on the cone.
     const bool has_moved =
         before.state == FDCG_FACE && felt.transitions == 0 &&
         contact.god_object() != Place{before.god_object_m[0], before.god_object_m[1], before.god_object_m[2]};

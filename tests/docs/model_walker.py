@@ -1,0 +1,488 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The step as docs/internals/contact-model.md has it, written anew rule by rule: double precision, triangles, every face
+looked at. Left out are the rules that this needs none of: busy corners (contact-model CORNER-7), inexact nodes (EDGE-7, GRAPH-4),
+slits as narrow as a rounding (LEAVE-3), work carried over (BOUND-1 to BOUND-3, LEAVE-4), what only saves time (TICK-7, FREE-7),
+damping, and the friction curve. Over 400 lines: the model in one place, in the page's order."""
+import math
+from fractions import Fraction
+
+EPS = 2.0 ** -52
+FREE, FACE, EDGE, VERTEX = range(4)
+CONVEX, CONCAVE, COPLANAR, BOUNDARY = range(4)
+NOWHERE = (FREE, None)
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def minus(a, b):
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def plus(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def times(a, s):
+    return (a[0] * s, a[1] * s, a[2] * s)
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def norm(a):
+    return math.sqrt(dot(a, a))
+
+
+def norm1(a):
+    return abs(a[0]) + abs(a[1]) + abs(a[2])
+
+
+def over(a, length):
+    return (a[0] / length, a[1] / length, a[2] / length)
+
+
+def exactly(a):
+    return tuple(Fraction(x) for x in a)
+
+
+def orientation(a, b, c, d):
+    """1: d is in front of the plane a, b, c; exact."""
+    a, b, c, d = map(exactly, (a, b, c, d))
+    volume = dot(cross(minus(b, a), minus(c, a)), minus(d, a))
+    return (volume > 0) - (volume < 0)
+
+
+def unit_normal(a, b, c):
+    a, b, c = map(exactly, (a, b, c))
+    across = cross(minus(b, a), minus(c, a))
+    size = max(map(abs, across))
+    rounded = tuple(float(x / size) for x in across)
+    return over(rounded, norm(rounded))
+
+
+def balanced_offset(n, corners):
+    """That makes the largest distance of the corners smallest."""
+    heights = [dot(exactly(n), exactly(p)) for p in corners]
+    return -float((min(heights) + max(heights)) / 2)
+
+
+class Edge:
+    def __init__(self, graph, start, end, face_a, face_b):
+        self.corner = (start, end)
+        self.v0 = graph.point[start]
+        along = minus(graph.point[end], self.v0)
+        self.length = norm(along)
+        self.direction = over(along, self.length)
+        self.face = (face_a, face_b)
+        self.type = BOUNDARY
+        if face_b is not None:
+            apex = next(v for v in graph.face[face_b] if v not in (start, end))
+            self.type = (COPLANAR, CONCAVE, CONVEX)[orientation(*(graph.point[v] for v in graph.face[face_a]), graph.point[apex])]
+        self.voronoi = []  # contact-model GRAPH-3
+        for which, face in enumerate(self.face):
+            if face is None:
+                continue
+            n = graph.normal[face]
+            out = cross(self.direction, n) if which == 0 else cross(n, self.direction)
+            m = over(out, norm(out))
+            self.voronoi.append((m, -dot(m, self.v0)))
+        self.end_tolerance = 8 * EPS * (norm1(self.v0) + self.length)
+
+    def parameter(self, x):
+        return dot(minus(x, self.v0), self.direction)
+
+    def at(self, u):
+        return plus(self.v0, times(self.direction, u))
+
+
+class Graph:
+    def __init__(self, points, faces):
+        self.point, self.face = points, faces
+        self.extent = max(abs(c) for p in points for c in p)
+        self.normal = [unit_normal(*(points[v] for v in f)) for f in faces]
+        self.offset = [balanced_offset(n, [points[v] for v in f]) for n, f in zip(self.normal, faces)]
+        half = {(f[k], f[(k + 1) % 3]): (n, k) for n, f in enumerate(faces) for k in range(3)}
+        self.edge, self.side = [], [[None] * 3 for _ in faces]  # a side: its edge and which of its faces this is
+        for n, f in enumerate(faces):
+            for k in range(3):
+                if self.side[n][k] is None:
+                    across = half.get((f[(k + 1) % 3], f[k]))
+                    self.side[n][k] = (len(self.edge), 0)
+                    if across:
+                        self.side[across[0]][across[1]] = (len(self.edge), 1)
+                    self.edge.append(Edge(self, f[k], f[(k + 1) % 3], n, across[0] if across else None))
+        self.faces_at = [[n for n, f in enumerate(faces) if v in f] for v in range(len(points))]
+        self.edges_at = [[i for i, e in enumerate(self.edge) if v in e.corner] for v in range(len(points))]
+        self.vertex_normal = [self.angle_weighted(v) for v in range(len(points))]
+
+    def angle_weighted(self, v):
+        total = (0.0, 0.0, 0.0)
+        for n in self.faces_at[v]:
+            k = self.face[n].index(v)
+            a, b = (minus(self.point[self.face[n][(k + i) % 3]], self.point[v]) for i in (1, 2))
+            total = plus(total, times(self.normal[n], math.acos(max(-1.0, min(1.0, dot(a, b) / (norm(a) * norm(b)))))))
+        return total
+
+    def rounding(self, x):
+        return 8 * EPS * (norm1(x) + 2 * self.extent)  # B(x)
+
+    def distance(self, face, x):
+        return dot(self.normal[face], x) + self.offset[face]
+
+    def side_of(self, face, x):  # contact-model SIDE-1
+        rounded = self.distance(face, x)
+        if abs(rounded) > self.rounding(x):
+            return rounded
+        sign = orientation(*(self.point[v] for v in self.face[face]), x)
+        return rounded if rounded * sign > 0 else 1e-150 * sign
+
+    def voronoi(self, face, k):
+        edge, which = self.side[face][k]
+        return self.edge[edge].voronoi[which]
+
+
+def beyond(plane, x):
+    return dot(plane[0], x) + plane[1]
+
+
+class Walker:
+    """One contact. tick(h) returns (state, transitions); god_object and is_slipping stand here."""
+
+    def __init__(self, graph, mu_static, mu_dynamic, is_wedge=True):
+        self.graph, self.mu_static, self.mu_dynamic, self.is_wedge = graph, mu_static, mu_dynamic, is_wedge
+        self.at, self.seat, self.is_slipping, self.god_object, self.hip = NOWHERE, None, False, None, None
+
+    # ---- the tick
+
+    def tick(self, hip):
+        self.hip, is_first, self.residual, self.transitions = hip, self.hip is None, (0.0, 0.0, 0.0), 0
+        if is_first:  # contact-model TICK-3
+            self.god_object = hip
+        else:
+            self.walk()
+        if self.at == NOWHERE:
+            self.is_slipping = False  # contact-model FRIC-5
+        return self.at[0], self.transitions
+
+    def walk(self):
+        if self.at == NOWHERE:
+            self.sweep(NOWHERE)
+            if self.at == NOWHERE:
+                return
+            self.transitions += 1
+        nearest, visited, has_retried = self.gap2(), [self.at], False
+
+        def is_rest():  # contact-model TICK-6
+            nonlocal visited, has_retried
+            if has_retried or norm1(self.residual) == 0:
+                return True
+            self.residual, has_retried, visited = (0.0, 0.0, 0.0), True, [self.at]
+            return False
+
+        while True:
+            before = self.at
+            after = (None, self.on_face, self.on_edge, self.on_vertex)[before[0]](before[1])
+            if after is None:
+                if is_rest():
+                    return
+                continue
+            self.at = after
+            self.transitions += 1
+            if after == NOWHERE:
+                self.step_clear(before)
+                self.sweep(before)
+                if self.at == NOWHERE:
+                    return
+                self.transitions += 1
+            if self.gap2() < nearest:
+                nearest, visited, has_retried = self.gap2(), [], False
+            if self.at in visited or len(visited) == 32:  # contact-model TICK-5
+                if is_rest():
+                    return
+            else:
+                visited.append(self.at)
+
+    def gap2(self):
+        gap = minus(self.god_object, self.hip)
+        return dot(gap, gap)
+
+    def place(self, point, seat):
+        self.god_object, self.seat, self.residual = point, seat, (0.0, 0.0, 0.0)
+
+    # ---- free space
+
+    def sweep(self, left):
+        graph, start, end = self.graph, self.god_object, self.hip
+        hit = self.first_hit(start, end, self.left_out(left)) if start != end else None
+        if hit is None:  # contact-model FREE-6
+            self.place(end, None)
+            self.at = NOWHERE
+            return
+        fraction, face, met_exactly = hit
+        point = plus(start, times(minus(end, start), fraction))
+        if not met_exactly:
+            self.place(point, None)
+            self.at = (FACE, face)
+            return
+
+        def off(k):
+            edge = graph.edge[graph.side[face][k][0]]
+            return norm(minus(point, edge.at(min(max(edge.parameter(point), 0.0), edge.length))))
+
+        edge = graph.side[face][min(met_exactly, key=off)][0]  # contact-model FREE-4
+        self.at = self.place_on_edge(edge, graph.edge[edge].parameter(point))
+
+    def first_hit(self, start, end, left_out):  # contact-model FREE-3
+        graph, best = self.graph, None
+        for face in range(len(graph.face)):
+            if face in left_out or graph.distance(face, end) > graph.rounding(end):
+                continue
+            s1 = graph.side_of(face, end)
+            s0 = graph.side_of(face, start) if s1 < 0 else -1
+            if s0 < 0 or (best is not None and s0 / (s0 - s1) >= best[0]):
+                continue
+            corners = [graph.point[v] for v in graph.face[face]]
+            signs = [orientation(start, end, corners[k], corners[(k + 1) % 3]) for k in range(3)]
+            if max(signs) <= 0:
+                best = (s0 / (s0 - s1), face, [k for k in range(3) if signs[k] == 0])
+        return best
+
+    def left_out(self, left):  # contact-model LEAVE-1
+        state, index = left
+        if state == FACE:
+            return {index}
+        if state == EDGE:
+            return set(self.graph.edge[index].face)
+        return set(self.graph.faces_at[index]) if state == VERTEX else set()
+
+    def step_clear(self, left):  # contact-model LEAVE-2
+        graph, (state, index) = self.graph, left
+        if state == FACE:
+            self.move_in_front([index], graph.normal[index])
+        if state == EDGE:
+            edge = graph.edge[index]
+            a, b = edge.face
+            passed = [f for f in edge.face if f is not None and graph.side_of(f, self.hip) >= 0]
+            if edge.type == CONCAVE:
+                self.move_in_front([a, b], plus(graph.normal[a], graph.normal[b]))
+            elif passed:
+                self.move_in_front(passed[:1], graph.normal[passed[0]])
+
+    def move_in_front(self, faces, outward):
+        for face in faces:
+            step = max(abs(self.graph.distance(face, self.god_object)), EPS * self.graph.extent / 4096)
+            for _ in range(16):
+                if self.graph.side_of(face, self.god_object) >= 0:
+                    break
+                self.god_object = plus(self.god_object, times(outward, step))
+                step *= 2
+
+    # ---- on a face
+
+    def on_face(self, face):
+        graph, hip = self.graph, self.hip
+        depth = -graph.side_of(face, hip)
+        if depth <= 0:
+            return self.leave_face(face)
+        n = graph.normal[face]
+        reach = plus(minus(self.god_object, hip), self.residual)
+        q = minus(reach, times(n, dot(n, reach)))
+        radius = self.slip(dot(q, q), depth)
+        if radius is None:  # contact-model FACE-3
+            return None
+        target = plus(plus(hip, times(n, depth)), times(q, radius / norm(q) if radius > 0 else 0.0))  # contact-model FACE-4
+        crossing = self.first_crossing(face, target)
+        if crossing is None:
+            off = graph.distance(face, target) if norm1(hip) > 16 * graph.extent else 0.0
+            if abs(off) <= graph.extent / 1024:
+                self.place(minus(target, times(n, off)), None)
+            return None
+        fraction, k = crossing
+        start = self.god_object
+        ahead = plus(self.residual, times(minus(minus(target, start), self.residual), fraction))
+        landed = self.place_on_rim(face, k, plus(start, ahead))
+        if landed[0] == EDGE:  # contact-model FACE-7
+            self.residual = plus(minus(start, self.god_object), ahead)
+        return landed
+
+    def leave_face(self, face):  # contact-model FACE-1
+        if self.seat is not None:
+            return self.seat
+        rounding = 8 * EPS * (norm1(self.god_object) + self.graph.extent)
+        for k in range(3):
+            if beyond(self.graph.voronoi(face, k), self.god_object) >= -rounding:
+                return self.place_on_rim(face, k, self.god_object)
+        return NOWHERE
+
+    def is_crossed(self, s0, s1):
+        return s1 >= 0 and s1 > s0
+
+    def first_crossing(self, face, target):  # contact-model FACE-5
+        rounding, best = 4 * EPS * (norm1(target) + self.graph.extent), None
+        for k in range(3):
+            s0, s1 = (beyond(self.graph.voronoi(face, k), x) for x in (self.god_object, target))
+            if s1 < 0:
+                is_near = s1 >= -self.graph.rounding(self.hip) and best is None
+                if is_near and any(self.is_past(face, j, target, rounding) for j in (k, (k + 1) % 3)):
+                    best = (1.0, k)
+            elif self.is_crossed(s0, s1):
+                fraction = 1.0 if s1 <= rounding else 0.0 if s0 >= 0 else -s0 / (s1 - s0)
+                if best is None or fraction < best[0]:
+                    best = (fraction, k)
+        return best
+
+    def is_past(self, face, k, target, rounding):  # contact-model FACE-8
+        from_corner = minus(target, self.graph.point[self.graph.face[face][k]])
+
+        def ahead(side):
+            edge, which = self.graph.side[face][side]
+            along = dot(from_corner, self.graph.edge[edge].direction)
+            return along if which == 0 else -along
+
+        return -ahead(k) > rounding and ahead((k - 1) % 3) > rounding
+
+    def place_on_rim(self, face, k, point):
+        edge = self.graph.side[face][k][0]
+        return self.place_on_edge(edge, self.graph.edge[edge].parameter(point))
+
+    def place_on_edge(self, index, u):  # contact-model FACE-6
+        graph, edge = self.graph, self.graph.edge[index]
+        for end, from_end in enumerate((u, edge.length - u)):
+            if from_end > edge.end_tolerance:
+                continue
+            vertex = edge.corner[end]
+            foot = edge.parameter(self.hip)
+            is_worse = from_end > 8 * EPS * graph.extent and 2 * (foot if end == 0 else edge.length - foot) > from_end
+            self.place(edge.at(u) if is_worse else graph.point[vertex], (VERTEX, vertex))
+            return self.seat
+        self.place(edge.at(u), (EDGE, index))
+        return self.seat
+
+    # ---- friction
+
+    def slip(self, r2, load):
+        """None: GO rests; else how far from SP it may be. contact-model FRIC-1 to FRIC-4."""
+        radius = self.mu_dynamic * load
+        if self.is_slipping:
+            self.is_slipping = r2 > ((1 - 2.0 ** -20) * radius) ** 2
+        else:
+            self.is_slipping = r2 > (self.mu_static * load) ** 2
+        rounding = EPS * (norm1(self.god_object) / 2 + 4 * radius)
+        return None if not self.is_slipping or r2 <= (radius + rounding) ** 2 else radius
+
+    # ---- on an edge
+
+    def sides(self, edge):
+        return [(self.graph.side_of(f, self.hip), beyond(m, self.hip)) for f, m in zip(edge.face, edge.voronoi)]
+
+    def is_free_of(self, edge, sides):  # contact-model EDGE-1
+        outside = [side >= 0 for side, _ in sides]
+        return all(outside) if edge.type == CONCAVE else any(outside)
+
+    def on_edge(self, index):
+        edge = self.graph.edge[index]
+        sides = self.sides(edge)
+        over_ = [(s, face) for (side, s), face in zip(sides, edge.face) if side < 0 and s < 0]
+        if edge.type == BOUNDARY:
+            return (FACE, edge.face[0]) if over_ else NOWHERE
+        if self.is_free_of(edge, sides):
+            return NOWHERE
+        if over_:  # contact-model EDGE-2
+            return FACE, min(over_, key=lambda candidate: candidate[0])[1]
+        foot = edge.parameter(self.hip)  # contact-model EDGE-3
+        ahead = edge.parameter(self.god_object) - foot
+        radius = self.slip(ahead * ahead, self.edge_load(edge, minus(self.hip, edge.at(foot))))
+        if radius is None:  # contact-model EDGE-5
+            return None
+        landed = self.place_on_edge(index, foot + radius if ahead > 0 else foot - radius)  # contact-model EDGE-6
+        return None if landed == (EDGE, index) else landed
+
+    def edge_load(self, edge, w):  # contact-model EDGE-4
+        if not self.is_wedge:
+            return norm(w)
+        normals = plus(*(self.graph.normal[f] for f in edge.face))
+        most, squared, load = 1024 * norm(w), dot(normals, normals), -2 * dot(normals, w)
+        if squared > 0 and not load > 0:
+            return 0.0
+        return load / squared if load < most * squared else most
+
+    # ---- on a vertex
+
+    def on_vertex(self, vertex):
+        point = self.graph.point[vertex]
+        t = minus(self.hip, point)
+        after = self.after_vertex(vertex, self.steepest(vertex, t), t)
+        if after == (VERTEX, vertex):
+            return None
+        if self.god_object != point:  # contact-model CORNER-6
+            self.god_object = self.beside(after, point, t)
+        return after
+
+    def steepest(self, vertex, t):  # contact-model CORNER-1, CORNER-2
+        graph, t2 = self.graph, dot(t, t)
+        best = ((VERTEX, vertex), 0.0, t2)
+
+        def steeper(one, other):
+            if one[2] < t2 / 2 and other[2] < t2 / 2:
+                return other if other[2] < one[2] else one
+            return other if other[1] > one[1] else one
+
+        for index in graph.edges_at[vertex]:
+            edge = graph.edge[index]
+            forward = dot(t, edge.direction)
+            if forward * (1 if edge.corner[0] == vertex else -1) > 0:
+                off = minus(t, times(edge.direction, forward))
+                best = steeper(best, ((EDGE, index), forward * forward, dot(off, off)))
+        for face in graph.faces_at[vertex]:
+            k = graph.face[face].index(vertex)
+            if all(dot(graph.voronoi(face, j)[0], t) < 0 for j in (k, (k - 1) % 3)):
+                height = dot(graph.normal[face], t)
+                in_plane = minus(t, times(graph.normal[face], height))
+                best = steeper(best, ((FACE, face), dot(in_plane, in_plane), height * height))
+        return best[0]
+
+    def after_vertex(self, vertex, found, t):  # contact-model CORNER-3
+        graph, (state, index) = self.graph, found
+        if state == FACE:
+            return found if graph.side_of(index, self.hip) < 0 else self.groove_that_holds(vertex, index, t)
+        if state == EDGE:
+            edge = graph.edge[index]
+            sides = self.sides(edge)
+            if edge.type == BOUNDARY:
+                return (FACE, edge.face[0]) if sides[0][0] < 0 and sides[0][1] < 0 else NOWHERE
+            return NOWHERE if self.is_free_of(edge, sides) else found
+        is_open = any(graph.edge[e].type == BOUNDARY for e in graph.edges_at[vertex])  # contact-model CORNER-5
+        return found if not is_open and dot(t, graph.vertex_normal[vertex]) < 0 else NOWHERE
+
+    def groove_that_holds(self, vertex, face, t):  # contact-model CORNER-4
+        graph, rounding = self.graph, self.graph.rounding(self.hip)
+        for k in range(3):
+            index = graph.side[face][k][0]
+            edge = graph.edge[index]
+            if vertex not in edge.corner or edge.type != CONCAVE:
+                continue
+            if dot(edge.direction, t) * (1 if edge.corner[0] == vertex else -1) < -rounding:
+                continue
+            is_between = beyond(graph.voronoi(face, k), self.hip) < -rounding
+            for wall, plane in zip(edge.face, edge.voronoi):
+                if graph.side_of(wall, self.hip) < 0:
+                    if not is_between:
+                        return EDGE, index
+                    if beyond(plane, self.hip) < 0:
+                        return FACE, wall
+        return NOWHERE
+
+    def beside(self, after, point, t):
+        if after == NOWHERE:
+            return point
+        if after[0] == FACE:
+            n = self.graph.normal[after[1]]
+            down = minus(t, times(n, dot(n, t)))
+        else:
+            direction = self.graph.edge[after[1]].direction
+            down = times(direction, dot(direction, t))
+        off = norm(minus(self.god_object, point))
+        return plus(point, times(down, off / norm(down)) if off < norm(down) else down)
