@@ -18,10 +18,10 @@ struct CodePoint {
 };
 [[nodiscard]] CodePoint code_point_at(std::string_view text, std::size_t at);
 
-// Replaces every byte that does not begin a well-formed code point by U+FFFD. At most `max_bytes` of the text, then "...".
+// Every byte that begins no well-formed code point becomes U+FFFD. At most `max_bytes` of the text, then "...".
 [[nodiscard]] std::string valid_utf8(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
-// The same with control characters replaced by '?', so that text from a mesh file cannot send control sequences to a terminal.
+// The same with control characters as '?': what a mesh file holds must not steer a terminal.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
 }  // namespace fdcg::bake

@@ -16,8 +16,7 @@
 
 namespace fdcg::bake::gltf {
 
-// Thrown where a file is invalid and caught by read_gltf: the place is known where it is thrown, the file's name where it is
-// caught.
+// Thrown where a file is found wanting, caught by read_gltf: the place is known deep down, the file's name at the top.
 struct Refusal {
   std::string what;
   const char* rule = "unreadable";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's tick: applies poses, finds for each finger the objects that it can have touched, and steps those contacts.
+// A scene's tick: take in poses, and for each finger find out which objects it can have met, and step those contacts.
 //
 //   out of reach     the motion of the finger since its last broad-phase update, plus the largest motion of an object, is less
 //                    than the distance found then: nothing to do
@@ -31,7 +31,7 @@ void settle_changing(fdcg_scene& scene) {
   scene.changing_count = still_changing;
 }
 
-// It has no bounding sphere, and a rotation moves its points without bound: the broad phase of all fingers is invalidated.
+// No sphere holds it, and a turn moves it by any length: fingers then look anew.
 void settle_endless(fdcg_scene& scene, uint32_t index) {
   const Object& object = scene.objects()[index];
   const Pose &now = object.now, &last = object.last;

@@ -28,7 +28,7 @@ TEST_CASE("a message is one line of UTF-8, whatever bytes it quotes") {
     CHECK(one_line(one.bytes) == one.line);
 }
 
-TEST_CASE("long text is cut between characters and never dropped") {
+TEST_CASE("what is too long is cut between letters, and never away") {
   CHECK(in_quotes(std::string(39, 'a') + "\xC3\xBC") == "'" + std::string(39, 'a') + "...'");
   CHECK(in_quotes(std::string(38, 'a') + "\xC3\xBC...") == "'" + std::string(38, 'a') + "\xC3\xBC...'");
   CHECK(in_quotes(std::string(60, '\x80')) == "'" + std::string(40, '\x80') + "...'");

@@ -41,11 +41,11 @@ TEST_CASE("valid_utf8 agrees with another decoder on every pair of bytes and man
   CHECK(valid_utf8("\xC3\xA9t\xC3\xA9", 4) == "\xC3\xA9t...");
 }
 
-TEST_CASE("printable text contains no control characters") {
+TEST_CASE("printable text holds no control characters") {
   CHECK(printable("a\x1b[31m\n\x7f\xC2\x9B z\xC3\xA9") == "a?[31m??? z\xC3\xA9");
 }
 
-TEST_CASE("JsonWriter: output is read back by another parser") {
+TEST_CASE("JsonWriter writes what another parser reads back") {
   std::string out;
   JsonWriter writer(out);
   writer.begin_object();

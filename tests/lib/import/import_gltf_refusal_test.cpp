@@ -48,7 +48,7 @@ class Folder {
 
 }  // namespace
 
-TEST_CASE("errors in the JSON are refused with their JSON path") {
+TEST_CASE("what is wrong in the JSON is refused by its path") {
   CHECK(without("", "asset") == "the JSON: has no 'asset', which it needs");
   CHECK(with("/asset/version", "1.0") == "is glTF 1.0; version 2.0 is read: convert the file");
   CHECK(with("/asset/version", 1) == "is glTF 1; version 2.0 is read: convert the file");

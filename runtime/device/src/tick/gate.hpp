@@ -29,7 +29,7 @@ inline constexpr double kLongestWatchdogS = 0.1;     // ... within this
 // Why there is no force. Part of the log and the status: never renumber.
 enum class Fault : std::uint8_t {
   kNone = 0,
-  kUnknownLimit = 1,  // the profile lacks a limit of the device or the hand: never armed
+  kUnknownLimit = 1,  // the profile does not say what the device and the hand can stand: never armed
   kSilence = 2,
   kWriterStuck = 3,
   kWriteFailed = 4,
@@ -38,7 +38,7 @@ enum class Fault : std::uint8_t {
   kWorkspace = 7,   // the tip is where the device cannot be
   kSpeed = 8,
   kHostLate = 9,      // the host itself was away for kSilenceS or more
-  kDeviceFault = 10,  // reported by the device
+  kDeviceFault = 10,  // the device says so itself
   kCommanded = 11,    // disarmed by the user
   kClock = 12,        // the host's clock went back
 };
