@@ -2,21 +2,21 @@
 // A scene's tick: take in poses (scene_advance.cpp), and for each finger find out which objects it can have met, and step those
 // contacts.
 //
-//   out of reach     the finger's own way since its last look and the objects' largest since then have not used up the distance
-//                    that it saw: nothing to do
-//   look             the distance to every object; the near ones get the finger's free slots
-//   near             sphere and box say that the tick's way may have met it: fdcg_step or its like, in the object's frame
+//   out of reach     the motion of the finger since its last broad-phase update, plus the largest motion of an object, is less
+//                    than the distance found then: nothing to do
+//   look             broad-phase update: the distance to every object; the near ones get the finger's free slots
+//   near             the tick's way may have touched its sphere and box: fdcg_step or its like, in the object's frame
 //   touched          fdcg_step
 //
-// Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
-// the skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
-// FREE-1), so it can be made anew whenever it is wanted.
+// Which contacts are stepped depends only on the positions of this tick and the last, never on the time of the last broad-phase
+// update, so the optimizations do not change any force. The state of a free contact is only the HIP's last position in the
+// object's frame (contact-model FREE-1), so it can be created again at any time.
 #include "scene/finger_tick.hpp"
 
 namespace fdcg {
 namespace {
 
-// After as many steps in which it reached none of the objects near by, the finger looks whether they still are.
+// After as many steps in which it reached none of its near objects, the finger updates its broad phase.
 constexpr uint32_t kIdleSteps = 64;
 
 }  // namespace
@@ -40,7 +40,7 @@ fdcg_params params_met(const Object& object, const Finger& finger) {
 
 namespace {
 
-// Whether nothing without a slot can have been met since the last look.
+// Whether no object without a slot can have been touched since the last broad-phase update.
 inline bool is_out_of_reach(const fdcg_scene& scene, const Finger& finger, World hip) {
   const double left = finger.limit - scene.travel - 4 * RealLimits<double>::kEpsilon * scene.travel;
   const World way = hip - finger.anchor;
@@ -60,9 +60,9 @@ void step_contact(const Object& object, const Finger& finger, fdcg_contact* cont
   step_object(object, params, contact, at, result);
 }
 
-// Whether the contact with an object near by is to be made anew at the beginning of the tick's way. One with a deformable mesh
-// also knows of the mesh's motion since its last step: it stays as long as every step of the finger has stepped it, from the
-// first on (deform_scene.cpp). One that is made anew comes from outside of all places where the mesh can be.
+// Whether the contact with a near object is created again at the start of the tick's way. A contact with a deformable mesh also
+// tracks the mesh's motion since its last step: it is kept as long as every step of the finger has stepped it, from the first
+// on (deform_scene.cpp). A new one starts outside of all places where the mesh can be.
 bool is_renewed(const Tick& tick, const Object& object, const Slot& slot, bool missed) {
   if (slot.step != tick.finger.step) return true;
   return object.deform == nullptr && (missed || !tick.scene.skips(FDCG_OPT_RENEWAL));
@@ -76,7 +76,7 @@ void renew(const Object& object, fdcg_contact* contact) {
   }
 }
 
-// The slot's contact in this tick. Returns whether there is anything to feel or to carry over.
+// Steps the slot's contact. Returns whether there is a contact force or a sweep to carry over.
 bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed, fdcg_result* result) {
   const fdcg_scene& scene = tick.scene;
   const Object& object = scene.objects()[slot.object];
@@ -145,7 +145,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
   finger.force = force;
 }
 
-// Everything but the finger that is out of reach and has no slot in use.
+// The tick of a finger that is in reach of an object or has slots in use.
 [[gnu::noinline]] void step_near(fdcg_scene& scene, Finger& finger) {
   const auto index = static_cast<uint32_t>(&finger - scene.fingers());
   const bool is_felt = is_place(finger.hip);
