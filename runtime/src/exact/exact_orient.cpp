@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter decides where rounding cannot matter. Where it can, points that are one, and four that share a coordinate, lie in
-// a plane; of others the determinant is worked out once more in pairs of doubles, which tells all but zero from zero and points
-// within 2^-98 of their size of a plane. For those, the twelve coordinates are taken as what they are, whole multiples of one
-// small unit, and the determinant is worked out in whole numbers: of the processor's own size where the coordinates are near
-// enough to one another, else of as many limbs as it takes.
+// Stages of the orientation test. A floating-point filter decides where rounding cannot matter. Otherwise equal points, and
+// four points with a common coordinate, are coplanar. For others the determinant is evaluated in double-double arithmetic,
+// which decides unless the points are within 2^-98 of their size of a plane. For those, the twelve coordinates are integer
+// multiples of one small unit, and the determinant is evaluated in integers: of machine size where the coordinates are of
+// similar magnitude, else of as many limbs as needed.
 #include "exact/exact_orient.hpp"
 
 #include <string.h>
@@ -15,7 +15,7 @@
 namespace fdcg {
 namespace {
 
-// What products that fall below the normal numbers may lose, times a coordinate of 1e70: under 1e-252.
+// Bound on the underflow error of products, times a coordinate of 1e70: under 1e-252.
 constexpr double kUnderflow = 1e-250;
 
 #ifdef __SIZEOF_INT128__
@@ -27,7 +27,7 @@ using TwoLimbs = uint64_t;
 #endif
 constexpr int kLimbBits = 8 * sizeof(Limb);
 
-// From the largest coordinate that a step lets pass (vec.hpp, kFar: 2^233) down to the last bit of the smallest double, with
+// From the largest coordinate that a step accepts (vec.hpp, kFar: 2^233) down to the last bit of the smallest double, with
 // two bits for the difference of two.
 constexpr int kLargestBits = 234 + 1074 + 2;
 constexpr int kLimbs = kLargestBits / kLimbBits + 1;
@@ -50,7 +50,7 @@ inline Split operator-(Split a, Split b) {
   return a + Split{-b.value, -b.rest};
 }
 
-// A whole number: sign and size, lowest limb first, no zero limb on top.
+// An integer: sign and magnitude, lowest limb first, no leading zero limb.
 template <int kCapacity>
 struct Whole {
   Limb limb[kCapacity];
@@ -81,7 +81,7 @@ Parts parts_of(double x) {
   return {mantissa >> zeros, (biased != 0 ? biased : 1) - 1075 + zeros, bits >> 63 != 0};
 }
 
-// parts / 2^unit, which is whole.
+// parts / 2^unit, which is an integer.
 Whole<kLimbs> whole_of(const Parts& parts, int unit) {
   Whole<kLimbs> w;
   w.is_negative = parts.is_negative;
@@ -251,7 +251,7 @@ int sign_in_limbs(const Multiples& m) {
   return sum.is_negative ? -1 : 1;
 }
 
-// The determinant but for 2^-98 of the size of its products.
+// The determinant, with an error of at most 2^-98 of the size of its products.
 [[gnu::noinline]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
   Split edge[3][3];
   for (int p = 0; p < 3; ++p) {
@@ -273,7 +273,8 @@ inline bool are_same(double a, double b, double c, double d) {
   return a == b && a == c && a == d;
 }
 
-// What is in one plane at a glance: a way that begins in a corner meets all its edges there, and axes have planes.
+// Trivially coplanar points: a segment that begins in a corner touches all its edges there, and meshes have axis-aligned
+// planes.
 inline bool is_plainly_flat(const Vec3<double> (&point)[4]) {
   const auto &a = point[0], &b = point[1], &c = point[2], &d = point[3];
   for (int i = 1; i < 4; ++i) {
@@ -309,7 +310,7 @@ int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<doubl
   const double yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
   const double det = (yz - zy) * w.x + (zx - xz) * w.y + (xy - yx) * w.z;
   const double size = (fabs(yz) + fabs(zy)) * fabs(w.x) + (fabs(zx) + fabs(xz)) * fabs(w.y) + (fabs(xy) + fabs(yx)) * fabs(w.z);
-  // Three differences, two products and three sums, each off by half an epsilon at most: under 7/2 epsilon of the size.
+  // Three differences, two products and three sums, each with an error of half an epsilon: under 7/2 epsilon of the size.
   constexpr double kErrorBound = 4 * DBL_EPSILON;
   const double bound = kErrorBound * size + kUnderflow;
   if (det > bound) return 1;
