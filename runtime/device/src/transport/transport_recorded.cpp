@@ -8,7 +8,7 @@
 #include <cstring>
 #include <memory>
 
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_reader.hpp"
 #include "transport/make_transport.hpp"

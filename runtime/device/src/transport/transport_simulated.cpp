@@ -8,7 +8,7 @@
 #include <ctime>
 
 #include "base/threads.hpp"
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "transport/make_transport.hpp"
 #include "transport/simulated_body.hpp"
 #include "transport/simulated_faults.hpp"
