@@ -16,9 +16,16 @@ from anywhere import C, FIRMWARE, ROOT, RUNTIME, TOOLCHAINS, AnywhereCase, qemu 
 BUILD = os.environ["FDCG_BUILD"]
 CONSUMER = ROOT / "tests" / "consumer"
 EXAMPLES = RUNTIME / "examples"
-README = (ROOT / "README.md").read_text()
-PROMISED = re.search(r"It prints\n\n```\n(.*?)```", README, re.S).group(1)
-PROMISED_OF_SCENES = re.search(r"The turntable prints\n\n```\n(.*?)```", README, re.S).group(1)
+
+
+def promised(page, example):
+    """What a page of docs says that an example prints."""
+    text = (ROOT / "docs" / page).read_text()
+    return re.search(rf"printed-by=runtime/examples/{example} -->\n```text\n(.*?)```", text, re.S).group(1)
+
+
+PROMISED = promised("embed.md", "press_and_slide.c")
+PROMISED_OF_SCENES = promised("scene.md", "turntable.c")
 PLAIN_PATH = {**os.environ, "PATH": "/usr/bin:/bin"}  # where no fdcg is
 
 
@@ -53,14 +60,18 @@ class ConsumerCase(AnywhereCase):
 
 
 class Package(ConsumerCase):
-    def test_the_examples_build_against_it_and_print_what_the_readme_promises(self):
+    def test_the_examples_build_against_it_and_print_what_the_documents_promise(self):
         folder = self.path("build")
         self.configure(EXAMPLES, folder)
         self.build(folder)
-        for example, promised in (("press_and_slide", PROMISED), ("turntable", PROMISED_OF_SCENES)):
-            for program in (example + "_c", example + "_cpp"):
-                done = self.run_program(os.path.join(folder, program), cwd=folder)
-                self.assertEqual(promised, done.stdout.decode(), program)
+        expected = {"press_and_slide_c": PROMISED, "press_and_slide_cpp": PROMISED, "turntable_c": PROMISED_OF_SCENES,
+                    "turntable_cpp": PROMISED_OF_SCENES}
+        for page, example in (("friction.md", "friction"), ("friction.md", "materials"), ("bodies.md", "bodies"),
+                              ("surfaces.md", "surface"), ("deform.md", "deform")):
+            expected[example + "_c"] = promised(page, example + ".c")
+        for program, text in expected.items():
+            done = self.run_program(os.path.join(folder, program), cwd=folder)
+            self.assertEqual(text, done.stdout.decode(), program)
 
     def test_the_examples_stay_short(self):
         for pattern in ("*.c", "*.cpp", "firmware/*"):
@@ -104,6 +115,55 @@ class Package(ConsumerCase):
         (project / "CMakeLists.txt").write_text(text.replace("fdcg 0.1", "fdcg 0.2"))
         done = self.configure(project, self.path("build"), code=1)
         self.assertIn(b"0.2", done.stderr)
+
+
+class Parts(ConsumerCase):
+    """The runtime's parts as components, each installed by itself."""
+
+    NEEDED = {"step": {"step"}, "scene": {"step", "scene"}, "surface": {"step", "scene", "surface"},
+              "deform": {"step", "scene", "deform"}, "body": {"step", "scene", "body"}, "runtime": {"runtime"}}
+
+    def installed(self, *components):
+        prefix = self.path("-".join(components))
+        for component in components:
+            self.run_program("cmake", "--install", BUILD, "--prefix", prefix, "--component", component)
+        return prefix
+
+    def test_a_component_brings_its_library_and_those_that_it_needs(self):
+        for component, needed in self.NEEDED.items():
+            prefix = pathlib.Path(self.installed(component))
+            self.assertEqual({f"libfdcg_{name}.a" for name in needed}, {path.name for path in prefix.glob("**/*.a")})
+            self.assertTrue((prefix / "include" / "fdcg" / "fdcg.h").exists(), component)
+            self.assertFalse((prefix / "bin").exists(), component)
+
+    def test_the_parts_are_all_of_the_runtime_and_share_nothing(self):
+        def objects(library):
+            return self.run_program("ar", "t", os.path.join(BUILD, "runtime", f"libfdcg_{library}.a")).stdout.decode().split()
+        parts = [name for part in self.NEEDED if part != "runtime" for name in objects(part)]
+        self.assertEqual(sorted(objects("runtime")), sorted(parts))
+
+    def test_programs_link_the_part_that_they_use(self):
+        prefix, folder = self.installed("surface"), self.path("build")
+        self.configure(self.copied("parts"), folder, f"-DFDCG_EXECUTABLE={self.prefix}/bin/fdcg", prefix=prefix)
+        self.build(folder)
+        for name in ("one_sphere", "one_graph"):
+            program = os.path.join(folder, name)
+            self.run_program(program)
+            self.assert_links_alone("nm", program, program + ".map")
+
+    def test_a_part_that_is_not_installed_is_named(self):
+        done = self.configure(self.copied("parts"), self.path("build"), f"-DFDCG_EXECUTABLE={self.prefix}/bin/fdcg", code=1,
+                              prefix=self.installed("step"))
+        self.assertIn(b"no component 'surface'", b" ".join(done.stderr.split()))
+
+    def test_pkg_config_names_a_part(self):
+        self.need("pkg-config")
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(next(pathlib.Path(self.installed("surface")).glob("**/pkgconfig")))}
+        flags = self.run_program("pkg-config", "--cflags", "--libs", "fdcg-surface", env=environment).stdout.decode().split()
+        link_map = self.path("one_sphere.map")
+        self.run_program("cc", *C, str(CONSUMER / "parts" / "one_sphere.c"), *flags, f"-Wl,-Map={link_map}", "-o", self.path("program"))
+        self.run_program(self.path("program"))
+        self.assert_links_alone("nm", self.path("program"), link_map)
 
 
 class Rebuild(ConsumerCase):
@@ -212,7 +272,7 @@ class Firmware(ConsumerCase):
         self.need("arm-none-eabi-gcc", "qemu-system-arm", "ninja")
         for processor, toolchain in (("cortex-m7", "cortex-m7"), ("cortex-m4", "cortex-m4f")):
             prefix, folder = self.path("prefix-" + processor), self.path("build-" + processor)
-            library = self.cross_runtime(toolchain, "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_TERMS=OFF")
+            library = self.cross_runtime(toolchain, "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_FRICTION_TERMS=OFF")
             self.run_program("cmake", "--install", os.path.dirname(os.path.dirname(library)), "--prefix", prefix)
             self.configure(FIRMWARE, folder, f"--toolchain={TOOLCHAINS / (toolchain + '.cmake')}", prefix=prefix,
                            environment={**os.environ, "PATH": os.path.join(self.prefix, "bin") + ":/usr/bin:/bin"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's memory, and what comes into it and goes. scene_step.cpp is its tick.
+// A scene's memory, and what comes into it and goes.
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "graph/material_section.hpp"

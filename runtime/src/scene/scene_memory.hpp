@@ -128,11 +128,11 @@ struct fdcg_scene {
 
 namespace fdcg {
 
-// scene_step.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a way,
-// the latest too.
+// scene_advance.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a
+// way, the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 
-// scene_step.cpp: no finger has a slot for the object any more. One that comes before the next step may be given its index.
+// scene_advance.cpp: no finger has a slot for the object any more. One that comes before the next step may be given its index.
 void let_go_of(fdcg_scene& scene, uint32_t object);
 
 // Steps an object's contact to a place in its frame.

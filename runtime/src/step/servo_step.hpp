@@ -18,12 +18,12 @@
 
 #include "base/config.hpp"
 #include "base/hooks.hpp"
-#include "base/near_zero.hpp"
 #include "step/corner.hpp"
 #include "step/edge.hpp"
 #include "step/face.hpp"
 #include "step/free_space.hpp"
 #include "step/leave.hpp"
+#include "step/near_zero.hpp"
 #include "step/presliding.hpp"
 #include "step/response.hpp"
 

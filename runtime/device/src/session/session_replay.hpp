@@ -10,21 +10,12 @@
 #include <vector>
 
 #include "base/host_config.hpp"
+#include "fdcg/device_status.hpp"
 #include "scene/scene_build.hpp"
 #include "session/session_reader.hpp"
 #include "tick/device_tick.hpp"
 
 namespace fdcg::dev {
-
-struct DeviceReplay {
-  std::string name;
-  std::uint64_t ticks = 0;  // replayed, the one that differs included
-  std::string difference;   // of the first tick that is not the same; empty: none
-  bool is_over = false;     // it came to a difference or a gap
-  bool has_gap = false;
-  std::uint64_t gap_at = 0;  // the first tick that the log lacks
-  std::string ended_by;      // the device that shares its scene and came to a difference; empty: none
-};
 
 struct ReplayedTick {
   std::size_t device = 0;

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 
+#include "fdcg/device_status.hpp"
 #include "fdcg/pile.h"
 #include "profile/profile.hpp"
 #include "profile/report_codec.hpp"
@@ -63,17 +64,6 @@ struct TickOutput {
   Sample sample;
   std::uint32_t body_count = 0;
   fdcg_pose bodies[kMaxBodies] = {};  // world, after the tick; in the order of DeviceSetup::bodies
-};
-
-struct TickCounters {
-  std::uint64_t ticks = 0;       // with a good report
-  std::uint64_t late = 0;        // more than 1.5 periods after the one before
-  std::uint64_t lost = 0;        // gaps in the device's sequence, in reports
-  std::uint64_t superseded = 0;  // good, but a newer one was there
-  std::uint64_t rejected[kVerdicts] = {};
-  std::uint64_t timeouts = 0;
-  std::uint64_t disarmed[kFaults] = {};
-  std::uint64_t bodies_lost = 0;  // 1: the runtime refused to move a body (beyond 1e12 m), and all have stood still since
 };
 
 // World = R (scale * device) + offset. Forces are turned, not scaled: a stiffness of K in the world is felt as scale * K.

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 
+#include "fdcg/device_status.hpp"
 #include "profile/kinematics.hpp"
 #include "profile/profile.hpp"
 
@@ -25,28 +26,6 @@ inline constexpr double kWriterStuckS = 0.005;       // in one write: disarmed
 inline constexpr double kArmForceShare = 0.05;       // of force_n: arming is granted only below it
 inline constexpr double kForceWithoutWatchdogN = 1;  // the most for a device that does not drop its force by itself ...
 inline constexpr double kLongestWatchdogS = 0.1;     // ... within this
-
-// Why there is no force. Part of the log and the status: never renumber.
-enum class Fault : std::uint8_t {
-  kNone = 0,
-  kUnknownLimit = 1,  // the profile does not say what the device and the hand can stand: never armed
-  kSilence = 2,
-  kWriterStuck = 3,
-  kWriteFailed = 4,
-  kReadFailed = 5,  // unplugged
-  kNotFinite = 6,   // a number of our own
-  kWorkspace = 7,   // the tip is where the device cannot be
-  kSpeed = 8,
-  kHostLate = 9,      // the host itself was away for kSilenceS or more
-  kDeviceFault = 10,  // the device says so itself
-  kCommanded = 11,    // disarmed by the user
-  kClock = 12,        // the host's clock went back
-};
-inline constexpr int kFaults = 13;
-const char* fault_name(Fault fault);  // "silence"
-const char* fault_text(Fault fault);  // one line: what happened and what to do
-
-enum class Phase : std::uint8_t { kDisarmed = 0, kRamping = 1, kArmed = 2, kFading = 3 };
 
 // Zero, or what the gate has let through.
 class GatedForce {
