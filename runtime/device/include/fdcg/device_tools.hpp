@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "fdcg/device_status.hpp"
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 namespace fdcg::dev {
 
