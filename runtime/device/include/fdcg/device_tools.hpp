@@ -14,6 +14,7 @@
 
 #include "fdcg/device_status.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 namespace fdcg::dev {
 
