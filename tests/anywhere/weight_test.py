@@ -90,7 +90,7 @@ class Parts(WeightCase):
     M7 = {"one_sphere": 12 * KB, "one_graph": 48 * KB}
 
     def embedded(self, *options):
-        """The folder with block.h and block.c."""
+        """The folder with the embedded graph, its array and its header."""
         graph = self.path("block.fdcg")
         self.fdcg("compile", str(RUNTIME / "examples" / "cube.obj"), "-q", "--precision", "f32", "-o", graph)
         self.run_program("cmake", f"-DINPUT={graph}", f"-DOUTPUT={self.path('block.c')}", "-DSYMBOL=block", "-P",

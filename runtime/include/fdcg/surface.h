@@ -83,13 +83,19 @@ typedef struct fdcg_surface {
   double half_m[3];      /**< box, ellipsoid */
 } fdcg_surface;
 
-/** The values of fdcg_surface_kind, each beside the code for its kind. A program links the kinds that it makes and no others:
- * the makers below read these, and fdcg_surface_init and fdcg_make_surface, which do not know the kind, link all. Of a surface
- * that was made by none of them and whose kind is not linked, fdcg_check_surface says so, and the step feels nothing. */
-extern const uint32_t fdcg_linked_plane, fdcg_linked_sphere, fdcg_linked_cylinder, fdcg_linked_capsule;
-/** The same, of the other kinds. */
-extern const uint32_t fdcg_linked_box, fdcg_linked_cone, fdcg_linked_torus, fdcg_linked_ellipsoid;
-/** All kinds. */
+/** FDCG_SURFACE_PLANE; the eight constants like it stand beside the code for their kind. A program links the kinds that it
+ * makes and no others: the makers below read these, and fdcg_surface_init and fdcg_make_surface, which do not know the kind,
+ * link all. Of a surface that was made by none of them and whose kind is not linked, fdcg_check_surface says so, and the step
+ * feels nothing. */
+extern const uint32_t fdcg_linked_plane;
+extern const uint32_t fdcg_linked_sphere;    /**< FDCG_SURFACE_SPHERE */
+extern const uint32_t fdcg_linked_cylinder;  /**< FDCG_SURFACE_CYLINDER */
+extern const uint32_t fdcg_linked_capsule;   /**< FDCG_SURFACE_CAPSULE */
+extern const uint32_t fdcg_linked_box;       /**< FDCG_SURFACE_BOX */
+extern const uint32_t fdcg_linked_cone;      /**< FDCG_SURFACE_CONE */
+extern const uint32_t fdcg_linked_torus;     /**< FDCG_SURFACE_TORUS */
+extern const uint32_t fdcg_linked_ellipsoid; /**< FDCG_SURFACE_ELLIPSOID */
+/** All kinds, by fdcg_surface_kind. */
 extern const uint32_t* const fdcg_linked_surfaces[8];
 
 /** Sets the first `struct_bytes` bytes of *surface: a plane, which is all zero except for struct_bytes. */
@@ -99,7 +105,7 @@ static inline void fdcg_surface_init(fdcg_surface* surface, uint32_t struct_byte
   surface->struct_bytes = struct_bytes;
   surface->kind = *fdcg_linked_surfaces[FDCG_SURFACE_PLANE];
 }
-/** Of one of the kinds above; what the makers share. */
+/** A surface of one of the kinds above; what the makers share. */
 static inline fdcg_surface fdcg_make_linked_surface(uint32_t linked_kind, double radius_m, double length_m) {
   fdcg_surface surface;
   memset((void*)&surface, 0, sizeof surface);
@@ -109,7 +115,7 @@ static inline fdcg_surface fdcg_make_linked_surface(uint32_t linked_kind, double
   surface.length_m = length_m;
   return surface;
 }
-/** Of a kind that is known when the program runs, with a radius and a length; set other sizes in its fields. */
+/** A surface of a kind that is known when the program runs, with a radius and a length; set other sizes in its fields. */
 static inline fdcg_surface fdcg_make_surface(fdcg_surface_kind kind, double radius_m, double length_m) {
   fdcg_surface surface = fdcg_make_linked_surface(*fdcg_linked_surfaces[FDCG_SURFACE_PLANE], radius_m, length_m);
   surface.kind = (uint32_t)kind;

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "fdcg/device_status.hpp"
-#include "fdcg/fdcg.h"
 #include "fdcg/scene.h"
 
 namespace fdcg::dev {
