@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_reader.hpp"
+#include "host/make_transport.hpp"
 #include "profile/profile_json.hpp"
+#include "recording/session_log.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"
 #include "servo_commands.hpp"
-#include "session/session_log.hpp"
-#include "transport/make_transport.hpp"
 
 namespace fdcg::servo {
 namespace {

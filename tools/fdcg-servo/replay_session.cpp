@@ -7,8 +7,8 @@
 
 #include "../common/atomic_file.hpp"
 #include "../common/terminal.hpp"
+#include "recording/session_replay.hpp"
 #include "servo_commands.hpp"
-#include "session/session_replay.hpp"
 #include "session_csv.hpp"
 
 namespace fdcg::servo {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/host_config.hpp"
+#include "scene/host_config.hpp"
 
 namespace fdcg::servo {
 

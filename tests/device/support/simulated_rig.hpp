@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "profile/report_codec.hpp"
-#include "transport/make_transport.hpp"
 #include "transport/simulated_device.hpp"
+#include "transport/transports.hpp"
 
 namespace fdcg::test {
 
@@ -50,7 +50,7 @@ struct SmallHost {
     DeviceConfig device;
     device.source = DeviceSource::kSimulated;
     device.simulation = config;
-    transport = make_simulated_transport(device);
+    transport = make_simulated_transport(device.simulation);
     REQUIRE(transport->open() == "");
   }
   Verdict read(ReadStatus* status = nullptr) {

@@ -8,7 +8,6 @@
 #include "base/words.hpp"
 #include "profile/profile_kinematics.hpp"
 #include "profile/profile_reports.hpp"
-#include "tick/gate.hpp"
 
 namespace fdcg::dev {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reports of one device of a session, as they were read, at the times between them, or as fast as they are asked for. What
 // is written goes nowhere: the hand and the device of a recording do not feel.
+#include "recording/recorded_transport.hpp"
+
 #include <time.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include "base/words.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_reader.hpp"
-#include "transport/make_transport.hpp"
 
 namespace fdcg::dev {
 namespace {
