@@ -9,16 +9,18 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fdcg)
 # relative to the .pc file, so that the installed tree may be moved
 file(RELATIVE_PATH fdcg_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 
-# fdcg_install_component(NAME TARGETS target... [NEEDS component...] [HEADERS folder])
+# fdcg_install_component(NAME TARGETS target... [NEEDS component...] [HEADERS folder PATTERN glob])
 function(fdcg_install_component name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADERS" "TARGETS;NEEDS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADERS;PATTERN" "TARGETS;NEEDS")
   install(TARGETS ${arg_TARGETS} EXPORT fdcg-${name}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${name}
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT fdcg-${name} NAMESPACE fdcg:: DESTINATION ${package_folder} COMPONENT ${name})
   if(arg_HEADERS)
-    install(DIRECTORY ${arg_HEADERS}/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${name})
+    # C++ headers beside the device host's C header are for fdcg-servo alone.
+    install(DIRECTORY ${arg_HEADERS}/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${name} FILES_MATCHING
+            PATTERN ${arg_PATTERN})
   endif()
   foreach(needed IN LISTS arg_NEEDS)
     install(CODE "
@@ -39,7 +41,8 @@ endfunction()
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/fdcg-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/fdcg-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/fdcg-config-version.cmake cmake/FdcgAddGraph.cmake
               cmake/FdcgEmbed.cmake DESTINATION ${package_folder} COMPONENT package)
-install(FILES LICENSE README.md CHANGELOG.md schemas/fdcg-v1.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT package)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT package)
+install(DIRECTORY docs schemas DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT package)
 install(DIRECTORY runtime/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT package)
 
 fdcg_install_component(runtime TARGETS fdcg_runtime NEEDS package)
@@ -54,6 +57,11 @@ foreach(part surface deform body)
 endforeach()
 if(NOT FDCG_RUNTIME_ONLY)
   fdcg_install_component(tools TARGETS fdcg fdcg-servo NEEDS package)
-  fdcg_install_component(bake TARGETS fdcg_bake NEEDS runtime HEADERS lib/include)
-  fdcg_install_component(device TARGETS fdcg_device NEEDS runtime HEADERS runtime/device/include)
+  if(NOT CMAKE_CROSSCOMPILING) # made by the programs themselves
+    install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/tools/share/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT tools)
+    install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/tools/share/bash-completion ${CMAKE_CURRENT_BINARY_DIR}/tools/share/zsh
+            DESTINATION ${CMAKE_INSTALL_DATAROOTDIR} COMPONENT tools)
+  endif()
+  fdcg_install_component(bake TARGETS fdcg_bake NEEDS runtime HEADERS lib/include PATTERN *.hpp)
+  fdcg_install_component(device TARGETS fdcg_device NEEDS runtime HEADERS runtime/device/include PATTERN *.h)
 endif()

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tools/demo needs beside the two programs: a path for the hand, and the numbers and images of the picture.
+// What tools/demo needs beside the two programs: the numbers and images of the picture.
 //
-//   fdcg_demo_data path GRAPH.fdcg                      a trajectory to standard output
-//   fdcg_demo_data picture GRAPH.fdcg LOG.csv FOLDER    FOLDER/{whole,close}.rgb, path.dat, frame.gp for tools/demo.gp
+//   fdcg_demo_data GRAPH.fdcg LOG.csv FOLDER    FOLDER/{whole,close}.rgb, path.dat, frame.gp for tools/demo.gp
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <numbers>
@@ -66,7 +64,8 @@ struct Graph {
   }
 };
 
-// An orthographic view: right and up in the picture, toward the viewer. Metres from the object's centre.
+// An orthographic view, from where the hand of `fdcg-servo replay --path slide` comes: right and up in the picture, toward the
+// viewer. Metres from the object's centre.
 struct Camera {
   Vec centre, right, up, toward;
 
@@ -79,62 +78,7 @@ struct Camera {
   [[nodiscard]] Vec project(const Vec& p) const {
     return {dot(p - centre, right), dot(p - centre, up), dot(p - centre, toward)};
   }
-  [[nodiscard]] Vec place(const Vec& q) const { return centre + q[0] * right + q[1] * up + q[2] * toward; }
 };
-
-// ---- the path --------------------------------------------------------------------------------------------------------------
-
-constexpr double kTick = 0.001;       // s
-constexpr double kStrokeTime = 10;    // s on the surface
-constexpr double kLiftTime = 0.3;     // s of leaving
-constexpr double kStrokes = 4;        // there and back
-constexpr double kFollow = 0.12;      // how much of the error in depth the hand would mend in a tick
-constexpr double kEase = 0.4;         // how much of a change of its speed it manages in a tick
-constexpr double kFastest = 0.00012;  // m a tick, across the picture plane
-
-// Where the hand wants to be in the picture, and how deep it presses, both in parts of the object's size.
-struct Wish {
-  double right, up, depth;
-};
-Wish wish_at(double t) {
-  const double along = t / kStrokeTime, phase = 2 * std::numbers::pi * kStrokes * along;
-  const double middle = 0.07 * along, reach = 0.13 - 0.05 * along;  // stays clear of the outline
-  return {middle - reach * std::cos(phase), 0.02 - 0.18 * along, 0.0045 + 0.002 * std::sin(5 * std::numbers::pi * along)};
-}
-
-// The hand goes over the picture as it wishes and presses so that the spring of a frictionless contact keeps the wished length.
-void write_path(const Graph& graph) {
-  const Camera camera(graph);
-  fdcg_params params = fdcg_make_params();
-  params.mu_static = params.mu_dynamic = 0;
-  fdcg_contact contact{};
-  fdcg_result result{};
-  double height = 0.4 * graph.size, speed = 0, t = 0;
-  bool touched = false;
-  double touch_time = 0;
-  std::puts("t,x,y,z");
-  for (long tick = 0; !touched || t < touch_time + kStrokeTime + kLiftTime; ++tick) {
-    t = static_cast<double>(tick) * kTick;
-    const Wish wish = wish_at(touched ? std::min(t - touch_time, kStrokeTime) : 0);
-    const Vec hip = camera.place({wish.right * graph.size, wish.up * graph.size, height});
-    std::printf("%.17g,%.17g,%.17g,%.17g\n", t, hip[0], hip[1], hip[2]);
-    fdcg_step(&graph.view, &params, &contact, hip.data(), &result);
-    const Vec god_object{result.god_object_m[0], result.god_object_m[1], result.god_object_m[2]};
-    if (!touched && result.state != FDCG_FREE) {
-      touched = true;
-      touch_time = t;
-    }
-    const bool leaving = touched && t > touch_time + kStrokeTime;
-    const double error = wish.depth * graph.size - length(god_object - hip);
-    const double wanted = leaving ? kFastest : -std::clamp(kFollow * error, -kFastest, kFastest);
-    speed += kEase * (wanted - speed);
-    height += speed;
-    if (height < -graph.size) {
-      std::fputs("fdcg_demo_data: the path misses the object\n", stderr);
-      std::exit(3);
-    }
-  }
-}
 
 // ---- the picture -----------------------------------------------------------------------------------------------------------
 
@@ -346,14 +290,10 @@ void write_picture(const Graph& graph, const char* log, const std::string& folde
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 3 && std::strcmp(argv[1], "path") == 0) {
-    write_path(Graph(argv[2]));
+  if (argc == 4) {
+    write_picture(Graph(argv[1]), argv[2], argv[3]);
     return 0;
   }
-  if (argc == 5 && std::strcmp(argv[1], "picture") == 0) {
-    write_picture(Graph(argv[2]), argv[3], argv[4]);
-    return 0;
-  }
-  std::fputs("usage: fdcg_demo_data path GRAPH.fdcg | picture GRAPH.fdcg LOG.csv FOLDER\n", stderr);
+  std::fputs("usage: fdcg_demo_data GRAPH.fdcg LOG.csv FOLDER\n", stderr);
   return 2;
 }

@@ -3,10 +3,10 @@
 
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 
+#include "catch.hpp"
 #include "nearest.hpp"
 
 using namespace fdcg::tools;
@@ -51,9 +51,10 @@ using Paths = std::vector<std::string>;
 }  // namespace
 
 TEST_CASE("patterns of one component match as in a shell") {
-  for (const char* pattern : {"abc", "a*", "*c", "*b*", "a?c", "[a-c]bc", "a[!x]c", "***", "a*b*c", "[]a]bc", "*abc*"})
+  for (const char* pattern :
+       {"abc", "a*", "*c", "*b*", "a?c", "[a-c]bc", "a[!x]c", "***", "a*b*c", "[]a]bc", "*abc*", "ABC", "[A-C]?C"})
     CHECK(matches_pattern("abc", pattern));
-  for (const char* pattern : {"ab", "abcd", "b*", "*b", "a?", "[b-c]bc", "a[!b]c", "", "a*d", "?abc", "ABC"})
+  for (const char* pattern : {"ab", "abcd", "b*", "*b", "a?", "[b-c]bc", "a[!b]c", "", "a*d", "?abc", "a[!B]c"})
     CHECK_FALSE(matches_pattern("abc", pattern));
   CHECK(matches_pattern("", "*"));
   CHECK(matches_pattern("a[b", "a[b"));  // never closed
@@ -64,15 +65,23 @@ TEST_CASE("patterns of one component match as in a shell") {
 
 TEST_CASE("arguments become files in a stable order, each once") {
   const Folder folder;
-  CHECK(expanded({"*.stl"}) == Paths{"a.stl", "b.stl"});
-  CHECK(expanded({"b.stl", "*.stl", "missing.stl", "-"}) == Paths{"b.stl", "a.stl", "missing.stl", "-"});
-  CHECK(expanded({"**/*.{stl,obj}"}) == Paths{"a.stl", "b.stl", "sub/c.obj", "sub/deep/d.stl"});
+  CHECK(expanded({"*.stl"}) == Paths{"A.STL", "a.stl", "b.stl"});
+  CHECK(expanded({"b.stl", "*.stl", "missing.stl", "-"}) == Paths{"b.stl", "A.STL", "a.stl", "missing.stl", "-"});
+  CHECK(expanded({"**/*.{stl,obj}"}) == Paths{"A.STL", "a.stl", "b.stl", "sub/c.obj", "sub/deep/d.stl"});
   CHECK(expanded({"sub/**/d.stl"}) == Paths{"sub/deep/d.stl"});
-  CHECK(expanded({"./s?b/*/*.stl"}) == Paths{"./sub/deep/d.stl", "./sub/up/a.stl", "./sub/up/b.stl"});
+  CHECK(expanded({"./s?b/*/*.stl"}) == Paths{"./sub/deep/d.stl", "./sub/up/A.STL", "./sub/up/a.stl", "./sub/up/b.stl"});
   CHECK(expanded({".h*.stl"}) == Paths{".hidden.stl"});
-  CHECK(expanded({fs::current_path().string() + "/[ab].stl"}) ==
-        Paths{fs::current_path().string() + "/a.stl", fs::current_path().string() + "/b.stl"});
+  CHECK(expanded({fs::current_path().string() + "/[ab].stl"}) == Paths{fs::current_path().string() + "/A.STL",
+                                                                       fs::current_path().string() + "/a.stl",
+                                                                       fs::current_path().string() + "/b.stl"});
   CHECK(expanded({"sub/deep/**"}) == Paths{"sub/deep/d.stl", "sub/deep/{y}.ply"});
+}
+
+TEST_CASE("patterns match names in any case, as the search of a folder does") {
+  const Folder folder;
+  CHECK(expanded({"{A,B}.stl"}) == Paths{"A.STL", "a.stl", "b.stl"});
+  CHECK(expanded({"SUB/**/*.OBJ"}) == Paths{"sub/c.obj"});
+  CHECK(expanded({"**/D.stl"}) == Paths{"sub/deep/d.stl"});
 }
 
 TEST_CASE("a name that exists is no pattern") {

@@ -17,6 +17,13 @@ struct Item {
   bool is_match = false;
 };
 
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
 Item bracket_item(std::string_view pattern, char c) {
   std::size_t at = 1;
   const bool is_negated = at < pattern.size() && (pattern[at] == '!' || pattern[at] == '^');
@@ -25,7 +32,8 @@ Item bracket_item(std::string_view pattern, char c) {
   for (const std::size_t first = at; at < pattern.size() && (pattern[at] != ']' || at == first); ++at) {
     const bool is_range = at + 2 < pattern.size() && pattern[at + 1] == '-' && pattern[at + 2] != ']';
     const char last = is_range ? pattern[at + 2] : pattern[at];
-    is_found = is_found || (pattern[at] <= c && c <= last);
+    for (const char letter : {lower(c), upper(c)})
+      is_found = is_found || (pattern[at] <= letter && letter <= last);
     if (is_range) at += 2;
   }
   if (at >= pattern.size()) return {1, c == '['};  // never closed: a plain bracket
@@ -34,7 +42,7 @@ Item bracket_item(std::string_view pattern, char c) {
 
 Item item_at(std::string_view pattern, char c) {
   if (pattern[0] == '[') return bracket_item(pattern, c);
-  return {1, pattern[0] == '?' || pattern[0] == c};
+  return {1, pattern[0] == '?' || lower(pattern[0]) == lower(c)};
 }
 
 bool is_pattern(std::string_view text) {
@@ -106,8 +114,8 @@ void match(const std::string& prefix, const std::vector<std::string>& components
     std::error_code ignored;
     const fs::directory_entry entry(prefix + pattern, ignored);
     if (is_last && is_file(entry)) found.insert(prefix + pattern);
-    if (!is_last && entry.is_directory(ignored)) match(prefix + pattern + "/", components, at + 1, found);
-    return;
+    if (!is_last && entry.is_directory(ignored)) return match(prefix + pattern + "/", components, at + 1, found);
+    // the same name in other cases is found below
   }
   for (const fs::directory_entry& entry : entries_of(prefix)) {
     const std::string name = entry.path().filename().string();
@@ -125,8 +133,7 @@ void match(const std::string& prefix, const std::vector<std::string>& components
 
 bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
   std::string ending = fs::path(name).extension().string();
-  for (char& c : ending)
-    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::transform(ending.begin(), ending.end(), ending.begin(), lower);
   return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 

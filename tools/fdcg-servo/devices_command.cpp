@@ -3,10 +3,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "base/json_reader.hpp"
-#include "profile/profile_json.hpp"
+#include "../common/options.hpp"
+#include "fdcg/device_tools.hpp"
 #include "servo_commands.hpp"
-#include "transport/hid_devices.hpp"
 
 namespace fdcg::servo {
 namespace {
@@ -14,138 +13,69 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct DevicesArguments {
-  std::vector<std::string> profiles;  // files, beside the built-in ones
-  std::string hid;
+  dev::DeviceSearch search;
   bool json = false, udev = false;
-};
-
-struct NamedProfile {
-  std::string name;  // as a scene would give it
-  dev::Profile profile;
 };
 
 std::string hexadecimal(unsigned value) {
   char text[16];
-  std::snprintf(text, sizeof text, "%04x", value);
+  std::snprintf(text, sizeof text, "0x%04x", value);
   return text;
 }
 
-// Empty, or what is wrong with a file.
-std::string read_profiles(const DevicesArguments& arguments, std::vector<NamedProfile>* profiles) {
-  for (const dev::BuiltinProfile& built_in : dev::builtin_profiles()) {
-    NamedProfile named{std::string(built_in.name), {}};
-    if (std::string problem = dev::parse_profile(built_in.text, named.name, &named.profile); !problem.empty()) return problem;
-    profiles->push_back(named);
-  }
-  for (const std::string& file : arguments.profiles) {
-    NamedProfile named{file, {}};
-    std::string text;
-    std::string problem = dev::read_text_file(file, dev::kMostJsonBytes, &text);
-    if (problem.empty()) problem = dev::parse_profile(text, file, &named.profile);
-    if (!problem.empty()) return problem;
-    profiles->push_back(named);
-  }
-  return {};
-}
-
-// A hidraw node's parent is named BUS:VENDOR:PRODUCT.NUMBER, whatever the bus; the USB device itself is for libusb.
-std::string udev_rules(const std::vector<NamedProfile>& profiles) {
-  std::string text =
-      "# fdcg: devices of its profiles for whoever sits at the machine, and for the group plugdev.\n"
-      "# fdcg-servo devices --udev | sudo tee /etc/udev/rules.d/70-fdcg.rules\n"
-      "# sudo udevadm control --reload && sudo udevadm trigger, or plug the device in again\n";
-  const std::string grant = "TAG+=\"uaccess\", GROUP=\"plugdev\", MODE=\"0660\"\n";
-  for (const NamedProfile& named : profiles) {
-    const std::string vendor = hexadecimal(named.profile.match.vendor), product = hexadecimal(named.profile.match.product);
-    char upper[16];
-    std::snprintf(upper, sizeof upper, "%04X:%04X", named.profile.match.vendor, named.profile.match.product);
-    text += "\n# " + std::string(named.profile.name) + " (" + named.name + ")\n";
-    text += "KERNEL==\"hidraw*\", SUBSYSTEM==\"hidraw\", KERNELS==\"*:" + std::string(upper) + ".*\", " + grant;
-    text += "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ATTR{idVendor}==\"" + vendor + "\", ATTR{idProduct}==\"" +
-            product + "\", " + grant;
-  }
-  return text;
-}
-
-struct Found {
-  dev::HidDevice device;
-  std::vector<std::pair<std::string, bool>> profiles;  // true: for sure
-  std::string problem;                                 // empty: it may be opened
-};
-
-std::string text_of(const Found& found) {
-  std::string text = dev::describe(found.device) + "\n  profile  ";
+std::string text_of(const dev::FoundDevice& found) {
+  std::string text = found.description + "\n  profile  ";
   for (std::size_t i = 0; i < found.profiles.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + found.profiles[i].first;
-    if (!found.profiles[i].second) text += " (perhaps: its usage page is not told here)";
+    text += (i == 0 ? "" : ", ") + found.profiles[i].name;
+    if (!found.profiles[i].is_sure) text += " (perhaps: its usage page is not told here)";
   }
   if (found.profiles.empty()) text += "none";
   return text + "\n  open     " + (found.problem.empty() ? "yes" : "no: " + found.problem) + "\n";
 }
 
-Json json_of(const Found& found) {
-  const dev::HidDevice& device = found.device;
+Json json_of(const dev::FoundDevice& found) {
   Json json;
-  json["path"] = device.path;
-  json["vendor_id"] = "0x" + hexadecimal(device.vendor);
-  json["product_id"] = "0x" + hexadecimal(device.product);
-  json["usage_page"] = "0x" + hexadecimal(device.usage_page);
-  json["usage"] = "0x" + hexadecimal(device.usage);
-  json["interface"] = device.interface_number;
-  json["serial"] = device.serial;
-  json["manufacturer"] = device.manufacturer;
-  json["product"] = device.product_name;
+  json["path"] = found.path;
+  json["vendor_id"] = hexadecimal(found.vendor);
+  json["product_id"] = hexadecimal(found.product);
+  json["usage_page"] = hexadecimal(found.usage_page);
+  json["usage"] = hexadecimal(found.usage);
+  json["interface"] = found.interface_number;
+  json["serial"] = found.serial;
+  json["manufacturer"] = found.manufacturer;
+  json["product"] = found.product_name;
   json["profiles"] = Json::array();
-  for (const auto& [name, is_sure] : found.profiles)
-    json["profiles"].push_back({{"name", name}, {"is_sure", is_sure}});
+  for (const dev::ProfileMatch& match : found.profiles)
+    json["profiles"].push_back({{"name", match.name}, {"is_sure", match.is_sure}});
   json["can_open"] = found.problem.empty();
   if (!found.problem.empty()) json["problem"] = found.problem;
   return json;
 }
 
-const dev::HidLibrary* load_library(const std::string& name, std::string* problem) {
-  if (name == "libusb") return dev::hid_library(dev::HidBackend::kLibusb, problem);
-  const dev::HidLibrary* const hidraw = dev::hid_library(dev::HidBackend::kHidraw, problem);
-  if (hidraw != nullptr || name == "hidraw") return hidraw;
-  std::string libusb_problem;
-  const dev::HidLibrary* const libusb = dev::hid_library(dev::HidBackend::kLibusb, &libusb_problem);
-  if (libusb == nullptr) *problem += "; " + libusb_problem;
-  return libusb;
-}
-
 int run_devices(const DevicesArguments& arguments) {
-  std::vector<NamedProfile> profiles;
-  if (const std::string problem = read_profiles(arguments, &profiles); !problem.empty()) return fail(kFile, problem);
   if (arguments.udev) {
-    std::fputs(udev_rules(profiles).c_str(), stdout);
+    std::string rules;
+    if (const std::string problem = dev::make_udev_rules(arguments.search.profile_files, &rules); !problem.empty())
+      return fail(kFile, problem);
+    std::fputs(rules.c_str(), stdout);
     return kClean;
   }
-  std::string problem;
-  const dev::HidLibrary* const library = load_library(arguments.hid, &problem);
-  if (library == nullptr) return fail(kFile, problem);
-  std::vector<Found> all;
-  for (dev::HidDevice& device : dev::list_hid_devices(*library)) {
-    Found found;
-    for (const NamedProfile& named : profiles) {
-      const dev::Fit fit = dev::fit_of(named.profile.match, device);
-      if (fit != dev::Fit::kNo) found.profiles.emplace_back(named.name, fit == dev::Fit::kYes);
-    }
-    found.problem = dev::permission_problem(device);
-    found.device = std::move(device);
-    all.push_back(std::move(found));
-  }
+  std::vector<dev::FoundDevice> all;
+  std::string backend;
+  if (const std::string problem = dev::find_devices(arguments.search, &all, &backend); !problem.empty())
+    return fail(kFile, problem);
   if (arguments.json) {
     Json json;
-    json["backend"] = library->name;
+    json["backend"] = backend;
     json["devices"] = Json::array();
-    for (const Found& found : all)
+    for (const dev::FoundDevice& found : all)
       json["devices"].push_back(json_of(found));
     std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     return kClean;
   }
-  for (const Found& found : all)
+  for (const dev::FoundDevice& found : all)
     std::fputs(text_of(found).c_str(), stdout);
-  if (all.empty()) std::printf("No HID device is seen (%s).\n", library->name);
+  if (all.empty()) std::printf("No HID device is seen (%s).\n", backend.c_str());
   return kClean;
 }
 
@@ -153,19 +83,25 @@ int run_devices(const DevicesArguments& arguments) {
 
 Command add_devices(CLI::App& app) {
   CLI::App* const command =
-      app.add_subcommand("devices", "List the HID devices, the profiles that fit them, and who may open them");
-  command->footer(R"(
-Examples:
+      app.add_subcommand("devices", "List the HID devices, the profiles that match them, and whether they can be opened.");
+  command->footer(R"(Examples:
   fdcg-servo devices
   fdcg-servo devices --profile my-device.json --json
-  fdcg-servo devices --udev | sudo tee /etc/udev/rules.d/70-fdcg.rules)");
+  fdcg-servo devices --udev | sudo tee /etc/udev/rules.d/70-fdcg.rules
+
+)" + tools::exit_codes("success", "not used by this command"));
   const auto arguments = std::make_shared<DevicesArguments>();
-  command->add_option("--profile", arguments->profiles, "Try these profiles too")->type_name("FILE...");
-  command->add_option("--hid", arguments->hid, "hidapi's back end; default: hidraw, then libusb")
-      ->type_name("hidraw|libusb")
-      ->check(CLI::IsMember({"hidraw", "libusb"}));
-  CLI::Option* const json = command->add_flag("--json", arguments->json, "As JSON");
-  command->add_flag("--udev", arguments->udev, "Print udev rules that let users open the profiles' devices")->excludes(json);
+  command->add_option("--profile", arguments->search.profile_files, "Match these profiles too, beside the built-in ones.")
+      ->type_name("FILE...")
+      ->group("Devices");
+  tools::choice_option(*command, "--hid", arguments->search.backend, "Back end of hidapi.", {"hidraw", "libusb"})
+      ->type_name("BACKEND")
+      ->default_str("hidraw, then libusb")
+      ->group("Devices");
+  CLI::Option* const json = command->add_flag("--json", arguments->json, "Print JSON.")->group("Output");
+  command->add_flag("--udev", arguments->udev, "Print udev rules that let users open the devices of the profiles.")
+      ->excludes(json)
+      ->group("Output");
   return {command, [arguments] { return run_devices(*arguments); }};
 }
 

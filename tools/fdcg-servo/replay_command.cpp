@@ -8,11 +8,14 @@
 #include <optional>
 
 #include "../common/atomic_file.hpp"
+#include "../common/options.hpp"
 #include "../common/terminal.hpp"
+#include "fdcg/device_tools.hpp"
 #include "fdcg/fdcg.h"
+#include "hand_path.hpp"
+#include "path_warnings.hpp"
 #include "replay_session.hpp"
 #include "servo_commands.hpp"
-#include "session/session_reader.hpp"
 #include "step_time_histogram.hpp"
 #include "trajectory_csv.hpp"
 
@@ -35,6 +38,7 @@ struct ReplayArguments {
   std::string trajectory;
   std::string log;
   fdcg_params params = fdcg_make_params();
+  std::string path, written_path;
   bool has_mu_dynamic = false;
   bool quiet = false;
   std::string graphs, touches, rewritten;  // of a session's log
@@ -204,21 +208,6 @@ std::string summary_text(const Summary& summary, const fdcg_contact& contact, st
   return text;
 }
 
-// A recorded fault is no error, but nobody should take its ticks for free ones: told even where no summary is.
-void warn_of_non_finite(const std::string& name, const std::vector<TrajectoryPoint>& points) {
-  const auto is_bad = [](const TrajectoryPoint& point) {
-    return std::any_of(point.hip_object_m.begin(), point.hip_object_m.end(), [](double x) { return !std::isfinite(x); });
-  };
-  const auto count = std::count_if(points.begin(), points.end(), is_bad);
-  if (count == 0) return;
-  const auto first = std::find_if(points.begin(), points.end(), is_bad);
-  std::fprintf(
-      stderr,
-      "fdcg-servo: warning: %s: %s of %s %s a HIP that is NaN or infinite, the first at t = %s s: no force is felt there\n",
-      name == "-" ? "standard input" : name.c_str(), grouped(static_cast<std::uint64_t>(count)).c_str(),
-      grouped(points.size()).c_str(), count == 1 ? "rows has" : "rows have", short_number(first->t_s).c_str());
-}
-
 int check_arguments(const ReplayArguments& arguments) {
   fdcg_error error{};
   const fdcg_params& params = arguments.params;
@@ -230,7 +219,11 @@ int check_arguments(const ReplayArguments& arguments) {
   if (fdcg_check_params(&arguments.params, &error) != FDCG_OK) return fail(kUsage, error.message);
   for (const std::string* input : {&arguments.graph, &arguments.trajectory}) {
     if (tools::is_same_file(*input, arguments.log)) return fail(kUsage, "-o " + arguments.log + " would overwrite an input");
+    if (tools::is_same_file(*input, arguments.written_path))
+      return fail(kUsage, "--write-path " + arguments.written_path + " would overwrite an input");
   }
+  if (!arguments.log.empty() && arguments.log == arguments.written_path)
+    return fail(kUsage, "-o and --write-path name one file: " + arguments.log);
   return kClean;
 }
 
@@ -241,102 +234,146 @@ int run_session(const ReplayArguments& arguments, const std::string& given) {
       {arguments.graph, arguments.graphs, arguments.log, arguments.touches, arguments.rewritten, arguments.quiet});
 }
 
-int run_replay(const ReplayArguments& arguments) {
-  if (arguments.trajectory.empty()) {
+// What the command line asks for is no replay of a graph.
+int check_inputs(const ReplayArguments& arguments) {
+  if (arguments.trajectory.empty() && arguments.path.empty()) {
     fdcg_graph graph{};
     fdcg_error error{};
     if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK)
       return fail(kFile, std::string("neither a session's log nor a graph: ") + error.message);
     fdcg_close(&graph);
-    return fail(kUsage, "--trajectory is required: '" + arguments.graph +
-                            "' is no session's log, and a graph needs a path (see 'fdcg-servo replay --help')");
+    return fail(kUsage, "--trajectory or --path is required: '" + arguments.graph +
+                            "' is no session's log, and a graph needs a path of the hand");
   }
   if (!arguments.graphs.empty() || !arguments.touches.empty() || !arguments.rewritten.empty()) {
     return fail(kUsage, "--graphs, --touches and --write are for a session's log, and '" + arguments.graph + "' is none");
   }
-  if (const int code = check_arguments(arguments); code != kClean) return code;
+  return check_arguments(arguments);
+}
+
+// The path: from its file, or made for the graph and written where that was asked for.
+int get_path(const ReplayArguments& arguments, const fdcg_graph& graph, std::vector<TrajectoryPoint>* points) {
+  std::string message;
+  if (arguments.path.empty()) {
+    if (!read_trajectory(arguments.trajectory, *points, message)) return fail(kFile, message);
+    warn_of_non_finite(arguments.trajectory, *points);
+    return kClean;
+  }
+  *points = slide_path(graph, &message);
+  if (points->empty()) return fail(kFile, arguments.graph + ": " + message);
+  if (arguments.written_path.empty()) return kClean;
+  AtomicFile file(arguments.written_path);
+  file.write(trajectory_csv(*points));
+  return file.commit() ? kClean : fail(kFile, file.error());
+}
+
+int run_replay(const ReplayArguments& arguments) {
+  if (const int code = check_inputs(arguments); code != kClean) return code;
   std::optional<AtomicFile> log;
   if (!arguments.log.empty()) log.emplace(arguments.log);
   if (log && !log->ok()) return fail(kFile, log->error());
-  std::vector<TrajectoryPoint> points;
-  std::string message;
-  if (!read_trajectory(arguments.trajectory, points, message)) return fail(kFile, message);
-  warn_of_non_finite(arguments.trajectory, points);
   fdcg_graph graph{};
   fdcg_error error{};
   if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
     return fail(kFile, error.message);
   }
+  std::vector<TrajectoryPoint> points;
+  if (const int code = get_path(arguments, graph, &points); code != kClean) {
+    fdcg_close(&graph);
+    return code;
+  }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};
   const Summary summary = replay(graph, arguments.params, points, contact, clock_ns, log ? &*log : nullptr);
+  if (summary.in_state[FDCG_FREE] == summary.ticks) warn_of_nothing_touched(graph, points, arguments.trajectory);
   fdcg_close(&graph);
   if (log && !log->commit()) return fail(kFile, log->error());
   if (!arguments.quiet)
-    std::fputs(summary_text(summary, contact, clock_ns).c_str(), tools::is_stream(arguments.log) ? stderr : stdout);
+    std::fputs(summary_text(summary, contact, clock_ns).c_str(),
+               tools::is_stream(arguments.log) || tools::is_stream(arguments.written_path) ? stderr : stdout);
   return kClean;
 }
 
-// A number from 0 to the largest that the runtime takes.
-void add_number(CLI::App& command, const char* name, double& value, const std::string& unit, const char* help, const char* type,
-                bool* is_given = nullptr) {
+void add_graph_options(CLI::App& command, const std::shared_ptr<ReplayArguments>& arguments) {
   constexpr double kLargest = 1e9;  // fdcg_check_params
-  const auto parse = [&value, is_given, name, unit](const std::string& text) {
-    const char* const end = text.data() + text.size();
-    const auto [stopped, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc{} || stopped != end || !(value >= 0 && value <= kLargest))
-      throw CLI::ValidationError(name, "'" + text + "' is no number from 0 to 1e9" + unit);
-    if (is_given != nullptr) *is_given = true;
+  CLI::Option* const trajectory = command.add_option(
+      "--trajectory", arguments->trajectory, "Recorded HIP: a CSV file with columns t, x, y and z. - is standard input.");
+  trajectory->type_name("FILE")->group("Path of the hand");
+  CLI::Option* const path =
+      tools::choice_option(command, "--path", arguments->path,
+                           "Make a path for this graph: approach, press, slide there and back, lift.", {"slide"});
+  path->type_name("KIND")->excludes(trajectory)->group("Path of the hand");
+  command.add_option("--write-path", arguments->written_path, "Write the path that --path made to FILE (CSV).")
+      ->type_name("FILE")
+      ->needs(path)
+      ->group("Path of the hand");
+  fdcg_params& params = arguments->params;
+  tools::number_option(command, "--mu-s", params.mu_static, {0, kLargest}, "Coefficient of static friction, not below --mu-d.")
+      ->type_name("MU")
+      ->default_str("0.6")
+      ->group("Contact");
+  tools::number_option(command, "--mu-d", params.mu_dynamic, {0, kLargest}, "Coefficient of dynamic friction.")
+      ->type_name("MU")
+      ->default_str("0.4")
+      ->group("Contact");
+  tools::number_option(command, "--stiffness", params.stiffness_n_per_m, {0, kLargest, " N/m"}, "Stiffness of the spring, N/m.")
+      ->type_name("K")
+      ->default_str("1000")
+      ->group("Contact");
+  const auto set_edge_friction = [arguments](const std::string& name) {
+    arguments->params.edge_friction = name == "wedge" ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
   };
-  command.add_option_function<std::string>(name, parse, help)->type_name(type);
+  tools::choice_option(command, "--edge-friction", set_edge_friction,
+                       "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 "
+                       "paper.",
+                       {"wedge", "paper"})
+      ->type_name("RULE")
+      ->default_str("wedge")
+      ->group("Contact");
 }
 
 }  // namespace
 
 Command add_replay(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("replay", "Run the step over a recorded path, or a session's log once more");
-  command->footer(R"(
-Examples:
-  fdcg-servo replay bunny.fdcg --trajectory hip.csv -o log.csv
+  CLI::App* const command =
+      app.add_subcommand("replay", "Run the step over a path of the hand, or replay the log of a session.");
+  command->footer(R"(Examples:
+  fdcg-servo replay bunny.fdcg --path slide
+  fdcg-servo replay bunny.fdcg --path slide --write-path hip.csv -o log.csv
   fdcg-servo replay bunny.fdcg --trajectory hip.csv -o - --mu-s 0 --mu-d 0 | head
   fdcg-servo replay bunny.fdcg --trajectory hip.csv --stiffness 2000 --edge-friction paper
-
   fdcg-servo replay session.fdcglog -o session.csv --touches touches.csv
 
 The trajectory's header names at least t, x, y and z: seconds, and metres in the object's frame. Replaying twice gives the
-same log, byte for byte. Without -o only the summary is printed.
+same log, byte for byte. Without -o only the summary is printed. A path that touches nothing gives a warning.
 
-A session's log (of fdcg-servo run) has all that is needed: every recorded input is given to the same code again, and every
-output compared bit for bit. Exit code 1: an output differs, or the log lacks ticks.)");
+The log of a session (from fdcg-servo run) holds all that is needed: every recorded input goes through the same code again, and
+every output is compared bit for bit.
+
+)" + tools::exit_codes("success; of a log: every output is the same", "of a log: an output differs, or ticks are missing"));
   const auto arguments = std::make_shared<ReplayArguments>();
-  fdcg_params& params = arguments->params;
-  command->add_option("graph", arguments->graph, "FDCG file, or a session's log")->required()->type_name("GRAPH");
-  command->add_option("--trajectory", arguments->trajectory, "Recorded HIP: CSV; - is standard input")->type_name("FILE");
-  command->add_option("-o,--output", arguments->log, "Write the log to FILE (CSV); - is standard output")->type_name("FILE");
-  add_number(*command, "--mu-s", params.mu_static, "", "Static friction coefficient, at least --mu-d; default: 0.6", "MU");
-  add_number(*command, "--mu-d", params.mu_dynamic, "", "Dynamic friction coefficient; default: 0.4", "MU",
-             &arguments->has_mu_dynamic);
-  add_number(*command, "--stiffness", params.stiffness_n_per_m, " N/m", "N/m; default: 1000", "K");
-  const auto parse_edge_friction = [arguments](const std::string& name) {
-    if (name != "wedge" && name != "paper")
-      throw CLI::ValidationError("--edge-friction", "'" + name + "' is none of wedge, paper");
-    arguments->params.edge_friction = name == "wedge" ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
-  };
-  command
-      ->add_option_function<std::string>("--edge-friction", parse_edge_friction,
-                                         "In a groove: by the load of both faces (wedge, the default), or by the distance from "
-                                         "the edge as the 2004 paper has it")
-      ->type_name("wedge|paper");
-  command->add_option("--graphs", arguments->graphs, "Session's log: the folder of its graphs; default: where they were")
-      ->type_name("FOLDER");
-  command->add_option("--touches", arguments->touches, "Session's log: a row for each touch of each contact to FILE (CSV)")
-      ->type_name("FILE");
-  command->add_option("--write", arguments->rewritten, "Session's log: write it anew from the replay")->type_name("FILE");
-  command->add_flag("-q,--quiet", arguments->quiet, "No summary");
+  command->add_option("graph", arguments->graph, "FDCG file, or the log of a session.")->required()->type_name("GRAPH");
+  add_graph_options(*command, arguments);
+  command->add_option("-o,--output", arguments->log, "Write a row for each tick to FILE (CSV). - is standard output.")
+      ->type_name("FILE")
+      ->group("Output");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print no summary.")->group("Output");
+  command->add_option("--graphs", arguments->graphs, "Folder of the graphs.")
+      ->type_name("FOLDER")
+      ->default_str("where they were")
+      ->group("Log of a session");
+  command->add_option("--touches", arguments->touches, "Write a row for each touch of each contact to FILE (CSV).")
+      ->type_name("FILE")
+      ->group("Log of a session");
+  command->add_option("--write", arguments->rewritten, "Write the log anew, from the replay, to FILE.")
+      ->type_name("FILE")
+      ->group("Log of a session");
   return {command, [arguments, command] {
+            arguments->has_mu_dynamic = command->count("--mu-d") != 0;
             if (!dev::is_session_log(arguments->graph)) return run_replay(*arguments);
             std::string given;
-            for (const char* const name : {"--trajectory", "--mu-s", "--mu-d", "--stiffness", "--edge-friction"})
+            for (const char* const name :
+                 {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness", "--edge-friction"})
               if (given.empty() && command->count(name) != 0) given = name;
             return run_session(*arguments, given);
           }};

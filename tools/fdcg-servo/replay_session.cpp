@@ -7,9 +7,9 @@
 
 #include "../common/atomic_file.hpp"
 #include "../common/terminal.hpp"
-#include "recording/session_replay.hpp"
+#include "fdcg/device_tools.hpp"
+#include "fdcg/fdcg.h"
 #include "servo_commands.hpp"
-#include "session_csv.hpp"
 
 namespace fdcg::servo {
 namespace {
@@ -47,7 +47,7 @@ class Output {
   std::string text_;
 };
 
-std::string summary(const dev::SessionReplay& replay, double seconds) {
+std::string summary(const dev::LogReplay& replay, double seconds) {
   std::string text;
   std::uint64_t ticks = 0;
   for (const dev::DeviceReplay& device : replay.devices()) {
@@ -64,11 +64,9 @@ std::string summary(const dev::SessionReplay& replay, double seconds) {
     }
     text += "\n";
   }
-  if (replay.reader().ending() == dev::Ending::kEnded && replay.reader().end().reason == dev::EndReason::kLimit) {
-    text += "the log ends at its limit of bytes; the session went on\n";
-  }
+  if (replay.ends_at_limit()) text += "the log ends at its limit of bytes; the session went on\n";
   if (replay.has_strays()) text += "there are ticks of devices that the scene has not\n";
-  if (replay.reader().ending() != dev::Ending::kEnded) text += replay.reader().damage() + "\n";
+  if (const std::string damage = replay.damage(); !damage.empty()) text += damage + "\n";
   char time[64];
   std::snprintf(time, sizeof time, "%.3g s, %.3g us a tick\n", seconds,
                 ticks == 0 ? 0 : seconds * 1e6 / static_cast<double>(ticks));
@@ -76,8 +74,8 @@ std::string summary(const dev::SessionReplay& replay, double seconds) {
 }
 
 // Of a difference, and a version of the program that is not the one that wrote the log.
-std::string version_note(const dev::SessionReplay& replay) {
-  const std::string& program = replay.reader().header().program;
+std::string version_note(const dev::LogReplay& replay) {
+  const std::string program = replay.program();
   if (program == FDCG_VERSION_STRING) return {};
   return "the log was written by version " + program + ", this is " FDCG_VERSION_STRING "\n";
 }
@@ -96,11 +94,11 @@ int check_outputs(const ReplaySessionArguments& arguments) {
 }
 
 // The graphs are known when the log is open; nothing takes its name before the replay is over.
-int check_graphs(const ReplaySessionArguments& arguments, const dev::HostConfig& config) {
-  for (const dev::ObjectConfig& object : config.objects)
+int check_graphs(const ReplaySessionArguments& arguments, const dev::LogReplay& replay) {
+  for (const auto& [object, graph] : replay.graph_files())
     for (const std::string* const file : {&arguments.csv, &arguments.touches, &arguments.rewritten})
-      if (!object.is_surface && tools::is_same_file(object.file, *file))
-        return fail(kUsage, "'" + *file + "' would overwrite the graph of '" + object.name + "'");
+      if (tools::is_same_file(graph, *file))
+        return fail(kUsage, "'" + *file + "' would overwrite the graph of '" + object + "'");
   return kClean;
 }
 
@@ -111,32 +109,29 @@ int replay_session(const ReplaySessionArguments& arguments) {
   Output csv(arguments.csv), touches(arguments.touches), rewritten(arguments.rewritten);
   for (const Output* output : {&csv, &touches, &rewritten})
     if (!output->ok()) return fail(kFile, output->error());
-  const auto replay = std::make_unique<dev::SessionReplay>();
-  if (const std::string problem = replay->open(arguments.session, arguments.graphs); !problem.empty())
+  dev::LogReplay replay;
+  if (const std::string problem = replay.open(arguments.session, arguments.graphs); !problem.empty())
     return fail(kFile, problem);
-  if (const int code = check_graphs(arguments, replay->config()); code != kClean) return code;
+  if (const int code = check_graphs(arguments, replay); code != kClean) return code;
   const auto started = std::chrono::steady_clock::now();
-  csv.add(session_csv_header(replay->config()));
-  touches.add(touches_csv_header());
-  rewritten.add(replay->header_bytes());
-  std::uint64_t first_ns = 0;
-  for (dev::ReplayedTick tick; replay->next(&tick);) {
-    if (first_ns == 0) first_ns = tick.input->now_ns;
-    if (csv.is_wanted() && tick.output->has_sample) csv.add(session_csv_row(tick, first_ns));
-    if (touches.is_wanted() && tick.output->has_sample) touches.add(touches_csv_rows(*replay, tick, first_ns));
-    const std::vector<std::uint8_t>& record = replay->record();
-    rewritten.add({reinterpret_cast<const char*>(record.data()), record.size()});
+  csv.add(replay.csv_header());
+  touches.add(replay.touches_header());
+  rewritten.add(replay.header_bytes());
+  while (replay.next()) {
+    if (csv.is_wanted()) csv.add(replay.csv_row());
+    if (touches.is_wanted()) touches.add(replay.touches_rows());
+    if (rewritten.is_wanted()) rewritten.add(replay.record_bytes());
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  if (replay->reader().ending() == dev::Ending::kEnded) rewritten.add(replay->end_bytes());
+  rewritten.add(replay.end_bytes());
   if (!csv.commit()) return fail(kFile, csv.error());
   if (!touches.commit()) return fail(kFile, touches.error());
   if (!rewritten.commit()) return fail(kFile, rewritten.error());
   const bool is_to_error =
       tools::is_stream(arguments.csv) || tools::is_stream(arguments.touches) || tools::is_stream(arguments.rewritten);
-  const bool is_same = replay->is_same();
+  const bool is_same = replay.is_same();
   if (!arguments.quiet || !is_same) {
-    const std::string text = summary(*replay, seconds) + (is_same ? std::string() : version_note(*replay));
+    const std::string text = summary(replay, seconds) + (is_same ? std::string() : version_note(replay));
     std::fputs(text.c_str(), is_to_error || arguments.quiet ? stderr : stdout);
   }
   return is_same ? kClean : kFindings;

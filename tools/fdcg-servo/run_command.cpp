@@ -6,16 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "../common/options.hpp"
 #include "../common/terminal.hpp"
-#include "base/words.hpp"
-#include "host/host.hpp"
+#include "fdcg/device_tools.hpp"
 #include "run_fast.hpp"
-#include "scene/scene_json.hpp"
 #include "servo_commands.hpp"
 #include "signals.hpp"
 #include "status_text.hpp"
@@ -73,7 +71,7 @@ class CommandInput {
 
 class Session {
  public:
-  Session(const RunArguments& arguments, dev::Host& host, Signals& signals, std::string log_file)
+  Session(const RunArguments& arguments, dev::SceneRun& host, Signals& signals, std::string log_file)
       : arguments_(arguments),
         host_(host),
         signals_(signals),
@@ -83,7 +81,7 @@ class Session {
     looks_.resize(count);
     seen_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-      looks_[i].name = host.device(static_cast<int>(i)).name;
+      looks_[i] = host.look(static_cast<int>(i));
       name_width_ = std::max(name_width_, looks_[i].name.size());
       seen_[i].wants_arming = arguments.arm;
     }
@@ -96,7 +94,7 @@ class Session {
 
  private:
   struct Seen {
-    dev::Connection connection = dev::Connection::kAbsent;
+    bool is_open = false;
     std::string problem;
     std::uint64_t disarmed[dev::kFaults] = {};
     dev::Phase phase = dev::Phase::kDisarmed;
@@ -115,14 +113,13 @@ class Session {
   void look();
   void notice(std::size_t device);
   void notice_connection(std::size_t device);
-  bool is_recorded(std::size_t device) const;
   void arm_where_wanted(std::size_t device);
   void say(const std::string& line);
   void show_status();
   void wipe();
 
   const RunArguments& arguments_;
-  dev::Host& host_;
+  dev::SceneRun& host_;
   Signals& signals_;
   const std::string log_file_;  // empty: none
   const bool is_terminal_;
@@ -151,7 +148,7 @@ void Session::say(const std::string& line) {
 void Session::show_status() {
   const double now_s = seconds();
   for (std::size_t i = 0; i < looks_.size(); ++i) {
-    const std::uint64_t ticks = looks_[i].status.counters.ticks;
+    const std::uint64_t ticks = looks_[i].counters.ticks;
     looks_[i].rate_hz = now_s > last_status_s_ ? static_cast<double>(ticks - seen_[i].ticks) / (now_s - last_status_s_) : 0;
     seen_[i].ticks = ticks;
   }
@@ -174,13 +171,12 @@ void Session::show_status() {
 // Only from the start to the gate's first yes: after a fault or a re-plug arming is the user's to ask for again.
 void Session::arm_where_wanted(std::size_t device) {
   Seen& seen = seen_[device];
-  const dev::TickOutput& last = looks_[device].status.last;
-  const bool is_there =
-      looks_[device].connection.connection == dev::Connection::kOpen && looks_[device].status.counters.ticks > 0;
+  const DeviceLook& last = looks_[device];
+  const bool is_there = last.is_open && last.counters.ticks > 0;
   if (!seen.wants_arming || !is_there) return;
   if (!seen.was_asked) seen.asked_s = seconds();
   seen.was_asked = true;
-  const std::uint64_t* const disarmed = looks_[device].status.counters.disarmed;
+  const std::uint64_t* const disarmed = last.counters.disarmed;
   const bool was_armed = std::any_of(disarmed, disarmed + dev::kFaults, [](std::uint64_t count) { return count != 0; });
   if (was_armed || last.phase != dev::Phase::kDisarmed || last.fault == dev::Fault::kUnknownLimit) {
     seen.wants_arming = false;
@@ -189,21 +185,16 @@ void Session::arm_where_wanted(std::size_t device) {
   }
 }
 
-// It is never gone: it ends, and its connection's problem says so.
-bool Session::is_recorded(std::size_t device) const {
-  return host_.device(static_cast<int>(device)).source == dev::DeviceSource::kRecorded;
-}
-
 void Session::notice_connection(std::size_t device) {
   Seen& seen = seen_[device];
   const DeviceLook& look = looks_[device];
-  if (look.connection.connection != seen.connection) {
-    const bool is_open = look.connection.connection == dev::Connection::kOpen;
-    if (is_open || !is_recorded(device)) say(look.name + (is_open ? ": open" : ": gone"));
-    seen.connection = look.connection.connection;
+  if (look.is_open != seen.is_open) {
+    // a recording is never gone: it ends, and its problem says so
+    if (look.is_open || !look.is_recorded) say(look.name + (look.is_open ? ": open" : ": gone"));
+    seen.is_open = look.is_open;
   }
-  if (look.connection.problem != seen.problem) {
-    seen.problem = look.connection.problem;
+  if (look.problem != seen.problem) {
+    seen.problem = look.problem;
     if (!seen.problem.empty()) say(look.name + ": " + seen.problem);
   }
 }
@@ -212,32 +203,32 @@ void Session::notice_connection(std::size_t device) {
 void Session::notice(std::size_t device) {
   Seen& seen = seen_[device];
   const DeviceLook& look = looks_[device];
-  const dev::DeviceStatus& status = look.status;
   bool has_disarmed = false;
   for (int i = 1; i < dev::kFaults; ++i) {
     const auto fault = static_cast<dev::Fault>(i);
-    if (status.counters.disarmed[i] > seen.disarmed[i]) {
-      const bool is_end = fault == dev::Fault::kReadFailed && is_recorded(device);
+    if (look.counters.disarmed[i] > seen.disarmed[i]) {
+      const bool is_end = fault == dev::Fault::kReadFailed && look.is_recorded;
       if (!is_end) say(look.name + ": disarmed: " + dev::fault_text(fault));
       has_disarmed = true;
     }
-    seen.disarmed[i] = status.counters.disarmed[i];
+    seen.disarmed[i] = look.counters.disarmed[i];
   }
-  if (status.last.phase != dev::Phase::kDisarmed || has_disarmed) seen.asked_s = -1;
+  if (look.phase != dev::Phase::kDisarmed || has_disarmed) seen.asked_s = -1;
   if (seen.asked_s >= 0 && seconds() - seen.asked_s > kRefusedAfterS) {
-    const bool is_unknown = status.last.fault == dev::Fault::kUnknownLimit;
+    const bool is_unknown = look.fault == dev::Fault::kUnknownLimit;
     say(look.name + ": not armed: " +
         (is_unknown ? dev::fault_text(dev::Fault::kUnknownLimit) : "the tip is pressed against something, or does not report"));
     seen.asked_s = -1;
   }
-  if (status.last.phase == dev::Phase::kRamping && seen.phase == dev::Phase::kDisarmed) say(look.name + ": armed");
-  seen.phase = status.last.phase;
+  if (look.phase == dev::Phase::kRamping && seen.phase == dev::Phase::kDisarmed) say(look.name + ": armed");
+  seen.phase = look.phase;
 }
 
 void Session::look() {
   for (std::size_t i = 0; i < looks_.size(); ++i) {
-    looks_[i].connection = host_.connection(static_cast<int>(i));
-    looks_[i].status = host_.status(static_cast<int>(i));
+    const double rate_hz = looks_[i].rate_hz;
+    looks_[i] = host_.look(static_cast<int>(i));
+    looks_[i].rate_hz = rate_hz;
     notice_connection(i);
     notice(i);
     arm_where_wanted(i);
@@ -245,7 +236,7 @@ void Session::look() {
   if (seconds() >= next_arming_s_) next_arming_s_ = seconds() + kArmAgainS;
   if (std::string failure = host_.log_failure(); !failure.empty() && log_failure_.empty()) {
     wipe();
-    std::fprintf(stderr, "fdcg-servo: warning: %s\n", failure.c_str());
+    tools::warn(failure);
     log_failure_ = std::move(failure);
   }
   if (seconds() >= next_status_s_) {
@@ -282,13 +273,12 @@ void Session::disarm() {
 
 // Disarmed, and it has taken reports since: `first_zero`, 0 at first, keeps the number of the first that is surely zero.
 bool Session::has_left_zero(std::size_t device, std::uint64_t* first_zero) {
-  const int index = static_cast<int>(device);
-  if (host_.connection(index).connection != dev::Connection::kOpen || !host_.device(index).profile.has_output) return true;
-  const dev::DeviceStatus status = host_.status(index);
-  if (status.last.phase != dev::Phase::kDisarmed) return false;
+  const DeviceLook look = host_.look(static_cast<int>(device));
+  if (!look.is_open || !look.takes_output) return true;
+  if (look.phase != dev::Phase::kDisarmed) return false;
   constexpr std::uint64_t kUnderWay = 2;  // one that is being sent, one that the tick before has put
-  if (*first_zero == 0) *first_zero = status.writes + kUnderWay;
-  return status.writes > *first_zero;
+  if (*first_zero == 0) *first_zero = look.writes + kUnderWay;
+  return look.writes > *first_zero;
 }
 
 // A stopped process sends nothing: what its devices took last is what they would go on pushing with.
@@ -332,12 +322,16 @@ void Session::run() {
 int Session::end(const std::string& stop_problem) {
   bool is_clean = true;
   for (std::size_t i = 0; i < looks_.size(); ++i) {
-    const dev::ConnectionReport after = host_.connection(static_cast<int>(i));  // all are closed: only is_over tells
-    looks_[i].status = host_.status(static_cast<int>(i));
-    const bool is_missing = looks_[i].status.opened == 0;
-    const dev::Fault fault = looks_[i].status.last.fault;
-    const bool is_played = after.is_over || (is_recorded(i) && fault == dev::Fault::kReadFailed);  // that end is no fault
-    looks_[i].connection.is_over = is_played;
+    DeviceLook after = host_.look(static_cast<int>(i));
+    const bool is_missing = after.opened == 0;
+    const dev::Fault fault = after.fault;
+    const bool is_played = after.is_over || (after.is_recorded && fault == dev::Fault::kReadFailed);  // that end is no fault
+    // all are closed by now: how they were connected is what was last seen
+    after.is_open = looks_[i].is_open;
+    after.problem = looks_[i].problem;
+    after.rate_hz = looks_[i].rate_hz;
+    after.is_over = is_played;
+    looks_[i] = std::move(after);
     notice(i);
     const bool is_only_read = fault == dev::Fault::kUnknownLimit && !seen_[i].was_asked;
     is_clean = is_clean && (is_played || ((!is_trouble(fault) || is_only_read) && !is_missing));
@@ -355,45 +349,27 @@ int Session::end(const std::string& stop_problem) {
   return is_clean ? kClean : kFindings;
 }
 
-// What is no number, too, is outside.
-CLI::Validator seconds_from(double least) {
-  const auto check = [least](const std::string& text) -> std::string {
-    constexpr double kMost = 1e9;
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stopped, error] = std::from_chars(text.data(), end, value);
-    if (error == std::errc{} && stopped == end && value >= least && value <= kMost) return {};
-    return "'" + text + "' is no number from " + dev::shown_number(least) + " to 1e9 seconds";
-  };
-  return {check, ""};
-}
-
 int run_scene(const RunArguments& arguments) {
-  dev::HostConfig config;
+  dev::Scene scene;
   std::vector<std::string> warnings;
-  if (const std::string problem = dev::read_scene(arguments.scene, &config, &warnings); !problem.empty()) {
-    return fail(kFile, problem);
-  }
-  if (!arguments.log.empty()) config.log_file = arguments.log;
-  if (arguments.no_log) config.log_file.clear();
-  if (arguments.hid == "hidraw") config.loop.backend = dev::HidBackend::kHidraw;
-  if (arguments.hid == "libusb") config.loop.backend = dev::HidBackend::kLibusb;
+  if (const std::string problem = scene.read(arguments.scene, &warnings); !problem.empty()) return fail(kFile, problem);
+  if (!arguments.log.empty() || arguments.no_log) scene.set_log_file(arguments.no_log ? "" : arguments.log);
+  if (!arguments.hid.empty()) scene.set_backend(arguments.hid);
   const StatusKind says = arguments.quiet ? StatusKind::kNone : arguments.status;
   if (arguments.fast) {
-    const auto is_simulated = [](const dev::DeviceConfig& device) { return device.source == dev::DeviceSource::kSimulated; };
-    if (!(arguments.for_s > 0) && std::any_of(config.devices.begin(), config.devices.end(), is_simulated))
+    if (!(arguments.for_s > 0) && scene.has_simulated_device())
       return fail(kUsage, "a simulated device never ends; say for how long it runs (--for)");
-    return run_fast(std::move(config), warnings,
+    return run_fast(std::move(scene), warnings,
                     {arguments.for_s, arguments.arm, says == StatusKind::kText, says == StatusKind::kJson});
   }
-  const std::string log_file = config.log_file;
-  dev::Host host;
-  if (const std::string problem = host.open(std::move(config)); !problem.empty()) return fail(kFile, problem);
+  const std::string log_file = scene.log_file();
+  dev::SceneRun host;
+  if (const std::string problem = host.open(std::move(scene)); !problem.empty()) return fail(kFile, problem);
   Signals signals(&host);
   if (const std::string problem = host.start(); !problem.empty()) return fail(kFile, problem);
   for (const std::vector<std::string>& list : {warnings, host.warnings()})
     for (const std::string& warning : list)
-      std::fprintf(stderr, "fdcg-servo: warning: %s\n", warning.c_str());
+      tools::warn(warning);
   if (!arguments.arm && !arguments.quiet && arguments.status == StatusKind::kText) {
     std::puts("Not armed: there is no force until you type arm and Enter (disarm, quit), or start with --arm.");
   }
@@ -406,41 +382,56 @@ int run_scene(const RunArguments& arguments) {
 }  // namespace
 
 Command add_run(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("run", "Run the devices of a scene: read, step, push, log");
-  command->footer(R"(
-Examples:
+  CLI::App* const command = app.add_subcommand("run", "Run a scene: read its devices, step, send forces, log.");
+  command->footer(R"(Examples:
   fdcg-servo run scene.json
   fdcg-servo run scene.json --arm --for 60 --log session.fdcglog
   fdcg-servo run scene.json --arm --for 60 --fast --log session.fdcglog
   fdcg-servo run scene.json --status json --status-every 0.1 | jq .devices[0].rate_hz
 
-Commands on standard input, a line each: arm, disarm, quit. Its end does not end the run; Ctrl-C does, with zero force.
-Any other signal that ends the program leaves zero force too (not kill -9); Ctrl-Z disarms before it stops.
-Nothing is pushed until a device is armed, and after a fault until it is armed again. A log that is there is overwritten.
+Commands on standard input, one on each line: arm, disarm, quit. The end of standard input does not end the run; Ctrl-C does,
+with zero force. Any other signal that ends the program leaves zero force too (not kill -9); Ctrl-Z disarms before it stops. No
+force is sent before a device is armed, nor after a fault until it is armed again. An existing log file is overwritten.
 
-Exit codes: 0 clean (a recording that has ended is no fault); 1 a device ended disarmed by a fault, or was never there;
-2 wrong usage; 3 a file; 4 a fault of the program.)");
+)" + tools::exit_codes("success (a recording that has ended is no fault)",
+                       "a device ended disarmed by a fault, or was never there"));
   const auto arguments = std::make_shared<RunArguments>();
-  command->add_option("scene", arguments->scene, "Scene (schemas/servo-scene.schema.json)")->required()->type_name("SCENE");
-  command->add_flag("--arm", arguments->arm, "Arm each device once, as soon as it is there and free of force");
-  command->add_flag("--fast", arguments->fast,
-                    "Simulated and recorded devices only: no waiting, each on a clock of its own; the same log every time");
-  command->add_option("--for", arguments->for_s, "Stop after so long")->type_name("SECONDS")->check(seconds_from(0.001));
-  command->add_option("--hid", arguments->hid, "hidapi's back end, in place of the scene's")
-      ->type_name("hidraw|libusb")
-      ->check(CLI::IsMember({"hidraw", "libusb"}));
-  CLI::Option* const log =
-      command->add_option("--log", arguments->log, "Log to FILE, in place of the scene's")->type_name("FILE");
-  command->add_flag("--no-log", arguments->no_log, "No log, whatever the scene says")->excludes(log);
-  const std::vector<std::pair<std::string, StatusKind>> kinds = {
-      {"text", StatusKind::kText}, {"json", StatusKind::kJson}, {"none", StatusKind::kNone}};
-  command->add_option("--status", arguments->status, "What is printed while it runs; default: text")
-      ->type_name("text|json|none")
-      ->transform(CLI::CheckedTransformer(kinds));
-  command->add_option("--status-every", arguments->status_every_s, "Default: 0.2 on a terminal, 1 elsewhere")
+  command->add_option("scene", arguments->scene, "Scene file (schemas/servo-scene.schema.json).")
+      ->required()
+      ->type_name("SCENE");
+  command->add_flag("--arm", arguments->arm, "Arm each device once, as soon as it is there and free of force.")
+      ->group("Devices");
+  command
+      ->add_flag("--fast", arguments->fast,
+                 "Run simulated and recorded devices without waiting, each on a clock of its own. The log is the same every "
+                 "time.")
+      ->group("Devices");
+  tools::number_option(*command, "--for", arguments->for_s, {0.001, 1e9, " seconds"}, "Stop after this time, in seconds.")
       ->type_name("SECONDS")
-      ->check(seconds_from(0.01));
-  command->add_flag("-q,--quiet", arguments->quiet, "Errors and warnings only");
+      ->default_str("no end")
+      ->group("Devices");
+  tools::choice_option(*command, "--hid", arguments->hid, "Back end of hidapi.", {"hidraw", "libusb"})
+      ->type_name("BACKEND")
+      ->default_str("the scene's")
+      ->group("Devices");
+  CLI::Option* const log = command->add_option("--log", arguments->log, "Write the session's log to FILE.")
+                               ->type_name("FILE")
+                               ->default_str("the scene's");
+  log->group("Output");
+  command->add_flag("--no-log", arguments->no_log, "Write no log, whatever the scene says.")->excludes(log)->group("Output");
+  const auto set_status = [arguments](const std::string& kind) {
+    arguments->status = kind == "json" ? StatusKind::kJson : kind == "none" ? StatusKind::kNone : StatusKind::kText;
+  };
+  tools::choice_option(*command, "--status", set_status, "What is printed during the run.", {"text", "json", "none"})
+      ->type_name("STATUS")
+      ->default_str("text")
+      ->group("Output");
+  tools::number_option(*command, "--status-every", arguments->status_every_s, {0.01, 1e9, " seconds"},
+                       "Time between two status lines, in seconds.")
+      ->type_name("SECONDS")
+      ->default_str("0.2 on a terminal, 1 elsewhere")
+      ->group("Output");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors and warnings only.")->group("Output");
   return {command, [arguments] { return run_scene(*arguments); }};
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/host_config.hpp"
+#include "fdcg/device_tools.hpp"
 
 namespace fdcg::servo {
 
@@ -16,6 +16,6 @@ struct FastRunArguments {
 };
 
 // The exit code. `warnings` are told first.
-int run_fast(dev::HostConfig config, const std::vector<std::string>& warnings, const FastRunArguments& arguments);
+int run_fast(dev::Scene scene, const std::vector<std::string>& warnings, const FastRunArguments& arguments);
 
 }  // namespace fdcg::servo

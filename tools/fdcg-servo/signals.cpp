@@ -5,16 +5,16 @@
 
 #include <atomic>
 
-#include "host/emergency.hpp"
+#include "fdcg/device.h"
 
 namespace fdcg::servo {
 namespace {
 
-std::atomic<dev::Host*> the_host{nullptr};
+std::atomic<dev::SceneRun*> the_host{nullptr};
 std::atomic<int> the_stop{0};
 
 void on_end(int) {
-  if (dev::Host* const host = the_host.load()) host->request_stop();
+  if (dev::SceneRun* const host = the_host.load()) host->request_stop();
 }
 
 void on_stop(int number) {
@@ -36,7 +36,7 @@ bool is_ignored(int number) {
 
 }  // namespace
 
-Signals::Signals(dev::Host* host) {
+Signals::Signals(dev::SceneRun* host) {
   the_host.store(host);
   the_stop.store(0);
   for (const int number : {SIGINT, SIGTERM, SIGHUP})
@@ -45,7 +45,7 @@ Signals::Signals(dev::Host* host) {
     handle(number, SIG_IGN);
   for (const int number : {SIGTSTP, SIGTTIN})
     if (!is_ignored(number)) handle(number, on_stop);
-  dev::install_crash_handlers();  // last: they take what nobody has
+  fdcg_device_install_crash_handlers();  // last: they take what nobody has
 }
 
 Signals::~Signals() {

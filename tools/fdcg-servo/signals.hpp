@@ -9,14 +9,14 @@
 //   that ends a process
 #pragma once
 
-#include "host/host.hpp"
+#include "fdcg/device_tools.hpp"
 
 namespace fdcg::servo {
 
 // One at a time. Made in the main thread, before the host's threads run.
 class Signals {
  public:
-  explicit Signals(dev::Host* host);
+  explicit Signals(dev::SceneRun* host);
   ~Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;

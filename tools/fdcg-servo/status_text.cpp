@@ -51,23 +51,22 @@ Json vector_json(const double* x) {
 }
 
 Json device_json(const DeviceLook& look) {
-  const dev::DeviceStatus& status = look.status;
-  const dev::TickCounters& counters = status.counters;
+  const dev::TickCounters& counters = look.counters;
   Json json;
   json["name"] = look.name;
-  json["connection"] = look.connection.connection == dev::Connection::kOpen ? "open" : "absent";
-  if (!look.connection.problem.empty()) json["problem"] = look.connection.problem;
-  if (look.connection.is_over) json["ended"] = true;
-  json["opened"] = status.opened;
-  json["phase"] = phase_name(status.last.phase);
-  json["fault"] = dev::fault_name(status.last.fault);
+  json["connection"] = look.is_open ? "open" : "absent";
+  if (!look.problem.empty()) json["problem"] = look.problem;
+  if (look.is_over) json["ended"] = true;
+  json["opened"] = look.opened;
+  json["phase"] = phase_name(look.phase);
+  json["fault"] = dev::fault_name(look.fault);
   json["rate_hz"] = look.rate_hz;
-  json["contact"] = state_name(status.last.state);
-  json["tip_m"] = vector_json(status.last.hip_world_m);
-  json["wanted_force_n"] = vector_json(status.last.wanted_force_n);
-  json["force_n"] = vector_json(status.last.force.force_n());
-  for (std::uint32_t i = 0; i < status.last.body_count; ++i)
-    json["bodies_m"].push_back(vector_json(status.last.bodies[i].translation_m));
+  json["contact"] = state_name(look.state);
+  json["tip_m"] = vector_json(look.tip_m);
+  json["wanted_force_n"] = vector_json(look.wanted_force_n);
+  json["force_n"] = vector_json(look.force_n);
+  for (const fdcg_pose& body : look.bodies)
+    json["bodies_m"].push_back(vector_json(body.translation_m));
   if (counters.bodies_lost != 0) json["bodies_lost"] = true;
   json["ticks"] = counters.ticks;
   json["late"] = counters.late;
@@ -80,12 +79,12 @@ Json device_json(const DeviceLook& look) {
   json["disarmed"] = Json::object();
   for (int i = 1; i < dev::kFaults; ++i)
     if (counters.disarmed[i] != 0) json["disarmed"][dev::fault_name(static_cast<dev::Fault>(i))] = counters.disarmed[i];
-  json["writes"] = status.writes;
-  json["write_failures"] = status.write_failures;
-  json["log_dropped"] = status.log_dropped;
-  json["interval_us"] = times_json(status.interval);
-  json["work_us"] = times_json(status.work);
-  json["write_us"] = times_json(status.write);
+  json["writes"] = look.writes;
+  json["write_failures"] = look.write_failures;
+  json["log_dropped"] = look.log_dropped;
+  json["interval_us"] = times_json(look.interval);
+  json["work_us"] = times_json(look.work);
+  json["write_us"] = times_json(look.write);
   return json;
 }
 
@@ -139,22 +138,20 @@ std::uint64_t rejected_in_all(const dev::TickCounters& counters) {
 }
 
 std::string status_line(const DeviceLook& look, std::size_t name_width) {
-  const dev::DeviceStatus& status = look.status;
   std::string line = look.name + std::string(name_width - std::min(name_width, look.name.size()) + 2, ' ');
-  if (look.connection.connection == dev::Connection::kAbsent) {
-    return line + "absent" + (look.connection.problem.empty() ? "" : ": " + look.connection.problem);
+  if (!look.is_open) {
+    return line + "absent" + (look.problem.empty() ? "" : ": " + look.problem);
   }
-  std::string phase = phase_name(status.last.phase);
-  if (status.last.phase == dev::Phase::kDisarmed && is_trouble(status.last.fault)) {
-    phase += std::string(" (") + dev::fault_name(status.last.fault) + ")";
+  std::string phase = phase_name(look.phase);
+  if (look.phase == dev::Phase::kDisarmed && is_trouble(look.fault)) {
+    phase += std::string(" (") + dev::fault_name(look.fault) + ")";
   }
   char numbers[160];
   std::snprintf(numbers, sizeof numbers, "%-10s %6.0f/s  %-6s %6.2f N  lost %s, rejected %s, late %s", phase.c_str(),
-                look.rate_hz, state_name(status.last.state), norm(status.last.force.force_n()),
-                grouped(status.counters.lost).c_str(), grouped(rejected_in_all(status.counters)).c_str(),
-                grouped(status.counters.late).c_str());
+                look.rate_hz, state_name(look.state), norm(look.force_n), grouped(look.counters.lost).c_str(),
+                grouped(rejected_in_all(look.counters)).c_str(), grouped(look.counters.late).c_str());
   line += numbers;
-  if (status.log_dropped != 0) line += ", not logged " + grouped(status.log_dropped);
+  if (look.log_dropped != 0) line += ", not logged " + grouped(look.log_dropped);
   return line;
 }
 
@@ -173,25 +170,24 @@ std::string status_json(const char* event, double seconds, const std::vector<Dev
 std::string summary_text(const std::vector<DeviceLook>& looks) {
   std::string text;
   for (const DeviceLook& look : looks) {
-    const dev::DeviceStatus& status = look.status;
-    const dev::TickCounters& counters = status.counters;
+    const dev::TickCounters& counters = look.counters;
     text += look.name + "\n";
-    if (status.opened == 0) {
-      text += "  never there" + (look.connection.problem.empty() ? "" : ": " + look.connection.problem) + "\n";
+    if (look.opened == 0) {
+      text += "  never there" + (look.problem.empty() ? "" : ": " + look.problem) + "\n";
       continue;
     }
     text += "  reports        " + grouped(counters.ticks) + " answered, " + grouped(counters.superseded) + " superseded, " +
             grouped(counters.lost) + " lost" + rejected_text(counters) + "\n";
-    text += "  late           " + grouped(counters.late) + "; opened " + grouped(status.opened) +
-            (status.opened == 1 ? " time\n" : " times\n");
-    text += "  interval       " + times_text(status.interval);
-    text += "  work           " + times_text(status.work);
-    text += "  write          " + times_text(status.write);
-    if (status.write_failures != 0) text += "  writes failed  " + grouped(status.write_failures) + "\n";
-    if (status.log_dropped != 0) text += "  not logged     " + grouped(status.log_dropped) + " ticks\n";
+    text += "  late           " + grouped(counters.late) + "; opened " + grouped(look.opened) +
+            (look.opened == 1 ? " time\n" : " times\n");
+    text += "  interval       " + times_text(look.interval);
+    text += "  work           " + times_text(look.work);
+    text += "  write          " + times_text(look.write);
+    if (look.write_failures != 0) text += "  writes failed  " + grouped(look.write_failures) + "\n";
+    if (look.log_dropped != 0) text += "  not logged     " + grouped(look.log_dropped) + " ticks\n";
     if (counters.bodies_lost != 0) text += "  bodies         lost: one flew beyond all bounds, and all stand still since\n";
-    text += "  disarmed       " + disarmed_text(counters, look.connection.is_over) + "\n";
-    if (look.connection.is_over) text += "  ended          the recording has ended\n";
+    text += "  disarmed       " + disarmed_text(counters, look.is_over) + "\n";
+    if (look.is_over) text += "  ended          the recording has ended\n";
   }
   return text;
 }

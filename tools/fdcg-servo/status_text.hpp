@@ -5,17 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "host/host.hpp"
+#include "fdcg/device_tools.hpp"
 
 namespace fdcg::servo {
 
-// Of one device at one moment.
-struct DeviceLook {
-  std::string name;
-  dev::ConnectionReport connection;
-  dev::DeviceStatus status;
-  double rate_hz = 0;  // of good reports since the last line
-};
+using dev::DeviceLook;
 
 // "right hand   armed       1000/s  face    1.23 N  lost 0, rejected 0, late 0"; no line end. `name_width`: of the column.
 std::string status_line(const DeviceLook& look, std::size_t name_width);

@@ -8,6 +8,7 @@
 
 #include "../common/atomic_file.hpp"
 #include "../common/heap.hpp"
+#include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
@@ -18,16 +19,20 @@
 namespace fdcg::tools {
 namespace {
 
+constexpr const char* kDefaultUnit = "metres (the default)";
+
 struct CompileArguments {
   std::string mesh;
   std::string output;
   std::string depfile;
   std::string report;
-  std::string unit_text = "metres (the default)";
+  std::string unit_text = kDefaultUnit;
   std::optional<bake::Format> input_format;
   bake::CompileOptions options;
   bool quiet = false;
   bool verbose = false;
+
+  [[nodiscard]] bool has_default_unit() const { return unit_text == kDefaultUnit; }
 };
 
 // Spaces, # and $ as Make and Ninja want them in a file name.
@@ -104,6 +109,25 @@ std::string deviation_warning(const bake::Compiled& compiled) {
   return "planes lie up to " + number(header.max_deviation * header.metres_per_unit) + " m off the corners of their faces, " +
          number(100 * header.max_deviation / size) + " % of the object's size (warned of above " + number(100 * kLargestShare) +
          " %); --coplanar with a smaller angle keeps the shape";
+}
+
+// A size that nobody feels is most often a wrong unit. Empty where it is plausible, or where the unit was given and the object
+// is large on purpose.
+std::string size_warning(const CompileArguments& arguments, const bake::Compiled& compiled) {
+  constexpr double kLargest_m = 10, kSmallest_m = 1e-3;
+  fdcg_header header;
+  std::memcpy(&header, compiled.file().data(), sizeof header);
+  double size_m = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size_m = std::max(size_m, (header.bounds_max[axis] - header.bounds_min[axis]) * header.metres_per_unit);
+  const std::string measures = "the object measures " + number(size_m) + " m; ";
+  if (size_m > kLargest_m && arguments.has_default_unit())
+    return measures + "if the file is in millimetres, compile with --units mm (--units m: it is in metres, and no warning)";
+  if (size_m < kSmallest_m) {
+    return measures + (arguments.has_default_unit() ? "if the file is not in metres, give its unit with --scale METRES"
+                                                    : "if the file is in metres, leave out --units and --scale");
+  }
+  return {};
 }
 
 std::string_view as_text(const std::vector<std::byte>& bytes) {
@@ -209,7 +233,7 @@ int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_loads(*compiled); code != kClean) return code;
   const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
-  const std::string warning = deviation_warning(*compiled);
+  const std::string warnings[] = {deviation_warning(*compiled), size_warning(arguments, *compiled)};
   if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
   if (arguments.quiet) return kClean;
   std::FILE* const stream = is_streamed ? stderr : stdout;
@@ -218,7 +242,8 @@ int compile_mesh(CompileArguments& arguments) {
     std::fputs(bake::report_text(compiled->report, colour).c_str(), stream);
   }
   std::fputs(what_was_written.c_str(), stream);
-  if (!warning.empty()) std::fprintf(stderr, "fdcg: warning: %s: %s\n", arguments.mesh.c_str(), warning.c_str());
+  for (const std::string& warning : warnings)
+    if (!warning.empty()) warn(arguments.mesh + ": " + warning);
   return kClean;
 }
 
@@ -233,7 +258,7 @@ int run_compile(CompileArguments& arguments) {
 }
 
 void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
-  add_precision_option(command, arguments->options.precision, "Numbers in the file; default: f64");
+  add_precision_option(command, arguments->options.precision, "Precision of the numbers in the file.", "Graph");
   const auto parse_coplanar = [arguments](const std::string& text) {
     if (text == "exact" || text == "quantum") {
       arguments->options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};
@@ -249,15 +274,20 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
   command
       .add_option_function<std::string>(
           "--coplanar", parse_coplanar,
-          "Which edges are flat: exactly; within the input's own rounding (quantum, the default); "
-          "within ANGLE degrees")
-      ->type_name("exact|quantum|ANGLE");
-  const CLI::Option* const merge = command.add_flag("--merge,!--no-merge", arguments->options.merge,
-                                                    "Merge coplanar faces into convex polygons; default: yes");
+          offering("Which edges count as flat: exact, those of coplanar faces; quantum, those flat within the rounding of the "
+                   "input; a number, those within that angle in degrees.",
+                   {"exact", "quantum"}))
+      ->type_name("ANGLE")
+      ->default_str("quantum")
+      ->group("Graph");
+  CLI::Option* const merge = command.add_flag("--merge,!--no-merge", arguments->options.merge,
+                                              "Merge coplanar faces into convex polygons, or keep each face.");
+  merge->default_str("--merge")->group("Graph");
   command
       .add_flag("--triangles", arguments->options.triangles,
-                "Make every face triangles and merge nothing: for a mesh that is to be deformed (fdcg/deform.h)")
-      ->excludes("--coplanar");
+                "Split every face into triangles and merge none: for a mesh that the program deforms (fdcg/deform.h).")
+      ->excludes("--coplanar")
+      ->group("Graph");
   command.final_callback([arguments, merge] {
     if (arguments->options.triangles && merge->count() > 0 && arguments->options.merge)
       throw CLI::ExcludesError("--triangles", "--merge");
@@ -269,16 +299,24 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments
   command
       .add_option_function<std::string>(
           "--planes", parse_planes,
-          "edge vectors, end and Voronoi planes in the file (stored, the default), or computed in the step: a smaller file")
-      ->type_name("stored|derived");
+          one_of(
+              "Edge vectors, end planes and Voronoi planes: stored in the file, or derived in the step, with a smaller file.",
+              {"stored", "derived"}))
+      ->type_name("PLANES")
+      ->default_str("stored")
+      ->group("Graph");
   const auto parse_without = [arguments](const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       require_choice("--without", name, {"hierarchy", "source-map", "info", "mass", "materials"});
       arguments->options.without.insert(name);
     }
   };
-  command.add_option_function<std::vector<std::string>>("--without", parse_without, "Leave SECTION out; may be repeated")
-      ->type_name("hierarchy|source-map|info|mass|materials")
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--without", parse_without,
+          one_of("Leave a section out of the file. May be repeated.", {"hierarchy", "source-map", "info", "mass", "materials"}))
+      ->type_name("SECTION")
+      ->group("Graph")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
@@ -293,50 +331,62 @@ void add_mass_options(CLI::App& command, const std::shared_ptr<CompileArguments>
     return command.add_option_function<std::string>(name, parse, help);
   };
   CLI::Option* const density = add("--density", arguments->options.density_kg_per_m3, "kilograms for a cubic metre",
-                                   "What the body is made of; its mesh must be closed. Default: not known");
-  density->type_name("KG_PER_M3");
-  add("--mass", arguments->options.mass_kg, "kilograms", "What the body weighs, in place of --density")
+                                   "Density of the body, in kg per cubic metre; its mesh must be closed.");
+  density->type_name("DENSITY")->default_str("unknown")->group("Mass");
+  add("--mass", arguments->options.mass_kg, "kilograms", "Mass of the body in kg, instead of --density.")
       ->type_name("KG")
-      ->excludes(density);
+      ->excludes(density)
+      ->group("Mass");
 }
 
 }  // namespace
 
 Command add_compile(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("compile", "Compile a mesh into an FDCG file");
-  command->footer(R"(
-Examples:
+  CLI::App* const command = app.add_subcommand("compile", "Compile a mesh into an FDCG file.");
+  command->footer(R"(Examples:
   fdcg compile bunny.off -o bunny.fdcg
   fdcg compile part.stl -o part.fdcg --units mm --coplanar 0.5 --precision f32
   fdcg compile scan.ply -o scan.fdcg --orient --depfile scan.d --report scan.json
   fdcg compile cube.obj -o - | fdcg inspect -
   fdcg compile hammer.stl -o hammer.fdcg --units mm --density 7850
 
-A mesh with errors is refused with the report that 'fdcg validate' prints, and nothing is written.
-The same mesh and options give the same bytes.)");
+A mesh with errors is refused with the report that 'fdcg validate' prints, and nothing is written. The same mesh and options
+give the same bytes.
+
+)" + exit_codes("the file is written", "the mesh has errors; no file is written"));
   const auto arguments = std::make_shared<CompileArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco; - is standard input")
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco. - is standard input.")
       ->required()
       ->type_name("MESH");
-  command->add_option("-o,--output", arguments->output, "The file to write; - is standard output")
-      ->required()
-      ->type_name("FILE");
   add_input_format_option(*command, arguments->input_format);
   add_unit_options(*command, arguments->options.metres_per_unit, arguments->unit_text);
+  command->add_option("-o,--output", arguments->output, "File to write. - is standard output.")
+      ->required()
+      ->type_name("FILE")
+      ->group("Output");
+  command->add_option("--report", arguments->report, "Write the JSON report to FILE.")->type_name("FILE")->group("Output");
+  command->add_option("--depfile", arguments->depfile, "Write the dependencies for Make and Ninja to FILE.")
+      ->type_name("FILE")
+      ->group("Output");
+  CLI::Option* const quiet = command->add_flag("-q,--quiet", arguments->quiet, "Print errors only.")->group("Output");
+  command->add_flag("-v,--verbose", arguments->verbose, "Print the whole report.")->excludes(quiet)->group("Output");
+  add_weld_option(*command, arguments->options.weld);
+  command
+      ->add_flag("--orient", arguments->options.orient,
+                 "Make the winding consistent and outward, and report the faces that were turned.")
+      ->group("Mesh checks");
+  command
+      ->add_flag("--self-intersections", arguments->options.self_intersections,
+                 "Also find faces that cross or touch others, and report them as warnings.")
+      ->group("Mesh checks");
+  add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
   add_graph_options(*command, arguments);
   add_mass_options(*command, arguments);
-  add_weld_option(*command, arguments->options.weld);
-  command->add_flag("--self-intersections", arguments->options.self_intersections,
-                    "Also look for faces that cross or touch others, and report them as warnings");
-  command->add_flag("--orient", arguments->options.orient, "Make the winding consistent and outward, and say what was turned");
-  add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
-  command->add_option("--depfile", arguments->depfile, "Write the dependency for Make and Ninja")->type_name("FILE");
-  command->add_option("--report", arguments->report, "Write the JSON report")->type_name("FILE");
-  command->add_option("--jobs", arguments->options.jobs, "Threads; default: one a core. The bytes do not depend on it")
+  command->add_option("--jobs", arguments->options.jobs, "Number of threads. The output does not depend on it.")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  CLI::Option* const quiet = command->add_flag("-q,--quiet", arguments->quiet, "Print errors only");
-  command->add_flag("-v,--verbose", arguments->verbose, "Print the whole report")->excludes(quiet);
+      ->default_str("one for each core")
+      ->check(whole_number(1, 1024))
+      ->group("General");
   return {command, [arguments] { return run_compile(*arguments); }};
 }
 

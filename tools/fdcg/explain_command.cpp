@@ -5,6 +5,7 @@
 
 #include "../common/atomic_file.hpp"
 #include "../common/nearest.hpp"
+#include "../common/options.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
 
@@ -23,11 +24,11 @@ std::string_view severity_name(bake::Severity severity) {
   return "error";
 }
 
-std::string nearest_rule(std::string_view name) {
+std::vector<std::string> rule_names() {
   std::vector<std::string> names;
   for (const bake::Rule& rule : bake::rules())
     names.emplace_back(rule.name);
-  return nearest(name, names);
+  return names;
 }
 
 std::string list_of_rules() {
@@ -57,15 +58,20 @@ std::string explanation(const bake::Rule& rule) {
 }  // namespace
 
 Command add_explain(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("explain", "What a rule means, why it matters for contact, how to fix it");
-  command->footer("\nExamples:\n  fdcg explain                      the list of rules\n  fdcg explain winding-inconsistent");
+  CLI::App* const command =
+      app.add_subcommand("explain", "Explain a rule: what it means, why it matters for contact, how to fix it.");
+  command->footer("Examples:\n  fdcg explain\n  fdcg explain winding-inconsistent\n\n" +
+                  exit_codes("success", "not used by this command"));
   const auto name = std::make_shared<std::string>();
-  command->add_option("rule", *name, "Name of a rule, as validate prints it; none: list them all")->type_name("RULE");
+  command
+      ->add_option("rule", *name,
+                   offering("Name of a rule, as validate prints it. Without it: the list of all rules.", rule_names()))
+      ->type_name("RULE");
   const auto run = [name]() -> int {
     const bake::Rule* const rule = bake::find_rule(*name);
     if (!name->empty() && rule == nullptr) {
-      return fail(kUsage,
-                  "'" + *name + "' is no rule; the nearest is '" + nearest_rule(*name) + "', 'fdcg explain' lists them all");
+      return fail(kUsage, "'" + *name + "' is no rule; the nearest is '" + nearest(*name, rule_names()) +
+                              "', 'fdcg explain' lists them all");
     }
     AtomicFile out("-");
     out.write(rule == nullptr ? list_of_rules() : explanation(*rule));

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "../common/atomic_file.hpp"
+#include "../common/options.hpp"
 #include "fdcg/grasp.hpp"
 #include "fdcg_commands.hpp"
 #include "grasp_contacts.hpp"
@@ -79,10 +80,14 @@ int place_contacts(const GraspArguments& arguments, const GraspObject& object, G
     contact.cap_n = asked.cap_n.value_or(arguments.cap_n.value_or(std::numeric_limits<double>::infinity()));
     report.grasp.contacts.push_back(contact);
     report.found.push_back(found);
-    constexpr double kFar = 0.01;  // of the object's size: more likely a slip of the pen than a rounding
+    constexpr double kFar = 0.01;        // of the object's size: more likely a slip of the pen than a rounding
+    constexpr double kElsewhere = 0.25;  // of it: what is reported is not the grasp that was meant
     if (found.distance_m > kFar * object.size_m()) {
+      const bool is_elsewhere = found.distance_m > kElsewhere * object.size_m();
+      report.has_far_contacts = report.has_far_contacts || is_elsewhere;
       report.warnings.push_back(asked.name + " was moved " + number(found.distance_m) + " m to the surface, " +
-                                number(100 * found.distance_m / object.size_m()) + " % of the object's size");
+                                number(100 * found.distance_m / object.size_m()) + " % of the object's size" +
+                                (is_elsewhere ? "; are both in metres, in the same frame (--units)?" : ""));
     }
     if (found.is_on_edge && !asked.inward) {
       report.warnings.push_back(asked.name + " lies on an edge; its normal is that of node " + std::to_string(found.node) +
@@ -167,13 +172,13 @@ int run_grasp(const GraspArguments& arguments) {
   out.write(arguments.json ? grasp_report_json(report) : grasp_report_text(report));
   if (!out.commit()) return fail(kFile, out.error());
   for (const std::string& warning : report.warnings)
-    std::fprintf(stderr, "fdcg: warning: %s\n", warning.c_str());
+    warn(warning);
   const bool slips = report.margin && !(report.margin->load_factor >= 1);
-  return report.closure.verdict == grasp::Verdict::closure && !slips ? kClean : kFindings;
+  return report.closure.verdict == grasp::Verdict::closure && !slips && !report.has_far_contacts ? kClean : kFindings;
 }
 
-void add_number(CLI::App& command, const std::string& name, std::optional<double>& value, bool may_be_zero,
-                const std::string& help, const std::string& type, double most = std::numeric_limits<double>::max()) {
+CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<double>& value, bool may_be_zero,
+                        const std::string& help, const std::string& type, double most = std::numeric_limits<double>::max()) {
   const auto parse = [name, &value, may_be_zero, most](const std::string& text) {
     const auto parsed =
         parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
@@ -185,22 +190,24 @@ void add_number(CLI::App& command, const std::string& name, std::optional<double
                     (has_most ? (may_be_zero ? "to " : " and up to ") + number(most) : (may_be_zero ? "up" : "")));
     value = parsed;
   };
-  command.add_option_function<std::string>(name, parse, help)->type_name(type);
+  return command.add_option_function<std::string>(name, parse, help)->type_name(type);
 }
 
-void add_vector(CLI::App& command, const std::string& name, std::optional<Vec3>& value, const std::string& help) {
+CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optional<Vec3>& value, const std::string& help) {
   const auto parse = [name, &value](const std::string& text) {
     const auto v = parse_numbers(name, text, {3});
     value = Vec3{v[0], v[1], v[2]};
   };
-  command.add_option_function<std::string>(name, parse, help)->type_name("X,Y,Z");
+  return command.add_option_function<std::string>(name, parse, help)->type_name("X,Y,Z");
 }
 
 void add_load_options(CLI::App& command, GraspArguments& arguments) {
-  add_number(command, "--grip", arguments.grip_n, false, "The most that all contacts press together; asks for the margin", "N",
-             grasp::kMostForce_n);
-  add_number(command, "--cap", arguments.cap_n, false, "The most that each contact presses; asks for the margin", "N",
-             grasp::kMostForce_n);
+  add_number(command, "--grip", arguments.grip_n, false,
+             "The largest sum of the normal forces of all contacts, in newtons. Asks for the margin.", "N", grasp::kMostForce_n)
+      ->group("Load");
+  add_number(command, "--cap", arguments.cap_n, false,
+             "The largest normal force of each contact, in newtons. Asks for the margin.", "N", grasp::kMostForce_n)
+      ->group("Load");
   const auto parse_load = [&arguments](const std::string& text) {
     const auto v = parse_numbers("--load", text, {3, 6});
     grasp::Wrench load;
@@ -209,52 +216,74 @@ void add_load_options(CLI::App& command, GraspArguments& arguments) {
     arguments.load = load;
   };
   CLI::Option* const load = command.add_option_function<std::string>(
-      "--load", parse_load, "Force and torque about the centre that pull at the object; default: gravity");
-  load->type_name("FX,FY,FZ[,TX,TY,TZ]");
-  add_number(command, "--mass", arguments.mass_kg, false,
-             "The object's mass; default: the FDCG file's, else 1, so that the load factor is in kg", "KG");
-  add_vector(command, "--gravity", arguments.gravity_m_per_s2, "Its acceleration; default: 0,0,-9.80665");
+      "--load", parse_load, "Force (N), and torque about the centre (N m), on the object. The torque may be left out.");
+  load->type_name("FX,FY,FZ,TX,TY,TZ")->default_str("the object's weight")->group("Load");
+  add_number(command, "--mass", arguments.mass_kg, false, "Mass of the object in kg.", "KG")
+      ->default_str("the FDCG file's, else 1, so that the load factor is in kg")
+      ->group("Load");
+  add_vector(command, "--gravity", arguments.gravity_m_per_s2, "Acceleration of gravity, m/s^2.")
+      ->default_str("0,0,-9.80665")
+      ->group("Load");
   load->excludes("--mass")->excludes("--gravity");
 }
 
 }  // namespace
 
 Command add_grasp(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("grasp", "Whether contacts hold an object, and how well");
-  command->footer(R"(
-Examples:
+  CLI::App* const command = app.add_subcommand("grasp", "Test whether contacts hold an object, and how well.");
+  command->footer(R"(Examples:
   fdcg grasp cube.fdcg --contacts fingers.csv --mu 0.5
   fdcg grasp part.stl --units mm --contacts fingers.json --mu 0.4 --torsion 0.003 --grip 20 --mass 0.3
   fdcg grasp cube.fdcg --contacts fingers.csv --mu 0.5 --cap 10 --load 0,0,-5,0.1,0,0 --json
 
-Contacts (CSV with a header of x,y,z and any of mu,torsion,cap,nx,ny,nz,name; or JSON with "contacts": [{"point": [x,y,z], ..}])
-are in metres in the object's frame, and are moved to the nearest point of the surface.
-Exit code 0: force closure, and the load holds if a grip is given; 1: not, or the mesh has errors; 2: an option is wrong; 3: a
-file is.)");
+Contacts are a CSV file with a header that names x, y and z, and any of mu, torsion, cap, nx, ny, nz and name; or a JSON array
+of objects with "point": [x, y, z] and any of "mu", "torsion", "cap", "normal" and "name". They are in metres in the object's
+frame, and are moved to the nearest point of the surface.
+
+)" + exit_codes("force closure, and the load holds if a grip is given",
+                "no closure, the load slips, a contact is far from the surface, or the mesh has errors"));
   const auto arguments = std::make_shared<GraspArguments>();
-  command->add_option("object", arguments->object, "FDCG file, or a mesh without errors")->required()->type_name("OBJECT");
-  command->add_option("--contacts", arguments->contacts, "Where it is touched: JSON or CSV; - is standard input")
+  command->add_option("object", arguments->object, "FDCG file, or a mesh without errors.")->required()->type_name("OBJECT");
+  command->add_option("--contacts", arguments->contacts, "Where the object is touched: JSON or CSV. - is standard input.")
       ->required()
-      ->type_name("FILE");
-  add_number(*command, "--mu", arguments->mu, true, "Friction of contacts that do not say theirs", "MU", grasp::kMostMu);
+      ->type_name("FILE")
+      ->group("Contacts");
+  add_number(*command, "--mu", arguments->mu, true, "Friction coefficient of contacts that state none.", "MU", grasp::kMostMu)
+      ->group("Contacts");
   add_number(*command, "--torsion", arguments->torsion_m, true,
-             "Soft fingers: the most moment about the normal for each newton pressed; default: 0, hard", "METRES");
+             "Soft fingers: the largest moment about the normal, in N m for each newton of normal force.", "METRES")
+      ->default_str("0, hard fingers")
+      ->group("Contacts");
   add_load_options(*command, *arguments);
-  add_vector(*command, "--centre", arguments->centre_m, "What torques are about; default: the volume's centroid");
-  add_number(*command, "--torque-scale", arguments->torque_scale_m, false,
-             "The torque that counts as 1 N; default: the largest distance from the centre", "METRES");
+  add_vector(*command, "--centre", arguments->centre_m, "Point that torques are about, in metres.")
+      ->default_str("the centroid of the volume")
+      ->group("Quality");
+  add_number(*command, "--torque-scale", arguments->torque_scale_m, false, "Length by which torques are divided, in metres.",
+             "METRES")
+      ->default_str("the largest distance of a corner from the centre")
+      ->group("Quality");
   const auto parse_epsilon = [arguments](const std::string& text) {
     require_choice("--epsilon", text, {"together", "each"});
     arguments->effort = text == "each" ? grasp::Effort::each : grasp::Effort::together;
   };
-  command->add_option_function<std::string>("--epsilon", parse_epsilon, "1 N of normal force for all (the default) or for each")
-      ->type_name("together|each");
-  command->add_option("--cones", arguments->cones, "Directions looked at for epsilon, at most; default: 200000")
+  command
+      ->add_option_function<std::string>(
+          "--epsilon", parse_epsilon,
+          one_of("Epsilon is for 1 N of normal force of all contacts together, or of each.", {"together", "each"}))
+      ->type_name("EFFORT")
+      ->default_str("together")
+      ->group("Quality");
+  command->add_option("--cones", arguments->cones, "The largest number of directions searched for epsilon.")
       ->type_name("N")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100'000'000}));
+      ->default_str("200000")
+      ->check(whole_number(1, 100'000'000))
+      ->group("Quality");
   add_unit_options(*command, arguments->compile.metres_per_unit, arguments->unit_text);
-  command->add_flag("--json", arguments->json, "JSON, as schemas/grasp-report.schema.json has it");
-  command->add_option("-o,--output", arguments->output, "Where the report goes; default: standard output")->type_name("FILE");
+  command->add_flag("--json", arguments->json, "Print JSON (schemas/grasp-report.schema.json).")->group("Output");
+  command->add_option("-o,--output", arguments->output, "Write the report to FILE.")
+      ->type_name("FILE")
+      ->default_str("standard output")
+      ->group("Output");
   return {command, [arguments] { return run_grasp(*arguments); }};
 }
 

@@ -28,6 +28,7 @@ struct GraspReport {
   std::optional<double> grip_n;         // all contacts together
   std::optional<grasp::Margin> margin;  // none: neither a grip nor caps are given
   std::vector<std::string> warnings;
+  bool has_far_contacts = false;  // one was moved so far that this is another grasp
 };
 
 // schemas/grasp-report.schema.json

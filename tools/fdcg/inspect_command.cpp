@@ -251,21 +251,24 @@ int run_inspect(const InspectArguments& arguments) {
 }  // namespace
 
 Command add_inspect(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("inspect", "What an FDCG file holds");
-  command->footer(R"(
-Examples:
+  CLI::App* const command = app.add_subcommand("inspect", "Show what an FDCG file holds.");
+  command->footer(R"(Examples:
   fdcg inspect bunny.fdcg
   fdcg inspect --json bunny.fdcg
   fdcg inspect --verify bunny.fdcg
   fdcg inspect --dump cube.fdcg | less
 
-A damaged file is refused (exit code 3). --verify also measures the geometry against what the records say of it, and gives
-exit code 1 where they disagree.)");
+A damaged file is refused. --verify also measures the geometry and compares it with the records.
+
+)" + exit_codes("the file is sound", "--verify: the geometry and the records disagree"));
   const auto arguments = std::make_shared<InspectArguments>();
-  command->add_option("file", arguments->file, "FDCG file; - is standard input")->required()->type_name("FILE");
-  CLI::Option* const json = command->add_flag("--json", arguments->json, "JSON, as schemas/inspect.schema.json has it");
-  command->add_flag("--dump", arguments->dump, "Every node, side, connection and corner, one a line")->excludes(json);
-  command->add_flag("--verify", arguments->verify, "Tell what was verified, and measure the geometry");
+  command->add_option("file", arguments->file, "FDCG file. - is standard input.")->required()->type_name("FILE");
+  CLI::Option* const json =
+      command->add_flag("--json", arguments->json, "Print JSON (schemas/inspect.schema.json).")->group("Output");
+  command->add_flag("--dump", arguments->dump, "Print every node, side, connection and corner, one on each line.")
+      ->excludes(json)
+      ->group("Output");
+  command->add_flag("--verify", arguments->verify, "Report what was verified, and measure the geometry.")->group("Output");
   return {command, [arguments] { return run_inspect(*arguments); }};
 }
 

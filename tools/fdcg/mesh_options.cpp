@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_options.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <functional>
 #include <limits>
 
 #include "../common/nearest.hpp"
+#include "../common/options.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -24,20 +23,15 @@ bool may_be_allowed(const bake::Rule& rule, Allowable allowable) {
   return rule.can_be_allowed || allowable == Allowable::also_warnings_and_notes;
 }
 
+std::vector<std::string> allowable_rules(Allowable allowable) {
+  std::vector<std::string> names;
+  for (const bake::Rule& rule : bake::rules()) {
+    if (may_be_allowed(rule, allowable)) names.emplace_back(rule.name);
+  }
+  return names;
+}
+
 }  // namespace
-
-std::optional<double> parse_number_between(const std::string& text, double low, double high) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stopped != end || !(value > low && value < high)) return std::nullopt;
-  return value;
-}
-
-void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices) {
-  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
-  throw CLI::ValidationError(option, "'" + value + "' is none of " + joined(choices) + did_you_mean(value, choices));
-}
 
 bake::Weld parse_weld_value(const std::string& text) {
   if (text == "exact" || text == "none") return {text == "exact" ? bake::Weld::Kind::exact : bake::Weld::Kind::none, 0};
@@ -54,9 +48,12 @@ void add_weld_option_to(CLI::App& command, const std::function<void(const bake::
   command
       .add_option_function<std::string>(
           "--weld", [set](const std::string& text) { set(parse_weld_value(text)); },
-          "Vertices that are one: at equal coordinates (exact, the default), "
-          "none, or within DISTANCE in the file's units")
-      ->type_name("exact|none|DISTANCE");
+          offering("Join vertices: exact at equal coordinates, none not at all, a number within that distance in the "
+                   "file's units.",
+                   {"exact", "none"}))
+      ->type_name("DISTANCE")
+      ->default_str("exact")
+      ->group("Mesh checks");
 }
 
 }  // namespace
@@ -95,20 +92,24 @@ void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& u
     metres_per_unit = *scale;
     unit_text = std::string("1 unit = ") + number + " m";
   };
-  CLI::Option* const units =
-      command.add_option_function<std::string>("--units", parse_units, "Unit of the file's coordinates; default: metres");
-  units->type_name("m|mm|cm|in");
-  command.add_option_function<std::string>("--scale", parse_scale, "Metres for one unit of the file")
+  CLI::Option* const units = command.add_option_function<std::string>(
+      "--units", parse_units, one_of("Unit of the mesh's coordinates.", {"m", "mm", "cm", "in"}));
+  units->type_name("UNIT")->default_str("m")->group("Input");
+  command.add_option_function<std::string>("--scale", parse_scale, "Metres for one unit of the mesh, instead of --units.")
       ->type_name("METRES")
-      ->excludes(units);
+      ->excludes(units)
+      ->group("Input");
 }
 
-void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help) {
+void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help, const std::string& group) {
   const auto parse = [&precision](const std::string& text) {
     require_choice("--precision", text, {"f64", "f32"});
     precision = text == "f32" ? bake::Precision::f32 : bake::Precision::f64;
   };
-  command.add_option_function<std::string>("--precision", parse, help)->type_name("f64|f32");
+  command.add_option_function<std::string>("--precision", parse, one_of(help, {"f64", "f32"}))
+      ->type_name("REAL")
+      ->default_str("f64")
+      ->group(group);
 }
 
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format) {
@@ -119,8 +120,11 @@ void add_input_format_option(CLI::App& command, std::optional<bake::Format>& for
   };
   command
       .add_option_function<std::string>("--input-format", parse,
-                                        "Format of the mesh, of standard input above all; default: by content, then by ending")
-      ->type_name("off|obj|ply|stl|gltf|glb|drc");
+                                        one_of("Input format; required for standard input whose content does not tell.",
+                                               {"off", "obj", "ply", "stl", "gltf", "glb", "drc"}))
+      ->type_name("FORMAT")
+      ->default_str("detected by content, then by extension")
+      ->group("Input");
 }
 
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable) {
@@ -131,19 +135,18 @@ void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable
         allow.insert(name);
         continue;
       }
-      std::vector<std::string> choices;
-      for (const bake::Rule& known : bake::rules()) {
-        if (may_be_allowed(known, allowable)) choices.emplace_back(known.name);
-      }
+      const std::vector<std::string> choices = allowable_rules(allowable);
       const std::string why = rule == nullptr ? "' is no rule" + did_you_mean(name, choices) + "; "
                                               : "' cannot be allowed: no graph can stand it; ";
       throw CLI::ValidationError("--allow", "'" + name + why + "these can: " + joined(choices));
     }
   };
   command
-      .add_option_function<std::vector<std::string>>("--allow", insert,
-                                                     "Findings of RULE do not fail the mesh; may be repeated")
+      .add_option_function<std::vector<std::string>>(
+          "--allow", insert,
+          offering("Findings of this rule do not fail the mesh. May be repeated.", allowable_rules(allowable)))
       ->type_name("RULE")
+      ->group("Mesh checks")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }

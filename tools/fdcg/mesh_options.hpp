@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../common/options.hpp"
 #include "fdcg/bake.hpp"
 
 namespace fdcg::tools {
@@ -20,16 +21,10 @@ void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld);
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format);
 // --units and --scale. unit_text: for people; unchanged where neither is given.
 void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& unit_text);
-void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help);
+void add_precision_option(CLI::App& command, bake::Precision& precision, const std::string& help, const std::string& group);
 void add_allow_option(CLI::App& command, std::set<std::string>& allow, Allowable allowable);
 
 // Of the files that are meshes by their names, in lower case: ".off" and so on.
 const std::vector<std::string>& mesh_endings();
-
-// The whole of `text` as a finite number in (low, high); nothing else counts.
-std::optional<double> parse_number_between(const std::string& text, double low, double high);
-
-// `value` is one of `choices`, or a ValidationError that lists them and names the nearest.
-void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices);
 
 }  // namespace fdcg::tools

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "../common/atomic_file.hpp"
+#include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
@@ -67,7 +68,7 @@ int check(RepairArguments& arguments) {
   const bool asks_for_any = options.weld || options.drop_degenerate_faces || options.drop_duplicate_faces ||
                             options.split_non_manifold_vertices || options.orient || options.reverse_inside_out ||
                             options.simplify_error;
-  if (!asks_for_any) return fail(kUsage, std::string("repair needs to be told what to do: ") + kSteps);
+  if (!asks_for_any) return fail(kUsage, std::string("no repair was chosen; give ") + kSteps);
   if (arguments.dry_run) return kClean;
   if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; --dry-run writes none");
   if (arguments.format.empty()) {
@@ -180,24 +181,28 @@ int run_repair(RepairArguments& arguments) {
 
 void add_step_options(CLI::App& command, const std::shared_ptr<RepairArguments>& arguments) {
   bake::RepairOptions& options = arguments->options;
-  command.add_flag("--all", arguments->all,
-                   "All repairs that leave the surface where it is: --weld exact and every flag below, without --simplify");
+  const auto add_flag = [&command](const char* name, bool& value, const char* help) {
+    command.add_flag(name, value, help)->group("Repairs");
+  };
+  add_flag("--all", arguments->all,
+           "All repairs that do not move the surface: --weld exact and the flags below, without --simplify.");
   const auto parse_weld = [arguments](const std::string& text) { arguments->weld = parse_weld_value(text); };
   command
       .add_option_function<std::string>("--weld", parse_weld,
-                                        "Join vertices: at equal coordinates (exact), or within DISTANCE in the file's units; "
-                                        "none judges the file's own vertices as they are")
-      ->type_name("exact|none|DISTANCE");
-  command.add_flag("--drop-degenerate", options.drop_degenerate_faces,
-                   "Drop faces without area; their neighbours are joined where the face lay between them");
-  command.add_flag("--drop-duplicates", options.drop_duplicate_faces, "Drop faces on the vertices of an earlier one");
-  command.add_flag("--split-non-manifold-vertices", options.split_non_manifold_vertices,
-                   "Give each fan of faces around a vertex a vertex of its own; implies --weld exact. The file must be read "
-                   "with --weld none then");
-  command.add_flag("--orient", options.orient,
-                   "Turn faces to agree with their patch, closed patches of mixed winding outwards");
-  command.add_flag("--reverse-inside-out", options.reverse_inside_out,
-                   "Turn closed patches that enclose negative volume, by nesting depth");
+                                        offering("Join vertices: exact at equal coordinates, none not at all, a number within "
+                                                 "that distance in the file's units.",
+                                                 {"exact", "none"}))
+      ->type_name("DISTANCE")
+      ->group("Repairs");
+  add_flag("--drop-degenerate", options.drop_degenerate_faces, "Drop faces without area, and join the faces on either side.");
+  add_flag("--drop-duplicates", options.drop_duplicate_faces, "Drop faces that have the vertices of an earlier one.");
+  add_flag("--split-non-manifold-vertices", options.split_non_manifold_vertices,
+           "Give each fan of faces around a vertex a vertex of its own. Implies --weld exact; the result must be read with "
+           "--weld none.");
+  add_flag("--orient", options.orient,
+           "Make the winding of each patch consistent, and that of closed patches of mixed winding outward.");
+  add_flag("--reverse-inside-out", options.reverse_inside_out,
+           "Reverse closed patches that enclose negative volume, by nesting depth.");
   const auto parse_error = [arguments](const std::string& text) {
     const auto error = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
     if (!error) throw CLI::ValidationError("--simplify", "'" + text + "' is no distance above 0 in the file's units");
@@ -205,44 +210,53 @@ void add_step_options(CLI::App& command, const std::shared_ptr<RepairArguments>&
   };
   command
       .add_option_function<std::string>("--simplify", parse_error,
-                                        "Fewer triangles of the same topology, no point of either surface farther than ERROR "
-                                        "(in the file's units) from the other")
-      ->type_name("ERROR");
+                                        "Reduce the number of triangles and keep the topology. No point of either surface is "
+                                        "farther than ERROR, in the file's units, from the other.")
+      ->type_name("ERROR")
+      ->group("Repairs");
 }
 
 }  // namespace
 
 Command add_repair(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("repair", "Safe repairs of a mesh, each one counted and listed");
-  command->footer(R"(
-Examples:
+  CLI::App* const command = app.add_subcommand("repair", "Repair a mesh safely; every repair is counted and listed.");
+  command->footer(R"(Examples:
   fdcg repair scan.ply -o clean.ply --all
   fdcg repair part.stl -o part.obj --weld exact --drop-degenerate --orient
   fdcg repair --all --dry-run --report account.json part.stl
 
-Exit codes: 0 the result has no error; 1 errors are left, or --simplify could not be done (the mesh is written all the same,
-without --strict).
-What cannot be repaired surely is left, and said.)");
+Defects that cannot be repaired safely are left and reported.
+
+)" + exit_codes("the result has no errors",
+                "errors are left, or --simplify could not be done; the mesh is written unless --strict"));
   const auto arguments = std::make_shared<RepairArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB, Draco; - is standard input")
+  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco. - is standard input.")
       ->required()
       ->type_name("MESH");
-  command->add_option("-o,--output", arguments->output, "The repaired mesh; - is standard output")->type_name("OUT");
+  command->add_option("-o,--output", arguments->output, "File to write the repaired mesh to. - is standard output.")
+      ->type_name("FILE")
+      ->group("Output");
   const auto choose = [](const char* option, std::string& target) {
     return [option, &target](const std::string& value) {
       require_choice(option, value, {"off", "obj", "ply", "stl"});
       target = value;
     };
   };
-  command->add_option_function<std::string>("--format", choose("--format", arguments->format), "Of OUT; default: by its ending")
-      ->type_name("off|obj|ply|stl");
+  command
+      ->add_option_function<std::string>("--format", choose("--format", arguments->format),
+                                         one_of("Format of the repaired mesh.", {"off", "obj", "ply", "stl"}))
+      ->type_name("FORMAT")
+      ->default_str("by the file's extension")
+      ->group("Output");
   add_input_format_option(*command, arguments->input_format);
-  command->add_flag("--ascii", arguments->ascii, "PLY and STL as text");
+  command->add_flag("--ascii", arguments->ascii, "Write PLY and STL as text.")->group("Output");
   add_step_options(*command, arguments);
-  command->add_option("--report", arguments->report, "Write the account as JSON to FILE")->type_name("FILE");
-  command->add_flag("--dry-run", arguments->dry_run, "Write no mesh");
-  command->add_flag("--strict", arguments->strict, "Write the mesh only where no error is left");
-  command->add_flag("-q,--quiet", arguments->quiet, "Say nothing but errors; no progress bar");
+  command->add_option("--report", arguments->report, "Write what was done and left as JSON to FILE.")
+      ->type_name("FILE")
+      ->group("Output");
+  command->add_flag("--dry-run", arguments->dry_run, "Write no mesh.")->group("Output");
+  command->add_flag("--strict", arguments->strict, "Write the mesh only if no error is left.")->group("Output");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only, and no progress bar.")->group("Output");
   return {command, [arguments] { return run_repair(*arguments); }};
 }
 

@@ -9,6 +9,7 @@
 
 #include "../common/atomic_file.hpp"
 #include "../common/expand_paths.hpp"
+#include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "baseline.hpp"
 #include "fdcg/bake.hpp"
@@ -241,33 +242,47 @@ void add_report_options(CLI::App& command, const std::shared_ptr<ValidateArgumen
   };
   command
       .add_option_function<std::vector<std::string>>(
-          "--format", add_format, "Format of the report (default: text); FORMAT=FILE writes one more, and may be repeated")
-      ->type_name("text|json|sarif|junit[=FILE]")
+          "--format", add_format,
+          one_of("Format of the report. FORMAT=FILE writes one more report to FILE, and may be repeated.",
+                 {"text", "json", "sarif", "junit"}))
+      ->type_name("FORMAT")
+      ->default_str("text")
+      ->group("Output")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("-o,--output", arguments->output, "Write the report to FILE; - is standard output (default)")
-      ->type_name("FILE");
-  command.add_option("--full", arguments->full, "Write every finding, however many, as JSON; serves as a baseline")
-      ->type_name("FILE");
-  command.add_flag("--sarif-each", arguments->sarif_each,
-                   "SARIF: a result for each listed finding, so that code scanning marks each line; default: one a rule");
+  command.add_option("-o,--output", arguments->output, "Write the report to FILE.")
+      ->type_name("FILE")
+      ->default_str("standard output")
+      ->group("Output");
+  command.add_option("--full", arguments->full, "Write all findings, without a limit, as JSON to FILE: a baseline.")
+      ->type_name("FILE")
+      ->group("Output");
+  command
+      .add_flag(
+          "--sarif-each", arguments->sarif_each,
+          "SARIF: one result for each listed finding, so that code scanning marks every line, instead of one for each rule.")
+      ->group("Output");
 }
 
 void add_verdict_options(CLI::App& command, const std::shared_ptr<ValidateArguments>& arguments) {
   const auto set_baseline = [arguments](const std::string& path) { arguments->settings.baseline = path; };
   command
       .add_option_function<std::string>("--baseline", set_baseline,
-                                        "Findings that FILE (from --full) has are known: only new ones fail")
-      ->type_name("FILE");
+                                        "Findings that are in FILE (from --full) are known; only new ones fail.")
+      ->type_name("FILE")
+      ->group("Verdict");
   const auto set_fail_on = [arguments](const std::string& value) {
     const auto level = parse_fail_on(value);
     if (!level) throw CLI::ValidationError("--fail-on", level.error().message);
     arguments->settings.fail_on = *level;
   };
   command
-      .add_option_function<std::string>("--fail-on", set_fail_on,
-                                        "Findings from this severity on give exit code 1; default: error")
-      ->type_name("error|warning|note|never");
+      .add_option_function<std::string>(
+          "--fail-on", set_fail_on,
+          one_of("Exit with code 1 for findings of this severity or a higher one.", {"error", "warning", "note", "never"}))
+      ->type_name("SEVERITY")
+      ->default_str("error")
+      ->group("Verdict");
   const auto set_severities = [arguments](const std::vector<std::string>& values) {
     for (const std::string& value : values) {
       const std::size_t equals = std::min(value.find('='), value.size());
@@ -281,51 +296,61 @@ void add_verdict_options(CLI::App& command, const std::shared_ptr<ValidateArgume
     }
   };
   command
-      .add_option_function<std::vector<std::string>>("--severity", set_severities,
-                                                     "What findings of RULE are: error, warning, note, or off; may be repeated")
+      .add_option_function<std::vector<std::string>>(
+          "--severity", set_severities, "Severity of the findings of a rule: error, warning, note or off. May be repeated.")
       ->type_name("RULE=LEVEL")
+      ->group("Verdict")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_allow_option(command, arguments->settings.allow, Allowable::also_warnings_and_notes);
   CLI::Option* const config =
-      command.add_option("--config", arguments->config, "Take settings from FILE instead of " + std::string(kConfigName))
-          ->type_name("FILE");
+      command.add_option("--config", arguments->config, "Read settings from FILE instead of " + std::string(kConfigName) + ".")
+          ->type_name("FILE")
+          ->group("Verdict");
   command
       .add_flag("--no-config", arguments->no_config,
-                "Do not look for " + std::string(kConfigName) + " in the mesh's folder and those above")
-      ->excludes(config);
+                "Do not look for " + std::string(kConfigName) + " in the mesh's folder and those above.")
+      ->excludes(config)
+      ->group("Verdict");
 }
 
 }  // namespace
 
 Command add_validate(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand("validate", "Every check on meshes, every defect located");
-  command->footer(R"(
-Examples:
+  CLI::App* const command = app.add_subcommand("validate", "Check meshes, and locate every defect.");
+  command->footer(R"(Examples:
   fdcg validate part.stl
-  fdcg validate 'meshes/**/*.{stl,obj}' --format junit=report.xml --format sarif=report.sarif
+  fdcg validate 'meshes/**/*.stl' --format junit=report.xml
   fdcg validate --fail-on warning --allow boundary-edge scan.obj
   fdcg validate meshes --full known.json; fdcg validate meshes --baseline known.json
   convert part.step | fdcg validate - --input-format stl
 
-Settings may stand in a file .fdcg-validate.json in the mesh's folder or one above; the command line overrides it.)");
+A pattern knows *, ?, [abc], comma-separated alternatives in curly brackets, and ** for any number of folders. Patterns and
+folders match names in upper and lower case alike.
+
+Settings may stand in a file .fdcg-validate.json in the mesh's folder or one above; the command line overrides it.
+
+)" + exit_codes("no findings at or above --fail-on", "findings at or above --fail-on"));
   const auto arguments = std::make_shared<ValidateArguments>();
   command
-      ->add_option(
-          "mesh", arguments->meshes,
-          "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to be searched; - is standard input")
+      ->add_option("mesh", arguments->meshes,
+                   "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to search. - is standard input.")
       ->required()
-      ->type_name("MESH");
+      ->type_name("MESH...");
   add_report_options(*command, arguments);
   add_verdict_options(*command, arguments);
   add_weld_option(*command, arguments->settings.weld);
-  add_precision_option(*command, arguments->precision, "Judge the mesh as a graph of this precision stores it; default: f64");
-  command->add_flag("--orient", arguments->is_oriented, "Judge the mesh as 'compile --orient' leaves it");
+  add_precision_option(*command, arguments->precision, "Check the mesh as a graph of this precision stores it.", "Mesh checks");
+  command->add_flag("--orient", arguments->is_oriented, "Check the mesh as 'fdcg compile --orient' leaves it.")
+      ->group("Mesh checks");
   add_input_format_option(*command, arguments->input_format);
-  command->add_option("--jobs", arguments->jobs, "Threads; default: one a core. The report does not depend on it")
+  command->add_option("--jobs", arguments->jobs, "Number of threads. The report does not depend on it.")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("-q,--quiet", arguments->quiet, "Text: only files that fail; no progress bar");
+      ->default_str("one for each core")
+      ->check(whole_number(1, 1024))
+      ->group("General");
+  command->add_flag("-q,--quiet", arguments->quiet, "Text report: list only files that fail. No progress bar.")
+      ->group("Output");
   return {command, [arguments] { return run_validate(*arguments); }};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One parser, a little over 400 lines: the rules of a glTF document, each with the message for what breaks it.
+// A little over 400 lines: one parser with the rules of a glTF document, each with the message for its violation.
 #include "import/gltf_document.hpp"
 
 #include <algorithm>
@@ -124,7 +124,7 @@ class Parser {
     return primitive;
   }
 
-  // Names alone, which no triangle needs: what is wrong with them refuses no file.
+  // Only the names are read. The geometry does not need them, so errors here do not refuse the file.
   void read_materials() try {
     const std::optional<Value> materials = root_.find("materials");
     if (!materials) return;
@@ -347,10 +347,10 @@ class Parser {
     return true;
   }
 
-  // Nobody has two parents (read_children), so what can still go wrong is a ring.
+  // No node has two parents (read_children), so a cycle is the only other error.
   void check_trees() const {
     const std::vector<Node>& nodes = document_.nodes;
-    std::vector<Index> seen_from(nodes.size(), kNone);  // the walk towards the root that came by
+    std::vector<Index> seen_from(nodes.size(), kNone);  // start of the walk to the root that visited the node
     for (Index start = 0; start < nodes.size(); ++start) {
       for (Index n = start; n != kNone && seen_from[n] != start; n = nodes[n].parent) {
         if (seen_from[n] != kNone) break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the JSON of a glTF 2.0 file says about geometry, checked: every index that stands in here has its target. Parts that no
-// triangle needs (images, animations, other accessors) are not looked at, whatever is wrong with them; of materials the names.
+// The geometry described by the JSON of a glTF 2.0 file, checked: every index in it is valid. Parts that the geometry does not
+// need (images, animations, other accessors) are neither read nor checked; of materials only the names are read.
 //
 // Places in messages are JSON paths: "meshes[2].primitives[0].attributes.POSITION".
 #pragma once
@@ -22,7 +22,7 @@ struct Refusal {
   const char* rule = "unreadable";
 };
 
-// What a bufferView, an accessor, ... that is used refers to.
+// The targets of the bufferViews, accessors, ... that are used.
 using Index = std::uint32_t;
 
 enum class Component : std::uint8_t { i8, u8, i16, u16, u32, f32 };
@@ -96,7 +96,7 @@ struct Node {
   bool has_skin = false;
 };
 
-// The nodes make up trees: none has two parents or is its own ancestor.
+// The nodes form trees: none has two parents or is its own ancestor.
 struct Document {
   std::vector<Buffer> buffers;
   std::vector<View> views;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 (Khronos), as JSON or in the binary container GLB: the container, and the way through the stages. Reading it
-// ourselves keeps every number as it stands, names the place of each fault, and believes no count: tinygltf does none of that,
-// and loads images and files that no triangle needs.
+// glTF 2.0 (Khronos), as JSON or in the binary container GLB: the container, and the sequence of stages. A reader of our own
+// keeps every number exactly, names the place of each error and trusts no count. tinygltf does none of that, and loads images
+// and files that the geometry does not need.
 #include <bit>
 #include <cstring>
 #include <string>

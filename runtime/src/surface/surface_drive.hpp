@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step on a surface of one shape: the same states, friction and response as servo_step.cpp, with a shape in place of a
+// The step on a surface of one shape: the same states, friction and response as servo_step.hpp, with a shape in place of a
 // graph's features. Each kind's source makes its two functions of surface_kinds.hpp from step_on() and normal_on().
 #pragma once
 
+#include "step/near_zero.hpp"
 #include "step/response.hpp"
 #include "surface/surface.hpp"
 #include "surface/surface_kinds.hpp"
 
 namespace fdcg::surface_drive {
 
-inline constexpr uint32_t kMostTransitions = 24;     // of one tick; two or three are usual
-inline constexpr double kLeastCoordinate = 0x1p-70;  // of the extent: a coordinate below it is zero, and no square is denormal
-
-struct Progress {
-  uint32_t transitions, flags;
-};
+inline constexpr uint32_t kMostTransitions = 24;  // of one tick; two or three are usual
 
 // From free space, or from the surface that was just left: the contact is placed on what the way to the HIP meets, or at the
 // HIP.
@@ -66,20 +62,14 @@ inline bool is_usable_place(const double p[3]) {
 }
 
 inline Point place_of(const double p[3], double extent) {
-  const double least = kLeastCoordinate * extent;
-  return {absolute(p[0]) < least ? 0 : p[0], absolute(p[1]) < least ? 0 : p[1], absolute(p[2]) < least ? 0 : p[2]};
+  const double least = kLeastShare * extent;
+  return {zero_below(least, p[0]), zero_below(least, p[1]), zero_below(least, p[2])};
 }
 
 // Whether place_of() leaves a place as it is: nothing but a jump waits for that.
 FDCG_HOT bool is_plain_place(Point p, double extent) {
-  const double least = kLeastCoordinate * extent;
+  const double least = kLeastShare * extent;
   return !((absolute(p.x) < least && p.x != 0) || (absolute(p.y) < least && p.y != 0) || (absolute(p.z) < least && p.z != 0));
-}
-
-inline void store(Point from, double (&to)[3]) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
 }
 
 inline void start(Point hip, fdcg_contact* contact) {

@@ -7,16 +7,16 @@
 namespace fdcg {
 namespace {
 
-struct Kind {
+struct SurfaceKind {
   SurfaceStep* step;
   SurfaceNormal* normal;
 };
 
-const Kind& kind_of(uint32_t kind) {
-  static constexpr Kind kKinds[] = {{step_plane, normal_of_plane},       {step_sphere, normal_of_sphere},
-                                    {step_cylinder, normal_of_cylinder}, {step_capsule, normal_of_capsule},
-                                    {step_box, normal_of_box},           {step_cone, normal_of_cone},
-                                    {step_torus, normal_of_torus},       {step_ellipsoid, normal_of_ellipsoid}};
+const SurfaceKind& kind_of(uint32_t kind) {
+  static constexpr SurfaceKind kKinds[] = {{step_plane, normal_of_plane},       {step_sphere, normal_of_sphere},
+                                           {step_cylinder, normal_of_cylinder}, {step_capsule, normal_of_capsule},
+                                           {step_box, normal_of_box},           {step_cone, normal_of_cone},
+                                           {step_torus, normal_of_torus},       {step_ellipsoid, normal_of_ellipsoid}};
   return kKinds[kind <= FDCG_SURFACE_ELLIPSOID ? kind : 0];
 }
 
@@ -36,7 +36,7 @@ extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params
   fdcg_surface surface_room;
   fdcg_params params_room;
   const fdcg_surface& whole = in_full(*surface, &surface_room, clear_surface);
-  const Kind& kind = kind_of(whole.kind);
+  const SurfaceKind& kind = kind_of(whole.kind);
   if (kind.step != nullptr && is_usable_place(hip_object_m)) {
     kind.step(whole, in_full(*params, &params_room, fdcg_params_init), contact, hip_object_m, result);
   } else {

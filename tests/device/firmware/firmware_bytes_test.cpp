@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bytes of schemas/fdcg-hid.md: its dumps, its descriptors, its CRC, against the firmware core.
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "firmware_rig.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"
@@ -37,7 +37,7 @@ std::vector<Bytes> dumps() {
 
 }  // namespace
 
-TEST_CASE("firmware: the document's dumps are what the core makes and takes") {
+TEST_CASE("firmware: the core writes and accepts the document's dumps") {
   const std::vector<Bytes> dump = dumps();
   REQUIRE(dump.size() == 6);  // two descriptors, feature, two outputs, input
   CHECK(dump[1] == Bytes(std::begin(fdcg_fw_report_descriptor), std::end(fdcg_fw_report_descriptor)));

@@ -2,7 +2,6 @@
 // Device profiles: what is read, and that everything wrong is refused by name. testdata/profiles/refused.json has an edit of
 // full.json for each error; profile_schema_test.py holds the schema against the same list.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <string>
 
 #include "base/json_reader.hpp"
+#include "catch.hpp"
 #include "profile/kinematics.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"
@@ -93,7 +93,7 @@ TEST_CASE("of the built-in profiles the reference device alone has every limit")
   }
 }
 
-TEST_CASE("a profile becomes the table that its text says") {
+TEST_CASE("a profile is translated to its table") {
   std::vector<std::string> warnings;
   const Profile p = parsed(full(), &warnings);
   CHECK(warnings.empty());
@@ -146,7 +146,7 @@ TEST_CASE("a profile becomes the table that its text says") {
   CHECK(p.limits.device_watchdog_s == 0.02);
 }
 
-TEST_CASE("what may be left out has its default") {
+TEST_CASE("profile: optional fields have their defaults") {
   Json json = full();
   for (const char* key : {"$schema", "source", "notes", "output", "init", "safe_stop", "limits"})
     json.erase(key);
@@ -166,7 +166,7 @@ TEST_CASE("what may be left out has its default") {
   CHECK(p.limits.force_n == 0);
 }
 
-TEST_CASE("a jointed device's parameters stand where the kinematics look for them") {
+TEST_CASE("profile: kinematic parameters are stored where kinematics reads them") {
   Json json = full();
   for (int axis = 0; axis < 3; ++axis) {
     json["input"]["fields"][2 + axis]["unit"] = "rad";
@@ -251,7 +251,7 @@ TEST_CASE("a text beyond the limit of bytes is refused") {
   CHECK(refusal(std::string(kMostJsonBytes + 1, ' ')) == "p.json: has 1000001 bytes; the limit is 1000000");
 }
 
-TEST_CASE("each limit that is not known is a warning, and zero") {
+TEST_CASE("profile: each unknown limit is a warning, and zero") {
   for (const char* key : {"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m", "device_watchdog_s"}) {
     INFO(key);
     Json json = full();

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import jsonschema
 
@@ -65,6 +66,24 @@ class OfQuickRuns(unittest.TestCase):
         self.assertGreater(len(self.results["bars"]), 20)
         for bar in self.results["bars"]:
             self.assertTrue(html.escape(bar["bar"]) in self.page, bar["bar"])
+
+
+class OfFigures(unittest.TestCase):
+    def test_a_line_over_mesh_size_is_of_one_body(self):
+        """A smooth sphere and a rough star of equal size take different times: neither stands for the other."""
+        sys.path.insert(0, str(HERE))
+        import contenders
+        from tables import Table
+        rows = [{"body": f"{group}_{faces}", "group": group, "faces": faces, "contender": "paper", "family": "paper", "way": "hand",
+                 "mu_static": 0, "rate_hz": 1000, "mean_ns": ns, "god_object_rms_m": 1e-9}
+                for group, faces, ns in (("sphere", 100, 50), ("sphere", 400, 90), ("star", 100, 70), ("star", 400, 60))]
+        table = Table("contenders", list(rows[0]), rows)
+        run = unittest.mock.Mock()
+        run.table = lambda name: table
+        with unittest.mock.patch.object(contenders, "finish", side_effect=lambda name, figure, *_: figure):
+            axes = next(contenders.overview(run)).axes[1]
+        lines = {line.get_label(): list(zip(*line.get_data())) for line in axes.get_lines()}
+        self.assertEqual({"paper, sphere": [(100, 50), (400, 90)], "paper, star": [(100, 70), (400, 60)]}, lines)
 
 
 class OfBrokenFolders(unittest.TestCase):

@@ -125,7 +125,7 @@ TEST_CASE("no accessor, view or buffer reaches beyond its bytes, however large t
         "accessors[0].sparse.indices: value 2 is 0, neither above the one before it nor below the accessor's count 4");
 }
 
-TEST_CASE("JSON that is broken, cut short or nested without end is refused by its place") {
+TEST_CASE("broken, truncated or too deeply nested JSON is refused with its place") {
   const std::string text = square().text();
   CHECK(refusal(text.substr(0, text.size() - 1)) == "mesh: truncated: the JSON ends at line 1, byte " +
                                                         std::to_string(text.size() - 1) + "; fetch or export the file again");
@@ -154,7 +154,7 @@ TEST_CASE("a GLB is refused where its lengths, its version or its first chunk ar
   CHECK(import_text(glb + std::string(4, '\0')).face_count() == 2);
 }
 
-TEST_CASE("a GLB without the chunk that its buffer is in says so") {
+TEST_CASE("a GLB without the chunk of its buffer is refused with that reason") {
   GltfScene scene = square();
   scene.json["buffers"] = {{{"byteLength", scene.buffer().size()}}};
   CHECK(refusal(glb_container(scene.json.dump(), std::nullopt)) ==
@@ -186,7 +186,7 @@ TEST_CASE("buffers in files beside or beneath the glTF file are read, by their p
       "square.gltf: truncated: buffers[0].byteLength promises 72 bytes, there are 71; fetch or export the file again"));
 }
 
-TEST_CASE("files that are missing, elsewhere or no files are refused by name") {
+TEST_CASE("referenced files that are missing, elsewhere or no regular files are refused by name") {
   const Folder folder;
   GltfScene scene = square();
   const auto message = [&](const std::string& uri) {
@@ -212,7 +212,7 @@ TEST_CASE("files that are missing, elsewhere or no files are refused by name") {
   }
 }
 
-TEST_CASE("Draco data that is none is refused, by the primitive that has it") {
+TEST_CASE("invalid Draco data is refused with its primitive") {
   std::string glb = write_glb_draco(import_text(square().text()));
   const std::size_t at = glb.rfind("DRACO");
   glb[at] = 'X';

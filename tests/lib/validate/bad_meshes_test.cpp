@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The meshes of testdata/meshes/bad: each is named after the rule that it raises, and each rule has one.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 
 using namespace fdcg::bake;
@@ -69,7 +69,7 @@ TEST_CASE("every bad mesh raises the rule in its name, and every rule has a mesh
   }
 }
 
-TEST_CASE("a degenerate face is told what is wrong with it") {
+TEST_CASE("a degenerate face is reported with its kind of degeneracy") {
   CHECK(
       message_of("degenerate-face-on-a-line.off", "degenerate-face").starts_with("1 face has all corners on one line. Delete"));
   CHECK(message_of("degenerate-face-repeated-corner.off", "degenerate-face")

@@ -11,12 +11,12 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "plain_recount.hpp"
 #include "real_files.hpp"
@@ -85,7 +85,7 @@ struct EdgeVisitor : PMP::Default_orientation_visitor {
 
 }  // namespace
 
-TEST_CASE("every face of every real file is kept or listed under what is wrong with it") {
+TEST_CASE("every face of every real file is kept or listed under its defect") {
   std::size_t read = 0, refused = 0;
   for (const auto& path : real_mesh_files()) {
     INFO(path.string());

@@ -2,13 +2,13 @@
 // Defects planted in clean meshes, written to a file, read and validated: every rule's findings are exactly those planted, with
 // their places. FDCG_SEEDED_CASES sets how many random meshes (default 150), FDCG_SEEDED_FACES up to how many faces (20,000).
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "clean_mesh.hpp"
 #include "fdcg/bake.hpp"
 #include "mesh_files.hpp"
@@ -150,7 +150,7 @@ TEST_CASE("clean meshes have no finding in any format") {
   }
 }
 
-TEST_CASE("a single defect of each kind is found where it is, and nothing else") {
+TEST_CASE("a single defect of each kind is found in its place, and nothing else") {
   for (const std::string& defect : Seeder::kinds()) {
     int planted = 0;
     for (int i = 0; i < 33; ++i) {
@@ -169,7 +169,7 @@ TEST_CASE("a single defect of each kind is found where it is, and nothing else")
   }
 }
 
-TEST_CASE("many defects that keep apart give exactly the sum of their findings") {
+TEST_CASE("many separate defects give exactly the sum of their findings") {
   const std::uint32_t cases = setting("FDCG_SEEDED_CASES", 150), most_faces = setting("FDCG_SEEDED_FACES", 20'000);
   std::map<std::string, int> planted;
   for (std::uint32_t i = 0; i < cases; ++i) {

@@ -2,7 +2,6 @@
 // compile and validate give one verdict: a mesh is refused by the one exactly where the other's report does not pass, with the
 // same findings. FDCG_VERDICT_ROUNDS: how many meshes, default 4,000.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
 #include "soups.hpp"
@@ -118,7 +118,7 @@ nlohmann::json info_of(const Compiled& compiled) {
 
 }  // namespace
 
-TEST_CASE("compile refuses a mesh exactly where validate fails it, and stores what was found") {
+TEST_CASE("compile refuses a mesh exactly where validate fails it, and stores the findings") {
   const char* const asked = std::getenv("FDCG_VERDICT_ROUNDS");
   const unsigned rounds = asked != nullptr ? static_cast<unsigned>(std::atoi(asked)) : 4000;
   unsigned refused = 0, accepted = 0;

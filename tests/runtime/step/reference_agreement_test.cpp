@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The runtime against the brute-force reference: every mesh kind, four pairs of friction coefficients, both precisions.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "catch.hpp"
 #include "lockstep.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"
@@ -132,7 +132,7 @@ TEST_CASE("without a hierarchy the step is the same") {
   check(graph.view(), soup, 0.3, 0.2, 5);
 }
 
-TEST_CASE("the reference in long double agrees with itself in 150 digits") {
+TEST_CASE("the reference in long double agrees with itself at 150 digits") {
   for (const PolygonSoup& soup : {corner_pit(), star_sphere(1, 0.3, 1), saddle_block(), bumpy_patch(3, 0.2, 1)}) {
     const PlainGraph graph(soup, Precision::f64);
     const ReferenceSurface<long double> surface(graph.view());

@@ -2,10 +2,10 @@
 // The bound on the rules: where a jump crosses more features than one tick has work for, the rest is carried over with the
 // god-object on the surface and ever nearer to the HIP, and without friction it ends, bit for bit, where an unbounded step
 // does.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
@@ -15,7 +15,7 @@ using fdcg::bake::CompileOptions;
 using fdcg::bake::PolygonSoup;
 using fdcg::bake::Precision;
 
-// servo_step.cpp again, with all the work it wants.
+// servo_step.cpp again, with an unlimited work budget.
 extern "C" void fdcg_step_unbounded(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                                     const double hip_object_m[3], fdcg_result* result);
 

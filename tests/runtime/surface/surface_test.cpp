@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rules of the contact model on every surface, under a hand that does all that a hand should not. FDCG_STEPS in the
 // environment sets the steps of each walk.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 
+#include "catch.hpp"
 #include "surface_rig.hpp"
 
 using namespace fdcg::test;
@@ -134,7 +134,7 @@ void walk_about(const fdcg_surface& surface, const Friction& friction, std::uint
 
 }  // namespace
 
-TEST_CASE("on every surface a god-object stays on it, comes nearer, keeps to its cone, and no hand falls through") {
+TEST_CASE("on every surface the god-object stays on it, approaches the HIP, respects the friction cone, and is not lost") {
   for (std::uint32_t kind = FDCG_SURFACE_PLANE; kind <= FDCG_SURFACE_ELLIPSOID; ++kind) {
     for (const bool is_hollow : {false, true}) {
       int touches = 0, bounds = 0, steps = 0;

@@ -23,8 +23,6 @@
 
 namespace fdcg::dev {
 
-inline constexpr int kAllDevices = -1;
-
 // What stands between a device and its use. Empty `problem`: it is open, or nobody has tried yet.
 struct ConnectionReport {
   Connection connection = Connection::kAbsent;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's devices as transports.
+// Creates the transports of a scene's devices. A transport does not access its device until it is opened.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@ namespace fdcg::dev {
 
 std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const LoopConfig& loop);
 
-// Whichever config.source says.
+// The transport for config.source.
 std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop);
 
 }  // namespace fdcg::dev

@@ -4,20 +4,10 @@
 
 #include <cstdint>
 
+#include "fdcg/device_status.hpp"
 #include "tick/device_tick.hpp"
 
 namespace fdcg::dev {
-
-// Times by powers of the fourth root of two, from 64 ns up: fixed size, one addition a value, quantiles within 19 %.
-struct TimeHistogram {
-  static constexpr int kBins = 128;
-  std::uint64_t counts[kBins] = {};
-  std::uint64_t total = 0, largest_ns = 0;
-  void add(std::uint64_t ns);
-  std::uint64_t quantile(double share) const;  // upper end of the bin, in ns; 0 where nothing was counted
-};
-
-enum class Connection : std::uint8_t { kAbsent = 0, kOpen = 1 };
 
 struct DeviceStatus {
   Connection connection = Connection::kAbsent;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "fdcg/device_status.hpp"
 #include "profile/profile.hpp"
 
 namespace fdcg::dev {
@@ -17,20 +18,6 @@ struct Sample {
   std::uint32_t buttons = 0;
   bool has_fault = false;  // a bit of the status mask is set
 };
-
-// Why a report is not used. Names are part of the log and of the status: never renumber.
-enum class Verdict : std::uint8_t {
-  kGood = 0,
-  kLength = 1,
-  kId = 2,
-  kCrc = 3,
-  kConstant = 4,  // a byte that never changes has changed
-  kNotFinite = 5,
-  kRepeated = 6,    // the sequence number of the report before
-  kOutOfOrder = 7,  // one from before that
-  kStale = 8,       // too old by the device's own clock
-};
-inline constexpr int kVerdicts = 9;
 
 // Length, id, CRC, constants and finiteness; *sample is only good with kGood.
 Verdict decode_input(const Profile& profile, const std::uint8_t* data, int bytes, Sample* sample);

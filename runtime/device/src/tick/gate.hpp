@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The safety gate: the last stage before the device, and the only maker of a GatedForce, which is all that a writer takes.
-// Pure: the clock comes in as a number. No heap, no lock, every step bounded.
+// The safety gate: the last stage before the device. Only the gate creates a GatedForce, the only type that a writer accepts. A
+// pure function: the time is an argument. No heap, no lock, bounded work.
 //
-// What leaves it is finite; its norm is at most force_n; its efforts are at most effort[] each; and it is a force within slew
-// of the last one, or such a force made smaller: towards zero it may go at once. Not armed, or after a fault: zero.
+// Its output is finite; its norm is at most force_n; its efforts are at most effort[] each; and it is a force within the slew
+// limit of the last one, or such a force scaled down: it may go to zero at once. Not armed, or after a fault: zero.
 //
-// Armed by a command, near zero force; the force then grows over kRampS. kMissedTicksToFade periods without a good report: it
-// goes to zero within kFadeS, and comes back with the ramp when reports do. Everything else that goes wrong disarms, at once
-// and until the next command.
+// Arming needs a command and near zero force; the force is then ramped up over kRampS. After kMissedTicksToFade periods without
+// a good report it fades to zero within kFadeS, and is ramped up again when reports return. Every other fault disarms at once,
+// until the next command.
 #pragma once
 
 #include <cstdint>
 
+#include "fdcg/device_status.hpp"
 #include "profile/kinematics.hpp"
 #include "profile/profile.hpp"
 
@@ -24,28 +25,6 @@ inline constexpr double kWriterStuckS = 0.005;       // in one write: disarmed
 inline constexpr double kArmForceShare = 0.05;       // of force_n: arming is granted only below it
 inline constexpr double kForceWithoutWatchdogN = 1;  // the most for a device that does not drop its force by itself ...
 inline constexpr double kLongestWatchdogS = 0.1;     // ... within this
-
-// Why there is no force. Part of the log and the status: never renumber.
-enum class Fault : std::uint8_t {
-  kNone = 0,
-  kUnknownLimit = 1,  // the profile does not say what the device and the hand can stand: never armed
-  kSilence = 2,
-  kWriterStuck = 3,
-  kWriteFailed = 4,
-  kReadFailed = 5,  // unplugged
-  kNotFinite = 6,   // a number of our own
-  kWorkspace = 7,   // the tip is where the device cannot be
-  kSpeed = 8,
-  kHostLate = 9,      // the host itself was away for kSilenceS or more
-  kDeviceFault = 10,  // the device says so itself
-  kCommanded = 11,    // disarmed by the user
-  kClock = 12,        // the host's clock went back
-};
-inline constexpr int kFaults = 13;
-const char* fault_name(Fault fault);  // "silence"
-const char* fault_text(Fault fault);  // one line: what happened and what to do
-
-enum class Phase : std::uint8_t { kDisarmed = 0, kRamping = 1, kArmed = 2, kFading = 3 };
 
 // Zero, or what the gate has let through.
 class GatedForce {

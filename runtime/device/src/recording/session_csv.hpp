@@ -6,14 +6,14 @@
 
 #include "recording/session_replay.hpp"
 
-namespace fdcg::servo {
+namespace fdcg::dev {
 
 // Header lines end with a newline. Columns of bodies by their objects' names, where a comma or a quote would be is a '_'.
-std::string session_csv_header(const dev::HostConfig& config);
-std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_ns);
+std::string session_csv_header(const HostConfig& config);
+std::string session_csv_row(const ReplayedTick& tick, std::uint64_t first_ns);
 
 std::string touches_csv_header();
 // Any number of rows; none where nothing is touched.
-std::string touches_csv_rows(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, std::uint64_t first_ns);
+std::string touches_csv_rows(const SessionReplay& replay, const ReplayedTick& tick, std::uint64_t first_ns);
 
-}  // namespace fdcg::servo
+}  // namespace fdcg::dev

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session_csv.hpp"
+#include "recording/session_csv.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,7 +8,7 @@
 
 #include "base/rotation.hpp"
 
-namespace fdcg::servo {
+namespace fdcg::dev {
 namespace {
 
 constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
@@ -34,7 +34,7 @@ struct Touch {
 };
 
 // Contact by contact.
-std::vector<Touch> touches_of(const dev::DeviceSetup& setup) {
+std::vector<Touch> touches_of(const DeviceSetup& setup) {
   std::vector<Touch> touches;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result finger{};
@@ -64,19 +64,19 @@ struct Load {
 };
 
 // Where an object was in that tick.
-const fdcg_pose& tick_pose(const dev::HostConfig& config, const dev::ReplayedTick& tick, std::size_t object) {
+const fdcg_pose& tick_pose(const HostConfig& config, const ReplayedTick& tick, std::size_t object) {
   std::size_t body = 0, moved = 0;
   for (std::size_t i = 0; i < object; ++i) {
-    body += config.objects[i].motion.kind == dev::MotionKind::kBody;
-    moved += dev::is_moved(config.objects[i].motion);
+    body += config.objects[i].motion.kind == MotionKind::kBody;
+    moved += is_moved(config.objects[i].motion);
   }
-  const dev::ObjectConfig& of = config.objects[object];
-  if (of.motion.kind == dev::MotionKind::kBody) return tick.output->bodies[body];
-  if (dev::is_moved(of.motion) && moved < tick.input->pose_count) return tick.input->poses[moved];
+  const ObjectConfig& of = config.objects[object];
+  if (of.motion.kind == MotionKind::kBody) return tick.output->bodies[body];
+  if (is_moved(of.motion) && moved < tick.input->pose_count) return tick.input->poses[moved];
   return of.pose;
 }
 
-void normal_of_ball(const dev::ObjectConfig& ball, const fdcg_pose& pose, const double at_m[3], double normal[3]) {
+void normal_of_ball(const ObjectConfig& ball, const fdcg_pose& pose, const double at_m[3], double normal[3]) {
   double square = 0;
   for (int i = 0; i < 3; ++i) {
     normal[i] = (at_m[i] - pose.translation_m[i]) * (ball.surface.is_hollow != 0 ? -1 : 1);
@@ -87,16 +87,16 @@ void normal_of_ball(const dev::ObjectConfig& ball, const fdcg_pose& pose, const 
     normal[i] /= length > 0 ? length : 1;
 }
 
-Load load_of(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, const fdcg_touch& touch) {
+Load load_of(const SessionReplay& replay, const ReplayedTick& tick, const fdcg_touch& touch) {
   Load load;
   const std::size_t object = touch.object.index;
-  const dev::ObjectConfig& of = replay.config().objects[object];
+  const ObjectConfig& of = replay.config().objects[object];
   double normal[3];
   if (of.is_surface && of.surface.kind == FDCG_SURFACE_SPHERE) {
     normal_of_ball(of, tick_pose(replay.config(), tick, object), touch.god_object_m, normal);
-  } else if (!of.is_surface && of.motion.kind != dev::MotionKind::kSoft && touch.state == FDCG_FACE) {
-    dev::turn(tick_pose(replay.config(), tick, object).rotation_xyzw,
-              fdcg_get_node(&replay.graph(object), touch.feature).normal, normal);
+  } else if (!of.is_surface && of.motion.kind != MotionKind::kSoft && touch.state == FDCG_FACE) {
+    turn(tick_pose(replay.config(), tick, object).rotation_xyzw, fdcg_get_node(&replay.graph(object), touch.feature).normal,
+         normal);
   } else {
     return load;
   }
@@ -116,21 +116,21 @@ Load load_of(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, co
 
 }  // namespace
 
-std::string session_csv_header(const dev::HostConfig& config) {
+std::string session_csv_header(const HostConfig& config) {
   std::string line = kCsvHeader;
-  for (const dev::ObjectConfig& object : config.objects) {
-    if (object.motion.kind != dev::MotionKind::kBody) continue;
+  for (const ObjectConfig& object : config.objects) {
+    if (object.motion.kind != MotionKind::kBody) continue;
     for (const char* const part : {"_x", "_y", "_z", "_qx", "_qy", "_qz", "_qw"})
       line += "," + column_name(object.name) + part;
   }
-  for (const dev::ObjectConfig& object : config.objects)
-    if (object.motion.kind == dev::MotionKind::kSoft) line += "," + column_name(object.name) + "_dent";
+  for (const ObjectConfig& object : config.objects)
+    if (object.motion.kind == MotionKind::kSoft) line += "," + column_name(object.name) + "_dent";
   return line + "\n";
 }
 
 // Of the touch with the largest force: god-object, state and so on.
-std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_ns) {
-  const dev::LoggedOutput& output = *tick.output;
+std::string session_csv_row(const ReplayedTick& tick, std::uint64_t first_ns) {
+  const LoggedOutput& output = *tick.output;
   const std::vector<Touch> touches = touches_of(tick.state->setup);
   const auto square = [](const Touch& touch) {
     const double* const f = touch.touch->force_n;
@@ -147,7 +147,7 @@ std::string session_csv_row(const dev::ReplayedTick& tick, std::uint64_t first_n
   line += is_free ? "free,-1,0," : state_columns(*best->touch);
   line += std::to_string(is_free ? 0 : best->touch->transitions) + ",";
   line += std::to_string(tick.device) + "," + std::to_string(tick.tick) + "," + kPhases[output.phase & 3] + "," +
-          dev::fault_name(static_cast<dev::Fault>(output.fault)) + ",";
+          fault_name(static_cast<Fault>(output.fault)) + ",";
   append(line, output.force_n);
   for (int i = 0; i < output.body_count; ++i) {
     append(line, output.bodies[i].translation_m);
@@ -164,8 +164,8 @@ std::string touches_csv_header() {
   return "t,device,tick,contact,object,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,load,friction,margin\n";
 }
 
-std::string touches_csv_rows(const dev::SessionReplay& replay, const dev::ReplayedTick& tick, std::uint64_t first_ns) {
-  const dev::HostConfig& config = replay.config();
+std::string touches_csv_rows(const SessionReplay& replay, const ReplayedTick& tick, std::uint64_t first_ns) {
+  const HostConfig& config = replay.config();
   std::string text;
   for (const auto& [touch, contact] : touches_of(tick.state->setup)) {
     append(text, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);
@@ -187,4 +187,4 @@ std::string touches_csv_rows(const dev::SessionReplay& replay, const dev::Replay
   return text;
 }
 
-}  // namespace fdcg::servo
+}  // namespace fdcg::dev

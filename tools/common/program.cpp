@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "help_page.hpp"
+#include "manuals.hpp"
+#include "nearest.hpp"
+#include "options.hpp"
+
+namespace fdcg::tools {
+namespace {
+
+// Of the program that runs: fail() needs both, far from where the command line was read.
+struct Invocation {
+  std::string program, command;  // "fdcg", "fdcg compile"
+};
+Invocation& invocation() {
+  static Invocation the_invocation;
+  return the_invocation;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : all_commands(app))
+    names.push_back(command->get_name());
+  return names;
+}
+
+// What was likely meant by the first word that was not expected.
+std::string hint_for(const CLI::App& app, const CLI::App& command) {
+  for (const std::string& word : app.remaining(true)) {
+    std::vector<std::string> names;
+    if (word.starts_with("-")) {
+      for (const CLI::Option* const option : command.get_options()) {
+        for (const std::string& name : option->get_lnames())
+          names.push_back("--" + name);
+      }
+    } else if (&command == &app) {
+      names = command_names(app);
+    }
+    return did_you_mean(word.substr(0, word.find('=')), names);
+  }
+  return "";
+}
+
+int usage_error(const CLI::ParseError& error, const CLI::App& app) {
+  const CLI::App* command = &app;
+  for (const CLI::App* chosen : app.get_subcommands())
+    command = chosen;
+  invocation().command = full_name(*command);
+  std::string message = error.what();
+  message = message.substr(0, message.find('\n'));
+  if (message == "A subcommand is required") message = "a command is required";
+  return fail(kUsage, message + hint_for(app, *command));
+}
+
+// `fdcg help`, `fdcg help compile`.
+Command add_help(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand("help", "Show the help of a command.");
+  const auto name = std::make_shared<std::string>();
+  command->add_option("command", *name, offering("The command. Without it: the program's own help.", command_names(app)))
+      ->type_name("COMMAND");
+  const auto run = [name, &app]() -> int {
+    const CLI::App* about = name->empty() ? &app : nullptr;
+    for (const CLI::App* const known : all_commands(app)) {
+      if (known->get_name() == *name) about = known;
+    }
+    if (about == nullptr) return fail(kUsage, "'" + *name + "' is no command" + did_you_mean(*name, command_names(app)));
+    std::fputs(help_text(page_of(*about)).c_str(), stdout);
+    return kClean;
+  };
+  return {command, run};
+}
+
+int run(const Program& program, int argc, char** argv) {
+  CLI::App app{program.summary, program.name};
+  app.footer(program.footer);
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_flag("-h,--help", "Show this help.");
+  app.set_version_flag("--version", program.version, "Show the version and the version of the file format.");
+  app.require_subcommand(1);
+  std::vector<Command> commands;
+  for (const auto& add : program.commands)
+    commands.push_back(add(app));
+  commands.push_back(add_help(app));
+  if (argc == 4 && std::string_view(argv[1]) == "--write-manuals") {
+    const std::string problem = write_manuals(app, program.version, argv[2], argv[3]);
+    return problem.empty() ? kClean : fail(kInternal, problem);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);  // --help, --version
+  } catch (const CLI::ParseError& error) {
+    return usage_error(error, app);
+  }
+  for (const Command& command : commands) {
+    if (!command.app->parsed()) continue;
+    invocation().command = full_name(*command.app);
+    return command.run();
+  }
+  return kUsage;
+}
+
+}  // namespace
+
+int run_program(const Program& program, int argc, char** argv) {
+  invocation() = {program.name, program.name};
+  try {
+    return run(program, argc, argv);
+  } catch (const std::bad_alloc&) {
+    return fail(kInternal, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(kInternal, std::string("internal error: ") + error.what());
+  }
+}
+
+int fail(int exit_code, std::string_view message) {
+  std::string line = invocation().program + ": " + std::string(message);
+  if (exit_code == kUsage) {
+    line += line.ends_with('.') || line.ends_with('?') ? "" : ".";
+    line += " Try '" + invocation().command + " --help'.";
+  }
+  std::fprintf(stderr, "%s\n", line.c_str());
+  return exit_code;
+}
+
+void warn(std::string_view message) {
+  std::fprintf(stderr, "%s: warning: %.*s\n", invocation().program.c_str(), static_cast<int>(message.size()), message.data());
+}
+
+std::string exit_codes(std::string_view clean, std::string_view findings) {
+  return "Exit codes:\n  0  " + std::string(clean) + "\n  1  " + std::string(findings) +
+         "\n  2  wrong usage\n  3  an input cannot be read, or an output cannot be written\n  4  a fault of the program";
+}
+
+}  // namespace fdcg::tools
