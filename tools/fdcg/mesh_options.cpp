@@ -5,8 +5,8 @@
 #include <functional>
 #include <limits>
 
-#include "../common/nearest.hpp"
 #include "../common/options.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::bake {
 

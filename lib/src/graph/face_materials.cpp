@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 #include "fdcg/fdcg.h"
 
 namespace fdcg::bake {

@@ -51,7 +51,7 @@ Strided resolve(const Document& document, const Run& run, std::uint64_t count, C
   const std::size_t size = size_of(type) * components;
   const std::uint64_t given = uses_stride ? document.views[run.view].stride : 0;
   if (given != 0 && given < size) {
-    throw Refusal{"bufferViews[" + std::to_string(run.view) + "].byteStride: is " + std::to_string(given) + ", less than the " +
+    throw Refusal{"bufferViews[" + std::to_string(run.view) + "].byteStride is " + std::to_string(given) + ", less than the " +
                   std::to_string(size) + " bytes of a value of " + place};
   }
   const std::uint64_t stride = given != 0 ? given : size;

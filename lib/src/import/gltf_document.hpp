@@ -13,14 +13,12 @@
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "shared/json/reader.hpp"
 
 namespace fdcg::bake::gltf {
 
 // Thrown where a file is found wanting, caught by read_gltf: the place is known deep down, the file's name at the top.
-struct Refusal {
-  std::string what;
-  const char* rule = "unreadable";
-};
+using json::Refusal;
 
 // The targets of the bufferViews, accessors, ... that are used.
 using Index = std::uint32_t;
@@ -109,6 +107,6 @@ struct Document {
 };
 
 // Throws Refusal.
-Document parse_document(std::string_view json);
+Document parse_document(std::string_view text);
 
 }  // namespace fdcg::bake::gltf

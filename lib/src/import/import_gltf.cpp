@@ -94,7 +94,7 @@ Result<PolygonSoup> read_gltf(const MeshText& input) {
     gltf::build_scene(document, buffers, input, soup);
     soup.other_files = buffers.outside_files();
   } catch (const Refusal& refusal) {
-    return refuse(input.name, refusal.what, refusal.rule);
+    return refuse(input.name, refusal.message, "unreadable");
   }
   return soup;
 }

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 #include "report/report_parts.hpp"
 
 namespace fdcg::bake {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 #include "report/report_parts.hpp"
 
 namespace fdcg::bake {

@@ -170,7 +170,7 @@ class Upkeep {
   static constexpr uint16_t kSliver = 0x8000;  // in a node's flags
   static constexpr int kMostHops = 16;         // from sliver to sliver
 
-  // Whose plane a sliver takes; node FDCG_NONE: nobody's. `side`: by which it was entered.
+  // The node whose plane a sliver uses; FDCG_NONE: none. `side`: the side by which the search entered it.
   struct Lender {
     uint32_t node, side;
   };

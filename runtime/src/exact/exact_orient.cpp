@@ -10,6 +10,7 @@
 
 #include "base/mutation.hpp"
 #include "base/work.hpp"
+#include "shared/error_free.hpp"
 
 namespace fdcg {
 namespace {
@@ -31,41 +32,22 @@ constexpr int kLimbBits = 8 * sizeof(Limb);
 constexpr int kLargestBits = 234 + 1074 + 2;
 constexpr int kLimbs = kLargestBits / kLimbBits + 1;
 
-// high + low, |low| at most half a unit in the last place of high. Products and sums of such pairs err by 2^-101 of the terms'
-// sizes at most, where no part falls below the normal numbers.
-struct Pair {
-  double high, low;
-};
-
-inline Pair pair_sum(double a, double b) {
-  const double sum = a + b, from_b = sum - a, from_a = sum - from_b;
-  return {sum, (a - from_a) + (b - from_b)};
-}
-
-// The same on every processor, with a fused multiplication or without.
-inline Pair pair_product(double a, double b) {
-  constexpr double kSplit = 0x1p27 + 1;
-  const double a_wide = kSplit * a, b_wide = kSplit * b;
-  const double a_high = a_wide - (a_wide - a), b_high = b_wide - (b_wide - b);
-  const double a_low = a - a_high, b_low = b - b_high, product = a * b;
-  return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
-}
-
-inline Pair joined(double high, double low) {
+// Products and sums of Splits err by 2^-101 of the terms' sizes at most, where no part falls below the normal numbers.
+inline Split joined(double high, double low) {
   const double sum = high + low;
   return {sum, low - (sum - high)};
 }
 
-inline Pair operator*(Pair a, Pair b) {
-  const Pair product = pair_product(a.high, b.high);
-  return joined(product.high, product.low + (a.high * b.low + a.low * b.high));
+inline Split operator*(Split a, Split b) {
+  const Split product = exact_product(a.value, b.value);
+  return joined(product.value, product.rest + (a.value * b.rest + a.rest * b.value));
 }
-inline Pair operator+(Pair a, Pair b) {
-  const Pair sum = pair_sum(a.high, b.high);
-  return joined(sum.high, sum.low + (a.low + b.low));
+inline Split operator+(Split a, Split b) {
+  const Split sum = exact_sum(a.value, b.value);
+  return joined(sum.value, sum.rest + (a.rest + b.rest));
 }
-inline Pair operator-(Pair a, Pair b) {
-  return a + Pair{-b.high, -b.low};
+inline Split operator-(Split a, Split b) {
+  return a + Split{-b.value, -b.rest};
 }
 
 // An integer: sign and magnitude, lowest limb first, no leading zero limb.
@@ -271,20 +253,20 @@ int sign_in_limbs(const Multiples& m) {
 
 // The determinant, with an error of at most 2^-98 of the size of its products.
 [[gnu::noinline]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
-  Pair edge[3][3];
+  Split edge[3][3];
   for (int p = 0; p < 3; ++p) {
     const Vec3<double>&to = point[p + 1], &from = point[0];
-    edge[p][0] = pair_sum(to.x, -from.x);
-    edge[p][1] = pair_sum(to.y, -from.y);
-    edge[p][2] = pair_sum(to.z, -from.z);
+    edge[p][0] = exact_sum(to.x, -from.x);
+    edge[p][1] = exact_sum(to.y, -from.y);
+    edge[p][2] = exact_sum(to.z, -from.z);
   }
   const auto &u = edge[0], &v = edge[1], &w = edge[2];
-  Pair sum = {0, 0};
+  Split sum = {0, 0};
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
     sum = sum + (u[i] * v[j] - u[j] * v[i]) * w[k];
   }
-  return sum.high;
+  return sum.value;
 }
 
 inline bool are_same(double a, double b, double c, double d) {

@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/json_reader.hpp"
 #include "catch.hpp"
 #include "profile/kinematics.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"
+#include "shared/json/reader.hpp"
 
 namespace {
 
@@ -248,7 +248,7 @@ TEST_CASE("every error of a profile is one line that names the file, the field a
 }
 
 TEST_CASE("a text beyond the limit of bytes is refused") {
-  CHECK(refusal(std::string(kMostJsonBytes + 1, ' ')) == "p.json: has 1000001 bytes; the limit is 1000000");
+  CHECK(refusal(std::string(fdcg::json::Limits{}.bytes + 1, ' ')) == "p.json: has 1000001 bytes; the limit is 1000000");
 }
 
 TEST_CASE("profile: each unknown limit is a warning, and zero") {
@@ -276,12 +276,13 @@ TEST_CASE("profile: each unknown limit is a warning, and zero") {
 }
 
 TEST_CASE("a file that cannot be read is refused with a reason") {
+  using fdcg::json::read_text_file;
   std::string text;
   const std::filesystem::path folder = std::filesystem::path(FDCG_SOURCE_DIR) / "testdata" / "profiles";
-  CHECK(read_text_file((folder / "full.json").string(), kMostJsonBytes, &text) == "");
+  CHECK(read_text_file((folder / "full.json").string(), fdcg::json::Limits{}.bytes, &text) == "");
   CHECK(text == testdata("full.json"));
   CHECK(read_text_file((folder / "full.json").string(), text.size(), &text) == "");
   CHECK(read_text_file((folder / "full.json").string(), text.size() - 1, &text).find("has more than ") != std::string::npos);
-  CHECK(read_text_file(folder.string(), 10, &text) == folder.string() + ": is a folder; name a file in it");
+  CHECK(read_text_file(folder.string(), 10, &text) == folder.string() + ": is a directory; name a file in it");
   CHECK(read_text_file("no/such/file", 10, &text) == "no/such/file: does not exist; check the path");
 }

@@ -241,7 +241,7 @@ TEST_CASE("simulated: unplugged, plugged in again, restarted") {
     CHECK(host.run(1000).size() == 99);
     CHECK(host.record->noticed_ns[1] == 500000000);
     host.transport->close();
-    CHECK(host.transport->open() == "the simulated device is unplugged, for ever: its script says so");
+    CHECK(host.transport->open() == "the simulated device is unplugged for good by its fault script");
   }
   SECTION("what was waiting when it was unplugged is gone") {
     config.faults = {fault(Kind::kOutOfOrder, 0.0985), fault(Kind::kStale, 0.09, 0.005), fault(Kind::kUnplug, 0.1, 0.2)};

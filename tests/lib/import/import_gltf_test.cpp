@@ -69,8 +69,7 @@ TEST_CASE("glTF is detected by content, also after a byte-order mark, and by ext
   for (const char* name : {"a.gltf", "a.GLB"}) {
     const Result<PolygonSoup> soup = import_memory("{}", name);
     REQUIRE_FALSE(soup);
-    CHECK(soup.error().message ==
-          std::string(name) + ": the JSON: has no 'asset', which it needs; correct the file or export it again");
+    CHECK(soup.error().message == std::string(name) + ": asset is missing; correct the file or export it again");
   }
 }
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <memory>
 
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_reader.hpp"
 

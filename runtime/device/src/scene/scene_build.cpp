@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/rotation.hpp"
-#include "base/words.hpp"
 #include "scene/scene_bodies.hpp"
+#include "shared/text.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <ctime>
 
 #include "base/threads.hpp"
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "transport/simulated_body.hpp"
 #include "transport/simulated_faults.hpp"
 #include "transport/transports.hpp"
@@ -122,9 +122,9 @@ std::string SimulatedTransport::open() {
   const std::uint64_t now = now_ns();
   if (const int fault = faults_.lasting(Kind::kUnplug, now); fault != SimulatedFaults::kNone) {
     const std::uint64_t end = faults_.end_ns(fault);
-    if (end == SimulationRecord::kNever) return "the simulated device is unplugged, for ever: its script says so";
-    return "the simulated device is unplugged, for another " + std::to_string((end - now) / 1'000'000) +
-           " ms: its script says so";
+    if (end == SimulationRecord::kNever) return "the simulated device is unplugged for good by its fault script";
+    return "the simulated device is unplugged for another " + std::to_string((end - now) / 1'000'000) +
+           " ms by its fault script";
   }
   while (outputs_.front() != nullptr)
     outputs_.drop();
