@@ -47,10 +47,7 @@ struct SmallHost {
 
   explicit SmallHost(const SimulationConfig& given) : config(given), profile(simulated_profile(given)) {
     config.record = record;
-    DeviceConfig device;
-    device.source = DeviceSource::kSimulated;
-    device.simulation = config;
-    transport = make_simulated_transport(device.simulation);
+    transport = make_simulated_transport(config);
     REQUIRE(transport->open() == "");
   }
   Verdict read(ReadStatus* status = nullptr) {
