@@ -13,10 +13,6 @@
 #include <vector>
 
 #include "fdcg/device_status.hpp"
-<<<<<<< HEAD
-=======
-#include "fdcg/fdcg.h"
->>>>>>> json
 #include "fdcg/scene.h"
 
 namespace fdcg::dev {
