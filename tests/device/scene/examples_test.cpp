@@ -9,9 +9,9 @@
 
 #include "catch.hpp"
 #include "host/fast_run.hpp"
+#include "recording/session_log.hpp"
+#include "recording/session_replay.hpp"
 #include "scene/scene_json.hpp"
-#include "session/session_log.hpp"
-#include "session/session_replay.hpp"
 #include "session_rig.hpp"
 
 using namespace fdcg::dev;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A session's log: the ring, the file, and its reader on damaged files.
-#include "session/session_log.hpp"
+#include "recording/session_log.hpp"
 
 #include <sys/resource.h>
 

@@ -10,9 +10,9 @@
 #include "catch.hpp"
 #include "host/fast_run.hpp"
 #include "host/host.hpp"
+#include "recording/session_log.hpp"
+#include "recording/session_replay.hpp"
 #include "scene/scene_build.hpp"
-#include "session/session_log.hpp"
-#include "session/session_replay.hpp"
 #include "session_rig.hpp"
 #include "shared_rig.hpp"
 

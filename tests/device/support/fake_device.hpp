@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "base/host_config.hpp"
 #include "base/threads.hpp"
 #include "profile/report_codec.hpp"
+#include "scene/host_config.hpp"
 #include "tick/transport.hpp"
 
 namespace fdcg::dev::test {

@@ -8,8 +8,8 @@
 
 #include "catch.hpp"
 #include "profile/report_codec.hpp"
-#include "transport/make_transport.hpp"
 #include "transport/simulated_device.hpp"
+#include "transport/transports.hpp"
 
 namespace fdcg::test {
 
@@ -47,10 +47,7 @@ struct SmallHost {
 
   explicit SmallHost(const SimulationConfig& given) : config(given), profile(simulated_profile(given)) {
     config.record = record;
-    DeviceConfig device;
-    device.source = DeviceSource::kSimulated;
-    device.simulation = config;
-    transport = make_simulated_transport(device);
+    transport = make_simulated_transport(config);
     REQUIRE(transport->open() == "");
   }
   Verdict read(ReadStatus* status = nullptr) {

@@ -12,8 +12,8 @@
 
 #include "catch.hpp"
 #include "fake_hidapi.h"
+#include "host/make_transport.hpp"
 #include "transport/hid_devices.hpp"
-#include "transport/make_transport.hpp"
 
 using namespace fdcg::dev;
 

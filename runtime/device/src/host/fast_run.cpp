@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/threads.hpp"
+#include "host/make_transport.hpp"
 #include "profile/report_codec.hpp"
+#include "recording/session_log.hpp"
 #include "scene/scene_build.hpp"
-#include "session/session_log.hpp"
-#include "transport/make_transport.hpp"
 
 namespace fdcg::dev {
 namespace {

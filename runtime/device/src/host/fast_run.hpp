@@ -13,8 +13,8 @@
 #include <memory>
 #include <string>
 
-#include "base/host_config.hpp"
 #include "host/status.hpp"
+#include "scene/host_config.hpp"
 
 namespace fdcg::dev {
 

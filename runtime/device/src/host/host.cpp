@@ -11,8 +11,8 @@
 #include "host/servo_loop.hpp"
 #include "host/supervisor.hpp"
 #include "host/writer.hpp"
+#include "recording/session_log.hpp"
 #include "scene/scene_build.hpp"
-#include "session/session_log.hpp"
 #include "tick/link.hpp"
 
 namespace fdcg::dev {

@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "base/host_config.hpp"
+#include "host/make_transport.hpp"
 #include "host/status.hpp"
-#include "transport/make_transport.hpp"
+#include "scene/host_config.hpp"
 
 namespace fdcg::dev {
 

@@ -17,7 +17,7 @@
 #include "base/threads.hpp"
 #include "host/status.hpp"
 #include "host/writer.hpp"
-#include "session/session_log.hpp"
+#include "recording/session_log.hpp"
 #include "tick/device_tick.hpp"
 #include "tick/link.hpp"
 #include "tick/transport.hpp"

@@ -14,6 +14,7 @@ inline constexpr int kMaxFields = 24;  // of one report
 inline constexpr int kMaxReportBytes = 128;
 inline constexpr int kMaxFixedReports = 8;  // init, and as many to stop safely
 inline constexpr int kProfileNameBytes = 64;
+inline constexpr double kSilenceS = 0.010;  // without a good report: the gate disarms
 
 enum class NumberType : std::uint8_t { kU8, kI8, kU16, kI16, kU32, kI32, kF32 };
 int bytes_of(NumberType type);

@@ -8,7 +8,6 @@
 #include "profile/profile_reports.hpp"
 #include "shared/json/reader.hpp"
 #include "shared/text.hpp"
-#include "tick/gate.hpp"
 
 namespace fdcg::dev {
 namespace {

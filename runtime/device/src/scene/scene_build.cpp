@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/rotation.hpp"
+#include "scene/scene_bodies.hpp"
 #include "shared/text.hpp"
-#include "tick/scene_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>

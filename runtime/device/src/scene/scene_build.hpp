@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/host_config.hpp"
+#include "scene/host_config.hpp"
 #include "tick/device_tick.hpp"
 
 namespace fdcg::dev {

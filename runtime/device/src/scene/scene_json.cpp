@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "host/host.hpp"
 #include "scene/scene_parser.hpp"
 
 namespace fdcg::dev {

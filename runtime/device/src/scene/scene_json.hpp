@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/host_config.hpp"
+#include "scene/host_config.hpp"
 
 namespace fdcg::dev {
 

@@ -21,7 +21,6 @@ namespace fdcg::dev {
 inline constexpr int kMissedTicksToFade = 3;
 inline constexpr double kFadeS = 0.0015;             // from any force to zero
 inline constexpr double kRampS = 0.5;                // from zero to full after arming
-inline constexpr double kSilenceS = 0.010;           // without a good report: disarmed
 inline constexpr double kWriterStuckS = 0.005;       // in one write: disarmed
 inline constexpr double kArmForceShare = 0.05;       // of force_n: arming is granted only below it
 inline constexpr double kForceWithoutWatchdogN = 1;  // the most for a device that does not drop its force by itself ...

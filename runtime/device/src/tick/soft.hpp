@@ -17,7 +17,7 @@
 
 #include "fdcg/deform.h"
 #include "fdcg/scene.h"
-#include "scene/soft_load.hpp"
+#include "tick/soft_load.hpp"
 
 namespace fdcg::dev {
 

@@ -2,12 +2,12 @@
 #include <nlohmann/json.hpp>
 
 #include "fdcg/device_tools.hpp"
+#include "host/make_transport.hpp"
 #include "profile/profile_json.hpp"
+#include "recording/session_log.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"
-#include "session/session_log.hpp"
 #include "shared/json/reader.hpp"
-#include "transport/make_transport.hpp"
 
 namespace fdcg::dev {
 namespace {

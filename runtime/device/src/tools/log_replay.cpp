@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fdcg/device_tools.hpp"
-#include "session/session_csv.hpp"
-#include "session/session_replay.hpp"
+#include "recording/session_csv.hpp"
+#include "recording/session_replay.hpp"
 
 namespace fdcg::dev {
 

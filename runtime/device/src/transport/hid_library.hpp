@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include "base/host_config.hpp"
+#include "transport/transports.hpp"
 
 namespace fdcg::dev {
 

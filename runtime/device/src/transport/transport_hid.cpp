@@ -19,7 +19,7 @@
 #include "base/real_time.hpp"
 #include "transport/hid_devices.hpp"
 #include "transport/hid_library.hpp"
-#include "transport/make_transport.hpp"
+#include "transport/transports.hpp"
 
 namespace fdcg::dev {
 
@@ -27,8 +27,7 @@ namespace {
 
 class HidTransport final : public Transport {
  public:
-  HidTransport(const DeviceConfig& config, const LoopConfig& loop)
-      : profile_(config.profile), serial_(config.serial), path_(config.path), loop_(loop) {}
+  HidTransport(const Profile& profile, const HidAccess& access) : profile_(profile), access_(access) {}
   ~HidTransport() override { HidTransport::close(); }
 
   std::string open() override;
@@ -46,8 +45,7 @@ class HidTransport final : public Transport {
   bool with_id(const std::uint8_t* data, int bytes, const Send& send);
 
   const Profile profile_;
-  const std::string serial_, path_;
-  const LoopConfig loop_;
+  const HidAccess access_;
   const HidLibrary* library_ = nullptr;
   hid_device* reader_ = nullptr;
   hid_device* writer_ = nullptr;  // the same on libusb
@@ -55,7 +53,7 @@ class HidTransport final : public Transport {
 };
 
 std::string HidTransport::open() {
-  if (loop_.backend != HidBackend::kAny) return open_with(loop_.backend);
+  if (access_.backend != HidBackend::kAny) return open_with(access_.backend);
   const std::string hidraw_problem = open_with(HidBackend::kHidraw);
   if (hidraw_problem.empty()) return {};
   const std::string libusb_problem = open_with(HidBackend::kLibusb);
@@ -71,7 +69,7 @@ std::string HidTransport::open_with(HidBackend backend) {
   const Match& match = profile_.match;
   const std::vector<HidDevice> devices =
       library_->is_libusb ? list_hid_devices(*library_, match.vendor, match.product) : list_hid_devices(*library_);
-  const HidDevice* const device = choose_hid_device(devices, match, serial_, path_, &problem);
+  const HidDevice* const device = choose_hid_device(devices, match, access_.serial, access_.path, &problem);
   if (device == nullptr) return problem;
   problem = open_handles(*device);
   if (problem.empty()) problem = send_init();
@@ -81,7 +79,7 @@ std::string HidTransport::open_with(HidBackend backend) {
 
 std::string HidTransport::open_handles(const HidDevice& device) {
   const char* const path = device.path.c_str();
-  const OwnPriority priority(library_->is_libusb ? loop_.servo_priority : 0);
+  const OwnPriority priority(library_->is_libusb ? access_.servo_priority : 0);
   reader_ = library_->open_path(path);
   writer_ = library_->is_libusb ? reader_ : library_->open_path(path);
   if (reader_ == nullptr || writer_ == nullptr) {
@@ -141,8 +139,8 @@ bool HidTransport::write_feature(const std::uint8_t* data, int bytes) {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const LoopConfig& loop) {
-  return std::make_unique<HidTransport>(config, loop);
+std::unique_ptr<Transport> make_hid_transport(const Profile& profile, const HidAccess& access) {
+  return std::make_unique<HidTransport>(profile, access);
 }
 
 }  // namespace fdcg::dev

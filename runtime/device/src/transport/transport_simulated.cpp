@@ -9,9 +9,9 @@
 
 #include "base/threads.hpp"
 #include "shared/text.hpp"
-#include "transport/make_transport.hpp"
 #include "transport/simulated_body.hpp"
 #include "transport/simulated_faults.hpp"
+#include "transport/transports.hpp"
 
 namespace fdcg::dev {
 namespace {
@@ -256,8 +256,8 @@ bool SimulatedTransport::write(const std::uint8_t* data, int bytes) {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_simulated_transport(const DeviceConfig& config) {
-  return std::make_unique<SimulatedTransport>(config.simulation);
+std::unique_ptr<Transport> make_simulated_transport(const SimulationConfig& config) {
+  return std::make_unique<SimulatedTransport>(config);
 }
 
 }  // namespace fdcg::dev

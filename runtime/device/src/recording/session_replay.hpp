@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "base/host_config.hpp"
 #include "fdcg/device_status.hpp"
+#include "scene/host_config.hpp"
 #include "scene/scene_build.hpp"
 #include "session/session_reader.hpp"
 #include "tick/device_tick.hpp"

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "transport/make_transport.hpp"
+#include "host/make_transport.hpp"
+
+#include "recording/recorded_transport.hpp"
+#include "transport/transports.hpp"
 
 namespace fdcg::dev {
+
+std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const LoopConfig& loop) {
+  return make_hid_transport(config.profile, {config.serial, config.path, loop.backend, loop.servo_priority});
+}
 
 std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop) {
   switch (config.source) {
     case DeviceSource::kHid:
       return make_hid_transport(config, loop);
     case DeviceSource::kSimulated:
-      return make_simulated_transport(config);
+      return make_simulated_transport(config.simulation);
     case DeviceSource::kRecorded:
       return make_recorded_transport(config);
   }

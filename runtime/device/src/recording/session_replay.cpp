@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/session_replay.hpp"
+#include "recording/session_replay.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reports of one device of a session, at their recorded intervals or, without real time, as fast as they are read. Writes
 // are discarded.
+#include "recording/recorded_transport.hpp"
+
 #include <time.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include "shared/text.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_reader.hpp"
-#include "transport/make_transport.hpp"
 
 namespace fdcg::dev {
 namespace {

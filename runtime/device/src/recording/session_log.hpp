@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-#include "base/host_config.hpp"
+#include "scene/host_config.hpp"
 #include "tick/device_tick.hpp"
 
 namespace fdcg::dev {

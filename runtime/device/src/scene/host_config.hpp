@@ -9,7 +9,7 @@
 #include "fdcg/surface.h"
 #include "tick/device_tick.hpp"
 #include "tick/soft.hpp"
-#include "transport/simulated_device.hpp"
+#include "transport/transports.hpp"
 
 namespace fdcg::dev {
 
@@ -73,8 +73,6 @@ struct DeviceConfig {
   Grip grip;
   double most_force_n = 0;
 };
-
-enum class HidBackend { kAny, kHidraw, kLibusb };
 
 struct LoopConfig {
   int servo_priority = 80, writer_priority = 70;  // SCHED_FIFO; 0: ordinary scheduling

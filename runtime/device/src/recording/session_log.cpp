@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/session_log.hpp"
+#include "recording/session_log.hpp"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "session/session_replay.hpp"
+#include "recording/session_replay.hpp"
 
 namespace fdcg::dev {
 

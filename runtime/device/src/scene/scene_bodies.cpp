@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tick/scene_bodies.hpp"
+#include "scene/scene_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>

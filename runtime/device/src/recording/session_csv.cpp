@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "session/session_csv.hpp"
+#include "recording/session_csv.hpp"
 
 #include <algorithm>
 #include <charconv>

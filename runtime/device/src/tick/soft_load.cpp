@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/soft_load.hpp"
+#include "tick/soft_load.hpp"
 
 #include <algorithm>
 #include <cmath>
