@@ -25,6 +25,12 @@ template <class Real>
 inline Vec3<Real> vec(const Real (&a)[3]) {
   return {a[0], a[1], a[2]};
 }
+template <class Real, class Stored>
+inline void store(Vec3<Real> from, Stored (&to)[3]) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
 template <class Real>
 inline Vec3<Real> operator+(Vec3<Real> a, Vec3<Real> b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};

@@ -41,10 +41,14 @@ class AnywhereCase(Case):
 
     def runtime_objects(self, name, compiler, flags):
         """The runtime as one who has no build system would compile it."""
+        return self.compile_all([(self.runtime_command(compiler, flags, source), self.path(f"{name}-{source.name}.o"))
+                                 for source in sorted((RUNTIME / "src").rglob("*.cpp"))])
+
+    @staticmethod
+    def runtime_command(compiler, flags, source):
         extra = ["-fno-tree-slp-vectorize"] if "clang" not in compiler else []
-        return self.compile_all([([compiler, *CXX, *extra, *flags, "-I", str(RUNTIME / "include"), "-I", str(RUNTIME), "-I", str(RUNTIME / "src"),
-                                   "-c", str(source)],
-                                  self.path(f"{name}-{source.name}.o")) for source in sorted((RUNTIME / "src").rglob("*.cpp"))])
+        return [compiler, *CXX, *extra, *flags, "-I", str(RUNTIME / "include"), "-I", str(RUNTIME), "-I", str(RUNTIME / "src"), "-c",
+                str(source)]
 
     def cross_runtime(self, toolchain, *options):
         """Configures and builds the runtime alone by a toolchain file; returns the library."""

@@ -50,6 +50,27 @@ class Gcc(HashCase):
             self.assert_same_bits(self.hashed_by("gcc" + flags[0], "gcc", "g++", flags, ARRAYS), "gcc " + " ".join(flags))
 
 
+class Unity(HashCase):
+    """All sources as one, in two orders: each has names of its own, and none hides another's."""
+
+    def runtime_objects(self, name, compiler, flags):
+        sources = sorted((RUNTIME / "src").rglob("*.cpp"), reverse=name.endswith("reversed"))
+        one = self.write(name + ".cpp", "".join(f'#include "{source}"\n' for source in sources))
+        return self.compile_all([(self.runtime_command(compiler, flags, one), self.path(name + ".o"))])
+
+    def test_all_sources_as_one(self):
+        self.need("gcc", "g++")
+        for name in ("unity", "unity-reversed"):
+            self.assert_same_bits(self.hashed_by(name, "gcc", "g++", ["-O1", "-Wshadow"], ARRAYS), f"gcc -O1, {name}")
+
+
+class Lto(HashCase):
+    def test_one_definition_of_each_type_and_function(self):
+        self.need("gcc", "g++")
+        flags = ["-O2", "-flto=auto", "-Wodr", "-Wlto-type-mismatch", "-Werror"]
+        self.assert_same_bits(self.hashed_by("lto", "gcc", "g++", flags, ARRAYS), "gcc -O2 -flto")
+
+
 class Clang(HashCase):
     def test_every_level(self):
         self.need("clang", "clang++")

@@ -3,6 +3,7 @@
 import math
 import os
 import pathlib
+import signal
 import struct
 import subprocess
 import tempfile
@@ -11,6 +12,11 @@ import unittest
 FDCG = os.environ["FDCG"]
 SERVO = os.environ["FDCG_SERVO"]
 ROOT = pathlib.Path(os.environ["FDCG_ROOT"])
+
+# A shell that starts tests in the background ignores these in them, and what is ignored stays so in the programs that they run.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+    signal.signal(number, signal.SIG_DFL)
 
 TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
 CUBE = """OFF

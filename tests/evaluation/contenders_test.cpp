@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The harness of the contenders: its judges must see what they are there to see, its rivals must be what they claim.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "metrics.hpp"
 #include "pareto.hpp"
 #include "plan.hpp"

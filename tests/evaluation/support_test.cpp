@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
 #include "bodies.hpp"
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "fdcg/bake.hpp"
 #include "meshes.hpp"

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "table.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+
+#include "catch.hpp"
 
 using namespace fdcg::test;
 

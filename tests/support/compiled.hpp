@@ -2,9 +2,9 @@
 // Compile, and insist on a file that breaks no rule.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
 #include "graph_walker.hpp"

@@ -2,10 +2,11 @@
 #include "step_time_histogram.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "catch.hpp"
 
 using fdcg::servo::StepTimeHistogram;
 

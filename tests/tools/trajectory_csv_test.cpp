@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trajectory_csv.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
+
+#include "catch.hpp"
 
 using fdcg::servo::parse_trajectory;
 using fdcg::servo::TrajectoryPoint;

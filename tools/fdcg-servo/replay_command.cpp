@@ -242,7 +242,7 @@ int check_inputs(const ReplayArguments& arguments) {
     if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK)
       return fail(kFile, std::string("neither a session's log nor a graph: ") + error.message);
     fdcg_close(&graph);
-    return fail(kUsage, "--trajectory or --path is required: '" + arguments.graph +
+    return fail(kUsage, "--trajectory is required, or --path: '" + arguments.graph +
                             "' is no session's log, and a graph needs a path of the hand");
   }
   if (!arguments.graphs.empty() || !arguments.touches.empty() || !arguments.rewritten.empty()) {

@@ -78,6 +78,25 @@ Message& Message::real(double value) {
   return *this;
 }
 
+fdcg_status refuse(fdcg_error* error, fdcg_status status, const char* what) {
+  return Message(error, status).text(what);
+}
+
+fdcg_status refuse(fdcg_error* error, const char* what) {
+  return refuse(error, FDCG_E_ARGUMENT, what);
+}
+
+fdcg_status refuse(fdcg_error* error, const char* field, double value, double low, double high) {
+  return Message(error, FDCG_E_ARGUMENT)
+      .text(field)
+      .text(" is ")
+      .real(value)
+      .text(", allowed ")
+      .real(low)
+      .text(" to ")
+      .real(high);
+}
+
 #else
 
 Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : status_(status) {

@@ -31,6 +31,11 @@ class Message {
   uint32_t used_ = 0;
 };
 
+[[gnu::cold]] fdcg_status refuse(fdcg_error* error, fdcg_status status, const char* what);
+// FDCG_E_ARGUMENT: `what`; or a field's value out of its range.
+[[gnu::cold]] fdcg_status refuse(fdcg_error* error, const char* what);
+[[gnu::cold]] fdcg_status refuse(fdcg_error* error, const char* field, double value, double low, double high);
+
 #else
 
 class Message {
@@ -45,6 +50,16 @@ class Message {
  private:
   fdcg_status status_;
 };
+
+inline fdcg_status refuse(fdcg_error* error, fdcg_status status, const char*) {
+  return Message(error, status);
+}
+inline fdcg_status refuse(fdcg_error* error, const char*) {
+  return Message(error, FDCG_E_ARGUMENT);
+}
+inline fdcg_status refuse(fdcg_error* error, const char*, double, double, double) {
+  return Message(error, FDCG_E_ARGUMENT);
+}
 
 #endif
 

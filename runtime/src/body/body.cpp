@@ -11,15 +11,15 @@
 namespace fdcg {
 namespace {
 
-constexpr double kLargest = 1e12, kFastest = 1e6;
+constexpr double kLargestField = 1e12, kFastest = 1e6;
 
-struct Range {
+struct FieldRange {
   const char* name;
   double value, low, high;
   int index = -1;  // of the number in the field; -1: it has one alone
 };
 
-fdcg_status check_range(const char* of, const Range& range, fdcg_error* error, const char* remedy = "") {
+fdcg_status check_range(const char* of, const FieldRange& range, fdcg_error* error, const char* remedy = "") {
   if (range.value >= range.low && range.value <= range.high) return FDCG_OK;
   Message message(error, FDCG_E_ARGUMENT);
   message.text(of).text(range.name);
@@ -40,9 +40,9 @@ bool is_solid_inertia(const double (&i)[6]) {
 
 // Mass, centre and inertia.
 fdcg_status check_solid(const char* of, const fdcg_body_config& config, const char* remedy, fdcg_error* error) {
-  fdcg_status status = check_range(of, {"mass_kg", config.mass_kg, 1e-12, kLargest}, error, remedy);
+  fdcg_status status = check_range(of, {"mass_kg", config.mass_kg, 1e-12, kLargestField}, error, remedy);
   for (int k = 0; k < 3 && status == FDCG_OK; ++k) {
-    status = check_range(of, {"centre_m", config.centre_m[k], -kLargest, kLargest, k}, error, remedy);
+    status = check_range(of, {"centre_m", config.centre_m[k], -kLargestField, kLargestField, k}, error, remedy);
     if (status == FDCG_OK) status = check_range(of, {"inertia_kg_m2", config.inertia_kg_m2[k], 1e-30, 1e30, k}, error, remedy);
   }
   if (status != FDCG_OK || is_solid_inertia(config.inertia_kg_m2)) return status;
@@ -53,18 +53,18 @@ fdcg_status check_solid(const char* of, const fdcg_body_config& config, const ch
 }
 
 fdcg_status check_config(const fdcg_body_config& config, fdcg_error* error) {
-  const Range ranges[] = {{"reserved", double(config.reserved), 0, 0},
-                          {"linear_damping_per_s", config.linear_damping_per_s, 0, kLargest},
-                          {"angular_damping_per_s", config.angular_damping_per_s, 0, kLargest},
-                          {"sleep_after_s", config.sleep_after_s, 0, kLargest},
-                          {"sleep_speed_m_per_s", config.sleep_speed_m_per_s, 0, kLargest},
-                          {"sleep_turn_rad_per_s", config.sleep_turn_rad_per_s, 0, kLargest},
-                          {"wake_m_per_s2", config.wake_m_per_s2, 0, kLargest}};
-  for (const Range& range : ranges) {
+  const FieldRange ranges[] = {{"reserved", double(config.reserved), 0, 0},
+                               {"linear_damping_per_s", config.linear_damping_per_s, 0, kLargestField},
+                               {"angular_damping_per_s", config.angular_damping_per_s, 0, kLargestField},
+                               {"sleep_after_s", config.sleep_after_s, 0, kLargestField},
+                               {"sleep_speed_m_per_s", config.sleep_speed_m_per_s, 0, kLargestField},
+                               {"sleep_turn_rad_per_s", config.sleep_turn_rad_per_s, 0, kLargestField},
+                               {"wake_m_per_s2", config.wake_m_per_s2, 0, kLargestField}};
+  for (const FieldRange& range : ranges) {
     if (const fdcg_status status = check_range("config.", range, error); status != FDCG_OK) return status;
   }
   for (int k = 0; k < 3; ++k) {
-    const Range pull = {"gravity_m_per_s2", config.gravity_m_per_s2[k], -kFastest, kFastest, k};
+    const FieldRange pull = {"gravity_m_per_s2", config.gravity_m_per_s2[k], -kFastest, kFastest, k};
     if (const fdcg_status status = check_range("config.", pull, error); status != FDCG_OK) return status;
   }
   return check_solid("config.", config, "", error);
@@ -75,10 +75,10 @@ double length_of(const double (&q)[4]) {
 }
 
 fdcg_status check_pose(const fdcg_pose& pose, fdcg_error* error) {
-  const Range length = {"rotation_xyzw's length", length_of(pose.rotation_xyzw), 1 - 1e-3, 1 + 1e-3};
+  const FieldRange length = {"rotation_xyzw's length", length_of(pose.rotation_xyzw), 1 - 1e-3, 1 + 1e-3};
   if (const fdcg_status status = check_range("pose.", length, error); status != FDCG_OK) return status;
   for (int k = 0; k < 3; ++k) {
-    const Range at = {"translation_m", pose.translation_m[k], -kLargest, kLargest, k};
+    const FieldRange at = {"translation_m", pose.translation_m[k], -kLargestField, kLargestField, k};
     if (const fdcg_status status = check_range("pose.", at, error); status != FDCG_OK) return status;
   }
   return check_range("pose.", {"scale", pose.scale, 1e-9, 1e9}, error);
@@ -185,9 +185,9 @@ extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double veloci
   if (body == nullptr || velocity_m_per_s == nullptr || angular_rad_per_s == nullptr)
     return Message(error, FDCG_E_ARGUMENT).text("body, velocity or angular velocity: null pointer");
   for (int k = 0; k < 3; ++k) {
-    const Range ranges[] = {{"velocity_m_per_s", velocity_m_per_s[k], -kFastest, kFastest, k},
-                            {"angular_rad_per_s", angular_rad_per_s[k], -kFastest, kFastest, k}};
-    for (const Range& range : ranges) {
+    const FieldRange ranges[] = {{"velocity_m_per_s", velocity_m_per_s[k], -kFastest, kFastest, k},
+                                 {"angular_rad_per_s", angular_rad_per_s[k], -kFastest, kFastest, k}};
+    for (const FieldRange& range : ranges) {
       if (const fdcg_status status = check_range("", range, error); status != FDCG_OK) return status;
     }
   }

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kLeastStep = 1e-9, kLongestStep = 1;
 constexpr double kLargestPush = 1e12;     // N, N m: far beyond any device, and what it does in a step stays finite
-constexpr double kLargestTurn = 0.5;      // rad: Newton's method converges from the explicit guess
+constexpr double kLargestTurn_rad = 0.5;  // rad: Newton's method converges from the explicit guess
 constexpr uint32_t kMostTurns = 64;       // pieces of a step
 constexpr uint32_t kMostIterations = 12;  // four or five do
 
@@ -63,7 +63,7 @@ void turn(double (&q)[4], Vector spin, double h) {
     q[k] = next[k] * scale;
 }
 
-// With the angular momentum as it is, in pieces of at most kLargestTurn.
+// With the angular momentum as it is, in pieces of at most kLargestTurn_rad.
 void turn_freely(fdcg_body* body, double h) {
   const Vector momentum = vec(body->angular_momentum);
   if (momentum.x == 0 && momentum.y == 0 && momentum.z == 0) {
@@ -72,7 +72,7 @@ void turn_freely(fdcg_body* body, double h) {
   }
   const Matrix inertia = tensor_of(body->config.inertia_kg_m2);
   const double angle = h * norm(solve(inertia, rotation_of(body->rotation_xyzw).transposed_times(momentum)));
-  const double wanted = angle / kLargestTurn + 1;
+  const double wanted = angle / kLargestTurn_rad + 1;
   const uint32_t pieces = wanted < kMostTurns ? static_cast<uint32_t>(wanted) : kMostTurns;
   const double piece = h / pieces;
   bool is_solved = true;

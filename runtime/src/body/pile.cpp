@@ -8,22 +8,11 @@ namespace fdcg {
 namespace {
 
 constexpr uint32_t kMost = 1000000;
-constexpr double kMostRatio = 1000, kFarthest_m = 1e12, kUnitTolerance = 1e-3;
-
-fdcg_status refuse(fdcg_error* error, const char* what) {
-  return Message(error, FDCG_E_ARGUMENT).text(what);
-}
+constexpr double kMostRatio = 1000, kFarthest_m = 1e12;
 
 fdcg_status check_range(const char* name, double value, double low, double high, fdcg_error* error) {
   if (value >= low && value <= high) return FDCG_OK;
-  return Message(error, FDCG_E_ARGUMENT)
-      .text(name)
-      .text(" is ")
-      .real(value)
-      .text(", allowed ")
-      .real(low)
-      .text(" to ")
-      .real(high);
+  return refuse(error, name, value, low, high);
 }
 
 // In range; *config is then whole.

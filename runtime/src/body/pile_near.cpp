@@ -9,7 +9,7 @@ namespace {
 
 // Nearer than this share of a member's own radius is near: a look in as many steps as it takes to use the rest up.
 constexpr double kNearShare = 0.25;
-constexpr double kRounding = 64 * DBL_EPSILON;
+constexpr double kPileRounding = 64 * DBL_EPSILON;
 
 // At least the largest coordinate of any number that a point's place is computed from.
 double size_of(const PileMember& member, const Pose& pose) {
@@ -33,7 +33,7 @@ void find_near(const Meeting& meeting, PileMember* member) {
   if (member->look == pile.look && pile.travel_m < member->limit_m) return;
   const Object& own = meeting.object(*member);
   const double radius = member->radius_m * own.now.scale, ahead = radius * kNearShare;
-  const double rounding = kRounding * (norm1(own.now.centre) + radius + meeting.scene.farthest);
+  const double rounding = kPileRounding * (norm1(own.now.centre) + radius + meeting.scene.farthest);
   double nearest_far = HUGE_VAL;
   member->near_count = 0;
   for (uint32_t i = 0; i < pile.member_end; ++i) {
@@ -50,7 +50,7 @@ void find_near(const Meeting& meeting, PileMember* member) {
     }
   }
   member->look = pile.look;
-  member->limit_m = (pile.travel_m + nearest_far / 2) * (1 - kRounding);
+  member->limit_m = (pile.travel_m + nearest_far / 2) * (1 - kPileRounding);
   ++pile.counts.broadphase_updates;
 }
 
@@ -61,8 +61,8 @@ Cull cull_of(const Meeting& meeting, const PileMember& owner, const PileMember& 
   // beyond that far from it, the other's turn moves its frame by more; and where a size changes there is no bound
   if (moved > far || object.last.scale != scale || own.last.scale != own.now.scale) moved = HUGE_VAL;
   const bool is_endless = object.bounds.is_endless;
-  const double grown = moved + kRounding * (size_of(owner, own.now) + norm1(object.now.translation) +
-                                            (is_endless ? 0 : norm1(object.bounds.centre) * scale + object.now.radius));
+  const double grown = moved + kPileRounding * (size_of(owner, own.now) + norm1(object.now.translation) +
+                                                (is_endless ? 0 : norm1(object.bounds.centre) * scale + object.now.radius));
   const World centre = is_endless ? World{0, 0, 0} : object.bounds.centre * scale;
   const World half = is_endless ? World{HUGE_VAL, HUGE_VAL, grown} : object.bounds.half * scale + World{grown, grown, grown};
   const World apart = own.now.translation - object.now.translation;
@@ -80,7 +80,7 @@ GroundCull ground_cull_of(const Meeting& meeting, const PileMember& owner) {
   const Pose& now = meeting.object(owner).now;
   const World n = pile.ground_normal;
   const World along = (now.row[0] * n.x + now.row[1] * n.y + now.row[2] * n.z) * now.scale;
-  const double rounding = kRounding * (size_of(owner, now) + absolute(pile.ground_offset_m));
+  const double rounding = kPileRounding * (size_of(owner, now) + absolute(pile.ground_offset_m));
   return {along, pile.ground_offset_m - dot(n, now.translation) + rounding};
 }
 

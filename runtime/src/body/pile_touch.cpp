@@ -22,13 +22,13 @@ void place(PileTouch* touch, World god_object, World point, World normal, bool h
 }
 
 // What acts between the two.
-struct Pair {
+struct PairMaterial {
   fdcg_material material;  // mu_static and stiffness are asked
   bool follows_faces;      // it may be another in each step
 };
 
 // The spring between god-object and point.
-void press(const Meeting& meeting, const PileMember& owner, World point, const Pair& pair, bool was_pressing,
+void press(const Meeting& meeting, const PileMember& owner, World point, const PairMaterial& pair, bool was_pressing,
            PileTouch* touch) {
   if (!was_pressing) {
     const PileMember* const other = touch->on == kGround ? nullptr : meeting.pile.members() + touch->on;
@@ -191,7 +191,7 @@ bool step_on_object(const Meeting& meeting, const PileMember& owner, const Point
   const World reach = vec(result.god_object_m) - to;
   const World spring = on.now.turned_to_world(reach, may_skip), normal = turned(on.now, object_normal(on, result));
   place(touch, way.to + spring, way.to, normal, norm1(normal) > 0);
-  Pair pair = {{params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, mixes_itself(params, on)};
+  PairMaterial pair = {{params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, mixes_itself(params, on)};
 #if FDCG_WITH_FRICTION_TERMS
   if (pair.follows_faces) pair.material = pair_by_faces(on, params, result, reach * -1.0, *touch, was_pressing);
 #endif

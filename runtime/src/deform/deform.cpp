@@ -21,10 +21,6 @@ void* at_a_line(void* memory) {
 // Leaves stand beside their nodes' bits in 32.
 constexpr uint32_t kMostNodes = FDCG_LEAF_NODES << (32 - FDCG_LEAF_NODES);
 
-[[gnu::cold]] fdcg_status refuse(fdcg_error* error, fdcg_status status, const char* what) {
-  return Message(error, status).text(what);
-}
-
 fdcg_status check_graph(const fdcg_graph* graph, fdcg_error* error) {
   if (graph == nullptr || graph->header == nullptr)
     return refuse(error, FDCG_E_ARGUMENT, "graph: null pointer, or no graph was opened");

@@ -3,6 +3,7 @@
 // computed here.
 #include "base/config.hpp"
 #include "base/message.hpp"
+#include "base/near_zero.hpp"
 #include "deform/deform_upkeep.hpp"
 
 namespace fdcg {
@@ -53,13 +54,8 @@ inline bool is_finite(double x) {
       .text("; fdcg_deform_find gives a vertex's corner");
 }
 
-inline double zero_below(double least, double x) {
-  return absolute(x) < least ? 0 : x;
-}
-
 // In the graph's frame; what the step takes for zero is zero here too. False for what is no number or outside.
 [[gnu::always_inline]] inline bool to_local(const fdcg_deform& deform, const double position_m[3], Vec3<double>* local) {
-  constexpr double kLeastShare = 0x1p-70;
   const fdcg_header& header = deform.header;
   Vec3<double> p = {position_m[0], position_m[1], position_m[2]};
   if (header.metres_per_unit != 1)
@@ -71,11 +67,6 @@ inline double zero_below(double least, double x) {
   const double least = kLeastShare * header.extent;
   *local = {zero_below(least, p.x), zero_below(least, p.y), zero_below(least, p.z)};
   return is_inside != 0;
-}
-
-template <class Real>
-inline void store_in(Real (&to)[3], Vec3<Real> from) {
-  to[0] = from.x, to[1] = from.y, to[2] = from.z;
 }
 
 // A corner's place where the graph has it, or where it was rounded to: no further out than it was asked for.
@@ -95,11 +86,11 @@ template <class Real>
   if (place.tick != coming) {
     place.tick = coming;
     place.logged = deform->has_moved++;
-    store_in(upkeep.was(place).point, from);
+    store(from, upkeep.was(place).point);
   } else {
     old = vec(upkeep.was(place).point);
   }
-  store_in(place.point, to);
+  store(to, place.point);
   const Vec3<double> way = widen(to) - widen(old);
   const double way2 = dot(way, way);
   if (way2 > deform->way2) deform->way2 = way2;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step on a deformable mesh: servo_step.cpp once more, seen through a view that brings up to date what it hands out, after
-// the contact has taken part in the mesh's motion.
-#define FDCG_DEFORMABLE 1
+// The step on a deformable mesh: that on any graph (step/servo_step.hpp), on the geometry of one whose corners move, after the
+// contact has taken part in the mesh's motion.
+#include "base/struct_bytes.hpp"
 #include "deform/deform_clear.hpp"
 #include "deform/deform_motion.hpp"
-#include "step/servo_step.cpp"  // NOLINT(bugprone-suspicious-include): the same source, on the other view
+#include "deform/deformable_geometry.hpp"
+#include "step/servo_step.hpp"
 
 namespace fdcg {
 namespace {
@@ -14,7 +15,7 @@ inline Vec3<double> place_of(const fdcg_contact& contact) {
 }
 
 template <class Real>
-inline void put(fdcg_contact* contact, Vec3<double> place) {
+inline void place_god_object(fdcg_contact* contact, Vec3<double> place) {
   store(Vec3<Real>{static_cast<Real>(place.x), static_cast<Real>(place.y), static_cast<Real>(place.z)}, contact->god_object);
 }
 
@@ -52,13 +53,13 @@ void ride_on_edge(const Upkeep<Real>& upkeep, uint32_t connection, bool saw_befo
   ends_of(upkeep, connection, false, end);
   const auto is_same = [](Vec3<double> a, Vec3<double> b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
   if (saw_before && is_same(old_end[0], end[0]) && is_same(old_end[1], end[1])) return;
-  put<Real>(contact, point_along(end, share_along(old_end, place_of(*contact))));
+  place_god_object<Real>(contact, point_along(end, share_along(old_end, place_of(*contact))));
 }
 
 // Off a triangle that is a line now and whose front may be its back: just in front of its neighbours, so that the way to the
 // HIP meets what is there. Where no direction leads in front of all it stays.
 template <class Real>
-[[gnu::noinline, gnu::cold]] void let_go(const Upkeep<Real>& upkeep, uint32_t n, fdcg_contact* contact) {
+[[gnu::noinline, gnu::cold]] void step_off_line(const Upkeep<Real>& upkeep, uint32_t n, fdcg_contact* contact) {
   Vec3<double> normal[3], out = {0, 0, 0};
   uint32_t count = 0;
   for (const fdcg_side& side : upkeep.node(n).sides) {
@@ -75,7 +76,7 @@ template <class Real>
   contact->state = contact->seat_state = FDCG_FREE;
   contact->feature = contact->seat_feature = FDCG_NONE;
   contact->clear_ball.radius2 = 0;
-  put<Real>(contact, place_of(*contact) + out * lift);
+  place_god_object<Real>(contact, place_of(*contact) + out * lift);
 }
 
 template <class Real>
@@ -89,9 +90,9 @@ void ride_on_face(const Upkeep<Real>& upkeep, uint32_t n, bool saw_before, fdcg_
     has_moved = has_moved || upkeep.has_moved(c);
   }
   if (!has_moved) return;
-  put<Real>(contact, point_at(foot_in(old_point, place_of(*contact)), point));
+  place_god_object<Real>(contact, point_at(foot_in(old_point, place_of(*contact)), point));
   if (__builtin_expect(is_line<Real>(point[0], point[1], point[2], upkeep.deform().header.extent), false))
-    let_go(upkeep, n, contact);
+    step_off_line(upkeep, n, contact);
 }
 
 // Where it was on its triangle, edge or corner it still is. One that was seated on a rim or in a corner stays there.
@@ -106,7 +107,7 @@ void ride(const Upkeep<Real>& upkeep, bool saw_before, fdcg_contact* contact) {
   } else if (on.state == FDCG_EDGE) {
     ride_on_edge(upkeep, on.index, saw_before, contact);
   } else {
-    put<Real>(contact, widen(upkeep.point(on.index)));
+    place_god_object<Real>(contact, widen(upkeep.point(on.index)));
   }
 }
 
@@ -121,7 +122,7 @@ void leave_sliver(const Upkeep<Real>& upkeep, fdcg_contact* contact) {
   const double share = share_along(end, place_of(*contact));
   contact->state = contact->seat_state = FDCG_EDGE;
   contact->feature = contact->seat_feature = connection;
-  put<Real>(contact, point_along(end, share));
+  place_god_object<Real>(contact, point_along(end, share));
 }
 
 // What is left of a clear ball when no face has come nearer than `travel`. False: the god-object is not in it any more.
@@ -183,7 +184,7 @@ bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, 
     const Catch caught = catch_of(upkeep, narrow<Real>(contact->god_object));
     if (caught.node != FDCG_NONE) {
       seat_on(caught.node, contact);
-      put<Real>(contact, caught.place);
+      place_god_object<Real>(contact, caught.place);
       return true;
     }
     is_in_box = caught.is_in_box;
@@ -246,7 +247,7 @@ template <class Real>
   double to[3], before[3];
   shorten(deform.header, *contact, hip_object_m, to);
   memcpy(before, contact->contact.hip, sizeof before);
-  step<Real>(deform.graph, params, &contact->contact, to, result);
+  step<DeformableGeometry<Real>>(deform.graph, params, &contact->contact, to, result);
   Vec3<double> hip;
   if (contact->contact.state != FDCG_FREE) {  // the hand's step is yet to come
     memcpy(contact->contact.hip, before, sizeof before);
@@ -275,7 +276,7 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
   }
   if ((flags & FDCG_RESULT_SWEEP_BOUND) == 0) {
     contact->halvings = 0;
-    step<Real>(deform->graph, params, &contact->contact, hip_object_m, result);
+    step<DeformableGeometry<Real>>(deform->graph, params, &contact->contact, hip_object_m, result);
   }
   if (contact->contact.state == FDCG_FACE && upkeep.is_sliver(contact->contact.feature)) {
     leave_sliver(upkeep, &contact->contact);

@@ -5,9 +5,9 @@
 //   | hierarchy | stale[leaves] | loose[records] | leaf_first[corners + 1] | leaves of corners
 //
 // A corner that moves leaves marks (deform.cpp): its triangles are stale, the boxes around them have grown and are loose. The
-// view (graph_view.hpp) asks here before it hands out a number. Voronoi planes and edges are derived anew whenever they are
-// asked for, and so are types and corner normals: there is nothing of them to be old. The corners' records have the places
-// of when the whole was last brought up to date: they are for those who look in from outside.
+// geometry (deformable_geometry.hpp) asks here before it hands out a number. Voronoi planes and edges are derived anew whenever
+// they are asked for, and so are types and corner normals: there is nothing of them to be old. The corners' records have the
+// places of when the whole was last brought up to date: they are for those who look in from outside.
 #pragma once
 
 #include "deform/deform_watch.hpp"

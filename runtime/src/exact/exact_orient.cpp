@@ -8,6 +8,7 @@
 
 #include <string.h>
 
+#include "base/mutation.hpp"
 #include "base/work.hpp"
 
 namespace fdcg {
@@ -36,13 +37,13 @@ struct Pair {
   double high, low;
 };
 
-inline Pair exact_sum(double a, double b) {
+inline Pair pair_sum(double a, double b) {
   const double sum = a + b, from_b = sum - a, from_a = sum - from_b;
   return {sum, (a - from_a) + (b - from_b)};
 }
 
 // The same on every processor, with a fused multiplication or without.
-inline Pair exact_product(double a, double b) {
+inline Pair pair_product(double a, double b) {
   constexpr double kSplit = 0x1p27 + 1;
   const double a_wide = kSplit * a, b_wide = kSplit * b;
   const double a_high = a_wide - (a_wide - a), b_high = b_wide - (b_wide - b);
@@ -56,11 +57,11 @@ inline Pair joined(double high, double low) {
 }
 
 inline Pair operator*(Pair a, Pair b) {
-  const Pair product = exact_product(a.high, b.high);
+  const Pair product = pair_product(a.high, b.high);
   return joined(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 inline Pair operator+(Pair a, Pair b) {
-  const Pair sum = exact_sum(a.high, b.high);
+  const Pair sum = pair_sum(a.high, b.high);
   return joined(sum.high, sum.low + (a.low + b.low));
 }
 inline Pair operator-(Pair a, Pair b) {
@@ -273,9 +274,9 @@ int sign_in_limbs(const Multiples& m) {
   Pair edge[3][3];
   for (int p = 0; p < 3; ++p) {
     const Vec3<double>&to = point[p + 1], &from = point[0];
-    edge[p][0] = exact_sum(to.x, -from.x);
-    edge[p][1] = exact_sum(to.y, -from.y);
-    edge[p][2] = exact_sum(to.z, -from.z);
+    edge[p][0] = pair_sum(to.x, -from.x);
+    edge[p][1] = pair_sum(to.y, -from.y);
+    edge[p][2] = pair_sum(to.z, -from.z);
   }
   const auto &u = edge[0], &v = edge[1], &w = edge[2];
   Pair sum = {0, 0};
@@ -331,6 +332,7 @@ int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<doubl
   const double bound = kErrorBound * size + kUnderflow;
   if (det > bound) return 1;
   if (det < -bound) return -1;
+  if (FDCG_MUTANT("watertight")) return det > 0 ? 1 : (det < 0 ? -1 : 0);
   return exact_sign({a, b, c, d}, bound, work_left);
 }
 

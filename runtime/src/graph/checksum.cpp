@@ -8,7 +8,7 @@
 
 namespace {
 
-constexpr int kLanes = 8;
+constexpr int kChecksumLanes = 8;
 constexpr uint64_t kMultiplier = 0x9E3779B97F4A7C15u;  // odd, bits well mixed: 2^64 over the golden ratio
 constexpr uint64_t kSeed = 0x46444347'00000001u;       // "FDCG", version of the checksum
 
@@ -24,17 +24,17 @@ uint64_t load_word(const unsigned char* bytes) {
 }
 
 void absorb_block(uint64_t* lanes, const unsigned char* block) {
-  for (int i = 0; i < kLanes; ++i)
+  for (int i = 0; i < kChecksumLanes; ++i)
     lanes[i] = rotate((lanes[i] ^ load_word(block + 8 * i)) * kMultiplier, 29);
 }
 
 }  // namespace
 
 extern "C" uint64_t fdcg_checksum(const void* data, uint64_t bytes) {
-  constexpr uint64_t kBlock = 8 * kLanes;
+  constexpr uint64_t kBlock = 8 * kChecksumLanes;
   const auto* at = static_cast<const unsigned char*>(data);
-  uint64_t lanes[kLanes];
-  for (int i = 0; i < kLanes; ++i)
+  uint64_t lanes[kChecksumLanes];
+  for (int i = 0; i < kChecksumLanes; ++i)
     lanes[i] = kSeed + static_cast<uint64_t>(i);
   const uint64_t whole = bytes / kBlock;
   for (uint64_t i = 0; i < whole; ++i)

@@ -3,103 +3,58 @@
 // Rules see nodes, connections, edges and corners; where their numbers lie in the file, and which of them are derived, is known
 // here alone.
 //
-// The step is compiled twice: for graphs as they are, and (FDCG_DEFORMABLE, deform_step.cpp) for those whose corners move.
-// There a number that depends on a corner's place is brought up to date before it is handed out, here, so that no rule can see
-// an old one. The two views are in inline namespaces of their own, and so must be every class with members that look at a
-// graph; a function that is given one of them is told apart by that. A few lines over 400: where numbers lie is known in one
-// file.
+// A view is a template over the geometry (rigid_geometry.hpp), and all that looks at a graph is one over the same: NodeRef,
+// Walk and the rules of the step.
 #pragma once
 
 #include "exact/exact_orient.hpp"
 #include "fdcg/fdcg.h"
 #include "graph/box_tree.hpp"
-#include "graph/record_types.hpp"
+#include "graph/rigid_geometry.hpp"
 #include "shared/derive.hpp"
 #include "shared/vec.hpp"
 
-#ifndef FDCG_DEFORMABLE
-#define FDCG_DEFORMABLE 0
-#endif
-#if FDCG_DEFORMABLE
-#include "deform/deform_upkeep.hpp"
-#define FDCG_VIEW deformable
-#else
-#define FDCG_VIEW rigid
-#endif
-
 namespace fdcg {
-inline namespace FDCG_VIEW {
-
-template <class Real>
+template <class Geometry>
 struct GraphView;
 
 // One node, by value: two pointers. `k` counts its sides from 0, in winding order.
-template <class Real>
+template <class Geometry>
 class NodeRef {
+  using Real = typename Geometry::Real;
+  using Key = typename Geometry::NodeKey;
   using Record = typename Records<Real>::Node;
 
  public:
-#if FDCG_DEFORMABLE
-  NodeRef(const GraphView<Real>& graph, const unsigned char* block, uint32_t index)
-      : graph_(&graph), block_(block), index_(index) {}
-#else
-  NodeRef(const GraphView<Real>& graph, const unsigned char* block, uint32_t) : graph_(&graph), block_(block) {}
-#endif
+  NodeRef(const GraphView<Geometry>& graph, const unsigned char* block, uint32_t index)
+      : graph_(&graph), block_(block), key_(index) {}
 
-  [[nodiscard]] uint32_t side_count() const {
-    return record().side_count;
-  }
+  [[nodiscard]] uint32_t side_count() const { return record().side_count; }
   // The graph's, which bounds the rounding of what is stored of a node.
-  [[nodiscard]] Real extent() const {
-    return static_cast<Real>(graph_->header->extent);
-  }
+  [[nodiscard]] Real extent() const { return static_cast<Real>(graph_->header->extent); }
   // Its corners lie off its plane, by up to header.max_deviation (contact-model GRAPH-4).
-  [[nodiscard]] bool is_inexact() const {
-    return (up_to_date().flags & FDCG_NODE_INEXACT) != 0;
-  }
-  [[nodiscard]] uint16_t flags() const {
-    return up_to_date().flags;
-  }
-  [[nodiscard]] Vec3<Real> normal() const {
-    return vec(up_to_date().plane.normal);
-  }
+  [[nodiscard]] bool is_inexact() const { return (up_to_date().flags & FDCG_NODE_INEXACT) != 0; }
+  [[nodiscard]] uint16_t flags() const { return up_to_date().flags; }
+  [[nodiscard]] Vec3<Real> normal() const { return vec(up_to_date().plane.normal); }
   [[nodiscard]] Plane<Real> plane() const {
     const Record& record = up_to_date();
     return {vec(record.plane.normal), record.plane.offset};
   }
   // Of an exactly planar node: the first three span its plane.
-  [[nodiscard]] uint32_t spanning_corner(uint32_t k) const {
-#if FDCG_DEFORMABLE
-    return graph_->upkeep.spanning_corner(index_, k);
-#else
-    return corner(k);
-#endif
-  }
+  [[nodiscard]] uint32_t spanning_corner(uint32_t k) const { return graph_->spanning_corner(*this, k); }
 
   [[nodiscard]] const fdcg_side& side(uint32_t k) const {
     return reinterpret_cast<const fdcg_side*>(block_ + offsetof(Record, sides))[k];
   }
-  [[nodiscard]] uint32_t connection(uint32_t k) const {
-    return side(k).link >> 1;
-  }
+  [[nodiscard]] uint32_t connection(uint32_t k) const { return side(k).link >> 1; }
   // Which of the connection's nodes this one is: 0 or 1.
-  [[nodiscard]] uint32_t which(uint32_t k) const {
-    return side(k).link & 1;
-  }
+  [[nodiscard]] uint32_t which(uint32_t k) const { return side(k).link & 1; }
   // The corner at which side k starts.
-  [[nodiscard]] uint32_t corner(uint32_t k) const {
-    return side(k).corner;
-  }
+  [[nodiscard]] uint32_t corner(uint32_t k) const { return side(k).corner; }
   // The node beyond side k, or FDCG_NONE.
-  [[nodiscard]] uint32_t across(uint32_t k) const {
-    return side(k).across;
-  }
-  [[nodiscard]] uint32_t previous(uint32_t k) const {
-    return (k == 0 ? side_count() : k) - 1;
-  }
-  [[nodiscard]] uint32_t next(uint32_t k) const {
-    return k + 1 < side_count() ? k + 1 : 0;
-  }
+  [[nodiscard]] uint32_t across(uint32_t k) const { return side(k).across; }
+  [[nodiscard]] uint32_t previous(uint32_t k) const { return (k == 0 ? side_count() : k) - 1; }
+  [[nodiscard]] uint32_t next(uint32_t k) const { return k + 1 < side_count() ? k + 1 : 0; }
 
   // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model GRAPH-3).
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
@@ -114,88 +69,54 @@ class NodeRef {
 
   // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it hold it surely, which
   // is told sooner than by the plane, where planes are derived for a mesh that moves.
-  [[nodiscard]] uint32_t first_doubtful([[maybe_unused]] Vec3<Real> x, [[maybe_unused]] Real bound) const {
-#if FDCG_DEFORMABLE
-    const Vec3<Real> up = normal();
-    const Real off_line = 2 * bound + 64 * RealLimits<Real>::kEpsilon * (norm1(x) + extent());
-    for (uint32_t k = 0; k < 3; ++k) {
-      const Vec3<Real> start = graph_->corner_point(corner(k)), along = graph_->corner_point(corner(next(k))) - start;
-      const Real beyond = dot(cross(along, up), x - start);  // times the side's length: in winding order
-      if (!(beyond < -off_line * norm1(along))) return k;
-    }
-    return 3;
-#else
-    return 0;
-#endif
-  }
+  [[nodiscard]] uint32_t first_doubtful(Vec3<Real> x, Real bound) const { return graph_->first_doubtful(*this, x, bound); }
 
-  [[nodiscard]] const unsigned char* block() const {
-    return block_;
-  }
-  [[nodiscard]] const GraphView<Real>& graph() const {
-    return *graph_;
-  }
+  [[nodiscard]] const unsigned char* block() const { return block_; }
+  [[nodiscard]] const GraphView<Geometry>& graph() const { return *graph_; }
+  [[nodiscard]] Key key() const { return key_; }
 
  private:
   // Out of line: every rule asks for planes, and each would hold a copy. Not as a return value: four floats come back two to a
   // register, by way of memory, and wait there for one another.
   [[gnu::noinline]] void derive_plane(uint32_t k, Plane<Real>* plane) const {
     const Edge<Real> edge = graph_->edge(*this, k);
-#if FDCG_DEFORMABLE
-    *plane = {};
-    if (bounds_nothing(edge.direction, normal(), edge.length)) return;
-#endif
+    if (!graph_->has_voronoi_plane(edge, normal())) {
+      *plane = {};
+      return;
+    }
     *plane = derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
   }
-  [[nodiscard]] const Record& record() const {
-    return *reinterpret_cast<const Record*>(block_);
-  }
+  [[nodiscard]] const Record& record() const { return *reinterpret_cast<const Record*>(block_); }
   // The record with its plane.
   [[nodiscard]] const Record& up_to_date() const {
-#if FDCG_DEFORMABLE
-    graph_->upkeep.bring_up_to_date(index_);
-#endif
+    graph_->bring_up_to_date(key_);
     return record();
   }
 
-  const GraphView<Real>* graph_;
+  const GraphView<Geometry>* graph_;
   const unsigned char* block_;
-#if FDCG_DEFORMABLE
-  uint32_t index_;
-#endif
+  [[no_unique_address]] Key key_;
 };
 
 // One connection, by value.
-template <class Real>
+template <class Geometry>
 class ConnectionRef {
  public:
-  ConnectionRef(const GraphView<Real>& graph, uint32_t index) : graph_(&graph), record_(&graph.connections[index]) {}
+  ConnectionRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.connections[index]) {}
 
   // fdcg_connection_type
-  [[nodiscard]] uint8_t type() const {
-#if FDCG_DEFORMABLE
-    return graph_->upkeep.type(static_cast<uint32_t>(record_ - graph_->connections));
-#else
-    return record_->type;
-#endif
-  }
+  [[nodiscard]] uint8_t type() const { return graph_->type_of(*record_); }
   // k = 1: FDCG_NONE on a boundary.
-  [[nodiscard]] uint32_t node(uint32_t k) const {
-    return k == 0 ? record_->node : first().across(record_->side[0]);
-  }
-  [[nodiscard]] uint32_t side(uint32_t k) const {
-    return record_->side[k];
-  }  // which side of node(k) this is
+  [[nodiscard]] uint32_t node(uint32_t k) const { return k == 0 ? record_->node : first().across(record_->side[0]); }
+  [[nodiscard]] uint32_t side(uint32_t k) const { return record_->side[k]; }  // which side of node(k) this is
   [[nodiscard]] uint32_t corner(uint32_t end) const {
     return first().corner(end == 0 ? record_->side[0] : first().next(record_->side[0]));
   }
 
  private:
-  [[nodiscard]] NodeRef<Real> first() const {
-    return graph_->node(record_->node);
-  }
+  [[nodiscard]] NodeRef<Geometry> first() const { return graph_->node(record_->node); }
 
-  const GraphView<Real>* graph_;
+  const GraphView<Geometry>* graph_;
   const fdcg_connection* record_;
 };
 
@@ -205,165 +126,59 @@ struct FanEntry {
   uint32_t connection, end, node, outgoing;
 };
 
-template <class Real>
+template <class Geometry>
 class CornerRef {
- public:
-  CornerRef(const GraphView<Real>& graph, uint32_t index) : graph_(&graph), record_(&graph.corners[index]) {}
+  using Real = typename Geometry::Real;
 
-  [[nodiscard]] Vec3<Real> point() const {
-#if FDCG_DEFORMABLE
-    return graph_->corner_point(static_cast<uint32_t>(record_ - graph_->corners));
-#else
-    return vec(record_->point);
-#endif
-  }
-  [[nodiscard]] bool is_open() const {
-    return (record_->fan & FDCG_CORNER_OPEN) != 0;
-  }
-  [[nodiscard]] uint32_t fan_count() const {
-    return is_busy() ? busy().fan_count : walked_count();
-  }
+ public:
+  CornerRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.corners[index]) {}
+
+  [[nodiscard]] Vec3<Real> point() const { return graph_->point_of(*record_); }
+  [[nodiscard]] bool is_open() const { return (record_->fan & FDCG_CORNER_OPEN) != 0; }
+  [[nodiscard]] uint32_t fan_count() const { return is_busy() ? busy().fan_count : walked_count(); }
   // About of unit length: the side on which a point is, not how far, may be asked of it.
   [[nodiscard]] Vec3<Real> normal() const {
     constexpr Real kUnit = Real(1) / FDCG_NORMAL_SCALE;
-#if FDCG_DEFORMABLE
-    graph_->upkeep.bring_normal_up_to_date(static_cast<uint32_t>(record_ - graph_->corners));
-#endif
+    graph_->bring_normal_up_to_date(*record_);
     return Vec3<Real>{Real(record_->normal[0]), Real(record_->normal[1]), Real(record_->normal[2])} * kUnit;
   }
   // Its fan is stored: more than FDCG_BUSY_FAN entries.
-  [[nodiscard]] bool is_busy() const {
-    return walked_count() == 0;
-  }
+  [[nodiscard]] bool is_busy() const { return walked_count() == 0; }
   // Of a busy corner. Without a tree, which no file has, first_box is FDCG_NONE.
-  [[nodiscard]] const fdcg_busy_corner& busy() const {
-    return graph_->busy_corners[record_->first];
-  }
+  [[nodiscard]] const fdcg_busy_corner& busy() const { return graph_->busy_corners[record_->first]; }
   // Of an ordinary corner: the node and its side with which the fan starts, and how many entries it has.
-  [[nodiscard]] uint32_t first_node() const {
-    return record_->first;
-  }
-  [[nodiscard]] uint32_t first_side() const {
-    return record_->side;
-  }
-  [[nodiscard]] uint32_t walked_count() const {
-    return record_->fan & ~FDCG_CORNER_OPEN;
-  }
+  [[nodiscard]] uint32_t first_node() const { return record_->first; }
+  [[nodiscard]] uint32_t first_side() const { return record_->side; }
+  [[nodiscard]] uint32_t walked_count() const { return record_->fan & ~FDCG_CORNER_OPEN; }
 
  private:
-  const GraphView<Real>* graph_;
+  const GraphView<Geometry>* graph_;
   const typename Records<Real>::Corner* record_;
 };
 
-template <class Real>
-struct GraphView {
-  using Node = typename Records<Real>::Node;
-  using Corner = typename Records<Real>::Corner;
-  using FanBox = typename Records<Real>::FanBox;
-
-  const fdcg_header* header;
-  const unsigned char* nodes;
-  const uint32_t* node_offsets;  // null: each block has node_bytes
-  uint64_t block_bytes;
-  bool has_planes;
-  const fdcg_connection* connections;
-  const typename Records<Real>::Edge* edges;  // null: derived
-  const Corner* corners;
-  const fdcg_busy_corner* busy_corners;
-  const uint32_t* fans;
-  const FanBox* fan_boxes;
-  const fdcg_box8* hierarchy;
-#if FDCG_DEFORMABLE
-  Upkeep<Real> upkeep;
-#endif
+template <class Geometry>
+struct GraphView : Geometry {
+  using Real = typename Geometry::Real;
 
   static constexpr uint32_t kLineBytes = 64;  // of most machines' caches; a wrong size costs prefetches, nothing else
   static constexpr uint32_t kPrefetchedSides = 3;
 
-  explicit GraphView(const fdcg_graph& graph)
-      : header(graph.header),
-        nodes(static_cast<const unsigned char*>(graph.nodes)),
-        node_offsets(graph.node_offsets),
-        block_bytes(graph.header->node_bytes),
-        has_planes((graph.header->flags & FDCG_STORED_PLANES) != 0),
-        connections(graph.connections),
-        edges(static_cast<const typename Records<Real>::Edge*>(graph.edges)),
-        corners(static_cast<const Corner*>(graph.corners)),
-        busy_corners(graph.busy_corners),
-        fans(graph.fans),
-        fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
-        hierarchy(graph.hierarchy)
-#if FDCG_DEFORMABLE
-        ,
-        upkeep(deform_of(graph))
-#endif
-  {
-  }
+  explicit GraphView(const fdcg_graph& graph) : Geometry(graph) {}
 
-  [[nodiscard]] NodeRef<Real> node(uint32_t index) const {
-    const uint64_t at = node_offsets == nullptr ? index * block_bytes : node_offsets[index] * uint64_t{sizeof(Real)};
-    return {*this, nodes + at, index};
+  [[nodiscard]] NodeRef<Geometry> node(uint32_t index) const {
+    const uint64_t at =
+        this->node_offsets == nullptr ? index * this->block_bytes : this->node_offsets[index] * uint64_t{sizeof(Real)};
+    return {*this, this->nodes + at, index};
   }
-  [[nodiscard]] ConnectionRef<Real> connection(uint32_t index) const {
-    return {*this, index};
-  }
-  [[nodiscard]] CornerRef<Real> corner(uint32_t index) const {
-    return {*this, index};
-  }
-  [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const {
-#if FDCG_DEFORMABLE
-    return upkeep.point(index);
-#else
-    return vec(corners[index].point);
-#endif
-  }
-
-  // A HIP's way in a tick, and the surface's in it: what a clear ball is worth looking for.
-  [[nodiscard]] Real with_way_of_surface(Real way) const {
-#if FDCG_DEFORMABLE
-    return way + static_cast<Real>(upkeep.deform().tick_travel);
-#else
-    return way;
-#endif
-  }
-
-  // Whether boxes of a record of the hierarchy, a bit in `lanes` each, have become tighter than they were: worth a second look.
-  [[nodiscard]] bool has_tightened([[maybe_unused]] int level, [[maybe_unused]] uint32_t record,
-                                   [[maybe_unused]] uint32_t lanes) const {
-#if FDCG_DEFORMABLE
-    return upkeep.has_tightened(level, record, lanes);
-#else
-    return false;
-#endif
-  }
-
-  // Leaves a sweep no work where the step has brought up to date as much as it may.
-  void bound_upkeep([[maybe_unused]] uint32_t* work_left) const {
-#if FDCG_DEFORMABLE
-    if (upkeep.deform().upkeep_left == 0) *work_left = 0;
-#endif
-  }
-
-  // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs. Written number by
-  // number where it is to be: a copy would wait for the numbers to be stored.
-  void read_edge(NodeRef<Real> node, uint32_t k, Edge<Real>* edge) const {
+  [[nodiscard]] ConnectionRef<Geometry> connection(uint32_t index) const { return {*this, index}; }
+  [[nodiscard]] CornerRef<Geometry> corner(uint32_t index) const { return {*this, index}; }
+  // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs.
+  void read_edge(NodeRef<Geometry> node, uint32_t k, Edge<Real>* edge) const {
     const uint32_t end[2] = {node.corner(k), node.corner(node.next(k))};
-#if FDCG_DEFORMABLE
-    *edge = derive_edge_or_point(corner_point(end[node.which(k)]), corner_point(end[1 - node.which(k)]));
-#else
-    const Corner& from = corners[end[node.which(k)]];
-    if (edges == nullptr) {
-      *edge = derive_edge(vec(from.point), corner_point(end[1 - node.which(k)]));
-      return;
-    }
-    const auto& stored = edges[node.connection(k)];
-    edge->start.x = from.point[0], edge->start.y = from.point[1], edge->start.z = from.point[2];
-    edge->direction.x = stored.direction[0], edge->direction.y = stored.direction[1], edge->direction.z = stored.direction[2];
-    edge->length = stored.length;
-#endif
+    this->read_edge_between(node.connection(k), end[node.which(k)], end[1 - node.which(k)], edge);
   }
   void read_edge(uint32_t connection_index, Edge<Real>* edge) const {
-    const fdcg_connection& record = connections[connection_index];
+    const fdcg_connection& record = this->connections[connection_index];
     read_edge(node(record.node), record.side[0], edge);
   }
   template <class... Where>
@@ -376,25 +191,25 @@ struct GraphView {
   // Calls what lies at and beyond side k into the cache: all that a god-object that crosses it will ask for. The addresses
   // stand in this node's block, so that the misses of one crossing overlap; nothing waits for them. Inlined by force: GCC 12
   // takes a function that does nothing else for one without effect, and drops its calls.
-  FDCG_HOT void prefetch_crossing(NodeRef<Real> here, uint32_t k) const {
-    __builtin_prefetch(&connections[here.connection(k)]);
-    __builtin_prefetch(&corners[here.corner(k)]);
-    if (edges != nullptr) __builtin_prefetch(&edges[here.connection(k)]);
+  FDCG_HOT void prefetch_crossing(NodeRef<Geometry> here, uint32_t k) const {
+    __builtin_prefetch(&this->connections[here.connection(k)]);
+    __builtin_prefetch(&this->corners[here.corner(k)]);
+    if (this->edges != nullptr) __builtin_prefetch(&this->edges[here.connection(k)]);
     if (here.across(k) == FDCG_NONE) return;
     const unsigned char* const block = node(here.across(k)).block();
-    const uint32_t bytes = node_bytes<Real>(kPrefetchedSides, has_planes);
+    const uint32_t bytes = node_bytes<Real>(kPrefetchedSides, this->has_planes);
     for (uint32_t at = 0; at < bytes; at += kLineBytes)
       __builtin_prefetch(block + at);
   }
   // The same for every side of a triangle; of a larger face it is anyone's guess by which side it will be left.
-  FDCG_HOT void prefetch_around(NodeRef<Real> here) const {
+  FDCG_HOT void prefetch_around(NodeRef<Geometry> here) const {
     for (uint32_t k = 0; k < kPrefetchedSides; ++k)
       prefetch_crossing(here, k);
   }
 
   // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.
   template <class Visit>
-  void for_each_in_fan(CornerRef<Real> corner, Visit&& visit) const {
+  void for_each_in_fan(CornerRef<Geometry> corner, Visit&& visit) const {
     if (corner.is_busy()) {
       for (uint32_t i = 0; i < corner.fan_count(); ++i)
         visit(fan_entry(corner, i));
@@ -403,7 +218,7 @@ struct GraphView {
     const uint32_t count = corner.walked_count();
     uint32_t n = corner.first_node(), k = corner.first_side();
     for (uint32_t i = 0; i < count; ++i) {
-      const NodeRef<Real> here = node(n);
+      const NodeRef<Geometry> here = node(n);
       visit(FanEntry{here.connection(k), here.which(k), n, k});
       const uint32_t incoming = here.previous(k);
       n = here.across(incoming);
@@ -411,27 +226,32 @@ struct GraphView {
         visit(FanEntry{here.connection(incoming), 1 - here.which(incoming), FDCG_NONE, 0});
         return;
       }
-      k = connections[here.connection(incoming)].side[1 - here.which(incoming)];
+      k = this->connections[here.connection(incoming)].side[1 - here.which(incoming)];
     }
   }
   // Entry i of a busy corner.
-  [[nodiscard]] FanEntry fan_entry(CornerRef<Real> corner, uint32_t i) const {
-    const uint32_t link = fans[corner.busy().first_fan + i], end = link & 1;
-    const ConnectionRef<Real> entry = connection(link >> 1);
+  [[nodiscard]] FanEntry fan_entry(CornerRef<Geometry> corner, uint32_t i) const {
+    const uint32_t link = this->fans[corner.busy().first_fan + i], end = link & 1;
+    const ConnectionRef<Geometry> entry = connection(link >> 1);
     return {link >> 1, end, entry.node(end), entry.side(end)};
   }
 };
 
+// Of a graph as it is.
+template <class Real>
+using RigidView = GraphView<RigidGeometry<Real>>;
+
 // Beyond this distance from a face's plane, rounding cannot have changed the sign of Plane::distance at x: the stored normal is
 // good to two units in the last place, the offset to one, the sum to three.
-template <class Real>
-inline Real plane_rounding_bound(const GraphView<Real>& graph, Vec3<Real> x) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline Real plane_rounding_bound(const GraphView<Geometry>& graph, Vec3<Real> x) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header->extent));
 }
 
 // The sign of x against the plane through the first three corners of an exactly planar node.
-template <class Real>
-[[gnu::noinline]] int exact_side_sign(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, uint32_t* work_left) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> x,
+                                      uint32_t* work_left) {
   Vec3<double> corner[3];
   for (uint32_t k = 0; k < 3; ++k) {
     const Vec3<Real> v = graph.corner_point(node.spanning_corner(k));
@@ -444,8 +264,8 @@ template <class Real>
 // side(x) of contact-model SIDE-1: the distance of x from the face's plane, with its exact sign where the face is exactly
 // planar. `bound` is plane_rounding_bound of x. One expression wherever it is asked, so that no two rules disagree. An exact
 // sign spends from *work_left; null: not counted.
-template <class Real>
-FDCG_HOT Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> x, Real bound, uint32_t* work_left) {
+template <class Geometry, class Real = typename Geometry::Real>
+FDCG_HOT Real side_of(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> x, Real bound, uint32_t* work_left) {
   const Real distance = node.plane().distance(x);
   if (absolute(distance) > bound || node.is_inexact()) return distance;
   const int sign = exact_side_sign(graph, node, x, work_left);
@@ -454,5 +274,4 @@ FDCG_HOT Real side_of(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Rea
   return distance < 0 ? distance : -RealLimits<Real>::kSignOnly;
 }
 
-}  // namespace FDCG_VIEW
 }  // namespace fdcg

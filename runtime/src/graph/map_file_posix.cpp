@@ -13,26 +13,22 @@
 namespace fdcg {
 namespace {
 
-fdcg_status refuse(fdcg_error* error, const char* why) {
-  return Message(error, FDCG_E_IO).text(why);
-}
-
 // errno in words. Not strerror: it may use the heap, and is not for several threads.
 fdcg_status refuse_errno(fdcg_error* error) {
   switch (errno) {
     case ENOENT:
     case ENOTDIR:
-      return refuse(error, "No such file or directory");
+      return refuse(error, FDCG_E_IO, "No such file or directory");
     case EACCES:
     case EPERM:
-      return refuse(error, "Permission denied");
+      return refuse(error, FDCG_E_IO, "Permission denied");
     case EMFILE:
     case ENFILE:
-      return refuse(error, "Too many open files");
+      return refuse(error, FDCG_E_IO, "Too many open files");
     case ENAMETOOLONG:
-      return refuse(error, "File name too long");
+      return refuse(error, FDCG_E_IO, "File name too long");
     case ENOMEM:
-      return refuse(error, "Cannot allocate memory");
+      return refuse(error, FDCG_E_IO, "Cannot allocate memory");
     default:
       return Message(error, FDCG_E_IO).text("the system refuses it with error number ").number(static_cast<uint64_t>(errno));
   }
@@ -41,9 +37,9 @@ fdcg_status refuse_errno(fdcg_error* error) {
 fdcg_status map_descriptor(int descriptor, MappedFile* file, fdcg_error* error) {
   struct stat status = {};
   if (fstat(descriptor, &status) != 0) return refuse_errno(error);
-  if (S_ISDIR(status.st_mode)) return refuse(error, "is a directory; give an .fdcg file");
-  if (!S_ISREG(status.st_mode)) return refuse(error, "is not a regular file and cannot be mapped");
-  if (status.st_size == 0) return refuse(error, "is empty; compile the mesh again");
+  if (S_ISDIR(status.st_mode)) return refuse(error, FDCG_E_IO, "is a directory; give an .fdcg file");
+  if (!S_ISREG(status.st_mode)) return refuse(error, FDCG_E_IO, "is not a regular file and cannot be mapped");
+  if (status.st_size == 0) return refuse(error, FDCG_E_IO, "is empty; compile the mesh again");
   const auto bytes = static_cast<uint64_t>(status.st_size);
   void* data = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, descriptor, 0);
   if (data == MAP_FAILED) return refuse_errno(error);

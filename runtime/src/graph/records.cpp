@@ -7,17 +7,10 @@ namespace fdcg {
 namespace {
 
 template <class Real>
-void widen_to(Vec3<Real> from, double (&to)[3]) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
-
-template <class Real>
-fdcg_node_info node_info(const GraphView<Real>& graph, uint32_t index) {
-  const NodeRef<Real> node = graph.node(index);
+fdcg_node_info node_info(const RigidView<Real>& graph, uint32_t index) {
+  const auto node = graph.node(index);
   fdcg_node_info info = {};
-  widen_to(node.normal(), info.normal);
+  store(node.normal(), info.normal);
   info.offset = node.plane().offset;
   info.side_count = node.side_count();
   info.flags = node.flags();
@@ -25,11 +18,11 @@ fdcg_node_info node_info(const GraphView<Real>& graph, uint32_t index) {
 }
 
 template <class Real>
-fdcg_side_info side_info(const GraphView<Real>& graph, uint32_t node_index, uint32_t k) {
-  const NodeRef<Real> node = graph.node(node_index);
+fdcg_side_info side_info(const RigidView<Real>& graph, uint32_t node_index, uint32_t k) {
+  const auto node = graph.node(node_index);
   const Plane<Real> plane = node.voronoi_plane(k);
   fdcg_side_info info = {};
-  widen_to(plane.normal, info.voronoi_normal);
+  store(plane.normal, info.voronoi_normal);
   info.voronoi_offset = plane.offset;
   info.connection = node.connection(k);
   info.which = node.which(k);
@@ -39,11 +32,11 @@ fdcg_side_info side_info(const GraphView<Real>& graph, uint32_t node_index, uint
 }
 
 template <class Real>
-fdcg_connection_info connection_info(const GraphView<Real>& graph, uint32_t index) {
-  const ConnectionRef<Real> connection = graph.connection(index);
+fdcg_connection_info connection_info(const RigidView<Real>& graph, uint32_t index) {
+  const auto connection = graph.connection(index);
   const Edge<Real> edge = graph.edge(index);
   fdcg_connection_info info = {};
-  widen_to(edge.direction, info.direction);
+  store(edge.direction, info.direction);
   info.length = edge.length;
   for (uint32_t k = 0; k < 2; ++k) {
     info.corner[k] = connection.corner(k);
@@ -56,18 +49,18 @@ fdcg_connection_info connection_info(const GraphView<Real>& graph, uint32_t inde
 }
 
 template <class Real>
-fdcg_corner_info corner_info(const GraphView<Real>& graph, uint32_t index) {
-  const CornerRef<Real> corner = graph.corner(index);
+fdcg_corner_info corner_info(const RigidView<Real>& graph, uint32_t index) {
+  const auto corner = graph.corner(index);
   fdcg_corner_info info = {};
-  widen_to(corner.point(), info.point);
-  widen_to(corner.normal(), info.normal);
+  store(corner.point(), info.point);
+  store(corner.normal(), info.normal);
   info.fan_count = corner.fan_count();
   info.is_open = corner.is_open() ? 1 : 0;
   return info;
 }
 
 template <class Real>
-uint32_t fan(const GraphView<Real>& graph, uint32_t index, uint32_t* entries, uint32_t capacity) {
+uint32_t fan(const RigidView<Real>& graph, uint32_t index, uint32_t* entries, uint32_t capacity) {
   uint32_t count = 0;
   graph.for_each_in_fan(graph.corner(index), [&](const FanEntry& entry) {
     if (count < capacity) entries[count] = entry.connection << 1 | entry.end;
@@ -79,7 +72,7 @@ uint32_t fan(const GraphView<Real>& graph, uint32_t index, uint32_t* entries, ui
 // Calls `read` with the graph's typed view.
 template <class Read>
 auto with_view(const fdcg_graph* graph, Read read) {
-  return with_real_of(*graph->header, [&](auto real) { return read(GraphView<decltype(real)>(*graph)); });
+  return with_real_of(*graph->header, [&](auto real) { return read(RigidView<decltype(real)>(*graph)); });
 }
 
 }  // namespace

@@ -13,13 +13,13 @@ namespace {
 
 // How far a stored unit vector's squared length may lie from 1.
 template <class Real>
-constexpr double kUnitTolerance = sizeof(Real) == 8 ? 1e-9 : 1e-4;
+constexpr double kStoredUnitTolerance = sizeof(Real) == 8 ? 1e-9 : 1e-4;
 
 template <class Real>
 bool is_unit(Vec3<Real> v) {
   const Vec3<double> w = widen(v);
   const double off = dot(w, w) - 1;
-  return off <= kUnitTolerance<Real> && off >= -kUnitTolerance<Real>;  // false for NaN too
+  return off <= kStoredUnitTolerance<Real> && off >= -kStoredUnitTolerance<Real>;  // false for NaN too
 }
 
 // An edge and its face's normal give a Voronoi plane where they are far enough from parallel: the compiler joins no face to
@@ -53,6 +53,8 @@ class Verifier {
   }
 
  private:
+  using Node = NodeRef<RigidGeometry<Real>>;
+
   fdcg_status refuse(const char* noun, uint64_t index, const char* what) {
     return Message(error_, FDCG_E_GRAPH)
         .text(noun)
@@ -75,7 +77,7 @@ class Verifier {
     const double per_unit = 1 / tree_unit(header_.extent);
     for (uint32_t n = 0; n < header_.node_count; ++n) {
       if (const char* what = block(n, &at, bytes)) return refuse("node", n, what);
-      const NodeRef<Real> node = graph_.node(n);
+      const Node node = graph_.node(n);
       const uint32_t count = node.side_count();
       sides += count;
       if ((node.flags() & ~FDCG_NODE_INEXACT) != 0) return refuse("node", n, "unknown flags");
@@ -120,7 +122,7 @@ class Verifier {
   }
 
   // What is wrong with side k, along which its connection runs; null: nothing.
-  [[gnu::noinline]] const char* first_side(uint32_t n, NodeRef<Real> node, uint32_t k) const {
+  [[gnu::noinline]] const char* first_side(uint32_t n, Node node, uint32_t k) const {
     const fdcg_connection& connection = graph_.connections[node.connection(k)];
     if (connection.node != n || connection.side[0] != k) return "its node does not own it";
     if (connection.type > FDCG_BOUNDARY || connection.flatness > FDCG_FLAT_ANGLE) return "unknown type or flatness";
@@ -132,11 +134,11 @@ class Verifier {
 
   // What is wrong with side k, against which its connection runs, beside that connection's first side. Connections come by
   // first use, so the first side's node stands before this one.
-  [[gnu::noinline]] const char* second_side(uint32_t n, NodeRef<Real> node, uint32_t k) const {
+  [[gnu::noinline]] const char* second_side(uint32_t n, Node node, uint32_t k) const {
     const fdcg_connection& connection = graph_.connections[node.connection(k)];
     if (connection.node >= n || connection.node != node.across(k) || connection.side[1] != k)
       return "its second node does not own it";
-    const NodeRef<Real> other = graph_.node(connection.node);
+    const Node other = graph_.node(connection.node);
     const uint32_t j = connection.side[0];
     if (j >= other.side_count() || other.side(j).link != (node.side(k).link ^ 1u) || other.across(j) != n)
       return "its second node does not own it";
@@ -145,7 +147,7 @@ class Verifier {
   }
 
   // Stored, or as the step will derive them. Corners must be in range, and those of damaged files may be anything.
-  [[gnu::noinline]] const char* voronoi_planes(NodeRef<Real> node) const {
+  [[gnu::noinline]] const char* voronoi_planes(Node node) const {
     constexpr const char* kWrong = "Voronoi plane out of range";
     const Vec3<Real> normal = node.normal();
     for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -193,7 +195,7 @@ class Verifier {
       }
       walk_all(walks, count);
       for (uint32_t i = 0; i < count; ++i) {
-        const CornerRef<Real> corner = graph_.corner(walks[i].corner);
+        const auto corner = graph_.corner(walks[i].corner);
         const bool is_right = walks[i].is_done && walks[i].is_open == corner.is_open() &&
                               walks[i].faces + (walks[i].is_open ? 1u : 0u) == corner.walked_count();
         if (!is_right) return refuse("corner", walks[i].corner, "fan does not lead around it in as many steps as it says");
@@ -216,7 +218,7 @@ class Verifier {
   static constexpr uint32_t kWalks = 8;  // at once, so that their cache misses overlap
 
   [[gnu::noinline]] const char* start_walk(uint32_t v, FanWalk* walk) const {
-    const CornerRef<Real> corner = graph_.corner(v);
+    const auto corner = graph_.corner(v);
     const uint32_t count = corner.walked_count(), n = corner.first_node(), k = corner.first_side();
     if (count < 2 || count > FDCG_BUSY_FAN || count > header_.largest_fan) return "fan out of range";
     if (n >= header_.node_count || k >= graph_.node(n).side_count() || graph_.node(n).corner(k) != v)
@@ -233,7 +235,7 @@ class Verifier {
       for (uint32_t i = 0; i < count; ++i) {
         FanWalk& walk = walks[i];
         if (walk.is_done) continue;
-        const NodeRef<Real> node = graph_.node(walk.node);
+        const Node node = graph_.node(walk.node);
         const uint32_t incoming = node.previous(walk.side);
         walk.node = node.across(incoming);
         walk.is_open = walk.node == FDCG_NONE;
@@ -270,7 +272,7 @@ class Verifier {
       if ((n == FDCG_NONE) != (is_open && is_last)) return "fan is open at the wrong place";
       if (i == 0 && is_open != (graph_.connection(c).node(1 - end) == FDCG_NONE)) return "fan is open at the wrong place";
       if (n == FDCG_NONE) continue;
-      const NodeRef<Real> node = graph_.node(n);
+      const Node node = graph_.node(n);
       if (node.connection(node.previous(graph_.connection(c).side(end))) != next >> 1) return "fan is not in cyclic order";
     }
     return nullptr;
@@ -321,7 +323,7 @@ class Verifier {
   }
 
   // Whether the leaf's box holds the node's corners.
-  bool is_in_its_box(uint32_t n, NodeRef<Real> node, uint32_t first_leaf_record, double per_unit) const {
+  bool is_in_its_box(uint32_t n, Node node, uint32_t first_leaf_record, double per_unit) const {
     const uint32_t leaf = n / FDCG_LEAF_NODES, lane = leaf % FDCG_TREE_WAYS;
     const fdcg_box8& boxes = raw_.hierarchy[first_leaf_record + leaf / FDCG_TREE_WAYS];
     double low[3], high[3];
@@ -356,7 +358,7 @@ class Verifier {
     return FDCG_OK;
   }
 
-  const GraphView<Real> graph_;
+  const RigidView<Real> graph_;
   const fdcg_header& header_;
   const fdcg_graph& raw_;
   fdcg_error* error_;

@@ -7,6 +7,9 @@
 
 namespace fdcg {
 
+// How far the length of a unit vector or quaternion that a caller gives may be from 1.
+inline constexpr double kUnitTolerance = 1e-3;
+
 using World = Vec3<double>;
 
 // What a graph's bounds are in its object's frame, in metres; grown by more than what rounding, a float graph's included, can

@@ -8,23 +8,8 @@
 namespace fdcg {
 namespace {
 
-constexpr double kLargestScale = 1e9, kFarthestTranslation_m = 1e12, kUnitTolerance = 1e-3;
+constexpr double kLargestScale = 1e9, kFarthestTranslation_m = 1e12;
 constexpr uint32_t kMostObjects = 1000000, kMostFingers = 10000000, kMostTouches = 32;
-
-fdcg_status refuse(fdcg_error* error, const char* what) {
-  return Message(error, FDCG_E_ARGUMENT).text(what);
-}
-
-[[gnu::noinline]] fdcg_status refuse(fdcg_error* error, const char* field, double value, double low, double high) {
-  return Message(error, FDCG_E_ARGUMENT)
-      .text(field)
-      .text(" is ")
-      .real(value)
-      .text(", allowed ")
-      .real(low)
-      .text(" to ")
-      .real(high);
-}
 
 bool is_within(double value, double low, double high) {
   return value >= low && value <= high;

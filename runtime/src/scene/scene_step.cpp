@@ -106,12 +106,6 @@ inline bool is_out_of_reach(const fdcg_scene& scene, const Finger& finger, World
 // ---- stepping
 // ----------------------------------------------------------------------------------------------------------------
 
-void store(World from, double (&to)[3]) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
-
 void step_contact(const Object& object, const Finger& finger, fdcg_contact* contact, World at, fdcg_result* result) {
   fdcg_params room;
   const fdcg_params* params = &object.params;
@@ -194,7 +188,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
     Slot& slot = tick.slots[s];
     fdcg_result result;
     if (slot.object == FDCG_NONE || !step_slot(tick, slot, contact, missed, &result)) continue;
-    if (!is_felt) store({0, 0, 0}, result.force_n);
+    if (!is_felt) store(World{0, 0, 0}, result.force_n);
     if ((result.flags & kCarriedOver) != 0) finger.flags |= FDCG_FINGER_BOUNDED;
     uint32_t place = finger.touch_count++;
     for (; place > 0 && touches[place - 1].object.index > slot.object; --place)

@@ -6,12 +6,12 @@
 
 #include "base/message.hpp"
 #include "scene/finger_tick.hpp"
+#include "step/friction_terms.hpp"
 
 namespace fdcg {
 namespace {
 
-constexpr double kLeastRadius_m = 1e-9, kMostRadius_m = 1e3, kUnitTolerance = 1e-3;
-constexpr double kStickAgain = 1 - 0x1p-20;  // as friction.hpp
+constexpr double kLeastRadius_m = 1e-9, kMostRadius_m = 1e3;
 
 Turn product(const Turn& a, const Turn& b) {
   return {a.v * b.w + b.v * a.w + cross(a.v, b.v), a.w * b.w - dot(a.v, b.v)};
@@ -79,7 +79,7 @@ struct Stretch {
 double kept(const fdcg_params& params, const Stretch& stretch, uint32_t* is_slipping) {
   const double length = stretch.length(), circle = params.mu_dynamic * stretch.depth;
   if (*is_slipping != 0) {
-    if (length <= kStickAgain * circle) *is_slipping = 0;
+    if (length <= kStickAgainShare * circle) *is_slipping = 0;
   } else if (length > params.mu_static * stretch.depth) {
     *is_slipping = 1;
   }

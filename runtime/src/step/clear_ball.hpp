@@ -23,8 +23,8 @@ inline bool is_in_clear_ball(const fdcg_clear_ball& ball, Vec3<double> hip) {
 // How near a node may be; exact up to rounding error where its nearest point is on its inside or on a side. Not asked to be
 // nearer than `nearest`: only what may be is worth its sides. A node whose corners lie off its plane is as near as that slab: a
 // way may enter it from beside.
-template <class Real>
-inline Real node_distance(const GraphView<Real>& graph, NodeRef<Real> node, Vec3<Real> at, Real nearest) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> at, Real nearest) {
   const Real from_plane = absolute(node.plane().distance(at));
   if (node.is_inexact()) return from_plane - static_cast<Real>(graph.header->max_deviation);
   if (!(from_plane < nearest)) return from_plane;
@@ -37,8 +37,8 @@ inline Real node_distance(const GraphView<Real>& graph, NodeRef<Real> node, Vec3
 }
 
 // How near a leaf's nodes may be, squared, in tree units. `reach`: farther does not matter.
-template <class Real>
-inline float squared_leaf_distance(const GraphView<Real>& graph, uint32_t leaf, Vec3<Real> at, Real reach, Real per_unit) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline float squared_leaf_distance(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<Real> at, Real reach, Real per_unit) {
   const uint32_t first = leaf * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
   Real nearest = reach;
   for (uint32_t n = first; n < end && n < graph.header->node_count; ++n) {
@@ -62,8 +62,8 @@ inline uint32_t nearer_boxes(const fdcg_box8& boxes, const float (&point)[3], fl
 // The radius of a ball around `at` that no face reaches into, by more than the rounding of a sweep inside it: such a sweep
 // finds nothing. 0 where it would be below `way`. Cost: at most kMostClearVisits records and leaves, a handful where nothing is
 // near.
-template <class Real>
-[[gnu::noinline]] Real clear_radius(const GraphView<Real>& graph, Vec3<Real> at, Real way) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way) {
   constexpr Real kWaysAhead = 12;                        // what a look is to pay for, in ways of this tick
   constexpr Real kLeastReach = Real(1) / 256;            // ... and tree units
   constexpr Real kKept = Real(1) - Real(1) / Real(512);  // of the radius: more than the rounding of a distance

@@ -20,13 +20,14 @@ struct Steepest {
   // all distances are.
   void take_steeper(const Steepest& other, Real half_t2) {
     const bool are_near = distance2 < half_t2 && other.distance2 < half_t2;
-    if (are_near ? other.distance2 < distance2 : other.reach2 > reach2) *this = other;
+    if (FDCG_MUTANT("steepest-at-vertex") ? feature == kFree : are_near ? other.distance2 < distance2 : other.reach2 > reach2)
+      *this = other;
   }
 };
 
 // One entry of the fan: its edge, and the face to the left of it.
-template <class Real>
-[[gnu::noinline]] void consider_fan_entry(const GraphView<Real>& graph, const FanEntry& entry, Vec3<Real> t, Real half_t2,
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] void consider_fan_entry(const GraphView<Geometry>& graph, const FanEntry& entry, Vec3<Real> t, Real half_t2,
                                           Steepest<Real>& best) {
   const Vec3<Real> direction = graph.edge(entry.connection).direction;
   const Real forward = dot(t, direction);
@@ -35,7 +36,7 @@ template <class Real>
     best.take_steeper({{FDCG_EDGE, entry.connection}, square(forward), dot(off, off)}, half_t2);
   }
   if (entry.node == FDCG_NONE) return;
-  const NodeRef<Real> node = graph.node(entry.node);
+  const NodeRef<Geometry> node = graph.node(entry.node);
   if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return;
   if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return;
   const Vec3<Real> normal = node.normal();
@@ -45,9 +46,9 @@ template <class Real>
 }
 
 // Looks at every edge of the corner.
-template <class Real>
-inline Steepest<Real> steepest_of_all(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
-  const GraphView<Real>& graph = walk.graph;
+template <class Geometry, class Real = typename Geometry::Real>
+inline Steepest<Real> steepest_of_all(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
+  const GraphView<Geometry>& graph = walk.graph;
   walk.spend(kFanWork * corner.fan_count());
   const Real t2 = dot(t, t);
   Steepest<Real> best = {kFree, 0, t2};
@@ -80,9 +81,9 @@ inline Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
 // contact-model CORNER-7: branch and bound over a busy corner's tree: a box whose best direction reaches no further than what
 // is found, but for rounding, is left out. So one of several directions that tie is taken: at the apex of a regular fan they
 // all do.
-template <class Real>
-inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
-  const GraphView<Real>& graph = walk.graph;
+template <class Geometry, class Real = typename Geometry::Real>
+inline Steepest<Real> steepest_by_tree(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
+  const GraphView<Geometry>& graph = walk.graph;
   struct Waiting {
     Real bound;
     uint32_t box;  // within its level
@@ -150,12 +151,12 @@ inline Steepest<Real> steepest_by_tree(Walk<Real>& walk, CornerRef<Real> corner,
 // edge of that face at the corner and behind the face across, edge and faces are as near as one another, and any of them may
 // have been found: then it is the edge's to say, unless it stands before the edge's end: the edge would hand the god-object
 // back to the corner. So are the two walls of a narrow slit that it stands between: one of them may hold it.
-template <class Real>
-[[gnu::noinline]] Feature edge_that_holds(Walk<Real>& walk, NodeRef<Real> node, uint32_t corner, Vec3<Real> t) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Feature edge_that_holds(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t corner, Vec3<Real> t) {
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     const bool starts_here = node.corner(k) == corner;
     if (!starts_here && node.corner(node.next(k)) != corner) continue;
-    const ConnectionRef<Real> connection = walk.graph.connection(node.connection(k));
+    const ConnectionRef<Geometry> connection = walk.graph.connection(node.connection(k));
     if (connection.type() != FDCG_CONCAVE) continue;
     walk.spend(kEdgeWork);
     const Real along = dot(walk.graph.edge(node, k).direction, t);
@@ -163,7 +164,7 @@ template <class Real>
     const bool is_between_walls = node.voronoi_plane(k).distance(walk.hip) < -walk.hip_bound;
     for (uint32_t end = 0; end < 2; ++end) {
       const Feature face = {FDCG_FACE, connection.node(end)};
-      const NodeRef<Real> wall = walk.graph.node(face.index);
+      const NodeRef<Geometry> wall = walk.graph.node(face.index);
       if (walk.side(wall) >= 0) continue;
       if (!is_between_walls) return {FDCG_EDGE, node.connection(k)};
       if (wall.voronoi_plane(connection.side(end)).distance(walk.hip) < 0) return face;
@@ -173,16 +174,16 @@ template <class Real>
 }
 
 // What the steepest descent comes to: where to go on, or the corner itself (contact-model CORNER-3, CORNER-5).
-template <class Real>
-inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<Real> t) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
   const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
   const Steepest<Real> best = has_tree ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
   if (best.feature.state == FDCG_FACE) {
-    const NodeRef<Real> node = walk.graph.node(best.feature.index);
+    const NodeRef<Geometry> node = walk.graph.node(best.feature.index);
     return walk.side(node) < 0 ? best.feature : edge_that_holds(walk, node, walk.active.index, t);
   }
   if (best.feature.state == FDCG_EDGE) {
-    const ConnectionRef<Real> connection = walk.graph.connection(best.feature.index);
+    const ConnectionRef<Geometry> connection = walk.graph.connection(best.feature.index);
     EdgeSides<Real> s;
     look_at_sides(walk, connection, &s);
     if (connection.type() == FDCG_BOUNDARY) {
@@ -190,7 +191,7 @@ inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<R
     }
     return is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0) ? kFree : best.feature;
   }
-  if (corner.is_open()) return kFree;
+  if (corner.is_open() && !FDCG_MUTANT("open-corner")) return kFree;
   return dot(t, corner.normal()) < 0 ? walk.active : kFree;
 }
 
@@ -198,8 +199,8 @@ inline Feature next_from_corner(Walk<Real>& walk, CornerRef<Real> corner, Vec3<R
 // snapping_increases_distance), as far from the corner on `next` instead, straight down: so it is no farther from the HIP than
 // it was, which at the corner it might be. Free, the way begins at the corner, lest it pass below a face of it. `t`: from the
 // corner to the HIP.
-template <class Real>
-[[gnu::noinline]] Vec3<Real> moved_beside(const Walk<Real>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Vec3<Real> moved_beside(const Walk<Geometry>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
   if (next == kFree) return point;
   Vec3<Real> down;  // to the foot of the HIP on `next`
   if (next.state == FDCG_FACE) {
@@ -215,9 +216,9 @@ template <class Real>
 
 // Cost: one connection, one node and two Voronoi planes for each edge of the corner; at a busy corner for some eight of them,
 // and the logarithm of their number in boxes.
-template <class Real>
-inline Decision corner_rule(Walk<Real>& walk) {
-  const CornerRef<Real> corner = walk.graph.corner(walk.active.index);
+template <class Geometry, class Real = typename Geometry::Real>
+inline Decision corner_rule(Walk<Geometry>& walk) {
+  const CornerRef<Geometry> corner = walk.graph.corner(walk.active.index);
   const Vec3<Real> point = corner.point(), t = walk.hip - point;
   const Feature next = next_from_corner(walk, corner, t);
   if (next == walk.active) return rest();

@@ -18,13 +18,13 @@ struct EdgeSides {
 };
 
 // Not as a return value: four floats would come back two to a register, by way of memory, and wait there for one another.
-template <class Real>
-inline void look_at_sides(Walk<Real>& walk, ConnectionRef<Real> connection, EdgeSides<Real>* sides) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline void look_at_sides(Walk<Geometry>& walk, ConnectionRef<Geometry> connection, EdgeSides<Real>* sides) {
   walk.spend(kEdgeWork);
   *sides = {};
   const int faces = connection.type() == FDCG_BOUNDARY ? 1 : 2;
   for (int k = 0; k < faces; ++k) {
-    const NodeRef<Real> node = walk.graph.node(connection.node(k));
+    const NodeRef<Geometry> node = walk.graph.node(connection.node(k));
     sides->side[k] = walk.side(node);
     sides->voronoi[k] = node.voronoi_plane(connection.side(k)).distance(walk.hip);
   }
@@ -38,8 +38,8 @@ inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
 // contact-model EDGE-4: the sum of the two normal loads of the groove, or the paper's distance of HIP from the edge. `across`
 // is HIP from its foot on the edge: from any other point of the edge it would be the same in theory, but merged faces may lie
 // off their corners, and a load that is not that of the force then errs by the way along the edge.
-template <class Real>
-inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline Real edge_load(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, Vec3<Real> across) {
   const Real distance = norm(across);
   if (!walk.friction.has_wedge || connection.type() == FDCG_BOUNDARY) return distance;
   const Vec3<Real> sum = walk.graph.node(connection.node(0)).normal() + walk.graph.node(connection.node(1)).normal();
@@ -50,8 +50,9 @@ inline Real edge_load(const Walk<Real>& walk, ConnectionRef<Real> connection, Ve
   return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
 }
 
-template <class Real>
-[[gnu::noinline, gnu::cold]] void select_material_of_edge(Walk<Real>& walk, ConnectionRef<Real> connection, Vec3<Real> across) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] void select_material_of_edge(Walk<Geometry>& walk, ConnectionRef<Geometry> connection,
+                                                          Vec3<Real> across) {
   const uint32_t a = connection.node(0), b = connection.node(1);
   double share = 0.5;
   if (b != FDCG_NONE)
@@ -61,8 +62,8 @@ template <class Real>
 
 // contact-model EDGE-7: behind one face of a convex edge, over it and not over the other, and yet in front of the other's
 // plane: that is no place, but for corners off a small face's plane, which far from it is anywhere. The face below decides.
-template <class Real>
-inline Feature face_despite_noise(const Walk<Real>& walk, ConnectionRef<Real> connection, const EdgeSides<Real>& s) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline Feature face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
   if (!(walk.graph.header->max_deviation > 0) || connection.type() == FDCG_CONCAVE) return kFree;
   for (uint32_t k = 0; k < 2; ++k) {
     if (s.side[k] < 0 && s.voronoi[k] < 0 && s.voronoi[1 - k] > 0) return {FDCG_FACE, connection.node(k)};
@@ -71,17 +72,18 @@ inline Feature face_despite_noise(const Walk<Real>& walk, ConnectionRef<Real> co
 }
 
 // Cost: two face planes, two Voronoi planes.
-template <class Real>
-inline Decision edge_rule(Walk<Real>& walk) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline Decision edge_rule(Walk<Geometry>& walk) {
   const uint32_t index = walk.active.index;
-  const ConnectionRef<Real> connection = walk.graph.connection(index);
+  const ConnectionRef<Geometry> connection = walk.graph.connection(index);
   EdgeSides<Real> s;
   look_at_sides(walk, connection, &s);
   const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
   if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
   if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0)) return go_to(face_despite_noise(walk, connection, s));
   const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
-  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0])) return go_to({FDCG_FACE, connection.node(0)});
+  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0] && !FDCG_MUTANT("steeper-face")))
+    return go_to({FDCG_FACE, connection.node(0)});
   if (is_candidate_b) return go_to({FDCG_FACE, connection.node(1)});
 
   const EdgeLine<Real> line(walk.graph, index);

@@ -20,8 +20,8 @@ struct Crossing {
 
 // contact-model FACE-8: whether `to` is past the corner at which side k starts: before that side's start and beyond the end of
 // the side before.
-template <class Real>
-[[gnu::noinline]] bool is_past_corner(NodeRef<Real> node, uint32_t k, Vec3<Real> to) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] bool is_past_corner(NodeRef<Geometry> node, uint32_t k, Vec3<Real> to) {
   const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());
   const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
   const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
@@ -33,8 +33,8 @@ template <class Real>
 
 // Looks at the sides from the first on beyond whose plane the move ends. Or near it, by `bound` of rounding: towards the tip of
 // a face like a needle its two planes are one but for that, and a move might slide past the tip between them.
-template <class Real>
-[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to,
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to,
                                                      Real bound) {
   Crossing<Real> first;
   for (; k < node.side_count(); ++k) {
@@ -46,16 +46,19 @@ template <class Real>
       continue;
     }
     const Real s0 = plane.distance(from);
-    if (!(s1 > s0)) continue;
+    if (FDCG_MUTANT("crossing-sign") ? !(s1 * s0 < 0) : FDCG_MUTANT("crossing-onto") ? !(s0 <= 0 && s1 > 0) : !(s1 > s0)) {
+      continue;
+    }
     const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());  // an offset may have cancelled to 0
-    const Real fraction = s1 <= rounding ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
-    if (first.local_side == FDCG_NONE || fraction < first.fraction) first = {k, fraction};
+    const Real fraction = s1 <= rounding && !FDCG_MUTANT("along-side") ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
+    if (first.local_side == FDCG_NONE || (FDCG_MUTANT("last-crossing") ? fraction > first.fraction : fraction < first.fraction))
+      first = {k, fraction};
   }
   return first;
 }
 
-template <class Real>
-FDCG_HOT Crossing<Real> first_crossing(NodeRef<Real> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
+template <class Geometry, class Real = typename Geometry::Real>
+FDCG_HOT Crossing<Real> first_crossing(NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
   for (uint32_t k = node.first_doubtful(to, bound); k < node.side_count(); ++k) {
     if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to, bound);
   }
@@ -78,11 +81,11 @@ struct FaceMove {
 // `bound`: plane_rounding_bound of the HIP. `reach`: from the HIP to the god-object, more exactly than the two can say.
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
-template <class Real>
-FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& friction, Vec3<Real> hip, Real bound, Real side,
+template <class Geometry, class Real = typename Geometry::Real>
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Friction<Real>& friction, Vec3<Real> hip, Real bound, Real side,
                                      Vec3<Real> god_object, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
-  if (!(side < 0)) return {Kind::leaves, god_object, {}};
+  if (FDCG_MUTANT("on-plane") ? side > 0 : !(side < 0)) return {Kind::leaves, god_object, {}};
   const Vec3<Real> normal = node.normal();
   const Vec3<Real> offset = reach - normal * dot(normal, reach);  // its part in the plane: from the surface point
   const Real gap2 = dot(offset, offset), depth = -side;
@@ -96,16 +99,16 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Real> node, Friction<Real>& frictio
 }
 
 // A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.
-template <class Real>
-inline bool is_far(const GraphView<Real>& graph, Vec3<Real> hip) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
   constexpr Real kNear = 16;  // extents
   return norm1(hip) > kNear * Real(graph.header->extent);
 }
 
 // contact-model FACE-6: seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have
 // one plane but for rounding: beyond the end of one the point is on the next.
-template <class Real>
-[[gnu::noinline]] Feature place_on_rim(Walk<Real>& walk, NodeRef<Real> node, uint32_t side, Vec3<Real> point) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side, Vec3<Real> point) {
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
   for (uint32_t i = 0; i < node.side_count() && (u < 0 || u > line.length); ++i) {
@@ -124,8 +127,8 @@ template <class Real>
 }
 
 // The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
-template <class Real>
-inline uint32_t side_under(const Walk<Real>& walk, NodeRef<Real> node) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
   const Real rounding = 8 * RealLimits<Real>::kEpsilon * (norm1(walk.god_object) + Real(walk.graph.header->extent));
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding) return k;
@@ -135,8 +138,8 @@ inline uint32_t side_under(const Walk<Real>& walk, NodeRef<Real> node) {
 
 // contact-model FACE-1: the face has lost the HIP: the seat's rule decides; without a seat this is Free. A god-object that slid
 // to the face's rim but for rounding may be behind the faces across, so it is seated there first.
-template <class Real>
-inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
+template <class Geometry>
+inline Feature leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
   if (!(walk.seat == kFree)) return walk.seat;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) return kFree;
@@ -144,11 +147,11 @@ inline Feature leave_face(Walk<Real>& walk, NodeRef<Real> node) {
 }
 
 // Places the god-object where the move says. Returns what comes next.
-template <class Real>
-inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
   using Kind = typename FaceMove<Real>::Kind;
-  const NodeRef<Real> node = walk.graph.node(walk.active.index);
-  if (move.kind == Kind::leaves) return go_to(leave_face(walk, node));
+  const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
+  if (move.kind == Kind::leaves) return go_to(FDCG_MUTANT("seat") ? kFree : leave_face(walk, node));
   if (move.kind == Kind::slides) {
     constexpr Real kMostOff = Real(1) / 1024;  // extents; beyond, the numbers cannot tell where the target is: no move
     const Real off = is_far(walk.graph, walk.hip) ? node.plane().distance(move.target) : Real(0);
@@ -160,13 +163,13 @@ inline Decision carry_out(Walk<Real>& walk, const FaceMove<Real>& move) {
   const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.rounding_residual;
   const Vec3<Real> ahead = walk.rounding_residual + way * move.crossing.fraction;  // from `from` to the crossing
   const Feature landed = place_on_rim(walk, node, side, from + ahead);
-  if (landed.state == FDCG_EDGE) walk.rounding_residual = (from - walk.god_object) + ahead;
+  if (landed.state == FDCG_EDGE && !FDCG_MUTANT("lost")) walk.rounding_residual = (from - walk.god_object) + ahead;
   return go_to(landed);
 }
 
-template <class Real>
-inline Decision face_rule(Walk<Real>& walk) {
-  const NodeRef<Real> node = walk.graph.node(walk.active.index);
+template <class Geometry, class Real = typename Geometry::Real>
+inline Decision face_rule(Walk<Geometry>& walk) {
+  const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
   if constexpr (FDCG_WITH_FRICTION_TERMS) {
     if (walk.friction.terms != nullptr) walk.friction.terms->select_material_of_face(walk.active.index);

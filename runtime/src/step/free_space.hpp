@@ -10,17 +10,19 @@ namespace fdcg {
 
 // A way that meets a merged face may begin behind its plane, within its slab, or meet it before: friction would hold the
 // god-object there.
-template <class Real>
-inline Vec3<Real> onto_slab(const Walk<Real>& walk, Vec3<Real> point, uint32_t n) {
-  const NodeRef<Real> node = walk.graph.node(n);
+template <class Geometry, class Real = typename Geometry::Real>
+inline Vec3<Real> onto_slab(const Walk<Geometry>& walk, Vec3<Real> point, uint32_t n) {
+  const NodeRef<Geometry> node = walk.graph.node(n);
   return node.is_inexact() ? point - node.normal() * node.plane().distance(point) : point;
 }
 
 // Puts the contact where the way met something first, or at its end.
-template <class Real>
-inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
-  const Real over = is_on_face ? sweep.part_over(first.feature.index, first.fraction, 0) : first.fraction;
+  const Real over = FDCG_MUTANT("grazing") && is_on_face ? first.fraction + Real(0.01)
+                    : is_on_face                         ? sweep.part_over(first.feature.index, first.fraction, 0)
+                                                         : first.fraction;
   Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
   if (is_on_face) point = onto_slab(walk, point, first.feature.index);
   walk.active = first.feature;
@@ -34,11 +36,12 @@ inline void arrive(Walk<Real>& walk, const Sweep<Real>& sweep, Vec3<Real> to, co
 
 // contact-model FREE-2, BOUND-2: goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has
 // not moved.
-template <class Real>
-[[gnu::noinline]] bool finish_carried_sweep(Walk<Real>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] bool finish_carried_sweep(Walk<Geometry>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
   const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
-  Sweep<Real> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature}, work_left);
+  Sweep<Geometry> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature},
+                        work_left);
   const bool is_done = sweep.run_in_order(&first, &carried->next_leaf);
   carried->fraction = first.fraction;
   carried->node = first.node;
@@ -64,8 +67,8 @@ struct FreeSpace {
 
 // Whether a ball that no face touches holds the whole way; it is kept. Where there was none, the next looks wait for longer and
 // longer: near the surface a sweep is cheaper.
-template <class Real>
-inline bool is_in_new_ball(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to, fdcg_clear_ball* ball) {
+template <class Geometry, class Real = typename Geometry::Real>
+inline bool is_in_new_ball(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to, fdcg_clear_ball* ball) {
   constexpr uint32_t kLongestWait = 15;
   if (ball->wait > 0) {
     --ball->wait;
@@ -84,8 +87,8 @@ inline bool is_in_new_ball(const GraphView<Real>& graph, Vec3<Real> from, Vec3<R
 // contact-model FREE-5: a way that begins far away, cut to begin where it comes near the graph; `to` where it passes by, or
 // where its numbers, which out there are coarser than the object, cannot tell. A place computed from the whole way might be
 // anywhere.
-template <class Real>
-[[gnu::noinline]] Vec3<Real> near_start(const GraphView<Real>& graph, Vec3<Real> from, Vec3<Real> to) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Vec3<Real> near_start(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to) {
   constexpr Real kFar = 16, kBefore = 4;  // extents; the graph lies within less than two of the origin
   const Real extent = static_cast<Real>(graph.header->extent);
   if (!(norm1(from) > kFar * extent)) return from;
@@ -106,8 +109,8 @@ template <class Real>
 // From free space, or from the surface that was just left, on which the god-object `stood`: places the contact on what the way
 // to the HIP meets, or at the HIP. A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work
 // ran out, else 0.
-template <class Real>
-[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Real>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
   fdcg_carried_sweep* carried = space->carried;
   space->ball->radius2 = 0;
   if (carried->is_carried != 0) {
@@ -131,7 +134,7 @@ template <class Real>
     return 0;
   }
   walk.god_object = from;
-  Sweep<Real> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
+  Sweep<Geometry> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
   if (sweep.run(&first)) {
     arrive(walk, sweep, to, first);

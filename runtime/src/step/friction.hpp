@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/config.hpp"
+#include "base/mutation.hpp"
 #include "shared/vec.hpp"
 #include "step/friction_terms.hpp"
 
@@ -37,14 +38,18 @@ struct Friction {
     if constexpr (FDCG_WITH_FRICTION_TERMS) {
       if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
     }
-    constexpr Real kStickAgain = Real(1) - Real(1) / Real(1 << 20);
+    constexpr Real kStickAgain = Real(kStickAgainShare);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {
-      if (gap2 <= square(kStickAgain * gap)) is_slipping = false;
+      if (gap2 <= square(FDCG_MUTANT("stick-factor") ? gap + RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap)
+                                                     : kStickAgain * gap))
+        is_slipping = false;
     } else if (gap2 > square(mu_static * load)) {
       is_slipping = true;
+      if (FDCG_MUTANT("slip-later")) return {false, mu_static * load};
     }
     const Real rounding = RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
+    if (FDCG_MUTANT("rest-untouched")) return {false, is_slipping ? gap : root(gap2)};
     return {!is_slipping || gap2 <= square(gap + rounding), gap};
   }
 

@@ -16,7 +16,6 @@ namespace fdcg {
 namespace {
 
 constexpr double kSteepest = 0.6495190528383290;  // 3 sqrt(3) / 8: of 1 / (1 + x^2), at x = 1 / sqrt(3)
-constexpr double kStickAgain = 1 - 0x1p-20;       // as in friction.hpp, where sticking and slipping are two coefficients
 
 // How steeply the curve may fall for one solution down to unique_solution_depth_m, in seconds a metre.
 double steepest_allowed(const fdcg_params& params, const fdcg_material& material) {
@@ -126,7 +125,7 @@ TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, 
     *is_slipping = gap > reach * mu(from, stribeck);
   } else {
     const double dynamic = mu(from, stribeck), more = larger(0, material.mu_static - material.mu_dynamic);
-    *is_slipping = *is_slipping ? gap > kStickAgain * reach * dynamic : gap > reach * (dynamic + more);
+    *is_slipping = *is_slipping ? gap > kStickAgainShare * reach * dynamic : gap > reach * (dynamic + more);
   }
   double left = gap;
   bool is_rest = !*is_slipping;

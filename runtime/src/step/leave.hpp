@@ -12,8 +12,8 @@
 namespace fdcg {
 
 // `point`, moved along `outward` by as little as puts it in front of the node's plane: a slit may be narrower than a rounding.
-template <class Real>
-[[gnu::noinline]] Vec3<Real> in_front_of(Walk<Real>& walk, NodeRef<Real> node, Vec3<Real> point, Vec3<Real> outward) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Vec3<Real> in_front_of(Walk<Geometry>& walk, NodeRef<Geometry> node, Vec3<Real> point, Vec3<Real> outward) {
   constexpr int kMostMoves = 16;  // each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, point);
   const Real least = RealLimits<Real>::kEpsilon * Real(walk.graph.header->extent) / 4096;
@@ -27,25 +27,25 @@ template <class Real>
 }
 
 // Call before the sweep that leaves `left`, whose rule has found the HIP outside.
-template <class Real>
-[[gnu::noinline]] void step_clear_of(Walk<Real>& walk, Feature left) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] void step_clear_of(Walk<Geometry>& walk, Feature left) {
   if (left.state == FDCG_FACE) {
-    const NodeRef<Real> node = walk.graph.node(left.index);
+    const NodeRef<Geometry> node = walk.graph.node(left.index);
     walk.god_object = in_front_of(walk, node, walk.god_object, node.normal());
   } else if (left.state == FDCG_EDGE) {
-    const ConnectionRef<Real> connection = walk.graph.connection(left.index);
-    const NodeRef<Real> a = walk.graph.node(connection.node(0));
+    const ConnectionRef<Geometry> connection = walk.graph.connection(left.index);
+    const NodeRef<Geometry> a = walk.graph.node(connection.node(0));
     if (connection.type() == FDCG_BOUNDARY) {
       if (walk.side(a) >= 0) walk.god_object = in_front_of(walk, a, walk.god_object, a.normal());
       return;
     }
-    const NodeRef<Real> b = walk.graph.node(connection.node(1));
+    const NodeRef<Geometry> b = walk.graph.node(connection.node(1));
     if (connection.type() == FDCG_CONCAVE) {  // the HIP is in front of both
       const Vec3<Real> outward = a.normal() + b.normal();
       const Vec3<Real> off_a = in_front_of(walk, a, walk.god_object, outward);
       walk.god_object = in_front_of(walk, b, off_a, outward);
     } else {  // ... of one: all of the other lies behind that one's plane
-      const NodeRef<Real> passed = walk.side(a) >= 0 ? a : b;
+      const NodeRef<Geometry> passed = walk.side(a) >= 0 ? a : b;
       walk.god_object = in_front_of(walk, passed, walk.god_object, passed.normal());
     }
   }

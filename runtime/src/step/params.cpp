@@ -11,10 +11,10 @@ namespace {
 
 // contact-model RESP-4
 
-constexpr double kLargest = 1e9;  // far beyond any device; keeps products finite
-constexpr double kLeast = 1e-9;
+constexpr double kLargestParam = 1e9;  // far beyond any device; keeps products finite
+constexpr double kLeastParam = 1e-9;
 
-struct Range {
+struct ParamRange {
   const char* name;
   double value, low, high;
 };
@@ -31,8 +31,8 @@ Message& say(Message& message, const Owner& owner) {
   return message;
 }
 
-fdcg_status check_ranges(const Owner& owner, const Range* ranges, uint32_t count, double mu_dynamic, fdcg_error* error) {
-  for (const Range* range = ranges; range != ranges + count; ++range) {
+fdcg_status check_ranges(const Owner& owner, const ParamRange* ranges, uint32_t count, double mu_dynamic, fdcg_error* error) {
+  for (const ParamRange* range = ranges; range != ranges + count; ++range) {
     if (range->value >= range->low && range->value <= range->high) continue;
     Message message(error, FDCG_E_ARGUMENT);
     return say(message, owner)
@@ -50,9 +50,9 @@ fdcg_status check_ranges(const Owner& owner, const Range* ranges, uint32_t count
 }
 
 fdcg_status check_material(const Owner& owner, const fdcg_material& material, double least_stiffness, fdcg_error* error) {
-  const Range ranges[] = {{"mu_dynamic", material.mu_dynamic, 0, kLargest},
-                          {"mu_static", material.mu_static, material.mu_dynamic, kLargest},
-                          {"stiffness_n_per_m", material.stiffness_n_per_m, least_stiffness, kLargest}};
+  const ParamRange ranges[] = {{"mu_dynamic", material.mu_dynamic, 0, kLargestParam},
+                               {"mu_static", material.mu_static, material.mu_dynamic, kLargestParam},
+                               {"stiffness_n_per_m", material.stiffness_n_per_m, least_stiffness, kLargestParam}};
   return check_ranges(owner, ranges, 3, material.mu_dynamic, error);
 }
 
@@ -84,14 +84,15 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
         .text(", allowed are sums of fdcg_friction_flag: 0 to ")
         .number(FDCG_FRICTION_ALL);
   }
-  const Range ranges[] = {
-      {"stribeck_m_per_s", has(FDCG_FRICTION_STRIBECK) ? params.stribeck_m_per_s : 1, kLeast, kLargest},
-      {"viscous_s_per_m", has(FDCG_FRICTION_VISCOUS) ? params.viscous_s_per_m : 0, 0, kLargest},
-      {"presliding_n_per_m", has(FDCG_FRICTION_PRESLIDING) ? params.presliding_n_per_m : 1, kLeast, kLargest},
-      {"friction_lag_s", has(FDCG_FRICTION_LAG) ? params.friction_lag_s : 0, 0, kLargest},
-      {"unique_solution_depth_m", has(FDCG_FRICTION_STRIBECK) ? params.unique_solution_depth_m : 1, kLeast, kLargest}};
+  const ParamRange ranges[] = {
+      {"stribeck_m_per_s", has(FDCG_FRICTION_STRIBECK) ? params.stribeck_m_per_s : 1, kLeastParam, kLargestParam},
+      {"viscous_s_per_m", has(FDCG_FRICTION_VISCOUS) ? params.viscous_s_per_m : 0, 0, kLargestParam},
+      {"presliding_n_per_m", has(FDCG_FRICTION_PRESLIDING) ? params.presliding_n_per_m : 1, kLeastParam, kLargestParam},
+      {"friction_lag_s", has(FDCG_FRICTION_LAG) ? params.friction_lag_s : 0, 0, kLargestParam},
+      {"unique_solution_depth_m", has(FDCG_FRICTION_STRIBECK) ? params.unique_solution_depth_m : 1, kLeastParam,
+       kLargestParam}};
   fdcg_status status = check_ranges(owner, ranges, sizeof ranges / sizeof ranges[0], -1, error);
-  if (status == FDCG_OK && has(FDCG_FRICTION_FINGER)) status = check_material(finger, params.finger, kLeast, error);
+  if (status == FDCG_OK && has(FDCG_FRICTION_FINGER)) status = check_material(finger, params.finger, kLeastParam, error);
   if (status == FDCG_OK)
     status = check_steepness(params, owner, {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m}, error);
   if (status != FDCG_OK || !has(FDCG_FRICTION_MATERIALS)) return status;
@@ -117,7 +118,7 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
 }  // namespace
 
 fdcg_status check_finger_material(const fdcg_material& material, fdcg_error* error) {
-  return check_material({"material", FDCG_NONE}, material, kLeast, error);
+  return check_material({"material", FDCG_NONE}, material, kLeastParam, error);
 }
 
 }  // namespace fdcg
@@ -149,11 +150,11 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
     return status;
   }
   params = &in_full(*params, &room, fdcg_params_init);
-  const Range ranges[] = {{"mu_dynamic", params->mu_dynamic, 0, kLargest},
-                          {"mu_static", params->mu_static, params->mu_dynamic, kLargest},
-                          {"stiffness_n_per_m", params->stiffness_n_per_m, 0, kLargest},
-                          {"damping_n_s_per_m", params->damping_n_s_per_m, 0, kLargest},
-                          {"tick_s", params->tick_s, kLeast, kLargest}};
+  const ParamRange ranges[] = {{"mu_dynamic", params->mu_dynamic, 0, kLargestParam},
+                               {"mu_static", params->mu_static, params->mu_dynamic, kLargestParam},
+                               {"stiffness_n_per_m", params->stiffness_n_per_m, 0, kLargestParam},
+                               {"damping_n_s_per_m", params->damping_n_s_per_m, 0, kLargestParam},
+                               {"tick_s", params->tick_s, kLeastParam, kLargestParam}};
   const fdcg_status status =
       check_ranges({"params", FDCG_NONE}, ranges, sizeof ranges / sizeof ranges[0], params->mu_dynamic, error);
   if (status != FDCG_OK) return status;

@@ -14,8 +14,8 @@ namespace fdcg {
 
 // Out of the half-planes that the face's concave edges leave: the nearest point of them, exactly where one or two of them
 // count.
-template <class Real>
-[[gnu::noinline, gnu::cold]] Vec3<double> within_walls(const Walk<Real>& walk, NodeRef<Real> node, Vec3<double> x) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] Vec3<double> within_walls(const Walk<Geometry>& walk, NodeRef<Geometry> node, Vec3<double> x) {
   struct Wall {
     Vec3<double> normal;
     double beyond;
@@ -46,29 +46,29 @@ template <class Real>
 
 // The material of a feature that no rule may have asked for in this tick. At a vertex the stiffness of before holds; a contact
 // that begins there has that of a face beside it.
-template <class Real>
-[[gnu::noinline, gnu::cold]] void select_material(const Walk<Real>& walk, Feature at) {
+template <class Geometry>
+[[gnu::noinline, gnu::cold]] void select_material(const Walk<Geometry>& walk, Feature at) {
   FrictionTerms& terms = *walk.friction.terms;
   if (at.state == FDCG_FACE) terms.select_material_of_face(at.index);
   if (at.state == FDCG_EDGE) {
-    const ConnectionRef<Real> connection = walk.graph.connection(at.index);
+    const ConnectionRef<Geometry> connection = walk.graph.connection(at.index);
     terms.select_material_of_edge(connection.node(0), connection.node(1), 0.5);
   }
   if (at.state == FDCG_VERTEX) {
-    const CornerRef<Real> corner = walk.graph.corner(at.index);
+    const CornerRef<Geometry> corner = walk.graph.corner(at.index);
     terms.select_material_of_face(corner.is_busy() ? walk.graph.fan_entry(corner, 0).node : corner.first_node());
     if (terms.held_stiffness > 0) terms.material.stiffness_n_per_m = terms.held_stiffness;
   }
 }
 
 // From the remembered place to the god-object that is felt. Cost: one plane, and those of the face's concave edges.
-template <class Real>
-[[gnu::noinline, gnu::cold]] Vec3<double> presliding_offset(const Walk<Real>& walk, Feature at, Vec3<double> anchor) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] Vec3<double> presliding_offset(const Walk<Geometry>& walk, Feature at, Vec3<double> anchor) {
   const Vec3<double> stays = {0, 0, 0}, hip = widen(walk.hip);
   const double share = 1 - 1 / walk.friction.terms->give();
   if (!(share > 0)) return stays;
   if (at.state == FDCG_FACE) {
-    const NodeRef<Real> node = walk.graph.node(at.index);
+    const NodeRef<Geometry> node = walk.graph.node(at.index);
     const Vec3<double> normal = widen(node.normal()), gap = hip - anchor;
     const Vec3<double> x = anchor + (gap - normal * dot(normal, gap)) * share;
     return within_walls(walk, node, x) - anchor;
@@ -92,8 +92,8 @@ inline double stored(const FrictionTerms& terms, Vec3<double> gap, Vec3<double> 
 // contact, from `before` and the feature `was`, more may not be stored at this HIP than there: the stiffness holds back, and
 // rises again where sliding has lost as much. Two materials, or a wall that the yielding god-object meets behind a seam, would
 // push the hand else.
-template <class Real>
-[[gnu::noinline, gnu::cold]] double settle(const Walk<Real>& walk, Feature was, Vec3<double> before) {
+template <class Geometry>
+[[gnu::noinline, gnu::cold]] double settle(const Walk<Geometry>& walk, Feature was, Vec3<double> before) {
   FrictionTerms& terms = *walk.friction.terms;
   const Vec3<double> hip = widen(walk.hip), now = widen(walk.god_object);
   double most = 0;

@@ -9,13 +9,12 @@
 // Over 400 lines: one class, whose questions to a node all share the way and its rounding.
 #pragma once
 
+#include "base/mutation.hpp"
 #include "base/work.hpp"
 #include "graph/box_tree.hpp"
 #include "step/walk.hpp"
 
 namespace fdcg {
-inline namespace FDCG_VIEW {
-
 // What a way met first. The result does not depend on the order in which nodes are looked at: of two met at one fraction the
 // lower one counts.
 template <class Real>
@@ -28,10 +27,12 @@ struct FirstHit {
 // Sweeps from -> to, leaving out the faces that meet at `left`, on which the way starts; `stood`: where the god-object was
 // before it stepped clear of them. Watertight: a node is entered where the line passes its edges on the inner side, by exact
 // signs that two neighbours share.
-template <class Real>
+template <class Geometry>
 class Sweep {
+  using Real = typename Geometry::Real;
+
  public:
-  Sweep(const GraphView<Real>& graph, Vec3<Real> stood, Vec3<Real> from, Vec3<Real> to, Feature left, uint32_t* work_left)
+  Sweep(const GraphView<Geometry>& graph, Vec3<Real> stood, Vec3<Real> from, Vec3<Real> to, Feature left, uint32_t* work_left)
       : graph_(graph),
         stood_(stood),
         from_(from),
@@ -69,7 +70,7 @@ class Sweep {
   // kNever where it is nowhere over the face: a loop that is not flat is passed, seen edge-on, by ways that end before it, and
   // by ways that pass it by.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
-    const NodeRef<Real> node = graph_.node(n);
+    const NodeRef<Geometry> node = graph_.node(n);
     const Real rounding = (from_bound_ + to_bound_) / 4;
     Real begin = least, end = 1, widest_begin = least, widest_end = 1;
     if (!clip_to(node, rounding, &begin, &end) &&
@@ -84,7 +85,7 @@ class Sweep {
   static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
 
   // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
-  [[nodiscard, gnu::noinline]] bool clip_to(NodeRef<Real> node, Real outwards, Real* begin, Real* end) const {
+  [[nodiscard, gnu::noinline]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end) const {
     spend(work_left_, kSideWork * node.side_count());
     bool is_beside = false;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -223,14 +224,15 @@ class Sweep {
   // where one of them lets a way go, its neighbours' exact planes may lie in front of where that begins.
   [[gnu::noinline]] void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
-    const NodeRef<Real> node = graph_.node(n);
-    if (node.plane().distance(to_) > to_bound_ || is_left_out(n, node)) return;  // before any exact sign is asked for
+    const NodeRef<Geometry> node = graph_.node(n);
+    if (node.plane().distance(to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
+      return;  // before any exact sign is asked for
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
     const bool is_slab = graph_.header->max_deviation > 0;
     if (start_side < (is_slab ? -slab_ : Real(0))) {
-      if (start_side >= -from_bound_) try_other_wall(n, node);
+      if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
       return;
     }
     if (start_side < 0 && left_lies_behind(node)) return;
@@ -251,26 +253,28 @@ class Sweep {
       met_exactly = 0;
     }
     const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
+    if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return;
     if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
     best_.node = n;
-    best_.feature = met_exactly ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
+    best_.feature =
+        met_exactly && !FDCG_MUTANT("exact-feature") ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
   }
 
   [[nodiscard]] bool is_before_best(Real fraction, uint32_t n) const {
     return fraction < best_.fraction || (fraction == best_.fraction && n < best_.node);
   }
 
-  [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node, Vec3<Real> x, Real bound) const {
+  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) const {
     if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kNearPlaneWork);
     return side_of(graph_, node, x, bound, work_left_);
   }
 
   // contact-model LEAVE-1
-  [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Real> node) const {
+  [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Geometry> node) const {
     if (left_.state == FDCG_FACE) return left_.index == n;
     if (left_.state == FDCG_EDGE) {
-      const ConnectionRef<Real> connection = graph_.connection(left_.index);
+      const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
       return connection.node(0) == n || connection.node(1) == n;
     }
     if (left_.state != FDCG_VERTEX) return false;
@@ -283,7 +287,7 @@ class Sweep {
   // contact-model LEAVE-3: a slit may be narrower than the rounding of the god-object's place, which then is behind the other
   // wall; and that must hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over
   // it.
-  [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Real> node) {
+  [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
       if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
@@ -295,7 +299,7 @@ class Sweep {
   }
 
   // Whether it was the step clear of the face that is left which took the way's beginning behind the node.
-  [[nodiscard]] bool was_before_clearing(NodeRef<Real> node) const {
+  [[nodiscard]] bool was_before_clearing(NodeRef<Geometry> node) const {
     if (left_.state != FDCG_FACE || !(dot(graph_.node(left_.index).normal(), node.normal()) < 0)) return false;
     return side(node, stood_, from_bound_) >= 0;
   }
@@ -303,30 +307,30 @@ class Sweep {
   // Whether the face or edge that the way leaves and the node look at each other, corner by corner: if the former lies in front
   // of the node, then so did the god-object, whatever rounding made of its place; and to be met, the node must reach in front
   // of those faces that the way does not enter.
-  [[nodiscard]] bool faces_what_was_left(NodeRef<Real> node) const {
+  [[nodiscard]] bool faces_what_was_left(NodeRef<Geometry> node) const {
     if (left_.state == FDCG_FACE) {
-      const NodeRef<Real> face = graph_.node(left_.index);
+      const NodeRef<Geometry> face = graph_.node(left_.index);
       const bool is_opposite = dot(face.normal(), node.normal()) < 0;  // then rounding of a wall's plane does not matter
       return reaches_before(face, node) && !reaches_behind(node, face, is_opposite ? from_bound_ : Real(0));
     }
     if (left_.state != FDCG_EDGE) return false;  // a corner is where it is
-    const ConnectionRef<Real> connection = graph_.connection(left_.index);
+    const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
     for (uint32_t end = 0; end < 2; ++end) {
       if (side_of_corner(node, connection.corner(end)) < 0) return false;
     }
     const uint32_t count = connection.type() == FDCG_BOUNDARY ? 1 : 2;
     for (uint32_t k = 0; k < count; ++k) {
-      const NodeRef<Real> face = graph_.node(connection.node(k));
+      const NodeRef<Geometry> face = graph_.node(connection.node(k));
       if (side(face, to_, to_bound_) >= 0 && !reaches_before(face, node)) return false;
     }
     return true;
   }
   // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it,
   // though it may begin in its slab.
-  [[nodiscard, gnu::noinline]] bool left_lies_behind(NodeRef<Real> node) const {
+  [[nodiscard, gnu::noinline]] bool left_lies_behind(NodeRef<Geometry> node) const {
     if (left_.state != FDCG_FACE && left_.state != FDCG_EDGE) return false;
     const bool is_edge = left_.state == FDCG_EDGE;
-    const NodeRef<Real> face = is_edge ? node : graph_.node(left_.index);
+    const NodeRef<Geometry> face = is_edge ? node : graph_.node(left_.index);
     const uint32_t count = is_edge ? 2 : face.side_count();
     bool is_behind = false;
     for (uint32_t k = 0; k < count; ++k) {
@@ -336,19 +340,19 @@ class Sweep {
     }
     return is_behind;
   }
-  [[nodiscard]] bool reaches_before(NodeRef<Real> plane, NodeRef<Real> node) const {
+  [[nodiscard]] bool reaches_before(NodeRef<Geometry> plane, NodeRef<Geometry> node) const {
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if (side_of_corner(plane, node.corner(k)) > 0) return true;
     }
     return false;
   }
-  [[nodiscard]] bool reaches_behind(NodeRef<Real> plane, NodeRef<Real> node, Real but_for) const {
+  [[nodiscard]] bool reaches_behind(NodeRef<Geometry> plane, NodeRef<Geometry> node, Real but_for) const {
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if (side_of_corner(plane, node.corner(k)) < -but_for) return true;
     }
     return false;
   }
-  [[nodiscard, gnu::noinline]] Real side_of_corner(NodeRef<Real> plane, uint32_t corner) const {
+  [[nodiscard, gnu::noinline]] Real side_of_corner(NodeRef<Geometry> plane, uint32_t corner) const {
     const Vec3<Real> point = graph_.corner_point(corner);
     spend(work_left_, kNodeWork);
     return side(plane, point, plane_rounding_bound(graph_, point));
@@ -373,7 +377,7 @@ class Sweep {
   // A bit for a side; the last one for all beyond.
   static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
-  [[gnu::noinline]] bool passes_inside(NodeRef<Real> node, Real fraction, uint64_t* met_exactly) const {
+  [[gnu::noinline]] bool passes_inside(NodeRef<Geometry> node, Real fraction, uint64_t* met_exactly) const {
     bool must_wind = false;
     uint64_t sure = 0;  // the sides that the line surely passes on their inner side
     Vec3<Real> start = graph_.corner_point(node.corner(0));
@@ -397,12 +401,12 @@ class Sweep {
   // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
   // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
   // inwards up to rounding error included, winds about the way: that is still to be asked, once for all sides.
-  [[nodiscard, gnu::noinline]] bool is_open(NodeRef<Real> node, uint32_t k, Real fraction, bool* must_wind) const {
+  [[nodiscard, gnu::noinline]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction, bool* must_wind) const {
     if (!(graph_.header->max_deviation > 0)) return false;
     spend(work_left_, kNodeWork);
     const bool is_near = node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
     if (is_near && graph_.connection(node.connection(k)).type() == FDCG_CONCAVE) {
-      const NodeRef<Real> wall = graph_.node(node.across(k));
+      const NodeRef<Geometry> wall = graph_.node(node.across(k));
       if (wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0) return true;
     }
     *must_wind = true;
@@ -411,7 +415,7 @@ class Sweep {
 
   // Whether the line passes through the loop, convex or not, from its front: through one more of the fan's triangles from the
   // front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
-  [[nodiscard, gnu::noinline]] bool is_wound_by(NodeRef<Real> node) const {
+  [[nodiscard, gnu::noinline]] bool is_wound_by(NodeRef<Geometry> node) const {
     const Vec3<Real> apex = graph_.corner_point(node.corner(0));
     Vec3<Real> start = graph_.corner_point(node.corner(1));
     int times = 0, first = orientation(apex, start);
@@ -431,7 +435,7 @@ class Sweep {
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
   // the face's own plane meets all sides, and the point may be beside most of them.
-  Feature on_rim(NodeRef<Real> node, uint64_t met_exactly, Vec3<Real> point) const {
+  Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly, Vec3<Real> point) const {
     Feature nearest = kFree;
     Real nearest2 = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -451,7 +455,7 @@ class Sweep {
     return nearest;
   }
 
-  const GraphView<Real>& graph_;
+  const GraphView<Geometry>& graph_;
   Vec3<Real> stood_, from_, to_, way_;
   Real from_bound_, to_bound_;
   Feature left_;
@@ -462,5 +466,4 @@ class Sweep {
   FirstHit<Real> best_;
 };
 
-}  // namespace FDCG_VIEW
 }  // namespace fdcg

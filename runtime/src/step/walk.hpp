@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
 // contact-model FACE-1 to FACE-8, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
-// servo_step.cpp drives them.
+// servo_step.hpp drives them.
 #pragma once
 
+#include "base/mutation.hpp"
 #include "base/work.hpp"
 #include "graph/graph_view.hpp"
 #include "step/friction.hpp"
 
 namespace fdcg {
-inline namespace FDCG_VIEW {
-
 // Where the god-object is: free, or on a node, a connection or a corner.
 struct Feature {
   uint32_t state = FDCG_FREE;  // fdcg_state
@@ -20,9 +19,11 @@ struct Feature {
 };
 inline constexpr Feature kFree = {};
 
-template <class Real>
+template <class Geometry>
 struct Walk {
-  GraphView<Real> graph;
+  using Real = typename Geometry::Real;
+
+  GraphView<Geometry> graph;
   Friction<Real> friction;
   Vec3<Real> hip;
   Real hip_bound;  // plane_rounding_bound of hip
@@ -35,7 +36,7 @@ struct Walk {
   // roundings.
   Vec3<Real> rounding_residual = {0, 0, 0};
 
-  [[nodiscard, gnu::noinline]] Real side(NodeRef<Real> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
+  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
   void spend(uint32_t units) { fdcg::spend(&work_left, units); }
 
   // A move on a face's inside or along an edge.
@@ -44,6 +45,12 @@ struct Walk {
     seat = new_seat;
     rounding_residual = {0, 0, 0};
   }
+};
+
+// What a step did besides moving the god-object (contact-model RESP-3).
+struct Progress {
+  uint32_t transitions;  // changes of state
+  uint32_t flags;        // fdcg_result_flag: what was cut short
 };
 
 // What a rule decides: stay (rest), or go on at another feature. One word: of parts written one by one the caller would wait
@@ -76,8 +83,8 @@ struct EdgeLine : Edge<Real> {
   Real end_tolerance;
 
   // `where`: a connection, or a node and a side of it.
-  template <class... Where>
-  explicit EdgeLine(const GraphView<Real>& graph, Where... where) {
+  template <class Geometry, class... Where>
+  explicit EdgeLine(const GraphView<Geometry>& graph, Where... where) {
     graph.read_edge(where..., this);
     end_tolerance = 8 * RealLimits<Real>::kEpsilon * (norm1(this->start) + this->length);
   }
@@ -88,8 +95,8 @@ struct EdgeLine : Edge<Real> {
 // Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. A god-object
 // put there would lose more distance than a step may; it stays at u, and the corner's rule decides all the same: two edges of a
 // needle's tip would hand it to one another.
-template <class Real>
-[[gnu::noinline]] bool snapping_increases_distance(const Walk<Real>& walk, const EdgeLine<Real>& line, uint32_t end,
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line, uint32_t end,
                                                    Real from_end) {
   if (from_end <= 8 * RealLimits<Real>::kEpsilon * static_cast<Real>(walk.graph.header->extent)) return false;
   const Real foot = line.parameter(walk.hip);
@@ -97,21 +104,21 @@ template <class Real>
 }
 
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
-template <class Real>
-[[gnu::noinline]] Feature place_on_edge(Walk<Real>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Feature place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
-    if (!(from_end <= line.end_tolerance)) continue;
+    if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;
     const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
     walk.place(snapping_increases_distance(walk, line, end, from_end) ? line.start + line.direction * u
                                                                       : walk.graph.corner_point(vertex.index),
                vertex);
     return vertex;
   }
+  if (FDCG_MUTANT("slip-flag-feature")) walk.friction.is_slipping = false;
   const Feature edge = {FDCG_EDGE, connection_index};
   walk.place(line.start + line.direction * u, edge);
   return edge;
 }
 
-}  // namespace FDCG_VIEW
 }  // namespace fdcg

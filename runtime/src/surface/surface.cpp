@@ -9,7 +9,7 @@
 namespace fdcg {
 namespace {
 
-constexpr double kLeast_m = 1e-9, kLargest_m = 1e9, kLeastShare = 1e-4, kPi = 3.141592653589793;
+constexpr double kLeast_m = 1e-9, kLargest_m = 1e9, kLeastSizeShare = 1e-4, kPi = 3.141592653589793;
 
 enum Field : uint32_t { kRadius = 1, kTop = 2, kTube = 4, kLength = 8, kHalf = 16 };
 
@@ -30,7 +30,7 @@ Message& say(Message& message, const Size& size, double low) {
   return message.text(size.may_be_0 ? ", allowed 0 and " : ", allowed ").real(low).text(" to ").real(size.high);
 }
 
-fdcg_status refuse(const char* field, uint32_t value, const char* allowed, fdcg_error* error) {
+fdcg_status refuse_field(const char* field, uint32_t value, const char* allowed, fdcg_error* error) {
   return Message(error, FDCG_E_ARGUMENT).text(field).text(" is ").number(value).text(allowed);
 }
 
@@ -41,7 +41,7 @@ fdcg_status check_sizes(const fdcg_surface& s, fdcg_error* error) {
   const bool is_cone = s.kind == FDCG_SURFACE_CONE;  // one end may be an apex
   const Size sizes[kSizes] = {{"radius_m", s.radius_m, kLargest_m, is_cone && s.top_radius_m != 0},
                               {"top_radius_m", s.top_radius_m, kLargest_m, is_cone && s.radius_m != 0},
-                              {"tube_radius_m", s.tube_radius_m, s.radius_m * (1 - kLeastShare), false},
+                              {"tube_radius_m", s.tube_radius_m, s.radius_m * (1 - kLeastSizeShare), false},
                               {"length_m", s.length_m, kLargest_m, s.kind == FDCG_SURFACE_CAPSULE},
                               {"half_m[0]", s.half_m[0], kLargest_m, false},
                               {"half_m[1]", s.half_m[1], kLargest_m, false},
@@ -62,9 +62,9 @@ fdcg_status check_sizes(const fdcg_surface& s, fdcg_error* error) {
     return message.text(", allowed 0; a surface of this kind has none");
   }
   for (const Size& size : sizes) {
-    if (size.value == 0 || size.value >= kLeastShare * largest->value) continue;
+    if (size.value == 0 || size.value >= kLeastSizeShare * largest->value) continue;
     Message message(error, FDCG_E_ARGUMENT);
-    say(message, size, kLeastShare * largest->value).text(" (at least 1e-4 of the largest, ").text(largest->name);
+    say(message, size, kLeastSizeShare * largest->value).text(" (at least 1e-4 of the largest, ").text(largest->name);
     return message.text(", ").real(largest->value).text(")");
   }
   return FDCG_OK;
@@ -124,13 +124,13 @@ extern "C" fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_erro
   fdcg_surface room;
   const fdcg_surface& whole = fdcg::in_full(*surface, &room, fdcg_surface_init);
   if (whole.kind > FDCG_SURFACE_ELLIPSOID)
-    return fdcg::refuse("surface.kind", whole.kind, ", allowed are the values of fdcg_surface_kind: 0 to 7", error);
+    return fdcg::refuse_field("surface.kind", whole.kind, ", allowed are the values of fdcg_surface_kind: 0 to 7", error);
   const bool is_plane = whole.kind == FDCG_SURFACE_PLANE;
   if (whole.is_hollow > (is_plane ? 0u : 1u)) {
-    return fdcg::refuse("surface.is_hollow", whole.is_hollow,
-                        is_plane ? ", allowed 0: turn the plane round by its pose" : ", allowed 0 and 1", error);
+    return fdcg::refuse_field("surface.is_hollow", whole.is_hollow,
+                              is_plane ? ", allowed 0: turn the plane round by its pose" : ", allowed 0 and 1", error);
   }
-  if (whole.reserved != 0) return fdcg::refuse("surface.reserved", whole.reserved, ", allowed 0", error);
+  if (whole.reserved != 0) return fdcg::refuse_field("surface.reserved", whole.reserved, ", allowed 0", error);
   return fdcg::check_sizes(whole, error);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step on a surface without a mesh: the same states, friction and response as servo_step.cpp, with shapes in place of a
+// The step on a surface without a mesh: the same states, friction and response as servo_step.hpp, with shapes in place of a
 // graph's features.
+#include "base/near_zero.hpp"
 #include "base/struct_bytes.hpp"
 #include "step/response.hpp"
 #include "surface/surface_box.hpp"
@@ -12,11 +13,6 @@ namespace fdcg {
 namespace {
 
 constexpr uint32_t kMostTransitions = 24;  // of one tick; two or three are usual
-constexpr double kLeastShare = 0x1p-70;    // of the extent: a coordinate below it is zero, and no square is denormal
-
-struct Progress {
-  uint32_t transitions, flags;
-};
 
 // From free space, or from the surface that was just left: the contact is placed on what the way to the HIP meets, or at the
 // HIP.
@@ -69,7 +65,7 @@ bool is_usable_place(const double p[3]) {
 
 Point place_of(const double p[3], double extent) {
   const double least = kLeastShare * extent;
-  return {absolute(p[0]) < least ? 0 : p[0], absolute(p[1]) < least ? 0 : p[1], absolute(p[2]) < least ? 0 : p[2]};
+  return {zero_below(least, p[0]), zero_below(least, p[1]), zero_below(least, p[2])};
 }
 
 // Whether place_of() leaves a place as it is: nothing but a jump waits for that.
@@ -78,13 +74,7 @@ FDCG_HOT bool is_plain_place(Point p, double extent) {
   return !((absolute(p.x) < least && p.x != 0) || (absolute(p.y) < least && p.y != 0) || (absolute(p.z) < least && p.z != 0));
 }
 
-void store(Point from, double (&to)[3]) {
-  to[0] = from.x;
-  to[1] = from.y;
-  to[2] = from.z;
-}
-
-void start(Point hip, fdcg_contact* contact) {
+void start_on_surface(Point hip, fdcg_contact* contact) {
   store(hip, contact->hip);
   store(hip, contact->god_object);
   contact->started = 1;
@@ -101,7 +91,7 @@ FDCG_HOT void report(const fdcg_contact& contact, fdcg_result* result) {
   result->slipping = contact.slipping;
 }
 
-struct Tick {
+struct SurfaceTick {
   const fdcg_surface& surface;
   const fdcg_params& params;
   fdcg_contact* contact;
@@ -110,7 +100,7 @@ struct Tick {
 };
 
 // Stores a contact on the surface in its new place, and what the hand feels of it.
-FDCG_HOT void respond(const Tick& tick, const Touch& touch, Feature feature) {
+FDCG_HOT void respond(const SurfaceTick& tick, const Touch& touch, Feature feature) {
   fdcg_contact& contact = *tick.contact;
   fdcg_result& result = *tick.result;
   const Point spring = touch.god_object - touch.hip;
@@ -126,7 +116,7 @@ FDCG_HOT void respond(const Tick& tick, const Touch& touch, Feature feature) {
   contact.slipping = result.slipping = touch.friction.is_slipping ? 1 : 0;
 }
 // Free, and at the HIP or on the way to it.
-FDCG_HOT void respond_free(const Tick& tick, Point at, Point hip) {
+FDCG_HOT void respond_free(const SurfaceTick& tick, Point at, Point hip) {
   store(at, tick.contact->god_object);
   store(hip, tick.contact->hip);
   tick.contact->state = FDCG_FREE;
@@ -135,7 +125,7 @@ FDCG_HOT void respond_free(const Tick& tick, Point at, Point hip) {
   report(*tick.contact, tick.result);
 }
 
-FDCG_HOT Touch touch_of(const Tick& tick, Point hip) {
+FDCG_HOT Touch touch_of(const SurfaceTick& tick, Point hip) {
   const fdcg_params& params = tick.params;
   return {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, tick.contact->slipping != 0},
           hip,
@@ -145,13 +135,13 @@ FDCG_HOT Touch touch_of(const Tick& tick, Point hip) {
 template <class Shape>
 [[gnu::noinline]] void step_by_rules(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at,
                                      const double* hip_m, fdcg_result* result) {
-  const Tick tick = {*surface, *params, at, hip_m, result};
+  const SurfaceTick tick = {*surface, *params, at, hip_m, result};
   fdcg_contact& contact = *at;
   const Shape shape(tick.surface);
   SurfaceWalk walk = {
       touch_of(tick, place_of(tick.hip_m, shape.extent)), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
   if (contact.started == 0) {
-    start(walk.hip, &contact);
+    start_on_surface(walk.hip, &contact);
     report(contact, tick.result);
     return;
   }
@@ -176,7 +166,7 @@ FDCG_HOT double way_bound(Point way, double extent) {
 template <class Shape, class Quick>
 void step_on(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at, const double* hip_m,
              fdcg_result* result) {
-  const Tick tick = {*surface, *params, at, hip_m, result};
+  const SurfaceTick tick = {*surface, *params, at, hip_m, result};
   fdcg_contact& contact = *at;
   const Quick shape(*surface);
   const Point hip = {hip_m[0], hip_m[1], hip_m[2]};
@@ -199,17 +189,17 @@ Point normal_on(const fdcg_surface& surface, const fdcg_result& result) {
 }
 
 // What is done with a surface, by its kind.
-struct Kind {
+struct SurfaceKind {
   decltype(&fdcg_surface_step) step;
   Point (*normal)(const fdcg_surface& surface, const fdcg_result& result);
 };
 template <class Shape, class Quick = Shape>
-inline constexpr Kind kKind = {step_on<Shape, Quick>, normal_on<Shape>};
+inline constexpr SurfaceKind kKind = {step_on<Shape, Quick>, normal_on<Shape>};
 
-const Kind& kind_of(const fdcg_surface& surface) {
-  static constexpr Kind kKinds[] = {kKind<PlaneSurface>, kKind<Sphere>,     kKind<ConeSurface, QuickCylinder>,
-                                    kKind<Capsule>,      kKind<BoxSurface>, kKind<ConeSurface, QuickCone>,
-                                    kKind<Torus>,        kKind<Ellipsoid>};
+const SurfaceKind& kind_of(const fdcg_surface& surface) {
+  static constexpr SurfaceKind kKinds[] = {kKind<PlaneSurface>, kKind<Sphere>,     kKind<ConeSurface, QuickCylinder>,
+                                           kKind<Capsule>,      kKind<BoxSurface>, kKind<ConeSurface, QuickCone>,
+                                           kKind<Torus>,        kKind<Ellipsoid>};
   return kKinds[surface.kind <= FDCG_SURFACE_ELLIPSOID ? surface.kind : 0];
 }
 

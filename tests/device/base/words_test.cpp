@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages that quote a file's bytes stay one line of UTF-8.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "base/words.hpp"
+#include "catch.hpp"
 
 using namespace fdcg::dev;
 

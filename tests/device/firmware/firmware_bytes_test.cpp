@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bytes of schemas/fdcg-hid.md: its dumps, its descriptors, its CRC, against the firmware core.
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "firmware_rig.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
 #include <vector>
 
+#include "catch.hpp"
 #include "fdcg_firmware.h"
 
 namespace fdcg::test {

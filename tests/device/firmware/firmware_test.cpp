@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The firmware core: what it takes and what not, and that whatever arrives it never pushes beyond its limits.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "catch.hpp"
 #include "firmware_rig.hpp"
 
 using namespace fdcg::test;

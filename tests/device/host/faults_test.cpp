@@ -7,13 +7,13 @@
 #include <pthread.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/threads.hpp"
+#include "catch.hpp"
 #include "host/host.hpp"
 #include "random.hpp"
 

@@ -2,8 +2,7 @@
 // The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind.
 #include <signal.h>
 
-#include <catch2/catch.hpp>
-
+#include "catch.hpp"
 #include "device_c11.h"
 #include "hosted.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The threads of one device: events, the link, the writer, the servo loop, the supervisor. The host as a whole: host_test.cpp.
-#include <catch2/catch.hpp>
 #include <thread>
 
+#include "catch.hpp"
 #include "fake_device.hpp"
 #include "host/servo_loop.hpp"
 #include "host/supervisor.hpp"

@@ -2,11 +2,11 @@
 // The simulated device on the machine's clock: what waits, what blocks, and two threads on it at once. Bounds hold on a busy
 // machine, too.
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
 
 #include "base/threads.hpp"
+#include "catch.hpp"
 #include "fdcg_firmware.h"
 #include "simulated_rig.hpp"
 

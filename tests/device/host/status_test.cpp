@@ -2,10 +2,11 @@
 #include "host/status.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "catch.hpp"
 
 using fdcg::dev::TimeHistogram;
 

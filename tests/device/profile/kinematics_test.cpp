@@ -4,11 +4,11 @@
 #include "profile/kinematics.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "catch.hpp"
 #include "random.hpp"
 
 namespace {

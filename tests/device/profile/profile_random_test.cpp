@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Profiles changed at random are accepted, and then in order, or refused by the name of a field. 100,000 of them (a tenth where
 // the build is slow); as many as FDCG_RANDOM_PROFILES says where it is set: a million take a minute and a half.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"
 #include "profile_in_order.hpp"

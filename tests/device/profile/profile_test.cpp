@@ -2,7 +2,6 @@
 // Device profiles: what is read, and that everything wrong is refused by name. testdata/profiles/refused.json has an edit of
 // full.json for each error; profile_schema_test.py holds the schema against the same list.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <string>
 
 #include "base/json_reader.hpp"
+#include "catch.hpp"
 #include "profile/kinematics.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reports to values and back by a profile's table, and checksums against their published values.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "catch.hpp"
 #include "profile/crc.hpp"
 #include "profile/report_codec.hpp"
 #include "random_profile.hpp"

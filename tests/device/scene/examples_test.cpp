@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The examples of testdata/scenes, from end to end and without real time: simulated device, gate, log, replay. What is held
 // does not slip: each finger's god-object stays where it took hold, in the frame of what it holds.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
+#include "catch.hpp"
 #include "host/fast_run.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_log.hpp"

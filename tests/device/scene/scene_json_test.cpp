@@ -2,12 +2,12 @@
 // Scenes: what is read, what is refused and how it is told, and that what is written reads back. Over 400 lines: a
 // case for each kind of thing that a scene may hold.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "catch.hpp"
 #include "profile/profile_json.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"

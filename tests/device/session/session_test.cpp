@@ -4,13 +4,13 @@
 
 #include <sys/resource.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <thread>
 
+#include "catch.hpp"
 #include "session/session_reader.hpp"
 #include "session_rig.hpp"
 

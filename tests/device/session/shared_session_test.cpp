@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Devices that share a scene, as whole sessions on simulated ones: what becomes of the cube when one of them dies, their log,
 // and what is refused.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "base/rotation.hpp"
+#include "catch.hpp"
 #include "host/fast_run.hpp"
 #include "host/host.hpp"
 #include "scene/scene_build.hpp"

@@ -4,13 +4,13 @@
 
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "fake_device.hpp"
 #include "fdcg/bake.hpp"
 #include "host/host.hpp"

@@ -2,10 +2,10 @@
 // Scenes for the tests of devices that share one.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "plain_profile.hpp"
 #include "scene/scene_json.hpp"
 

@@ -2,11 +2,11 @@
 // A simulated device and a host of few words, through the host's own codec and judge, in one thread.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <memory>
 #include <vector>
 
+#include "catch.hpp"
 #include "profile/report_codec.hpp"
 #include "transport/make_transport.hpp"
 #include "transport/simulated_device.hpp"

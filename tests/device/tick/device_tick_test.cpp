@@ -3,12 +3,12 @@
 #include "tick/device_tick.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <memory>
 #include <vector>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "meshes.hpp"
 #include "plain_profile.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The gate's promise, kept whatever comes in.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 
+#include "catch.hpp"
 #include "gate_limits.hpp"
 #include "random.hpp"
 #include "tick/gate.hpp"

@@ -2,7 +2,6 @@
 // The safety gate: what it lets through, and everything that makes it let through nothing.
 #include "tick/gate.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "catch.hpp"
 #include "gate_limits.hpp"
 
 using namespace fdcg::dev;

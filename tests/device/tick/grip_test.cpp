@@ -2,9 +2,10 @@
 // Contacts that close and turn while a button is held.
 #include "tick/grip.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+
+#include "catch.hpp"
 
 using namespace fdcg::dev;
 

@@ -2,11 +2,11 @@
 // Which reports are new, in order and fresh: wrapping counters, lost, repeated, late and old reports, restarts, drifting
 // clocks.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "catch.hpp"
 #include "profile/report_codec.hpp"
 
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Devices that share a scene, tick by tick: whose report moves it on, who touches what is in it. Whole sessions:
 // shared_session_test.cpp.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
 #include <vector>
 
+#include "catch.hpp"
 #include "scene/scene_build.hpp"
 #include "shared_rig.hpp"
 

@@ -3,11 +3,11 @@
 #include "tick/soft.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "meshes.hpp"
 #include "random.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tick/tick_bytes.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <vector>
 
+#include "catch.hpp"
 #include "session_rig.hpp"
 
 using namespace fdcg::dev;

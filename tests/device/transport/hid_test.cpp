@@ -5,12 +5,12 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <catch2/catch.hpp>
 
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 
+#include "catch.hpp"
 #include "fake_hidapi.h"
 #include "transport/hid_devices.hpp"
 #include "transport/make_transport.hpp"

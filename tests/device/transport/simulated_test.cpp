@@ -3,10 +3,10 @@
 // virtual time: simulated_real_time_test.cpp has the rest.
 #include "simulated_rig.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "base/threads.hpp"
+#include "catch.hpp"
 #include "fdcg_firmware.h"
 #include "transport/simulated_body.hpp"
 

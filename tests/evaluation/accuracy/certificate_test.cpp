@@ -2,10 +2,10 @@
 // The certificate says yes to the runtime's answers and no to planted wrong ones.
 #include "certificate.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

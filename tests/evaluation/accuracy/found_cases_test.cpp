@@ -3,9 +3,9 @@
 // friction keeps the god-object where it entered: inputs half an ulp off move the exact answer by thousands of ulps. What must
 // hold is that the step is exact for inputs next to those it got.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "catch.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"
 #include "replay.hpp"

@@ -3,9 +3,9 @@
 #include "held_plant.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "random.hpp"
 
 using namespace fdcg::test;

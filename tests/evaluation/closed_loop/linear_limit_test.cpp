@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "linear_limit.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
+
+#include "catch.hpp"
 
 using namespace fdcg::test;
 

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CGAL/version.h>
+#if CGAL_VERSION_MAJOR >= 6
+#include <CGAL/AABB_traits_3.h>
+#include <CGAL/AABB_triangle_primitive_3.h>
+#else
 #include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
+#endif
+#include <CGAL/AABB_tree.h>
 #include <CGAL/Simple_cartesian.h>
 #include <malloc.h>
 
@@ -19,8 +25,14 @@ namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Triangle = Kernel::Triangle_3;
+#if CGAL_VERSION_MAJOR >= 6  // where they have a dimension in their names
+using Primitive = CGAL::AABB_triangle_primitive_3<Kernel, std::vector<Triangle>::const_iterator>;
+using Traits = CGAL::AABB_traits_3<Kernel, Primitive>;
+#else
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle>::const_iterator>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+using Traits = CGAL::AABB_traits<Kernel, Primitive>;
+#endif
+using Tree = CGAL::AABB_tree<Traits>;
 
 std::size_t heap_in_use() {
   const auto heap = mallinfo2();

@@ -139,8 +139,10 @@ EmbreeScene::Nearest EmbreeScene::nearest(const Point& point, float radius) cons
 
 EmbreeScene::Hit EmbreeScene::cast(const Point& from, const Point& to) const {
   RTCRayHit ray;
+#if RTC_VERSION_MAJOR < 4
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+#endif
   const Point way = to - from;
   ray.ray.org_x = static_cast<float>(from[0]);
   ray.ray.org_y = static_cast<float>(from[1]);
@@ -159,7 +161,11 @@ EmbreeScene::Hit EmbreeScene::cast(const Point& from, const Point& to) const {
   for (int behind = 0; behind < 16; ++behind) {
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray.ray.tfar = 1;
+#if RTC_VERSION_MAJOR < 4
     rtcIntersect1(scene_, &context, &ray);
+#else
+    rtcIntersect1(scene_, &ray);
+#endif
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
     if (plain::dot(way, normals_[ray.hit.primID]) < 0) return {ray.ray.tfar, ray.hit.primID};
     ray.ray.tnear = std::nextafter(ray.ray.tfar, 2.0f);

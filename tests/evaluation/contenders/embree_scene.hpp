@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body in Embree 3: triangles in float, one thread.
+// A body in Embree, version 3 or 4: triangles in float, one thread.
 #pragma once
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <cstddef>
 #include <cstdint>

@@ -96,33 +96,16 @@ class PlantedSlowdown(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         self.path = pathlib.Path(self.folder.name)
 
-    def only_one_figure(self, program, name):
+    def only_one_figure(self, program, name, mutant=""):
         """The test is of the guard, not of every figure: one is enough, and quick."""
         wrapper = self.path / name
-        wrapper.write_text(f"#!/bin/sh\nexec '{program}' --figure '{FIGURE}'\n")
+        wrapper.write_text(f"#!/bin/sh\nFDCG_MUTANT='{mutant}' exec '{program}' --figure '{FIGURE}'\n")
         wrapper.chmod(0o755)
         return wrapper
 
-    def compare(self, head):
+    def compare(self, head, mutant=""):
         return guard("--base-program", self.only_one_figure(self.program, "base"), "--head-program",
-                     self.only_one_figure(head, "head"), "--rounds", 3, "--output", self.path)
-
-    def slow_program(self):
-        source = pathlib.Path(os.environ["FDCG_ROOT"]) / "runtime"
-        text = (source / "src/step/servo_step.cpp").read_text()
-        entry = "  fdcg_params room;\n"
-        self.assertEqual(text.count(entry), 1, "where fdcg_step begins has changed: this test plants its delay there")
-        slow = self.path / "servo_step.cpp"
-        slow.write_text(text.replace(entry, "  for (volatile int i = 0; i < 400; i = i + 1) {\n  }\n" + entry))
-        compiler = os.environ["FDCG_COMPILER"]
-        subprocess.run([compiler, "-std=c++20", "-O2", "-fno-exceptions", "-fno-rtti", "-ffp-contract=off", "-fno-math-errno", "-I",
-                        str(source / "include"), "-I", str(source), "-I", str(source / "src"), "-c", str(slow), "-o", str(self.path / "slow.o")],
-                       check=True)
-        program = self.path / "fdcg_guard_slow"  # its own step is found before the library's
-        subprocess.run([compiler, *os.environ["FDCG_GUARD_OBJECTS"].split(";"), str(self.path / "slow.o"),
-                        *os.environ["FDCG_GUARD_LIBRARIES"].split(";"), "-lcrypto", "-lmpfr", "-lgmp", "-lpthread", "-o",
-                        str(program)], check=True)
-        return program
+                     self.only_one_figure(head, "head", mutant), "--rounds", 3, "--output", self.path)
 
     def test_the_same_program_passes(self):
         done = self.compare(self.program)
@@ -130,7 +113,7 @@ class PlantedSlowdown(unittest.TestCase):
         self.assertIn(FIGURE, done.stdout)
 
     def test_a_step_with_a_delay_is_flagged(self):
-        done = self.compare(self.slow_program())
+        done = self.compare(os.environ["FDCG_GUARD_MUTANTS"], "slow")
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertRegex(done.stdout, FIGURE + ".*REGRESSION")
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the laws are judged by: the split of a force into what presses and what friction bears, and the formulas of the shapes.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "catch.hpp"
 #include "coulomb_load.hpp"
 #include "ramp.hpp"
 #include "smooth_shape.hpp"

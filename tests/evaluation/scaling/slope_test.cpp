@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "slope.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
+
+#include "catch.hpp"
 
 using namespace fdcg::test;
 

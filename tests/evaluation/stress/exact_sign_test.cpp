@@ -4,9 +4,9 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "random.hpp"
 
 using namespace fdcg::test;

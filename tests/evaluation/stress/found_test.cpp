@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever fdcg_stress has found and somebody has mended, cut down: each file in found/ holds a mesh and a path.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "catch.hpp"
 #include "minimise.hpp"
 
 using namespace fdcg::test;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/printable.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/json_writer.hpp"
+#include "catch.hpp"
 
 using namespace fdcg::bake;
 using nlohmann::json;

@@ -5,11 +5,11 @@
 #include <CGAL/Polygon_2_algorithms.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <random>
 
+#include "catch.hpp"
 #include "exact/polygon_cut.hpp"
 
 using namespace fdcg::bake;

@@ -4,11 +4,11 @@
 #include <gmpxx.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
 #include "base/vec3.hpp"
+#include "catch.hpp"
 #include "random.hpp"
 #include "shared/face_plane.hpp"
 

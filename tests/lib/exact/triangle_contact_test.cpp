@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/vec3.hpp"
+#include "catch.hpp"
 #include "exact/exact.hpp"
 #include "exact/triangle_filter.hpp"
 #include "random.hpp"

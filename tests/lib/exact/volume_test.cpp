@@ -3,10 +3,11 @@
 
 #include <gmp.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "catch.hpp"
 
 using namespace fdcg::bake;
 

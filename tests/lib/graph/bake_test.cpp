@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "meshes.hpp"
 #include "real_meshes.hpp"

@@ -3,10 +3,10 @@
 
 #include <gmpxx.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "base/vec3.hpp"
+#include "catch.hpp"
 #include "graph/triangulate.hpp"
 #include "meshes.hpp"
 #include "real_meshes.hpp"

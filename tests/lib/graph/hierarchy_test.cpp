@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/hierarchy.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "base/hilbert.hpp"
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "meshes.hpp"
 

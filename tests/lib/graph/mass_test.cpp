@@ -3,10 +3,10 @@
 // lines over 400: solids and what they weigh, one after another.
 #include <gmpxx.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "meshes.hpp"
 #include "random.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/merge.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <tuple>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "meshes.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/regions.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
 #include "base/vec3.hpp"
+#include "catch.hpp"
 #include "graph/triangulate.hpp"
 #include "meshes.hpp"
 #include "topology/topology.hpp"

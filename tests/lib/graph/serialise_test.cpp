@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "graph/serialise.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "graph/fan_tree.hpp"
 #include "meshes.hpp"

@@ -2,7 +2,6 @@
 // A mesh of triangles whose coordinates are floats' values, without isolated vertices, gets the same verdict in every format,
 // however often it was converted. FDCG_CONVERSION_CASES sets the number of random meshes (default 15).
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "clean_mesh.hpp"
 #include "fdcg/bake.hpp"
 #include "mesh_files.hpp"

@@ -13,8 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include <catch2/catch.hpp>
-
+#include "catch.hpp"
 #include "import/guarded_child.hpp"
 
 using namespace fdcg::bake;

@@ -2,7 +2,6 @@
 #include "import/text_scanner.hpp"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +9,8 @@
 #include <random>
 #include <string>
 #include <vector>
+
+#include "catch.hpp"
 
 using fdcg::bake::TextScanner;
 

@@ -2,13 +2,13 @@
 // Each repair on its own, what it leaves, and all of them on meshes with random defects. Over 400 lines: small meshes by hand,
 // one beside the other, in the order of the steps.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "random.hpp"
 #include "soups.hpp"

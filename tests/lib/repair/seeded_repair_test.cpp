@@ -3,13 +3,13 @@
 // FDCG_REPAIR_CASES sets how many random meshes (default 60).
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "clean_mesh.hpp"
 #include "fdcg/bake.hpp"
 #include "seeder.hpp"

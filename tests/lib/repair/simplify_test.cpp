@@ -6,12 +6,12 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <set>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "random.hpp"
 #include "real_meshes.hpp"

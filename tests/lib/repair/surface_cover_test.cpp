@@ -2,10 +2,10 @@
 #include "repair/surface_cover.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "base/vec3.hpp"
+#include "catch.hpp"
 #include "random.hpp"
 
 using namespace fdcg::bake;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The official schema is checked by tests/contract/validate_cli_test.py; this is what the schema cannot say.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "catch.hpp"
 #include "sample_report.hpp"
 
 using namespace fdcg::bake;

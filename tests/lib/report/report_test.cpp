@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "catch.hpp"
 #include "soups.hpp"
 #include "validate/validate.hpp"
 

@@ -2,9 +2,9 @@
 #include "topology/orient.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <random>
 
+#include "catch.hpp"
 #include "soups.hpp"
 #include "topology/weld.hpp"
 #include "validate/validate.hpp"

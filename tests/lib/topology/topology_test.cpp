@@ -2,11 +2,11 @@
 #include "topology/topology.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
 
+#include "catch.hpp"
 #include "soups.hpp"
 #include "topology/weld.hpp"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topology/weld.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <random>
 #include <tuple>
 
+#include "catch.hpp"
 #include "soups.hpp"
 
 using namespace fdcg::bake;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The meshes of testdata/meshes/bad: each is named after the rule that it raises, and each rule has one.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 
 using namespace fdcg::bake;

@@ -3,12 +3,12 @@
 #include "validate/findings.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <map>
 #include <random>
 #include <set>
 
+#include "catch.hpp"
 #include "soups.hpp"
 #include "validate/validate.hpp"
 

@@ -11,12 +11,12 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "plain_recount.hpp"
 #include "real_files.hpp"

@@ -2,13 +2,13 @@
 // Defects planted in clean meshes, written to a file, read and validated: every rule's findings are exactly those planted, with
 // their places. FDCG_SEEDED_CASES sets how many random meshes (default 150), FDCG_SEEDED_FACES up to how many faces (20,000).
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "clean_mesh.hpp"
 #include "fdcg/bake.hpp"
 #include "mesh_files.hpp"

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
@@ -18,9 +17,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "catch.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
 #include "real_files.hpp"
@@ -166,6 +167,15 @@ bool is_strictly_inside(const Exact::Triangle_3& t, const Exact::Point_3& p) {
   return true;
 }
 
+#if CGAL_VERSION_MAJOR >= 6
+using std::get_if;
+#else
+template <class Shape, class Variant>
+const Shape* get_if(const Variant* variant) {
+  return boost::get<Shape>(variant);
+}
+#endif
+
 struct Corners {
   std::vector<Exact::Point_3> points;
   void operator()(const Exact::Point_3& p) { points = {p}; }
@@ -179,10 +189,10 @@ Contact contact_by_construction(const Subject& subject, std::uint32_t f, std::ui
   const auto common = CGAL::intersection(s, t);
   if (!common) return Contact::none;
   Corners corners;
-  if (const auto* p = boost::get<Exact::Point_3>(&*common)) corners(*p);
-  if (const auto* p = boost::get<Exact::Segment_3>(&*common)) corners(*p);
-  if (const auto* p = boost::get<Exact::Triangle_3>(&*common)) corners(*p);
-  if (const auto* p = boost::get<std::vector<Exact::Point_3>>(&*common)) corners(*p);
+  if (const auto* p = get_if<Exact::Point_3>(&*common)) corners(*p);
+  if (const auto* p = get_if<Exact::Segment_3>(&*common)) corners(*p);
+  if (const auto* p = get_if<Exact::Triangle_3>(&*common)) corners(*p);
+  if (const auto* p = get_if<std::vector<Exact::Point_3>>(&*common)) corners(*p);
   Exact::Vector_3 sum(0, 0, 0);
   bool all_shared = corners.points.size() <= 2;
   const std::vector<std::uint32_t> shared = shared_corners(subject.corners(f), subject.corners(g));

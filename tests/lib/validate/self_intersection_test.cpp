@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <ctime>
 #include <map>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "catch.hpp"
 #include "random.hpp"
 #include "soups.hpp"
 #include "topology/topology.hpp"

@@ -3,11 +3,11 @@
 #include "validate/t_junctions.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <random>
 
+#include "catch.hpp"
 #include "soups.hpp"
 
 using namespace fdcg::bake;

@@ -2,13 +2,13 @@
 // A little over 400 lines: rules on small meshes by hand, solids within solids, elements and caps, then a recount at random.
 #include "validate/validate.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <ctime>
 #include <limits>
 #include <map>
 #include <random>
 
+#include "catch.hpp"
 #include "recount.hpp"
 #include "soups.hpp"
 

@@ -2,7 +2,6 @@
 // compile and validate give one verdict: a mesh is refused by the one exactly where the other's report does not pass, with the
 // same findings. FDCG_VERDICT_ROUNDS: how many meshes, default 4,000.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
 #include "soups.hpp"

@@ -2,13 +2,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/hooks.hpp"
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
 #include "meshes.hpp"

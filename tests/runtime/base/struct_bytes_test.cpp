@@ -3,12 +3,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
 #include "fdcg/surface.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <catch2/catch.hpp>
 #include <set>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/fdcg.h"
 
 TEST_CASE("the linked library tells the version of its headers") {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies in a scene: fingers that hold, swing and let go of a cube.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "fdcg/body.h"
 #include "meshes.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One rigid body: what it conserves, how fast it converges, where it stays stable, when it sleeps, what it refuses.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/body.h"
 
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What two bodies are made of: of faces, on edges and corners too, and on the ground the friction curve.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "pile_rig.hpp"
 
 using namespace fdcg;

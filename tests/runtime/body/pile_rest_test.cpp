@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies on the ground, on ramps, on one another: what sticks, what slides and how fast, what comes to rest and stays.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "pile_rig.hpp"
 
 using namespace fdcg;

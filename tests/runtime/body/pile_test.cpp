@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a pile is made of, what it conserves, what it leaves undone, what it refuses.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <string>
 
+#include "catch.hpp"
 #include "pile_rig.hpp"
 
 using namespace fdcg;

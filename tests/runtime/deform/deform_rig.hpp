@@ -3,11 +3,11 @@
 // each vertex of its soup; places added and scaled; how long to go on.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "fdcg/deform.h"
 

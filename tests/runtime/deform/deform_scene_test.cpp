@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deformable meshes as objects of a scene: felt as by hand, by several fingers, beside graphs and surfaces, at rest and on the
 // move; nothing falls through.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <string>
 
+#include "catch.hpp"
 #include "deform_rig.hpp"
 #include "fdcg/pile.h"
 #include "fdcg/surface.h"

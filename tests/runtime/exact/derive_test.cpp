@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/derive.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "catch.hpp"
 
 using namespace fdcg;
 using Random = std::mt19937_64;

@@ -3,11 +3,11 @@
 
 #include <gmpxx.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "base/work.hpp"
+#include "catch.hpp"
 
 namespace {
 

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.hpp"
 #include "meshes.hpp"

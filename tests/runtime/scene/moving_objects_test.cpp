@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects that move, turn and grow, against fingers that are still or move. FDCG_SCENE_TICKS in the environment sets the ticks
 // of each run.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "scene_rig.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene skips leaves no trace: logs of scenes full of events, with every combination of switches, are the same bit for
 // bit. FDCG_SCENE_TICKS in the environment sets the ticks of each run.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "scene_rig.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene call by call. Over 400 lines: short cases, one for each promise of scene.h, in its order.
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
 #include <string>
 #include <thread>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "fdcg/fdcg.hpp"
 #include "fdcg/soft_finger.h"

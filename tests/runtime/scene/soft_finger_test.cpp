@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Soft fingers: what torque they bear, together with a pull sideways; that they do not creep and give no energy; a beam held by
 // two of them.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <string>
 
+#include "catch.hpp"
 #include "fdcg/soft_finger.h"
 #include "pile_rig.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clear ball of free space: what a step feels is the same bit for bit with and without it, and there is no face in it.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "random.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A convex body without friction, HIP shallow: the god-object is the exact closest point of the surface.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

@@ -2,11 +2,11 @@
 // One test for each rule of the contact model that an implementer gets wrong; each fails when its rule is taken out. The rule's
 // name stands in brackets as a tag. Over 400 lines: the list of rules stays in one place, in the model's order.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

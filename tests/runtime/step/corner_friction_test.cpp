@@ -2,10 +2,10 @@
 // Friction in a concave corner: the loads of its faces are the non-negative numbers whose sum of normals comes nearest to what
 // presses (least squares), friction bears what is left, up to mu times the sum of the loads. The reference solves for them over
 // all the faces at once, by the active set of Lawson and Hanson (1974), in long double; the runtime goes by face, edge, apex.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Passivity: what the spring stores never rises at a fixed HIP, a closed loop gives the user no more than sampling allows, and
 // a contact at rest is still to the last bit.
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "hip_loop.hpp"
 #include "meshes.hpp"

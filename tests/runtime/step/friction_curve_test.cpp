@@ -3,12 +3,12 @@
 // and no term gives the hand work. The laws are written down here anew; the runtime's functions are not asked. Over 400 lines,
 // since all of it holds the step against that one curve.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "hip_loop.hpp"
 #include "meshes.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coulomb's law on a plane and in a groove, to rounding.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

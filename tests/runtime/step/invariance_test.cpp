@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same contact however a planar region is cut up, however the object is turned, moved and scaled.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

@@ -7,13 +7,13 @@
 //   a way that meets nothing is not.
 // FDCG_SEGMENTS: how many (default 300,000); FDCG_SEED: the first batch. A failure names its batch: it is repeated alone by
 // FDCG_SEED=that batch and FDCG_SEGMENTS=1.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
 #include <string>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "exact_solid.hpp"
 #include "meshes.hpp"

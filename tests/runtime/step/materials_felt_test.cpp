@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials as they are felt: where they are, combined as the header says, and no change of stiffness pushes the hand.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "materials_rig.hpp"
 #include "random.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials from the mesh file to the graph: kept by every stage, and refused where a file's are out of range.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "catch.hpp"
 #include "gltf_writer.hpp"
 #include "materials_rig.hpp"
 #include "random.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nothing in the runtime asks the heap for memory: neither opening nor stepping nor a scene that is built up and taken down.
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "../../bench/heap_count.hpp"
+#include "catch.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/pile.h"
 #include "meshes.hpp"

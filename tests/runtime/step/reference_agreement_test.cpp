@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The runtime against the brute-force reference: every mesh kind, four pairs of friction coefficients, both precisions.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "catch.hpp"
 #include "lockstep.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

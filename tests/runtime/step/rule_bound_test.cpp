@@ -2,10 +2,10 @@
 // The bound on the rules: where a jump crosses more features than one tick has work for, the rest is carried over with the
 // god-object on the surface and ever nearer to the HIP, and without friction it ends, bit for bit, where an unbounded step
 // does.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "random.hpp"

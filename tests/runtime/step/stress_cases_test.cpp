@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shapes and motions that break god-object methods. The judge is geometry, not the reference: in a closed body a HIP that came
 // from outside and is inside must be in contact, and a free HIP lies outside.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"

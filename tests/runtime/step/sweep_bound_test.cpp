@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bound on the free-space sweep: where thousands of faces share a point the work is carried over from tick to tick, gets on
 // in each of them, and ends where an unbounded sweep would have.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "random.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slides of a hand deep in the material, beyond an axis or a centre of curvature, where there are several places at which
 // friction would hold the god-object, or none near by. FDCG_STEPS in the environment sets the hands of each kind.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 
+#include "catch.hpp"
 #include "surface_rig.hpp"
 
 using namespace fdcg::test;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a contact on a surface does, case by case: cones, normals, edges, corners, apexes, jumps, numbers that are none.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "catch.hpp"
 #include "surface_rig.hpp"
 
 using namespace fdcg::test;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces as objects of a scene: felt as by hand, whatever is skipped, from a plane without end to a ball that is held.
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <memory>
 
+#include "catch.hpp"
 #include "fdcg/body.h"
 #include "scene_rig.hpp"
 #include "surface_rig.hpp"

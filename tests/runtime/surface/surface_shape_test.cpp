@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a surface may be, what is said of one that may not, and what each solid weighs.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "catch.hpp"
 #include "compiled.hpp"
 #include "fdcg/surface.h"
 #include "meshes.hpp"

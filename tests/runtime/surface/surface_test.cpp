@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rules of the contact model on every surface, under a hand that does all that a hand should not. FDCG_STEPS in the
 // environment sets the steps of each walk.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 
+#include "catch.hpp"
 #include "surface_rig.hpp"
 
 using namespace fdcg::test;

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a graph's view (graph_view.hpp) and with it the whole step are templates over: a geometry, which holds the graph's
+// records and answers for every number that depends on where corners are. This one has them from the file. That of a mesh whose
+// corners move (deform/deformable_geometry.hpp) brings a number up to date before it hands it out, so that no rule can see an
+// old one; it has the members below, and what is said of them here holds for it too.
+#pragma once
+
+#include "fdcg/fdcg.h"
+#include "graph/record_types.hpp"
+#include "shared/derive.hpp"
+#include "shared/vec.hpp"
+
+namespace fdcg {
+
+// A graph's records by their types: the same for every geometry.
+template <class RealType>
+struct GraphRecords {
+  using Real = RealType;
+  using Node = typename Records<Real>::Node;
+  using Corner = typename Records<Real>::Corner;
+  using FanBox = typename Records<Real>::FanBox;
+
+  const fdcg_header* header;
+  const unsigned char* nodes;
+  const uint32_t* node_offsets;  // null: each block has block_bytes
+  uint64_t block_bytes;
+  bool has_planes;
+  const fdcg_connection* connections;
+  const typename Records<Real>::Edge* edges;  // null: derived
+  const Corner* corners;
+  const fdcg_busy_corner* busy_corners;
+  const uint32_t* fans;
+  const FanBox* fan_boxes;
+  const fdcg_box8* hierarchy;
+
+  explicit GraphRecords(const fdcg_graph& graph)
+      : header(graph.header),
+        nodes(static_cast<const unsigned char*>(graph.nodes)),
+        node_offsets(graph.node_offsets),
+        block_bytes(graph.header->node_bytes),
+        has_planes((graph.header->flags & FDCG_STORED_PLANES) != 0),
+        connections(graph.connections),
+        edges(static_cast<const typename Records<Real>::Edge*>(graph.edges)),
+        corners(static_cast<const Corner*>(graph.corners)),
+        busy_corners(graph.busy_corners),
+        fans(graph.fans),
+        fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
+        hierarchy(graph.hierarchy) {}
+};
+
+template <class RealType>
+struct RigidGeometry : GraphRecords<RealType> {
+  using Real = RealType;
+  using Corner = typename GraphRecords<Real>::Corner;
+
+  // What a NodeRef knows of its node besides where its block is.
+  struct NodeKey {
+    explicit NodeKey(uint32_t) {}
+  };
+
+  using GraphRecords<Real>::GraphRecords;
+
+  // Before a node's plane and flags, or a corner's normal, are read from their records.
+  void bring_up_to_date(NodeKey) const {}
+  void bring_normal_up_to_date(const Corner&) const {}
+
+  [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return point_of(this->corners[index]); }
+  [[nodiscard]] Vec3<Real> point_of(const Corner& corner) const { return vec(corner.point); }
+  // fdcg_connection_type
+  [[nodiscard]] uint8_t type_of(const fdcg_connection& connection) const { return connection.type; }
+
+  // A connection's edge between two corners. Written number by number where it is to be: a copy would wait for the numbers to
+  // be stored.
+  void read_edge_between(uint32_t connection, uint32_t corner0, uint32_t corner1, Edge<Real>* edge) const {
+    const Corner& from = this->corners[corner0];
+    if (this->edges == nullptr) {
+      *edge = derive_edge(vec(from.point), corner_point(corner1));
+      return;
+    }
+    const auto& stored = this->edges[connection];
+    edge->start.x = from.point[0], edge->start.y = from.point[1], edge->start.z = from.point[2];
+    edge->direction.x = stored.direction[0], edge->direction.y = stored.direction[1], edge->direction.z = stored.direction[2];
+    edge->length = stored.length;
+  }
+  // Whether a side has a Voronoi plane at all.
+  [[nodiscard]] static bool has_voronoi_plane(const Edge<Real>&, Vec3<Real>) { return true; }
+
+  // Of an exactly planar node: the first three span its plane.
+  template <class Node>
+  [[nodiscard]] uint32_t spanning_corner(const Node& node, uint32_t k) const {
+    return node.corner(k);
+  }
+  // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it hold it surely, which
+  // is told sooner than by the plane, where planes are derived for a mesh that moves.
+  template <class Node>
+  [[nodiscard]] uint32_t first_doubtful(const Node&, Vec3<Real>, Real) const {
+    return 0;
+  }
+
+  // A HIP's way in a tick, and the surface's in it: what a clear ball is worth looking for.
+  [[nodiscard]] Real with_way_of_surface(Real way) const { return way; }
+  // Whether boxes of a record of the hierarchy, a bit in `lanes` each, have become tighter than they were: worth a second look.
+  [[nodiscard]] bool has_tightened(int /*level*/, uint32_t /*record*/, uint32_t /*lanes*/) const { return false; }
+  // Leaves a sweep no work where the step has brought up to date as much as it may.
+  void bound_upkeep(uint32_t* /*work_left*/) const {}
+};
+
+}  // namespace fdcg

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+// The step: the friction-cone god-object algorithm of Melder and Harwin (2004) on a Face Directed Connection Graph. Its rules:
+// docs/internals/contact-model.md; how these files follow them: docs/internals/step.md.
+//
+//   Free --sweep--> Face | Edge | Vertex          free_space.hpp, sweep.hpp: where does the hand's way first meet the surface?
+//   Face  -> rest | Edge | Vertex | Free          face.hpp     slide to the friction circle, or to the first edge on the way
+//   Edge  -> rest | Face | Vertex | Free          edge.hpp     which face pulls more, or slide along the edge
+//   Vertex-> rest | Face | Edge | Free            corner.hpp   the steepest descent around the corner
+//   ... -> Free                                   leave.hpp    in front, by exact sign, of what is left
+//
+// Each rule moves the god-object nearer to the HIP or hands over to a neighbour that climbs further; the step ends where a rule
+// rests (contact-model TICK-1). Every loop is bounded: work left over is carried to the next tick with a valid god-object.
+//
+// A template over the geometry: servo_step.cpp has the step on a graph as it is, deform/deform_step.cpp that on a mesh whose
+// corners move. What is in here is each such source's own, so that a program may hold steps of other bounds (base/work.hpp) or
+// with other watches (base/hooks.hpp) than the library's.
+#pragma once
+
+#include "base/config.hpp"
+#include "base/hooks.hpp"
+#include "base/near_zero.hpp"
+#include "step/corner.hpp"
+#include "step/edge.hpp"
+#include "step/face.hpp"
+#include "step/free_space.hpp"
+#include "step/leave.hpp"
+#include "step/presliding.hpp"
+#include "step/response.hpp"
+
+namespace fdcg {
+namespace {
+
+// The features visited since the god-object last came nearer to the HIP. To meet one of them again is to go round in a circle
+// that only rounding can make: the step rests there (contact-model TICK-5).
+template <class Geometry>
+class Trail {
+  using Real = typename Geometry::Real;
+
+ public:
+  Trail(Feature start, Vec3<Real> start_gap) : nearest2_(dot(start_gap, start_gap)), count_(1) { visited_[0] = key(start); }
+
+  bool has_met_again(const Walk<Geometry>& walk) {
+    const Vec3<Real> gap = walk.god_object - walk.hip;
+    const Real now2 = dot(gap, gap);
+    if (now2 < nearest2_) {
+      nearest2_ = now2;
+      count_ = 0;
+      has_come_nearer_ = true;
+      has_begun_again_ = false;
+    }
+    const uint64_t here = key(walk.active);
+    for (int i = 0; i < count_; ++i) {
+      if (visited_[i] == here) {
+        FDCG_WATCH(met_again);
+        return true;
+      }
+    }
+    if (count_ == kCapacity) {
+      FDCG_WATCH(trail_full);
+      return true;
+    }
+    visited_[count_++] = here;
+    return false;
+  }
+  [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
+
+  // Where the step would rest (contact-model TICK-6). The next tick knows nothing of Walk::rounding_residual: a rest must be
+  // one without it. So it is forgotten, and the way goes on as that tick would go; once for each time that the god-object came
+  // nearer.
+  bool retry_without_residual(Walk<Geometry>& walk) {
+    if (has_begun_again_ || norm1(walk.rounding_residual) == 0) return false;
+    walk.rounding_residual = {0, 0, 0};
+    has_begun_again_ = true;
+    visited_[0] = key(walk.active);
+    count_ = 1;
+    return true;
+  }
+
+ private:
+  static constexpr int kCapacity = 32;  // without a move, a step climbs: vertex, edge, face are three
+
+  static uint64_t key(Feature feature) { return uint64_t{feature.state} << 32 | feature.index; }
+
+  Real nearest2_;
+  int count_;
+  bool has_come_nearer_ = false;
+  bool has_begun_again_ = false;
+  uint64_t visited_[kCapacity];  // the first count_ are set
+};
+
+template <class Geometry>
+Decision apply_rule(Walk<Geometry>& walk) {
+  switch (walk.active.state) {
+    case FDCG_FACE:
+      return face_rule(walk);
+    case FDCG_EDGE:
+      return edge_rule(walk);
+    default:
+      return corner_rule(walk);
+  }
+}
+
+// Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
+// decided. It stood on `start` then, `start_gap` away from the HIP.
+template <class Geometry, class Real = typename Geometry::Real>
+Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided, FreeSpace* space) {
+  Progress progress = {0, 0};
+  if (walk.active == kFree) {
+    if (FDCG_MUTANT("last-tick-segment")) walk.god_object = walk.hip;
+    progress.flags = sweep_to_hip(walk, kFree, walk.god_object, space);
+    if (walk.active == kFree) return progress;
+    ++progress.transitions;
+    start = walk.active;
+    start_gap = walk.god_object - walk.hip;
+  }
+  Trail<Geometry> trail(start, start_gap);
+  while (true) {
+    const Feature at = walk.active;
+    const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
+    decided = nullptr;
+    if (decision.is_rest()) {
+      if (trail.retry_without_residual(walk)) continue;
+      space->carried->stalled_sweeps = 0;
+      return progress;
+    }
+    walk.active = decision.next();
+    ++progress.transitions;
+    if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
+    if (walk.active == kFree) {
+      if (trail.has_come_nearer()) space->carried->stalled_sweeps = 0;
+      const Vec3<Real> stood = walk.god_object;
+      step_clear_of(walk, at);
+      progress.flags |= sweep_to_hip(walk, at, stood, space);
+      if (walk.active == kFree) return progress;
+      ++progress.transitions;
+    }
+    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk)) return progress;
+    walk.spend(kTransitionWork);
+    if (walk.work_left == 0) {
+      progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      return progress;
+    }
+  }
+}
+
+// A HIP further away than this is nowhere near any graph (load.cpp limits scale and origin), and its arithmetic might
+// overflow before it is found out (contact-model TICK-2).
+constexpr double kFarthestHip_m = 1e110;
+
+// A double rounded to a float, in a way that no compiler sees through: GCC 12's basic-block vectoriser (-O2) drops the rounding
+// of a double to float and back where it sees both. In a register where that can be said, since a call or a way through memory
+// costs a tenth of a step.
+inline float rounded(double x) {
+#if defined(__SSE2__)
+  float narrow = static_cast<float>(x);
+  __asm__("" : "+x"(narrow));
+#else
+  volatile float narrow = static_cast<float>(x);
+#endif
+  return narrow;
+}
+inline void round_to(Vec3<double> from, Vec3<float>* to) {
+  *to = {rounded(from.x), rounded(from.y), rounded(from.z)};
+}
+inline void round_to(Vec3<double> from, Vec3<double>* to) {
+  *to = from;
+}
+
+// All three at most `limit` in size; false for NaN. One branch.
+inline bool is_within(Vec3<double> p, double limit) {
+  const int x = absolute(p.x) <= limit, y = absolute(p.y) <= limit, z = absolute(p.z) <= limit;
+  return (x & y & z) != 0;
+}
+
+// The HIP in the graph's frame, not yet rounded to its reals. False, without an overflow on the way, where it is not usable.
+// Coordinate by coordinate: in an array the compiler would store them one by one and load two at once, which waits for the
+// stores.
+inline bool to_local(const fdcg_header& header, const double hip_object_m[3], double farthest, Vec3<double>* hip) {
+  Vec3<double> local = {hip_object_m[0], hip_object_m[1], hip_object_m[2]};
+  const double unit_m = header.metres_per_unit;
+  if (unit_m != 1) {  // a division takes as long as the rest of this function
+    if (!is_within(local, kFarthestHip_m)) return false;
+    local = {local.x / unit_m, local.y / unit_m, local.z / unit_m};
+  }
+  local = local - vec(header.origin);
+  if (!is_within(local, farthest)) return false;
+  const double least = kLeastShare * header.extent;
+  if (has_below(least, local)) local = {zero_below(least, local.x), zero_below(least, local.y), zero_below(least, local.z)};
+  *hip = local;
+  return true;
+}
+
+// Whether the graph has such a feature: asked by an assertion alone.
+[[maybe_unused]] bool is_of_graph(Feature feature, const fdcg_header& header) {
+  const uint32_t count[] = {0, header.node_count, header.connection_count, header.corner_count};
+  return feature == kFree || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
+}
+
+template <class Real>
+inline Vec3<Real> narrow(const double (&a)[3]) {
+  return {static_cast<Real>(a[0]), static_cast<Real>(a[1]), static_cast<Real>(a[2])};
+}
+
+inline void write_position(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
+  store((vec(contact.god_object) + vec(header.origin)) * header.metres_per_unit, result->god_object_m);
+  result->state = contact.state;
+  result->feature = contact.state == FDCG_FREE ? FDCG_NONE : contact.feature;  // a contact of zeros is free, and on nothing
+  result->slipping = contact.slipping;
+}
+
+// First tick: free, with the god-object at the HIP (contact-model TICK-3).
+template <class Real>
+inline void start(Vec3<Real> hip, fdcg_contact* contact) {
+  store(hip, contact->hip);
+  store(hip, contact->god_object);
+  contact->started = 1;
+  contact->state = contact->seat_state = FDCG_FREE;
+  contact->feature = contact->seat_feature = FDCG_NONE;
+  contact->slipping = 0;
+  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
+  contact->sweep.is_carried = 0;
+  contact->clear_ball.radius2 = 0;
+  contact->clear_ball.wait = contact->clear_ball.next_wait = 0;
+}
+
+template <class Real>
+inline Friction<Real> friction_of(const fdcg_params& params, const fdcg_contact& contact) {
+  return {static_cast<Real>(params.mu_static), static_cast<Real>(params.mu_dynamic), params.edge_friction == FDCG_EDGE_WEDGE,
+          contact.slipping != 0, nullptr};
+}
+
+// The force of so much spring, damped along the same line. Call before the contact learns of the new HIP.
+inline void spring_damper_force(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact,
+                                double newtons_per_metre, Vec3<double> local_hip, Vec3<double> spring, fdcg_result* result) {
+  if (params.damping_n_s_per_m > 0) {
+    newtons_per_metre = damped(params, newtons_per_metre, spring, local_hip - vec(contact.hip));
+  }
+  store(spring * (newtons_per_metre * header.metres_per_unit), result->force_n);
+}
+
+// F = k (GO - HIP) (contact-model RESP-1).
+template <class Real>
+inline void respond(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact, Vec3<Real> hip,
+                    Vec3<Real> god_object, fdcg_result* result) {
+  const Vec3<double> local_hip = widen(hip);
+  spring_damper_force(header, params, contact, params.stiffness_n_per_m, local_hip, widen(god_object) - local_hip, result);
+}
+
+// The same with terms of friction.
+template <class Geometry>
+[[gnu::noinline, gnu::cold]] void respond_with_terms(const Walk<Geometry>& walk, fdcg_contact* contact, fdcg_result* result) {
+  FrictionTerms& terms = *walk.friction.terms;
+  const fdcg_params& params = *terms.params;
+  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
+  if (walk.active == kFree) return;
+  if (terms.has_last) terms.go_on_to(widen(walk.god_object));
+  if (terms.has(FDCG_FRICTION_LAG)) contact->slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
+  const double stiffness = settle(walk, {contact->state, contact->feature}, vec(contact->god_object));
+  if (terms.has_springs()) contact->stiffness_n_per_m = stiffness;
+  const Vec3<double> hip = widen(walk.hip), spring = widen(walk.god_object) - hip + terms.yielded;
+  spring_damper_force(*walk.graph.header, params, *contact, stiffness, hip, spring, result);
+}
+
+// The long way: drives the rules from where the contact stands. `move` is null, or what its face has already made of it.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] void walk_to_hip(Walk<Geometry> walk, const FaceMove<Real>* move, const fdcg_params& params,
+                                   fdcg_contact* contact, fdcg_result* result) {
+  const Vec3<Real> start_gap = walk.god_object - walk.hip;
+  const Feature start = walk.active;
+  Decision decided = rest();
+  if (move != nullptr) decided = carry_out(walk, *move);
+  FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
+                     kSweepWork};
+  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &space);
+  FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
+  contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
+  contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
+  result->flags = progress.flags;
+  result->transitions = progress.transitions;
+  const bool is_free = walk.active == kFree;
+  if (walk.friction.terms == nullptr) {
+    if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
+  } else if constexpr (FDCG_WITH_FRICTION_TERMS) {
+    respond_with_terms(walk, contact, result);
+  }
+  store(walk.god_object, contact->god_object);
+  contact->state = walk.active.state;
+  contact->feature = walk.active.index;
+  contact->seat_state = walk.seat.state;
+  contact->seat_feature = walk.seat.index;
+  const bool is_undecided = contact->sweep.is_carried != 0;  // contact may be regained
+  contact->slipping = (!is_free || is_undecided || FDCG_MUTANT("slip-flag-free")) && walk.friction.is_slipping ? 1 : 0;
+}
+
+// A tick of a contact that has started, with terms of friction: all of it goes the long way.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] void step_with_terms(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
+                                                  fdcg_contact* contact, fdcg_result* result) {
+  const GraphView<Geometry> graph(raw);
+  FrictionTerms terms = terms_of(params, &raw, *contact);
+  Friction<Real> friction = friction_of<Real>(params, *contact);
+  friction.terms = &terms;
+  walk_to_hip<Geometry, Real>({graph,
+                               friction,
+                               hip,
+                               plane_rounding_bound(graph, hip),
+                               narrow<Real>(contact->god_object),
+                               {contact->state, contact->feature},
+                               {contact->seat_state, contact->seat_feature},
+                               kRuleWork},
+                              nullptr, params, contact, result);
+  store(hip, contact->hip);
+  write_position(*raw.header, *contact, result);
+  store(vec(result->god_object_m) + terms.yielded * raw.header->metres_per_unit, result->god_object_m);
+}
+
+// A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7).
+template <class Geometry, class Real = typename Geometry::Real>
+void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
+          fdcg_result* result) {
+  using Kind = typename FaceMove<Real>::Kind;
+  const fdcg_header& header = *raw.header;
+  Vec3<double> local_hip;
+  *result = {};
+  if (!to_local(header, hip_object_m, RealLimits<Real>::kFar, &local_hip)) {
+    ++contact->non_finite_ticks;
+    result->flags = FDCG_RESULT_NON_FINITE;
+    write_position(header, *contact, result);
+    return;
+  }
+  Vec3<Real> hip;
+  round_to(local_hip, &hip);
+  if (contact->started == 0) {
+    start(hip, contact);
+  } else if (is_in_clear_ball(contact->clear_ball, local_hip) &&
+             (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0) {
+    store(hip, contact->god_object);  // free: a contact that is not has no such ball
+    store(hip, contact->hip);
+  } else if (FDCG_WITH_FRICTION_TERMS && params.friction_flags != 0) {
+    if constexpr (FDCG_WITH_FRICTION_TERMS) return step_with_terms<Geometry>(raw, params, hip, contact, result);
+  } else {
+    const GraphView<Geometry> graph(raw);
+    const Real bound = plane_rounding_bound(graph, hip);
+    const Vec3<Real> god_object = narrow<Real>(contact->god_object);
+    const bool is_on_face = contact->state == FDCG_FACE;
+    Friction<Real> friction = friction_of<Real>(params, *contact);
+    FaceMove<Real> move;
+    if (is_on_face) {
+      const NodeRef<Geometry> node = graph.node(contact->feature);
+      move = move_on_face(node, friction, hip, bound, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
+    }
+    if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
+      if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
+      contact->slipping = friction.is_slipping ? 1 : 0;
+      contact->sweep.stalled_sweeps = 0;
+      respond(header, params, *contact, hip, move.target, result);
+      store(move.target, contact->god_object);
+    } else {
+      walk_to_hip<Geometry, Real>({graph,
+                                   friction,
+                                   hip,
+                                   bound,
+                                   god_object,
+                                   {contact->state, contact->feature},
+                                   {contact->seat_state, contact->seat_feature},
+                                   kRuleWork},
+                                  is_on_face ? &move : nullptr, params, contact, result);
+    }
+    store(hip, contact->hip);
+  }
+  write_position(header, *contact, result);
+}
+
+}  // namespace
+}  // namespace fdcg
