@@ -29,7 +29,8 @@ if(NOT FDCG_RUNTIME_ONLY)
             DESTINATION ${CMAKE_INSTALL_DATAROOTDIR})
   endif()
 endif()
-install(FILES LICENSE README.md CHANGELOG.md schemas/fdcg-v1.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs schemas DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/fdcg-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/fdcg-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/fdcg-config-version.cmake cmake/FdcgAddGraph.cmake

@@ -12,7 +12,7 @@ int main(void) {
     return 1;
   }
   fdcg_params params = fdcg_make_params(); /* static friction 0.6, dynamic 0.4, 1,000 N/m */
-  fdcg_contact contact = {0};                 /* one contact point; keep it from tick to tick */
+  fdcg_contact contact = {0};              /* one contact point; keep it from tick to tick */
   fdcg_result result;
   for (int tick = 0; tick < 6; ++tick) { /* a servo loop reads its device here and writes result.force_n to it */
     const double hip_m[3] = {0.004 + 0.0003 * tick, 0.005, tick == 0 ? 0.011 : 0.009};

@@ -123,8 +123,8 @@ Script crowd(int fingers, int level) {
 // -------------------------------------------------------------------------------------------------------------------
 
 struct Switches {
-  std::uint32_t scene = 0;  // fdcg_scene_skip bits that are off
-  std::uint32_t step = 0;   // fdcg_step_skip bits that are off
+  std::uint32_t scene = 0;  // fdcg_scene_optimization bits that are off
+  std::uint32_t step = 0;   // fdcg_step_optimization bits that are off
   CompileOptions file = {};
   double mu_static = 0.5, mu_dynamic = 0.4, damping = 0;
 };

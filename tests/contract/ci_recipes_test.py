@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The recipes of tools/ci, run as they stand there: nobody else does, until a pipeline breaks."""
+"""The recipes of docs/ci.md, run as they stand there: nobody else does, until a pipeline breaks."""
 import json
 import os
 import pathlib
@@ -15,11 +15,11 @@ from support import CUBE, FDCG, ROOT, Case
 
 MISSING_FACE = CUBE.replace("8 6 0", "8 5 0").replace("4 3 0 4 7\n", "")
 THREE_ON_AN_EDGE = "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n3 0 1 2\n3 1 0 3\n3 0 1 4\n"
-README = (ROOT / "tools/ci/README.md").read_text()
+PAGE = (ROOT / "docs/ci.md").read_text()
 
 
 def blocks(heading, language):
-    section = re.split(r"^## ", README.split(f"## {heading}\n")[1], flags=re.M)[0]
+    section = re.split(r"^## ", PAGE.split(f"## {heading}\n")[1], flags=re.M)[0]
     found = re.findall(rf"^```{language}\n(.*?)^```$", section, flags=re.M | re.S)
     assert found, f"no {language} under '{heading}'"
     return found

@@ -429,17 +429,6 @@ class Input(GraspCase):
         done = self.fdcg("grasp", self.write("damaged.fdcg", bytes(damaged)), "--contacts", self.fingers, "--mu", "1", code=3)
         self.assert_one_line(done, "damaged.fdcg")
 
-    def test_the_readme_shows_what_comes_out(self):
-        section = (ROOT / "README.md").read_text().split("**Grasp**")[1].split("\n**")[0]
-        blocks = re.findall(r"```\n(.*?)```", section, re.S)
-        contacts, command, promised = blocks[0], blocks[1].strip().split(), blocks[2]
-        small = "\n".join(" ".join(str(float(c) * 0.05) for c in l.split()) if 1 < i < 10 else l
-                          for i, l in enumerate(CENTRED_CUBE.splitlines())) + "\n"
-        self.write("cube.off", small)
-        self.write("fingers.csv", contacts)
-        done = self.fdcg(*command[1:], cwd=self.folder, code=0)
-        self.assertEqual(promised, done.stdout.decode())
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -32,8 +32,8 @@ class RulesTable(Case):
                                     code=3 if allowed == "yes" else 2)
                 self.assertIn(b"none.off" if allowed == "yes" else b"cannot be allowed", refused.stderr)
 
-    def test_the_readme_points_to_the_table(self):
-        self.assertIn("schemas/rules.md", (ROOT / "README.md").read_text())
+    def test_the_documents_point_to_the_table(self):
+        self.assertIn("schemas/rules.md", (ROOT / "docs" / "validate.md").read_text())
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What those who embed the runtime rely on: C alone is enough, the step calls nothing, the README's example runs."""
+"""What those who embed the runtime rely on: C alone is enough, the step calls nothing, the documents' commands run."""
 import os
 import pathlib
 import re
@@ -51,17 +51,6 @@ class Embedding(Case):
                 standard = "-std=c11" if language == "c" else "-std=c++20"
                 self.run_program(compiler, "-x", language, standard, *C_FLAGS[1:], "-fsyntax-only", source)
 
-    def test_the_readme_example_runs(self):
-        readme = (ROOT / "README.md").read_text()
-        example = re.search(r"```c\n(.*?)```", readme, re.S).group(1)
-        file = (ROOT / "runtime" / "examples" / "press_and_slide.c").read_text()
-        self.assertTrue(file.endswith(example), "the README shows the example as it is")
-        self.compiled_cube("--units", "cm")
-        program = self.compiled_by_c(self.write("example.c", example))
-        done = self.run_program(program, cwd=self.folder)
-        promised = re.search(r"It prints\n\n```\n(.*?)```", readme, re.S).group(1)
-        self.assertEqual(promised, done.stdout.decode())
-
     def test_the_library_calls_no_heap_no_exceptions_no_clock_no_locks(self):
         objects = symbols()
         defined = set().union(*(own for own, _ in objects.values()))
@@ -83,7 +72,7 @@ class RuntimeOnly(Case):
         super().setUp()
         self.tree = self.path("tree")
         os.makedirs(self.tree)
-        for name in ("CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "CHANGELOG.md", "runtime", "cmake", "schemas"):
+        for name in ("CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "CHANGELOG.md", "docs", "runtime", "cmake", "schemas"):
             source = ROOT / name
             (shutil.copytree if source.is_dir() else shutil.copy)(source, os.path.join(self.tree, name))
 
@@ -97,12 +86,12 @@ class RuntimeOnly(Case):
         self.run_program("cmake", "--install", "build/runtime-only", "--prefix", self.path("prefix"), cwd=self.tree)
         self.assertTrue(list(pathlib.Path(self.path("prefix")).glob("**/libfdcg_runtime.a")))
 
-    def test_the_readmes_commands_run(self):
+    def test_the_commands_of_the_documents_run(self):
         for program in ("arm-none-eabi-gcc", "qemu-system-arm"):
             if shutil.which(program) is None:
                 self.skipTest(f"{program} is missing; tools/check installs it (group test of tools/packages)")
-        section = (ROOT / "README.md").read_text().split("## Embed it")[1].split("\n## ")[0]
-        commands = "\n".join(re.findall(r"```sh\n(.*?)```", section, re.S))
+        named = r"<!-- test: by=contract: runtime_test.RuntimeOnly -->\n```sh\n(.*?)```"
+        commands = "\n".join(re.findall(named, (ROOT / "docs" / "embed.md").read_text(), re.S))
         environment = {**os.environ, "HOME": self.path("home"), "PATH": os.path.dirname(os.environ["FDCG"]) + ":" + os.environ["PATH"]}
         done = self.run_program("bash", "-e", "-c", commands, cwd=self.tree, env=environment)
         self.assertIn(b"tick 5: state 1, slip 1, force -400 0 1000 mN", done.stdout + done.stderr)

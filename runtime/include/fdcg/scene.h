@@ -1,41 +1,48 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/*
- * A scene: objects with poses, and fingers that feel all of them. In one screen:
+/**
+ * @file fdcg/scene.h
+ * A scene: objects with poses, and fingers that feel all of them. On one screen:
  *
- *   fdcg_scene_config config = fdcg_make_scene_config();               how many objects and fingers at most
- *   void* memory = malloc(fdcg_scene_bytes(&config));                     or a static array: the scene never asks for more
- *   fdcg_scene_create(memory, bytes, &config, &scene, &error);
- *   fdcg_scene_add_object(scene, &graph, &params, &pose, &object, &error);
- *   fdcg_scene_add_finger(scene, hip_world_m, &finger, &error);
- *   each tick:  fdcg_scene_set_pose(scene, object, &pose, &error);        where something moves it
- *               fdcg_scene_move_finger(scene, finger, hip_world_m, &error);
- *               fdcg_scene_step(scene);
- *               fdcg_scene_get_result(scene, finger, &result, &error);        ->  result.force_n, in the world
+ *     fdcg_scene_config config = fdcg_make_scene_config();                how many objects and fingers at most
+ *     void* memory = malloc(fdcg_scene_bytes(&config));                   or a static array: the scene never asks for more
+ *     fdcg_scene_create(memory, bytes, &config, &scene, &error);
+ *     fdcg_scene_add_object(scene, &graph, &params, &pose, &object, &error);
+ *     fdcg_scene_add_finger(scene, hip_world_m, &finger, &error);
+ *     each tick:
+ *       fdcg_scene_set_pose(scene, object, &pose, &error);                where something moves it
+ *       fdcg_scene_move_finger(scene, finger, hip_world_m, &error);
+ *       fdcg_scene_step(scene);
+ *       fdcg_scene_get_result(scene, finger, &result, &error);            ->  result.force_n, in the world
  *
  * An object is a graph (any number of objects may share one), a surface (surface.h) or a deformable mesh (deform.h), with
- * parameters and a pose: rotation, translation, uniform scale. A finger is one contact point; it has a contact (fdcg_contact)
- * with each object that it touches, in that object's frame, so a moving and turning object carries its god-objects. What is
- * swept each tick is the relative motion: from where the HIP was in the object's frame at the last tick, with the object's pose
- * of that tick, straight to where it is now. An object that moves onto a still finger is met as surely as the other way round.
- * In a turn of w radians a tick the straight way cuts the arc by a share of 1 - cos(w / 2) of its radius: 0.03 % at 10
- * revolutions a second and 1 kHz. An object whose bounding sphere the finger does not reach, measured from the moving centre of
- * the sphere, is not met, however fast it spins.
+ * parameters and a pose: rotation, translation, uniform scale. A finger is one contact point. It has a contact (fdcg_contact)
+ * with each object that it touches, in that object's frame, so a moving and turning object carries its god-objects.
  *
- * Lengths of the world in metres, forces in newtons. At a scale of s the god-object's distance in the world is s times the one
- * in the object, and stiffness and damping act on the distance in the world; friction does not depend on scale, and speeds of
- * its curve are those in the world.
+ * What is swept each tick is the relative motion: from where the HIP was in the object's frame at the last tick, with the
+ * object's pose of that tick, straight to where it is now. So an object that moves onto a still finger is met as surely as the
+ * other way round. In a turn of w radians a tick the straight path cuts the arc by a share of 1 - cos(w / 2) of its radius:
+ * 0.03 % at 10 revolutions a second and 1 kHz. An object whose bounding sphere the finger does not reach, measured from the
+ * moving centre of the sphere, is not met, however fast it spins.
  *
- * Cost: a free finger out of reach of every object costs a comparison (some 10 ns), however many objects there are. Now and
- * then it looks at all of them (2 to 3 ns each: 2.5 us for 1,000), when its own way and the objects' largest together have used
- * up the distance that it last saw. An object that it can have met costs a fdcg_step and two changes of frame; so a finger's
- * step is at most one look and touches_per_finger such steps. Memory: a finger takes 0.2 KB and, for each of
- * touches_per_finger, 0.3 KB; an object 0.7 KB. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
+ * **Frames, units, handedness.** The world and the objects' frames are right-handed. Lengths are metres, forces newtons on the
+ * hand, torques newton metres. At a scale of s the god-object's distance in the world is s times the one in the object;
+ * stiffness and damping act on the distance in the world; friction does not depend on scale, and speeds of its curve are those
+ * in the world.
+ *
+ * **Ownership.** The scene lives in the caller's memory, and points to graphs and deformable meshes, which must outlive it.
+ * Params, poses, surfaces and materials are copied in; fdcg_params.materials is pointed to.
+ *
+ * **Cost.** A free finger out of reach of every object costs a comparison (some 10 ns), however many objects there are. When
+ * its own motion and the objects' largest together have used up the distance that it last measured, it measures again to all of
+ * them (2 to 3 ns each: 2.5 us for 1,000). An object that it may have met costs a fdcg_step and two changes of frame; so a
+ * finger's step is at most one such measurement and touches_per_finger steps. Memory: 0.2 KB a finger and, for each of
+ * touches_per_finger, 0.3 KB; 0.7 KB an object. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
  * the capacities in the config.
  *
- * Threads: the scene holds no lock. fdcg_scene_step is fdcg_scene_advance, then fdcg_scene_step_finger for every finger. After
- * an advance, different fingers may be stepped, moved and asked for results by different threads at once, and at the same time
- * one thread may set poses, which the next advance takes in; for everything else one thread at a time is in the scene. Results
- * do not depend on the order of fingers or on threads. Where a deformable mesh is in the scene, its fingers are stepped by one
+ * **Threads.** The scene holds no lock. fdcg_scene_step is fdcg_scene_advance, then fdcg_scene_step_finger for every finger.
+ * After an advance, different fingers may be stepped, moved and asked for results by different threads at once, and at the same
+ * time one thread may set poses, which the next advance takes in. For everything else one thread at a time is in the scene.
+ * Results do not depend on the order of fingers or on threads. Fingers of a scene with a deformable mesh are stepped by one
  * thread at a time: a step on such a mesh brings it up to date.
  */
 #ifndef FDCG_SCENE_H
@@ -47,155 +54,170 @@
 extern "C" {
 #endif
 
-/* Lives in memory of the caller's. Holds no pointer into itself: copied as a whole, to another multiple of 8, it is a snapshot
- * that goes its own way. It does point to the graphs and deformable meshes, which must outlive it. There is nothing to destroy.
- */
+/** A scene, in memory of the caller's. Holds no pointer into itself: copied as a whole, to another multiple of 8, it is an
+ * independent snapshot. There is nothing to destroy. */
 typedef struct fdcg_scene fdcg_scene;
 
-/* Names by value; one of all zeros names nothing. What was removed is not found again under its old name. */
+/** Names an object by value; all zeros name none. What was removed is not found again under its old name. */
 typedef struct fdcg_object_id {
-  uint32_t index, generation;
+  uint32_t index;      /**< its place; fdcg_reaction arrays are by it */
+  uint32_t generation; /**< how often that place was used */
 } fdcg_object_id;
+/** Names a finger by value, likewise. */
 typedef struct fdcg_finger_id {
-  uint32_t index, generation;
+  uint32_t index;      /**< its place */
+  uint32_t generation; /**< how often that place was used */
 } fdcg_finger_id;
 
-/* world = R (scale * object) + translation, and back: object = (R^T (world - translation)) / scale, where R is the rotation
- * matrix of the quaternion; the three products of a row are added from the first to the third. So a contact stepped by hand
- * with fdcg_step gives the scene's bits. */
+/** Where an object is: world = R (scale * object) + translation, and back: object = (R^T (world - translation)) / scale, where
+ * R is the rotation matrix of the quaternion; the three products of a row are added from the first to the third. So a contact
+ * stepped by hand with fdcg_step gives the scene's bits. */
 typedef struct fdcg_pose {
-  double rotation_xyzw[4]; /* unit quaternion, real part last; within 1e-3 of unit length, made exactly unit by the scene */
-  double translation_m[3]; /* up to 1e12 */
-  double scale;            /* 1e-9 to 1e9 */
+  double rotation_xyzw[4]; /**< unit quaternion, real part last; within 1e-3 of unit length, made exactly unit by the scene */
+  double translation_m[3]; /**< up to 1e12 */
+  double scale;            /**< 1e-9 to 1e9 */
 } fdcg_pose;
 
-/* No rotation, no translation, scale 1. */
+/** A pose of no rotation, no translation, scale 1. */
 fdcg_pose fdcg_make_identity_pose(void);
 
-/* What a scene leaves undone where it cannot matter. Each can be switched off in the config: every force stays the same, bit
+/** What a scene does not do where it cannot matter. Each can be switched off in the config: every force stays the same, bit
  * for bit, and the difference in time is what it saves. */
-typedef enum fdcg_scene_skip {
-  FDCG_OPT_OUT_OF_REACH = 1, /* no look at any object until one could be reached */
-  FDCG_OPT_FAR_OBJECTS = 2,  /* between looks only the objects near by are asked, and a look asks the others by sphere only */
-  FDCG_OPT_STILL = 4,        /* an object that was not moved: no new rotation matrix, centre, inverse */
-  FDCG_OPT_ROTATION = 8,     /* an object that is not turned or scaled: no rotation, no division */
-  FDCG_OPT_RENEWAL = 16,     /* a near object's free contact is kept from tick to tick, not made anew */
-  FDCG_OPT_ALL = 31
-} fdcg_scene_skip;
+typedef enum fdcg_scene_optimization {
+  FDCG_OPT_OUT_OF_REACH = 1, /**< no object is measured to until one could be reached */
+  FDCG_OPT_FAR_OBJECTS = 2,  /**< in between only nearby objects are tested, others by their bounding sphere only */
+  FDCG_OPT_STILL = 4,        /**< an object that was not moved: no new rotation matrix, centre, inverse */
+  FDCG_OPT_ROTATION = 8,     /**< an object that is not turned or scaled: no rotation, no division */
+  FDCG_OPT_RENEWAL = 16,     /**< a near object's free contact is kept from tick to tick, not made anew */
+  FDCG_OPT_ALL = 31          /**< every one */
+} fdcg_scene_optimization;
 
+/** What a scene has room for. */
 typedef struct fdcg_scene_config {
-  uint32_t struct_bytes;       /* the caller's sizeof(fdcg_scene_config); fdcg_make_scene_config sets it */
-  uint32_t object_capacity;    /* 1 to 1,000,000 */
-  uint32_t finger_capacity;    /* 1 to 10,000,000 */
-  uint32_t touches_per_finger; /* 1 to 32: objects that one finger can touch, or have within its reach, at once */
-  uint32_t disabled_optimizations;     /* fdcg_scene_skip bits that are off; 0: skip all that can be skipped */
-  uint32_t has_soft_fingers;   /* 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
-  uint32_t has_deforms;        /* 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
-  uint32_t reserved;           /* 0 */
+  uint32_t struct_bytes;           /**< the caller's sizeof(fdcg_scene_config); fdcg_make_scene_config sets it */
+  uint32_t object_capacity;        /**< 1 to 1,000,000 */
+  uint32_t finger_capacity;        /**< 1 to 10,000,000 */
+  uint32_t touches_per_finger;     /**< 1 to 32: objects that one finger can touch, or have within its reach, at once */
+  uint32_t disabled_optimizations; /**< fdcg_scene_optimization bits that are off; 0: all are on */
+  uint32_t has_soft_fingers;       /**< 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
+  uint32_t has_deforms; /**< 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
+  uint32_t reserved;    /**< 0 */
 } fdcg_scene_config;
 
-/* Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every skip on; some 57 KB. */
+/** Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every optimization on; some 57
+ * KB. */
 void fdcg_scene_config_init(fdcg_scene_config* config, uint32_t struct_bytes);
+/** The default config of fdcg_scene_config_init. */
 static inline fdcg_scene_config fdcg_make_scene_config(void) {
   fdcg_scene_config config;
   fdcg_scene_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
-/* What fdcg_scene_create needs; 0 if the config is out of range (fdcg_scene_create says why). */
+/** The bytes that fdcg_scene_create needs; 0 if the config is out of range (fdcg_scene_create says why). */
 uint64_t fdcg_scene_bytes(const fdcg_scene_config* config);
 
-/* An empty scene at `memory`, a multiple of 8. `error` may be NULL, here and below. */
+/** Makes an empty scene at `memory`, a multiple of 8. `error` may be NULL, here and below. */
 fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdcg_scene_config* config, fdcg_scene** scene,
                               fdcg_error* error);
 
 /* ---- objects ----------------------------------------------------------------------------------------------------------- */
 
-/* A finger that is inside the object when it is added passes out of it freely. Cost: the graph's header. */
+/** Adds an object, a graph at a pose. A finger that is inside the object when it is added passes out of it freely. Cost: the
+ * graph's header. */
 fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph* graph, const fdcg_params* params, const fdcg_pose* pose,
                                   fdcg_object_id* object, fdcg_error* error);
-/* Every finger lets go of it. Cost: the fingers. */
+/** Removes an object: every finger lets go of it. Cost: the fingers. */
 fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_id object, fdcg_error* error);
 
-/* From the next advance on: the tick between sweeps from the old pose to the new one. FDCG_E_ARGUMENT, and the old pose stays,
- * unless every number is in range. */
+/** Moves an object, from the next advance on: the tick between sweeps from the old pose to the new one. FDCG_E_ARGUMENT, and
+ * the old pose stays, unless every number is in range. */
 fdcg_status fdcg_scene_set_pose(fdcg_scene* scene, fdcg_object_id object, const fdcg_pose* pose, fdcg_error* error);
+/** Changes an object's parameters, from the next step on. FDCG_E_ARGUMENT, and the old ones stay, unless fdcg_check_params
+ * takes them. */
 fdcg_status fdcg_scene_set_params(fdcg_scene* scene, fdcg_object_id object, const fdcg_params* params, fdcg_error* error);
 
-/* A disabled object is felt by nobody; enabled again it is as if just added, where its pose is. */
+/** Switches an object off (0) or on. A disabled object is not felt; enabled again it is as if just added, where its pose is. */
 fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_id object, int is_enabled, fdcg_error* error);
 
 /* ---- fingers ----------------------------------------------------------------------------------------------------------- */
 
-/* It begins, free, where it stands when it is stepped for the first time: nothing on the way there is met. From then on its way
- * is swept. */
+/** Adds a finger. It begins, free, where it is when it is stepped for the first time: nothing on the way there is met. From
+ * then on its motion is swept. */
 fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip_world_m[3], fdcg_finger_id* finger, fdcg_error* error);
+/** Removes a finger. */
 fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
 
-/* Where the HIP is in the next step. Not moved, it stays. Any number is taken: one that is not finite or beyond 1e100 is found
- * by the step, which then leaves the HIP where it was, gives no force and counts it. */
+/** Says where a finger's HIP is in the next step. Not moved, it stays. Any number is taken: one that is not finite or beyond
+ * 1e100 is found by the step, which then leaves the HIP where it was, gives no force and counts it. */
 fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
 
-/* What the finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the next
- * step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. A library
- * built without FDCG_WITH_FRICTION_TERMS does it too: faces have no materials of their own there, and the object's are combined. */
+/** Says what a finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the
+ * next step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. A
+ * library built without FDCG_WITH_FRICTION_TERMS does it too: faces have no materials of their own there, and the object's are
+ * combined. */
 fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
                                            fdcg_error* error);
 
-/* Lets go of everything and starts anew at a place, as if just added: nothing on the way there is met. */
+/** Lets go of everything and starts anew at a place, as if just added: nothing on the way there is met. */
 fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
 
 /* ---- step -------------------------------------------------------------------------------------------------------------- */
 
-/* Takes in the poses that were set, steps every finger. */
+/** A tick: takes in the poses that were set, steps every finger. */
 void fdcg_scene_step(fdcg_scene* scene);
 
-/* The two halves, for fingers on threads of their own. An advance begins a tick; a finger may be stepped several times in it (a
- * device faster than the objects) but should be at least once: of a tick that it missed it does not see the objects' motion,
- * where it did not touch them, and FDCG_FINGER_MISSED_TICK is set. */
+/** First half of fdcg_scene_step, for fingers on threads of their own: begins a tick and takes in the poses that were set. */
 void fdcg_scene_advance(fdcg_scene* scene);
+/** Second half, for one finger. It may be stepped several times in a tick (a device faster than the objects) but should be at
+ * least once: of a tick that it missed it does not see the motion of objects that it did not touch, and
+ * FDCG_FINGER_MISSED_TICK is set. */
 fdcg_status fdcg_scene_step_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
 
+/** What was special about a finger's step. */
 typedef enum fdcg_finger_flag {
-  FDCG_FINGER_NON_FINITE = 1, /* the HIP was no usable number: it stood still, no force */
-  FDCG_FINGER_CONTACT_OVERFLOW = 2,    /* more objects in reach than touches_per_finger: the touched ones and the nearest were felt */
-  FDCG_FINGER_MISSED_TICK = 4,
-  FDCG_FINGER_BOUNDED = 8 /* some contact carries work over to the next tick: see fdcg_touch.flags */
+  FDCG_FINGER_NON_FINITE = 1,       /**< the HIP was no usable number: it stood still, no force */
+  FDCG_FINGER_CONTACT_OVERFLOW = 2, /**< more objects in reach than touches_per_finger: touched and nearest ones felt */
+  FDCG_FINGER_MISSED_TICK = 4,      /**< it was not stepped in the tick before */
+  FDCG_FINGER_BOUNDED = 8           /**< some contact carries work over to the next tick: see fdcg_touch.flags */
 } fdcg_finger_flag;
 
-/* One object that a finger touches. */
+/** One object that a finger touches. */
 typedef struct fdcg_touch {
-  fdcg_object_id object;
-  double force_n[3];      /* world, on the finger */
-  double god_object_m[3]; /* world */
-  uint32_t state;         /* fdcg_state; FDCG_FREE only while a sweep is carried over */
-  uint32_t feature;
-  uint32_t slipping;
-  uint32_t transitions;
-  uint32_t flags; /* fdcg_result_flag */
-  uint32_t reserved;
+  fdcg_object_id object;  /**< what is touched */
+  double force_n[3];      /**< world, on the finger */
+  double god_object_m[3]; /**< world */
+  uint32_t state;         /**< fdcg_state; FDCG_FREE only while a sweep is carried over */
+  uint32_t feature;       /**< of the object's graph or surface, by state */
+  uint32_t slipping;      /**< 1: dynamic friction holds */
+  uint32_t transitions;   /**< changes of state in this step */
+  uint32_t flags;         /**< fdcg_result_flag */
+  uint32_t reserved;      /**< 0 */
 } fdcg_touch;
 
+/** What a finger felt in its last step. */
 typedef struct fdcg_finger_result {
-  double force_n[3]; /* world, on the user's hand: the touches' sum in their order */
-  uint32_t flags;    /* fdcg_finger_flag, of the last step */
-  uint32_t touch_count;
-  const fdcg_touch* touches; /* ascending object index; in the scene's memory, good until the finger's next step */
-  uint64_t non_finite_steps; /* since the finger was added */
-  uint64_t overflowed_steps;
-  uint64_t missed_ticks;
-  uint64_t broadphase_updates; /* at all objects: what FDCG_OPT_OUT_OF_REACH keeps few */
+  double force_n[3];           /**< world, on the user's hand: the touches' sum in their order */
+  uint32_t flags;              /**< fdcg_finger_flag, of the last step */
+  uint32_t touch_count;        /**< entries of `touches` */
+  const fdcg_touch* touches;   /**< ascending object index; in the scene's memory, good until the finger's next step */
+  uint64_t non_finite_steps;   /**< since the finger was added */
+  uint64_t overflowed_steps;   /**< steps with FDCG_FINGER_CONTACT_OVERFLOW */
+  uint64_t missed_ticks;       /**< ticks without a step */
+  uint64_t broadphase_updates; /**< measurements to all objects: what FDCG_OPT_OUT_OF_REACH keeps few */
 } fdcg_finger_result;
 
-fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result, fdcg_error* error);
+/** Reads what a finger felt in its last step. */
+fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result,
+                                  fdcg_error* error);
 
-/* What the fingers do to the objects: force and torque in the world, the torque about the origin of the object's frame. Zeroes
- * `reactions` and adds the fingers' last results up, in ascending order. On request only: costs a look at every finger.
- * `count` entries by object index; objects beyond are left out. */
+/** What the fingers do to an object. */
 typedef struct fdcg_reaction {
-  double force_n[3];
-  double torque_n_m[3];
+  double force_n[3];    /**< world, on the object */
+  double torque_n_m[3]; /**< world, about the origin of the object's frame */
 } fdcg_reaction;
+/** What the fingers do to the objects. Zeroes `reactions` and adds the fingers' last results up, in ascending order. `count`
+ * entries by object index; objects beyond are left out. Cost: the fingers. */
 void fdcg_scene_get_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count);
 
 #ifdef __cplusplus

@@ -162,7 +162,7 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
     return Message(error, FDCG_E_ARGUMENT)
         .text("params.disabled_optimizations is ")
         .number(params->disabled_optimizations)
-        .text(", allowed are sums of fdcg_step_skip: 0 to ")
+        .text(", allowed are sums of fdcg_step_optimization: 0 to ")
         .number(FDCG_STEP_OPT_ALL);
   }
   if (params->edge_friction > FDCG_EDGE_PAPER) {

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every fenced block of README and docs is run, compared with what it shows, or run by another test that it names.
+docs/contributing.md says how; a page is one session in one scratch folder."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import textwrap
+import unittest
+
+from pages import ROOT, blocks, tested_pages
+
+BUILD = pathlib.Path(os.environ["FDCG_BUILD"])
+PROGRAMS = [str(pathlib.Path(os.environ[name]).parent) for name in ("FDCG", "FDCG_SERVO")]
+LIBRARIES = os.environ["FDCG_RUNTIME_LIBRARY"].split(";")
+CC = os.environ["FDCG_CC"]
+FREE = {"text", "markdown"}  # diagrams and samples: need no directive
+
+
+def ctest_names():
+    """Of all tests that the build registers by add_test."""
+    names = set()
+    for path in BUILD.glob("**/CTestTestfile.cmake"):
+        names |= {a or b for a, b in re.findall(r"^add_test\((?:\[=*\[(.*?)\]=*\]|(\S+))", path.read_text(), re.M)}
+    return names
+
+
+def is_excerpt(piece, text):
+    """Whether the piece stands in the text, but for the indentation of the whole."""
+    wanted, lines = piece.splitlines(), text.splitlines()
+    for start in range(len(lines) - len(wanted) + 1):
+        if textwrap.dedent("\n".join(lines[start:start + len(wanted)])).splitlines() == wanted:
+            return True
+    return False
+
+
+class Coverage(unittest.TestCase):
+    def test_every_block_says_how_it_is_tested(self):
+        total = 0
+        for page in tested_pages():
+            for block in blocks(page):
+                total += 1
+                with self.subTest(block=str(block)):
+                    self.assertTrue(block.language, "the block has no language")
+                    if block.language not in FREE:
+                        self.assertIsNotNone(block.directive, "no directive stands above it")
+                    if block.language != "sh" and block.language not in FREE:
+                        self.assertTrue({"as", "prints", "from", "printed-by", "by"} & set(block.directive or {}),
+                                        f"nothing tests this {block.language}")
+        self.assertGreater(total, 30)
+
+    def test_what_runs_a_block_elsewhere_exists(self):
+        names = ctest_names()
+        self.assertGreater(len(names), 20, f"no tests are registered in {BUILD}")
+        for page in tested_pages():
+            for block in blocks(page):
+                for name in (block.directive or {}).get("by", []):
+                    with self.subTest(block=str(block), by=name):
+                        if (ROOT / name).is_file():
+                            script = (ROOT / name).read_text()
+                            for line in filter(None, block.text.splitlines()):
+                                self.assertIn(line.split()[0], script)
+                        else:
+                            self.assertIn(name, names)
+
+
+class Session(unittest.TestCase):
+    """One page."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "home").mkdir()
+        self.printed = None
+
+    def shell(self, command, code, what):
+        environment = os.environ | {"HOME": str(self.folder / "home"), "PATH": ":".join([*PROGRAMS, os.environ["PATH"]])}
+        done = subprocess.run(("bash", "-eu", "-o", "pipefail", "-c", command), cwd=self.folder, env=environment,
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=200, check=False)
+        self.assertEqual(code, done.returncode, f"{what}\n{command}\nstdout: {done.stdout[-2000:]}\nstderr: {done.stderr[-2000:]}")
+        return done.stdout
+
+    def bring(self, source):
+        path, _, name = source.partition(" as ")
+        target = self.folder / (name or path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if (ROOT / path).is_dir():
+            shutil.copytree(ROOT / path, target, dirs_exist_ok=True)
+        else:
+            shutil.copy(ROOT / path, target)
+
+    def example(self, path, what):
+        program = self.folder / "home" / pathlib.Path(path).stem
+        flags = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I", str(ROOT / "runtime" / "include")]
+        done = subprocess.run((CC, *flags, ROOT / path, *LIBRARIES, "-o", program, "-lm"), capture_output=True, text=True, check=False)
+        self.assertEqual(0, done.returncode, f"{what}\n{done.stderr}")
+        return self.shell(str(program), 0, what)
+
+    def check_block(self, block):
+        directive = block.directive or {}
+        for source in directive.get("in", []):
+            self.bring(source)
+        for name in directive.get("as", []):
+            (self.folder / name).write_text(block.text)
+        for path in directive.get("from", []):
+            self.assertTrue(is_excerpt(block.text, (ROOT / path).read_text()), f"{block}: {path} does not have this text")
+        for path in directive.get("printed-by", []):
+            self.assertEqual(self.example(path, str(block)), block.text, str(block))
+        if "prints" in directive:
+            self.assertEqual(self.printed, block.text, str(block))
+        if block.language == "sh" and "by" not in directive:
+            self.printed = self.shell(block.text, int(directive.get("expect", ["0"])[0]), str(block))
+
+    def check_page(self, page):
+        for block in blocks(page):
+            self.check_block(block)
+
+
+def page_test(page):
+    return lambda self: self.check_page(page)
+
+
+for one in tested_pages():
+    setattr(Session, "test_" + re.sub(r"\W", "_", str(one.relative_to(ROOT).with_suffix(""))).lower(), page_test(one))
+
+if __name__ == "__main__":
+    unittest.main()
