@@ -24,6 +24,7 @@ namespace {
 
 using tools::AtomicFile;
 using tools::grouped;
+using tools::short_number;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kChunkTicks =
@@ -148,12 +149,6 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f %%",
                 whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole));
-  return text;
-}
-
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
   return text;
 }
 
