@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The offline pipeline on one screen.
+// The offline pipeline: the sequence of its stages.
 #include "fdcg/bake.hpp"
 
 #include <algorithm>
@@ -37,9 +37,9 @@ std::string format_number(double value) {
   return text.data();
 }
 
-// Why the options make no sense; empty where they do.
+// The contradiction in the options; empty if there is none.
 std::string check_options(const CompileOptions& options) {
-  constexpr double kLargestScale = 1e30;  // what the runtime takes
+  constexpr double kLargestScale = 1e30;  // accepted by the runtime
   if (!(options.metres_per_unit >= 1 / kLargestScale && options.metres_per_unit <= kLargestScale))
     return "the scale is " + format_number(options.metres_per_unit) + " metres per unit; it must be 1e-30 to 1e30";
   if (options.coplanar.kind == Coplanar::Kind::angle &&
@@ -55,7 +55,7 @@ std::string check_options(const CompileOptions& options) {
   return check_mass_options(options);
 }
 
-// Of one coordinate at the object's extent: what the header tells.
+// The quantum of one coordinate at the object's extent, for the header.
 double header_quantum(const PolygonSoup& soup, const Mesh& mesh) {
   double extent = 0;
   for (const Vec3& point : mesh.points)
@@ -63,7 +63,7 @@ double header_quantum(const PolygonSoup& soup, const Mesh& mesh) {
   return std::max(soup.relative_quantum * extent, soup.absolute_quantum);
 }
 
-// Where each face of the soup ended up: through the mesh, the triangles it was cut into, and the polygons they were merged to.
+// The node of each face of the soup: by way of the mesh, the triangles it was cut into, and the polygons they were merged into.
 std::vector<std::uint32_t> trace_sources(std::size_t source_faces, const std::vector<std::uint32_t>& source_face,
                                          const std::vector<std::uint32_t>& polygon,
                                          const std::vector<std::uint32_t>& face_of_triangle) {
@@ -90,7 +90,7 @@ std::uint64_t count_sharing(const std::vector<std::uint32_t>& face_of_source, st
   return sharing;
 }
 
-// Polygons that cannot stay one node: not convex, too many sides, or not in one plane.
+// Polygons that cannot become one node: not convex, too many sides, or not planar.
 std::uint64_t count_split(const Triangulation& cut, const Regions& regions) {
   std::vector<std::uint8_t> is_whole = cut.is_whole;
   for (std::uint32_t t = 1; t < cut.polygon.size(); ++t) {
@@ -115,11 +115,11 @@ SerialiseInput serialise_input(const PolygonSoup& soup, const Mesh& mesh, const 
   return input;
 }
 
-// Why no file can hold the object; empty where one can.
+// Why the format cannot represent the object; empty if it can.
 std::string out_of_range(const Graph& graph, const SerialiseInput& input) {
   const bool is_f32 = input.precision == Precision::f32;
   const double largest = is_f32 ? FDCG_LARGEST_EXTENT_F32 : FDCG_LARGEST_EXTENT_F64;
-  constexpr double kLargestOrigin = 1e100;  // what the runtime takes
+  constexpr double kLargestOrigin = 1e100;  // accepted by the runtime
   double extent = 0;
   for (const Vec3& point : graph.points)
     extent = std::max(extent, largest_component(point));
@@ -135,7 +135,7 @@ std::string out_of_range(const Graph& graph, const SerialiseInput& input) {
   return {};
 }
 
-// Memory of the result's own, in pages as large as can be had.
+// Memory for the result, in large pages where available.
 std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t count) {
   bytes.reserve(count);
   prefer_large_pages(bytes.data(), count);
@@ -143,14 +143,14 @@ std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t coun
   return bytes;
 }
 
-// From a mesh that has passed the checks to the bytes of a file.
+// The bytes of a file from a mesh that has passed the checks.
 Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
                                    unsigned jobs, Compiled& compiled) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
-  if (!cut.uncuttable.empty()) {  // self-crossing-face has let it pass
+  if (!cut.uncuttable.empty()) {  // not found by self-crossing-face
     return Failure{4, soup.name + ": no cut was found for polygon " + std::to_string(cut.uncuttable[0]) +
                           ", which does not cross itself; triangulate it, and please report this fault"};
   }

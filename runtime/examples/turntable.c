@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 static void check(fdcg_status status, const fdcg_error* error) {
   if (status == FDCG_OK) return;

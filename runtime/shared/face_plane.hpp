@@ -4,31 +4,9 @@
 #pragma once
 
 #include "shared/derive.hpp"
+#include "shared/error_free.hpp"
 
 namespace fdcg {
-
-// An unevaluated sum: the value and what rounding it left over.
-struct Split {
-  double value, rest;
-};
-
-// a - b exactly (Knuth).
-FDCG_HOT Split exact_difference(double a, double b) {
-  const double value = a - b;
-  const double b_part = a - value;
-  const double a_part = value + b_part;
-  return {value, (a - a_part) + (b_part - b)};
-}
-
-// a * b exactly (Dekker), barring underflow.
-FDCG_HOT Split exact_product(double a, double b) {
-  constexpr double kSplitter = 134217729;  // 2^27 + 1
-  const double ca = kSplitter * a, cb = kSplitter * b;
-  const double a_high = ca - (ca - a), b_high = cb - (cb - b);
-  const double a_low = a - a_high, b_low = b - b_high;
-  const double value = a * b;
-  return {value, a_low * b_low - (((value - a_high * b_high) - a_low * b_high) - a_high * b_low)};
-}
 
 // a * d - b * c of split numbers, with a relative error of some 2^-100 of the two products.
 FDCG_HOT double cross_component(const Split& a, const Split& b, const Split& c, const Split& d) {

@@ -4,6 +4,7 @@ machine skips the test that needs it, by name."""
 import concurrent.futures
 import os
 import pathlib
+import re
 import shutil
 import sys
 
@@ -26,7 +27,30 @@ def qemu(processor, *options):
             "-chardev", "stdio,id=out", "-semihosting-config", "enable=on,chardev=out", *options, "-kernel"]
 
 
+# Of the library's objects, all that a program with one sphere may link, and all that one may link that steps one graph.
+ONE_SPHERE = {"surface", "surface_sphere", "surface_step", "params", "friction_terms", "message", "version"}
+ONE_GRAPH = {"box_tree", "checksum", "exact_orient", "friction_terms", "hooks", "load", "map_file_none", "map_file_posix",
+             "mass_record", "material_section", "message", "params", "records", "servo_step", "verify", "version"}
+OTHER_PARTS = r"scene|soft_finger|deform|body|pile|_of_plane|step_plane|[Cc]ylinder|[Cc]apsule|[Cc]one[^a-z]|[Tt]orus|[Ee]llipsoid"
+
+
+def linked_objects(link_map):
+    """The library's objects in a program, by the linker's map."""
+    text = pathlib.Path(link_map).read_text().split("Archive member included")[1].split("Discarded input sections")[0]
+    return set(re.findall(r"^\S*libfdcg_\w+\.a\((\w+)\.cpp\.o\w*\)", text, re.M))
+
+
 class AnywhereCase(Case):
+    def assert_links_alone(self, nm, program, link_map):
+        """A program of tests/consumer/parts links its own part of the runtime, and of surfaces its own kind."""
+        name = pathlib.Path(link_map).stem
+        objects = linked_objects(link_map)
+        self.assertIn("surface_sphere" if name == "one_sphere" else "servo_step", objects)
+        self.assertEqual(set(), objects - (ONE_SPHERE if name == "one_sphere" else ONE_GRAPH))
+        symbols = self.run_program(nm, "--defined-only", program).stdout.decode().split()
+        self.assertIn("fdcg_surface_step" if name == "one_sphere" else "fdcg_step", symbols)
+        self.assertEqual([], [symbol for symbol in symbols if re.search(f"^(_ZN?4fdcg|fdcg_).*({OTHER_PARTS})", symbol)])
+
     def need(self, *programs):
         """Skips where a program is missing: tools/packages, group test, has the package."""
         for program in programs:
@@ -58,7 +82,7 @@ class AnywhereCase(Case):
         self.run_program("cmake", "--build", folder)
         return os.path.join(folder, "runtime", "libfdcg_runtime.a")
 
-    def firmware(self, processor, library, *sources, flags=()):
+    def firmware(self, processor, library, *sources, flags=(), link=("-Wl,--gc-sections",)):
         """A program for the board: the example's start-up code and linker script, no standard library but newlib's C."""
         target = ["-mcpu=" + processor, "-mthumb", "-mfloat-abi=hard"]
         includes = ["-I", str(RUNTIME / "include"), "-I", str(FIRMWARE), "-I", str(pathlib.Path(__file__).parent)]
@@ -66,6 +90,6 @@ class AnywhereCase(Case):
                                      self.path(f"{processor}-{pathlib.Path(source).name}.o"))
                                     for source in (*sources, str(FIRMWARE / "startup.c"))])
         program = self.path(processor + ".elf")
-        self.run_program("arm-none-eabi-gcc", *target, "-nostartfiles", "-Wl,--gc-sections", "-T", str(FIRMWARE / "mps2.ld"),
+        self.run_program("arm-none-eabi-gcc", *target, "-nostartfiles", *link, "-T", str(FIRMWARE / "mps2.ld"),
                          *objects, library, "-lm", "-o", program)
         return program

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 #include "say.h"
 
 enum { kTicks = 14400, kTicksOfAWay = 400 };

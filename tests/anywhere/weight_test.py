@@ -8,12 +8,15 @@ import re
 import subprocess
 import unittest
 
-from anywhere import ROOT, RUNTIME, AnywhereCase, qemu
+from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
+
+PARTS = ROOT / "tests" / "consumer" / "parts"
 
 SUPPORT = {"body", "body_scene", "body_step", "deform", "deform_boxes", "deform_move", "deform_scene", "deform_step", "deform_upkeep",
-           "hooks", "map_file_none", "map_file_posix", "mass", "materials", "message", "params", "pile", "pile_damp", "pile_near", "pile_points",
-           "pile_step", "pile_touch", "records", "soft_finger", "surface", "surface_scene", "surface_step",
-           "verify", "version"}
+           "hooks", "map_file_none", "map_file_posix", "mass_record", "material_section", "message", "params", "pile", "pile_damp",
+           "pile_near", "pile_points", "pile_step", "pile_touch", "records", "soft_finger", "surface", "surface_all", "surface_box",
+           "surface_capsule", "surface_cone", "surface_cylinder", "surface_ellipsoid", "surface_mass", "surface_plane",
+           "surface_scene", "surface_sphere", "surface_step", "surface_torus", "verify", "version"}
 
 # Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
 # does not hold yet.
@@ -74,8 +77,95 @@ class TextSize(WeightCase):
     def test_cortex_m7_f32_built_for_size(self):
         self.need("arm-none-eabi-g++", "arm-none-eabi-size")
         for what, terms, weights in (("", "OFF", M7_F32), (", with terms of friction", "ON", M7_F32_TERMS)):
-            library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_MESSAGES=OFF", "-DFDCG_WITH_TERMS=" + terms)
+            library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_MESSAGES=OFF", "-DFDCG_WITH_FRICTION_TERMS=" + terms)
             self.weigh("cortex-m7 -Os, f32" + what, "arm-none-eabi-size", library, **weights)
+
+
+class Parts(WeightCase):
+    """A program links the parts of the runtime that it uses and no others, with no help from the linker's options."""
+
+    PROGRAMS = ("one_sphere", "one_graph")
+    # Bytes of code and constants, the start of the program and the C library included.
+    X86 = {"one_sphere": 24 * KB, "one_graph": 160 * KB}
+    M7 = {"one_sphere": 12 * KB, "one_graph": 48 * KB}
+
+    def embedded(self, *options):
+        """The folder with block.h and block.c."""
+        graph = self.path("block.fdcg")
+        self.fdcg("compile", str(RUNTIME / "examples" / "cube.obj"), "-q", "--precision", "f32", "-o", graph)
+        self.run_program("cmake", f"-DINPUT={graph}", f"-DOUTPUT={self.path('block.c')}", "-DSYMBOL=block", "-P",
+                         str(ROOT / "cmake" / "FdcgEmbed.cmake"))
+        return str(self.folder)
+
+    def sources(self, program):
+        return [str(PARTS / (program + ".c")), *([self.path("block.c")] if program == "one_graph" else [])]
+
+    def text(self, tool, program):
+        return int(self.run_program(tool, program).stdout.decode().splitlines()[1].split()[0])
+
+    def test_x86_64(self):
+        library, folder = self.library("both"), self.embedded()
+        for name in self.PROGRAMS:
+            program, link_map = self.path(name), self.path(name + ".map")
+            self.run_program("cc", *C, "-O2", "-I", str(RUNTIME / "include"), "-I", folder, *self.sources(name), library, "-lm",
+                             f"-Wl,-Map={link_map}", "-o", program)
+            self.run_program(program)
+            self.assert_links_alone("nm", program, link_map)
+            text = self.text("size", program)
+            print(f"x86-64, f64 and f32: {name}: {text} bytes of code and constants")
+            self.assertLess(text, self.X86[name])
+
+    BY_NUMBER = """
+#include <stdio.h>
+#include <string.h>
+#include "fdcg/surface.h"
+int main(void) {
+  const double outside_m[3] = {0, 0, 0.06}, inside_m[3] = {0, 0, 0.04};
+  const fdcg_params params = fdcg_make_params();
+  fdcg_contact contact = {0};
+  fdcg_result felt;
+  fdcg_error error;
+  fdcg_surface ball;
+  double normal[3];
+  MAKE
+  ball.kind = FDCG_SURFACE_SPHERE;
+  ball.radius_m = 0.05;
+  printf("%d ", (int)fdcg_check_surface(&ball, &error));
+  fdcg_surface_step(&ball, &params, &contact, outside_m, &felt);
+  fdcg_surface_step(&ball, &params, &contact, inside_m, &felt);
+  fdcg_surface_get_normal(&ball, &felt, normal);
+  printf("%u %.0f %.0f %s\\n", felt.state, felt.force_n[2], normal[2], error.message);
+  return 0;
+}
+"""
+
+    def test_a_kind_by_number(self):
+        library = self.library("both")
+        for name, make, expected in (("init", "fdcg_surface_init(&ball, sizeof ball);", "0 1 10 1"),
+                                     ("make", "ball = fdcg_make_surface(FDCG_SURFACE_SPHERE, 0.05, 0);", "0 1 10 1"),
+                                     ("plain", "memset(&ball, 0, sizeof ball); ball.struct_bytes = sizeof ball;",
+                                      r"1 0 0 0 surface\.kind is 1, which this program does not link; start from")):
+            program = self.path(name)
+            source = self.write(name + ".c", self.BY_NUMBER.replace("MAKE", make))
+            self.run_program("cc", *C, "-I", str(RUNTIME / "include"), source, library, "-lm", "-o", program)
+            self.assertRegex(self.run_program(program).stdout.decode(), "^" + expected)
+            objects = self.run_program("nm", "--defined-only", program).stdout
+            self.assertEqual(name != "plain", b"step_torus" in objects)
+
+    def test_cortex_m7(self):
+        self.need("arm-none-eabi-g++", "arm-none-eabi-size")
+        library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_MESSAGES=OFF",
+                                     "-DFDCG_WITH_FRICTION_TERMS=OFF")
+        folder = self.embedded()
+        for name in self.PROGRAMS:
+            for options in ((), ("-Wl,--gc-sections",)):
+                link_map = self.path(name + ".map")
+                program = self.firmware("cortex-m7", library, *self.sources(name), flags=["-I", folder],
+                                        link=[*options, f"-Wl,-Map={link_map}"])
+                self.assert_links_alone("arm-none-eabi-nm", program, link_map)
+                text = self.text("arm-none-eabi-size", program)
+                print(f"cortex-m7 -Os, f32: {name} {' '.join(options)}: {text} bytes of code and constants")
+                self.assertLess(text, self.M7[name])
 
 
 class StepCost(WeightCase):
@@ -201,7 +291,7 @@ int main(int argc, char** argv) {
 """
 
     def test_a_finger_has_a_material_without_terms_too(self):
-        library = self.library("no-terms", "-DFDCG_WITH_TERMS=OFF")
+        library = self.library("no-terms", "-DFDCG_WITH_FRICTION_TERMS=OFF")
         program, graph = self.path("finger-program"), self.path("finger.fdcg")
         self.run_program("cc", "-std=c11", "-I", str(RUNTIME / "include"), self.write("finger.c", self.FINGER), library, "-lm", "-o", program)
         self.fdcg("compile", str(ROOT / "testdata" / "meshes" / "good" / "cube_quads.off"), "-q", "-o", graph)

@@ -20,14 +20,15 @@ function(fdcg_in_tier tier)
   endif()
 endfunction()
 
-# Code of tests is compiled once and mostly waits for the library: beyond -O1 a release build would only take longer.
-set(fdcg_test_level $<$<CONFIG:Release>:-O1>)
+# Code of tests mostly waits for the library: optimised it would only take longer to compile. What computes itself is at -O1.
+set(fdcg_test_level $<$<CONFIG:Release>:-O0>)
+set(fdcg_computing_level $<$<CONFIG:Release>:-O1>)
 
-# fdcg_test(NAME TIER tier SOURCES ... LIBRARIES ... [INCLUDES folder...] [DEFINITIONS ...] [TIMEOUT seconds] [OWN_HEADERS]): one
-# Catch2 program, each test case a CTest test. OWN_HEADERS: its flags differ from the others', so that it cannot share their
-# precompiled header.
+# fdcg_test(NAME TIER tier SOURCES ... LIBRARIES ... [INCLUDES folder...] [DEFINITIONS ...] [TIMEOUT seconds] [COMPUTES]
+# [OWN_HEADERS]): one Catch2 program, each test case a CTest test. COMPUTES: it is to be optimised. OWN_HEADERS: so too, and its
+# flags differ from the others', so that it cannot share their precompiled header.
 function(fdcg_test name)
-  cmake_parse_arguments(arg "OWN_HEADERS" "TIER;TIMEOUT" "SOURCES;LIBRARIES;INCLUDES;DEFINITIONS" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTES;OWN_HEADERS" "TIER;TIMEOUT" "SOURCES;LIBRARIES;INCLUDES;DEFINITIONS" ${ARGN})
   if(NOT arg_TIER)
     message(FATAL_ERROR "fdcg: test ${name} has no tier; the tiers are ${fdcg_tiers}")
   endif()
@@ -37,7 +38,9 @@ function(fdcg_test name)
   target_include_directories(${target} PRIVATE ${arg_INCLUDES})
   target_compile_definitions(${target} PRIVATE ${arg_DEFINITIONS})
   if(arg_OWN_HEADERS)
-    target_compile_options(${target} PRIVATE ${fdcg_test_level})
+    target_compile_options(${target} PRIVATE ${fdcg_computing_level})
+  elseif(arg_COMPUTES)
+    fdcg_precompiled(${target} "${fdcg_computing_level}" REUSE_FROM fdcg_computing_headers)
   else()
     fdcg_precompiled(${target} "${fdcg_test_level}" REUSE_FROM fdcg_test_main)
   endif()

@@ -126,6 +126,55 @@ class Package(ConsumerCase):
         self.assertIn(b"0.2", done.stderr)
 
 
+class Parts(ConsumerCase):
+    """The runtime's parts as components, each installed by itself."""
+
+    NEEDED = {"step": {"step"}, "scene": {"step", "scene"}, "surface": {"step", "scene", "surface"},
+              "deform": {"step", "scene", "deform"}, "body": {"step", "scene", "body"}, "runtime": {"runtime"}}
+
+    def installed(self, *components):
+        prefix = self.path("-".join(components))
+        for component in components:
+            self.run_program("cmake", "--install", BUILD, "--prefix", prefix, "--component", component)
+        return prefix
+
+    def test_a_component_brings_its_library_and_those_that_it_needs(self):
+        for component, needed in self.NEEDED.items():
+            prefix = pathlib.Path(self.installed(component))
+            self.assertEqual({f"libfdcg_{name}.a" for name in needed}, {path.name for path in prefix.glob("**/*.a")})
+            self.assertTrue((prefix / "include" / "fdcg" / "fdcg.h").exists(), component)
+            self.assertFalse((prefix / "bin").exists(), component)
+
+    def test_the_parts_are_all_of_the_runtime_and_share_nothing(self):
+        def objects(library):
+            return self.run_program("ar", "t", os.path.join(BUILD, "runtime", f"libfdcg_{library}.a")).stdout.decode().split()
+        parts = [name for part in self.NEEDED if part != "runtime" for name in objects(part)]
+        self.assertEqual(sorted(objects("runtime")), sorted(parts))
+
+    def test_programs_link_the_part_that_they_use(self):
+        prefix, folder = self.installed("surface"), self.path("build")
+        self.configure(self.copied("parts"), folder, f"-DFDCG_EXECUTABLE={self.prefix}/bin/fdcg", prefix=prefix)
+        self.build(folder)
+        for name in ("one_sphere", "one_graph"):
+            program = os.path.join(folder, name)
+            self.run_program(program)
+            self.assert_links_alone("nm", program, program + ".map")
+
+    def test_a_part_that_is_not_installed_is_named(self):
+        done = self.configure(self.copied("parts"), self.path("build"), f"-DFDCG_EXECUTABLE={self.prefix}/bin/fdcg", code=1,
+                              prefix=self.installed("step"))
+        self.assertIn(b"no component 'surface'", b" ".join(done.stderr.split()))
+
+    def test_pkg_config_names_a_part(self):
+        self.need("pkg-config")
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(next(pathlib.Path(self.installed("surface")).glob("**/pkgconfig")))}
+        flags = self.run_program("pkg-config", "--cflags", "--libs", "fdcg-surface", env=environment).stdout.decode().split()
+        link_map = self.path("one_sphere.map")
+        self.run_program("cc", *C, str(CONSUMER / "parts" / "one_sphere.c"), *flags, f"-Wl,-Map={link_map}", "-o", self.path("program"))
+        self.run_program(self.path("program"))
+        self.assert_links_alone("nm", self.path("program"), link_map)
+
+
 class Rebuild(ConsumerCase):
     """A graph is as new as its mesh, what the mesh refers to and the compiler; nothing is baked without need."""
 
@@ -232,7 +281,7 @@ class Firmware(ConsumerCase):
         self.need("arm-none-eabi-gcc", "qemu-system-arm", "ninja")
         for processor, toolchain in (("cortex-m7", "cortex-m7"), ("cortex-m4", "cortex-m4f")):
             prefix, folder = self.path("prefix-" + processor), self.path("build-" + processor)
-            library = self.cross_runtime(toolchain, "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_TERMS=OFF")
+            library = self.cross_runtime(toolchain, "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_FRICTION_TERMS=OFF")
             self.run_program("cmake", "--install", os.path.dirname(os.path.dirname(library)), "--prefix", prefix)
             self.configure(FIRMWARE, folder, f"--toolchain={TOOLCHAINS / (toolchain + '.cmake')}", prefix=prefix,
                            environment={**os.environ, "PATH": os.path.join(self.prefix, "bin") + ":/usr/bin:/bin"})

@@ -142,7 +142,7 @@ class BadMeshes(Case):
         ):
             self.refused(name + ".gltf" if name == "file" else name + ".glb",
                          json.dumps(document) if name == "file" else glb(document), *words)
-        self.refused("cut.gltf", json.dumps(GLTF)[:40], "JSON", "40")
+        self.refused("cut.gltf", json.dumps(GLTF)[:40], "truncated", "JSON", "column 41")
         self.refused("none.gltf", '{"asset": {}}', "version")
         self.found("index.glb", glb(binary=POINTS + struct.pack("<3H", 0, 1, 9)), "index-out-of-range")
 

@@ -328,28 +328,28 @@ class Input(GraspCase):
             ("x,y,z\n1,2,\n", ("line 2", "z ''")),
             ("x,y,z\n", ("no contacts",)),
             ("x,y,z,nx,ny,nz\n1,0,0,0,0,0\n", ("contact 0", "no direction")),
-            ("[]", ("no contacts",)),
-            ("[1]", ("contact 0",)),
+            ("[]", ("contacts is a list of 0", "1 to 1000")),
+            ("[1]", ("contacts[0] is 1", "an object")),
             ("{\"points\": []}", ("points", "contacts")),
-            ("{\"contacts\": 3}", ("contacts",)),
-            ("[{\"point\": [1, 2]}]", ("contact 0", "point")),
-            ("[{\"point\": [1, 2, \"3\"]}]", ("contact 0", "point")),
-            ("[{\"mu\": 1}]", ("contact 0", "point")),
-            ("[{\"point\": [1, 2, 3], \"nu\": 1}]", ("nu", "'mu'")),
-            ("[{\"point\": [1, 2, 3], \"name\": 1}]", ("name", "text")),
+            ("{\"contacts\": 3}", ("contacts is 3", "a list")),
+            ("[{\"point\": [1, 2]}]", ("contacts[0].point is a list of 2", "3 numbers")),
+            ("[{\"point\": [1, 2, \"3\"]}]", ("contacts[0].point[2] is \"3\"",)),
+            ("[{\"mu\": 1}]", ("contacts[0].point is missing",)),
+            ("[{\"point\": [1, 2, 3], \"nu\": 1}]", ("contacts[0] has 'nu'", "did you mean 'mu'")),
+            ("[{\"point\": [1, 2, 3], \"name\": 1}]", ("contacts[0].name is 1", "text")),
             ("[{\"point\": [1, 2, 3]}", ("no JSON: line 1, column 22",)),
-            ("{\"contacts\": [{\"point\": [1, 0, 0]}], \"contacts\": []}", ('"contacts" stands twice',)),
-            ("[{\"point\": [1, 0, 0], \"mu\": 1, \"mu\": 2}]", ('"mu" stands twice',)),
+            ("{\"contacts\": [{\"point\": [1, 0, 0]}], \"contacts\": []}", ("'contacts' stands twice",)),
+            ("[{\"point\": [1, 0, 0], \"mu\": 1, \"mu\": 2}]", ("'mu' stands twice",)),
             (b"[{\"n\xff\": 1}]", ("line 1, column 5", "\ufffd")),
             ("[{\"point\": [1, 0, 1e999]}]", ("1e999",)),
-            ("[" * 300000 + "]" * 300000, ("contact 0", "an array")),
-            ("[{\"point\": [1, 0, 0], \"mu\": 200}]", ("contact 0: mu is 200, allowed 0 to 100",)),
-            ("x,y,z,mu\n1,0,0,-1\n", ("line 2: mu is -1, allowed 0 to 100",)),
-            ("x,y,z,cap\n1,0,0,0\n", ("line 2: cap is 0, allowed 1e-100 to 1e100 N",)),
+            ("[" * 300000 + "]" * 300000, ("nests deeper than 16 levels",)),
+            ("[{\"point\": [1, 0, 0], \"mu\": 200}]", ("contacts[0].mu is 200; it must be a number from 0 to 100",)),
+            ("x,y,z,mu\n1,0,0,-1\n", ("line 2: mu is -1; it must be a number from 0 to 100",)),
+            ("x,y,z,cap\n1,0,0,0\n", ("line 2: cap is 0; it must be a number from 1e-100 to 1e+100 N",)),
             ("x,y,z,cap\n1,0,0,1e101\n", ("cap is 1e+101",)),
             ("x,y,z,torsion\n1,0,0,-1\n", ("line 2: torsion is -1",)),
             ("x,y,z,torsion\n1,0,0,1e9\n", ("contact 0: torsion is 1e+09", "100 torque scales")),
-            ("x,y,z\n1,0,2e12\n", ("line 2: the point's coordinate is 2e+12",)),
+            ("x,y,z\n1,0,2e12\n", ("line 2: z is 2e+12; it must be a number from -1e+12 to 1e+12 m",)),
             ("x,y,z,nx,ny,nz\n1,0,0,1e-200,0,0\n", ("no direction",)),
             ("x;y;z\n1;0;0\n", ("'x;y;z'", "commas")),
             ("x,y,z\n" + 1001 * "1,0,0\n", ("1001 contacts", "1000")),
@@ -362,7 +362,7 @@ class Input(GraspCase):
                 self.assertNotIn(b"json.exception", done.stderr)
                 self.assertNotIn(b"while parsing", done.stderr)
                 self.assertEqual(b"", done.stdout)
-        for path, words in ((self.path("none"), "No such file"), (str(self.folder), "Is a directory"), ("", "No such file")):
+        for path, words in ((self.path("none"), "does not exist"), (str(self.folder), "is a directory"), ("", "does not exist")):
             self.assert_one_line(self.fdcg("grasp", self.cube, "--contacts", path, "--mu", "1", code=3), path, words)
 
     def test_one_contact_is_told_as_one(self):

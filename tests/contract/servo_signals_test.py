@@ -141,7 +141,7 @@ class SignalCase(Case):
                 time.sleep(0.001)
         self.fail(f"no force in a minute; the last reports: {node.reports[-3:]}")
 
-    def check_last_word(self, reports):
+    def check_zero_force_sent(self, reports):
         """After the last force only zeros that the device takes for new, then the safe stop."""
         self.assertEqual(SAFE_STOP, reports[-1])
         outputs = [report for report in reports if report != SAFE_STOP]
@@ -161,7 +161,7 @@ class Endings(SignalCase):
                 process.send_signal(number)
                 process.wait(timeout=PATIENCE_S)
                 self.assertEqual(-number, process.returncode)
-                self.check_last_word(node.drain())
+                self.check_zero_force_sent(node.drain())
 
     def test_a_crash_leaves_zero_force_and_dies_of_its_signal(self):
         self.check_signals(signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL, signal.SIGTRAP,
@@ -179,7 +179,7 @@ class Endings(SignalCase):
                 process.send_signal(number)
                 process.wait(timeout=PATIENCE_S)
                 self.assertIn(process.returncode, (0, 1))
-                self.check_last_word(node.drain())
+                self.check_zero_force_sent(node.drain())
 
     def test_a_signal_that_was_ignored_before_stays_ignored(self):
         process, node = self.started(ignoring_quit)
@@ -217,7 +217,7 @@ class Stops(SignalCase):
         self.press(process, node)
         process.send_signal(signal.SIGTERM)
         process.wait(timeout=PATIENCE_S)
-        self.check_last_word(node.drain())
+        self.check_zero_force_sent(node.drain())
 
 
 if __name__ == "__main__":

@@ -306,12 +306,12 @@ class Settings(ValidateCase):
         mesh = self.write("cube.off", CUBE)
         for text, words in (
                 ('{"fail_on": "error"}', ("'fail_on'", "did you mean 'fail-on'", "allow, baseline")), ('{"severty": {}}', ("'severity'",)),
-                ('{"fail-on": "always"}', ("always", "error, warning, note, never")), ('{"fail-on": 3}', ("'fail-on'", "3")),
-                ('{"allow": "boundary-edge"}', ("list",)), ('{"allow": ["boundry-edge"]}', ("did you mean 'boundary-edge'",)),
-                ('{"allow": ["non-manifold-edge"]}', ("cannot be allowed",)), ('{"severity": {"boundary-edge": "fatal"}}', ("fatal", "off")),
+                ('{"fail-on": "always"}', ("always", "error, warning, note, never")), ('{"fail-on": 3}', ("fail-on is 3", "a text")),
+                ('{"allow": "boundary-edge"}', ("allow is", "a list")), ('{"allow": ["boundry-edge"]}', ("allow[0]: ", "did you mean 'boundary-edge'",)),
+                ('{"allow": ["non-manifold-edge"]}', ("cannot be allowed",)), ('{"severity": {"boundary-edge": "fatal"}}', ("severity.boundary-edge: 'fatal'", "off")),
                 ('{"severity": {"nonsense": "off"}}', ("no rule",)), ('{"severity": {"unreadable": "off"}}', ("exit code 3",)),
-                ('{"severity": []}', ("object",)), ('{"weld": -1}', ("weld", "-1")), ('{"weld": "some"}', ("some",)),
-                ('{"baseline": ""}', ("baseline",)), ('{"allow": [], "allow": []}', ("twice",)), ('[]', ("object",)), ('{', ("no JSON",)),
+                ('{"severity": []}', ("object",)), ('{"weld": -1}', ("weld is -1", "above 0")), ('{"weld": "some"}', ('weld is "some"', "exact")),
+                ('{"baseline": ""}', ('baseline is ""',)), ('{"allow": [], "allow": []}', ("twice",)), ('[]', ("object",)), ('{', ("no JSON",)),
                 ("", ("no JSON",))):
             with self.subTest(text=text):
                 self.write(CONFIG, text)

@@ -2,9 +2,10 @@
 # The tests of faults on a runtime and a device host that are built with a sanitizer: all sources once more for each.
 function(fdcg_device_sanitized name flags)
   set(sources)
-  foreach(library fdcg_runtime fdcg_device)
+  foreach(library fdcg_runtime fdcg_json fdcg_device)
     get_target_property(folder ${library} SOURCE_DIR)
     get_target_property(files ${library} SOURCES)
+    list(FILTER files EXCLUDE REGEX TARGET_OBJECTS) # fdcg_json's as they are built for the library
     foreach(file ${files})
       cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${folder})
       list(APPEND sources ${file})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes without any defect, to plant defects in: what is known of them by construction stands beside them.
+// Meshes without any defect, to plant defects in, with the properties known by construction.
 #pragma once
 
 #include <array>

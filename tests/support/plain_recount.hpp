@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A second count of the rules on meshes of any size and coordinates, by definition: maps and searches over edges, CGAL's exact
-// predicates for what is geometry. n log n, but for inside-out (rays against every face) and t-junction (every boundary edge
+// An independent count of the rules on meshes of any size and coordinates, by definition: maps and searches over edges, CGAL's
+// exact predicates for geometry. n log n, except inside-out (rays against every face) and t-junction (every boundary edge
 // against every vertex).
 #pragma once
 

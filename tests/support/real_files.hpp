@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files of other people, where they are at hand: the folder that FDCG_REAL_MESHES names, else ../shared/meshes beside the
-// project; Debian's assimp-testmodels; the data of its libcgal-demo as the build unpacked it. A test without
-// any counts as skipped.
+// Third-party mesh files, if available: the folder in FDCG_REAL_MESHES, else ../shared/meshes beside the project; Debian's
+// assimp-testmodels; the data of its libcgal-demo as unpacked by the build. A test without any counts as skipped.
 #pragma once
 
 #include <algorithm>

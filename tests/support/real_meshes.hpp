@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real meshes, where they are at hand: the folder that FDCG_REAL_MESHES names, else ../shared/meshes beside the project, else
-// the small ones of Debian's libcgal-demo as the build unpacked them (FDCG_CGAL_DATA). A test without any counts as skipped.
+// Real meshes, if available: the folder in FDCG_REAL_MESHES, else ../shared/meshes beside the project, else the small ones of
+// Debian's libcgal-demo as unpacked by the build (FDCG_CGAL_DATA). A test without any counts as skipped.
 #pragma once
 
 #include <algorithm>

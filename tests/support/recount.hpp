@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A second count of every rule, by definition and without cleverness: maps, sets and searches over all pairs, integer
-// arithmetic for what is geometry. For small meshes whose coordinates are small integers.
+// A brute-force count of every rule by its definition: maps, sets and searches over all pairs, integer arithmetic for geometry.
+// For small meshes whose coordinates are small integers.
 #pragma once
 
 #include <algorithm>

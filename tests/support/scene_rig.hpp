@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 #include "random.hpp"
 
 namespace fdcg::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// FDCG bytes in memory as aligned as a mapped file, and a way to make damaged ones pass their checksums, so that a test
-// reaches the checks behind them.
+// FDCG bytes in memory with the alignment of a mapped file, and recomputed checksums for damaged ones, so that a test reaches
+// the checks after the checksums.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What defects have in common; each kind of its own is in seeder_kinds.cpp.
+// Shared by all kinds of defects; the kinds are in seeder_kinds.cpp.
 #include "seeder.hpp"
 
 #include <algorithm>
@@ -313,7 +313,7 @@ void Seeder::number_file(SeededMesh& out) {
     vertex_number_[v] = first_at[place_[v]];
 }
 
-// Shells that came to no harm enclose volume; a shell is at an even depth if an even number of those lie around it.
+// Undamaged shells enclose volume; a shell is at an even depth if it is inside an even number of them.
 void Seeder::find_inside_out(SeededMesh& out) const {
   std::vector<std::uint32_t> first_of(clean_.shells.size(), kNone);
   for (Face f = 0; f < loops_.size(); ++f) {

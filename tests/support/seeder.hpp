@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plants defects in a clean mesh and says what a validator must find, by what is known of the clean mesh around each of them.
-// Nothing here looks at the finished mesh: the predictions are arguments about single defects, which are kept so far apart that
-// they do not interact.
+// Plants defects in a clean mesh and predicts the findings of a validator from the known surroundings of each defect. The
+// finished mesh is not analysed: predictions follow from single defects, which are kept so far apart that they do not interact.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +17,7 @@
 
 namespace fdcg::test {
 
-// Where something is found, in the file's own numbers: its faces and its vertices (an edge has two), ascending.
+// The place of a finding by the file's indices: its faces and its vertices (an edge has two), ascending.
 struct Place {
   std::vector<std::uint32_t> faces, vertices;
   auto operator<=>(const Place&) const = default;

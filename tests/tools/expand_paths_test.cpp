@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "catch.hpp"
-#include "nearest.hpp"
 
 using namespace fdcg::tools;
 namespace fs = std::filesystem;
@@ -101,11 +100,4 @@ TEST_CASE("folders are searched for meshes, whatever the case of their endings")
 TEST_CASE("what gives no file says so") {
   const Folder folder;
   CHECK(expanded({"empty", "*.drc", "no/**/x.stl"}) == Paths{"empty!", "*.drc!", "no/**/x.stl!"});
-}
-
-TEST_CASE("a misspelt word leads to the nearest one, if there is a near one") {
-  CHECK(nearest("formt", {"full", "format", "fail-on"}) == "format");
-  CHECK(did_you_mean("--formt", {"--full", "--format"}) == "; did you mean '--format'?");
-  CHECK(did_you_mean("xyzzy", {"--full", "--format"}).empty());
-  CHECK(did_you_mean("x", {}).empty());
 }

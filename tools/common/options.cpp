@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cstdio>
 
-#include "nearest.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "help_page.hpp"
 #include "manuals.hpp"
-#include "nearest.hpp"
 #include "options.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "../common/one_line.hpp"
 #include "fdcg_commands.hpp"
-#include "json_words.hpp"
+#include "shared/json/reader.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -73,7 +73,7 @@ class ReportReader {
     return leaf();
   }
   bool parse_error(std::size_t, const std::string&, const Json::exception& exception) {
-    return stop("is no JSON: " + plain_complaint(exception));
+    return stop("is no JSON: " + json::plain_complaint(exception.what()));
   }
 
  private:

@@ -4,10 +4,10 @@
 #include <cstdio>
 
 #include "../common/atomic_file.hpp"
-#include "../common/nearest.hpp"
 #include "../common/options.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

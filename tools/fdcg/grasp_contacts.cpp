@@ -1,44 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grasp_contacts.hpp"
 
-#include <cerrno>
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
+#include <iostream>
+#include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "../common/nearest.hpp"
-#include "../common/one_line.hpp"
 #include "fdcg/grasp.hpp"
 #include "fdcg_commands.hpp"
-#include "json_words.hpp"
 #include "mesh_options.hpp"
+#include "shared/json/reader.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {
 
-using Json = nlohmann::json;
 using Contacts = std::vector<NamedContact>;
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
-// Says what is wrong with which contact; caught where the file's name is known.
-struct Wrong {
-  std::string message;
-};
-
 // What the file holds, short enough for a message that says more.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 40;
-  return one_line(text, kLongest);
+  return printable(text, kLongest);
 }
 
-// The finite number that a text is, or a message.
-double finite_number(const std::string& text, const std::string& what) {
+// The number that a field is, or a message.
+double number_of(const std::string& field, const std::string& what, const json::NumberRange& range = {}) {
   const auto value =
-      parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
-  if (!value) throw Wrong{what + " '" + shown(text) + "' is no finite number"};
+      parse_number_between(field, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+  if (!value) throw json::Refusal{what + " '" + shown(field) + "' is no finite number"};
+  if (!range.holds(*value)) throw json::Refusal{what + " is " + shown_number(*value) + "; it must be " + range.text()};
   return *value;
 }
 
@@ -46,89 +39,48 @@ void set_normal(NamedContact& contact, const bake::Vec3& normal) {
   const double length = std::hypot(normal.x, normal.y, normal.z);
   constexpr double kLeast = 1e-100;  // shorter ones have lost digits
   if (!(length >= kLeast && std::isfinite(length)))
-    throw Wrong{contact.name + ": the normal has no direction; it points into the object"};
+    throw json::Refusal{contact.name + ": the normal has no direction; it points into the object"};
   contact.inward = bake::Vec3{normal.x / length, normal.y / length, normal.z / length};
 }
 
-// What a file says of a contact can be what a contact has; what it cannot is told with its place.
-void check_numbers(const NamedContact& contact, const std::string& where) {
-  const auto refuse = [&](const char* name, double value, const std::string& allowed) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.9g", value);
-    throw Wrong{where + name + " is " + number + ", allowed " + allowed};
-  };
-  if (contact.mu && !(*contact.mu >= 0 && *contact.mu <= grasp::kMostMu)) refuse("mu", *contact.mu, "0 to 100");
-  if (contact.torsion_m && !(*contact.torsion_m >= 0)) refuse("torsion", *contact.torsion_m, "0 m and more");
-  if (contact.cap_n && !(*contact.cap_n >= grasp::kLeastForce_n && *contact.cap_n <= grasp::kMostForce_n))
-    refuse("cap", *contact.cap_n, "1e-100 to 1e100 N; leave it out where there is none");
-  for (const double x : {contact.point_m.x, contact.point_m.y, contact.point_m.z})
-    if (!(std::abs(x) <= grasp::kFarthest_m)) refuse("the point's coordinate", x, "-1e12 to 1e12 m");
-}
-
-// As it stands in the file; of lists and objects that it is one: printing those within one another takes as many calls.
-std::string text_of(const Json& value) {
-  if (value.is_structured()) return "an " + std::string(value.type_name());
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+// What a file can say of a contact.
+constexpr json::NumberRange kPlaces{-grasp::kFarthest_m, grasp::kFarthest_m, true, "m"};
+constexpr json::NumberRange kMus{0, grasp::kMostMu};
+constexpr json::NumberRange kTorsions{0, std::numeric_limits<double>::max(), true, "m"};
+constexpr json::NumberRange kCaps{grasp::kLeastForce_n, grasp::kMostForce_n, true, "N; leave it out where there is none"};
 
 // ---- JSON ----------------------------------------------------------------------------------------------------------------
 
-double number_of(const Json& value, const std::string& what) {
-  if (!value.is_number() || !std::isfinite(value.get<double>()))
-    throw Wrong{what + " is no finite number: " + shown(text_of(value))};
-  return value.get<double>();
+bake::Vec3 vector_of(const json::Value& value, const json::NumberRange& range) {
+  double x[3];
+  value.numbers(x, 3, range);
+  return {x[0], x[1], x[2]};
 }
 
-bake::Vec3 vector_of(const Json& value, const std::string& what) {
-  if (!value.is_array() || value.size() != 3) throw Wrong{what + " is not [x, y, z]: " + shown(text_of(value))};
-  return {number_of(value[0], what), number_of(value[1], what), number_of(value[2], what)};
+std::optional<double> number_in(const json::Value& value, const json::NumberRange& range) {
+  return value ? std::optional(value.number(range)) : std::nullopt;
 }
 
-NamedContact contact_of(const Json& json, std::size_t index) {
+NamedContact contact_of(const json::Value& json, std::size_t index) {
+  json.allow_only({"point", "normal", "mu", "torsion", "cap", "name"});
   NamedContact contact;
-  contact.name = "contact " + std::to_string(index);
-  const std::string where = contact.name + ": ";
-  if (!json.is_object()) throw Wrong{where + "is no object: " + shown(text_of(json))};
-  if (!json.contains("point")) throw Wrong{where + "has no \"point\": [x, y, z] in metres"};
-  std::optional<bake::Vec3> normal;
-  for (const auto& [key, value] : json.items()) {
-    const std::string what = where + "\"" + shown(key) + "\"";
-    if (key == "point")
-      contact.point_m = vector_of(value, what);
-    else if (key == "normal")
-      normal = vector_of(value, what);
-    else if (key == "mu")
-      contact.mu = number_of(value, what);
-    else if (key == "torsion")
-      contact.torsion_m = number_of(value, what);
-    else if (key == "cap")
-      contact.cap_n = number_of(value, what);
-    else if (key == "name" && value.is_string())
-      contact.name = one_line(value.get<std::string>());
-    else
-      throw Wrong{what + (key == "name" ? " is no text" : " is no member of a contact") +
-                  (key == "name" ? "" : did_you_mean(key, {"point", "normal", "mu", "torsion", "cap", "name"}))};
-  }
-  if (normal) set_normal(contact, *normal);
-  check_numbers(contact, where);
+  const json::Value name = json["name"];
+  contact.name = name ? one_line(name.string()) : "contact " + std::to_string(index);
+  contact.point_m = vector_of(json["point"], kPlaces);
+  if (const json::Value normal = json["normal"]) set_normal(contact, vector_of(normal, {}));
+  contact.mu = number_in(json["mu"], kMus);
+  contact.torsion_m = number_in(json["torsion"], kTorsions);
+  contact.cap_n = number_in(json["cap"], kCaps);
   return contact;
 }
 
 Contacts parse_json(const std::string& text) {
-  DuplicateKeys duplicates;
-  const Json document = Json::parse(text, std::ref(duplicates));
-  if (!duplicates.duplicate.empty())
-    throw Wrong{"\"" + shown(duplicates.duplicate) + "\" stands twice in one object; keep one"};
-  const bool is_object = document.is_object();
-  if (is_object) {
-    for (const auto& [key, value] : document.items()) {
-      if (key != "contacts")
-        throw Wrong{"\"" + shown(key) + "\" is no member of a contacts file" + did_you_mean(key, {"contacts"})};
-    }
-    if (!document.contains("contacts") || !document["contacts"].is_array()) throw Wrong{"there is no array \"contacts\""};
-  }
+  const json::Document document(text, {kMostBytes});
+  const json::Value whole = document.root();
+  if (whole.is_object()) whole.allow_only({"contacts"});
+  constexpr int kMost = static_cast<int>(grasp::kMostContacts);
   Contacts contacts;
-  for (const Json& one : is_object ? document["contacts"] : document)
+  for (const json::Value& one : (whole.is_object() ? whole["contacts"] : document.root("contacts")).objects(1, kMost))
     contacts.push_back(contact_of(one, contacts.size()));
   return contacts;
 }
@@ -154,15 +106,17 @@ void check_header(const std::vector<std::string>& header) {
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto& column = header[i];
     if (std::find(known.begin(), known.end(), column) == known.end())
-      throw Wrong{"line 1: '" + shown(column) + "' is no column of a contacts file" +
-                  (column.find(';') != std::string::npos ? "; columns are separated by commas" : did_you_mean(column, known))};
+      throw json::Refusal{
+          "line 1: '" + shown(column) + "' is no column of a contacts file" +
+          (column.find(';') != std::string::npos ? "; columns are separated by commas" : did_you_mean(column, known))};
     if (std::find(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(i), column) !=
         header.begin() + static_cast<std::ptrdiff_t>(i))
-      throw Wrong{"line 1: the column '" + column + "' comes twice"};
+      throw json::Refusal{"line 1: the column '" + column + "' comes twice"};
   }
   const auto has = [&](const char* column) { return std::find(header.begin(), header.end(), column) != header.end(); };
-  if (!has("x") || !has("y") || !has("z")) throw Wrong{"line 1: the header names x, y, z and more (metres), not these"};
-  if (has("nx") != has("ny") || has("nx") != has("nz")) throw Wrong{"line 1: of nx, ny, nz either all are there or none"};
+  if (!has("x") || !has("y") || !has("z")) throw json::Refusal{"line 1: the header names x, y, z and more (metres), not these"};
+  if (has("nx") != has("ny") || has("nx") != has("nz"))
+    throw json::Refusal{"line 1: of nx, ny, nz either all are there or none"};
 }
 
 NamedContact contact_of_line(const std::vector<std::string>& header, const std::vector<std::string>& fields,
@@ -170,7 +124,7 @@ NamedContact contact_of_line(const std::vector<std::string>& header, const std::
   NamedContact contact;
   contact.name = "contact " + std::to_string(index);
   if (fields.size() != header.size())
-    throw Wrong{where + std::to_string(fields.size()) + " fields, the header has " + std::to_string(header.size())};
+    throw json::Refusal{where + std::to_string(fields.size()) + " fields, the header has " + std::to_string(header.size())};
   bake::Vec3 normal{};
   bool has_normal = false;
   for (std::size_t i = 0; i < header.size(); ++i) {
@@ -181,19 +135,18 @@ NamedContact contact_of_line(const std::vector<std::string>& header, const std::
       contact.name = one_line(field);
       continue;
     }
-    const double value = finite_number(field, where + column);
-    if (column == "x") contact.point_m.x = value;
-    if (column == "y") contact.point_m.y = value;
-    if (column == "z") contact.point_m.z = value;
-    if (column == "mu") contact.mu = value;
-    if (column == "torsion") contact.torsion_m = value;
-    if (column == "cap") contact.cap_n = value;
-    if (column == "nx") normal.x = value, has_normal = true;
-    if (column == "ny") normal.y = value, has_normal = true;
-    if (column == "nz") normal.z = value, has_normal = true;
+    const auto number = [&](const json::NumberRange& range) { return number_of(field, where + column, range); };
+    if (column == "x") contact.point_m.x = number(kPlaces);
+    if (column == "y") contact.point_m.y = number(kPlaces);
+    if (column == "z") contact.point_m.z = number(kPlaces);
+    if (column == "mu") contact.mu = number(kMus);
+    if (column == "torsion") contact.torsion_m = number(kTorsions);
+    if (column == "cap") contact.cap_n = number(kCaps);
+    if (column == "nx") normal.x = number({}), has_normal = true;
+    if (column == "ny") normal.y = number({}), has_normal = true;
+    if (column == "nz") normal.z = number({}), has_normal = true;
   }
   if (has_normal) set_normal(contact, normal);
-  check_numbers(contact, where);
   return contact;
 }
 
@@ -223,8 +176,8 @@ void refuse_twins(const Contacts& contacts) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const auto [other, is_new] = first.emplace(contacts[i].name, i);
     if (!is_new)
-      throw Wrong{"contacts " + std::to_string(other->second) + " and " + std::to_string(i) + " are both called '" +
-                  shown(contacts[i].name) + "'; the report tells contacts by their names: give each its own"};
+      throw json::Refusal{"contacts " + std::to_string(other->second) + " and " + std::to_string(i) + " are both called '" +
+                          shown(contacts[i].name) + "'; the report tells contacts by their names: give each its own"};
   }
 }
 
@@ -235,39 +188,25 @@ bake::Result<Contacts> parse_contacts(const std::string& bytes, const std::strin
   const std::string text = bytes.starts_with(kMark) ? bytes.substr(kMark.size()) : bytes;
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   try {
-    if (first == std::string::npos) throw Wrong{"the file is empty; it lists contacts as JSON or CSV"};
+    if (first == std::string::npos) throw json::Refusal{"the file is empty; it lists contacts as JSON or CSV"};
     const bool is_json = text[first] == '{' || text[first] == '[';
     Contacts contacts = is_json ? parse_json(text) : parse_csv(text);
-    if (contacts.empty()) throw Wrong{"there are no contacts in it"};
+    if (contacts.empty()) throw json::Refusal{"there are no contacts in it"};
     if (contacts.size() > grasp::kMostContacts)
-      throw Wrong{"there are " + std::to_string(contacts.size()) + " contacts; at most " +
-                  std::to_string(grasp::kMostContacts) + " are judged"};
+      throw json::Refusal{"there are " + std::to_string(contacts.size()) + " contacts; at most " +
+                          std::to_string(grasp::kMostContacts) + " are judged"};
     refuse_twins(contacts);
     return contacts;
-  } catch (const Wrong& wrong) {
-    return bake::Failure{kFile, path + ": " + one_line(wrong.message)};
-  } catch (const Json::exception& error) {
-    return bake::Failure{kFile, path + ": is no JSON: " + one_line(plain_complaint(error))};
+  } catch (const json::Refusal& refusal) {
+    return bake::Failure{kFile, path + ": " + one_line(refusal.message)};
   }
 }
 
-namespace {
-
-bake::Failure unreadable(const std::string& path, int error_number) {
-  return {kFile, "'" + path + "': " + std::strerror(error_number) + (error_number == EISDIR ? "; name a file in it" : "")};
-}
-
-}  // namespace
-
 bake::Result<Contacts> read_contacts(const std::string& path) {
-  std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-  if (file == nullptr) return unreadable(path, errno);
-  std::string text(kMostBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file));
-  const int error_number = std::ferror(file) != 0 ? errno : 0;
-  if (file != stdin) std::fclose(file);
-  if (error_number != 0) return unreadable(path, error_number);
-  if (text.size() > kMostBytes) return bake::Failure{kFile, path + ": more than 16 MiB is no list of contacts"};
+  std::string text;
+  const std::string trouble =
+      path == "-" ? json::read_text(std::cin, path, kMostBytes, &text) : json::read_text_file(path, kMostBytes, &text);
+  if (!trouble.empty()) return bake::Failure{kFile, trouble};
   return parse_contacts(text, path);
 }
 

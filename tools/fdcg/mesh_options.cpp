@@ -4,9 +4,9 @@
 #include <functional>
 #include <limits>
 
-#include "../common/nearest.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "../common/nearest.hpp"
 #include "fdcg_commands.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {

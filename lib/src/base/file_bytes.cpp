@@ -13,7 +13,7 @@
 namespace fdcg::bake {
 namespace {
 
-// Closes on every way out.
+// Closes the descriptor on every return path.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -36,7 +36,7 @@ std::string error_text(int code) {
   return std::generic_category().message(code);
 }
 
-// 0, or the errno that stopped it.
+// 0 or the errno of the failed call.
 int read_to_end(int fd, std::string& buffer) {
   constexpr std::size_t kChunk = std::size_t{1} << 20;
   std::size_t used = 0;
@@ -62,7 +62,7 @@ Result<FileBytes> FileBytes::open(const std::filesystem::path& path) {
   if (::fstat(file.get(), &status) != 0) return unreadable(path, "cannot be examined: " + error_text(errno));
   if (S_ISDIR(status.st_mode)) return unreadable(path, "is a directory; name a mesh file in it");
   FileBytes result;
-  // Files of the kernel's own say 0 and hold bytes all the same, so that only a positive size is believed.
+  // Files of /proc and /sys report size 0 but have content, so only a positive size is trusted.
   if (S_ISREG(status.st_mode) && status.st_size > 0) {
     int flags = MAP_PRIVATE;
 #ifdef MAP_POPULATE

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file's bytes as one range of memory. The platform's part of the import: file_bytes.cpp is the POSIX one.
+// A file's bytes as one range of memory. The platform-dependent part of the import; file_bytes.cpp implements it for POSIX.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace fdcg::bake {
 // lives; another process that shortens the file meanwhile makes them unreadable, as with every mapping.
 class FileBytes {
  public:
-  // Fails with exit code 3 on a path that does not exist, is a directory or cannot be read. An empty file is no failure here.
+  // Fails with exit code 3 on a path that does not exist, is a directory or cannot be read. An empty file is not a failure.
   static Result<FileBytes> open(const std::filesystem::path& path);
 
   FileBytes() = default;

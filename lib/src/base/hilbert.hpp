@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Hilbert curve in three dimensions (after Skilling, "Programming the Hilbert curve", 2004), as a machine that reads one
-// bit of each coordinate at a time.
+// The Hilbert curve in three dimensions (after Skilling, "Programming the Hilbert curve", 2004), as a finite-state machine that
+// reads one bit of each coordinate at a time.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace fdcg::bake {
 
 namespace hilbert {
 
-// How the cube at hand lies: its axis i is the axis `axis[i]` of the whole, mirrored where `is_flipped[i]`; and whether the
-// curve runs through it backwards.
+// Orientation of the current subcube: its axis i is axis `axis[i]` of the whole cube, mirrored where `is_flipped[i]`; and
+// whether the curve traverses it backwards.
 struct State {
   std::array<unsigned, 3> axis{0, 1, 2};
   std::array<unsigned, 3> is_flipped{0, 0, 0};
@@ -24,11 +24,11 @@ struct State {
 };
 
 struct Step {
-  std::uint8_t digit = 0;  // which eighth along the curve
-  std::uint8_t next = 0;   // the state inside it
+  std::uint8_t digit = 0;  // index of the octant along the curve
+  std::uint8_t next = 0;   // state inside that octant
 };
 
-// From the state, on one bit of each coordinate of the whole (x << 2 | y << 1 | z).
+// The transition from a state for one bit of each coordinate of the whole cube (x << 2 | y << 1 | z).
 constexpr std::pair<unsigned, State> step(State state, unsigned bits) {
   std::array<unsigned, 3> y{};
   for (unsigned i = 0; i < 3; ++i)
@@ -68,8 +68,8 @@ inline constexpr std::array<Step, kStates* 8> kSteps = make_steps();
 
 }  // namespace hilbert
 
-// How far along the curve of 2^bits cells an axis the cell is; each coordinate below 2^bits, bits at most 21. Consecutive
-// positions are neighbouring cells.
+// The cell's position along the curve through 2^bits cells per axis. Each coordinate is below 2^bits; bits is at most 21. Cells
+// at consecutive positions are neighbours.
 [[nodiscard]] inline std::uint64_t hilbert_position(const std::array<std::uint32_t, 3>& x, unsigned bits) {
   std::uint64_t position = 0;
   unsigned state = hilbert::State{}.number();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes JSON (RFC 8259) piece by piece, so that a report of millions of findings need not be in memory.
+// Writes JSON (RFC 8259) incrementally, so that a report of millions of findings need not be held in memory.
 #pragma once
 
 #include <charconv>
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::bake {
 
@@ -18,7 +18,7 @@ class JsonWriter {
  public:
   explicit JsonWriter(std::string& out) : out_(out) {}
 
-  // Items one a line, or all on one; within a container on one line every other is too.
+  // Items one per line, or all on one line; containers inside a one-line container are on that line too.
   enum class Layout { lines, one_line };
   void begin_object(Layout layout = Layout::lines) { begin('{', layout); }
   void end_object() { end('}'); }
@@ -53,7 +53,7 @@ class JsonWriter {
     key(name);
     value(content);
   }
-  // Items that another JsonWriter wrote; none where it is empty.
+  // Appends items written by another JsonWriter; an empty text appends none.
   void splice(std::string_view items) {
     if (items.empty()) return;
     separate();
@@ -81,7 +81,7 @@ class JsonWriter {
     out_ += '\n';
     out_.append(levels_.size(), ' ');
   }
-  // What stands between the item before and the one that comes.
+  // Writes the separator between the previous item and the next one.
   void separate() {
     if (follows_key_ || levels_.empty()) {
       follows_key_ = false;

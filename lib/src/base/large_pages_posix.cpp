@@ -13,7 +13,7 @@ void prefer_large_pages(void* memory, std::size_t bytes) {
   if (bytes < kWorthwhile) return;
   const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + kPage - 1) / kPage * kPage;
   const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / kPage * kPage;
-  (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // a hint: refused is as good as ignored
+  (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // a hint: a failure is ignored
 #else
   (void)memory;
   (void)bytes;

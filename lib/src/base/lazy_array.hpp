@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An array of numbers that start at a default of their own and of which few are ever changed: what is not touched costs
-// address space only, so that a stage whose work is local does not pay for the whole mesh.
+// An array of numbers, each with its own initial value, of which few are ever changed. Untouched entries cost address space
+// only, so that a stage whose work is local does not pay for the whole mesh.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace fdcg::bake {
 
-// `Default` gives the value that entry i starts with. Cells hold the difference to it (exclusive or), and so start at zero,
-// which the system gives without touching the memory.
+// `Default` gives the initial value of entry i. Cells store the exclusive or with it and so start at zero, which the operating
+// system provides without touching the memory.
 template <class Default>
 class LazyArray {
  public:

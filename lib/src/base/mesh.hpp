@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What flows between the stages weld -> topology -> validate -> orient -> regions -> graph: an indexed polygon mesh in the
-// local frame whose coordinates are exactly those that the file will store.
+// The data passed between the stages weld -> topology -> validate -> orient -> regions -> graph: an indexed polygon mesh in the
+// local frame, whose coordinates are exactly those that the file will store.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,12 @@ struct Mesh {
   [[nodiscard]] std::uint32_t source_of(FaceId f) const { return source_face.empty() ? +f : source_face[+f]; }
 };
 
-// How the faces hang together; belongs to one Mesh.
+// Adjacency of the faces of one Mesh.
 struct Topology {
-  static constexpr HalfedgeId kBoundary{0xFFFFFFFFu};     // the edge has one face
-  static constexpr HalfedgeId kNonManifold{0xFFFFFFFEu};  // more than two
-  static constexpr HalfedgeId kSameWay{0xFFFFFFFDu};      // two that run along it in the same direction
-  static constexpr HalfedgeId kSkipped{0xFFFFFFFCu};      // the face is degenerate or invalid and takes no part
+  static constexpr HalfedgeId kBoundary{0xFFFFFFFFu};     // the edge belongs to one face
+  static constexpr HalfedgeId kNonManifold{0xFFFFFFFEu};  // the edge belongs to more than two faces
+  static constexpr HalfedgeId kSameWay{0xFFFFFFFDu};      // two faces traverse the edge in the same direction
+  static constexpr HalfedgeId kSkipped{0xFFFFFFFCu};      // the face is degenerate or invalid and is ignored
 
   std::vector<HalfedgeId> twin;  // of each corner slot: the opposite half-edge, or one of the above
   std::vector<FaceId> face_of;   // of each corner slot; empty where every face is a triangle (then slot / 3)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work on index ranges by a few threads. Results must not depend on who does which range: each range writes what is its own.
+// Parallel work on index ranges. Results must not depend on which thread processes which range: each range writes only its own
+// results.
 #pragma once
 
 #include <algorithm>

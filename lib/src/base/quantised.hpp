@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quantum of coordinates that a format stores as steps of a grid (Draco, KHR_mesh_quantization).
+// The quantum of coordinates that a format stores as multiples of a grid step (Draco, KHR_mesh_quantization).
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace fdcg::bake {
 
-// `half_step`, but at most a thousandth of the largest coordinate: a grid of fewer than 500 steps was drawn on, not rounded to,
-// and half a step of it would flatten what was drawn.
+// `half_step`, but at most a thousandth of the largest coordinate: on a grid of fewer than 500 steps the shape was designed on
+// the grid rather than rounded to it, and a tolerance of half a step would flatten its features.
 inline double at_most_a_share(double half_step, const std::vector<Vec3>& points) {
   constexpr double kLargestShare = 1e-3;
   double extent = 0;

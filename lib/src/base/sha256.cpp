@@ -15,7 +15,7 @@ Sha256Task::Sha256Task(std::string_view bytes) : bytes_(bytes) {
     try {
       thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
       return;
-    } catch (const std::system_error&) {  // no thread to be had: do it here
+    } catch (const std::system_error&) {  // no thread available: compute in this one
     }
   }
   run({});
@@ -27,7 +27,7 @@ std::string Sha256Task::finish() {
 }
 
 void Sha256Task::run(const std::stop_token& stop) {
-  constexpr std::size_t kStep = std::size_t{1} << 22;  // between two looks at whether anybody still wants it
+  constexpr std::size_t kStep = std::size_t{1} << 22;  // bytes between two checks for cancellation
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
   if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1) return;
   for (std::string_view rest = bytes_; !rest.empty(); rest.remove_prefix(std::min(kStep, rest.size()))) {

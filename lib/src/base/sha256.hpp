@@ -8,12 +8,13 @@
 
 namespace fdcg::bake {
 
-// The SHA-256 of some bytes, computed beside other work: on a thread of its own unless they are few. The bytes must outlive it.
+// The SHA-256 of a range of bytes, computed concurrently with other work: on its own thread unless the range is short. The
+// bytes must outlive the object.
 class Sha256Task {
  public:
   explicit Sha256Task(std::string_view bytes);
 
-  // Waits for it: 64 lower-case hex digits, or nothing if the library has no SHA-256.
+  // Waits for the result: 64 lower-case hex digits, or nothing if the crypto library provides no SHA-256.
   std::string finish();
 
  private:
@@ -21,7 +22,7 @@ class Sha256Task {
 
   std::string_view bytes_;
   std::string hex_;
-  std::jthread thread_;  // last: its end, on destruction, comes before that of what it writes to
+  std::jthread thread_;  // declared last: joined on destruction before the members that it writes are destroyed
 };
 
 }  // namespace fdcg::bake

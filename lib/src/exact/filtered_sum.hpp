@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A floating-point filter in front of exact arithmetic: the sign of a sum of 2 x 2 determinants, where it is certain.
+// A floating-point filter in front of exact arithmetic: the sign of a sum of 2 x 2 determinants where the error bound proves
+// it.
 #pragma once
 
 #include <cmath>
@@ -7,7 +8,7 @@
 
 namespace fdcg::bake {
 
-// A sum of 2 x 2 determinants with what bounds its rounding error.
+// A sum of 2 x 2 determinants with a bound on its rounding error.
 struct FilteredSum {
   double value = 0, magnitude = 0;
   void add(double a, double b, double c, double d) {

@@ -17,9 +17,9 @@
 namespace fdcg::bake {
 namespace {
 
-// A line sweeps over the outline in the order of u, then v, and keeps the edges under it from below to above. The first place
-// where two edges meet makes them neighbours before the line comes there, so that looking at new neighbours finds it. Edges are
-// named after the corner that they start at.
+// A sweep line visits the corners in the order of u, then v, and keeps the edges that it crosses sorted from below to above.
+// Two edges become neighbours on the line before it reaches the first point where they intersect, so testing new neighbours
+// finds that point. An edge has the index of its start corner.
 class OutlineSweep {
  public:
   OutlineSweep(const Projection& view, std::span<const Vec3> polygon)
@@ -30,7 +30,7 @@ class OutlineSweep {
       rank_[order_[i]] = i;
   }
 
-  // Corners next to one another are taken not to turn back.
+  // Precondition: consecutive edges do not overlap (no spikes).
   bool meets_itself() {
     for (std::uint32_t i = 1; i < count_; ++i) {
       if (place(order_[i - 1]) == place(order_[i])) return true;
@@ -47,7 +47,7 @@ class OutlineSweep {
       for (const std::uint32_t edge : {before, corner}) {
         if (left(edge) != corner) continue;
         const auto [here, is_new] = status.insert(edge);
-        if (!is_new) return true;  // along another
+        if (!is_new) return true;  // it overlaps another edge
         at[edge] = here;
         const auto above = std::next(here);
         if (above != status.end() && meet(edge, *above)) return true;
@@ -74,12 +74,12 @@ class OutlineSweep {
     return view_.orient(polygon_[a], polygon_[b], polygon_[c]);
   }
 
-  // Both are under the line.
+  // The sweep line crosses both.
   [[nodiscard]] bool is_below(std::uint32_t e, std::uint32_t f) const {
     if (rank_[left(e)] > rank_[left(f)]) return e != f && side_of(f, e) < 0;
     return e != f && side_of(e, f) > 0;
   }
-  // Where edge f, which does not start left of e, goes: above (1) or below (-1).
+  // Whether edge f, which does not start left of e, lies above (1) or below (-1) e.
   [[nodiscard]] int side_of(std::uint32_t e, std::uint32_t f) const {
     const int side = orient(left(e), right(e), left(f));
     return side != 0 ? side : orient(left(e), right(e), right(f));
@@ -99,16 +99,16 @@ class OutlineSweep {
   std::vector<std::uint32_t> rank_, order_;
 };
 
-// What a polygon shows of itself along an axis: the triangles of the fan from its first corner.
+// The polygon's projection along an axis, as the triangles of the fan from its first corner.
 struct Shown {
-  FilteredSum area;      // twice, as the windings add up
-  double triangles = 0;  // twice, all of them counted positive
+  FilteredSum area;      // twice the signed area
+  double triangles = 0;  // twice the sum of the absolute areas
 
   void add(double a, double b, double c, double d) {
     area.add(a, b, c, d);
     triangles += std::abs(a * d - b * c);
   }
-  // More than rounding.
+  // Whether the area exceeds the rounding error.
   [[nodiscard]] bool has_triangles(double terms) const { return FilteredSum{triangles, area.magnitude}.is_certain(terms); }
   [[nodiscard]] double size() const { return std::isfinite(area.value) ? std::abs(area.value) : 0; }
 };
@@ -126,8 +126,8 @@ std::array<Shown, 3> shown_by(std::span<const Vec3> polygon) {
   return shown;
 }
 
-// Of the most that an axis shows, as triangles. What shows less is flat and seen edge-on, perhaps with nothing to be seen but
-// its rounding, and that may look simple.
+// As a share of the largest projected area over the three axes. A projection below it is nearly edge-on: what it shows may be
+// rounding error only, and that may happen to be a simple polygon.
 constexpr double kLeastShown = 1.0 / 16;
 
 }  // namespace
@@ -169,7 +169,7 @@ bool is_simple(const Projection& view, std::span<const Vec3> polygon) {
 std::optional<Projection> simple_view(std::span<const Vec3> polygon) {
   const std::array<Shown, 3> shown = shown_by(polygon);
   const double terms = static_cast<double>(polygon.size()) - 2;
-  double most = 0;  // stays 0 where the polygon is as thin as rounding: no view is better than another
+  double most = 0;  // stays 0 where the polygon is as thin as the rounding error: no axis is preferred
   for (const Shown& along : shown) {
     if (along.has_triangles(terms)) most = std::max(most, along.triangles);
   }

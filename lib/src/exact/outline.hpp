@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a polygon have an inside? What validate calls self-crossing-face, and what cutting into triangles needs. All exact.
+// Whether a polygon is simple: the rule self-crossing-face of validate, and the precondition of triangulation. All exact.
 #pragma once
 
 #include <optional>
@@ -10,26 +10,26 @@
 
 namespace fdcg::bake {
 
-// The sign of the area enclosed by the polygon, seen along axis k = 0, 1, 2; of one that crosses itself, of what its windings
-// add up to.
+// The sign of the polygon's signed area, projected along axis k = 0, 1, 2. Where the polygon crosses itself, regions count with
+// their winding number.
 [[nodiscard]] int area_sign(std::span<const Vec3> polygon, int k);
 
-// How the outline winds.
+// The winding of the outline.
 struct Turns {
-  // How often its direction goes round, counter-clockwise: 1 for every polygon that does not meet itself and runs
-  // counter-clockwise. 0 where it turns back on itself, or where two corners in a row are one.
+  // The turning number, counter-clockwise: 1 for every simple counter-clockwise polygon. 0 where the outline has a spike or two
+  // consecutive equal corners.
   int number = 0;
-  bool has_right = false;  // some corner points inwards
+  bool has_right = false;  // some corner is reflex
 };
 [[nodiscard]] Turns turns_of(const Projection& view, std::span<const Vec3> polygon);
 
-// The outline meets itself nowhere, in edges or corners, and runs counter-clockwise; corners in a straight line are allowed.
-// Linear where no corner points inwards, else n log n (Shamos and Hoey 1976: a line sweeps over the edges).
+// Whether the outline is simple (no edges or corners touch or cross) and counter-clockwise; collinear corners are allowed.
+// Linear where no corner is reflex, else n log n (sweep line of Shamos and Hoey 1976).
 [[nodiscard]] bool is_simple(const Projection& view, std::span<const Vec3> polygon);
 
-// The polygon seen along the axis nearest to its mean normal, from the side on which it runs counter-clockwise; where it is not
-// simple there, along the other axes from which it is broad, since what is far from flat may cross itself in one view and not
-// in another. None: it is simple in no view. At most three times is_simple().
+// A projection in which the polygon is simple and counter-clockwise. First the axis nearest to its mean normal is tried, then
+// the other axes whose projection is not nearly edge-on, since a polygon far from planar may cross itself in one projection and
+// not in another. None: it is simple in no projection. Costs at most three calls of is_simple().
 [[nodiscard]] std::optional<Projection> simple_view(std::span<const Vec3> polygon);
 
 }  // namespace fdcg::bake

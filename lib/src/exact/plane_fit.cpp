@@ -38,7 +38,7 @@ PlaneFit::Fitted PlaneFit::fit(const Vec3& normal) const {
   };
   const double uu = moment(u, u), uv = moment(u, v), vv = moment(v, v), un = moment(u, normal), vn = moment(v, normal);
   const double determinant = uu * vv - uv * uv;
-  constexpr double kLeastWidth = 1e-12;  // of the square of length to width: below it rounding rules the second axis
+  constexpr double kLeastWidth = 1e-12;  // (width / length)^2; below it rounding error determines the second axis
   if (!(determinant > kLeastWidth * (uu + vv) * (uu + vv))) return {normal, centre()};
   const double a = (un * vv - vn * uv) / determinant, b = (vn * uu - un * uv) / determinant;
   return {unit(normal - a * u - b * v), centre()};

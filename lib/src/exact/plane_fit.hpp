@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plane through a growing cloud of corners.
+// Least-squares plane of a growing set of triangles.
 #pragma once
 
 #include "fdcg/bake.hpp"
 
 namespace fdcg::bake {
 
-// The moments of a set of triangles about a fixed point, from which a plane is fitted by least squares of the heights over
-// it. Sums only: adding costs the same however many there are, and no eigenvalue is sought.
+// The moments of a set of triangles about a fixed point. The plane is fitted by least squares of the heights over it. Only sums
+// are kept: adding a triangle takes constant time, and no eigenvalue problem is solved.
 class PlaneFit {
  public:
   explicit PlaneFit(const Vec3& about) : about_(about) {}
@@ -17,10 +17,10 @@ class PlaneFit {
   struct Fitted {
     Vec3 normal, point;  // `point` lies on the plane
   };
-  // Tilts `normal` to fit. Where the corners span no plane (all on a line) it stays as it is.
+  // Tilts `normal` to the least-squares fit. Where the corners are collinear it is left unchanged.
   [[nodiscard]] Fitted fit(const Vec3& normal) const;
 
-  // The unit of the sum of the triangles' area vectors.
+  // The normalised sum of the triangles' area vectors.
   [[nodiscard]] Vec3 mean_normal() const;
   [[nodiscard]] Vec3 centre() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unit normals, offsets and edge directions, good to a unit or two in the last place whatever the triangle's shape.
+// Unit normals, offsets and edge directions, accurate to one or two units in the last place whatever the triangle's shape.
 #pragma once
 
 #include <cmath>
@@ -16,11 +16,11 @@ struct Plane {
   double offset = 0;
 };
 
-// unit((b - a) x (c - a)): differences and products without rounding error where it matters, so that needles come out as
-// well as equilateral triangles. Zero where the three are exactly collinear.
+// unit((b - a) x (c - a)), with error-free differences and products where rounding matters, so that needle triangles are as
+// accurate as equilateral ones. Zero where the three points are exactly collinear.
 [[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
-// unit(v), with no loss at either end of the exponent's range; zero stays zero.
+// unit(v), without overflow or underflow over the whole exponent range; zero stays zero.
 [[nodiscard]] Vec3 unit_of_any_size(const Vec3& v);
 [[nodiscard]] inline Vec3 unit(const Vec3& v) {
   constexpr double kSmall = 1e-200, kLarge = 1e200;  // their squares and products stay in range
@@ -35,15 +35,15 @@ struct Plane {
   return unit(b - a);
 }
 
-// The offset that makes the largest distance of the points from the plane smallest, for the normal as it was rounded.
+// The offset that minimises the largest distance of the points from the plane, for the rounded normal.
 [[nodiscard]] double balanced_offset(const Vec3& normal, std::span<const Vec3> points);
 
 // The plane of these corners as the file will store it: the normal rounded to the precision, then the offset balanced for
 // that normal and rounded.
 [[nodiscard]] Plane stored_plane(const Vec3& normal, std::span<const Vec3> points, Precision precision);
 
-// The step from a to b runs along the plane rather than off it: within 45 degrees. An edge that does not has no Voronoi plane
-// to speak of; noise makes such edges where they are as short as the quantum.
+// Whether the edge from a to b is within 45 degrees of the plane. An edge that is not has no useful Voronoi plane; noise makes
+// such edges where they are as short as the quantum.
 [[nodiscard]] inline bool runs_along(const Vec3& normal, const Vec3& a, const Vec3& b) {
   const Vec3 step = b - a;
   const double off = dot(normal, step);
@@ -51,8 +51,8 @@ struct Plane {
 }
 
 // The angle between two unit vectors, 0 .. pi, within 4e-8 (Abramowitz and Stegun 4.4.46): a weight for a corner's normal,
-// of which only the side counts. By additions, products and square root alone, so that every compiler and C library gives the
-// same bits.
+// of which only the direction matters. Uses additions, products and square roots only, so that every compiler and C library
+// gives the same bits.
 [[nodiscard]] double angle_between(const Vec3& a, const Vec3& b);
 
 }  // namespace fdcg::bake

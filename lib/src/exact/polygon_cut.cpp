@@ -24,7 +24,7 @@ std::span<const Ear> PolygonCutter::clip(std::uint32_t count, const IsEar& is_ea
       previous_[after] = before;
       --left;
       misses = 0;
-      tip = next_[after];  // every other corner: round polygons are halved again and again, and no corner collects all cuts
+      tip = next_[after];  // every other corner: convex polygons are halved repeatedly, and no corner gets all the diagonals
     } else if (++misses > left) {
       return {};
     } else {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cutting a polygon into triangles by clipping ears, exactly.
+// Exact triangulation of a polygon by ear clipping.
 #pragma once
 
 #include <array>
@@ -12,19 +12,21 @@
 
 namespace fdcg::bake {
 
-// An ear: corners before, tip, after of the polygon as it stood when the tip was cut off. Indices into the polygon.
+// An ear: the corners before, tip and after, neighbours in the polygon that was left when the tip was cut off. Indices into the
+// polygon.
 using Ear = std::array<std::uint32_t, 3>;
 
 // Holds the working memory, so that cutting many small polygons allocates nothing.
 class PolygonCutter {
  public:
-  // The ears of a simple polygon in the order of cutting, count - 2 of them, all turning strictly left, the last one what
-  // remains; corners in a straight line are allowed. Of a polygon that is_simple() refuses perhaps none. Of n corners, r of
-  // them not strictly convex, n r tests at most, and as a rule few more than n: only corners level with an ear are looked at.
+  // The ears of a simple polygon in the order of cutting: count - 2 triangles, all strictly counter-clockwise; the last one is
+  // the remaining triangle. Collinear corners are allowed. For a polygon that is not is_simple() the result may be empty. With
+  // n corners, r of them not strictly convex, at most n r tests and usually few more than n: only corners in the range of an
+  // ear are tested.
   std::span<const Ear> cut(const Projection& projection, std::span<const Vec3> polygon);
 
-  // The same for a polygon every corner of which is visible from `kernel`, inside or on it: n tests. All ears turn strictly
-  // left or the result is empty; it is then a triangulation if the polygon is simple, whatever the kernel.
+  // The same for a star-shaped polygon: every corner is visible from `kernel`, a point inside or on it. n tests. The result is
+  // empty or all ears are strictly counter-clockwise; then it is a triangulation if the polygon is simple, whatever the kernel.
   std::span<const Ear> cut_star(const Projection& projection, std::span<const Vec3> polygon, const Vec3& kernel);
 
  private:

@@ -20,7 +20,7 @@ bool has(const Corners& corners, Corner p) {
   return p == corners[0] || p == corners[1] || p == corners[2];
 }
 
-// 0 without asking where two of the points are one: an exact zero is what predicates take longest for.
+// orient3d, with 0 returned at once where two points are the same: exact zeros are the slowest case of the predicate.
 int orient(Corner a, Corner b, Corner c, Corner d) {
   if (a == c || a == d || b == c || b == d) return 0;
   return exact::orient3d(*a, *b, *c, *d);
@@ -38,8 +38,8 @@ bool all_are(const Signs& signs, int sign) {
   return signs[0] == sign && signs[1] == sign && signs[2] == sign;
 }
 
-// The corner that is alone on its side of a plane, that side closed: the others are both on the other side or one is on the
-// plane. Signs neither all zero nor all the same.
+// The corner that the plane separates from the two others, each of which is on the other side or on the plane. The signs are
+// neither all zero nor all equal.
 struct Lone {
   std::size_t corner = 0;
   bool is_behind = false;
@@ -56,8 +56,8 @@ Lone lone_corner(const Signs& signs) {
   return {zero, signs[(zero + 1) % 3] > 0};
 }
 
-// Of a triangle that the other's plane does not miss: whether what it has in common with that plane lies inside of it. A side
-// in the plane does where it is a seam; a corner alone does not.
+// For a triangle that meets the plane of the other: whether its intersection with that plane lies in its interior. A side in
+// the plane counts as interior where it is a seam; a single corner does not.
 bool is_cut_inside(const Signs& signs, unsigned seams) {
   if (std::count(signs.begin(), signs.end(), 0) < 2)
     return *std::min_element(signs.begin(), signs.end()) < 0 && *std::max_element(signs.begin(), signs.end()) > 0;
@@ -75,13 +75,13 @@ bool is_seam(const ContactTriangle& t, Corner u, Corner v) {
   return false;
 }
 
-// The line that two planes have in common passes through both triangles, each covering an interval of it. How these lie to one
-// another: apart (-1), end to end (0), overlapping (1).
+// The intersection line of the two planes meets both triangles, each in an interval. How the intervals lie: disjoint (-1), with
+// a common end point only (0), overlapping (1).
 int compare_intervals(const Corners& a, const Corners& b, const Signs& a_sides, const Signs& b_sides) {
   const Lone lone_a = lone_corner(a_sides), lone_b = lone_corner(b_sides);
   Corner p = a[lone_a.corner], q = a[(lone_a.corner + 1) % 3], r = a[(lone_a.corner + 2) % 3];
   Corner u = b[lone_b.corner], v = b[(lone_b.corner + 1) % 3], w = b[(lone_b.corner + 2) % 3];
-  // As if p were in front of the plane of u, v, w, and u in front of that of p, q, r.
+  // Normalised so that p is in front of the plane of u, v, w, and u is in front of that of p, q, r.
   if (lone_a.is_behind) std::swap(v, w);
   if (lone_b.is_behind) std::swap(q, r);
   const int first = orient(p, q, u, v);
@@ -91,7 +91,7 @@ int compare_intervals(const Corners& a, const Corners& b, const Signs& a_sides, 
   return first < 0 && second < 0 ? 1 : 0;
 }
 
-// Triangles in one plane, seen along an axis along which that plane is not edge-on.
+// Two coplanar triangles, projected along an axis along which their plane is not edge-on.
 class FlatPair {
  public:
   FlatPair(const Corners& a, const Corners& b) : a_(a), b_(b) {
@@ -101,7 +101,7 @@ class FlatPair {
     turn_b_ = exact::orient2d(*b[0], *b[1], *b[2], axis_);
   }
 
-  // Convex shapes have a line between them exactly if a side of one is such a line.
+  // Separating-axis test: disjoint convex polygons are separated by the line through a side of one of them.
   [[nodiscard]] Contact contact() const {
     bool are_apart = false, are_disjoint = false;
     for (std::size_t i = 0; i < 3 && !are_disjoint; ++i) {
@@ -111,13 +111,13 @@ class FlatPair {
     return are_disjoint ? Contact::none : are_apart ? Contact::touching : Contact::crossing;
   }
 
-  // The directions from o to p and to q are one.
+  // Whether the directions from o to p and from o to q are equal.
   [[nodiscard]] bool is_same_way(Corner o, Corner p, Corner q) const {
     return exact::orient2d(*o, *p, *q, axis_) == 0 && exact::dot_sign(*o, *p, *q) > 0;
   }
 
-  // Calls visit(p) for the corners of one that lie in the other, and cross(p, q, u, v) for the sides that cross properly: these
-  // are the corners of what the two have in common.
+  // Enumerates the corners of the intersection of the two triangles: calls visit(p) for the corners of one that lie in the
+  // other, and cross(p, q, u, v) for the pairs of sides that cross properly.
   template <class Visit, class Cross>
   void for_each_common_corner(Visit visit, Cross cross) const {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -186,14 +186,14 @@ Contact contact_of(const ContactTriangle& a, const ContactTriangle& b) {
   const Signs b_sides = sides_of(a.corner, b.corner);
   if (all_are(b_sides, 1) || all_are(b_sides, -1)) return Contact::none;
   if (all_are(b_sides, 0)) return flat_contact(a, b, shared, count);
-  if (count == 2) {  // planes through one line: the shared side is all there is
+  if (count == 2) {  // different planes: the intersection is the shared side
     const bool in_a = is_seam(a, shared[0], shared[1]), in_b = is_seam(b, shared[0], shared[1]);
     return in_a && in_b ? Contact::crossing : in_a || in_b ? Contact::touching : Contact::none;
   }
   const Signs a_sides = sides_of(b.corner, a.corner);
   if (all_are(a_sides, 1) || all_are(a_sides, -1)) return Contact::none;
   const int overlap = compare_intervals(a.corner, b.corner, a_sides, b_sides);
-  // Intervals that both end in a shared corner have more in common exactly if they overlap.
+  // Both intervals end in the shared corner: they have another common point only if they overlap.
   if (overlap < 0 || (overlap == 0 && count == 1)) return Contact::none;
   const bool is_inside = is_cut_inside(a_sides, a.seams) && is_cut_inside(b_sides, b.seams);
   return overlap > 0 && is_inside ? Contact::crossing : Contact::touching;
@@ -201,7 +201,7 @@ Contact contact_of(const ContactTriangle& a, const ContactTriangle& b) {
 
 namespace {
 
-// Where the side from p to q passes through the plane, given the distances from it.
+// The point where the side from p to q crosses the plane, given their distances from it.
 Vec3 between(const Vec3& p, const Vec3& q, double p_distance, double q_distance) {
   const double whole = std::fabs(p_distance) + std::fabs(q_distance);
   return p + (whole > 0 ? std::fabs(p_distance) / whole : 0.5) * (q - p);
@@ -216,7 +216,7 @@ struct Interval {
   }
 };
 
-// What a triangle has in common with the plane through `o`. The signs are exact, the rest is not.
+// The intersection of a triangle with the plane through `o`. The signs are exact, the points are rounded.
 Interval cut(const std::array<Vec3, 3>& t, const Signs& signs, const Vec3& o, const Vec3& normal) {
   Interval interval;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -228,7 +228,7 @@ Interval cut(const std::array<Vec3, 3>& t, const Signs& signs, const Vec3& o, co
   return interval;
 }
 
-// About the middle of what two intervals of a line along `direction` have in common.
+// Approximate midpoint of the intersection of two intervals on a line along `direction`.
 Vec3 middle_of_overlap(Interval a, Interval b, const Vec3& direction) {
   for (Interval* i : {&a, &b}) {
     if (dot(direction, i->ends[1] - i->ends[0]) < 0) std::swap(i->ends[0], i->ends[1]);
@@ -260,7 +260,7 @@ Vec3 flat_meeting_point(const ContactTriangle& a, const ContactTriangle& b, doub
 }  // namespace
 
 Vec3 meeting_point(const ContactTriangle& a, const ContactTriangle& b) {
-  // Brought to about unit size by a power of two, so that no product overflows.
+  // Scaled to about unit size by a power of two, so that no product overflows.
   double largest = 0;
   for (std::size_t i = 0; i < 3; ++i)
     largest = std::max({largest, largest_component(*a.corner[i]), largest_component(*b.corner[i])});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two kinds of evidence. Signs of 3 x 3 determinants, whose error is bounded by the size of their terms; and vectors that
-// happen to separate: these need no accuracy of their own, only the projections on them are bounded.
+// Two kinds of tests. Signs of 3 x 3 determinants, whose error is bounded by the size of their terms; and separating axes,
+// which need not be accurate themselves: only the rounding error of the projections onto them is bounded.
 #include "exact/triangle_filter.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr double kProjectionError = 8 * kUnit;
 constexpr double kNormalsError = 256 * kUnit;
 // Bounds below this are not trusted: underflow, at most 2^-900 with coordinates up to kLargestFiltered, could matter.
 constexpr double kLeastError = 0x1p-850;
-// How far a plane through a side is turned about the shared corner, so that the side itself lies clearly beyond it.
+// Tilt of a separating plane about the shared corner, so that the side through which it passes lies clearly on one side of it.
 constexpr double kTilt = 0x1p-10;
 
 double sum_norm(const Vec3& a) {
@@ -37,13 +37,14 @@ double largest(const Vec3& a, const Vec3& b) {
                 larger(std::fabs(a.z), std::fabs(b.z)));
 }
 
-// m . p and m . q are surely negative, m . a and m . b surely positive. `size`: the largest component of the four.
+// Whether m . p and m . q are certainly negative, m . a and m . b certainly positive. `size`: the largest component of the
+// four.
 bool separates_corner(const Vec3& m, double size, const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   const double error = kProjectionError * sum_norm(m) * size;
   return error > kLeastError && dot(m, p) < -error && dot(m, q) < -error && dot(m, a) > error && dot(m, b) > error;
 }
 
-// One corner is shared, the origin; p, q are the others of one triangle, a, b those of the other.
+// The triangles share one corner, the origin; p, q are the other corners of one, a, b those of the other.
 bool are_apart_at_corner(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   const double size = larger(largest(p, q), largest(a, b));
   if (separates_corner((a + b) - (p + q), size, p, q, a, b)) return true;
@@ -57,7 +58,7 @@ bool are_apart_at_corner(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3
   if (are_on_one_side(n, a, b)) return true;
   const Vec3 k = cross(a, b);
   if (are_on_one_side(k, p, q)) return true;
-  // Planes across the triangles' own, through a side that ends in the shared corner.
+  // Planes perpendicular to a triangle's plane, through one of its sides at the shared corner.
   const double tilt_n = kTilt * sum_norm(n), tilt_k = kTilt * sum_norm(k);
   return separates_corner(cross(n, q) - tilt_n * q, size, p, q, a, b) ||
          separates_corner(cross(p, n) - tilt_n * p, size, p, q, a, b) ||
@@ -65,8 +66,8 @@ bool are_apart_at_corner(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3
          separates_corner(cross(a, k) - tilt_k * a, size, a, b, p, q);
 }
 
-// One side is shared, from the origin to e; r and s are the corners opposite to it. They lie in one plane on the same side of e
-// only if the vector products look the same way, and only if e, r and s span no volume.
+// The triangles share one side, from the origin to e; r and s are the opposite corners. These are coplanar with e and on the
+// same side of it only if the vector products point the same way and the volume of e, r and s is zero.
 bool are_apart_at_side(const Vec3& e, const Vec3& r, const Vec3& s) {
   const double size = larger(largest(e, r), largest(e, s)), volume = size * size * size;
   if (!(kNormalsError * size * volume > kLeastError)) return false;
@@ -77,7 +78,7 @@ bool are_apart_at_side(const Vec3& e, const Vec3& r, const Vec3& s) {
 
 using Points = std::array<Vec3, 3>;
 
-// All of b lies beyond all of a along m. `size`: the largest component of the points.
+// Whether all of b lies beyond all of a along m. `size`: the largest component of the points.
 bool separates(const Vec3& m, double size, const Points& a, const Points& b) {
   const double error = 2 * kProjectionError * sum_norm(m) * size;
   const double most = larger(larger(dot(m, a[0]), dot(m, a[1])), dot(m, a[2]));
@@ -92,7 +93,7 @@ bool share_nothing_and_are_apart(const ContactTriangle& s, const ContactTriangle
   const double size = larger(larger(largest(a[1], a[2]), largest(b[0], b[1])), largest(b[2], b[2]));
   if (separates((b[0] + b[1] + b[2]) - (a[1] + a[2]), size, a, b)) return true;
   const Vec3 n = cross(a[1], a[2]), k = cross(b[1] - b[0], b[2] - b[0]);
-  // Along the planes' normals, which need not be exact for this, and along the sides' within the planes, looking outwards.
+  // Axes: the triangles' normals (which need not be exact) and the outward normals of the sides within the planes.
   return separates(n, size, a, b) || separates(-n, size, a, b) || separates(k, size, a, b) || separates(-k, size, a, b) ||
          separates(cross(a[1], n), size, a, b) || separates(cross(a[2] - a[1], n), size, a, b) ||
          separates(cross(n, a[2]), size, a, b) || separates(cross(b[1] - b[0], k), size, b, a) ||
@@ -102,7 +103,7 @@ bool share_nothing_and_are_apart(const ContactTriangle& s, const ContactTriangle
 }  // namespace
 
 bool are_surely_apart(const ContactTriangle& s, const ContactTriangle& t) {
-  std::size_t count = 0, in_s = 0, in_t = 0;  // shared corners; the sums of their places tell which is left of three
+  std::size_t count = 0, in_s = 0, in_t = 0;  // shared corners; the sums of their indices give the index that is not shared
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const bool is_shared = s.corner[i] == t.corner[j];
@@ -120,7 +121,7 @@ bool are_surely_apart(const ContactTriangle& s, const ContactTriangle& t) {
   if (count == 2) {
     const std::size_t r = 3 - in_s;
     const Vec3& o = *s.corner[(r + 1) % 3];
-    // A seam is no common side: what lies along it counts, for which contact_of is asked.
+    // A seam counts as interior, so common points along it matter: left to contact_of.
     const bool has_seam = ((s.seams >> (r + 1) % 3 | t.seams >> (3 - in_t + 1) % 3) & 1u) != 0;
     return !has_seam && are_apart_at_side(*s.corner[(r + 2) % 3] - o, *s.corner[r] - o, *t.corner[3 - in_t] - o);
   }

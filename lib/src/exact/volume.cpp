@@ -18,7 +18,7 @@ Parts parts(double x) {
   int exponent = 0;
   const double fraction = std::frexp(std::abs(x), &exponent);  // [0.5, 1), of a subnormal too
   Parts p{static_cast<std::uint64_t>(std::ldexp(fraction, 53)), exponent - 53};
-  if (p.exponent < -1074) {  // a subnormal: the bits that frexp made up are zeros
+  if (p.exponent < -1074) {  // a subnormal: the bits that frexp appended are zeros
     p.mantissa >>= -1074 - p.exponent;
     p.exponent = -1074;
   }
@@ -34,7 +34,7 @@ void ExactSum::add_product(double a, double b, double c, bool negative) {
   const Parts pa = parts(a), pb = parts(b), pc = parts(c);
   const auto position = static_cast<unsigned>(pa.exponent + pb.exponent + pc.exponent - kLowestExponent);
 
-  // The product has at most 159 bits: low 64 of each step here, what is above goes on.
+  // The product has at most 159 bits: each step keeps the low 64 and carries the rest.
   const uint128 ab = uint128{pa.mantissa} * pb.mantissa;
   const uint128 low = uint128{static_cast<std::uint64_t>(ab)} * pc.mantissa;
   const uint128 high = (ab >> 64) * pc.mantissa + (low >> 64);
@@ -53,7 +53,7 @@ void ExactSum::add_product(double a, double b, double c, bool negative) {
     limbs_[limb + i] += negative ? -part : part;
     carried = shifted >> 32;
   }
-  // 159 + 31 bits fit in six words: nothing is left to carry.
+  // 159 + 31 bits fit in six words: no carry remains.
   if (++pending_ == 1U << 30) carry();
 }
 

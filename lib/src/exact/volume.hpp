@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sign of a sum of products of three doubles, exactly: the volume that a closed surface encloses.
+// The exact sign of a sum of products of three doubles, for the volume that a closed surface encloses.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace fdcg::bake {
 // A fixed-point number wide enough for every product of three doubles, from 2^-3222 up, and for 2^60 of them. No rounding.
 class ExactSum {
  public:
-  // Adds a * b * c, or takes it away. Finite factors.
+  // Adds or subtracts a * b * c. Finite factors.
   void add_product(double a, double b, double c, bool negative);
   // Adds the determinant |a b c|: six times the signed volume of the tetrahedron over the origin.
   void add_determinant(const Vec3& a, const Vec3& b, const Vec3& c);

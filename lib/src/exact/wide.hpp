@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole numbers of a fixed width, in two's complement: several times as fast as those of any width while they are short.
+// Integers of a fixed width in two's complement: several times as fast as arbitrary precision while they are short.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace fdcg::bake {
 
-// N limbs of 64 bits, the lowest first. Nothing is checked: the caller knows that his numbers fit.
+// N limbs of 64 bits, lowest first. Overflow is not checked: the caller ensures that the numbers fit.
 template <std::size_t N>
 struct Wide {
   std::array<std::uint64_t, N> limb{};
@@ -54,7 +54,7 @@ inline Wide<A + B> product(const Wide<A>& a, const Wide<B>& b) {
     }
     result.limb[i + B] = carry;
   }
-  // So far both counted as positive: one below zero was read as 2^(64 limbs) too large.
+  // Correction for negative factors: read as unsigned, each is 2^(64 limbs) too large.
   add_limbs<A, true>(result, b, a.sign_mask(), 0);
   add_limbs<B, true>(result, a, b.sign_mask(), 0);
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the writers of the mesh formats share: numbers as text and as bytes, and how they refuse a mesh.
+// Shared by the writers of the mesh formats: numbers as text and as bytes, and the refusal of meshes that a format cannot hold.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@
 
 namespace fdcg::bake {
 
-// One writer a format. They append to `out`, which is empty, and keep every face, vertex and number of the soup; a corner
-// without a vertex is written as a number that is none. Linear.
+// One writer per format. They append to `out`, which is empty, and keep every face, vertex and coordinate of the soup; a corner
+// without a vertex is written as an invalid index. Linear.
 void write_off(const PolygonSoup& soup, std::string& out);
 void write_obj(const PolygonSoup& soup, std::string& out);
 void write_ply(const PolygonSoup& soup, bool is_text, std::string& out);
 // Triangles alone, each with points of its own; `soup` is one that stl_refusal() lets pass.
 void write_stl(const PolygonSoup& soup, bool is_text, std::string& out);
 
-// What STL would lose of this soup, and the remedy: the first face that is no triangle, else (binary) the first coordinate that
-// is no float, else the first vertex that no face has. Empty: nothing.
+// What STL cannot represent of this soup, and the remedy: the first face that is not a triangle, else (binary) the first
+// coordinate that is not a float, else the first vertex that belongs to no face. Empty: STL can represent it.
 std::string stl_refusal(const PolygonSoup& soup, bool is_text);
 
-// The coordinate is the same number as float: NaN and infinities count.
+// Whether the coordinate is exactly representable as float; NaN and infinities are.
 inline bool is_float(double c) {
   return !std::isfinite(c) || (std::fabs(c) <= static_cast<double>(std::numeric_limits<float>::max()) &&
                                static_cast<double>(static_cast<float>(c)) == c);
@@ -39,7 +39,7 @@ inline bool is_float(const Vec3& p) {
   return is_float(p.x) && is_float(p.y) && is_float(p.z);
 }
 
-// Appends the shortest digits that read back as the same number; nan, inf and -inf as our readers and C libraries know them.
+// Appends the shortest digits that read back as the same number; nan, inf and -inf in the spelling of C libraries.
 template <class Number>
 void put_number(std::string& out, Number value) {
   constexpr std::size_t kLongest = 32;  // "-2.2250738585072014e-308" has 24

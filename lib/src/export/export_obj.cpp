@@ -32,7 +32,7 @@ void write_obj(const PolygonSoup& soup, std::string& out) {
     out += 'f';
     for (std::uint32_t c = soup.face_first[f]; c < soup.face_first[f + 1]; ++c) {
       out += ' ';
-      // Numbers count from 1: 0 is none.
+      // Indices count from 1: 0 is invalid.
       put_number(out, soup.corners[c] == PolygonSoup::kInvalidVertex ? 0u : soup.corners[c] + 1);
     }
     out += '\n';

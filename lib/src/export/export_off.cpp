@@ -11,7 +11,7 @@ void write_off(const PolygonSoup& soup, std::string& out) {
   put_number(out, soup.points.size());
   out += ' ';
   put_number(out, soup.face_count());
-  out += " 0\n";  // edges: readers pass over them
+  out += " 0\n";  // number of edges: ignored by readers
   for (const Vec3& point : soup.points) {
     put_point(out, point);
     out += '\n';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY (Turk 1994), text or binary: coordinates as float where that loses nothing.
+// PLY (Turk 1994), text or binary: coordinates are written as float where that is exact.
 #include "export/export.hpp"
 
 namespace fdcg::bake {
@@ -13,7 +13,7 @@ class PlyWriter {
     is_float_ = std::all_of(soup.points.begin(), soup.points.end(), [](const Vec3& p) { return is_float(p); });
     for (std::size_t f = 0; f < soup.face_count(); ++f)
       has_long_faces_ |= soup.face_first[f + 1] - soup.face_first[f] > kMostInByte;
-    // int is what most programs write and all read. Beyond it unsigned: a corner without a vertex is then 2^32 - 1.
+    // int is what most programs write and all read. Unsigned beyond its range: a corner without a vertex is then 2^32 - 1.
     is_signed_ = soup.points.size() <= std::size_t{1} << 31;
   }
 

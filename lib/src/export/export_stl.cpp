@@ -14,7 +14,7 @@ FloatVec as_floats(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-// Of unit length; zero, as the format wants it, where the triangle has none.
+// The unit normal; zero, as the format demands, for a degenerate triangle.
 FloatVec normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = cross(b - a, c - a);
   const double length = std::hypot(n.x, n.y, n.z);
@@ -30,7 +30,7 @@ std::array<Vec3, 3> triangle(const PolygonSoup& soup, std::size_t f) {
 void write_binary(const PolygonSoup& soup, std::string& out) {
   constexpr std::size_t kHeader = 80, kTriangle = 50;  // bytes
   out.reserve(kHeader + 4 + soup.face_count() * kTriangle);
-  out += "binary STL";  // not "solid", by which text is known
+  out += "binary STL";  // not "solid", which marks the text format
   out.resize(kHeader, '\0');
   put_bytes(out, static_cast<std::uint32_t>(soup.face_count()));
   for (std::size_t f = 0; f < soup.face_count(); ++f) {

@@ -32,8 +32,8 @@ Determinant determinant(const Wedge& w) {
               (std::fabs(xy) + std::fabs(yx)) * std::fabs(w.right.z)};
 }
 
-// Shewchuk's bound (7 + 56 u) u on the determinant's relative error, u = 2^-53, rounded up generously; and below the second
-// limit underflow could have eaten a product.
+// Shewchuk's bound (7 + 56 u) u on the determinant's relative error, u = 2^-53, rounded up generously; below the second limit a
+// product may have underflowed.
 constexpr double kDeterminantError = 8e-16;
 constexpr double kUnderflow = 1e-280;
 
@@ -43,7 +43,7 @@ int side_of(const Determinant& d, const Vec3& v0, const Vec3& v1, const Vec3& le
   return exact::orient3d(v0, v1, left, right);
 }
 
-// Of four exactly coplanar corners: the triangles lie on different sides of v0 v1.
+// For four exactly coplanar corners: whether the triangles lie on different sides of v0 v1.
 bool lie_apart(const Vec3& v0, const Vec3& v1, const Vec3& left, const Vec3& right) {
   for (int k = 0; k < 3; ++k) {
     const int l = exact::orient2d(v0, v1, left, k);
@@ -52,7 +52,7 @@ bool lie_apart(const Vec3& v0, const Vec3& v1, const Vec3& left, const Vec3& rig
   return false;
 }
 
-// The smallest altitude of the tetrahedron is within reach of the corners' quanta.
+// Whether the smallest altitude of the tetrahedron is within the sum of the corners' quanta.
 bool is_flat_within(double reach, const Wedge& w, double six_volumes) {
   const Vec3 left = w.left - w.along, right = w.right - w.along;
   const double largest_face = std::max({squared_length(cross(w.along, w.left)), squared_length(cross(w.right, w.along)),

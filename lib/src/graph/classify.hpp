@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the surface bends outwards, inwards or not at all across each edge of a triangle mesh.
+// Classification of each edge of a triangle mesh as convex, concave or coplanar.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace fdcg::bake {
 
-// How flat an edge is: the tier that holds first.
+// How flat an edge is: the first tier whose condition holds.
 enum class Flat : std::uint8_t {
   no = 0,
   exact,    // the four corners are exactly coplanar and the normals agree

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 #include "fdcg/fdcg.h"
 
 namespace fdcg::bake {
@@ -44,7 +44,7 @@ std::vector<std::uint16_t> material_of_faces(const PolygonSoup& soup, const Merg
     const std::uint32_t face = face_of_source.empty() ? source : face_of_source[source];
     if (face != kNone) material[face] = soup.face_material[source];
   }
-  // A merged face may have the middle of no source face in it.
+  // A merged face may contain the centre of no source face.
   for (std::uint32_t face = 0; face < faces.mesh.face_count(); ++face) {
     const std::uint32_t region = faces.regions.of(FaceId{face});
     if (region != kNone) material[face] = faces.regions.list[region].material;

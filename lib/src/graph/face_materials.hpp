@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the source faces' materials to the nodes'.
+// Materials of the nodes, from those of the source faces.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,9 @@
 
 namespace fdcg::bake {
 
-// Cuts regions where the material changes, so that no merged face has two. Each piece keeps the whole's plane, bit for bit.
-// `source_face`: of each face that was triangulated, empty where it is itself. Nothing where the soup has no materials. Linear.
+// Splits regions where the material changes, so that no merged face has two materials. Each part keeps the plane of the region,
+// bit for bit. `source_face`: the source face of each triangle; empty where they are the same. Does nothing where the soup has
+// no materials. Linear.
 void split_by_material(const PolygonSoup& soup, const std::vector<std::uint32_t>& source_face, const Triangulation& cut,
                        Regions& regions);
 
@@ -23,7 +24,7 @@ void split_by_material(const PolygonSoup& soup, const std::vector<std::uint32_t>
 std::vector<std::uint16_t> material_of_faces(const PolygonSoup& soup, const Merged& faces,
                                              const std::vector<std::uint32_t>& face_of_source);
 
-// A name as the file holds it: UTF-8, and told apart from others however long.
+// A name as the file stores it: UTF-8, and distinct from other names also where it is cut.
 fdcg_material_record material_record(const std::string& name);
 
 }  // namespace fdcg::bake

@@ -32,8 +32,8 @@ struct Frame {
   Vec3 axis[3];
 };
 
-// Along the chord of the directions, across it in the plane that they curve in, and out of that plane: of a cone's fan the
-// last is the cone's axis, along which the box then is thin and the bound of a push along the axis tight.
+// Axes along the chord of the directions, across it in the plane in which they curve, and normal to that plane. For the fan of
+// a cone's apex the last one is the cone's axis: the box is thin along it, and the bound for a force along it is tight.
 Frame fitted_frame(std::span<const FanDirection> fan) {
   Vec3 turning;
   for (std::size_t i = 0; i + 1 < fan.size(); ++i)
@@ -81,7 +81,7 @@ class Builder {
  private:
   const Vec3& next_edge(std::size_t i) const { return fan_[i + 1 < fan_.size() ? i + 1 : 0].edge; }
 
-  // What rounding may add, and edges that lie off the plane of their face (inexact nodes).
+  // Margin for rounding, and for edges that lie off the plane of their face (inexact nodes).
   double slack(std::size_t first, std::size_t last) const {
     double most = 0;
     for (std::size_t i = first; i < last; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of a busy corner (format.h, fdcg_fan_box): boxes around the directions that the corner's edges and faces offer, so
-// that the step finds the steepest of ten thousand by opening some twenty.
+// The box tree of a corner with many edges (format.h, fdcg_fan_box): bounding boxes of the directions of the corner's edges and
+// faces, so that the step finds the steepest of ten thousand directions by visiting about twenty boxes.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct FanDirection {
   Vec3 face_normal;
 };
 
-// How many boxes a corner of so many entries has: 0 where it is not busy.
+// Number of boxes of a corner with so many fan entries: 0 where it has too few for a tree.
 [[nodiscard]] std::uint32_t fan_box_count(std::uint32_t fan_entries);
 
 // Its boxes, root first, level after level. `epsilon` is that of the stored numbers. Near linear in the entries.

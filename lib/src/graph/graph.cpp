@@ -22,7 +22,7 @@ struct Ranked {
   std::uint32_t face;
 };
 
-// Twice the mean of the extreme coordinates: cheap, and as good as the centroid to sort by.
+// Twice the centre of the bounding box: cheap, and sorts as well as the centroid.
 Vec3 doubled_centre(const Mesh& mesh, std::uint32_t f) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
@@ -88,8 +88,8 @@ void radix_sort(std::vector<Ranked>& items, unsigned key_bits) {
   }
 }
 
-// Which corner of a polygon comes first: the three from there make the largest triangle, seen as the region was when it was cut
-// up, and an exactly proper one.
+// The first corner of a polygon: the one whose triangle with the two next corners is the largest in the projection of the
+// region, and exactly non-degenerate.
 std::uint32_t best_start(const Mesh& mesh, std::uint32_t f, const Vec3& normal) {
   const std::uint32_t first = mesh.face_first[f], count = mesh.face_first[f + 1] - first;
   const Projection view(normal);
@@ -107,7 +107,7 @@ std::uint32_t best_start(const Mesh& mesh, std::uint32_t f, const Vec3& normal) 
   return best;
 }
 
-// The graph while it is put together from the mesh.
+// Builds the graph from the mesh.
 class Orderer {
  public:
   Orderer(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, Regions& regions, unsigned jobs)

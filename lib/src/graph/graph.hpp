@@ -11,8 +11,8 @@
 
 namespace fdcg::bake {
 
-// All that the file says but the floating-point numbers derived from it. Indices are those of the file: node, side (counted
-// over all nodes), connection, corner.
+// The content of the file except for derived floating-point numbers. Indices are those of the file: node, side (counted over
+// all nodes), connection, corner.
 struct Graph {
   std::vector<Vec3> points;                 // of each corner
   std::vector<std::uint32_t> first_side;    // node n: sides first_side[n] .. first_side[n + 1] - 1
@@ -34,12 +34,12 @@ struct Graph {
   [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(points.size()); }
   [[nodiscard]] std::uint32_t node(std::uint32_t side) const { return node_of_side.empty() ? side / 3 : node_of_side[side]; }
   [[nodiscard]] std::uint32_t region_of(std::uint32_t node) const { return region.empty() ? kNone : region[node]; }
-  // Whether two nodes share a plane bit for bit.
+  // Whether two nodes have the same plane, bit for bit.
   [[nodiscard]] bool is_one_plane(std::uint32_t a, std::uint32_t b) const {
     const std::uint32_t r = region_of(a), s = region_of(b);
     return r != kNone && s != kNone && (r == s || (regions[r].whole != kNone && regions[r].whole == regions[s].whole));
   }
-  // The side that a node's loop takes to come in where `side` leaves.
+  // The side of the same node that ends where `side` starts.
   [[nodiscard]] std::uint32_t previous(std::uint32_t side) const {
     const std::uint32_t n = node(side);
     return side > first_side[n] ? side - 1 : first_side[n + 1] - 1;
@@ -50,9 +50,9 @@ struct Graph {
   }
 };
 
-// Orders faces, connections and corners. The mesh is manifold, oriented, convex face by face, its twins are half-edges or
-// kBoundary; vertices of no face fall away. Polygons start where their first three corners turn left most (a strict turn).
-// Near linear; the order does not depend on `jobs`.
+// Orders faces, connections and corners. The mesh is manifold and oriented, its faces are convex, its twins are half-edges or
+// kBoundary; vertices of no face are dropped. A polygon starts at the corner whose triangle with the two next corners is the
+// largest (and strictly counter-clockwise). Near linear; the order does not depend on `jobs`.
 [[nodiscard]] Graph order_graph(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions, unsigned jobs);
 
 }  // namespace fdcg::bake

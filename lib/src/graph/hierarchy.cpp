@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kGrain = 1u << 9;
 constexpr int kExponentBias = 127;
-// The smallest cell of a grid: the step's rounding, some 2^-19, stays far below the 255 cells by which an unused box is inside
-// out.
+// The smallest cell of a grid: the step's rounding error, some 2^-19, stays far below 255 cells, the amount by which an unused
+// box is inverted.
 constexpr int kLeastCell = -24;
 constexpr double kFarthest = 8;  // tree units: no box reaches further
 
@@ -38,8 +38,8 @@ float float_below(double x) {
   return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
 
-// The grid of one axis: the finest whose 255 cells hold the boxes. Then each bound to the next cell outwards; origin + cell *
-// number is exact in double, so that the comparison is with what a reader gets.
+// Chooses for one axis the finest grid whose 255 cells cover the boxes, then rounds each bound outwards to the next cell.
+// origin + cell * number is exact in double, so that the comparison is with the value that a reader gets.
 void put_on_grid(const Boxes& boxes, std::size_t count, std::size_t axis, const Box& around, fdcg_box8& record) {
   constexpr int kCells = 255;
   record.origin[axis] = float_below(around.low[axis]);
@@ -50,7 +50,7 @@ void put_on_grid(const Boxes& boxes, std::size_t count, std::size_t axis, const 
   record.exponent[axis] = static_cast<std::uint8_t>(exponent + kExponentBias);
   const double cell = std::ldexp(1.0, exponent);
   for (std::size_t j = 0; j < FDCG_TREE_WAYS; ++j) {
-    int low = kCells, high = 0;  // inside out: no box
+    int low = kCells, high = 0;  // inverted: no box
     if (j < count) {
       low = std::clamp(static_cast<int>((boxes[j].low[axis] - origin) / cell), 0, kCells);
       while (origin + low * cell > boxes[j].low[axis])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON that the file carries about itself.
+// The metadata of the file as JSON.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace fdcg::bake {
 
-// One line: tool, source, options, verdict, the rules that were run and what they found. No path, time or host, and nothing
-// that does not change the graph (jobs): same input and options, same text.
+// One line: tool, source, options, verdict, the rules that were run and their findings. No path, time or host, and no option
+// without influence on the graph (jobs): same input and options, same text.
 [[nodiscard]] std::string info_json(const PolygonSoup& soup, const CompileOptions& options, const Compiled& compiled);
 
 }  // namespace fdcg::bake

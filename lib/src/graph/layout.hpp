@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the sections of a file lie, and in section NODES the nodes' blocks.
+// Layout of a file: the offsets of its sections and, in section NODES, of the nodes' blocks.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace fdcg::bake {
   return (bytes + FDCG_ALIGNMENT - 1) / FDCG_ALIGNMENT * FDCG_ALIGNMENT;
 }
 
-// Where each section lies.
+// Offset and size of each section.
 class Layout {
  public:
   void add(fdcg_section_id id, std::size_t record_bytes, std::uint64_t count) {
@@ -51,7 +51,7 @@ class Layout {
   std::uint64_t bytes_ = 0;
 };
 
-// Where the nodes' blocks lie: one after another, of one size where all nodes have as many sides.
+// Offsets of the nodes' blocks: consecutive, of equal size where all nodes have the same number of sides.
 class Blocks {
  public:
   // The sizes depend on the sides: `node` bytes up to the sides, `real` bytes a number, `plane` bytes a stored plane or 0.

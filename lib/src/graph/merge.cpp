@@ -15,7 +15,7 @@
 namespace fdcg::bake {
 namespace {
 
-// Where the entries of a triangle's slots, and of a triangle, start.
+// Initial values of the entries of a triangle's slots, and of a triangle.
 struct NextInTriangle {
   std::uint32_t operator()(std::uint32_t slot) const { return slot % 3 == 2 ? slot - 2 : slot + 1; }
 };
@@ -59,7 +59,7 @@ class Merger {
   [[nodiscard]] std::uint32_t region(std::uint32_t slot) const { return regions_.of_face[slot / 3]; }
   [[nodiscard]] bool is_alive(std::uint32_t face) const { return mesh_.corners[3 * face] != VertexId{kNone}; }
 
-  // Before triangles change: where each of a region was, in their order.
+  // Stores the centres of all triangles in regions, in order, before the mesh is edited.
   void find_centres() {
     for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
       if (regions_.of_face[f] == kNone) continue;
@@ -76,8 +76,8 @@ class Merger {
     return face;
   }
 
-  // before -> at -> after does not turn right in the view, nor back. Of corners off their plane the same is asked as seen along
-  // the plane's normal, for that is how the Voronoi planes stand; there rounding is let pass.
+  // Whether the path before -> at -> after turns neither clockwise nor back in the projection. For corners off their plane the
+  // same must hold along the plane's normal, up to rounding error, since the Voronoi planes are perpendicular to that plane.
   [[nodiscard]] bool stays_convex(std::uint32_t before, std::uint32_t at, std::uint32_t after) const {
     const Vec3 &a = start(before), &b = start(at), &c = start(after);
     const Projection& view = views_[region(at)];
@@ -129,8 +129,8 @@ class Merger {
     next_.set(twin, kNone);
   }
 
-  // Polygons with more sides than a node may have are cut again, into as few pieces of like size as will do; dropped diagonals
-  // lend their slots.
+  // Splits polygons with more sides than a node may have into the fewest parts of similar size. The new diagonals reuse the
+  // slots of dropped ones.
   void split_large_polygons(const std::vector<Diagonal>& diagonals) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> spare;  // of each large polygon, by its root
     for (const Diagonal& diagonal : diagonals) {
@@ -156,8 +156,8 @@ class Merger {
     return kNone;
   }
 
-  // A side of a merged polygon. Triangles in its middle have lost all of theirs, the root's may be one of them; but each of its
-  // triangles lies on one side or the other of a dropped diagonal, so the two sides of all diagonals lead to every triangle.
+  // A boundary half-edge of a merged polygon. Its inner triangles, perhaps the root too, have none left; but every triangle of
+  // it is adjacent to a dropped diagonal, so looking at both sides of all dropped diagonals reaches every triangle.
   [[nodiscard]] std::uint32_t find_side(std::uint32_t root_triangle, const std::vector<std::uint32_t>& dropped) const {
     std::uint32_t side = side_of(root_triangle);
     for (std::size_t i = 0; i < dropped.size() && side == kNone; ++i)
@@ -170,9 +170,9 @@ class Merger {
   void split(const std::vector<std::uint32_t>& loop, std::vector<std::uint32_t>& spare) {
     const std::size_t count = loop.size();
     if (count <= kMaxMergedSides) return;
-    constexpr std::size_t kCorners = kMaxMergedSides - 2;  // that a piece adds to the two it shares
+    constexpr std::size_t kCorners = kMaxMergedSides - 2;  // corners of a part beside the two of the cut
     const std::size_t pieces = (count - 2 + kCorners - 1) / kCorners;
-    const std::size_t taken = (count - 2) * (pieces / 2) / pieces + 1;  // sides of the first part but the cut
+    const std::size_t taken = (count - 2) * (pieces / 2) / pieces + 1;  // sides of the first part without the cut
     for (std::size_t offset = 0; offset < count; ++offset) {
       std::vector<std::uint32_t> part(loop.begin() + static_cast<std::ptrdiff_t>(offset), loop.end());
       part.insert(part.end(), loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(offset));
@@ -199,7 +199,7 @@ class Merger {
     }
   }
 
-  // The chain of sides, closed by the cut that leads from `end` back to its start, is no straight line.
+  // Whether the chain of sides, closed by the cut from `end` back to its start, has positive area.
   [[nodiscard]] bool has_area(const std::vector<std::uint32_t>& chain, std::uint32_t end) const {
     const Projection& view = views_[region(end)];
     return std::any_of(chain.begin() + 1, chain.end(),
@@ -275,8 +275,7 @@ class Merger {
   Merged out_;
 };
 
-// How far inside the polygon the point is: the least of the signed distances to its edges; and the edge that it is least
-// inside of.
+// Signed depth of the point in the polygon: the smallest of the signed distances to its edges; and that edge.
 Merger::Depth Merger::depth(const Projection& view, std::uint32_t face, const Vec3& x) const {
   const Mesh& mesh = out_.mesh;
   Depth least{std::numeric_limits<double>::infinity(), 0};
@@ -291,8 +290,8 @@ Merger::Depth Merger::depth(const Projection& view, std::uint32_t face, const Ve
   return least;
 }
 
-// Walks from one polygon of the region to the next towards x; where the walk leaves the region (around a hole) or takes too
-// long, looks at all of them.
+// Point location: walks from polygon to polygon of the region towards x. Where the walk leaves the region (at a hole) or
+// exceeds its bound, searches all polygons.
 std::uint32_t Merger::locate(const Projection& view, std::span<const std::uint32_t> faces, std::uint32_t start_face,
                              const Vec3& x) const {
   constexpr int kMostSteps = 256;

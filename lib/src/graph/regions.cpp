@@ -13,7 +13,8 @@
 namespace fdcg::bake {
 namespace {
 
-// Faces joined by exactly flat edges lie in one plane exactly, however many there are: they are taken or left as a whole.
+// An atom: faces connected by exactly flat edges. All of them are exactly coplanar, so they join a region together or not at
+// all.
 struct Atoms {
   std::vector<std::uint32_t> of_face;  // kNone where no edge of the face is flat
   std::vector<std::uint32_t> first;    // atom a: faces[first[a]] .. faces[first[a + 1] - 1]
@@ -154,7 +155,7 @@ class Grower {
     }
   }
 
-  // The plane through all members, if it suits every one of them (and `extra`).
+  // The plane fitted to all members, if every one of them (and `extra`) is within tolerance of it.
   [[nodiscard]] std::optional<Candidate> refit(const PlaneFit& fit, const Vec3& normal, std::uint32_t extra) const {
     const Candidate plane = fitted(fit, normal);
     if (extra != kNone && !fits(extra, plane)) return std::nullopt;
@@ -171,7 +172,7 @@ class Grower {
     reach_ = 0;
     take(seed, fit);
     if (options_.coplanar.kind != Coplanar::Kind::exact) {
-      // Members always suit `plane`. It is fitted anew whenever the region has doubled and once growth has come to a stop.
+      // Members are always within tolerance of `plane`. It is fitted again when the region has doubled and when growth stops.
       constexpr int kMostRounds = 64;
       for (int round = 0; round < kMostRounds && spread(fit, plane); ++round) {
         const std::optional<Candidate> better = refit(fit, plane.normal, kNone);
@@ -182,10 +183,10 @@ class Grower {
     if (face_count_ > 1) finish(plane);
   }
 
-  // Takes what suits the plane across flat edges, until the region has doubled or there is nothing left. True: something was
-  // taken.
+  // Adds neighbours across flat edges that fit the plane, until the region has doubled or none is left. Returns whether any was
+  // added.
   bool spread(PlaneFit& fit, Candidate& plane) {
-    constexpr std::uint32_t kFewFaces = 32;  // so small a region's plane is uncertain: it may tilt for each new face
+    constexpr std::uint32_t kFewFaces = 32;  // the plane of so small a region is uncertain: it may tilt for each new face
     const std::uint32_t limit = std::max(2 * face_count_, kFewFaces), before = face_count_;
     ++round_;
     for (std::size_t m = 0; m < members_.size() && face_count_ < limit; ++m) {
@@ -211,8 +212,8 @@ class Grower {
     return face_count_ > before;
   }
 
-  // Every triangle of a region faces the region's own way, exactly, seen along the axis that merging will use. Slivers whose
-  // corners are within the quantum but whose normals are not are left on their own.
+  // Whether every triangle of the atom has the orientation of the region's normal: exactly, in the projection that merging
+  // uses. Slivers with corners within the quantum but deviating normals are not merged.
   [[nodiscard]] bool faces(std::uint32_t atom, const Vec3& normal) const {
     const Projection view(normal);
     const auto all = atoms_.of(atom);
@@ -265,11 +266,11 @@ class Grower {
   std::vector<double> area_;
   std::vector<std::uint32_t> largest_face_;
   std::vector<std::uint8_t> taken_;
-  std::vector<std::uint32_t> tried_;  // the round in which an atom was last looked at
+  std::vector<std::uint32_t> tried_;  // the last round in which an atom was tried
   std::uint32_t round_ = 0;
   std::vector<std::uint32_t> members_;
   std::uint32_t face_count_ = 0;
-  double reach_ = 0;  // from the plane: by the largest quantum of a member, for it moves the whole plane
+  double reach_ = 0;  // tolerance to the plane: by the largest quantum of a member, since it may move the whole plane
   std::vector<Vec3> points_;
   Regions regions_;
 };

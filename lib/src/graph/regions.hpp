@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles form one planar region and share one plane.
+// Grouping of triangles into planar regions that share one plane.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ struct Region {
   Plane plane;              // at storage precision
   bool is_exact = false;    // all its corners are exactly coplanar
   Flat tier = Flat::exact;  // the loosest tier that was needed
-  // Cut from a region of several materials: pieces of one whole share this number, and the plane. kNone: it is whole.
+  // Set for parts of a region that was split by materials: parts of one region have the same number and plane. kNone: not
+  // split.
   std::uint32_t whole = kNone;
   std::uint16_t material = PolygonSoup::kNoMaterial;
 };
@@ -40,9 +41,10 @@ struct RegionOptions {
 //   exact     every corner is exactly coplanar with every other. Exactly flat edges never lie between two regions.
 //   quantum   every corner is within kQuantumReach of the region's largest quantum of the plane, and every normal agrees
 //   angle     as quantum, or every normal is within the angle of the plane's normal
-// so that chains of small angles cannot drift; every edge runs along the plane (planes.hpp) and every triangle faces the
-// plane's way, exactly, seen along its axis. Largest parts first; a region whose plane would move off one of its corners by
-// growing on stops there. Near linear; a mesh without flat edges costs one pass over them. Triangles only.
+// so that small angles cannot accumulate along a chain. Every edge runs along the plane (planes.hpp) and every triangle has,
+// exactly, positive orientation in the projection along the plane's axis. Regions grow from the largest atoms first; growth
+// stops where the fitted plane would leave a member out of tolerance. Near linear; without flat edges, one pass over the edges.
+// Triangles only.
 [[nodiscard]] Regions find_regions(const Mesh& mesh, const Topology& topology, const std::vector<EdgeClass>& edges,
                                    const RegionOptions& options);
 

@@ -42,8 +42,8 @@ void VertexRemover::remove_inner() {
   }
 }
 
-// Round after round, never two neighbours in one: a long straight border is halved again and again, so that the lists of
-// swallowed vertices are looked at a logarithmic number of times.
+// Works in rounds and never removes two neighbours in one round: a long straight border is halved in each round, so that the
+// lists of removed vertices are checked a logarithmic number of times.
 void VertexRemover::remove_border() {
   std::vector<std::uint32_t> waiting;
   for (std::uint32_t v = 0; v < slot_of_.size(); ++v) {
@@ -103,7 +103,7 @@ void VertexRemover::read_ring(Star& star, bool is_closed) const {
 
 bool VertexRemover::cut(Star& star, std::uint32_t vertex) {
   star.ears.clear();
-  if (star.ring.size() == 2) {  // one thin triangle: what lies behind it takes over its border
+  if (star.ring.size() == 2) {  // one degenerate triangle: the triangle behind it takes over its border edge
     const HalfedgeId behind{star.ring_edges.front().across};
     return behind != Topology::kBoundary && region(+behind) == region(star.out.front());
   }
@@ -122,7 +122,7 @@ bool VertexRemover::cut(Star& star, std::uint32_t vertex) {
   });
 }
 
-// Puts the ears where the star's triangles were. Returns the slot of the edge that closes the ring of a border vertex.
+// Replaces the star's triangles by the ears. Returns the slot of the edge that closes the ring of a border vertex.
 std::uint32_t VertexRemover::replace(Star& star) {
   const std::uint32_t r = region(star.out.front());
   const Region& home = regions_.list[r];
@@ -191,8 +191,8 @@ VertexRemover::Outcome VertexRemover::try_inner(std::uint32_t vertex, std::size_
   return Outcome::removed;
 }
 
-// A vertex where one region meets the open boundary or one other region, on both sides of a straight line. `later`: it is one
-// but cannot go, or not yet.
+// Tries to remove a vertex on a straight border between one region and the open boundary or one other region. `later`: it is
+// such a vertex but cannot be removed now.
 VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint32_t& left, std::uint32_t& right) {
   const bool is_closed = read_fan(vertex);
   const std::size_t count = fan_.size();
@@ -233,7 +233,7 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
   swallowed_.set(left_slot, list);
   topology_.twin[left_slot] = Topology::kBoundary;
   if (is_closed) {
-    read_ring(right_star_, false);  // anew: a triangle of the left star may have lain across
+    read_ring(right_star_, false);  // again: replacing the left star may have changed its neighbours
     const std::uint32_t right_slot = replace(right_star_);
     edges_[right_slot] = border;
     swallowed_.set(right_slot, list);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Step 1 of merging (merge.hpp): takes out the vertices that no planar region needs.
+// Step 1 of merging (merge.hpp): removes vertices inside planar regions and on straight borders between them.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,7 @@ struct NoneYet {
   std::uint32_t operator()(std::uint32_t) const { return kNone; }
 };
 
-// Edits a triangle mesh in place. Slots are half-edges, three a triangle; of a triangle that is no longer there the corners are
-// kNone.
+// Edits a triangle mesh in place. Slots are half-edges, three per triangle; the corners of a removed triangle are kNone.
 class VertexRemover {
  public:
   VertexRemover(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, const Regions& regions,
@@ -28,12 +27,12 @@ class VertexRemover {
 
  private:
   struct RingEdge {
-    std::uint32_t across;  // the slot there, or +kBoundary
+    std::uint32_t across;  // the opposite slot, or +kBoundary
     EdgeClass edge;
     std::uint32_t swallowed;
     bool closes;  // the edge along the border that will close the ring
   };
-  // One region's part of a vertex' fan: the ring of vertices around, and its edges.
+  // The part of a vertex's fan that belongs to one region: the ring of neighbouring vertices, and its edges.
   struct Star {
     std::vector<std::uint32_t> out;  // the half-edges that leave the vertex, counter-clockwise
     std::vector<std::uint32_t> ring;
@@ -74,8 +73,8 @@ class VertexRemover {
   const std::vector<Projection>& views_;
   const MergeOptions& options_;
   std::vector<std::uint32_t> slot_of_;  // of each vertex of a region: a half-edge that leaves it; else kNone
-  // Vertices that a border edge took in without passing through them exactly, as linked lists: the first by slot (the same for
-  // both halves of an edge), the next by vertex.
+  // Removed vertices that a border edge replaces without passing through them exactly, as linked lists: the first by slot (the
+  // same for both halves of an edge), the next by vertex.
   LazyArray<NoneYet> swallowed_, next_swallowed_;
   std::vector<std::uint32_t> fan_;
   Star left_star_, right_star_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One writer, a little over 400 lines: the sections of a file in the order of its table, over the same counts and offsets.
+// A little over 400 lines: one writer for all sections of a file, in the order of its table, with common counts and offsets.
 #include "graph/serialise.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ struct Records32 {
   using FanBox = fdcg_fan_box_f32;
 };
 
-// What one range of nodes adds to the header.
+// Contribution of one range of nodes to the header.
 struct NodeTally {
   std::array<std::uint32_t, 4> types{};
   double max_deviation = 0;
@@ -165,7 +165,7 @@ class Writer {
 
   [[nodiscard]] const Vec3& start(std::uint32_t side) const { return graph_.points[graph_.corner[side]]; }
 
-  // The plane as it is stored: for a face on its own, of the normal after rounding.
+  // The plane as it is stored. For a face in no region the offset is computed for the rounded normal.
   [[nodiscard]] Plane plane_of(std::uint32_t node) const {
     const std::uint32_t region = graph_.region_of(node), first = graph_.first_side[node];
     if (region != kNone) return graph_.regions[region].plane;
@@ -220,7 +220,7 @@ class Writer {
     return (graph_.connection[side] & 1u) == 0 ? derive_edge(from, to) : derive_edge(to, from);
   }
 
-  // An upper bound, whatever the three products and sums lost.
+  // An upper bound that includes the rounding error of the three products and sums.
   [[nodiscard]] double deviation(const Plane& plane, const Vec3& point) const {
     constexpr double kRounding = 1e-15;  // 4 operations on terms no larger than 3 extents and an offset: below 8 * 2^-53 each
     return std::fabs(dot(plane.normal, point) + plane.offset) + kRounding * (header_.extent + std::fabs(plane.offset));
@@ -237,7 +237,7 @@ class Writer {
     return type;
   }
 
-  // Coplanar inside a region, for then the two share a plane; else what the stored points say.
+  // Coplanar inside a region, where the two nodes have one plane; else the sign from the stored points.
   [[nodiscard]] std::pair<fdcg_connection_type, fdcg_flatness> type_of(std::uint32_t side, std::uint32_t a,
                                                                        std::uint32_t b) const {
     const EdgeClass edge = graph_.edges[side];
@@ -273,7 +273,7 @@ class Writer {
       corner.normal[k] = static_cast<std::int16_t>(std::floor(FDCG_NORMAL_SCALE * component(normal, k) + 0.5));
   }
 
-  // The fan as the file stores it, and the directions that it offers.
+  // The fan as the file stores it, and its directions.
   std::vector<FanDirection> write_fan(std::uint32_t c, std::span<std::uint32_t> entries) const {
     std::vector<FanDirection> fan(entries.size());
     std::uint32_t side = graph_.fan_start[c];

@@ -33,7 +33,7 @@ struct SerialiseInput {
   unsigned jobs = 1;
 };
 
-// Same input, same bytes, whatever `jobs`. Fails (3) where a count outgrows the format or there is no memory to be had.
+// Same input, same bytes, whatever `jobs`. Fails (3) where a count exceeds the format's limit or memory runs out.
 [[nodiscard]] Result<std::span<std::byte>> serialise(const Graph& graph, const SerialiseInput& input, const Allocate& allocate);
 
 }  // namespace fdcg::bake

@@ -17,10 +17,10 @@ struct MassProperties {
   std::array<double, 6> inertia{};  // about the centroid, density 1: xx, yy, zz, xy, xz, yz; xy is minus the integral of x y
 };
 
-// What a mesh encloses, or the reason why that is no solid.
+// Mass properties of the enclosed solid, or the reason why the mesh encloses none.
 struct Solid {
   MassProperties mass;
-  std::string reason;  // empty: it is one
+  std::string reason;  // empty: it is a solid
 };
 
 // Of a mesh of triangles, by the divergence theorem: sums over the tetrahedra between the origin and each triangle, in integers

@@ -7,7 +7,7 @@
 
 #include "base/vec3.hpp"
 #include "graph/solid_mass.hpp"
-#include "shared/mass_record.hpp"  // what the runtime takes
+#include "shared/mass_record.hpp"  // the values that the runtime accepts
 
 namespace fdcg::bake {
 namespace {

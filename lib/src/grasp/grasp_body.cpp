@@ -52,7 +52,7 @@ std::vector<double> Body::presses_n(const Vec6& u) const {
     presses[static_cast<std::size_t>(std::max_element(supports.begin(), supports.end()) - supports.begin())] = total_n;
     return presses;
   }
-  std::vector<std::size_t> order(contacts.size());  // who gives most for a newton presses first
+  std::vector<std::size_t> order(contacts.size());  // the contact with the largest product per newton presses first
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return supports[a] > supports[b]; });
   double left = total_n;
@@ -74,7 +74,7 @@ SupportPoint Body::support(const Vec6& u) const {
       add_scaled(point.wrench, press * b[k] / length, contact.spread[k]);
     point.value += press * (dot(contact.centre, u) + length);
   };
-  if (must_press) {  // the common case, without allocation: one contact does it all
+  if (must_press) {  // the common case, without allocation: one contact carries the whole force
     const UnitWrenches* best = nullptr;
     double most = -std::numeric_limits<double>::infinity();
     for (const UnitWrenches& contact : contacts) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The set of wrenches that a grasp's contacts can put on the object, through its support function. Friction cones are exact:
-// a contact pressing with 1 N gives an ellipse (hard finger) or ellipsoid (soft finger) of wrenches.
+// The set of wrenches that the contacts of a grasp can exert on the object, given by its support function. Friction cones are
+// not linearised: a contact pressing with 1 N gives an ellipse (hard finger) or ellipsoid (soft finger) of wrenches.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ inline Vec6 unit(const Vec6& v) {
   return scaled(1 / norm(v), v);
 }
 
-// What one contact gives with a normal force of 1 N: centre + sum of x_k spread[k] over |x| <= 1.
+// The wrenches of one contact at a normal force of 1 N: centre + sum of x_k spread[k] over |x| <= 1.
 struct UnitWrenches {
   Vec6 centre{};
   std::array<Vec6, 3> spread{};  // two tangents, torsion; zero where there is no friction
@@ -38,18 +38,18 @@ struct UnitWrenches {
 
   // The three products spread[k].u, and their length.
   [[nodiscard]] std::array<double, 3> slip(const Vec6& u, double& length) const;
-  // The most that u gets out of it.
+  // The support function: the largest product of u with one of these wrenches.
   [[nodiscard]] double support(const Vec6& u) const;
 };
 
-// Where a support function is reached.
+// The wrench at which the support function attains its value.
 struct SupportPoint {
   double value = 0;
   Vec6 wrench{};
 };
 
 // All sums of the contacts' wrenches with normal forces of at most caps_n[i] each and total_n together.
-// must_press: exactly total_n together, so that the set need not hold the origin; caps are not looked at.
+// must_press: normal forces of exactly total_n together, so that the set need not contain the origin; caps are ignored.
 struct Body {
   std::vector<UnitWrenches> contacts;
   std::vector<double> caps_n;
@@ -59,17 +59,17 @@ struct Body {
 
   [[nodiscard]] SupportPoint support(const Vec6& u) const;
   [[nodiscard]] double value(const Vec6& u) const { return support(u).value; }
-  // The normal force of each contact where u's support is reached.
+  // The normal force of each contact at the support point of u.
   [[nodiscard]] std::vector<double> presses_n(const Vec6& u) const;
 };
 
-// Of the grasp's contacts: a total of 1 N, no caps.
+// The wrench set of the grasp's contacts for a total of 1 N, without caps.
 Body unit_body(const Grasp& grasp);
 
 // One contact's force and moment about its own point, from coordinates x within the unit ball and its normal force.
 ContactForce contact_force(const Contact& contact, double press_n, const std::array<double, 3>& x);
 
-// Two unit vectors that make a right-handed frame with a unit normal.
+// Two unit vectors that complete a unit normal to a right-handed frame.
 std::array<Vec3, 2> tangents(const Vec3& normal);
 
 }  // namespace fdcg::grasp

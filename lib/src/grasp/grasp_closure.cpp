@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closure is proved from both sides. Yes: twelve wrenches of the contacts, one along each axis each way, have the origin deep
-// between them. No: a direction along which no contact gives anything. Where neither shows at once, the search over all
-// directions that epsilon needs decides.
+// Force closure is proved either way. Yes: the origin is well inside the hull of twelve wrenches of the contacts, one along
+// each axis in each direction. No: there is a direction in which no contact can exert a wrench. Where neither is found at once,
+// the search over all directions that epsilon needs decides.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@
 namespace fdcg::grasp {
 namespace {
 
-// What is resisted least is against the direction along which the contacts give least.
+// The least resisted disturbance is opposite to the direction in which the contacts give least.
 Wrench disturbance(const Vec6& direction, double torque_scale) {
   const Vec6& u = direction;
   return {{0 - u[0], 0 - u[1], 0 - u[2]}, {0 - u[3] * torque_scale, 0 - u[4] * torque_scale, 0 - u[5] * torque_scale}};
@@ -20,11 +20,11 @@ Wrench disturbance(const Vec6& direction, double torque_scale) {
 
 struct AxisShots {
   LocalMinimum best;
-  double inscribed = 0;  // radius of a ball about the origin between the wrenches that were hit; 0: none is proved
+  double inscribed = 0;  // radius of a ball about the origin inside the hull of the wrenches found; 0: none is proved
 };
 
-// Shoots along each axis both ways. A body's wrench at t along an axis proves t; wrenches off their axes by no more than `off`
-// shrink the ball by as much.
+// Casts a ray along each axis in both directions. A wrench of the body at t along an axis proves t; where the wrenches are off
+// their axes by at most `off`, the ball shrinks by that much.
 AxisShots shoot_axes(const Body& body) {
   constexpr double kReach = 100;
   AxisShots shots{{{}, std::numeric_limits<double>::infinity()}, 0};
@@ -67,7 +67,7 @@ Judged judge(const Grasp& grasp, const Body& body) {
   judged.best = descend(body, shots.best.direction);
   double lower = shots.inscribed;
   if (!(lower > kTolerance) && judged.best.value > kTolerance) {
-    // Thin in a direction between the axes, or open in one that no shot has met.
+    // Thin in a direction between the axes, or open in a direction that no ray has tested.
     constexpr std::uint64_t kCells = 200'000;
     const LeastSupport search = least_support(body, judged.best, kCells);
     judged.best = search.best;
@@ -86,7 +86,7 @@ Judged judge(const Grasp& grasp, const Body& body) {
   return judged;
 }
 
-// Each contact with 1 N.
+// Each contact presses with 1 N.
 Body sum_of(Body body) {
   body.must_press = false;
   std::fill(body.caps_n.begin(), body.caps_n.end(), 1.0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cone of directions with corners g_1 .. g_n (unit vectors) is done with when the body has one wrench w whose product with
-// each corner is the best value known: a unit vector u of the cone is a sum of corners with shares that sum to 1 or more, so
-// the support at u is at least w.u, and that at least the best value. Else the cone is cut in two at the middle of its longest
-// side. Cones that have a side in common share its corners, so nothing is left between them but the rounding of the middles
+// A cone of directions with corners g_1 .. g_n (unit vectors) is pruned when the body has one wrench w whose product with each
+// corner is at least the best value known: a unit vector u of the cone is a sum of corners with weights that sum to 1 or more,
+// so the support at u is at least w.u, which is at least the best value. Else the cone is bisected at the midpoint of its
+// longest side. Cones with a common side share its corners, so the gaps between them are only the rounding of the midpoints
 // (1e-16, far below the tolerance).
 #include "grasp/grasp_epsilon.hpp"
 
@@ -15,9 +15,9 @@ namespace fdcg::grasp {
 namespace {
 
 struct Cell {
-  double lower = -std::numeric_limits<double>::infinity();  // no unit direction in it has less support
+  double lower = -std::numeric_limits<double>::infinity();  // lower bound of the support over the unit directions in it
   std::array<std::uint32_t, kDimensions> corners{};
-  Vec6 wrench{};  // proves `lower`; where the cells cut from it start
+  Vec6 wrench{};  // proves `lower`; start value for the cells cut from it
 };
 struct HigherFirst {
   bool operator()(const Cell& a, const Cell& b) const { return a.lower > b.lower; }
@@ -109,7 +109,7 @@ LeastSupport Search::run(std::uint64_t max_cells) {
     open_.pop();
     split(cell);
   }
-  // What was dropped has at least enough() of a best value that has only come down since.
+  // Pruned cones have at least enough() of a best value that has only decreased since.
   return {best_, open_.empty() ? enough() : std::min(enough(), open_.top().lower), cells_};
 }
 

@@ -11,12 +11,12 @@ namespace fdcg::grasp {
 
 struct LeastSupport {
   LocalMinimum best;
-  double lower = 0;  // no direction has less
+  double lower = 0;  // proved lower bound over all directions
   std::uint64_t cells = 0;
 };
 
-// start: what is known to be low. Stops when the bounds are within kTolerance / 2, when the least support is at most
-// kTolerance, and after max_cells cones.
+// start: a direction known to have low support. Stops when the bounds are within kTolerance / 2, when the least support is at
+// most kTolerance, and after max_cells cones.
 LeastSupport least_support(const Body& body, const LocalMinimum& start, std::uint64_t max_cells);
 
 }  // namespace fdcg::grasp

@@ -120,7 +120,7 @@ bool Simplex::refresh() {
 }
 
 void Simplex::update_bounds() {
-  // lower: the weights, none below zero, make a wrench of the body whatever their rounding
+  // lower: the weights are not negative, so they give a wrench of the body whatever their rounding
   double sum = 0;
   Vec6 wrench{};
   for (std::size_t c = 1; c <= n_; ++c) {
@@ -143,7 +143,7 @@ void Simplex::update_bounds() {
       column.weight = std::max(0.0, values_[c]) / sum;
     }
   }
-  // upper: shares of the directions, none below zero
+  // upper: weights of the directions, not negative
   double total = 0;
   std::array<double, kRows> shares{};
   for (std::size_t j = 0; j < n_; ++j)
@@ -151,7 +151,7 @@ void Simplex::update_bounds() {
   Vec6 direction{};
   for (std::size_t j = 0; j < n_; ++j)
     add_scaled(direction, shares[j] /= total, directions_[j]);
-  best_at_ = direction;  // kept to the bit: where supports are equal, a rounding decides which contact presses
+  best_at_ = direction;  // kept bit for bit: where supports are equal, rounding decides which contact presses
   best_ = body_.support(direction);
   if (total > 0 && best_.value < result_.upper) {
     result_.upper = best_.value;
@@ -160,7 +160,7 @@ void Simplex::update_bounds() {
   }
 }
 
-// The entering member takes the place of the one that reaches zero first.
+// The ratio test: the entering variable replaces the one that reaches zero first.
 bool Simplex::exchange(const Member& entering) {
   std::size_t leaving = 0;
   double step = std::numeric_limits<double>::infinity(), pivot = 0;
@@ -187,7 +187,7 @@ GameResult Simplex::run(const Vec6& start, const Vec6& start_at, const GameOptio
     for (std::size_t j = 0; j < n_; ++j) {
       if (prices_[j] > 1e-12 && (cheapest == n_ || prices_[j] > prices_[cheapest])) cheapest = j;
     }
-    // A negative share first: only without one is the direction that of the prices.
+    // Negative weights first: the prices give a direction only if there are none.
     const bool is_surplus = cheapest < n_;
     if (!is_surplus && !(best_.value > prices_[n_])) break;  // no wrench improves
     if (!exchange(is_surplus ? make_surplus(cheapest) : make_weight(best_.wrench, best_at_))) break;

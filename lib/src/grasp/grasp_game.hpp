@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one convex problem behind closure, epsilon and margin: of all wrenches w of a body, which has the largest least product
-// with some directions g_1 .. g_n? By duality that is the least support of the body over the simplex of the g_j.
+// The convex problem behind closure, epsilon and margin: maximise over the wrenches w of a body the smallest product w . g_j
+// with directions g_1 .. g_n. By duality its value is the least support of the body over the simplex of the g_j.
 //
-// A linear programme over the body's infinitely many wrenches, by the simplex method with columns made where they are needed
-// (Kelley's cutting planes, seen from the dual side). Both bounds are recomputed from what they rest on: a wrench, a direction.
+// Solved as a linear programme over the body's infinitely many wrenches, by the simplex method with column generation (the dual
+// of Kelley's cutting planes). Both bounds are recomputed from their certificates, a wrench and a direction.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace fdcg::grasp {
 
-// A wrench of the body that is part of the answer.
+// A wrench of the body with its weight in the solution.
 struct Column {
   Vec6 wrench{};
   Vec6 at{};          // the direction that it was made for; of the start wrench: zero
@@ -20,9 +20,9 @@ struct Column {
 };
 
 struct GameOptions {
-  double prune_above = std::numeric_limits<double>::infinity();  // stop where the lower bound has come here
-  double open_below = -std::numeric_limits<double>::infinity();  // stop where the upper bound is below this
-  double gap = 1e-13;                                            // stop where the bounds are this near
+  double prune_above = std::numeric_limits<double>::infinity();  // stop when the lower bound reaches it
+  double open_below = -std::numeric_limits<double>::infinity();  // stop when the upper bound is below it
+  double gap = 1e-13;                                            // stop when the bounds differ by no more
   int max_pivots = 400;
 };
 

@@ -9,13 +9,14 @@
 namespace fdcg::grasp {
 namespace {
 
-// How far the ray along a direction goes inside the body, and what proves it.
+// The length of the ray along a direction inside the body, with its certificate.
 struct Ray {
   double lower = 0, upper = 0;
   GameResult game;
 };
 
-// One shot, at directions `reach` and less from `centre` (centre.direction = 1). Off: how far beside the ray its wrench is.
+// One ray cast, over directions within `reach` of `centre` (centre.direction = 1). Off: the distance of its wrench from the
+// ray.
 Ray shoot_near(const Body& body, const Vec6& direction, const Vec6& centre, double reach, double& off) {
   auto corners = around(direction, reach, body.dimensions);
   for (Vec6& corner : corners) {
@@ -32,9 +33,9 @@ Ray shoot_near(const Body& body, const Vec6& direction, const Vec6& centre, doub
 }
 
 Ray shoot(const Body& body, const Vec6& direction) {
-  // The wider the reach, the steeper the walls that the ray may leave through, and the fewer digits are left: so the least that
-  // does, and then once more and again nearer to what it found. A wrench beside the ray by a millionth of its length counts as
-  // on it: contact points are not known better.
+  // A larger reach allows steeper facets where the ray leaves the body, but loses digits. So the smallest sufficient reach is
+  // used, and then smaller ones around the result. A wrench off the ray by a millionth of its length counts as on it: contact
+  // points are not known more accurately.
   constexpr double kOnRay = 1e-9, kNearRay = 1e-6;
   Ray ray;
   double reach = 1, off = 0;
@@ -59,7 +60,7 @@ Ray shoot(const Body& body, const Vec6& direction) {
   return ray;
 }
 
-// The contacts' bodies, with caps over the unit of force that makes numbers of order one.
+// The wrench sets of the contacts, with caps in a unit of force that makes the numbers of order one.
 Body capped_body(const Grasp& grasp, double total_n, double& unit_n) {
   Body body = unit_body(grasp);
   double sum = 0;

@@ -13,7 +13,8 @@ LocalMinimum descend(const Body& body, const Vec6& from) {
   constexpr double kLeastGain = 1e-13;
   LocalMinimum minimum{from, body.value(from)};
   for (int step = 0; step < kSteps; ++step) {
-    // Lowest in the plane that touches the sphere here; on the sphere it is lower still, since that point is nearer the origin.
+    // The minimum in the tangent plane of the sphere here. Projected onto the sphere it is lower still, being nearer the
+    // origin.
     const auto corners = around(minimum.direction, kReach, body.dimensions);
     const SupportPoint start = body.support(minimum.direction);
     const GameResult game = play(body, {corners.data(), body.dimensions}, start.wrench, minimum.direction, {});

@@ -11,7 +11,7 @@ struct LocalMinimum {
   double value = 0;  // the support there
 };
 
-// Goes down from a unit direction, never up.
+// Monotonic descent from a unit direction.
 LocalMinimum descend(const Body& body, const Vec6& from);
 
 }  // namespace fdcg::grasp

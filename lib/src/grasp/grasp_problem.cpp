@@ -7,7 +7,7 @@
 namespace fdcg::grasp {
 namespace {
 
-constexpr double kMostScales = 1000;  // beyond, one newton's torque drowns what the tolerance is to tell
+constexpr double kMostScales = 1000;  // beyond it the torque of one newton exceeds what the tolerance can resolve
 constexpr double kUnitWithin = 1e-9;
 
 std::string number(double value) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one unit that includes Draco.
+// The only source file that includes Draco.
 #include "import/draco_decode.hpp"
 
 #include <draco/attributes/attribute_quantization_transform.h>
@@ -19,10 +19,10 @@ DracoMesh refused(std::string trouble) {
   return mesh;
 }
 
-// Copies the values of the attribute, whose type is T, to the points. False where a double cannot hold one.
+// Copies the values of the attribute, whose type is T, to the points. False if a value is not representable as double.
 template <class T>
 bool copy_values(const draco::PointAttribute& attribute, bool is_normalized, std::vector<Vec3>& points) {
-  constexpr double kExact = 0x1p53;  // whole numbers up to here are doubles
+  constexpr double kExact = 0x1p53;  // integers up to this are exact in double
   const std::size_t stride = static_cast<std::size_t>(attribute.byte_stride());
   const auto first = static_cast<std::size_t>(attribute.byte_offset());
   const std::size_t there = attribute.buffer()->data_size();
@@ -72,8 +72,8 @@ bool copy_values(const draco::PointAttribute& attribute, bool is_normalized, std
   }
 }
 
-// The positions as libdraco gives them by default: turned back from their quantised form, which the decoder was told to leave,
-// because only that form says how coarse it is.
+// The positions as libdraco gives them by default: dequantised here, because the decoder is configured to keep the quantised
+// form, from which alone the step of the quantisation is known.
 bool read_points(const draco::Mesh& source, const draco::PointAttribute& attribute, DracoMesh& mesh) {
   if (!attribute.is_mapping_identity() && attribute.indices_map_size() < source.num_points()) return false;
   mesh.points.resize(source.num_points());
@@ -126,7 +126,7 @@ DracoMesh read_mesh(const draco::Mesh& source, const DracoInput& input) {
   return mesh;
 }
 
-// ---- the child's answer: for each mesh a header, its points, its corners, its trouble
+// ---- the result of the child process: for each mesh a header, its points, its corners, its error text
 
 struct MeshHeader {
   std::uint64_t points = 0, corners = 0, trouble = 0;
@@ -149,7 +149,7 @@ void append(ChildAnswer& answer, const DracoMesh& mesh) {
   append(answer, mesh.trouble.data(), mesh.trouble.size());
 }
 
-// Takes values off the front of the answer; false where it ends before them.
+// Reads values from the front of the result; false where it is too short.
 template <class T>
 bool take(std::span<const std::byte>& bytes, std::uint64_t count, std::span<const T>& values) {
   if (count > bytes.size() / sizeof(T)) return false;
@@ -200,7 +200,7 @@ bool DracoMeshes::read(std::size_t count) {
 }
 
 std::string DracoMeshes::refusal() const {
-  const bool is_starved = trouble_.starts_with("cannot be started");  // the machine's fault, not the file's
+  const bool is_starved = trouble_.starts_with("cannot be started");  // caused by the machine, not by the file
   return "decoding its Draco data " + trouble_ +
          (is_starved ? "; free some memory or raise its limit, and run again"
                      : "; the file is damaged or forged: compress the mesh again");

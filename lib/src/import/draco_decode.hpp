@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draco-compressed meshes (bitstream up to 2.2, libdraco). draco_decode.cpp alone includes the library.
 //
-// libdraco believes the counts in a file: 34 forged bytes make it take 16 GB. So it runs in a child process under limits, and
-// nowhere else in this program.
+// libdraco trusts the counts in a file: a forged file of 34 bytes makes it allocate 16 GB. It therefore runs only in a child
+// process with limits.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ namespace fdcg::bake {
 
 struct DracoInput {
   std::string_view bytes;
-  std::optional<std::uint32_t> position_id;  // the attribute's unique id, as glTF names it; default: the one that is positions
+  std::optional<std::uint32_t> position_id;  // the attribute's unique id, as in glTF; default: the position attribute
 };
 
 // Points are numbered as Draco numbers them: one for each combination of attribute values, so that a vertex on a seam of
 // another attribute (a texture's, say) is several points at the same place.
 struct DracoMesh {
-  std::string trouble;  // why there is no mesh, in words that follow its name: "is not ..."; else empty
+  std::string trouble;  // why there is no mesh, a phrase that follows its name ("is not ..."); else empty
   bool is_point_cloud = false;
   bool is_float = false;               // every coordinate is a float; else each is an integer or a double
   double absolute_quantum = 0;         // half a step of the quantisation; 0 where there is none
@@ -36,7 +36,7 @@ struct DracoMesh {
 // In this process: for the child, and for fuzzing under a memory limit of another kind.
 DracoMesh decode_draco_here(const DracoInput& input);
 
-// Meshes in the child's answer.
+// The meshes in the result of the child process.
 class DracoMeshes {
  public:
   struct Mesh {
@@ -48,7 +48,7 @@ class DracoMeshes {
     std::span<const std::uint32_t> corners;  // three a face; may be no point's number
   };
 
-  // Why none could be decoded: what happened to the child, in words that follow "its Draco data"; else empty.
+  // Why none could be decoded: how the child process ended, a phrase that follows "its Draco data"; else empty.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   [[nodiscard]] std::string refusal() const;                                 // the same as a message, with what to do about it
   [[nodiscard]] const std::vector<Mesh>& meshes() const { return meshes_; }  // one an input

@@ -13,7 +13,7 @@ std::string place_of(Index accessor) {
   return "accessors[" + std::to_string(accessor) + "]";
 }
 
-// glTF is little-endian, whatever the machine is.
+// glTF is little-endian on every machine.
 std::uint32_t load(const char* bytes, std::size_t size) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < size; ++i)
@@ -44,14 +44,14 @@ double load_scalar(Component type, bool is_normalized, const char* bytes) {
   return 0;
 }
 
-// The values of a run, once it is sure that the view has all of them. `stride` 0: tightly packed.
+// The values of a run, after checking that the view contains all of them. `stride` 0: tightly packed.
 Strided resolve(const Document& document, const Run& run, std::uint64_t count, Component type, unsigned components,
                 const std::string& place, bool uses_stride, Buffers& buffers) {
   const std::string_view bytes = buffers.view(run.view);
   const std::size_t size = size_of(type) * components;
   const std::uint64_t given = uses_stride ? document.views[run.view].stride : 0;
   if (given != 0 && given < size) {
-    throw Refusal{"bufferViews[" + std::to_string(run.view) + "].byteStride: is " + std::to_string(given) + ", less than the " +
+    throw Refusal{"bufferViews[" + std::to_string(run.view) + "].byteStride is " + std::to_string(given) + ", less than the " +
                   std::to_string(size) + " bytes of a value of " + place};
   }
   const std::uint64_t stride = given != 0 ? given : size;
@@ -70,7 +70,7 @@ Strided resolve(const Document& document, const Run& run, std::uint64_t count, C
   return result;
 }
 
-// The values that a sparse accessor puts in the place of others.
+// The replacement values of a sparse accessor.
 struct Replacement {
   std::vector<std::uint32_t> places;
   Strided values;

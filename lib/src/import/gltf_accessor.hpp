@@ -23,14 +23,14 @@ struct Strided {
 // Positions in the mesh's own frame, exactly as the file has them.
 class Positions {
  public:
-  // Checks all that at() relies on. Throws Refusal.
+  // Checks all preconditions of at(). Throws Refusal.
   Positions(const Document& document, Index accessor, Buffers& buffers);
 
   [[nodiscard]] std::uint64_t count() const { return base_.count; }
   [[nodiscard]] Component type() const { return base_.type; }
   [[nodiscard]] bool is_normalized() const { return base_.is_normalized; }
 
-  // Hands over the points in order: use(point).
+  // Calls use(point) for the points in order.
   template <class Use>
   void for_each(const Use& use) const {
     std::size_t next = 0;  // replacement

@@ -62,7 +62,7 @@ std::optional<std::string> base64_decoded(std::string_view text) {
     have -= 8;
     bytes += static_cast<char>(bits >> have & 0xFF);
   }
-  if (have >= 6) return std::nullopt;  // a lone digit makes no byte
+  if (have >= 6) return std::nullopt;  // a single digit left over is not a byte
   return bytes;
 }
 

@@ -14,7 +14,7 @@
 
 namespace fdcg::bake::gltf {
 
-// Each buffer is fetched when it is first asked for. Throws Refusal. The document outlives it.
+// Each buffer is loaded on first use. Throws Refusal. The document must outlive the object.
 class Buffers {
  public:
   // `chunk`: of the GLB, if it is one and has one. `file`: the glTF file, beside or beneath whose folder others may be read;
@@ -25,7 +25,7 @@ class Buffers {
   // The bytes of bufferViews[index].
   std::string_view view(Index index);
 
-  // The other files that were read so far, and the bytes in them.
+  // Number of other files read so far, and of the bytes in them.
   [[nodiscard]] const std::vector<std::string>& outside_files() const { return outside_files_; }
   [[nodiscard]] std::size_t outside_bytes() const { return outside_bytes_; }
 

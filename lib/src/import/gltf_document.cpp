@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One parser, a little over 400 lines: the rules of a glTF document, each with the message for what breaks it.
+// A little over 400 lines: one parser with the rules of a glTF document, each with the message for its violation.
 #include "import/gltf_document.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "import/gltf_json.hpp"
+#include "shared/json/reader.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::bake::gltf {
 namespace {
@@ -31,9 +32,34 @@ bool is_harmless(std::string_view extension) {
   return std::any_of(kPrefixes.begin(), kPrefixes.end(), [extension](std::string_view p) { return extension.starts_with(p); });
 }
 
+using json::Value;
+
+constexpr std::int64_t kMostWhole = (std::int64_t{1} << 53) - 1;  // beyond it JSON writers differ
+
+std::uint64_t whole(const Value& value) {
+  return static_cast<std::uint64_t>(value.integer(0, kMostWhole));
+}
+
+std::uint64_t offset_of(const Value& value) {
+  return static_cast<std::uint64_t>(value["byteOffset"].integer_or(0, 0, kMostWhole));
+}
+
+// The number of one of `count` things.
+Index index_of(const Value& value, std::size_t count, const char* things) {
+  const std::uint64_t index = whole(value);
+  if (index >= count) value.fail("is " + std::to_string(index) + ", but the file has " + std::to_string(count) + " " + things);
+  return static_cast<Index>(index);
+}
+
+// A string without its quotes.
+std::string plain(const Value& value) {
+  constexpr std::size_t kMost = 64;
+  return value.is_string() ? printable(value.string(), kMost) : value.shown();
+}
+
 class Parser {
  public:
-  explicit Parser(const nlohmann::json& root) : root_(root) {}
+  explicit Parser(const json::Document& document) : root_(document.root()) {}
 
   Document parse() {
     check_asset();
@@ -53,44 +79,44 @@ class Parser {
   // ---- the file as a whole
 
   void check_asset() const {
-    const Value asset = root_.at("asset");
-    const std::optional<Value> version = asset.find("version");
+    const Value asset = root_["asset"];
+    const Value version = asset["version"];
     if (!version) fail_version("of no stated version");
-    if (const std::string number = version->shown(); !number.starts_with("2.")) fail_version(number);
-    const std::optional<Value> least = asset.find("minVersion");
-    if (least && least->shown() != "2.0") fail_version("for readers of version " + least->shown());
+    if (const std::string number = plain(version); !number.starts_with("2.")) fail_version(number);
+    const Value least = asset["minVersion"];
+    if (least && plain(least) != "2.0") fail_version("for readers of version " + plain(least));
   }
   [[noreturn]] static void fail_version(const std::string& what) {
     throw Refusal{"is glTF " + what + "; version 2.0 is read: convert the file"};
   }
 
   void check_extensions() const {
-    const std::optional<Value> required = root_.find("extensionsRequired");
+    const Value required = root_["extensionsRequired"];
     if (!required) return;
-    for (std::size_t i = 0; i < required->size(); ++i) {
-      const Value item = required->item(i);
-      if (is_harmless(item.text())) continue;
-      item.fail("the file needs the extension " + item.shown() +
+    for (std::size_t i = 0; i < required.size(); ++i) {
+      const Value item = required.item(i);
+      if (is_harmless(item.string())) continue;
+      item.fail(": the file needs the extension " + plain(item) +
                 ", which may change the triangles and is not read; export it without");
     }
   }
 
   [[nodiscard]] std::size_t count_of(std::string_view list) const {
-    const std::optional<Value> items = root_.find(list);
-    return items ? items->size() : 0;
+    const Value items = root_[list];
+    return items ? items.size() : 0;
   }
 
   // ---- meshes, and what they refer to
 
   void read_meshes() {
-    const std::optional<Value> meshes = root_.find("meshes");
+    const Value meshes = root_["meshes"];
     if (!meshes) return;
-    document_.meshes.resize(meshes->size());
-    for (std::size_t m = 0; m < meshes->size(); ++m) {
-      const Value item = meshes->item(m);
+    document_.meshes.resize(meshes.size());
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      const Value item = meshes.item(m);
       Mesh& mesh = document_.meshes[m];
       mesh.name = name_of(item);
-      const Value primitives = item.at("primitives");
+      const Value primitives = item["primitives"];
       mesh.primitives.reserve(primitives.size());
       for (std::size_t p = 0; p < primitives.size(); ++p)
         mesh.primitives.push_back(read_primitive(primitives.item(p)));
@@ -98,68 +124,68 @@ class Parser {
   }
 
   static std::string name_of(const Value& item) {
-    const std::optional<Value> name = item.find("name");
-    return name ? name->text() : std::string();
+    const Value name = item["name"];
+    return name ? name.string() : std::string();
   }
 
   Primitive read_primitive(const Value& item) {
     Primitive primitive;
-    const Value attributes = item.at("attributes");
-    const std::optional<Value> mode = item.find("mode");
+    const Value attributes = item["attributes"];
+    const Value mode = item["mode"];
     constexpr std::uint64_t kModes = 7;
-    if (mode && mode->whole() >= kModes)
-      mode->fail("is " + std::to_string(mode->whole()) + "; use one of the modes, 0 (points) to 6 (fan)");
-    if (mode) primitive.mode = static_cast<Mode>(mode->whole());
-    primitive.has_targets = item.find("targets").has_value();
-    if (const std::optional<Value> positions = attributes.find("POSITION")) {
-      primitive.positions = use_accessor(*positions);
-      check_positions(*positions, *primitive.positions);
+    if (mode && whole(mode) >= kModes)
+      mode.fail("is " + std::to_string(whole(mode)) + "; use one of the modes, 0 (points) to 6 (fan)");
+    if (mode) primitive.mode = static_cast<Mode>(whole(mode));
+    primitive.has_targets = static_cast<bool>(item["targets"]);
+    if (const Value positions = attributes["POSITION"]) {
+      primitive.positions = use_accessor(positions);
+      check_positions(positions, *primitive.positions);
     }
-    if (const std::optional<Value> indices = item.find("indices")) {
-      primitive.indices = use_accessor(*indices);
-      check_indices(*indices, *primitive.indices);
+    if (const Value indices = item["indices"]) {
+      primitive.indices = use_accessor(indices);
+      check_indices(indices, *primitive.indices);
     }
-    if (const std::optional<Value> extensions = item.find("extensions")) read_draco(*extensions, primitive);
+    if (const Value extensions = item["extensions"]) read_draco(extensions, primitive);
     primitive.material = material_of(item);
     return primitive;
   }
 
-  // Names alone, which no triangle needs: what is wrong with them refuses no file.
+  // Only the names are read. The geometry does not need them, so errors here do not refuse the file.
   void read_materials() try {
-    const std::optional<Value> materials = root_.find("materials");
+    const Value materials = root_["materials"];
     if (!materials) return;
-    document_.materials.resize(materials->size());
-    for (std::size_t m = 0; m < materials->size(); ++m)
-      document_.materials[m] = name_of(materials->item(m));
+    document_.materials.resize(materials.size());
+    for (std::size_t m = 0; m < materials.size(); ++m)
+      document_.materials[m] = name_of(materials.item(m));
   } catch (const Refusal&) {
     return;
   }
   [[nodiscard]] Index material_of(const Value& primitive) const try {
-    const std::optional<Value> material = primitive.find("material");
-    return material ? material->index_of(document_.materials.size(), "materials") : kNone;
+    const Value material = primitive["material"];
+    return material ? index_of(material, document_.materials.size(), "materials") : kNone;
   } catch (const Refusal&) {
     return kNone;
   }
 
   void read_draco(const Value& extensions, Primitive& primitive) {
-    const std::optional<Value> draco = extensions.find(kDraco);
+    const Value draco = extensions[kDraco];
     if (!draco) return;
     if (primitive.mode != Mode::triangles && primitive.mode != Mode::triangle_strip) {
-      draco->fail("compresses a primitive of mode " + std::to_string(static_cast<int>(primitive.mode)) +
-                  "; only triangles (4) and strips (5) can be");
+      draco.fail("compresses a primitive of mode " + std::to_string(static_cast<int>(primitive.mode)) +
+                 "; only triangles (4) and strips (5) can be");
     }
-    const Value attributes = draco->at("attributes");
-    const Value position = attributes.at("POSITION");
-    const std::uint64_t id = position.whole();
+    const Value attributes = draco["attributes"];
+    const Value position = attributes["POSITION"];
+    const std::uint64_t id = whole(position);
     if (id > 0xFFFFFFFFu) position.fail("is " + std::to_string(id) + "; unique ids have 32 bits");
     primitive.draco_positions = static_cast<std::uint32_t>(id);
-    primitive.draco_view = use_view(draco->at("bufferView"));
+    primitive.draco_view = use_view(draco["bufferView"]);
   }
 
   void check_positions(const Value& place, Index index) const {
     const Accessor& accessor = document_.accessors[index];
     if (accessor.components == 3 && accessor.type != Component::u32) return;
-    place.fail("accessors[" + std::to_string(index) +
+    place.fail(": accessors[" + std::to_string(index) +
                "] is not of VEC3 of floats, nor of 8- or 16-bit integers (KHR_mesh_quantization)");
   }
   void check_indices(const Value& place, Index index) const {
@@ -167,30 +193,29 @@ class Parser {
     const bool is_unsigned =
         accessor.type == Component::u8 || accessor.type == Component::u16 || accessor.type == Component::u32;
     if (accessor.components == 1 && is_unsigned) return;
-    place.fail("accessors[" + std::to_string(index) + "] is not of SCALAR of unsigned 8-, 16- or 32-bit integers");
+    place.fail(": accessors[" + std::to_string(index) + "] is not of SCALAR of unsigned 8-, 16- or 32-bit integers");
   }
 
   // ---- accessors, views and buffers: each is read when something refers to it
 
   Index use_accessor(const Value& reference) {
-    const Index index = reference.index_of(document_.accessors.size(), "accessors");
+    const Index index = index_of(reference, document_.accessors.size(), "accessors");
     Accessor& accessor = document_.accessors[index];
     if (accessor.is_used) return index;
     accessor.is_used = true;
-    const Value list = root_.at("accessors");
+    const Value list = root_["accessors"];
     const Value item = list.item(index);
-    accessor.type = read_component(item.at("componentType"));
-    accessor.components = read_type(item.at("type"));
-    accessor.count = item.at("count").whole();
-    if (const std::optional<Value> normalized = item.find("normalized")) accessor.is_normalized = normalized->boolean();
-    if (const std::optional<Value> view = item.find("bufferView"))
-      accessor.run = Run{use_view(*view), item.whole_or("byteOffset", 0)};
-    if (const std::optional<Value> sparse = item.find("sparse")) accessor.sparse = read_sparse(*sparse, accessor);
+    accessor.type = read_component(item["componentType"]);
+    accessor.components = read_type(item["type"]);
+    accessor.count = whole(item["count"]);
+    if (const Value normalized = item["normalized"]) accessor.is_normalized = normalized.boolean();
+    if (const Value view = item["bufferView"]) accessor.run = Run{use_view(view), offset_of(item)};
+    if (const Value sparse = item["sparse"]) accessor.sparse = read_sparse(sparse, accessor);
     return index;
   }
 
   static Component read_component(const Value& item) {
-    switch (item.whole()) {
+    switch (whole(item)) {
       case 5120:
         return Component::i8;
       case 5121:
@@ -204,7 +229,7 @@ class Parser {
       case 5126:
         return Component::f32;
       default:
-        item.fail("is " + std::to_string(item.whole()) + "; the types are 5120 to 5123, 5125 and 5126");
+        item.fail("is " + std::to_string(whole(item)) + "; the types are 5120 to 5123, 5125 and 5126");
     }
   }
 
@@ -212,79 +237,79 @@ class Parser {
     constexpr std::array<std::pair<std::string_view, unsigned>, 7> kTypes = {
         {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
     for (const auto& [name, components] : kTypes) {
-      if (item.text() == name) return components;
+      if (item.string() == name) return components;
     }
-    item.fail("is '" + item.shown() + "'; the types are SCALAR, VEC2 to VEC4 and MAT2 to MAT4");
+    item.fail("is " + item.shown() + "; the types are SCALAR, VEC2 to VEC4 and MAT2 to MAT4");
   }
 
   Sparse read_sparse(const Value& item, const Accessor& accessor) {
     Sparse sparse;
-    const Value count = item.at("count");
-    sparse.count = count.whole();
+    const Value count = item["count"];
+    sparse.count = whole(count);
     if (sparse.count > accessor.count) {
       count.fail("is " + std::to_string(sparse.count) + ", more than the accessor's " + std::to_string(accessor.count));
     }
-    const Value indices = item.at("indices"), values = item.at("values");
-    const Value type = indices.at("componentType");
+    const Value indices = item["indices"], values = item["values"];
+    const Value type = indices["componentType"];
     sparse.index_type = read_component(type);
     if (sparse.index_type != Component::u8 && sparse.index_type != Component::u16 && sparse.index_type != Component::u32) {
       type.fail("is not the type of an unsigned integer");
     }
-    sparse.indices = {use_view(indices.at("bufferView")), indices.whole_or("byteOffset", 0)};
-    sparse.values = {use_view(values.at("bufferView")), values.whole_or("byteOffset", 0)};
+    sparse.indices = {use_view(indices["bufferView"]), offset_of(indices)};
+    sparse.values = {use_view(values["bufferView"]), offset_of(values)};
     return sparse;
   }
 
   Index use_view(const Value& reference) {
-    const Index index = reference.index_of(document_.views.size(), "bufferViews");
+    const Index index = index_of(reference, document_.views.size(), "bufferViews");
     View& view = document_.views[index];
     if (view.is_used) return index;
     view.is_used = true;
-    const Value list = root_.at("bufferViews");
+    const Value list = root_["bufferViews"];
     const Value item = list.item(index);
-    view.buffer = use_buffer(item.at("buffer"));
-    view.offset = item.whole_or("byteOffset", 0);
-    view.bytes = item.at("byteLength").whole();
-    view.stride = item.whole_or("byteStride", 0);
+    view.buffer = use_buffer(item["buffer"]);
+    view.offset = offset_of(item);
+    view.bytes = whole(item["byteLength"]);
+    view.stride = item["byteStride"] ? whole(item["byteStride"]) : 0;
     return index;
   }
 
   Index use_buffer(const Value& reference) {
-    const Index index = reference.index_of(document_.buffers.size(), "buffers");
+    const Index index = index_of(reference, document_.buffers.size(), "buffers");
     Buffer& buffer = document_.buffers[index];
     if (buffer.is_used) return index;
     buffer.is_used = true;
-    const Value list = root_.at("buffers");
+    const Value list = root_["buffers"];
     const Value item = list.item(index);
-    if (const std::optional<Value> uri = item.find("uri")) buffer.uri = uri->text();
-    buffer.bytes = item.at("byteLength").whole();
+    if (const Value uri = item["uri"]) buffer.uri = uri.string();
+    buffer.bytes = whole(item["byteLength"]);
     return index;
   }
 
   // ---- nodes
 
   void read_nodes() {
-    const std::optional<Value> nodes = root_.find("nodes");
+    const Value nodes = root_["nodes"];
     if (!nodes) return;
-    document_.nodes.resize(nodes->size());
-    for (std::size_t n = 0; n < nodes->size(); ++n) {
-      const Value item = nodes->item(n);
+    document_.nodes.resize(nodes.size());
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const Value item = nodes.item(n);
       Node& node = document_.nodes[n];
       node.name = name_of(item);
-      node.has_skin = item.find("skin").has_value();
-      if (const std::optional<Value> mesh = item.find("mesh")) node.mesh = mesh->index_of(document_.meshes.size(), "meshes");
+      node.has_skin = static_cast<bool>(item["skin"]);
+      if (const Value mesh = item["mesh"]) node.mesh = index_of(mesh, document_.meshes.size(), "meshes");
       read_transform(item, node);
-      if (const std::optional<Value> children = item.find("children")) read_children(*children, static_cast<Index>(n));
+      if (const Value children = item["children"]) read_children(children, static_cast<Index>(n));
     }
   }
 
   void read_children(const Value& children, Index parent) {
     for (std::size_t i = 0; i < children.size(); ++i) {
       const Value item = children.item(i);
-      const Index child = item.index_of(document_.nodes.size(), "nodes");
+      const Index child = index_of(item, document_.nodes.size(), "nodes");
       Index& known = document_.nodes[child].parent;
       if (known != kNone) {
-        item.fail("nodes[" + std::to_string(child) + "] is a child of nodes[" + std::to_string(known) +
+        item.fail(": nodes[" + std::to_string(child) + "] is a child of nodes[" + std::to_string(known) +
                   "] already, and has one parent at most; export the scene again");
       }
       known = parent;
@@ -294,19 +319,18 @@ class Parser {
 
   void read_transform(const Value& item, Node& node) {
     Matrix matrix = kIdentity;
-    if (const std::optional<Value> given = item.find("matrix")) {
-      read_numbers(*given, matrix);
+    if (const Value given = item["matrix"]) {
+      read_numbers(given, matrix);
       const bool is_affine = matrix[3] == 0 && matrix[7] == 0 && matrix[11] == 0 && matrix[15] == 1;
-      if (!is_affine) given->fail("its last row is not 0, 0, 0, 1; export the scene again");
+      if (!is_affine) given.fail(": its last row is not 0, 0, 0, 1; export the scene again");
     } else {
       std::array<double, 3> translation{}, scale = {1, 1, 1};
       std::array<double, 4> rotation = {0, 0, 0, 1};
-      if (const std::optional<Value> t = item.find("translation")) read_numbers(*t, translation);
-      if (const std::optional<Value> s = item.find("scale")) read_numbers(*s, scale);
-      const std::optional<Value> r = item.find("rotation");
-      if (r) read_numbers(*r, rotation);
-      if (!compose(translation, rotation, scale, matrix))
-        r->fail("is no rotation: its length is not that of a unit quaternion");
+      if (const Value t = item["translation"]) read_numbers(t, translation);
+      if (const Value s = item["scale"]) read_numbers(s, scale);
+      const Value r = item["rotation"];
+      if (r) read_numbers(r, rotation);
+      if (!compose(translation, rotation, scale, matrix)) r.fail("is no rotation: its length is not that of a unit quaternion");
     }
     if (matrix == kIdentity) return;
     node.matrix = static_cast<Index>(document_.matrices.size());
@@ -347,10 +371,10 @@ class Parser {
     return true;
   }
 
-  // Nobody has two parents (read_children), so what can still go wrong is a ring.
+  // No node has two parents (read_children), so a cycle is the only other error.
   void check_trees() const {
     const std::vector<Node>& nodes = document_.nodes;
-    std::vector<Index> seen_from(nodes.size(), kNone);  // the walk towards the root that came by
+    std::vector<Index> seen_from(nodes.size(), kNone);  // start of the walk to the root that visited the node
     for (Index start = 0; start < nodes.size(); ++start) {
       for (Index n = start; n != kNone && seen_from[n] != start; n = nodes[n].parent) {
         if (seen_from[n] != kNone) break;
@@ -363,26 +387,26 @@ class Parser {
   }
 
   void read_scene() {
-    const std::optional<Value> scenes = root_.find("scenes");
-    const std::size_t count = scenes ? scenes->size() : 0;
-    const std::optional<Value> chosen = root_.find("scene");
-    const Index scene = chosen ? chosen->index_of(count, "scenes") : 0;
+    const Value scenes = root_["scenes"];
+    const std::size_t count = scenes ? scenes.size() : 0;
+    const Value chosen = root_["scene"];
+    const Index scene = chosen ? index_of(chosen, count, "scenes") : 0;
     if (count == 0) {
       for (Index n = 0; n < document_.nodes.size(); ++n) {
         if (document_.nodes[n].parent == kNone) document_.roots.push_back(n);
       }
       return;
     }
-    const Value item = scenes->item(scene);
-    const std::optional<Value> roots = item.find("nodes");
+    const Value item = scenes.item(scene);
+    const Value roots = item["nodes"];
     if (!roots) return;
     std::vector<bool> is_listed(document_.nodes.size());
-    for (std::size_t i = 0; i < roots->size(); ++i) {
-      const Value root = roots->item(i);
-      const Index n = root.index_of(document_.nodes.size(), "nodes");
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      const Value root = roots.item(i);
+      const Index n = index_of(root, document_.nodes.size(), "nodes");
       if (is_listed[n]) root.fail("lists nodes[" + std::to_string(n) + "] a second time; export the scene again");
       if (document_.nodes[n].parent != kNone) {
-        root.fail("nodes[" + std::to_string(n) + "] is a child of nodes[" + std::to_string(document_.nodes[n].parent) +
+        root.fail(": nodes[" + std::to_string(n) + "] is a child of nodes[" + std::to_string(document_.nodes[n].parent) +
                   "] and no root; export the scene again");
       }
       is_listed[n] = true;
@@ -396,9 +420,15 @@ class Parser {
 
 }  // namespace
 
-Document parse_document(std::string_view json) {
-  const nlohmann::json root = parse_json(json);
-  return Parser(root).parse();
+Document parse_document(std::string_view text) {
+  constexpr json::Limits kLimits = {0xFFFFFFFF, 128, true};  // glTF needs some ten levels, extras may have a few more
+  std::optional<json::Document> document;
+  try {
+    document.emplace(text, kLimits);
+  } catch (const Refusal& refusal) {
+    throw Refusal{(refusal.is_cut_short ? "truncated: it " : "") + refusal.message + "; fetch or export the file again"};
+  }
+  return Parser(*document).parse();
 }
 
 }  // namespace fdcg::bake::gltf

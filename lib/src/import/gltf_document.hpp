@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the JSON of a glTF 2.0 file says about geometry, checked: every index that stands in here has its target. Parts that no
-// triangle needs (images, animations, other accessors) are not looked at, whatever is wrong with them; of materials the names.
+// The geometry described by the JSON of a glTF 2.0 file, checked: every index in it is valid. Parts that the geometry does not
+// need (images, animations, other accessors) are neither read nor checked; of materials only the names are read.
 //
 // Places in messages are JSON paths: "meshes[2].primitives[0].attributes.POSITION".
 #pragma once
@@ -13,16 +13,14 @@
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "shared/json/reader.hpp"
 
 namespace fdcg::bake::gltf {
 
 // Thrown where a file is found wanting, caught by read_gltf: the place is known deep down, the file's name at the top.
-struct Refusal {
-  std::string what;
-  const char* rule = "unreadable";
-};
+using json::Refusal;
 
-// What a bufferView, an accessor, ... that is used refers to.
+// The targets of the bufferViews, accessors, ... that are used.
 using Index = std::uint32_t;
 
 enum class Component : std::uint8_t { i8, u8, i16, u16, u32, f32 };
@@ -96,7 +94,7 @@ struct Node {
   bool has_skin = false;
 };
 
-// The nodes make up trees: none has two parents or is its own ancestor.
+// The nodes form trees: none has two parents or is its own ancestor.
 struct Document {
   std::vector<Buffer> buffers;
   std::vector<View> views;
@@ -109,6 +107,6 @@ struct Document {
 };
 
 // Throws Refusal.
-Document parse_document(std::string_view json);
+Document parse_document(std::string_view text);
 
 }  // namespace fdcg::bake::gltf

@@ -31,7 +31,7 @@ bool is_mirrored(const Matrix& m) {
 Grain grain_of(const Positions& positions) {
   if (positions.type() == Component::f32) return {0x1p-24, 0};
   const bool is_byte = size_of(positions.type()) == 1;
-  // 256 steps are too few for a scan: bytes that are not normalised are the grid of a drawing, and exact.
+  // 256 steps are too few for a scan: bytes that are not normalised are taken as a modelling grid, and exact.
   if (!positions.is_normalized()) return {0x1p-53, is_byte ? 0 : 0.5};
   switch (positions.type()) {
     case Component::i8:

@@ -18,10 +18,10 @@
 namespace fdcg::bake::gltf {
 namespace {
 
-constexpr std::uint64_t kPrimitiveCost = 64;  // elements: what a primitive takes beside its points and corners
+constexpr std::uint64_t kPrimitiveCost = 64;  // in elements: overhead of a primitive beside its points and corners
 constexpr std::size_t kMaxNameBytes = 128;    // of a node or a mesh, in the name of a part
 
-// At most kMaxNameBytes, and no half character of UTF-8 at the end.
+// Cut to kMaxNameBytes, never inside a UTF-8 character.
 std::string cut(const std::string& name) {
   std::size_t size = std::min(name.size(), kMaxNameBytes);
   while (size < name.size() && size > 0 && (static_cast<unsigned char>(name[size]) & 0xC0) == 0x80)
@@ -56,7 +56,7 @@ class SceneBuilder {
   }
 
  private:
-  // ---- which nodes, and where they are
+  // ---- the nodes of the scene and their transforms
 
   // Depth first, a node before its children, in the file's order.
   void find_shown_nodes() {
@@ -83,7 +83,7 @@ class SceneBuilder {
       count("meshes of no node") += has ? 0 : 1;
   }
 
-  // Identity times identity is no matrix at all, so that points which nothing moves keep their bits.
+  // Identity times identity is stored as no matrix, so that untransformed points keep their bits.
   void place(Index n) {
     const Node& node = document_.nodes[n];
     const Index above = node.parent != kNone ? world_of_[node.parent] : kNone;
@@ -156,14 +156,14 @@ class SceneBuilder {
     }
   }
 
-  // One without a name goes by its number.
+  // A part without a name is named by its index.
   void begin_material(Index material) {
     std::string name = material == kNone ? std::string() : document_.materials[material];
     if (material != kNone && name.empty()) name = name_or(name, "materials", material);
     if (!materials_.begin(soup_, name)) ++count("materials beyond the 65,535th");
   }
 
-  // Says where its points start.
+  // Returns the index of its first point.
   std::uint32_t show(const Primitive& primitive, const Matrix* world) {
     if (!primitive.positions && !primitive.draco_view) {
       ++count("primitives without positions");
@@ -203,7 +203,7 @@ class SceneBuilder {
     return first_point;
   }
 
-  // Points and lines are counted, and done with.
+  // Points and lines are only counted.
   bool count_if_no_faces(Mode mode, std::uint64_t corners) {
     const std::uint64_t lines = corners < 2               ? 0
                                 : mode == Mode::lines     ? corners / 2
@@ -214,7 +214,7 @@ class SceneBuilder {
     return mode < Mode::triangles;
   }
 
-  // ---- points: those of an accessor once for each place that they are shown at, however many primitives share them
+  // ---- points: those of an accessor once for each transform, however many primitives share them
 
   using PointsKey = std::tuple<bool, Index, std::uint32_t>;  // Draco or not, view or accessor, unique id
 
@@ -268,7 +268,7 @@ class SceneBuilder {
     }
   }
 
-  // Strips are joined into one by repeating vertices: what has a vertex twice is no triangle but such a joint.
+  // Writers join strips by repeating vertices: a triangle with a repeated vertex is such a joint and not a face.
   void add_strip_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool is_flipped) {
     constexpr std::uint32_t kInvalid = PolygonSoup::kInvalidVertex;
     const bool is_known = a != kInvalid && b != kInvalid && c != kInvalid;
@@ -309,7 +309,7 @@ class SceneBuilder {
     budget.used += more;
   }
 
-  // As push_back would, but once for all: never a new allocation for each of many small primitives.
+  // Grows geometrically, as push_back does, so that many small primitives do not cause an allocation each.
   template <class T>
   static void make_room(std::vector<T>& values, std::uint64_t more) {
     const std::size_t wanted = values.size() + static_cast<std::size_t>(more);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the scene's trees of nodes to one soup: each primitive once for each node that shows it, where that node's transforms
-// put it.
+// Flattens the node trees of a scene to one soup: each primitive once for each node that instances it, transformed to the world
+// frame.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace fdcg::bake::gltf {
 
-// A scene may show a mesh many times, and so come to more than its file. The limit: as many points, and as many face corners,
-// as 65,536 and 32 for each byte of the file, of the files beside it that it reads, and of its Draco data once decoded.
+// A scene may instance a mesh many times, so that the soup is much larger than the file. Limit on the points, and on the face
+// corners: 65,536 plus 32 for each byte of the file, of the other files that it reads, and of its decoded Draco data.
 inline constexpr std::uint64_t kFreeElements = 1024;
 inline constexpr std::uint64_t kElementsPerByte = 16;
 

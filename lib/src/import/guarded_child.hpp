@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a piece of work in a child process, under limits of memory and time, and brings back the bytes that it answers. For
-// libraries that a forged file can make crash, loop or take all memory. guarded_child_posix.cpp is the POSIX side.
+// Runs a function in a child process with limits on memory and time, and returns the bytes that it produces. For libraries that
+// a forged file can make crash, loop or use up all memory. guarded_child_posix.cpp is the POSIX implementation.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct ChildLimits {
   unsigned cpu_seconds = 0;      // of processor time, at least 1; of time on the clock twenty times that, plus a minute
 };
 
-// What the child answers with. Lives in the child.
+// Writes the result. Exists in the child process.
 class ChildAnswer {
  public:
   // Space for the next `bytes` of the answer, at a multiple of 8, zeroed. Throws beyond ChildLimits::answer_bytes: let it pass.
@@ -27,7 +27,7 @@ class ChildAnswer {
   ~ChildAnswer() = default;
 };
 
-// The child's answer, mapped: nothing is copied.
+// The child's result, in shared memory: it is not copied.
 class ChildResult {
  public:
   ChildResult() = default;
@@ -37,10 +37,10 @@ class ChildResult {
   ChildResult& operator=(const ChildResult&) = delete;
   ~ChildResult();
 
-  // Why there is no answer, in words that follow the name of what was run: "took more than ..."; empty where there is one.
+  // Why there is no result, a phrase that follows the name of the work ("took more than ..."); empty if there is one.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
 
-  // Written by a process that may have gone wrong: check everything.
+  // Written by a process that may have malfunctioned: the caller must validate all of it.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
@@ -52,12 +52,13 @@ class ChildResult {
   std::string trouble_;
 };
 
-// May be called from several threads at once, whatever other threads do. Leaves no process and no descriptor behind. `work`
-// runs in the child alone: what it changes is not seen here, and it must neither touch locks that other threads might have
-// held, nor write to streams, nor start threads. Memory (new, malloc) and exceptions are free to it; what it throws is trouble.
+// Thread-safe. Leaves no process and no descriptor behind. `work` runs in the child only: its changes are not visible to the
+// caller. It must not use locks that other threads may hold, write to streams or start threads. It may allocate memory (new,
+// malloc) and throw; an exception is reported by trouble().
 ChildResult run_guarded(const ChildLimits& limits, const std::function<void(ChildAnswer&)>& work);
 
-// False in builds with sanitizers: their allocators end the child where others throw, so that trouble() is only that it ended.
+// False in builds with sanitizers: their allocators abort the child instead of throwing, so that trouble() reports only that it
+// ended.
 bool tells_of_memory();
 
 }  // namespace fdcg::bake

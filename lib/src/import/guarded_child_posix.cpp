@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// fork, with the answer in memory that both processes share, so that there is no descriptor to leak and no pipe to fill.
+// Uses fork, with the result in shared memory, so that there is no descriptor to leak and no pipe to fill.
 //
-// The process may have other threads, which the child has not: a lock that one of them held at the fork stays locked in it for
-// good. What the child does is safe all the same. glibc's fork (musl's too, from 1.2.2) brings the locks of malloc over in a
-// usable state; GCC's unwinder, from 12 on with glibc 2.35, finds frames without a lock; and the work is asked to stay off
-// everything else. It leaves by _exit: no exit handler runs twice, no stream is flushed twice. Should it hang in a lock after
-// all, its alarm ends it.
+// The other threads of the process do not exist in the child: a lock that one of them held at the fork stays locked there
+// forever. The child is safe nevertheless. The fork of glibc (and of musl from 1.2.2) leaves the locks of malloc usable; GCC's
+// unwinder, from 12 on with glibc 2.35, finds frames without a lock; and `work` must not use other locks (guarded_child.hpp).
+// The child ends by _exit: no exit handler runs twice, no stream is flushed twice. If it blocks in a lock after all, its alarm
+// ends it.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -44,7 +44,7 @@ namespace fdcg::bake {
 namespace {
 
 constexpr std::size_t kAlign = 8;
-constexpr unsigned kClockPerCpu = 20;     // a crowded machine gives a process a small share
+constexpr unsigned kClockPerCpu = 20;     // a busy machine gives a process a small share
 constexpr unsigned kClockSeconds = 60;    // and may be slow to start it
 constexpr std::size_t kMostTrouble = 96;  // bytes of an exception's text that are kept
 
@@ -80,7 +80,7 @@ class SharedAnswer final : public ChildAnswer {
 };
 
 #ifdef __linux__
-// Bytes of private writable memory that this process has: what RLIMIT_DATA limits (from Linux 4.7). 0 if it is not to be known.
+// Bytes of private writable memory that this process has: what RLIMIT_DATA limits (from Linux 4.7). 0 if unknown.
 std::uint64_t private_bytes() {
   const int fd = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (fd < 0) return 0;
@@ -114,7 +114,8 @@ void set_limit(int resource, rlim_t soft, rlim_t hard) {
   (void)::setrlimit(static_cast<decltype(RLIMIT_CPU)>(resource), &wanted);
 }
 
-// Signals end the child and nothing else: the handlers of this program (which remove unfinished files, say) are not its own.
+// Signals must only end the child: the handlers of this program (which remove unfinished files, for example) must not run in
+// it.
 void forget_signal_handlers() {
   struct sigaction by_default {};
   by_default.sa_handler = SIG_DFL;
@@ -126,7 +127,7 @@ void forget_signal_handlers() {
   (void)::pthread_sigmask(SIG_SETMASK, &none, nullptr);
 }
 
-// A crash inside the library would write its last words into the user's report.
+// A crash inside the library would write its error output into the user's report.
 void silence() {
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere < 0) return;
@@ -137,7 +138,7 @@ void silence() {
 void apply(const ChildLimits& limits, pid_t parent) {
   forget_signal_handlers();
 #ifdef __linux__
-  (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody is left to read the answer
+  (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);  // the parent has ended, the result is not needed
 #endif
   if (::getppid() != parent) ::_exit(1);
   set_limit(RLIMIT_CORE, 0, 0);
@@ -160,7 +161,7 @@ void run_child(Shared& shared, const ChildLimits& limits, const std::function<vo
     shared.state = State::too_long;
   } catch (const std::bad_alloc&) {
     shared.state = State::no_memory;
-  } catch (const std::length_error&) {  // of a container that was asked for more than there are addresses
+  } catch (const std::length_error&) {  // thrown by a container resized beyond the address space
     shared.state = State::no_memory;
   } catch (const std::exception& e) {
     std::strncpy(shared.trouble.data(), e.what(), shared.trouble.size() - 1);
@@ -175,7 +176,7 @@ std::string mebibytes(std::size_t bytes) {
   return std::to_string(bytes >> 20) + " MiB";
 }
 
-// `status` is waitpid's, or -1 where somebody else has taken it (a host that ignores SIGCHLD, say).
+// `status` is that of waitpid, or -1 if it was not available (for example in a host that ignores SIGCHLD).
 std::string trouble_of(const Shared& shared, int status, const ChildLimits& limits) {
   switch (shared.state.load()) {
     case State::answered:
@@ -202,7 +203,7 @@ std::string trouble_of(const Shared& shared, int status, const ChildLimits& limi
   return "crashed with signal " + std::to_string(number);
 }
 
-// fork with every signal held back, so that none reaches a handler of this program in the child.
+// fork with all signals blocked, so that no handler of this program runs in the child.
 pid_t fork_quietly() {
   sigset_t all, before;
   sigfillset(&all);

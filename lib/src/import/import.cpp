@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh file -> polygon soup: which format is it, read it, say how fine its numbers are.
+// Mesh file -> polygon soup: detects the format, reads the file and determines the precision of its coordinates.
 #include <algorithm>
 #include <array>
 #include <cfloat>
@@ -30,7 +30,7 @@ bool is_obj_keyword(std::string_view word) {
   return std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
 }
 
-// What the content gives away, and no reader reads: the start of it, its name, and the remedy.
+// Formats that are recognised by content but not read: the first bytes, the name, and the remedy.
 struct ForeignKind {
   std::string_view start, remedy;
 };
@@ -103,7 +103,7 @@ Result<PolygonSoup> read_as(Format format, const MeshText& input) {
 }
 
 bool is_float(double c) {
-  if (!std::isfinite(c)) return true;  // says nothing about the others
+  if (!std::isfinite(c)) return true;  // tells nothing about the precision
   return std::fabs(c) <= FLT_MAX && static_cast<double>(static_cast<float>(c)) == c;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draco files: one compressed triangle mesh, checked as it is after decoding, because quantisation makes defects of its own.
+// Draco files: one compressed triangle mesh. The decoded mesh is validated, because quantisation itself causes defects.
 #include <string>
 
 #include "base/quantised.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 (Khronos), as JSON or in the binary container GLB: the container, and the way through the stages. Reading it
-// ourselves keeps every number as it stands, names the place of each fault, and believes no count: tinygltf does none of that,
-// and loads images and files that no triangle needs.
+// glTF 2.0 (Khronos), as JSON or in the binary container GLB: the container, and the sequence of stages. A reader of our own
+// keeps every number exactly, names the place of each error and trusts no count. tinygltf does none of that, and loads images
+// and files that the geometry does not need.
 #include <bit>
 #include <cstring>
 #include <string>
@@ -94,7 +94,7 @@ Result<PolygonSoup> read_gltf(const MeshText& input) {
     gltf::build_scene(document, buffers, input, soup);
     soup.other_files = buffers.outside_files();
   } catch (const Refusal& refusal) {
-    return refuse(input.name, refusal.what, refusal.rule);
+    return refuse(input.name, refusal.message, "unreadable");
   }
   return soup;
 }

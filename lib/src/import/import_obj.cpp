@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wavefront OBJ: the statements v and f (and its old name fo); o, g and usemtl name parts. Everything else speaks of looks, or
-// is counted.
+// Wavefront OBJ: the statements v and f (and its old name fo); o, g and usemtl name parts. Other statements describe appearance
+// and are skipped, or are counted as ignored elements.
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
@@ -11,7 +11,7 @@
 namespace fdcg::bake {
 namespace {
 
-// A statement that is not read, and what is lost with it; nothing where it speaks of looks or of the inside of a curve.
+// What is ignored with a statement that is not read; nothing for statements about appearance or inside a curve.
 struct Unread {
   std::string_view keyword, what;
 };
@@ -104,7 +104,7 @@ class ObjReader : TextSoupReader {
     }
   }
 
-  // Object, group and material, as far as they have names; several switches before a face make one part.
+  // Object, group and material, as far as they have names; several changes before a face start one part.
   void begin_named_part() {
     is_new_part_ = false;
     if (takes_no_parts()) return;
@@ -153,8 +153,7 @@ class ObjReader : TextSoupReader {
     return close_face();
   }
 
-  // Numbers count from 1, negative ones from the latest vertex backwards. A positive one may be of a vertex that is still to
-  // come.
+  // Indices count from 1, negative ones backwards from the latest vertex. A positive one may refer to a later vertex.
   std::uint32_t resolve(std::int64_t number) {
     const auto known = static_cast<std::int64_t>(soup_.points.size());
     const std::int64_t index = number < 0 ? known + number : number - 1;

@@ -9,8 +9,7 @@
 namespace fdcg::bake {
 namespace {
 
-// The letters before OFF say what follows x y z on a vertex's line. Geomview has them in the order ST, C, N, 4, n; others write
-// NCOFF.
+// The letters before OFF tell what follows x y z on a vertex's line. Geomview's order is ST, C, N, 4, n; others write NCOFF.
 struct OffKeyword {
   bool is_valid = false, has_texture = false, has_colour = false, has_normal = false, is_homogeneous = false,
        has_dimension = false;
@@ -53,8 +52,8 @@ class OffReader : TextSoupReader {
   }
 
  private:
-  // How vertices and faces are set apart. The usual way is a line each, and then more values may follow on it (normals,
-  // colours) that nothing announces. Some writers put several of them on a line; then there are no further values.
+  // How vertices and faces are separated. Usually each has its own line, on which undeclared values (normals, colours) may
+  // follow. Some writers put several records on a line; then there are no further values.
   enum class Layout { unknown, lines, stream };
 
   bool read_header() {
@@ -84,7 +83,7 @@ class OffReader : TextSoupReader {
            fail_here(std::string("the ") + what + " count " + scan_.quote() + " is not a whole number of 0 or more");
   }
 
-  // The third count is of no use to anyone, and some writers leave it out.
+  // The third count (edges) is not used, and some writers omit it.
   bool skip_edge_count() {
     std::int64_t edges = 0;
     if (!scan_.line_done() && !scan_.read_integer(edges))
@@ -147,8 +146,8 @@ class OffReader : TextSoupReader {
     return true;
   }
 
-  // More stands on the line of a vertex or face: skips it, unless this file puts several records on a line. `records` are left
-  // to read, the present one included.
+  // Skips further values on the line of a vertex or face, unless the file has several records on a line. `records` remain to be
+  // read, the present one included.
   bool skip_further_values(std::uint64_t records, Layout& layout) {
     if (layout == Layout::unknown) layout = has_a_line_for_each(records) ? Layout::lines : Layout::stream;
     if (layout == Layout::lines) {

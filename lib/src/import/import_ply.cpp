@@ -19,8 +19,8 @@ std::optional<Scalar> parse_scalar(std::string_view word) {
   return std::nullopt;
 }
 
-// The part of the file that can be the header: up to the end of the line that says end_header, found by the kind of line end
-// that the first line has, because a binary body holds any byte.
+// The part of the file that can be the header: up to the end of the line end_header. Lines are found by the line ending of the
+// first line, because a binary body may contain any byte.
 struct HeaderExtent {
   std::size_t bytes = 0;  // 0: no end_header
   std::uint32_t lines = 0;
@@ -104,7 +104,7 @@ class HeaderParser : SoupReader {
   }
 
   bool parse_element() {
-    // Each is compared with all others; and nobody has more than a handful.
+    // Each is compared with all others; files have only a few.
     constexpr std::size_t kMostElements = 256;
     if (header_.elements.size() >= kMostElements) {
       return fail_here("the PLY header declares more than " + std::to_string(kMostElements) + " elements; leave some out");

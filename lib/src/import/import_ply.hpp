@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY (Turk 1994): what its header says, and what the readers of its text and binary bodies share.
+// PLY (Turk 1994): the header, and what the readers of text and binary bodies share.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace fdcg::bake::ply {
 enum class Encoding { ascii, little_endian, big_endian };
 enum class Scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
 enum class Kind { vertex, face, tristrips, other };  // of an element
-enum class Role { none, x, y, z, indices };          // of a property, in an element of ours
+enum class Role { none, x, y, z, indices };          // of a property, in an element that is read
 
 [[nodiscard]] constexpr std::size_t size_of(Scalar type) {
   constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
@@ -34,7 +34,7 @@ struct ElementKind {
   std::uint64_t count = 0;
   std::vector<Property> properties;
 
-  // Bytes of a row in a binary body; with lists, the least it can have.
+  // Bytes of a row in a binary body; with lists, the minimum.
   [[nodiscard]] std::size_t least_bytes() const {
     std::size_t bytes = 0;
     for (const Property& p : properties)
@@ -68,7 +68,7 @@ Result<Header> read_header(const MeshText& input);
 // Turns the triangle strips of a list of vertex numbers into triangles: -1 starts a new strip.
 class StripDecoder {
  public:
-  // Ends the strip at hand, also the last one. False if it had vertices, but too few for a triangle.
+  // Ends the current strip. False if it had vertices, but too few for a triangle.
   bool restart() {
     const bool is_short = length_ == 1 || length_ == 2;
     length_ = 0;
@@ -80,7 +80,7 @@ class StripDecoder {
     ++length_;
     return length_ >= 3;
   }
-  // Whether the triangle is no face but a joint, by which writers string strips together: a vertex of the file repeated.
+  // Whether the triangle is not a face but a joint between concatenated strips: it repeats a vertex.
   [[nodiscard]] bool is_joint() const {
     const auto& [a, b, c] = last_;
     const bool is_known =

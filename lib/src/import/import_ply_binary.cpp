@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary PLY bodies. Two shapes make up nearly all files and have loops of their own: vertices whose x, y, z have one type, and
-// faces with one list of 32-bit numbers, most of them triangles. Everything else goes value by value.
+// Binary PLY bodies. Two layouts cover nearly all files and have fast paths: vertices whose x, y, z have one type, and faces
+// with one list of 32-bit indices, most of them triangles. Everything else is read value by value.
 #include <bit>
 #include <cmath>
 #include <concepts>
@@ -82,7 +82,7 @@ class BinaryBody : SoupReader {
   [[nodiscard]] std::size_t left() const { return static_cast<std::size_t>(end_ - p_); }
   [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(p_ - input_.bytes.data()); }
 
-  // No row is begun, and nothing reserved, before the bytes are there that the element has at the very least.
+  // Checks that the file has the minimum number of bytes of the element before anything is reserved or read.
   bool read_element(const ElementKind& element) {
     const std::size_t row_bytes = element.least_bytes();
     if (row_bytes == 0) return true;
@@ -110,7 +110,7 @@ class BinaryBody : SoupReader {
     return true;
   }
 
-  // ---- vertices whose rows all have the same size: the bytes are known to be there
+  // ---- vertices whose rows all have the same size: the bytes are known to be present
 
   bool read_fixed_vertices(const ElementKind& element) {
     std::array<std::size_t, 3> at{};
@@ -163,7 +163,7 @@ class BinaryBody : SoupReader {
     bool is_usable = false;
     std::size_t before = 0, after = 0;  // bytes of the other properties
     Scalar count = Scalar::u8;
-    std::uint32_t index_limit = 0;  // numbers from here on are no vertices
+    std::uint32_t index_limit = 0;  // indices from here on are invalid
   };
 
   [[nodiscard]] TriangleRow triangle_row(const ElementKind& element) const {
@@ -197,7 +197,8 @@ class BinaryBody : SoupReader {
         if (triangle.count == Scalar::u8 || triangle.count == Scalar::i8) taken = take_triangles<std::uint8_t>(triangle);
         if (triangle.count == Scalar::u32 || triangle.count == Scalar::i32) taken = take_triangles<std::uint32_t>(triangle);
       }
-      // A block with another polygon in it is read face by face, as a whole, so that mixed meshes pay for one try a block.
+      // A block that contains another polygon is read face by face as a whole, so that mixed meshes cost one failed try per
+      // block.
       const std::uint64_t next = taken > 0 ? row + taken : std::min<std::uint64_t>(row + kBlock, element.count);
       for (row += taken; row < next; ++row) {
         if (!read_row(element, row)) return false;
@@ -207,7 +208,7 @@ class BinaryBody : SoupReader {
     return true;
   }
 
-  // Reads kBlock faces if all of them are triangles; else reads nothing and says 0.
+  // Reads kBlock faces if all of them are triangles; else reads nothing and returns 0.
   template <class Count>
   std::size_t take_triangles(const TriangleRow& row) {
     const std::size_t list_at = row.before + sizeof(Count), bytes = list_at + 12 + row.after;

@@ -39,7 +39,7 @@ class BinaryStlReader : SoupReader {
       return fail("truncated: a binary STL starts with 84 bytes, the file has " + std::to_string(bytes.size()));
     }
     const std::uint64_t count = load_u32(bytes.data() + 80), there = bytes.size() - kHeaderBytes;
-    // Less than a triangle too much is padding; more would be faces that the count leaves out.
+    // Fewer extra bytes than a triangle are padding; more would be faces missing from the count.
     if (count * kTriangleBytes > there || there - count * kTriangleBytes >= kTriangleBytes) {
       return fail((count * kTriangleBytes > there ? "truncated: " : "contradicts itself: ") +
                   ("the header promises " + std::to_string(count)) + " triangles (" +
@@ -104,7 +104,7 @@ class TextStlReader : TextSoupReader {
     return true;
   }
 
-  // The normal is left to the vertices: it is often wrong, zero, or no number at all.
+  // The stored normal is ignored, since it is often wrong, zero or not a number; the vertices define it.
   bool read_facet() {
     const std::uint32_t line = scan_.line();
     if (!expect("facet")) return false;
@@ -136,7 +136,7 @@ class TextStlReader : TextSoupReader {
     return true;
   }
 
-  // Only a name makes a part; or the end of the one before.
+  // A solid starts a part only if it has a name, or if the previous part ends here.
   void begin_solid() {
     is_new_solid_ = false;
     if ((!name_.empty() || !soup_.parts.empty()) && !takes_no_parts()) begin_part(name_);
@@ -152,11 +152,11 @@ class TextStlReader : TextSoupReader {
                      " was due; fetch or export it again");
   }
 
-  std::string name_;  // of the solid at hand
+  std::string name_;  // of the current solid
   bool is_new_solid_ = false;
 };
 
-// Text starts with "solid"; but so do the headers of some binary files, which then have a zero byte soon.
+// Text files start with "solid"; so do the headers of some binary files, which contain a zero byte soon after.
 bool is_text(std::string_view bytes) {
   constexpr std::size_t kLook = 512;
   TextScanner scan(bytes, {});

@@ -121,7 +121,7 @@ double TextSoupReader::absolute_quantum() const {
   const std::string half_unit = "5e-" + std::to_string(std::int64_t{finest_decimals_} + 1);
   double value = 0;
   std::from_chars(half_unit.data(), half_unit.data() + half_unit.size(), value);  // left 0 where it is below every double
-  // Few digits were typed, not rounded to: 0.3 beside 1 means 0.3. No exporter rounds this coarsely.
+  // So few digits are typed values, not rounded ones: 0.3 beside 1 means 0.3. No exporter rounds this coarsely.
   constexpr double kLargestShare = 1e-5;
   double extent = 0;
   for (const Vec3& p : soup_.points) {

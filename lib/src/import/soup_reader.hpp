@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of the mesh formats share: the soup that they fill, the limits on it, and how they refuse a file.
+// Shared by the readers of the mesh formats: filling the soup, its limits, and refusing a file.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ struct MeshText {
   const std::filesystem::path* file = nullptr;  // where the bytes are from; null: from memory
 };
 
-// One reader a format. Each fails with exit code 3 and one line; a soup without faces is left to the caller to refuse. They set
-// relative_quantum only where they know it without looking at the points, and leave sha256 empty.
+// One reader per format. Each fails with exit code 3 and one line; refusing a soup without faces is left to the caller. They
+// set relative_quantum only where it is known without looking at the points, and leave sha256 empty.
 Result<PolygonSoup> read_off(const MeshText& input);
 Result<PolygonSoup> read_obj(const MeshText& input);
 Result<PolygonSoup> read_ply(const MeshText& input);
@@ -32,14 +32,14 @@ Result<PolygonSoup> read_stl(const MeshText& input);
 Result<PolygonSoup> read_gltf(const MeshText& input);
 Result<PolygonSoup> read_drc(const MeshText& input);
 
-// Content that gives its format away.
+// Detection of formats by content.
 bool is_off_keyword(std::string_view word);  // OFF, COFF, STCNOFF, 4OFF, ...
 bool is_gltf_json(std::string_view bytes);   // an object that has an "asset"
 bool is_glb(std::string_view bytes);
 bool has_binary_stl_size(std::string_view bytes);  // 84 + 50 n, with n where the format has it
 
-// `name`: `what`, on one line whatever the name holds; a remedy stands in `what` after a semicolon, else the usual one is
-// added.
+// The message "`name`: `what`", on one line whatever the name contains. A remedy follows in `what` after a semicolon; else the
+// usual one is appended.
 Failure refuse(const std::string& name, const std::string& what, const char* rule = "unreadable");
 
 // A name out of a file, for reports: control characters as '?', cut after some 48 bytes between two characters.
@@ -50,7 +50,7 @@ inline constexpr std::uint32_t kMaxFaceCorners = 65'536;
 inline constexpr std::size_t kMaxCorners = 0xFFFFFF00u;
 inline constexpr std::size_t kMaxPoints = 0xFFFFFF00u;
 
-// Gathers which material each run of faces has.
+// Collects the material of each run of consecutive faces.
 class MaterialList {
  public:
   // The faces from the soup's next one on. Names with control characters are cleaned. Returns false where it is one too many.
@@ -79,7 +79,7 @@ class SoupReader {
   }
   bool fail_at_line(std::uint32_t line, const std::string& what) { return fail("line " + std::to_string(line) + ": " + what); }
 
-  // Ends the face whose corners were pushed last.
+  // Completes the face whose corners were pushed last.
   bool close_face() {
     const std::size_t count = soup_.corners.size() - soup_.face_first.back();
     if (count > kMaxFaceCorners) return fail_big_face(count);
@@ -104,7 +104,7 @@ class SoupReader {
   // The faces from the next one on are of this material, until the next call; an empty name is none.
   void set_material(std::string_view name);
 
-  // Tells the caller how far the reading has come, a hundred times at most.
+  // Reports progress to the caller, at most a hundred times.
   void advance(std::size_t offset) {
     if (offset >= next_report_) report(offset);
   }
@@ -137,15 +137,15 @@ class TextSoupReader : public SoupReader {
 
   bool fail_here(const std::string& what) { return fail_at_line(scan_.line(), what); }
 
-  // Reads a coordinate at the cursor, and notes how finely it was printed.
+  // Reads a coordinate at the cursor, and records its number of decimals.
   bool read_coordinate(double& value) {
     if (!scan_.read_real(value)) return false;
     finest_decimals_ = std::max(finest_decimals_, scan_.last_decimals());
     return true;
   }
 
-  // Half a unit of the last digit of the most finely printed coordinate. Whole numbers are taken as exact, 0: nobody rounds a
-  // mesh to whole units, they come from grids, voxels and drawings by hand, and half a unit would flatten a unit cube.
+  // Half a unit of the last digit of the most precisely printed coordinate. Integers are taken as exact (0): they come from
+  // grids, voxels and manual modelling and not from rounding, and half a unit would flatten a unit cube.
   [[nodiscard]] double absolute_quantum() const;
 
   // "'x' is not a number", of the token at the cursor, with the remedy where there is one.

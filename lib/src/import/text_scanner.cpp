@@ -21,8 +21,8 @@ bool is_word(std::string_view token, std::string_view lower_case) {
   return token.size() == lower_case.size() && has_prefix(token, lower_case);
 }
 
-// inf, nan and nan(...) as C99 prints them; 1.#INF, 1.#QNAN, 1.#IND, 1.#SNAN and what rounding leaves of them (1.#J, 1.#IO) as
-// Microsoft's library did.
+// inf, nan and nan(...) as C99 prints them; 1.#INF, 1.#QNAN, 1.#IND, 1.#SNAN and their rounded forms (1.#J, 1.#IO) as printed
+// by old Microsoft libraries.
 bool parse_special(std::string_view unsigned_token, double& value) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -43,7 +43,7 @@ bool parse_special(std::string_view unsigned_token, double& value) {
   return true;
 }
 
-constexpr std::ptrdiff_t kFarExponent = 1'000'000'000;  // exponents beyond it change nothing any more
+constexpr std::ptrdiff_t kFarExponent = 1'000'000'000;  // larger exponents make no difference
 
 // Whether a decimal that no double can hold is too large; else it is too small.
 bool is_large(std::string_view decimal) {
@@ -78,7 +78,7 @@ bool TextScanner::skip_rare_blank() {
   if (c == '#' && comment_ == '#') {
     const void* found = std::memchr(p_, line_end_, remaining());
     p_ = found == nullptr ? end_ : static_cast<const char*>(found);
-    --p_;  // the caller steps on
+    --p_;  // the caller advances
     return true;
   }
   if (c == '\\' && joiner_ == '\\') {

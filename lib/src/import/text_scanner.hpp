@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tokens of a text file in memory, with line numbers. Numbers come out correctly rounded: what std::from_chars leaves out (a
-// leading '+', results out of range, the spellings of NaN and infinity that C libraries print) is added here.
+// Tokens of a text file in memory, with line numbers. Numbers are correctly rounded. Beyond std::from_chars this accepts a
+// leading
+// '+', results out of range, and the spellings of NaN and infinity that C libraries print.
 #pragma once
 
 #include <array>
@@ -18,7 +19,7 @@ class TextScanner {
     bool hash_comments = false;  // '#' starts a comment that ends with the line
     bool continuation = false;   // '\' before the end of a line joins it with the next
   };
-  static constexpr int kNoDecimals = INT_MIN;  // a number that says nothing about the precision of its file
+  static constexpr int kNoDecimals = INT_MIN;  // a number without information about the file's precision
 
   // A byte order mark is skipped. Lines end in LF or CRLF; in CR where the text has no LF at all.
   TextScanner(std::string_view text, Syntax syntax);
@@ -29,7 +30,7 @@ class TextScanner {
   [[nodiscard]] bool at_end() const { return p_ == end_; }
   [[nodiscard]] char peek() const { return p_ == end_ ? '\0' : *p_; }
 
-  // Skips blanks and a comment; true if nothing more stands on this line.
+  // Skips blanks and a comment; true at the end of the line.
   bool line_done() {
     skip_blanks();
     return p_ == end_ || *p_ == line_end_;
@@ -54,7 +55,7 @@ class TextScanner {
 
   // Each of the following starts at the cursor, which must stand on a token. On false the cursor has not moved.
 
-  // A real number, up to the token's end. last_decimals() then tells how finely it was printed.
+  // A real number, up to the token's end. last_decimals() then is the number of its decimals.
   bool read_real(double& value) {
     const char* q = p_;
     const bool is_negative = q != end_ && *q == '-';
@@ -96,7 +97,7 @@ class TextScanner {
   }
   [[nodiscard]] int last_decimals() const { return last_decimals_; }
 
-  // A whole number; stops at the first character that is no digit, whatever it is. Beyond +-2^62 it stays there.
+  // An integer; stops at the first character that is not a digit. Saturates at +-2^62.
   bool read_integer_prefix(std::int64_t& value) {
     const char* q = p_;
     const bool negative = q != end_ && *q == '-';
@@ -150,8 +151,8 @@ class TextScanner {
     return true;
   }
 
-  // Everything up to the token's end. A control character that is no blank is a word of its own, so that whoever reads words
-  // always gets on.
+  // Everything up to the token's end. A control character that is no blank is a word by itself, so that reading words always
+  // advances.
   std::string_view read_word() {
     const char* const start = p_;
     while (p_ != end_ && !ends_token(*p_))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The repairs in their order, and what their steps share.
+// Runs the repair steps in order; and helpers of the steps.
 #include "repair/repair.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ Workpiece::Workpiece(const PolygonSoup& given) : input(given), soup(given), sour
   std::iota(source_point.begin(), source_point.end(), 0U);
   source_face.resize(given.face_count());
   std::iota(source_face.begin(), source_face.end(), 0U);
-  // Of the file that the input was read from, not of the soup that comes of it.
+  // Fields of the input file that do not apply to the repaired soup.
   soup.is_text = false;
   soup.point_line.clear();
   soup.face_line.clear();
@@ -40,7 +40,7 @@ std::vector<bool> used_points(const PolygonSoup& soup) {
   return is_used;
 }
 
-// Drops the points that are marked in `had_face` and have none.
+// Drops the points that are marked in `had_face` and no longer belong to a face.
 void drop_deserted_points(Workpiece& piece, const std::vector<bool>& had_face) {
   PolygonSoup& soup = piece.soup;
   const std::vector<bool> has_face = used_points(soup);
@@ -156,7 +156,8 @@ bool asks_for_anything(const RepairOptions& options) {
          options.orient || options.reverse_inside_out || options.simplify_error;
 }
 
-// The two steps free each other's way: without a copy an edge has two faces again. Runs them until neither finds more.
+// Each of the two steps can enable the other: once a duplicate is gone, an edge has two faces again. Runs both until neither
+// changes the mesh.
 void drop_faces(Workpiece& piece, const RepairOptions& options, std::vector<RepairAction>& actions) {
   DegenerateTally degenerate;
   Tally duplicates;
@@ -170,7 +171,7 @@ void drop_faces(Workpiece& piece, const RepairOptions& options, std::vector<Repa
   if (options.drop_duplicate_faces) actions.push_back(drop_duplicates_action(piece, duplicates));
 }
 
-// Of each part the first face that is left; a part without any ends where it begins.
+// The first remaining face of each part; an empty part begins and ends at the same face.
 void move_parts(Workpiece& piece) {
   for (Part& part : piece.soup.parts) {
     const auto first = std::lower_bound(piece.source_face.begin(), piece.source_face.end(), part.first_face);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps of repair(), one file each: repair_weld, repair_degenerate, repair_duplicates, repair_split, repair_winding.
 //
-// A step repairs what it can repair surely: but for a weld by distance, the points that the surface covers stay the same, no
-// edge gets more faces, and no hole or seam opens. What it finds and cannot repair so is counted as left, with the reason.
+// A step makes only safe repairs: except for a weld by distance, the surface as a set of points stays the same, no edge gets
+// more faces, and no hole or seam opens. Defects that cannot be repaired safely are counted as left, with the reason.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Workpiece {
   Weld identity;                            // which of its vertices are one: exact until it is welded, then none
 };
 
-// How the workpiece hangs together. Vertices are those of Mesh, corner slots those of the soup.
+// Adjacency of the workpiece. Vertices are those of Mesh, corner slots those of the soup.
 struct View {
   explicit View(const Workpiece& piece);
 
@@ -37,7 +37,7 @@ struct View {
   Topology topology;
 };
 
-// What a step did and what it left: faces or vertices in the input's numbers, a face that was repaired twice standing twice.
+// The result of a step: repaired and left faces or vertices, by their input indices. A face repaired twice is listed twice.
 struct Tally {
   std::vector<std::uint32_t> done, left;
   std::map<std::string, std::uint64_t> reasons;  // of what was left
@@ -50,11 +50,11 @@ struct Tally {
 
 RepairAction weld_step(Workpiece& piece, const Weld& weld);
 
-// May be called again when another step has changed the mesh: `done` grows, `left` and `reasons` are of the last time. Returns
-// how many more were done.
+// May be called again when another step has changed the mesh: `done` accumulates, `left` and `reasons` are those of the last
+// call. Returns the number of repairs of this call.
 struct DegenerateTally : Tally {
-  std::uint64_t joined = 0;  // of those done: handed their corners on to the neighbour across their long edge
-  std::uint64_t closed = 0;  // of those done: polygons that stayed, without a corner or spike of no extent
+  std::uint64_t joined = 0;  // of those: merged into the neighbour across their longest edge
+  std::uint64_t closed = 0;  // of those: polygons kept after removing repeated corners and spikes
 };
 std::uint64_t drop_degenerate(Workpiece& piece, DegenerateTally& tally);
 RepairAction drop_degenerate_action(const Workpiece& piece, DegenerateTally& tally);
@@ -65,8 +65,8 @@ RepairAction drop_duplicates_action(const Workpiece& piece, Tally& tally);
 RepairAction split_vertices_step(Workpiece& piece);
 RepairAction orient_step(Workpiece& piece);
 RepairAction reverse_inside_out_step(Workpiece& piece);
-// All or nothing: where the outcome has another topology, or more pairs of faces that meet, after several tries, it is not
-// taken.
+// All or nothing: if after several tries the result still has another topology, or more intersecting pairs of faces, the mesh
+// is left unchanged.
 RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const Progress& progress);
 
 // ---- for the steps

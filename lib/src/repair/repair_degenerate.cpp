@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Removes faces without area where that leaves the surface as it is. A little over 400 lines: all of it works on one table of
-// edges.
+// Removes faces without area where that does not change the surface. A little over 400 lines: all functions share one edge
+// table.
 //
-// A face that names a vertex twice takes no part in the surface (validate skips it). Corners that repeat at once, and spikes
-// that run out and back, are taken out of its loop. Fewer than three corners left: it is dropped. A polygon that is sound now
-// stays, unless an edge would get a third face by it. One that still names a vertex twice has an area (two leaves, or a hole
-// with a bridge): left.
+// A face with a repeated vertex is not part of the surface (validate skips it). Consecutive equal corners and spikes are
+// removed from its loop. If fewer than three corners remain, it is dropped. A polygon that is now sound is kept, unless an edge
+// would get a third face. One that still repeats a vertex has an area (two lobes, or a hole with a bridge) and is left.
 //
-// A face whose corners all lie on one line does take part: its edges tie its neighbours to one another. Where its corners run
-// along its longest edge in order, that edge is covered by the others exactly, and the face can go in two ways:
-//   the longest edge has no other face: dropped; the surface's border runs over the shorter edges, where it ran before (left
-//   if it alone links its neighbours at a vertex: they would hang together by that point only)
-//   it has one other face, with an area: the corners between are inserted in that face's edge, exactly where they lie already
-// (a triangle is cut in two rather than made a quadrilateral, where the cut is no edge yet). Two such triangles with their
-// longest edges in common exchange it for the other diagonal, which is shorter, so that this ends. All else is left.
+// A face with collinear corners is part of the surface: its edges connect its neighbours. Where its corners are ordered along
+// its longest edge, the other edges cover that edge exactly, and the face can be removed in two cases:
+//   the longest edge has no other face: the face is dropped, and the border of the surface follows the shorter edges, which is
+//   the same line (left if only this face connects its neighbours at a vertex: they would then share just that point) it has
+//   one other face, with an area: the inner corners are inserted into that face's edge, on which they lie exactly (a triangle
+//   is split in two instead of becoming a quadrilateral, where the splitting edge does not exist yet)
+// Two such triangles that share their longest edge flip it to the other diagonal, which is shorter, so that this terminates.
+// All others are left.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -86,7 +86,7 @@ class DegenerateDropper {
     return !repeated_.empty() || !queue_.empty();
   }
 
-  // ---- edges, by the vertices at their ends: only those that a face in question can ask for
+  // ---- edges, by their end vertices: only those around faces that may be removed
 
   static std::uint64_t key(std::uint32_t u, std::uint32_t v) { return std::uint64_t{std::min(u, v)} << 32 | std::max(u, v); }
 
@@ -151,7 +151,7 @@ class DegenerateDropper {
   }
   void leave(std::uint32_t f, const char* reason) { tally_.leave(piece_.source_face[root_of(f)], reason); }
 
-  // Takes a face with its edges out, and looks again at those that had it across their longest edge.
+  // Removes a face with its edges, and queues again the faces that had it across their longest edge.
   void drop(std::uint32_t f) {
     remove(f, loop_of(f));
     changed_[f].clear();
@@ -165,9 +165,9 @@ class DegenerateDropper {
     waiting_.erase(entry);
   }
 
-  // ---- faces that name a vertex twice
+  // ---- faces with a repeated vertex
 
-  // The loop without corners that repeat at once and spikes.
+  // The loop without consecutive equal corners and spikes.
   [[nodiscard]] Loop without_spikes(const Loop& loop) const {
     Loop kept;
     for (const std::uint32_t point : loop) {
@@ -229,10 +229,10 @@ class DegenerateDropper {
     });
   }
 
-  // ---- faces on a line
+  // ---- faces with collinear corners
 
-  // The loop turned so that its longest edge runs from its last corner to its first and all others lie between in order; empty
-  // if it cannot be.
+  // The loop rotated so that its longest edge runs from its last corner to its first, with all others between in order; empty
+  // if that is impossible.
   [[nodiscard]] Loop along_longest_edge(const Loop& loop) const {
     const auto squared_length = [&](std::size_t i) {
       const Vec3 &a = position(loop[i]), &b = position(loop[(i + 1) % loop.size()]);
@@ -241,7 +241,7 @@ class DegenerateDropper {
     double longest = 0;
     for (std::size_t i = 0; i < loop.size(); ++i)
       longest = std::max(longest, squared_length(i));
-    constexpr double kNearly = 1 - 0x1p-40;  // the lengths are rounded; which one is longest, the exact test below decides
+    constexpr double kNearly = 1 - 0x1p-40;  // the lengths are rounded; the exact test below decides which is longest
     for (std::size_t i = 0; i < loop.size(); ++i) {
       if (!(squared_length(i) >= longest * kNearly)) continue;
       Loop turned = loop;
@@ -276,7 +276,7 @@ class DegenerateDropper {
     join(f, loop, neighbour);
   }
 
-  // At a corner between the ends of `loop` the face is the only link between its neighbours there.
+  // Whether at some inner corner of `loop` the face is the only connection between its neighbours.
   [[nodiscard]] bool holds_fans_together(std::uint32_t f, const Loop& loop) const {
     for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
       const std::uint32_t u = vertex(loop[k - 1]), b = vertex(loop[k]), v = vertex(loop[k + 1]);
@@ -285,7 +285,7 @@ class DegenerateDropper {
     return false;
   }
 
-  // Faces around vertex b lead from edge b-u to edge b-v without face f.
+  // Whether the fan around vertex b connects edge b-u with edge b-v without face f.
   [[nodiscard]] bool is_linked(std::uint32_t b, std::uint32_t u, std::uint32_t v, std::uint32_t f) const {
     std::vector<std::uint32_t> seen{f}, edges{u};
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -302,7 +302,7 @@ class DegenerateDropper {
     return false;
   }
 
-  // Hands the corners between the ends of `loop` to the neighbour, whose edge they lie on.
+  // Inserts the inner corners of `loop` into the neighbour's edge, on which they lie.
   void join(std::uint32_t f, const Loop& loop, std::uint32_t neighbour) {
     Loop other = loop_of(neighbour);
     Loop between(loop.begin() + 1, loop.end() - 1);
@@ -310,7 +310,7 @@ class DegenerateDropper {
       return std::any_of(between.begin(), between.end(), [&](std::uint32_t b) { return vertex(b) == vertex(point); });
     };
     if (std::any_of(other.begin(), other.end(), is_between)) return leave(f, kKnown);
-    // Turned so that the common edge runs from its last corner to its first.
+    // Rotated so that the common edge runs from its last corner to its first.
     const std::uint32_t u = vertex(loop.front()), v = vertex(loop.back());
     for (std::size_t i = 0; i < other.size(); ++i) {
       const std::uint32_t start = vertex(other[i]), end = vertex(other[(i + 1) % other.size()]);
@@ -331,7 +331,7 @@ class DegenerateDropper {
     drop(f);
   }
 
-  // Of two triangles on a line that wait for each other. False if there are none.
+  // Flips the common longest edge of two collinear triangles that block each other. False if there are none.
   bool exchange_diagonals() {
     bool is_any = false;
     std::vector<std::uint32_t> keys;
@@ -360,7 +360,7 @@ class DegenerateDropper {
     return is_any;
   }
 
-  // ---- the outcome
+  // ---- the result
 
   [[nodiscard]] FaceEdits edits() const {
     std::vector<std::uint32_t> faces;
@@ -383,10 +383,10 @@ class DegenerateDropper {
   const View view_;
   std::uint64_t done_ = 0;
   std::vector<std::uint32_t> repeated_;
-  std::vector<bool> is_flat_;        // of the soup's faces: on a line, and sound else
-  std::deque<std::uint32_t> queue_;  // faces on a line, to be settled
+  std::vector<bool> is_flat_;        // of the soup's faces: collinear and otherwise sound
+  std::deque<std::uint32_t> queue_;  // collinear faces to be processed
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>
-      waiting_;  // for a face on a line: those that need it gone first
+      waiting_;  // for a collinear face: the faces that can only be removed after it
   std::vector<std::uint32_t> vertex_of_point_;
   std::vector<bool> is_asked_;  // of vertices: their edges are in faces_at_
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> faces_at_;
@@ -402,7 +402,7 @@ std::uint64_t drop_degenerate(Workpiece& piece, DegenerateTally& tally) {
     tally.reasons.clear();
     const std::uint64_t done = DegenerateDropper(piece, tally).run();
     total += done;
-    if (done == 0 || tally.left.empty()) return total;  // else what was left may have its way free now
+    if (done == 0 || tally.left.empty()) return total;  // else some that were left may be removable now
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drops faces that are an earlier face again: the same loop, in whichever direction.
+// Drops duplicates of earlier faces: the same loop in either direction.
 #include <algorithm>
 #include <map>
 
@@ -13,7 +13,7 @@ std::vector<VertexId> loop_of(const Mesh& mesh, FaceId f) {
   return {mesh.corners.begin() + mesh.face_first[+f], mesh.corners.begin() + mesh.face_first[+f + 1]};
 }
 
-// Equal up to where they start. Loops of one face name few vertices twice: the number of places to try is small.
+// Whether the loops are equal up to rotation. A loop repeats few vertices, so the number of rotations to try is small.
 bool is_rotation(const std::vector<VertexId>& a, const std::vector<VertexId>& b) {
   for (std::size_t start = 0; start < b.size(); ++start) {
     if (b[start] == a[0] && std::equal(b.begin() + static_cast<std::ptrdiff_t>(start), b.end(), a.begin()) &&
@@ -34,7 +34,7 @@ std::uint64_t drop_duplicates(Workpiece& piece, Tally& tally) {
   tally.left.clear();
   tally.reasons.clear();
   FaceEdits edits;
-  // Of each first face, the loops on its vertices that stay: two polygons may go through the same vertices in another order.
+  // For each first face, the distinct loops on its vertices: two polygons may visit the same vertices in different order.
   std::map<FaceId, std::vector<std::vector<VertexId>>> kept;
   for (const Duplicate& duplicate : duplicate_faces(view.mesh, view.topology, view.states)) {
     const std::vector<VertexId> loop = loop_of(view.mesh, duplicate.copy);

@@ -9,11 +9,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The elements as validate's report writes them, taken from there so that the two cannot differ.
+// The elements in the format of validate's report, written by the same code.
 Json elements_json(const std::vector<Element>& elements) {
   Report report;
   Issue& issue = report.issues.emplace_back();
-  issue.rule = rules().front().name;  // any: only the elements are taken
+  issue.rule = rules().front().name;  // any rule: only the elements are used
   issue.total = elements.size();
   issue.elements = elements;
   return Json::parse(report_json({report}))["files"][0]["issues"][0]["elements"];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step that makes the mesh smaller: simplify(), whose outcome is checked as a whole before it is taken.
+// The simplification step: simplify(), with a check of the whole result before it is accepted.
 #include <algorithm>
 #include <charconv>
 #include <iterator>
@@ -15,7 +15,7 @@
 namespace fdcg::bake {
 namespace {
 
-// What simplification must not change.
+// Invariants of simplification.
 struct Shape {
   std::uint64_t components = 0, boundary_loops = 0;
   std::int64_t euler_characteristic = 0;
@@ -29,7 +29,7 @@ struct Shape {
   [[nodiscard]] bool has_sides_of(const Shape& other) const { return outward == other.outward && inward == other.inward; }
 };
 
-// Of a mesh whose vertices have one fan each: every vertex at the border has one edge of it that leaves.
+// For a mesh whose vertices have one fan each: every border vertex has one outgoing border edge.
 std::uint64_t count_boundary_loops(const Mesh& mesh, const Topology& topology) {
   std::vector<std::uint32_t> next_of(mesh.points.size(), kNone);
   for (std::uint32_t h = 0; h < topology.twin.size(); ++h) {
@@ -68,7 +68,7 @@ Shape shape_of(const Mesh& mesh, const Topology& topology, const std::vector<Fac
   return shape;
 }
 
-// The mesh of the faces that are left.
+// The mesh of the remaining faces.
 Mesh reduced(const Mesh& mesh, const Simplified& simplified, std::vector<std::uint32_t>& face_of) {
   Mesh result;
   result.points = mesh.points;
@@ -111,7 +111,7 @@ FaceEdits edits_of(const Workpiece& piece, const Mesh& mesh, const Simplified& s
       edits.push_back({f, {}});
       continue;
     }
-    // Corners that stay keep the point that the soup names; OpenMesh may have turned the loop.
+    // Remaining corners keep their point of the soup; OpenMesh may have rotated the loop.
     std::vector<std::uint32_t> loop;
     bool is_changed = false;
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -167,14 +167,14 @@ RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const 
     const Shape after = shape_of(result, pair_halfedges(result, states), states);
     if (!after.has_topology_of(before)) return leave("its topology would have changed");
     is_turned = !after.has_sides_of(before);
-    if (is_turned) {  // an error near the size of a part lets its faces turn round little by little
+    if (is_turned) {  // with an error bound near the size of a part, its faces may turn over in many small steps
       tried /= 2;
       continue;
     }
     const SelfIntersections found = meetings(result, resolve_jobs(jobs));
     more = total(found) > meetings_before ? total(found) - meetings_before : 0;
     if (more == 0) break;
-    // Around the faces that meet nothing may go; where that is not enough, sheets are closer than the error, which is halved.
+    // Locks the surroundings of intersecting faces. If that is not enough, sheets are closer than the error, which is halved.
     if (round >= kLocking) tried /= 2;
     for (const MeetingFaces& pair : found.listed) {
       for (const FaceId f : {pair.a, pair.b}) {

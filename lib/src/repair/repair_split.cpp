@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives each fan of faces around a vertex a vertex of its own. No edge changes its faces by that: those of one edge are in one
-// fan at both of its ends.
+// Splits non-manifold vertices: each fan of faces around a vertex gets its own vertex. No edge changes its faces, since those
+// of one edge are in one fan at both of its ends.
 #include "repair/repair.hpp"
 #include "topology/edges.hpp"
 
@@ -16,7 +16,7 @@ RepairAction split_vertices_step(Workpiece& piece) {
   for (const FanCorner& corner : fans_at(view.mesh, view.states, several)) {
     if (corner.vertex != vertex) first_of_vertex = static_cast<std::uint32_t>(soup.points.size());
     vertex = corner.vertex;
-    if (corner.fan == 0) continue;  // keeps the vertex, as do faces that are in no fan
+    if (corner.fan == 0) continue;  // fan 0 keeps the vertex, as do faces in no fan
     const std::uint32_t point = first_of_vertex + corner.fan - 1;
     if (point == soup.points.size()) {
       soup.points.push_back(Vec3(soup.points[+vertex]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins vertices in the soup itself: each group is written once, at the place of its first.
+// Merges vertices in the soup: each group is stored once, at the position of its first vertex.
 #include <cstddef>
 
 #include "repair/repair.hpp"
@@ -8,7 +8,7 @@
 namespace fdcg::bake {
 namespace {
 
-// The soup's points that do not stand for themselves.
+// The points of the soup that were merged into another.
 std::vector<std::uint32_t> joined_points(const Mesh& mesh, std::size_t points) {
   std::vector<std::uint32_t> joined;
   std::uint32_t v = 0;

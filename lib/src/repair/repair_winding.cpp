@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns faces over: within patches of mixed winding, and closed patches that are inside out. The stage is compile's --orient.
+// Flips faces: within patches of mixed winding, and closed patches that are inside out. The same stage as compile --orient.
 #include <algorithm>
 
 #include "repair/repair.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only unit that includes OpenMesh.
+// The only source file that includes OpenMesh.
 #include "repair/simplify.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModBaseT.hh>
-// after the others, whose names it needs
+// last: depends on names of the headers above
 #include <OpenMesh/Core/Geometry/QuadricT.hh>
 
 namespace fdcg::bake {
@@ -35,8 +35,9 @@ using HalfedgeHandle = HalfedgeMesh::HalfedgeHandle;
 
 class Judge;
 
-// OpenMesh's Decimater chooses by priorities and then collapses; proofs are too dear to be part of every priority. So this mesh
-// asks for the proof when it is to collapse, and stays as it is where there is none: the Decimater goes on with the next.
+// OpenMesh's Decimater selects by priority and then collapses. Proving the error bound is too expensive for every priority, so
+// this mesh proves it when a collapse is executed and does nothing if the proof fails; the Decimater then continues with the
+// next one.
 class BoundedMesh : public HalfedgeMesh {
  public:
   void collapse(HalfedgeHandle h);
@@ -71,20 +72,20 @@ class Judge {
     }
   }
 
-  // Less is earlier; negative: not at all.
+  // Lower is earlier; negative: not allowed.
   [[nodiscard]] double priority(HalfedgeHandle h) {
     const VertexHandle v0 = halfedges_.from_vertex_handle(h);
     const auto from = static_cast<std::size_t>(v0.idx());
     if (is_locked_[from] || refused_in_[static_cast<std::size_t>(h.idx())] == version_[from] || !find_new_faces(h)) return -1;
     const OpenMesh::Vec3d to = halfedges_.point(halfedges_.to_vertex_handle(h));
-    // Of flat neighbourhoods the shortest edges first, so that the triangles stay round.
+    // In flat neighbourhoods the shortest edges come first, so that triangles keep a good shape.
     constexpr double kTieBreak = 1e-9;
     const double l2 = (to - halfedges_.point(v0)).sqrnorm();
     return std::max(0.0, quadrics_[from](to)) + kTieBreak * l2 * l2;
   }
 
-  // Collapses one of the edges at the vertex that h leaves: h, or where its bound cannot be proved the next in the order of
-  // priorities. `is_legal` speaks of topology, `collapse_edge` does it.
+  // Collapses an edge at the start vertex of h: h itself or, where its bound cannot be proved, the next by priority. `is_legal`
+  // tests the topology, `collapse_edge` executes it.
   template <class IsLegal, class Collapse>
   void collapse(HalfedgeHandle h, IsLegal is_legal, Collapse collapse_edge) {
     const VertexHandle v0 = halfedges_.from_vertex_handle(h);
@@ -129,7 +130,7 @@ class Judge {
     return t;
   }
 
-  // The faces around the start of h as they would be without it; false where one would turn too far or lose its area.
+  // Computes the faces around the start of h after the collapse; false where one would turn too far or lose its area.
   bool find_new_faces(HalfedgeHandle h) {
     static const double kLeastCosine = std::cos(kMostTurnDegrees / 180 * std::numbers::pi);
     const VertexHandle v0 = halfedges_.from_vertex_handle(h), v1 = halfedges_.to_vertex_handle(h);
@@ -156,9 +157,10 @@ class Judge {
     return true;
   }
 
-  // Both directions: the new faces near what they stand for, and that near the new faces and those around them.
+  // Proves both directions: the new faces are near the originals that they replace, and these near the new faces and their
+  // neighbours.
   bool prove(const Vec3& removed) {
-    // The vertex to go is a point of the surface given: mostly it settles the question.
+    // The removed vertex is a point of the original surface; this test alone rejects most failures.
     if (std::none_of(new_faces_.begin(), new_faces_.end(),
                      [&](const NamedTriangle& t) { return cover_.is_near(removed, t.point); }))
       return false;
@@ -206,14 +208,14 @@ class Judge {
   }
 
   void tell() {
-    constexpr std::uint64_t kInterval = 256;  // collapses from one call to the next
+    constexpr std::uint64_t kInterval = 256;  // collapses between two calls of progress
     if (progress_ && ++collapses_ % kInterval == 0)
       progress_("simplify", static_cast<double>(collapses_) / static_cast<double>(mesh_.points.size()));
   }
 
   void commit() {
     for (const std::uint32_t f : old_faces_)
-      stands_for_[f].clear();  // all of these are concerned
+      stands_for_[f].clear();  // all of these are reassigned
     for (std::size_t i = 0; i < concerned_.size(); ++i) {
       const std::uint32_t t = concerned_[i];
       for (const std::uint32_t f : proof_[t])
@@ -231,14 +233,13 @@ class Judge {
   const Progress& progress_;
   std::uint64_t collapses_ = 0;
   std::vector<OpenMesh::Geometry::Quadricd> quadrics_;
-  // How often the faces around a vertex have changed, from 1; and when, in these terms, the collapse of a half-edge was
-  // refused.
+  // A change counter of the faces around each vertex, from 1; and its value when the collapse of a half-edge was last refused.
   std::vector<std::uint32_t> version_, refused_in_;
   std::vector<NamedTriangle> originals_;
   std::vector<Vec3> normals_;                           // of the faces as they were given
-  std::vector<std::vector<std::uint32_t>> stands_for_;  // of each face: the originals whose proof rests on it
-  std::vector<std::vector<std::uint32_t>> proof_;       // of each original: the faces that it is near
-  // Of the collapse in question.
+  std::vector<std::vector<std::uint32_t>> stands_for_;  // of each face: the original faces whose proof uses it
+  std::vector<std::vector<std::uint32_t>> proof_;       // of each original face: the faces used in its proof
+  // For the current collapse.
   std::vector<std::uint32_t> old_faces_, changed_, concerned_, around_, surrounding_faces_;
   std::vector<NamedTriangle> new_faces_, given_, surroundings_;  // new_faces_: those of changed_
   std::vector<std::vector<std::uint32_t>> fresh_proofs_;
@@ -248,7 +249,7 @@ void BoundedMesh::collapse(HalfedgeHandle h) {
   judge->collapse(h, is_legal, [this](HalfedgeHandle edge) { HalfedgeMesh::collapse(edge); });
 }
 
-// With its test of topology in reach.
+// Makes the protected topology test accessible.
 class Decimater : public OpenMesh::Decimater::DecimaterT<BoundedMesh> {
  public:
   explicit Decimater(BoundedMesh& mesh) : BaseDecimaterT(mesh), DecimaterT(mesh) {}  // the base is virtual

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fewer triangles, within a distance of what they were.
+// Mesh simplification with a proved bound on the distance to the original surface.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace fdcg::bake {
 
-// A normal may turn so far from that of the face before, in degrees.
+// Largest angle between the normals of a face before and after, in degrees.
 inline constexpr double kMostTurnDegrees = 60;
 
 struct Simplified {
@@ -22,19 +22,19 @@ struct Simplified {
   std::uint32_t gone = 0;
 };
 
-// Why the mesh cannot be simplified: its first face that is no sound triangle with an area, edge that has not two faces wound
-// alike or one, or vertex of several fans. Empty: it can be.
+// Why the mesh cannot be simplified: the first face that is not a valid triangle with an area, edge that has neither one face
+// nor two consistently wound ones, or vertex with several fans. Empty: it can be simplified.
 [[nodiscard]] std::string simplify_obstacle(const Mesh& mesh, const Topology& topology, const std::vector<FaceState>& states);
 
 // Collapses edges onto one of their ends, cheapest first by quadric error (Garland and Heckbert 1997; OpenMesh's Decimater), as
 // long as
 //   the surface keeps its topology: each collapse passes the link condition, and border vertices stay on their border
-//   no point of it is farther than `error` from the surface given, and none of that from it: proved for each collapse by
-//   SurfaceCover, for every triangle that it changes and every triangle given that these stand for
-//   no face turns by more than kMostTurnDegrees from what it was, and none loses its area
-// Vertices stay where they are; those marked in `is_locked` stay altogether. Some 10 to 100 microseconds a collapse, and 300
-// bytes a face. The mesh has no obstacle. Units: those of the mesh.
-// Nothing where OpenMesh cannot hold the mesh.
+//   the Hausdorff distance to the original surface is at most `error`: proved for each collapse by SurfaceCover, for every
+//   triangle that it changes and every original triangle that these replace
+//   no face turns by more than kMostTurnDegrees from the original, and none loses its area
+// Remaining vertices do not move; those marked in `is_locked` are not removed. Some 10 to 100 microseconds per collapse, and
+// 300 bytes per face. Precondition: the check above finds no obstacle. Units: those of the mesh. Nothing where OpenMesh cannot
+// hold the mesh.
 [[nodiscard]] std::optional<Simplified> simplify(const Mesh& mesh, double error, const std::vector<bool>& is_locked,
                                                  const Progress& progress);
 

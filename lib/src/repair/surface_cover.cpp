@@ -16,8 +16,8 @@ double side(const Point2& a, const Point2& b, const Point2& p) {
   return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
 }
 
-// The segment u-v and the triangle (counter-clockwise) have no point in common: a line through one of the four edges separates
-// them, as one always does.
+// Whether the segment u-v and the triangle (counter-clockwise) are disjoint: a line through one of the four edges then
+// separates them.
 bool is_apart(const Point2& u, const Point2& v, const Triangle2& t) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Point2 &a = t[k], &b = t[(k + 1) % 3];
@@ -27,7 +27,8 @@ bool is_apart(const Point2& u, const Point2& v, const Triangle2& t) {
   return (s0 >= 0 && s1 >= 0 && s2 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0);
 }
 
-// 1 or -1 by the winding of a triangle around p; 0 if p is outside. `is_sure` is cleared where p is too near an edge to tell.
+// Winding number of a triangle around p: 1 or -1; 0 if p is outside. `is_sure` is cleared where p is too near an edge to
+// decide.
 int winding(const Triangle2& t, const Point2& p, double tolerance, bool& is_sure) {
   int positive = 0, negative = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -44,7 +45,7 @@ int winding(const Triangle2& t, const Point2& p, double tolerance, bool& is_sure
 }  // namespace
 
 double distance_bound(const Vec3& p, const std::array<Vec3, 3>& triangle) {
-  // The foot on the plane, if inside; else the nearest point of the nearest edge.
+  // The projection onto the plane, if inside; else the nearest point of the nearest edge.
   const auto& [a, b, c] = triangle;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const Vec3 n = cross(ab, ac);
@@ -52,7 +53,7 @@ double distance_bound(const Vec3& p, const std::array<Vec3, 3>& triangle) {
   if (nn > 0) {
     const double v = dot(cross(ap, ac), n), w = dot(cross(ab, ap), n);
     if (v >= 0 && w >= 0 && v + w <= nn) {
-      // The thinner the triangle, the less is known of its normal: of some 2^-53 |ab| |ac| / |n|, as an angle.
+      // The error of the normal of a thin triangle, as an angle: about 2^-53 |ab| |ac| / |n|.
       const double size = std::sqrt(nn);
       const double error = 0x1p-47 * std::sqrt(squared_length(ab) * squared_length(ac) * squared_length(ap)) / size;
       return std::abs(dot(ap, n)) / size + error;
@@ -94,13 +95,13 @@ bool SurfaceCover::is_covered(const std::array<Vec3, 3>& triangle, std::vector<s
          is_covered({ab, bc, ca}, used);
 }
 
-// `is_far`: a corner is near no candidate, so that no proof can succeed.
+// `is_far`: a corner is near no candidate, so no proof can succeed.
 bool SurfaceCover::is_near_one(const std::array<Vec3, 3>& triangle, std::vector<std::uint32_t>& used, bool& is_far) {
   std::array<bool, 3> has_near{};
   for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
     bool all = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      // Once a corner is known to be near something, it matters only where the others are near this one.
+      // A corner already known to be near a candidate needs testing only where the other corners are near this one.
       if (!all && has_near[k]) continue;
       const bool near = is_near(triangle[k], candidates_[i].point);
       has_near[k] = has_near[k] || near;
@@ -114,13 +115,13 @@ bool SurfaceCover::is_near_one(const std::array<Vec3, 3>& triangle, std::vector<
   return false;
 }
 
-// The frame: the triangle's plane, and in it the triangle with its edges moved inwards so little that no point of it is farther
-// than the slack from what remains. False where it is too thin for one.
+// The frame: the triangle's plane, and in it the triangle with its edges moved inwards so little that every point is within the
+// slack of the shrunk triangle. False where the triangle is too thin.
 bool SurfaceCover::set_frame(const std::array<Vec3, 3>& triangle) {
   const Vec3 u = triangle[1] - triangle[0], w = triangle[2] - triangle[0];
   const Vec3 n = cross(u, w);
   const double a = length(triangle[2] - triangle[1]), b = length(w), c = length(u), area = length(n);
-  constexpr double kThinnest = 1e-4;  // of a thinner triangle rounding leaves no frame that is square enough
+  constexpr double kThinnest = 1e-4;  // for thinner triangles the rounded frame is not orthogonal enough
   if (!(c > 0 && area > kThinnest * b * c)) return false;
   Frame& frame = frame_;
   frame.origin = triangle[0];
@@ -145,7 +146,7 @@ bool SurfaceCover::set_frame(const std::array<Vec3, 3>& triangle) {
   return true;
 }
 
-// The candidates that lie within reach of the plane and may overlap the triangle there, and their edges in order.
+// The candidates within reach of the plane whose projection may overlap the triangle, and their edges, sorted.
 void SurfaceCover::gather_sheet() {
   sheet_.clear();
   edges_.clear();
@@ -173,7 +174,7 @@ void SurfaceCover::gather_sheet() {
   std::sort(edges_.begin(), edges_.end());
 }
 
-// An edge of the sheet that has not two of its triangles enters the triangle.
+// Whether an edge of the sheet that does not have two triangles in it enters the triangle.
 bool SurfaceCover::has_border_inside() const {
   for (std::size_t i = 0; i < edges_.size();) {
     std::size_t end = i + 1;
@@ -192,7 +193,7 @@ bool SurfaceCover::is_below_a_sheet(const std::array<Vec3, 3>& triangle, std::ve
   if (!set_frame(triangle)) return false;
   gather_sheet();
   if (sheet_.empty() || has_border_inside()) return false;
-  // Any point inside will do; some lie on an edge by chance.
+  // Any inner point serves; several are tried, since some lie on an edge by chance.
   constexpr std::array<std::array<double, 3>, 3> kInside{{{0.31, 0.36, 0.33}, {0.57, 0.19, 0.24}, {0.17, 0.22, 0.61}}};
   const double tolerance = frame_.longest * frame_.longest * 0x1p-44;
   for (const auto& share : kInside) {

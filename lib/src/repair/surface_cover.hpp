@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether every point of a triangle lies within a distance of a surface: proved, not sampled.
+// Proves (without sampling) that every point of a triangle lies within a distance of a surface.
 #pragma once
 
 #include <array>
@@ -12,28 +12,27 @@
 
 namespace fdcg::bake {
 
-// A triangle of a surface. Corners have names, so that triangles which share an edge are known to.
+// A triangle of a surface. Corners have identifiers, by which shared edges are recognised.
 struct NamedTriangle {
   std::array<Vec3, 3> point;
   std::array<std::uint32_t, 3> name;
 };
 
-// The distance from `p` to the triangle, its inside and border included; never less than it is, and more by rounding only.
+// An upper bound of the distance from `p` to the triangle, tight up to rounding error.
 [[nodiscard]] double distance_bound(const Vec3& p, const std::array<Vec3, 3>& triangle);
 
-// A test that may fail where the surface is near, but never passes where it is not: each point of a triangle that passes lies
-// within `distance` of one of the candidates. Three proofs are tried.
-//   Convexity  The distance to a convex set is a convex function: all three corners near one candidate, all points near it.
-//   Covering   Candidates whose corners all lie within the distance of the triangle's plane are projected onto it. How often
-//   they
-//              cover a point of the plane, counted with their winding, changes only across edges that one of them alone has.
-//              Where no such edge enters the triangle and one point is covered, all are, by something right above or below.
-//   Parts      Else the triangle is cut in four, and each is tried again, a bounded number of times.
-// Rounding is paid for out of the distance: a millionth of it is kept back. Coordinates should be local (their magnitude not
-// much larger than the object), and the distance more than kLeastShare of them, else nothing passes.
+// A conservative test: if it passes, each point of the triangle lies within `distance` of one of the candidates; it may fail
+// where the surface is near. Three proofs are tried.
+//   Convexity  The distance to a convex set is a convex function: if all three corners are near one candidate, all points are.
+//   Covering   Candidates whose corners all lie within the distance of the triangle's plane are projected onto it. The winding
+//              number of their projection changes only across edges that belong to one of them alone. If no such edge enters
+//              the triangle and one point is covered, all points are, by a point vertically above or below.
+//   Parts      Else the triangle is divided in four and each part is tested, to a bounded depth.
+// A millionth of the distance is reserved for rounding errors. Coordinates should be local (their magnitude not much larger
+// than the object), and the distance more than kLeastShare of them, else the test always fails.
 class SurfaceCover {
  public:
-  static constexpr double kLeastShare = 0x1p-28;  // where coordinates are rounded by less than a millionth of the distance
+  static constexpr double kLeastShare = 0x1p-28;  // rounding of coordinates is then below a millionth of the distance
 
   // `largest`: of all coordinates, in magnitude.
   SurfaceCover(double distance, double largest);
@@ -41,7 +40,7 @@ class SurfaceCover {
   [[nodiscard]] bool is_near(const Vec3& p, const std::array<Vec3, 3>& triangle) const {
     return distance_bound(p, triangle) <= reach_;
   }
-  // `used` gets the candidates that the proof rests on, in no order. Work: candidates times parts.
+  // `used` receives the candidates that the proof uses, in no order. Work: candidates times parts.
   bool covers(const std::array<Vec3, 3>& triangle, std::span<const NamedTriangle> candidates, std::vector<std::uint32_t>& used);
 
  private:
@@ -56,7 +55,7 @@ class SurfaceCover {
   using Triangle2 = std::array<std::array<double, 2>, 3>;
   struct Frame {
     Vec3 origin, x, y, normal;
-    double reach = 0;      // how far from the plane a candidate may be
+    double reach = 0;      // largest distance of a candidate from the plane
     double longest = 0;    // edge of the triangle
     Triangle2 triangle{};  // a little smaller
 
@@ -70,8 +69,8 @@ class SurfaceCover {
     std::uint32_t candidate;
   };
 
-  double reach_;  // what the proofs have: the distance less what is kept back
-  double slack_;  // of what is kept back, for shrinking a triangle
+  double reach_;  // the distance without the reserve
+  double slack_;  // the part of the reserve used for shrinking a triangle
   bool is_usable_;
   int parts_left_ = 0;
   std::span<const NamedTriangle> candidates_;

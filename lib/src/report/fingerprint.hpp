@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A number for a finding that stays when the file is renumbered or changed elsewhere: Element::fingerprint.
+// Element::fingerprint: identifies a finding independently of indices and of changes elsewhere in the file.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace fdcg::bake {
 
-// A hash of the rule's name and of a multiset of points, in whatever order they come. Points are taken bit for bit but that
-// -0 = 0 and all NaN are one; the same on every machine. What is added:
+// A hash of the rule's name and of a multiset of points, independent of their order. Points are hashed bit for bit, except that
+// -0 = 0 and all NaN are equal; the same on every machine. The points are:
 //   findings at vertices   the vertex
 //   at edges               both ends; at a vertex inside an edge these three
 //   at faces               all corners; of a pair of faces those of both, of a duplicate those of one
-//   at patches             the corner of the patch least in x, then y, then z
+//   at patches             the corner of the patch with the smallest x, then y, then z
 //   at the whole file      nothing
-// A corner that names no vertex counts as one point of its own.
+// Corners with an invalid index all count as one special point.
 class Fingerprint {
  public:
   explicit Fingerprint(std::string_view rule);

@@ -8,7 +8,7 @@
 namespace fdcg::bake {
 namespace {
 
-// What a message says it found: one of them, or several.
+// The phrase for findings of a rule, in singular and plural.
 struct Phrase {
   std::string_view rule, one, many;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a report says of a rule's findings, in words.
+// The text of a report about a rule's findings.
 #pragma once
 
 #include <cstdint>

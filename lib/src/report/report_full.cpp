@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON report with every element. What is found goes through a pile for each rule, since rules find at the same time and
-// the counts, which stand before the elements, are known at the end.
+// The JSON report with every element. Findings are buffered per rule, since rules run concurrently and the counts, which
+// precede the elements, are known only at the end.
 #include <algorithm>
 #include <cstdio>
 #include <utility>
@@ -11,8 +11,8 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kPileBytes = std::size_t{1} << 20;   // in memory for each rule; then its file
-constexpr std::size_t kPieceBytes = std::size_t{1} << 18;  // handed over at a time
+constexpr std::size_t kPileBytes = std::size_t{1} << 20;   // buffered in memory per rule; beyond it in a file
+constexpr std::size_t kPieceBytes = std::size_t{1} << 18;  // written at a time
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -20,11 +20,11 @@ struct CloseFile {
 
 }  // namespace
 
-// The elements of one rule, with what stands between them.
+// The elements of one rule, with their separators.
 struct ElementSpool::Pile {
-  std::string text;  // what is not yet in the file
+  std::string text;  // the part not yet in the file
   std::unique_ptr<std::FILE, CloseFile> file;
-  bool is_lost = false;  // the disk is full, or there is no place for temporary files
+  bool is_lost = false;  // the disk is full, or temporary files are impossible
   bool is_empty = true;
 
   void spill() {
@@ -56,7 +56,7 @@ struct FullReportWriter::Document {
     write(buffer);
     buffer.clear();
   }
-  // False where the file does not give back what it was given.
+  // False where reading the file back fails.
   bool append(ElementSpool::Pile& pile) {
     if (pile.is_lost) return false;
     bool is_first = true;

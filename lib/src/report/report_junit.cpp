@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// JUnit XML as Ant's JUnit task has it (schema of Windy Road): a test suite a file, a test case a rule that ran.
+// JUnit XML in the format of Ant's JUnit task (schema of Windy Road): one test suite per file, one test case per rule that ran.
 #include <algorithm>
 #include <charconv>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 #include "report/report_parts.hpp"
 
 namespace fdcg::bake {
 namespace {
 
-// XML 1.0 has no way to write most control characters, U+FFFE and U+FFFF: they are replaced, as bytes are that are not UTF-8.
+// XML 1.0 cannot represent most control characters, U+FFFE and U+FFFF: they are replaced, as are bytes that are not UTF-8.
 std::string escaped(std::string_view text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
@@ -20,8 +20,7 @@ std::string escaped(std::string_view text) {
     if (point.bytes == 0 || !is_xml) {
       out += kReplacement;
     } else if (point.value < 0x20) {
-      out +=
-          "&#" + std::to_string(static_cast<unsigned>(point.value)) + ";";  // as it stands an attribute would make it a blank
+      out += "&#" + std::to_string(static_cast<unsigned>(point.value)) + ";";  // in an attribute, unescaped, it becomes a blank
     } else if (point.value == '&') {
       out += "&amp;";
     } else if (point.value == '<') {
@@ -38,7 +37,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-// A name that the schema's xs:token, which drops blanks at both ends, does not empty.
+// A name that stays non-empty as xs:token of the schema, which strips blanks at both ends.
 std::string name_of_suite(const std::string& file) {
   const bool is_blank = file.find_first_not_of(" \t\r\n") == std::string::npos;
   return escaped(is_blank ? "\"" + file + "\"" : file);
@@ -55,7 +54,7 @@ std::string text_of(const Issue& issue, std::size_t max_elements) {
   return out;
 }
 
-// Those that ran, and whatever else found something.
+// The rules that ran, and any other with findings.
 std::vector<std::string> rules_of(const Report& report) {
   std::vector<std::string> names = report.checks;
   for (const Issue& issue : report.issues) {
@@ -120,7 +119,7 @@ class JunitWriter final : public ReportWriter {
     if (!report.config.empty()) out += property("config", report.config);
     return out + "</properties>\n";
   }
-  // What does not fail: too mild, allowed, or known.
+  // Findings that do not fail: below the severity, allowed or known.
   std::string note_of(const Report& report, const Issue& issue) const {
     const std::string excuse = report.allowed.count(issue.rule) != 0            ? ", allowed"
                                : issue.known == issue.total && issue.known != 0 ? ", known"

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::bake {
 namespace {

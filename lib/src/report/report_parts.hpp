@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the formats of a report have in common: words, places, limits. Each format is a file report_FORMAT.cpp.
+// Shared by the formats of a report: phrases, places, limits. Each format is in a file report_FORMAT.cpp.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace fdcg::bake {
 
 using Write = std::function<void(std::string_view)>;
 
-// Bytes of a part's name that a report repeats with every element: names may be long, reports stay small.
+// Bytes of a part's name that are repeated with every element: keeps reports small where names are long.
 inline constexpr std::size_t kLongestName = 80;
 
 [[nodiscard]] std::string_view name_of(Severity severity);
@@ -22,16 +22,16 @@ inline constexpr std::size_t kLongestName = 80;
 // "1 face", "2 faces".
 [[nodiscard]] std::string counted(std::uint64_t n, std::string_view one, std::string_view many);
 
-// Where an element is, for people: "line 10, edge 3-7, faces 4 9, part \"wheel\", at (1, 0.5, 2)". Printable.
+// The place of an element as text: "line 10, edge 3-7, faces 4 9, part \"wheel\", at (1, 0.5, 2)". Printable.
 [[nodiscard]] std::string place_of(const Element& element);
 
 // 16 lower-case hex digits.
 [[nodiscard]] std::string fingerprint_text(std::uint64_t fingerprint);
 
-// The file gave no mesh: its one issue is unreadable or empty-mesh.
+// Whether the file gave no mesh: its only issue is unreadable or empty-mesh.
 [[nodiscard]] bool is_import_failure(const Report& report);
 
-// Its findings from here on fail the verdict: the severity is high enough, and not all are allowed or known.
+// Whether its findings fail the verdict: the severity is high enough, and not all findings are allowed or known.
 [[nodiscard]] bool fails(const Report& report, const Issue& issue);
 
 std::unique_ptr<ReportWriter> make_text_writer(Write write, const ReportOptions& options);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report for people: a line a file, a line a rule with the remedy, the first few places.
+// The text report: one line per file, one line per rule with the remedy, the first few places.
 #include <algorithm>
 #include <utility>
 
-#include "base/printable.hpp"
+#include "shared/text.hpp"
 #include "report/report_parts.hpp"
 
 namespace fdcg::bake {
@@ -16,7 +16,7 @@ std::string painted(std::string_view text, std::string_view colour, bool on) {
   return std::string(colour) + std::string(text) + std::string(kPlain);
 }
 
-// In brackets behind the rule's name: why its findings do not all count.
+// In brackets after the rule's name: why not all of its findings count.
 std::string excuse_of(const Report& report, const Issue& issue) {
   if (report.allowed.count(issue.rule) != 0) return " (allowed)";
   if (issue.known == 0) return "";

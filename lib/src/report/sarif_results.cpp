@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One result a rule and file: its occurrenceCount is the exact total, its locations are the listed elements, and the message
-// links to the first few of them, which is how code scanning leads to more than the first line. With result_per_element each
-// listed element is a result of its own, and one more counts those that are not listed.
+// One result per rule and file: its occurrenceCount is the exact total, its locations are the listed elements, and the message
+// links to the first few of them, since code scanning shows only the first location otherwise. With result_per_element each
+// listed element is a separate result, and one more result counts those that are not listed.
 #include "report/sarif_results.hpp"
 
 #include <algorithm>
@@ -19,10 +19,10 @@ using enum JsonWriter::Layout;
 
 constexpr std::size_t kLinked = 10;          // places that a message links to
 constexpr std::size_t kNamedInLocation = 5;  // logical locations of an element; all of its indices are in the properties
-// Places in one file's results: where many rules found something, each lists less, and a report stays below a megabyte.
+// Limit of places in one file's results: where many rules have findings, each lists fewer, and a report stays below a megabyte.
 constexpr std::size_t kPlacesOfRules = 750, kPlacesOfElements = 520;
 
-// 64-bit FNV-1a: stable between versions and machines, which is all that is asked of it.
+// 64-bit FNV-1a, chosen because it is stable between versions and machines.
 std::uint64_t hash_of(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text)
@@ -127,7 +127,7 @@ class ResultWriter {
     if (issue.total > count) write_rest(issue, issue.total - count, issue.known - known);
   }
 
-  // What is not listed, so that the sum of a rule's counts is its total.
+  // A result for the elements not listed, so that the sum of a rule's counts is its total.
   void write_rest(const Issue& issue, std::uint64_t rest, std::uint64_t known) {
     begin_result(issue, rest);
     const bool is_all = rest == issue.total;
@@ -212,7 +212,7 @@ class ResultWriter {
       const auto& [name, kind] = names[i];
       json_.begin_object();
       json_.member("name", name);
-      if (!part.empty() && i == 1) json_.member("fullyQualifiedName", part + "/" + name);  // names may be long: once will do
+      if (!part.empty() && i == 1) json_.member("fullyQualifiedName", part + "/" + name);  // once only, since names may be long
       json_.member("kind", kind);
       json_.end_object();
     }

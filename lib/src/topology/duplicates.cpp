@@ -8,7 +8,7 @@
 namespace fdcg::bake {
 namespace {
 
-// A triangle and its copy share all three edges: none is a boundary, and where an edge has a twin, it is the copy's.
+// A triangle and its copy share all three edges: none is a boundary, and a twin of one of them belongs to the copy.
 bool triangle_may_have_copy(const Topology& topology, std::uint32_t first) {
   FaceId across{kNone};
   for (std::uint32_t h = first; h < first + 3; ++h) {
@@ -33,7 +33,7 @@ std::uint64_t hash_of(const VertexId* corner, std::uint32_t count) {
   return sum;
 }
 
-// Faces of one hash: sorted by their sorted corners, then by number, copies follow their first face.
+// Faces of equal hash: sorted by their sorted corners, then by index, so that copies follow their first face.
 void compare(const Mesh& mesh, const std::uint32_t* begin, const std::uint32_t* end, std::vector<Duplicate>& out) {
   std::vector<std::pair<std::vector<VertexId>, FaceId>> faces;
   for (const std::uint32_t* f = begin; f < end; ++f) {

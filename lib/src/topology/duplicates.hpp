@@ -12,8 +12,8 @@ struct Duplicate {
   FaceId copy, first;
 };
 
-// Faces with the same corners, in whatever order and winding, as an earlier face: each with the earliest of them, ascending.
-// Faces with an invalid corner are left out. Linear but for the sorting of the few that may be copies.
+// Faces with the same set of corners as an earlier face, in any order and winding: each with the earliest such face, ascending.
+// Faces with an invalid corner are left out. Linear, plus sorting of the few candidates.
 [[nodiscard]] std::vector<Duplicate> duplicate_faces(const Mesh& mesh, const Topology& topology,
                                                      const std::vector<FaceState>& states);
 

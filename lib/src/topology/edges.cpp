@@ -17,13 +17,14 @@ bool is_halfedge(HalfedgeId h) {
   return +h < +Topology::kSkipped;
 }
 
-// How many corners a vertex has among the sound faces, and the first of them.
+// The number of corners of a vertex in sound faces, and the first of them.
 struct Star {
   std::uint32_t corners = 0;
   std::uint32_t first = kNone;
 };
 
-// The corners of the fan that holds corner `start`, as far as pairs of opposite half-edges lead; 0 if it meets an odd edge.
+// The number of corners of the fan around corner `start`, followed across pairs of opposite half-edges; 0 if it meets an odd
+// edge.
 std::uint32_t walk_fan(const Mesh& mesh, const Topology& topology, HalfedgeId start) {
   std::uint32_t count = 1;
   HalfedgeId h = start;

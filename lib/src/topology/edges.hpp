@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The edges that have no pair of opposite half-edges, and the fans around vertices.
+// Odd edges (those without a pair of opposite half-edges), and the fans around vertices.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct OddEdge {
 [[nodiscard]] std::vector<VertexId> vertices_of_several_fans(const Mesh& mesh, const Topology& topology,
                                                              const std::vector<FaceState>& states);
 
-// A corner of a sound face at a vertex asked for, and the fan around that vertex which it belongs to.
+// A corner of a sound face at one of the given vertices, and the fan around that vertex to which it belongs.
 struct FanCorner {
   VertexId vertex;
   HalfedgeId slot;

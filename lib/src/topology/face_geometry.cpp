@@ -105,7 +105,7 @@ bool FaceGeometry::is_flat(FaceId f) {
   return flat == Flat::yes;
 }
 
-// The exact sign of the area seen along `axis`; of a polygon that crosses itself, of what its windings add up to.
+// The exact sign of the signed area, projected along `axis`.
 int FaceGeometry::sign_along(FaceId f, int axis) const {
   if ((bits_[+f] & 1U << axis) != 0) return 1;
   if ((bits_[+f] & 8U << axis) != 0) return -1;
@@ -119,8 +119,8 @@ int FaceGeometry::sign_along(FaceId f, int axis) const {
 bool FaceGeometry::is_fold(FaceId a, HalfedgeId h, FaceId b, HalfedgeId other) {
   const unsigned bits_a = bits_[+a], bits_b = bits_[+b];
   if (((bits_a | bits_b) & (kNotFinite | kDegenerate)) != 0) return false;
-  // Folded faces look opposite ways if their loops run along the edge in opposite directions, else the same way. One axis that
-  // certainly says otherwise settles it.
+  // The normals of folded faces are opposite if their loops traverse the edge in opposite directions, else equal. One axis with
+  // certain signs to the contrary decides.
   const bool opposite_runs = mesh_.corners[+h] != mesh_.corners[+other];
   const unsigned turned_b = opposite_runs ? bits_b : ((bits_b & 7U) << 3 | bits_b >> 3);
   if ((bits_a & turned_b & kSigns) != 0) return false;

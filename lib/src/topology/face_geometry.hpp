@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the exact predicates say about each face: degenerate or not, which way it looks, flat or not, folded onto a neighbour.
+// Exact properties of each face: whether it is degenerate, the signs of its normal, whether it is planar or folded onto a
+// neighbour.
 #pragma once
 
 #include <array>
@@ -11,20 +12,20 @@
 
 namespace fdcg::bake {
 
-// Asked for one face after another; answers are kept where they are costly. Belongs to one Mesh, whose loops must not change.
+// Computed per face on demand; expensive results are cached. Belongs to one Mesh, whose loops must not change.
 class FaceGeometry {
  public:
-  // One linear pass: a floating-point filter with a proven bound, exact predicates where it cannot tell.
+  // One linear pass: a floating-point filter with a proven error bound, exact predicates where it is undecided.
   FaceGeometry(const Mesh& mesh, const std::vector<FaceState>& states, unsigned jobs = 1);
 
   // Every face has three corners, and face f the slots 3 f to 3 f + 2.
   [[nodiscard]] bool has_triangles_only() const { return frames_.empty(); }
   // All corners are finite. False for faces with an invalid corner.
   [[nodiscard]] bool is_finite(FaceId f) const { return (bits_[+f] & kNotFinite) == 0; }
-  // A corner named twice, fewer than three corners, or all corners exactly on one line. Of a face that is not finite only the
-  // former two are known.
+  // A repeated corner, fewer than three corners, or exactly collinear corners. Collinearity is not tested for a face that is
+  // not finite.
   [[nodiscard]] bool is_degenerate(FaceId f) const { return (bits_[+f] & kDegenerate) != 0; }
-  // All corners lie exactly in one plane. Kept: linear in the corners the first time.
+  // Whether all corners are exactly coplanar. Cached: linear in the corners the first time.
   [[nodiscard]] bool is_flat(FaceId f);
   // The faces of half-edges `h` and `other`, which run along one edge, lie exactly in one plane and on the same side of that
   // edge: a dihedral angle of 0 or 360 degrees. False where one of them is degenerate, not finite or not flat.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles that faces are judged by where their surface matters and not only their corners.
+// Triangulation of the faces for checks of their surface and not only of their corners.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ namespace fdcg::bake {
 
 class FaceTriangles {
  public:
-  // Cuts the polygons as triangulate() does; a fan from the first corner where that cannot be done, without its triangles that
-  // lie on a line. A mesh of triangles costs nothing.
+  // Triangulates as triangulate() does; where that is impossible, by the fan from the first corner without its degenerate
+  // triangles. Free for a mesh of triangles.
   FaceTriangles(const Mesh& mesh, const FaceGeometry& geometry, unsigned jobs);
 
   [[nodiscard]] std::uint32_t count() const { return is_plain_ ? mesh_.face_count() : static_cast<std::uint32_t>(cut_.size()); }
   [[nodiscard]] FaceId face(std::uint32_t triangle) const { return is_plain_ ? FaceId{triangle} : cut_[triangle].face; }
-  // Every face has one triangle, its own.
+  // Whether every face is a triangle.
   [[nodiscard]] bool is_plain() const { return is_plain_; }
   [[nodiscard]] const VertexId* corners(std::uint32_t triangle) const {
     return is_plain_ ? &mesh_.corners[std::size_t{3} * triangle] : cut_[triangle].corner.data();

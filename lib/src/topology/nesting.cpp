@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// nesting_depths of patches.hpp: exact ray casts over a tree of boxes.
+// nesting_depths of patches.hpp: exact ray casting with a bounding volume hierarchy.
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Rays run along +x: of a box only its shadow on the yz plane and its far end count.
+// Rays run along +x: only a box's projection onto the yz plane and its upper x matter.
 struct Shadow {
   double y0 = kInfinity, y1 = -kInfinity, z0 = kInfinity, z1 = -kInfinity, x1 = -kInfinity;
 
@@ -53,7 +53,8 @@ int side_of(const Vec3& a, const Vec3& b, const Vec3& p) {
   return b.y > a.y ? 1 : b.y < a.y ? -1 : 0;
 }
 
-// p lies on the triangle, its edges and corners included. Not asked of triangles on a line, whose neighbours cover them.
+// Whether p lies on the triangle, its edges and corners included. Not called for degenerate triangles, which are covered by
+// their neighbours.
 bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const auto is_between = [](double x, double u, double v, double w) {
     return x >= std::min({u, v, w}) && x <= std::max({u, v, w});
@@ -133,7 +134,7 @@ class RayTree {
       all.add(shadow_of(f));
     }
     const auto cell = [](double x, double low, double high) {
-      const double t = (x - low) / (high - low);  // not a number where the mesh has no width
+      const double t = (x - low) / (high - low);  // NaN where the mesh has no width
       return t > 0 && t < 1 ? static_cast<std::uint32_t>(t * 65535) : 0U;
     };
     std::vector<std::uint64_t> keys;
@@ -149,7 +150,7 @@ class RayTree {
       faces_[i] = static_cast<std::uint32_t>(keys[i]);
   }
 
-  // False if the face is touched and that matters.
+  // False if p lies on the face and skip_touched is not set.
   bool cast_at_face(std::uint32_t f, const Vec3& p, std::uint32_t own, bool skip_touched) {
     if (patches_.of_face[f] == own) return true;
     const auto point = [&](std::uint32_t h) -> const Vec3& { return mesh_.points[+mesh_.corners[h]]; };
@@ -188,7 +189,7 @@ class RayTree {
 }  // namespace
 
 std::vector<std::uint32_t> nesting_depths(const Mesh& mesh, const Patches& patches, const std::vector<std::uint32_t>& asked) {
-  // Patches that touch do so in a few vertices; only coinciding surfaces could use up the tries.
+  // Touching patches share a few vertices only; just coinciding surfaces could use up the tries.
   constexpr std::uint32_t kTries = 64;
   RayTree tree(mesh, patches);
   std::vector<std::uint32_t> position(patches.patches.size(), kNone);  // in `asked`

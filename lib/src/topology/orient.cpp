@@ -38,7 +38,7 @@ std::vector<bool> minority(const Patches& patches) {
   return is_flipped;
 }
 
-// Of the patches that were of mixed winding and are consistent now, those that look to the wrong side.
+// Of the patches that had mixed winding and are consistent now, those with inward normals.
 std::vector<bool> wrong_sided(const Mesh& mesh, const Patches& patches, const std::vector<bool>& was_mixed) {
   std::vector<bool> is_wrong(patches.patches.size(), false);
   std::vector<std::uint32_t> asked;
@@ -101,7 +101,7 @@ std::vector<FaceId> make_winding_consistent(Mesh& mesh, Topology& topology, cons
   for (std::size_t p = 0; p < was_mixed.size(); ++p)
     was_mixed[p] = !patches.patches[p].is_consistent;
   flip(mesh, topology, states, is_flipped);
-  patches = find_patches(mesh, topology, states);  // flipping changes no patch, so that the numbers still hold
+  patches = find_patches(mesh, topology, states);  // flipping changes no patch, so the indices remain valid
   const std::vector<bool> is_wrong = wrong_sided(mesh, patches, was_mixed);
   if (any(is_wrong)) {
     turn(mesh, topology, states, is_wrong, patches);

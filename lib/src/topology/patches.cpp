@@ -32,7 +32,7 @@ class FaceSets {
   std::vector<std::uint32_t> parent_;
 };
 
-// Disjoint sets that also know whether a face must be turned against its set's root.
+// Disjoint sets that also store whether a face must be flipped relative to its set's root.
 class TurnedSets {
  public:
   explicit TurnedSets(std::uint32_t count) : parent_(count), turned_(count, 0) {
@@ -128,7 +128,7 @@ std::uint64_t count_components(const Mesh& mesh, FaceSets& sets) {
   return components;
 }
 
-// Which faces run against the first face of their patch, and which patches cannot be made consistent.
+// Finds the faces wound opposite to the first face of their patch, and the patches that cannot be made consistent.
 void find_turned(const Mesh& mesh, const Topology& topology, const std::vector<OddEdge>& odd, Patches& out) {
   TurnedSets sets(mesh.face_count());
   const auto join = [&](HalfedgeId h, HalfedgeId other, std::uint32_t turned) {
@@ -191,7 +191,7 @@ void find_volumes(const Mesh& mesh, Patches& out) {
     Volume& volume = volumes[out.of_face[f]];
     for_each_triangle(mesh, f, [&](const Vec3& a, const Vec3& b, const Vec3& c) { volume.add(a, b, c); });
   }
-  // Faces of the patches that the filter leaves open, patch by patch, so that one exact sum at a time is enough.
+  // Faces of the patches that the filter leaves undecided, grouped by patch, so that one exact sum at a time is enough.
   std::vector<std::uint64_t> open;
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
     if (!is_asked(f)) continue;
@@ -239,7 +239,7 @@ std::vector<std::uint32_t> inside_out_patches(const Mesh& mesh, const Patches& p
     ++enclosing;
     if (patches.patches[p].volume_sign < 0) negative.push_back(p);
   }
-  if (negative.empty() || enclosing == 1) return negative;  // nothing to lie in: depth 0
+  if (negative.empty() || enclosing == 1) return negative;  // no other enclosing patch: depth 0
   const std::vector<std::uint32_t> depths = nesting_depths(mesh, patches, negative);
   std::vector<std::uint32_t> inside_out;
   for (std::size_t i = 0; i < negative.size(); ++i) {

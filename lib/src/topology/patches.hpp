@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Patches: sound faces joined across edges of exactly two faces. What they enclose, and whether their winding can agree.
+// Patches: sets of sound faces connected across edges of exactly two faces; their enclosed volume, and whether their winding is
+// or can be made consistent.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct Patch {
   bool is_consistent = true;   // no edge along which two faces run in the same direction
   bool is_orientable = true;   // flipping some of its faces would make it consistent
   bool is_finite = true;       // all corners are
-  HalfedgeId conflict{kNone};  // not orientable: a half-edge of the edge at which that came out
+  HalfedgeId conflict{kNone};  // not orientable: a half-edge at which the contradiction was found
   int volume_sign = 0;         // exact; only of closed, consistent, finite patches, else 0. Polygons as fans of triangles
 
   [[nodiscard]] bool encloses() const { return is_closed && is_consistent && is_finite && volume_sign != 0; }
@@ -36,13 +37,14 @@ struct Patches {
 [[nodiscard]] Patches find_patches(const Mesh& mesh, const Topology& topology, const std::vector<FaceState>& states,
                                    const std::vector<OddEdge>& odd, const FaceGeometry& geometry);
 
-// Of the patches asked for: in how many other enclosing patches each lies. A ray from one of its vertices is counted out
-// exactly (parity, orientations of the stored points, ties by symbolic perturbation); a vertex on another patch is passed over
-// for the next, up to a bound, after which surfaces touched do not count. Sorts the faces once, then about log(faces) a patch.
+// Nesting depth: for each patch of `asked` the number of other enclosing patches in which it lies. Exact ray casting from one
+// of its vertices (parity, orientation tests on the stored points, symbolic perturbation). If that vertex lies on another patch
+// the next one is tried, up to a bound, after which patches that contain the point do not count. Sorts the faces once, then
+// about log(faces) per patch.
 [[nodiscard]] std::vector<std::uint32_t> nesting_depths(const Mesh& mesh, const Patches& patches,
                                                         const std::vector<std::uint32_t>& asked);
 
-// The patches, ascending, that enclose negative volume where they should bound solid: at an even nesting depth.
+// The patches, ascending, that enclose negative volume at an even nesting depth, where they should bound a solid.
 [[nodiscard]] std::vector<std::uint32_t> inside_out_patches(const Mesh& mesh, const Patches& patches);
 
 }  // namespace fdcg::bake

@@ -113,8 +113,8 @@ Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, 
     }
   }
 
-  // A counting sort by the smaller vertex. Each thread has a range of vertices to itself and passes over all the faces: reading
-  // in order costs little beside writing wherever the vertices are.
+  // A counting sort by the smaller vertex. Each thread owns a range of vertices and reads all the faces: sequential reading is
+  // cheap beside the scattered writes.
   const std::size_t vertices = mesh.points.size();
   const std::size_t ranges = is_small ? 1 : std::min<std::size_t>(jobs, kMostPasses), width = vertices / ranges + 1;
   std::vector<std::uint32_t> first(vertices + 1, 0);  // where the bucket of each vertex starts; later where it ends

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which half-edge lies across which.
+// Pairing of half-edges.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace fdcg::bake {
 
-// A face that takes no part in the rules of edges and vertices: fewer than three corners, a corner named twice, or a corner
-// that names no vertex.
+// A face that the rules of edges and vertices ignore: fewer than three corners, a repeated corner, or a corner with an invalid
+// index.
 enum class FaceState : std::uint8_t { sound, repeated_corner, invalid_corner };
 
-// Both on `jobs` threads, on which the outcome does not depend.
+// Both use `jobs` threads; the result does not depend on it.
 
 // The state of each face; `invalid_corner` where both hold. Linear in the corners.
 [[nodiscard]] std::vector<FaceState> face_states(const Mesh& mesh, unsigned jobs = 1);

@@ -133,7 +133,7 @@ class PointTable {
   int shift_ = 0;
 };
 
-// Where the points go: vertices of the mesh as they are found, and the vertex of each source point.
+// The result of the weld: vertices of the mesh in order of appearance, and the vertex of each source point.
 struct Welder {
   Mesh& mesh;
   std::vector<std::uint32_t> vertex_of;
@@ -195,14 +195,15 @@ void weld_exact(const LocalPoints& local, std::size_t expected, unsigned jobs, W
   }
 }
 
-// Standing vertices in cells somewhat wider than the distance: whoever is within reach stands in the 27 cells around.
+// A grid of the vertices kept so far, with cells slightly wider than the weld distance: all vertices within that distance of a
+// point are in the 27 cells around it.
 class Grid {
  public:
   Grid(double distance, std::size_t expected)
-      // Wider by a little, so that the rounding of x / cell never puts two points in reach two cells apart.
+      // Slightly wider, so that rounding of x / cell never puts two points within the distance two cells apart.
       : distance_(distance), cell_(distance * (1 + 0x1p-20)), heads_(std::bit_ceil(expected + 1), kNone) {}
 
-  // The lowest-numbered standing vertex within the distance of `p`, or kNone.
+  // The lowest-numbered kept vertex within the distance of `p`, or kNone.
   [[nodiscard]] std::uint32_t find(const Vec3& p, const std::vector<Vec3>& points) const {
     const Vec3 home = cell_of(p);
     std::uint32_t best = kNone;
@@ -259,7 +260,7 @@ Mesh weld_points(const PolygonSoup& soup, const Weld& weld, Precision precision,
   mesh.origin = choose_origin(soup.points);
   const LocalPoints local{soup.points, mesh.origin, precision};
 
-  // The system zeroes new memory page by page: that is done beside the weld.
+  // The system zeroes new memory page by page: done concurrently with the weld.
   constexpr std::size_t kWorthThreads = 1'000'000;  // corners
   const auto side = jobs < 2 || soup.corners.size() < kWorthThreads ? std::launch::deferred : std::launch::async;
   std::future<void> faces = std::async(side, [&] {

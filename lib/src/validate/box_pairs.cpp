@@ -13,7 +13,7 @@ namespace fdcg::bake {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-constexpr unsigned kKeyBits = 10;  // of each coordinate: the order need not be finer, and key and number fit one word
+constexpr unsigned kKeyBits = 10;  // per coordinate: fine enough for the order, and key and index fit one word
 
 std::uint32_t field(Cell cell, unsigned axis) {
   return static_cast<std::uint32_t>(cell >> (axis * (kCellBits + 1)) & ((Cell{1} << kCellBits) - 1));
@@ -74,14 +74,14 @@ CellGrid::CellGrid(const std::vector<Vec3>& points) {
   }
 }
 
-// Never falls as `half` rises: the search does not, nor do subtraction, product and rounding down within a piece.
+// Monotonic in `half`: so are the search and, within a piece, subtraction, product and rounding down.
 std::uint64_t CellGrid::place(const Axis& axis, double half) {
   std::size_t piece = 0;
   for (std::size_t step = kPieces / 2; step > 0; step /= 2)
     piece += axis.start[piece + step] <= half ? step : 0;
   constexpr unsigned kFineBits = kCellBits - kPieceBits;
   constexpr double kLast = (1u << kFineBits) - 1;
-  // std::max of 0 and NaN, in this order, is 0: a coordinate that is no number stands somewhere.
+  // std::max of 0 and NaN, in this order, is 0: a NaN coordinate gets a valid cell.
   const double fine = std::min(std::max(0.0, (half - axis.start[piece]) * axis.cells_per_unit[piece]), kLast);
   return std::uint64_t{piece} << kFineBits | static_cast<std::uint64_t>(fine);
 }
@@ -101,7 +101,7 @@ BoxTree::BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint3
   order_.resize(boxes.size());
   for (std::size_t i = 0; i < keys.size(); ++i)
     order_[i] = static_cast<std::uint32_t>(keys[i]);
-  if (!labels.empty()) {  // boxes of one label stand together, so that they share nodes
+  if (!labels.empty()) {  // boxes of one label are consecutive, so that they share nodes
     std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) { return labels[i] < labels[j]; });
   }
   levels_.emplace_back(boxes.size());

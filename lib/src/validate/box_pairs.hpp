@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All pairs of boxes that meet, for a few million boxes: sorted along a space-filling curve, in a tree of four children a node
-// that is walked against itself.
+// All overlapping pairs among a few million boxes (broad phase): a bounding volume hierarchy with four children per node, built
+// by sorting along a space-filling curve and traversed against itself.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace fdcg::bake {
 
-// Three coordinates as whole numbers of 20 bits side by side in one word, each with a bit above it, so that three comparisons
-// are one subtraction.
+// Three coordinates as 20-bit integers packed into one word, each with a guard bit above it, so that three comparisons take one
+// subtraction.
 using Cell = std::uint64_t;
 inline constexpr unsigned kCellBits = 20;
 inline constexpr Cell kCellGuards =
     (Cell{1} << kCellBits) | (Cell{1} << (2 * kCellBits + 1)) | (Cell{1} << (3 * kCellBits + 2));
 
-// Maps points to cells so that order is kept on each axis: whatever boxes of points meet, their boxes of cells meet too. The
-// cells are finer where there are more points, so that neither a point far away nor parts far apart make them too coarse.
+// Maps points to cells, monotonically on each axis: if two boxes of points overlap, so do their boxes of cells. Cells are finer
+// where there are more points, so that neither outliers nor parts far apart make them too coarse.
 class CellGrid {
  public:
-  // Of finite points only; others are passed over.
+  // Points that are not finite are ignored.
   explicit CellGrid(const std::vector<Vec3>& points);
   [[nodiscard]] Cell cell(const Vec3& p) const;
 
@@ -63,15 +63,15 @@ struct CellBox {
 
 class BoxTree {
  public:
-  // Pairs of boxes with the same label are left out and, where many have it, not even looked at. `labels`: of each box, kNone
-  // for none; or empty.
+  // Pairs of boxes with the same label are omitted and, where many boxes have it, skipped without a test. `labels`: of each
+  // box, kNone for none; or empty.
   BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs);
 
-  // The work in parts that can be done side by side, and do not depend on the number of threads.
+  // The number of parts of the work, which can run concurrently and do not depend on the number of threads.
   [[nodiscard]] std::size_t part_count() const { return levels_[part_level_].size(); }
 
-  // Calls visit(i, j) for the pairs of one part: numbers of boxes as given, in no particular order, each pair once in all
-  // parts.
+  // Calls visit(i, j) for the pairs of one part: indices of the given boxes, in no particular order; over all parts each pair
+  // once.
   template <class Visit>
   void for_each_pair(std::size_t part, Visit visit) const {
     within(part_level_, part, visit);
@@ -90,7 +90,7 @@ class BoxTree {
     return {begin, begin + kArity < count ? begin + kArity : count};
   }
 
-  // Pairs of boxes below one node.
+  // Pairs of boxes in one subtree.
   template <class Visit>
   void within(std::size_t level, std::size_t node, Visit& visit) const {
     if (level == 0 || label(level, node) != kNone) return;
@@ -102,7 +102,7 @@ class BoxTree {
       }
     }
   }
-  // Pairs of a box below one node with a box below another that meets it.
+  // Pairs of a box in one subtree with a box in another one.
   template <class Visit>
   void between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
     if (have_same_label(level, a, b)) return;
@@ -145,7 +145,7 @@ class BoxTree {
 
   std::vector<std::uint32_t> order_;                // the number of each box along the curve
   std::vector<std::vector<CellBox>> levels_;        // [0]: the boxes in that order
-  std::vector<std::vector<std::uint32_t>> labels_;  // likewise: what all boxes below have; empty where there are none
+  std::vector<std::vector<std::uint32_t>> labels_;  // likewise: the common label of the boxes below; or empty
   std::size_t part_level_ = 0;
 };
 

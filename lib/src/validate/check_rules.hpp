@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of the catalogue that run on a mesh, one function each, named after its rule. What each counts: issues.cpp.
+// The rules of the catalogue that run on a mesh: one function per rule, with its name. issues.cpp defines what each counts.
 #pragma once
 
 #include "validate/findings.hpp"

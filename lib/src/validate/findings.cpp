@@ -44,14 +44,14 @@ void Findings::finish_element() {
   if (listed.size() < max_elements_) {
     listed.push_back(std::move(element_));
   } else if (!element_.is_known && listed.size() > issue_.total - issue_.known - 1) {
-    // Of what is listed something is known: it gives way.
+    // A listed element is known from the baseline: it is replaced.
     listed.erase(std::find_if(listed.rbegin(), listed.rend(), [](const Element& e) { return e.is_known; }).base() - 1);
     listed.push_back(std::move(element_));
   }
 }
 
 void Findings::add_face(Element& element, FaceId f) const {
-  constexpr std::size_t kMaxFaces = 32;  // an edge may have a million, and a report stays small
+  constexpr std::size_t kMaxFaces = 32;  // keeps a report small: an edge may have a million faces
   const std::uint32_t source = subject_.mesh.source_of(f);
   if (element.faces.size() == kMaxFaces) {
     ++element.more_faces;
@@ -137,7 +137,7 @@ void Findings::in_edge(VertexId v, HalfedgeId h) {
   Element& element = *current_;
   const VertexId p = subject_.start_of(h), q = subject_.end_of(h);
   element.edges.push_back({subject_.mesh.source_point[+p], subject_.mesh.source_point[+q]});
-  element.line.reset();  // elements that name faces give the line of the first
+  element.line.reset();  // an element with faces has the line of the first one
   add_face(element, subject_.topology.face(h));
   Fingerprint fingerprint(rule_.name);
   for (const VertexId vertex : {v, p, q})
@@ -145,7 +145,7 @@ void Findings::in_edge(VertexId v, HalfedgeId h) {
   element.fingerprint = fingerprint.value();
 }
 
-// One pass finds it for all patches: the rules of patches rarely find anything, and then it may be thousands.
+// One pass computes it for all patches: the rules of patches rarely have findings, but may then have thousands.
 Vec3 Findings::least_corner(std::uint32_t patch) {
   const Patches& patches = subject_.patches;
   if (least_corners_.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rules look at, and where they put what they find.
+// The input of the rules, and the collection of their findings.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace fdcg::bake {
 
-// A mesh under check, and what several rules need to know of it.
+// The mesh to check, with data shared by several rules.
 struct Subject {
   const PolygonSoup& soup;
   const Mesh& mesh;
@@ -28,7 +28,7 @@ struct Subject {
   Precision precision;
   unsigned jobs;                        // threads for the rules that run alone
   const Progress& progress;             // for these too
-  FaceGeometry& geometry;               // is_flat() and is_fold() keep answers: for the rules of one thread only
+  FaceGeometry& geometry;               // is_flat() and is_fold() cache results: for the rules of one thread only
   std::vector<OddEdge> odd{};           // odd_edges()
   Patches patches{};                    // find_patches(): for the rules of patches, and afterwards
   std::vector<Duplicate> duplicates{};  // duplicate_faces(): for its rule, and afterwards
@@ -38,8 +38,8 @@ struct Subject {
   [[nodiscard]] const Vec3& source_point(VertexId v) const { return soup.points[mesh.source_point[+v]]; }
 };
 
-// Of one rule: counts all, lists the first few. Each call is one finding; faces, edges and vertices become the numbers, lines,
-// parts and coordinates of the source.
+// The findings of one rule: counts all, lists the first few. Each call is one finding; faces, edges and vertices are translated
+// to the indices, lines, parts and coordinates of the source.
 class Findings {
  public:
   Findings(const Subject& subject, const Rule& rule, Severity severity, std::size_t max_elements, const EachElement& each);
@@ -59,14 +59,14 @@ class Findings {
   // In place of the catalogue's phrase and remedy; the total comes first.
   void say(std::string message) { issue_.message = std::move(message); }
   [[nodiscard]] std::uint64_t total() const { return issue_.total; }
-  // How many need to be located; the others may be counted by count_more().
+  // Number of findings that need a location; others may be counted by count_more().
   [[nodiscard]] std::size_t max_elements() const { return each_ ? kAllElements : max_elements_; }
 
-  // The issue as it stands in the report. No findings: no message.
+  // The issue for the report. Without findings it has no message.
   [[nodiscard]] Issue take() &&;
 
  private:
-  // Counts one; null where it is neither listed nor shown to each_. It is complete when the next one is found, or at the end.
+  // Counts one finding; null where it is neither listed nor passed to each_. It is complete at the next finding, or at the end.
   Element* found();
   void finish_element();
   void add_face(Element& element, FaceId f) const;
@@ -79,7 +79,7 @@ class Findings {
   Issue issue_;
   Element element_;                  // the last one found
   Element* current_ = nullptr;       // that, or null
-  std::vector<Vec3> least_corners_;  // of each patch; empty until asked for
+  std::vector<Vec3> least_corners_;  // of each patch; empty until first used
 };
 
 }  // namespace fdcg::bake

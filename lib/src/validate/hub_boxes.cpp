@@ -11,7 +11,7 @@
 namespace fdcg::bake {
 namespace {
 
-// Far above the rounding of a direction, far below what tells apart directions that matter.
+// Far above the rounding error of a direction, far below the differences between directions that matter.
 constexpr double kSlack = 0x1p-40;
 
 Vec3 scaled(const Vec3& v) {
@@ -54,7 +54,7 @@ std::vector<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTria
   for (const ContactTriangle& t : triangles) {
     const auto at = static_cast<std::size_t>(std::find(t.corner.begin(), t.corner.end(), hub) - t.corner.begin());
     const Vec3 p = unit(*t.corner[(at + 1) % 3] - *hub), q = unit(*t.corner[(at + 2) % 3] - *hub);
-    // The arc between the two bulges out from the chord by this much.
+    // Sagitta: the distance of the arc between the two from its chord.
     const double bulge = 1 - 0.5 * length(p + q);
     patches.emplace_back(p, q, bulge + kSlack);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hundreds of triangles around one vertex, or one edge, all meet there, and so do their boxes: looking at each pair of them
-// would take quadratic time. What else they have in common shows in the directions in which they leave.
+// Hundreds of triangles around one vertex, or one edge, all share it, so all their boxes overlap and testing each pair would
+// take quadratic time. Further common points can be excluded by the directions in which the triangles leave the hub.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace fdcg::bake {
 
-// From so many triangles at a vertex on; below, looking at all pairs costs less.
+// Smallest number of triangles at a vertex for this method; below it, testing all pairs costs less.
 inline constexpr std::uint32_t kHubTriangles = 512;
 
 // Boxes of the directions from `hub`, a corner of all these triangles, to their points. Two of the triangles have more in

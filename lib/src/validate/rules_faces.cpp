@@ -12,9 +12,9 @@
 namespace fdcg::bake::checks {
 namespace {
 
-// Every corner lies within the tolerance of the plane of the area vector through the corners' mean. The tolerance is what moves
-// of every coordinate by the input's quantum (and the storage's) can do, times four: the corner and the plane are off by one
-// each, and programs that turn an object round more than once.
+// Whether every corner lies within the tolerance of the plane of the area vector through the corners' mean. The tolerance is
+// four times the effect of moving every coordinate by the quantum of input and storage: one for the corner, one for the plane,
+// and two for programs that transform an object and so round more than once.
 bool is_planar_within_quantum(const Subject& subject, FaceId f) {
   const Mesh& mesh = subject.mesh;
   const std::uint32_t first = mesh.face_first[+f], end = mesh.face_first[+f + 1];
@@ -51,7 +51,7 @@ bool is_planar_within_quantum(const Subject& subject, FaceId f) {
   return true;
 }
 
-// What is wrong with a degenerate face, as it decides what helps.
+// The kind of degeneracy, which determines the remedy.
 struct DegenerateKinds {
   std::uint64_t point_like = 0, doubled = 0, collinear = 0;
 
@@ -90,7 +90,7 @@ struct DegenerateKinds {
   }
 };
 
-// A face's corners, one after the other; the same memory serves them all.
+// The corners of one face after another, in reused memory.
 class Loops {
  public:
   explicit Loops(const Mesh& mesh) : mesh_(mesh) {}
@@ -140,7 +140,7 @@ bool is_sliver(std::span<const Vec3> polygon, std::vector<Vec3>& scaled) {
     size = std::max(size, largest_component(p - polygon[0]));
   constexpr double kLeast = 1e-60, kMost = 1e60;  // fourth powers, and squares of kThinnest, are in range
   if (size > kLeast && size < kMost) return is_thin(polygon);
-  const double half = std::isfinite(size) ? 1 : 0.5;  // halved, differences of all that is finite are
+  const double half = std::isfinite(size) ? 1 : 0.5;  // halved, differences of finite coordinates are finite
   const int exponent = std::isfinite(size) ? -std::ilogb(size) : -std::numeric_limits<double>::max_exponent;
   scaled.clear();
   for (const Vec3& p : polygon) {

@@ -29,7 +29,7 @@ void isolated_vertex(const Subject& subject, Findings& out) {
 }
 
 void duplicate_vertex(const Subject& subject, Findings& out) {
-  // The vertices that stand for themselves are in ascending order: whatever is between two of them was joined.
+  // The vertices that were kept are in ascending order: all between two of them were joined to others.
   const std::vector<std::uint32_t>& standing = subject.mesh.source_point;
   std::uint32_t source = 0;
   for (std::size_t v = 0; v <= standing.size(); ++v, ++source) {

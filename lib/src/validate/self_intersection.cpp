@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-// What one thread has found so far, or all of them together. Of plain meshes each pair comes once; of cut polygons perhaps
-// several times, and all have to be kept until it is known which are the same.
+// The pairs found so far by one thread, or by all. On triangle meshes each pair is found once; with polygons possibly several
+// times (once per pair of triangles), so pairs are kept until duplicates are removed.
 class Gathered {
  public:
   Gathered(std::size_t max_listed, bool is_plain) : max_listed_(max_listed), is_plain_(is_plain) {}
@@ -52,7 +52,7 @@ class Gathered {
   }
 
  private:
-  static constexpr std::size_t kSlack = 1024;  // pairs kept beyond what is needed, so that sorting them out stays rare
+  static constexpr std::size_t kSlack = 1024;  // extra pairs kept, so that removing duplicates is rare
 
   // Of equal pairs the one that crosses comes first.
   static bool is_before(const MeetingFaces& p, const MeetingFaces& q) {
@@ -118,7 +118,7 @@ class Search {
     return boxes;
   }
 
-  // Of each triangle the corner that has most of them, if that makes it a hub, else kNone. Empty where there is no hub.
+  // For each triangle its corner with the most triangles, if that is a hub, else kNone. Empty where there is no hub.
   [[nodiscard]] Numbers hubs_of(const Numbers& triangles) const {
     Numbers count(mesh_.points.size(), 0);
     std::uint32_t most = 0;
@@ -155,7 +155,7 @@ class Search {
 
   // Pairs among triangles that share the hub.
   void search_around(std::uint32_t hub, const Numbers& around) {
-    // Sides from the hub that very many of them share, seams aside: these triangles are compared by their normals.
+    // Sides at the hub (not seams) that very many triangles share: these triangles are compared by their normals.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // far end, place in `around`
     for (std::uint32_t i = 0; i < around.size(); ++i) {
       const ContactTriangle t = triangles_[around[i]];
@@ -212,7 +212,7 @@ class Search {
     return is_filtered_ && are_surely_apart(s, t) ? Contact::none : contact_of(s, t);
   }
 
-  // Each where the first triangles of the pair meet in the way that the faces do.
+  // A point for each pair: where the first triangles meet with the contact type of the faces.
   void find_points(std::vector<MeetingFaces>& pairs) const {
     const auto range = [&](FaceId f) {
       if (triangles_.is_plain()) return std::pair{+f, +f + 1};

@@ -31,13 +31,13 @@ struct Box {
   }
 };
 
-// A boundary edge, as what is near it is sought.
+// A boundary edge, prepared for the search of vertices near it.
 struct Segment {
   Vec3 p, q;
   double reach;  // how far from it a vertex may lie
-  double slack;  // what rounding in here may add to a distance
+  double slack;  // bound on the rounding error of a distance computed here
 
-  // No point of the box is within `slack` and `reach` of the segment.
+  // True if no point of the box is within `reach` plus `slack` of the segment.
   [[nodiscard]] bool misses(const Box& box) const {
     const double margin = reach + slack;
     double enter = 0, leave = 1;
@@ -54,7 +54,7 @@ struct Segment {
     }
     return enter > leave;
   }
-  // Every point of the box is within reach of an end: one vertex with it, as far as the file can tell.
+  // True if every point of the box is within reach of one end: at the file's precision the same vertex.
   [[nodiscard]] bool has_at_end(const Box& box) const { return covers(p, box) || covers(q, box); }
 
   [[nodiscard]] bool has_inside(const Vec3& v) const {
@@ -79,7 +79,7 @@ struct Segment {
   }
 };
 
-// Which cells of a grid over a box hold a piece of a segment.
+// The cells of a grid over a box that segments pass through.
 class Marks {
  public:
   explicit Marks(const Box& box) : box_(box), is_marked_(std::size_t{kCells} * kCells * kCells, false) {}
@@ -113,8 +113,8 @@ class Marks {
   }
   static std::size_t index(int x, int y, int z) { return (static_cast<std::size_t>(z) * kCells + y) * kCells + x; }
   void mark(const Vec3& low, const Vec3& high) {
-    // A piece of a flat part takes a column, one whose reach is a tenth of the part a block: then the grid tells nothing apart
-    // (a small part far from the origin, in floats), and filling it for every edge would take hours.
+    // A segment of a flat part covers a column of cells, one with a reach of a tenth of the part a whole block: the grid is
+    // then of no use (a small part far from the origin, in floats), and filling it for every edge would take hours.
     constexpr int kMostCells = 16 * kCells;
     const int x0 = cell(low.x, 0), x1 = cell(high.x, 0), y0 = cell(low.y, 1), y1 = cell(high.y, 1);
     const int z0 = cell(low.z, 2), z1 = cell(high.z, 2);
@@ -131,7 +131,7 @@ class Marks {
   bool is_all_marked_ = false;
 };
 
-// A tree of vertices, each of its nodes with the box around those below. A vertex that was taken is gone.
+// A bounding volume hierarchy of vertices, from which found vertices are removed.
 class VertexTree {
  public:
   VertexTree(const std::vector<Vec3>& points, std::vector<std::uint32_t> vertices)
@@ -139,7 +139,7 @@ class VertexTree {
     if (!vertices_.empty()) build(0, static_cast<std::uint32_t>(vertices_.size()));
   }
 
-  // Calls wants(vertex) for those that lie inside the segment, and takes them away where it says so.
+  // Calls wants(vertex) for the vertices inside the segment, and removes those for which it returns true.
   template <class Wants>
   void take(const Segment& segment, const Wants& wants) {
     if (!vertices_.empty()) take(0, segment, wants);
@@ -149,9 +149,9 @@ class VertexTree {
   static constexpr std::uint32_t kLeaf = 8;
   struct Node {
     Box box;
-    std::uint32_t first = 0, end = 0;  // of vertices_; those that are left stand first in a leaf
+    std::uint32_t first = 0, end = 0;  // of vertices_; the remaining ones come first in a leaf
     std::uint32_t right = 0;           // the second child; the first follows its parent. 0: a leaf
-    std::uint32_t left_over = 0;       // vertices below that were not taken
+    std::uint32_t left_over = 0;       // remaining vertices below
   };
 
   std::uint32_t build(std::uint32_t first, std::uint32_t end) {
@@ -232,7 +232,7 @@ class Finder {
   }
   [[nodiscard]] Segment segment(std::uint32_t h) const {
     const Vec3 &p = start(h), &q = end(h);
-    constexpr double kRounding = 0x1p-48;  // of the coordinates: a dozen operations, each off by 2^-53
+    constexpr double kRounding = 0x1p-48;  // of the coordinates: a dozen operations with an error of 2^-53 each
     return {p, q, kQuantumReach * std::max(quantum_.at(p), quantum_.at(q)),
             kRounding * std::max(largest_component(p), largest_component(q))};
   }
@@ -242,7 +242,7 @@ class Finder {
     return std::find(corners + mesh_.face_first[+f], stop, VertexId{v}) != stop;
   }
 
-  // Those of sound faces in cells that hold a piece of an edge: usually few.
+  // The vertices of sound faces in cells that an edge passes through: usually few.
   [[nodiscard]] std::vector<std::uint32_t> vertices_near_edges() const {
     Box box{start(edges_[0]), start(edges_[0])};
     for (const std::uint32_t h : edges_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rules run, and on which thread.
+// Selection of the rules that run, and their threads.
 #include "validate/validate.hpp"
 
 #include <algorithm>
@@ -15,15 +15,15 @@
 namespace fdcg::bake {
 namespace {
 
-// The rules look at the mesh only, so they run side by side, but for those that share what one of them works out: these run
-// one after the other on one thread.
+// Rules only read the mesh, so they run concurrently, except for rules that share a result: these run in sequence on one
+// thread.
 enum class Group {
-  patches,     // what find_patches() gives
-  polygons,    // which polygons are flat: FaceGeometry keeps that
-  duplicates,  // what duplicate_faces() gives
-  slivers,     // one rule, that measures every face: in the middle of the others the last thread would wait for it
+  patches,     // share find_patches()
+  polygons,    // share FaceGeometry's cache of planar polygons
+  duplicates,  // share duplicate_faces()
+  slivers,     // one long rule, started early so that it does not run alone at the end
   none,
-  alone,  // has a use for all threads itself
+  alone,  // parallel in itself
 };
 
 struct Row {
@@ -32,7 +32,7 @@ struct Row {
   void (*run)(const Subject&, Findings&);
 };
 
-// In the order of the catalogue, which report and checks keep.
+// In the order of the catalogue, which report and checks use too.
 constexpr Row kRows[] = {
     {"non-finite-coordinate", Group::none, checks::non_finite_coordinate},
     {"index-out-of-range", Group::none, checks::index_out_of_range},
@@ -59,7 +59,7 @@ class Checker {
  public:
   Checker(Subject& subject, const CheckOptions& options) : subject_(subject), options_(options) {}
 
-  // One for each row; without findings where the rule is not asked for.
+  // One for each row; without findings where the rule is not enabled.
   std::vector<Issue> run();
 
  private:
@@ -73,7 +73,7 @@ class Checker {
   std::size_t done_ = 0;
 };
 
-// Nothing where it is not to be run.
+// Empty if the rule is not to be run.
 std::optional<Severity> severity_of(std::string_view rule, const CheckOptions& options) {
   const auto chosen = options.severities.find(std::string(rule));
   return chosen == options.severities.end() ? find_rule(rule)->severity : chosen->second;

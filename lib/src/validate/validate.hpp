@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks themselves, on a welded mesh; validate() of bake.hpp and compile() both end here, so that they cannot disagree.
+// The checks on a welded mesh, shared by validate() of bake.hpp and compile().
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct CheckOptions {
   EachElement each_element{};
 };
 
-// A soup made ready for the checks, by compile as by validate.
+// A soup prepared for the checks, in the same way by compile and validate.
 struct Prepared {
   Mesh mesh;
   std::vector<FaceState> states;
@@ -36,10 +36,10 @@ struct Prepared {
 };
 [[nodiscard]] Prepared prepare(const PolygonSoup& soup, const Weld& weld, Precision precision, bool orient, unsigned jobs);
 
-// Runs the rules of the catalogue but unreadable (import's); Report::checks
-// names those that ran. `mesh` is weld_points(soup, ...), perhaps oriented; `states` and `topology` are those of face_states
-// and pair_halfedges. Report::vertices counts the welded vertices, as the rules do. Elements speak of the soup's own numbers:
-// of joined vertices the first. An element names at most 32 faces and counts the rest. Near linear.
+// Runs the rules of the catalogue except `unreadable` (reported by import); Report::checks names those that ran. `mesh` is
+// weld_points(soup, ...), possibly oriented; `states` and `topology` are those of face_states and pair_halfedges.
+// Report::vertices counts the welded vertices, as the rules do. Elements have the indices of the soup, for joined vertices that
+// of the first. An element lists at most 32 faces and counts the rest. Near linear.
 [[nodiscard]] Report check(const PolygonSoup& soup, const Mesh& mesh, const Topology& topology,
                            const std::vector<FaceState>& states, const CheckOptions& options);
 

@@ -179,7 +179,7 @@ static bool read_force(const uint8_t* at, float force_n[3]) {
 }
 
 fdcg_fw_verdict fdcg_fw_take_output(fdcg_fw* fw, uint32_t time_us, const uint8_t* bytes, size_t count) {
-  look_after_watchdog(fw, time_us); /* a report that comes too late finds it tripped, whoever was asked first */
+  look_after_watchdog(fw, time_us); /* a report that comes too late must find it tripped, whichever call is first */
   if (count != FDCG_FW_OUTPUT_BYTES) return FDCG_FW_LENGTH;
   if (bytes[0] != FDCG_FW_OUTPUT_ID) return FDCG_FW_ID;
   const uint16_t crc = fdcg_fw_crc16(bytes, FDCG_FW_OUTPUT_BYTES - 2);
@@ -190,7 +190,7 @@ fdcg_fw_verdict fdcg_fw_take_output(fdcg_fw* fw, uint32_t time_us, const uint8_t
   if (!read_force(bytes + 5, force_n)) return FDCG_FW_NOT_FINITE;
 
   const uint32_t sequence = get32(bytes + 1);
-  if (!(flags & FDCG_FW_ENABLE)) { /* zero force is never wrong, so that a host that has begun again is heard at once */
+  if (!(flags & FDCG_FW_ENABLE)) { /* zero force is safe: accepted with any sequence number, e.g. from a restarted host */
     drop_force(fw);
     fw->status &= (uint8_t)~FDCG_FW_WATCHDOG;
     fw->is_held = false;

@@ -427,6 +427,4 @@ void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact*
 }
 #endif
 
-#include "fdcg/scene.h" /* objects with poses, fingers */
-
 #endif /* FDCG_FDCG_H */

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <span>
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 namespace fdcg {
 

@@ -271,7 +271,7 @@ typedef struct fdcg_mass_record {
   double deviation; /**< largest distance of a source corner from the plane of a node that took its face in, source units */
 } fdcg_mass_record;
 
-/** A material of the mesh file: UTF-8, zero-terminated and filled up with zeros. Names are told apart by all their bytes: of
+/** A material of the mesh file: UTF-8, zero-terminated and filled up with zeros. Names are compared by all their bytes: of
  * one that is too long the first 54 stand here, '~', and eight hex digits of its checksum. */
 typedef struct fdcg_material_record {
   char name[FDCG_MATERIAL_NAME_BYTES]; /**< zero-terminated, zero-filled */

@@ -83,52 +83,69 @@ typedef struct fdcg_surface {
   double half_m[3];      /**< box, ellipsoid */
 } fdcg_surface;
 
+/** The values of fdcg_surface_kind, each beside the code for its kind. A program links the kinds that it makes and no others:
+ * the makers below read these, and fdcg_surface_init and fdcg_make_surface, which do not know the kind, link all. Of a surface
+ * that was made by none of them and whose kind is not linked, fdcg_check_surface says so, and the step feels nothing. */
+extern const uint32_t fdcg_linked_plane, fdcg_linked_sphere, fdcg_linked_cylinder, fdcg_linked_capsule;
+/** The same, of the other kinds. */
+extern const uint32_t fdcg_linked_box, fdcg_linked_cone, fdcg_linked_torus, fdcg_linked_ellipsoid;
+/** All kinds. */
+extern const uint32_t* const fdcg_linked_surfaces[8];
+
 /** Sets the first `struct_bytes` bytes of *surface: a plane, which is all zero except for struct_bytes. */
 static inline void fdcg_surface_init(fdcg_surface* surface, uint32_t struct_bytes) {
   if (surface == NULL) return;
   memset((void*)surface, 0, struct_bytes);
   surface->struct_bytes = struct_bytes;
+  surface->kind = *fdcg_linked_surfaces[FDCG_SURFACE_PLANE];
 }
-/** A surface of a kind with a radius and a length; set other sizes in its fields. */
-static inline fdcg_surface fdcg_make_surface(fdcg_surface_kind kind, double radius_m, double length_m) {
+/** Of one of the kinds above; what the makers share. */
+static inline fdcg_surface fdcg_make_linked_surface(uint32_t linked_kind, double radius_m, double length_m) {
   fdcg_surface surface;
-  fdcg_surface_init(&surface, (uint32_t)sizeof surface);
-  surface.kind = (uint32_t)kind;
+  memset((void*)&surface, 0, sizeof surface);
+  surface.struct_bytes = (uint32_t)sizeof surface;
+  surface.kind = linked_kind;
   surface.radius_m = radius_m;
   surface.length_m = length_m;
   return surface;
 }
+/** Of a kind that is known when the program runs, with a radius and a length; set other sizes in its fields. */
+static inline fdcg_surface fdcg_make_surface(fdcg_surface_kind kind, double radius_m, double length_m) {
+  fdcg_surface surface = fdcg_make_linked_surface(*fdcg_linked_surfaces[FDCG_SURFACE_PLANE], radius_m, length_m);
+  surface.kind = (uint32_t)kind;
+  return surface;
+}
 /** The plane z = 0, solid below. */
 static inline fdcg_surface fdcg_make_plane(void) {
-  return fdcg_make_surface(FDCG_SURFACE_PLANE, 0, 0);
+  return fdcg_make_linked_surface(fdcg_linked_plane, 0, 0);
 }
 /** A ball. */
 static inline fdcg_surface fdcg_make_sphere(double radius_m) {
-  return fdcg_make_surface(FDCG_SURFACE_SPHERE, radius_m, 0);
+  return fdcg_make_linked_surface(fdcg_linked_sphere, radius_m, 0);
 }
 /** A cylinder along z. */
 static inline fdcg_surface fdcg_make_cylinder(double radius_m, double length_m) {
-  return fdcg_make_surface(FDCG_SURFACE_CYLINDER, radius_m, length_m);
+  return fdcg_make_linked_surface(fdcg_linked_cylinder, radius_m, length_m);
 }
 /** A cylinder along z between two half balls, whose centres are length_m apart. */
 static inline fdcg_surface fdcg_make_capsule(double radius_m, double length_m) {
-  return fdcg_make_surface(FDCG_SURFACE_CAPSULE, radius_m, length_m);
+  return fdcg_make_linked_surface(fdcg_linked_capsule, radius_m, length_m);
 }
 /** A cone or frustum along z: radius_m at the bottom, top_radius_m at the top. */
 static inline fdcg_surface fdcg_make_cone(double radius_m, double top_radius_m, double length_m) {
-  fdcg_surface surface = fdcg_make_surface(FDCG_SURFACE_CONE, radius_m, length_m);
+  fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_cone, radius_m, length_m);
   surface.top_radius_m = top_radius_m;
   return surface;
 }
 /** A ring about z. */
 static inline fdcg_surface fdcg_make_torus(double radius_m, double tube_radius_m) {
-  fdcg_surface surface = fdcg_make_surface(FDCG_SURFACE_TORUS, radius_m, 0);
+  fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_torus, radius_m, 0);
   surface.tube_radius_m = tube_radius_m;
   return surface;
 }
 /** A box with half its sides given. */
 static inline fdcg_surface fdcg_make_box(double half_x_m, double half_y_m, double half_z_m) {
-  fdcg_surface surface = fdcg_make_surface(FDCG_SURFACE_BOX, 0, 0);
+  fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_box, 0, 0);
   surface.half_m[0] = half_x_m;
   surface.half_m[1] = half_y_m;
   surface.half_m[2] = half_z_m;
@@ -136,8 +153,10 @@ static inline fdcg_surface fdcg_make_box(double half_x_m, double half_y_m, doubl
 }
 /** An ellipsoid with its semi-axes given. */
 static inline fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m, double half_z_m) {
-  fdcg_surface surface = fdcg_make_box(half_x_m, half_y_m, half_z_m);
-  surface.kind = FDCG_SURFACE_ELLIPSOID;
+  fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_ellipsoid, 0, 0);
+  surface.half_m[0] = half_x_m;
+  surface.half_m[1] = half_y_m;
+  surface.half_m[2] = half_z_m;
   return surface;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory of the caller's, in which a struct lies in front of its arrays: found by offsets, so that a copy of the whole works as
-// it is.
+// Layout of caller-owned memory: a struct followed by its arrays, addressed by offsets, so that a byte copy of the whole is
+// valid.
 #pragma once
 
 #include "base/message.hpp"
 
 namespace fdcg {
 
-// Where the parts come to lie, one after the other, each at a multiple of 8.
+// Computes the offsets of consecutive parts, each a multiple of 8.
 class MemoryLayout {
  public:
   static constexpr uint64_t kAlignment = 8;
@@ -33,7 +33,7 @@ inline fdcg_status check_room(const void* memory, uint64_t bytes, uint64_t neede
   return FDCG_OK;
 }
 
-// The part of what begins at `whole` that lies at an offset; const where `whole` is.
+// The part at an offset from `whole`; const if `whole` is.
 template <class T, class Whole>
 inline T* part_at(Whole* whole, uint64_t offset) {
   return reinterpret_cast<T*>(reinterpret_cast<char*>(whole) + offset);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of the runtime is built. Each is 0 or 1 and may be set on the compiler's command line; CMake has options of these names.
+// Build options of the runtime. Each is 0 or 1 and may be set on the compiler's command line; CMake has options of these names.
 #pragma once
 
 #include "fdcg/fdcg.h"
@@ -15,7 +15,8 @@
 #error "a library needs FDCG_WITH_F64, FDCG_WITH_F32 or both"
 #endif
 
-// fdcg_open_file: needs a system that maps files. Without it the function says so; fdcg_open_memory is always there.
+// fdcg_open_file: needs a system with memory-mapped files. Without it the function returns an error; fdcg_open_memory is always
+// available.
 #ifndef FDCG_WITH_FILES
 #if defined(__unix__) || defined(__APPLE__)
 #define FDCG_WITH_FILES 1
@@ -24,8 +25,8 @@
 #endif
 #endif
 
-// fdcg_error.message says what is wrong with the case at hand. Without it the message is fdcg_status_text's, and the library is
-// some 5 kB smaller.
+// Specific texts in fdcg_error.message. Without them the message is that of fdcg_status_text, and the library is some 5 kB
+// smaller.
 #ifndef FDCG_WITH_MESSAGES
 #define FDCG_WITH_MESSAGES 1
 #endif
@@ -36,7 +37,7 @@
 #define FDCG_WITH_FRICTION_TERMS 1
 #endif
 
-// FDCG_ASSERT: our own faults are looked for, in the step too. CMake sets it in debug builds.
+// FDCG_ASSERT: checks for programming errors in the library, in the step too. CMake sets it in debug builds.
 #ifndef FDCG_WITH_ASSERTS
 #define FDCG_WITH_ASSERTS 0
 #endif
@@ -47,7 +48,7 @@ inline bool has_precision(uint32_t real_bytes) {
   return (FDCG_WITH_F64 && real_bytes == sizeof(double)) || (FDCG_WITH_F32 && real_bytes == sizeof(float));
 }
 
-// Calls `work` with a value of the graph's real type, which the library has: fdcg_open_memory saw to it.
+// Calls `work` with a value of the graph's real type. fdcg_open_memory has checked that the library supports it.
 template <class Work>
 auto with_real_of(const fdcg_header& header, Work work) {
   if constexpr (!FDCG_WITH_F32) {

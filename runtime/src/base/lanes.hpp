@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight floats at once: two vectors of four where the processor has them, else one after another. Every operation is the IEEE
-// one on each lane, so that the bits do not depend on which.
+// Eight floats at once: two SIMD vectors of four where the processor has them, else scalar code. Every operation is the IEEE
+// one on each lane, so that the bits do not depend on the implementation.
 #pragma once
 
 #include <stdint.h>
@@ -33,7 +33,7 @@ struct Lanes {
 
   static Lanes all(float x) { return {Floats{x, x, x, x}, Floats{x, x, x, x}}; }
   static Lanes of(const uint8_t (&numbers)[kLanes]) {
-    uint64_t word;  // by way of an integer: eight bytes written into a vector in memory would be waited for when it is read
+    uint64_t word;  // by way of an integer: a partial store to a vector in memory would stall the load
     memcpy(&word, numbers, sizeof word);
     const Bytes bytes = reinterpret_cast<Bytes>(Doublewords{word, 0}), none = {};
     const Halves halves =

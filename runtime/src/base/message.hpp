@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds the one line of an fdcg_error, piece by piece, in the caller's memory: no heap, no stdio. Cut short where it would
-// not fit. Out of line and cold: refusals are many and rare, and their text is what makes loading large. Without
+// Builds the line of an fdcg_error, piece by piece, in the caller's memory: no heap, no stdio. Truncated where it would not
+// fit. Out of line and cold: there are many refusals, rarely executed, and their text is most of the code of loading. Without
 // FDCG_WITH_MESSAGES the line is that of fdcg_status_text, and none of the words below is in the library.
 #pragma once
 
@@ -16,7 +16,7 @@ class Message {
   // `error` may be null: then nothing is written.
   [[gnu::cold]] Message(fdcg_error* error, fdcg_status status, uint64_t offset = 0);
   [[gnu::cold]] Message& text(const char* words);
-  // At most `limit` bytes of a text that came from outside.
+  // At most `limit` bytes of a text from the caller or a file.
   [[gnu::cold]] Message& quoted(const char* words, int limit);
   [[gnu::cold]] Message& number(uint64_t value);
   // Six decimals, with a power of ten where the number is very large or small: enough to see what is wrong with a setting.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Public structs that callers fill in start with `uint32_t struct_bytes`, the caller's sizeof. Rule: fields are only ever
-// appended, in multiples of 8 bytes, and one that the caller's header does not know takes its default. So a program built
-// against an older header works with a newer library; the other way round is refused where parameters are checked.
+// Public structs that callers fill in start with `uint32_t struct_bytes`, the caller's sizeof. Rule: fields are only appended,
+// in multiples of 8 bytes, and a field missing in the caller's header has its default. So a program built against an older
+// header works with a newer library; the reverse is refused where parameters are checked.
 #pragma once
 
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the library says of itself: its version, its status codes in words.
+// The version of the library and the texts of its status codes.
 #include "fdcg/fdcg.h"
 
 extern "C" uint32_t fdcg_version(void) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step counts, so that it ends in bounded time whatever the mesh: units of some 15 instructions. The rules that move the
-// god-object over the surface have one budget, the sweeps through free space another; the step goes on until one is spent, and
-// then a little further, to the end of the piece of work at hand (contact-model BOUND-1 to BOUND-3).
+// The work budgets of a step, by which it ends in bounded time on any mesh: units of some 15 instructions. The rules that move
+// the god-object over the surface have one budget, the sweeps through free space another. The step continues until one is
+// spent, and then finishes the current piece of work (contact-model BOUND-1 to BOUND-3).
 #pragma once
 
 #include <stdint.h>
@@ -30,21 +30,21 @@ inline constexpr uint32_t kUpkeepWork = FDCG_UPKEEP_WORK;
 inline constexpr uint32_t kBoxWork = 30;          // eight boxes tested, and put in order
 inline constexpr uint32_t kLeafWork = 4;          // a leaf taken up, besides its nodes
 inline constexpr uint32_t kNodeWork = 5;          // one node fetched, both ends of the way against its plane
-inline constexpr uint32_t kNearPlaneWork = 18;    // ... one end so near that its side is asked of the corners
+inline constexpr uint32_t kNearPlaneWork = 18;    // ... one end so near that its side is found from the corners
 inline constexpr uint32_t kOrientationWork = 9;   // one side's edge against the way, where rounding cannot matter
 inline constexpr uint32_t kPairsWork = 30;        // ... and where it does: 450 instructions
-inline constexpr uint32_t kExactWork = 70;        // ... so much more on a plane but for 2^-98 of the size: 1,050
+inline constexpr uint32_t kExactWork = 70;        // ... additional within 2^-98 of the size of a plane: 1,050
 inline constexpr uint32_t kLongExactWork = 290;   // ... with coordinates of very different sizes: 4,300
 inline constexpr uint32_t kTransitionWork = 10;   // one change of state
 inline constexpr uint32_t kSideWork = 4;          // one side of a face that the god-object slides on
 inline constexpr uint32_t kEdgeWork = 15;         // the rule of an edge
 inline constexpr uint32_t kFanWork = 8;           // one edge of a corner and the face beside it
-inline constexpr uint32_t kFanBoxWork = 5;        // one box of a busy corner's tree
+inline constexpr uint32_t kFanBoxWork = 5;        // one box of a corner's fan tree
 inline constexpr uint32_t kRenewedNodeWork = 55;  // a node's plane computed anew
 inline constexpr uint32_t kRenewedLeafWork = 85;  // a leaf's box
 inline constexpr uint32_t kRenewedBoxWork = 40;   // the box of a record
 
-// Takes `units` off what is left; at nothing left stays there.
+// Subtracts `units` from the remaining budget, down to 0.
 inline void spend(uint32_t* work_left, uint32_t units) {
   *work_left = *work_left > units ? *work_left - units : 0;
 }

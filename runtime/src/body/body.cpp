@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies: made, set in motion, looked at. body_step.cpp moves them.
+// Creation, settings and queries of bodies. body_step.cpp moves them.
 #include "fdcg/body.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ fdcg_status check_range(const char* of, const FieldRange& range, fdcg_error* err
   return message.text(" is ").real(range.value).text(", allowed ").real(range.low).text(" to ").real(range.high).text(remedy);
 }
 
-// No axis has more than the two others together: checked of the diagonal and, for the rest, by leading minors.
+// The triangle inequality of the moments of inertia: checked on the diagonal and, in general, by leading minors.
 bool is_solid_inertia(const double (&i)[6]) {
   constexpr double kSlack = 1e-12;  // the sums of a flat body are equal, to rounding
   const double sum = i[0] + i[1] + i[2];
@@ -84,8 +84,8 @@ fdcg_status check_pose(const fdcg_pose& pose, fdcg_error* error) {
   return check_range("pose.", {"scale", pose.scale, 1e-9, 1e9}, error);
 }
 
-// The least principal moment: the first root of the characteristic polynomial, which Newton's method nears from below. Three
-// equal ones are the slowest: a third of what is left goes each time.
+// The least principal moment: the smallest root of the characteristic polynomial, by Newton's method from below. Convergence is
+// slowest for three equal roots: the error shrinks by a third in each iteration.
 double least_moment(const double (&i)[6]) {
   constexpr uint32_t kIterations = 24;
   const Matrix m = tensor_of(i);

@@ -6,8 +6,8 @@
 namespace fdcg {
 namespace {
 
-// Each must be made, have an object of its own, and find room for its reactions. Which body came first at an index is noted in
-// the reactions, which are zeroed before they are used, and here where a body is refused.
+// Checks that each body is initialised, has its own object, and has room for its reactions. The first body at each index is
+// recorded in the reactions, which are zeroed before use, and here if a body is refused.
 fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fdcg_reaction* reactions, uint32_t reaction_count,
                           fdcg_error* error) {
   for (uint32_t i = 0; i < body_count; ++i) {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ticks of bodies share: of fingers alone (body_scene.cpp), and with one another (pile_step.cpp).
+// Shared by the ticks of bodies with fingers only (body_scene.cpp) and of piles (pile_step.cpp).
 #pragma once
 
 #include "body/body_math.hpp"
 
 namespace fdcg {
 
-// Arguments of a tick. Writes over the reactions.
+// Checks the arguments of a tick. Overwrites the reactions.
 fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
                          double tick_s, fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error);
 
 // The scene's torque is about the origin of the object's frame, the body's about its centre of mass.
 fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction);
 
-// On under a force and a torque about the centre of mass; the scene learns of the new pose.
+// Advances the body under a force and a torque about the centre of mass, and sets its new pose in the scene.
 fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_reaction& push, double dt_s, fdcg_error* error);
 
 }  // namespace fdcg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motion of one body: half kick, free turn and glide, half kick.
+// The motion of one body, a splitting scheme: half step of velocity, free rotation and translation, half step of velocity.
 #include "body/body_math.hpp"
 
 namespace fdcg {
@@ -15,9 +15,9 @@ bool is_push(const double (&v)[3]) {
   return absolute(v[0]) <= kLargestPush && absolute(v[1]) <= kLargestPush && absolute(v[2]) <= kLargestPush;
 }
 
-// I w + h/2 w x I w = momentum, all in the body's axes: w is the angular velocity in the middle of a step of h at whose start
-// the momentum is this one. Newton's method to rounding, from w = 0, where its first step is the explicit guess. False: not
-// reached.
+// Solves I w + h/2 w x I w = momentum in the body's axes: w is the angular velocity in the middle of a step of h, momentum the
+// angular momentum at its start. Newton's method from w = 0 (its first iterate is the explicit guess), up to rounding error.
+// False: no convergence.
 bool solve_spin(const Matrix& inertia, Vector momentum, double h, Vector* spin) {
   constexpr double kRounding = 4 * DBL_EPSILON;
   Vector w = {0, 0, 0};
@@ -43,7 +43,7 @@ bool solve_spin(const Matrix& inertia, Vector momentum, double h, Vector* spin) 
       *spin = w;
       return true;
     }
-    if (i > 1 && size >= last) {  // rounding already, or lost
+    if (i > 1 && size >= last) {  // converged to rounding error, or diverging
       *spin = w;
       return size <= 1e-12 * norm(w);
     }
@@ -63,7 +63,7 @@ void turn(double (&q)[4], Vector spin, double h) {
     q[k] = next[k] * scale;
 }
 
-// With the angular momentum as it is, in pieces of at most kLargestTurn_rad.
+// Free rotation at constant angular momentum, in parts of at most kLargestTurn_rad.
 void turn_freely(fdcg_body* body, double h) {
   const Vector momentum = vec(body->angular_momentum);
   if (momentum.x == 0 && momentum.y == 0 && momentum.z == 0) {
@@ -89,7 +89,7 @@ void turn_freely(fdcg_body* body, double h) {
   body->unsolved_steps += is_solved ? 0 : 1;
 }
 
-// The implicit midpoint rule for a loss at this rate: below 1 whatever the rate and the time.
+// The damping factor of the implicit midpoint rule at this rate: below 1 for any rate and time.
 double kept(double rate_per_s, double h) {
   return (1 - rate_per_s * h / 2) / (1 + rate_per_s * h / 2);
 }
@@ -99,7 +99,7 @@ double radius_of_gyration(const fdcg_body_config& config) {
   return root(trace / (2 * config.mass_kg));
 }
 
-// Whether a push differs from another by less than wakes the body.
+// Whether two forces differ by less than the threshold that wakes the body.
 bool is_calm(const fdcg_body_config& config, Vector force, Vector torque) {
   const double limit = config.wake_m_per_s2 * config.mass_kg;
   return norm(force) <= limit && norm(torque) <= limit * radius_of_gyration(config);
@@ -123,7 +123,8 @@ void fall_asleep_when_quiet(fdcg_body* body, Vector force, Vector torque, double
   put(torque, body->rest_torque_n_m);
 }
 
-// The last step gave its forces for its second half too; in their place comes half of what acts now, and half for what follows.
+// The last step applied its forces to its second half in advance (predicted impulse). That is replaced by half of the present
+// forces, and half of them is applied in advance for the next step.
 void move(fdcg_body* body, Vector force, Vector torque, double h) {
   const fdcg_body_config& config = body->config;
   const Vector half_kick = force * (h / 2), half_twist = torque * (h / 2);

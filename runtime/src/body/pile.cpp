@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pile's memory, and what comes into it and goes. pile_step.cpp is its tick.
+// A pile's memory; adding and removing members. pile_step.cpp is its tick.
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "body/pile_memory.hpp"
@@ -49,7 +49,7 @@ uint64_t lay_out(const fdcg_pile_config& config, fdcg_pile* pile) {
   return layout.bytes();
 }
 
-// The touches of a point that `is_gone` says so of go back to the free ones.
+// Returns the touches of a point for which `is_gone` is true to the free list.
 template <class IsGone>
 void drop_touches(fdcg_pile& pile, PileMember& member, PilePoint& point, IsGone is_gone) {
   uint32_t* link = &point.touch;
@@ -76,7 +76,7 @@ void drop_everywhere(fdcg_pile& pile, IsGone is_gone) {
   }
 }
 
-// Gives the member's points back; those of others move up.
+// Releases the member's points; the points of later members move down.
 void give_back_points(fdcg_pile& pile, PileMember& member) {
   const uint32_t first = member.first_point, count = member.point_count;
   if (count == 0) return;
@@ -172,7 +172,7 @@ extern "C" fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal
     fdcg_params room;
     pile->ground_params = in_full(*params, &room, fdcg_params_init);
     pile->ground_params.friction_flags &= FDCG_FRICTION_STRIBECK | FDCG_FRICTION_VISCOUS | FDCG_FRICTION_LAG;
-    pile->ground_params.materials = nullptr;  // of faces, which it has not: nothing outside the pile's memory is kept
+    pile->ground_params.materials = nullptr;  // the ground has no faces, and no pointer outside the pile's memory is kept
     pile->ground_params.material_count = 0;
     pile->ground_normal = {up.x / length, up.y / length, up.z / length};
     pile->ground_offset_m = offset_m;

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The dampers of a pile's touches. One after the other, each takes its part of the relative velocity away at once, as an
-// implicit step of its own: v / (1 + x + x x / 2), x = c h / m, at the mass m that it moves. Such a step only takes energy, so
-// any row of them does, however stiff, and none needs a shorter step.
+// The dampers of a pile's touches, applied sequentially. Each reduces the relative velocity in an implicit step: v / (1 + x +
+// x x / 2), x = c h / m, with the effective mass m. Such a step only removes energy, so any sequence of them does, at any
+// damping and step length.
 #include "body/pile_memory.hpp"
 #include "scene/finger_tick.hpp"
 
 namespace fdcg {
 namespace {
 
-// Of damping_ratio, where a contact sticks: many together then do not swing, whatever their masses sideways.
+// Share of damping_ratio for tangential motion at sticking contacts: prevents oscillation of many contacts together.
 constexpr double kSideways = 2;
 
-// What an impulse at a place does to a body, along one direction of unit length.
+// The response of a body to an impulse at a point along a unit direction.
 struct Lever {
-  World twist;           // that a unit impulse gives, about the centre of mass; zero where the body cannot be moved
-  World spin_rad_per_s;  // that comes of it
-  double lightness_per_kg, answer_per_kg;  // speed that it gives to the centre, and to the place
+  World twist;           // angular impulse about the centre of mass per unit impulse; zero if the body cannot be moved
+  World spin_rad_per_s;  // the resulting angular velocity
+  double lightness_per_kg, answer_per_kg;  // inverse mass, and inverse effective mass at the point
 };
 
 FDCG_HOT Lever lever_at(const PileMember* member, World at, World direction) {
@@ -40,14 +40,13 @@ FDCG_HOT void give(PileMember* member, const Lever& lever, World direction, doub
   member->has_touched = 1;
 }
 
-// What an implicit damper of this ratio to the critical one gives against a speed along a direction in which a unit impulse
-// answers with so much speed.
+// The impulse of an implicit damper with this damping ratio against a speed, for the given inverse effective mass.
 double damper_impulse(double speed, double ratio, double stiffness, double answer_per_kg, double step_s) {
   const double x = 2 * ratio * step_s * root(stiffness * answer_per_kg), taken = x + x * x / 2;
   return -speed * taken / ((1 + taken) * answer_per_kg);
 }
 
-// How much of `more`, 0 to 1, may be added to `held` without going beyond `limit` in length.
+// The largest share of `more`, 0 to 1, for which the length of `held` plus it is at most `limit`.
 double share_within(World held, World more, double limit) {
   const World all = held + more;
   if (dot(all, all) <= limit * limit) return 1;
@@ -56,12 +55,12 @@ double share_within(World held, World more, double limit) {
   return smaller(1, larger(0, (root(b * b - a * c) - b) / a));
 }
 
-// The two that a touch is between: `other` is null for the ground.
+// The two members of a touch: `other` is null for the ground.
 struct Between {
   PileMember *owner, *other;
   World at;
 
-  // Gives an impulse along a unit direction, to the one and back to the other.
+  // Applies an impulse along a unit direction to one and the opposite impulse to the other.
   void give_both(const Lever& own, const Lever& others, World direction, double impulse_n_s) const {
     give(owner, own, direction, impulse_n_s);
     give(other, others, direction, -impulse_n_s);
@@ -71,7 +70,8 @@ struct Between {
   }
 };
 
-// Of a touch that sticks and whose damper gives `along` the normal: with the spring's push it stays in the cone.
+// Tangential impulse of a sticking touch whose damper gives `along` the normal: with the spring's force it stays in the
+// friction cone.
 World damp_sideways(const Meeting& meeting, const Between& between, const PileTouch& touch, double along) {
   const World n = touch.normal, velocity = between.velocity(meeting);
   const World across = velocity - n * dot(velocity, n);
@@ -111,7 +111,7 @@ void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch) {
   if (!(answer > 0)) return;
   const double speed = dot(between.velocity(meeting), n);
   const double ratio = speed < 0 ? config.damping_ratio : config.leaving_ratio;
-  // never a pull: at most all of the spring's push is held back
+  // never adhesive: cancels at most the whole spring force
   const double along = larger(damper_impulse(speed, ratio, touch->stiffness_n_per_m, answer, h), -touch->load_n * h);
   between.give_both(own, others, n, along);
   World impulse = n * along;

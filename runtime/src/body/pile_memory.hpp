@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pile's memory holds:
+// Layout of a pile's memory:
 //
 //   fdcg_pile | PileMember[objects], by the scene's object index | PilePoint[points] | PileTouch[touches]
 //
@@ -23,11 +23,11 @@ struct PilePoint {
 
 struct PileTouch {
   uint32_t next;  // of the same point, or in the list of those not in use
-  uint32_t on;    // member, or kGround
+  uint32_t on;    // the touched member, or kGround
   uint32_t is_pressing;
   uint32_t has_normal;
-  double stiffness_n_per_m;  // for as long as it presses; where faces have materials, as the step has it
-  double most_stiffness;     // that its body bears, of when it began to press
+  double stiffness_n_per_m;  // constant while it presses; where faces have materials, that of the step
+  double most_stiffness;     // stability bound of its body, from the start of the contact
   double load_n;
   double mu_static;
   World god_object, normal;
@@ -44,19 +44,19 @@ struct PileMember {
   uint32_t first_point, point_count;
   uint32_t touch_count;
   double radius_m;  // of its points, around the centre of its object's bounds, before the scale
-  // where a look found the others
-  double limit_m;       // fdcg_pile.travel_m at which it looks again
-  uint32_t look;        // fdcg_pile.look of then
-  uint32_t near_count;  // more than kMostNear: all that there are
+  // result of the last broad-phase update
+  double limit_m;       // fdcg_pile.travel_m at which it is due again
+  uint32_t look;        // fdcg_pile.look at that time
+  uint32_t near_count;  // more than kMostNear: all members count as near
   uint32_t near[kMostNear];
   // in this substep
   uint32_t body;                                     // index among the bodies, or FDCG_NONE
-  uint32_t is_moving;                                // its pose has just changed, or something in the pile has come or gone
+  uint32_t is_moving;                                // its pose has just changed, or a member was added or removed
   uint32_t seen_look;                                // fdcg_pile.look of the last substep
   uint32_t is_awake;                                 // a body that the dampers move
   uint32_t has_touched;                              // a damper has changed its velocity
   World centre_m, velocity_m_per_s, spin_rad_per_s;  // of mass; in the world
-  World kick_n_m_s;                                  // what dampers gave to its angular momentum
+  World kick_n_m_s;                                  // angular impulse of the dampers
   Matrix inverse_inertia;                            // world
   double lightness_per_kg;
   double move_m,
@@ -72,7 +72,7 @@ struct fdcg_pile {
   uint64_t members_at, points_at, touches_at;
   uint32_t member_end, point_end;
   uint32_t free_touch;  // the first of a list
-  uint32_t look;        // changes when members come, go or change their size
+  uint32_t look;        // changes when members are added, removed or resized
   double travel_m;      // the largest move of any member's centre, added up over the substeps
   uint32_t has_ground;
   uint32_t scene_look;  // fdcg_scene.look of the last substep
@@ -92,11 +92,11 @@ struct fdcg_pile {
 
 namespace fdcg {
 
-// pile.cpp: the member lets go of what its points touch, and others let go of it; it keeps its points, or leaves the pile.
+// pile.cpp: removes all touches of the member's points and of other members with it; it keeps its points, or leaves the pile.
 void let_go(fdcg_pile& pile, uint32_t member);
 void leave_pile(fdcg_pile& pile, uint32_t member);
 
-// One substep: who meets whom, and what acts between them.
+// One substep: collision detection between members, and contact forces.
 struct Meeting {
   fdcg_scene& scene;
   fdcg_pile& pile;
@@ -106,8 +106,8 @@ struct Meeting {
   [[nodiscard]] Object& object(const PileMember& member) const { return scene.objects()[member.object.index]; }
 };
 
-// Points of a member that cannot have met an object in this step, told by where they are now: its box in the world's measure,
-// grown by as far as the two can have moved against each other.
+// Rejects points of a member that cannot have touched an object in this step, by their present position: outside of its box in
+// world units, enlarged by the largest relative motion of the two.
 struct Cull {
   World row[3], shift;  // from the points' frame to the box's centre and axes
   World half;
@@ -128,22 +128,21 @@ struct GroundCull {
 };
 GroundCull ground_cull_of(const Meeting& meeting, const PileMember& owner);
 
-// pile_near.cpp: which members could be touched by this member's points; a look at all where it must. Ascending, at most
-// PileMember::kMostNear; near_count is larger where the caller must ask every member.
+// pile_near.cpp: updates the neighbours, the members that this member's points could touch; tests all members only when needed.
+// Ascending, at most PileMember::kMostNear; if near_count is larger, the caller must test every member.
 void find_near(const Meeting& meeting, PileMember* member);
-// Whether the point's way in this step can have met the object; *from and *to are then the way in its frame.
+// Whether the point's way in this step can have touched the object; *from and *to are then the way in its frame.
 bool can_have_met(const Meeting& meeting, const Object& object, World from_world, World to_world, World* from, World* to);
 
-// pile_touch.cpp: on to where the point is now. False: it touches nothing any more, and need not be kept.
+// pile_touch.cpp: steps the touch to the point's present position. False: it has ended and can be dropped.
 struct PointWay {
   World from, to;  // of the step, in the world
 };
 bool step_touch(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch);
 
-// pile_damp.cpp: what the touch's damper gives in this step.
+// pile_damp.cpp: applies the touch's damper in this step.
 void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch);
-// Velocity that a unit impulse at `at` gives to that place of both against each other, along its own direction; for the x, y
-// and z directions added up: no direction has more. 1/kg.
+// The inverse effective mass of both at `at`, summed over the x, y and z directions: an upper bound for any direction. 1/kg.
 double looseness_at(const PileMember* a, const PileMember* b, World at);
 
 }  // namespace fdcg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is near whom in a pile: bounding spheres, looked at only when the distances last seen can have been used up.
+// Broad phase of a pile: bounding spheres, tested again only when motion can have used up the distances of the last test.
 #include "body/pile_memory.hpp"
 #include "scene/finger_tick.hpp"
 #include "scene/reach.hpp"
@@ -7,7 +7,7 @@
 namespace fdcg {
 namespace {
 
-// Nearer than this share of a member's own radius is near: a look in as many steps as it takes to use the rest up.
+// Members within this share of a member's radius are neighbours: larger values mean more neighbours and rarer updates.
 constexpr double kNearShare = 0.25;
 constexpr double kPileRounding = 64 * DBL_EPSILON;
 
@@ -41,7 +41,7 @@ void find_near(const Meeting& meeting, PileMember* member) {
     if (&other == member || other.is_used == 0 || other.is_enabled == 0) continue;
     const Object& object = meeting.object(other);
     const double gap = distance(object, own.now.centre) - radius - rounding;
-    // what both moved in this very step is part of the way that is swept
+    // the motion of both in this step is part of the swept way
     const double moved = norm(object.now.centre - object.last.centre) + norm(own.now.centre - own.last.centre);
     if (gap - moved > ahead) {
       nearest_far = smaller(nearest_far, gap);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a body touches: the corners farthest out, in directions spread over the sphere; then points along its sharp edges.
+// Contact points of a body: the extreme corners in directions spread over the sphere; then points along its sharp edges.
 #include "base/message.hpp"
 #include "body/pile_memory.hpp"
 
@@ -10,7 +10,7 @@ constexpr uint32_t kMostPoints = 256, kDirectionsPerPoint = 64;
 constexpr double kDrawnIn = 0x1p-10;
 constexpr double kSharpCosine = 0.9;  // the faces of a sharp edge turn by more than 26 degrees
 
-// The i-th direction, not of unit length: a low-discrepancy pair on the sides of a cube in turn, so that any first ones are
+// The i-th direction, not of unit length: a low-discrepancy sequence on the sides of a cube, so that any initial part of it is
 // spread.
 World direction(uint32_t i) {
   constexpr double kPlastic = 1.32471795724474602596;  // the golden ratio of pairs (Roberts 2018)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pile's tick. In each substep: the fingers; where everybody is; for every body, who is near; for its points, god-objects and
-// springs; the dampers, one after the other; then the bodies move.
+// A pile's tick. In each substep: the fingers; the poses of all members; for every body its neighbours; for its points,
+// god-objects and springs; the dampers, one after the other; then the bodies move.
 #include "base/message.hpp"
 #include "body/body_scene.hpp"
 #include "body/pile_memory.hpp"
@@ -37,7 +37,7 @@ void find_bodies(fdcg_pile& pile, const fdcg_scene_body* bodies, uint32_t body_c
   }
 }
 
-// What the dampers need to know of a body that moves.
+// The data of a moving body that the dampers use.
 void set_motion(const fdcg_body& body, PileMember* member) {
   const Matrix rotation = rotation_of(body.rotation_xyzw), own = inverse_of(tensor_of(body.config.inertia_kg_m2));
   for (int k = 0; k < 3; ++k)  // symmetrical: rows are columns
@@ -48,7 +48,7 @@ void set_motion(const fdcg_body& body, PileMember* member) {
   member->kick_n_m_s = {0, 0, 0};
 }
 
-// Where everybody is in this substep, and how fast.
+// The poses and velocities of all members in this substep.
 void begin(const Meeting& meeting) {
   fdcg_pile& pile = meeting.pile;
   if (pile.scene_look != meeting.scene.look) ++pile.look;
@@ -70,7 +70,7 @@ void begin(const Meeting& meeting) {
     member.move_m = has_moved ? norm(object.now.centre - object.last.centre) : 0;
     member.turn = has_moved ? turn_between(object.last, object.now) : 0;
     farthest_moved = larger(farthest_moved, member.move_m);
-    if (object.bounds.is_endless && member.turn > 0) ++pile.look;  // that moves it by any length
+    if (object.bounds.is_endless && member.turn > 0) ++pile.look;  // a rotation moves its points without bound
     member.is_awake = member.has_touched = 0;
     if (member.body == FDCG_NONE) continue;
     const fdcg_body& body = meeting.bodies[member.body].body;
@@ -82,7 +82,7 @@ void begin(const Meeting& meeting) {
   pile.travel_m = (pile.travel_m + farthest_moved) * (1 + 2 * DBL_EPSILON);
 }
 
-// Whether what is between the two can be otherwise than in the last substep.
+// Whether the contact of the two can have changed since the last substep.
 bool is_awake(const fdcg_pile& pile, const PileMember& member) {
   return member.is_moving != 0 || !pile.skips(FDCG_PILE_OPT_STILL);
 }
@@ -97,7 +97,7 @@ bool has_touch(const fdcg_pile& pile, const PilePoint& point, uint32_t on) {
   return false;
 }
 
-// Takes a touch from those not in use, if the point's way of this step meets what is there.
+// Starts a touch from the free list if the point's way in this step meets the object.
 void try_new_touch(const Meeting& meeting, PileMember* owner, PilePoint* point, const PointWay& way, uint32_t on) {
   fdcg_pile& pile = meeting.pile;
   const uint32_t index = pile.free_touch;
@@ -118,7 +118,7 @@ void try_new_touch(const Meeting& meeting, PileMember* owner, PilePoint* point, 
   ++owner->touch_count;
 }
 
-// Steps the point's touches where either side has moved, and drops those that are over.
+// Steps the point's touches where either side has moved, and drops those that have ended.
 void step_touches(const Meeting& meeting, PileMember* owner, PilePoint* point, const PointWay& way) {
   fdcg_pile& pile = meeting.pile;
   uint32_t* link = &point->touch;
@@ -190,7 +190,7 @@ bool is_near_ground(const Meeting& meeting, const PileMember& member) {
   return above <= member.radius_m * now.scale + 64 * DBL_EPSILON * (norm1(now.centre) + absolute(pile.ground_offset_m));
 }
 
-// A member without a body has no motion of its own that a touch could change: its points rest.
+// A member without a body is not moved by touches: its points are not stepped.
 bool has_points_to_step(const PileMember& member) {
   return member.is_used != 0 && member.is_enabled != 0 && member.body != FDCG_NONE && member.point_count > 0;
 }
@@ -203,7 +203,7 @@ void for_each_touch(fdcg_pile& pile, PileMember* member, Act act) {
   }
 }
 
-// Whether the member, or anybody near it or touched by it, is astir.
+// Whether the member, a neighbour or a member that it touches is awake.
 bool has_to_step(fdcg_pile& pile, PileMember* member, bool is_near_ground) {
   if (member->near_count == 0 && !is_near_ground && member->touch_count == 0) return false;
   if (is_awake(pile, *member) || member->near_count > PileMember::kMostNear) return true;
@@ -242,7 +242,7 @@ void meet(const Meeting& meeting) {
   }
 }
 
-// What the dampers gave becomes the body's.
+// Applies the dampers' impulses to the bodies.
 void take_motion(const PileMember& member, fdcg_body* body) {
   if (member.has_touched == 0) return;
   put(member.velocity_m_per_s, body->velocity_m_per_s);

@@ -8,11 +8,11 @@
 namespace fdcg {
 namespace {
 
-// Times the step squared and how easily the place moves, over all three directions: what stability can bear is 4 for all
-// springs that pull in one way, so 32 of them may.
+// Limit for stiffness times the squared step times the inverse effective mass, summed over three directions. Stability allows 4
+// for all springs along one direction together, so 32 of them may act.
 constexpr double kMostStiffness = 0.125;
 
-// Where the god-object and the spring are, and along what the load is measured.
+// The god-object, the spring, and the direction of the normal load.
 void place(PileTouch* touch, World god_object, World point, World normal, bool has_normal) {
   const World spring = god_object - point;
   const double length = norm(spring);
@@ -21,10 +21,10 @@ void place(PileTouch* touch, World god_object, World point, World normal, bool h
   touch->normal = has_normal ? normal : (length > 0 ? spring * (1 / length) : World{0, 0, 0});
 }
 
-// What acts between the two.
+// The contact law between the two.
 struct PairMaterial {
-  fdcg_material material;  // mu_static and stiffness are asked
-  bool follows_faces;      // it may be another in each step
+  fdcg_material material;  // only mu_static and stiffness are used
+  bool follows_faces;      // it may change from step to step
 };
 
 // The spring between god-object and point.
@@ -53,7 +53,7 @@ struct GroundStep {
   double depth;
 };
 
-// Where friction lets the god-object be.
+// The god-object's position under friction.
 World slide(Friction<double>& friction, const GroundStep& step) {
   const World off = step.god_object - step.surface_point, gap = off - step.normal * dot(off, step.normal);
   const double gap2 = dot(gap, gap);
@@ -77,9 +77,9 @@ World slide_by_curve(const Meeting& meeting, const fdcg_material& own, Friction<
   return to;
 }
 
-// What acts where faces have materials, by the step's own rules: on an edge each face's coefficient by the load that it bears
-// and the softer one's stiffness; at a corner what was before or, where it begins there, what holds on a face beside it.
-// `across`: from the god-object to the HIP, object's frame.
+// The contact law where faces have materials, by the rules of the step: on an edge the faces' coefficients, weighted by load,
+// and the smaller stiffness; at a corner the previous one or, if the contact begins there, that of an adjacent face. `across`:
+// from the god-object to the HIP, object's frame.
 fdcg_material pair_by_faces(const Object& on, const fdcg_params& params, const fdcg_result& result, World across,
                             const PileTouch& touch, bool was_pressing) {
   FrictionTerms terms = terms_of(params, on.graph, touch.contact);
@@ -104,7 +104,7 @@ fdcg_material pair_by_faces(const Object& on, const fdcg_params& params, const f
 }
 #endif
 
-// Of the rules what is left on one plane that has no edge: contact-model FREE-3, FACE-1 to FACE-4.
+// The contact rules on one infinite plane: contact-model FREE-3, FACE-1 to FACE-4.
 bool step_on_ground(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
   const fdcg_pile& pile = meeting.pile;
   fdcg_contact& contact = touch->contact;
@@ -118,7 +118,7 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
   if (!was_pressing) {
     contact = {};
     const double before = pile.ground_offset_m - dot(n, way.from);
-    // the point of entry; what began below it begins straight above
+    // the point of entry; a contact that begins below the plane starts at its projection
     god_object = before <= 0 ? way.from + (way.to - way.from) * (before / (before - depth)) : way.to + n * depth;
   }
   const GroundStep step = {n, god_object, way.to + n * depth, depth};
@@ -138,16 +138,16 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
   return true;
 }
 
-// Whether the step mixes the materials of faces and point itself.
+// Whether the step combines the materials of faces and point.
 bool mixes_itself(const fdcg_params& params, const Object& on) {
   return (params.friction_flags & FDCG_FRICTION_MATERIALS) != 0 && on.graph != nullptr;
 }
 
-// What the step is told. Where faces have materials it mixes them itself, as with a finger of the point's material.
+// The parameters of the step. Where faces have materials, it combines them with the point's as with a finger's material.
 fdcg_params pair_params(const Meeting& meeting, const Object& on, const fdcg_material& own) {
   fdcg_params params = on.params;
   const fdcg_material whole = material_of(on.params), pair = fdcg_combine_materials(&whole, &own);
-  params.damping_n_s_per_m = 0;  // the force is this file's affair
+  params.damping_n_s_per_m = 0;  // damping is applied by pile_damp.cpp
   params.tick_s = meeting.step_s;
   params.friction_flags &= ~uint32_t{FDCG_FRICTION_FINGER};
   measure_in_object(on.now.scale, &params);

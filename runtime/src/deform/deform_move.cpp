@@ -3,8 +3,8 @@
 // computed here.
 #include "base/config.hpp"
 #include "base/message.hpp"
-#include "base/near_zero.hpp"
 #include "deform/deform_upkeep.hpp"
+#include "step/near_zero.hpp"
 
 namespace fdcg {
 namespace {

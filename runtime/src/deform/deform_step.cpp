@@ -239,7 +239,7 @@ inline void shorten(const fdcg_header& header, const fdcg_deform_contact& contac
   }
 }
 
-// A step to a HIP that is nearer than the hand's, which the contact is told of after all.
+// A step to a HIP nearer than the hand's; the hand's HIP is stored in the contact afterwards.
 template <class Real>
 [[gnu::noinline, gnu::cold]] void step_part_way(const fdcg_deform& deform, const fdcg_params& params,
                                                 fdcg_deform_contact* contact, const double hip_object_m[3],

@@ -64,8 +64,8 @@ typename Upkeep<Real>::Lender Upkeep<Real>::plane_lender(uint32_t n) const {
   return {FDCG_NONE, 0};
 }
 
-// It stays stale, since it depends on its neighbour's corners too. With nobody's plane it takes one through its line, which has
-// no exact side.
+// It stays stale, since it depends on its neighbour's corners too. If no neighbour has a plane it gets one through its line,
+// which has no exact side.
 template <class Real>
 void Upkeep<Real>::compute_sliver(uint32_t n) const {
   Node& here = node(n);

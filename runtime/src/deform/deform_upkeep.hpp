@@ -5,9 +5,9 @@
 //   | hierarchy | stale[leaves] | loose[records] | leaf_first[corners + 1] | leaves of corners
 //
 // A corner that moves leaves marks (deform.cpp): its triangles are stale, the boxes around them have grown and are loose. The
-// geometry (deformable_geometry.hpp) asks here before it hands out a number. Voronoi planes and edges are derived anew whenever
-// they are asked for, and so are types and corner normals: there is nothing of them to be old. The corners' records have the
-// places of when the whole was last brought up to date: they are for those who look in from outside.
+// geometry (deformable_geometry.hpp) updates stale data before it returns a number. Voronoi planes, edges, types and corner
+// normals are derived on each use and never stored, so they cannot be stale. The corners' records have the positions of the
+// last full update; they are for readers of the graph through the API.
 #pragma once
 
 #include "deform/deform_watch.hpp"
@@ -48,8 +48,8 @@ namespace fdcg {
 
 // Where a corner is, when it last moved, and where it may go without leaving new marks: all that a move looks at, in a line of
 // the cache. While `is_marked`, its triangles are stale, its leaves' boxes are loose, and all of them hold all that lies
-// between `low` and `high`. What takes a mark off, or makes a box smaller, resets it: so a corner that nobody looks at is
-// marked once, however often it moves.
+// between `low` and `high`. Whatever removes a mark, or makes a box smaller, resets it: so a corner that no step uses
+// is marked once, however often it moves.
 template <class Real>
 struct alignas(64) Place {
   Real point[3];
@@ -170,7 +170,7 @@ class Upkeep {
   static constexpr uint16_t kSliver = 0x8000;  // in a node's flags
   static constexpr int kMostHops = 16;         // from sliver to sliver
 
-  // Whose plane a sliver takes; node FDCG_NONE: nobody's. `side`: by which it was entered.
+  // The node whose plane a sliver uses; FDCG_NONE: none. `side`: the side by which the search entered it.
   struct Lender {
     uint32_t node, side;
   };

@@ -12,11 +12,11 @@ namespace fdcg {
 inline constexpr uint32_t kWatchedBalls = 16;
 
 struct WatchedBall {
-  double centre[3], radius2;  // as the contact has them, whose ball it is; radius2 0: nobody's
+  double centre[3], radius2;  // as in the contact that owns the ball; radius2 0: unused
   double reach2;              // tree units, squared: the radius, and what rounding may do to a way inside the ball
 };
 
-// All of a mesh. Contacts may be copied, and are not known to it: what tells a ball is its numbers.
+// All of a mesh. The mesh has no references to contacts, which may be copied: a ball is identified by its numbers.
 struct WatchedBalls {
   WatchedBall ball[kWatchedBalls];
   uint32_t used, next;

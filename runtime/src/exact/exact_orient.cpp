@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter decides where rounding cannot matter. Where it can, points that are one, and four that share a coordinate, lie in
-// a plane; of others the determinant is worked out once more in pairs of doubles, which tells all but zero from zero and points
-// within 2^-98 of their size of a plane. For those, the twelve coordinates are taken as what they are, whole multiples of one
-// small unit, and the determinant is worked out in whole numbers: of the processor's own size where the coordinates are near
-// enough to one another, else of as many limbs as it takes.
+// Stages of the orientation test. A floating-point filter decides where rounding cannot matter. Otherwise equal points, and
+// four points with a common coordinate, are coplanar. For others the determinant is evaluated in double-double arithmetic,
+// which decides unless the points are within 2^-98 of their size of a plane. For those, the twelve coordinates are integer
+// multiples of one small unit, and the determinant is evaluated in integers: of machine size where the coordinates are of
+// similar magnitude, else of as many limbs as needed.
 #include "exact/exact_orient.hpp"
 
 #include <string.h>
 
 #include "base/mutation.hpp"
 #include "base/work.hpp"
+#include "shared/error_free.hpp"
 
 namespace fdcg {
 namespace {
 
-// What products that fall below the normal numbers may lose, times a coordinate of 1e70: under 1e-252.
+// Bound on the underflow error of products, times a coordinate of 1e70: under 1e-252.
 constexpr double kUnderflow = 1e-250;
 
 #ifdef __SIZEOF_INT128__
@@ -26,49 +27,30 @@ using TwoLimbs = uint64_t;
 #endif
 constexpr int kLimbBits = 8 * sizeof(Limb);
 
-// From the largest coordinate that a step lets pass (vec.hpp, kFar: 2^233) down to the last bit of the smallest double, with
+// From the largest coordinate that a step accepts (vec.hpp, kFar: 2^233) down to the last bit of the smallest double, with
 // two bits for the difference of two.
 constexpr int kLargestBits = 234 + 1074 + 2;
 constexpr int kLimbs = kLargestBits / kLimbBits + 1;
 
-// high + low, |low| at most half a unit in the last place of high. Products and sums of such pairs err by 2^-101 of the terms'
-// sizes at most, where no part falls below the normal numbers.
-struct Pair {
-  double high, low;
-};
-
-inline Pair pair_sum(double a, double b) {
-  const double sum = a + b, from_b = sum - a, from_a = sum - from_b;
-  return {sum, (a - from_a) + (b - from_b)};
-}
-
-// The same on every processor, with a fused multiplication or without.
-inline Pair pair_product(double a, double b) {
-  constexpr double kSplit = 0x1p27 + 1;
-  const double a_wide = kSplit * a, b_wide = kSplit * b;
-  const double a_high = a_wide - (a_wide - a), b_high = b_wide - (b_wide - b);
-  const double a_low = a - a_high, b_low = b - b_high, product = a * b;
-  return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
-}
-
-inline Pair joined(double high, double low) {
+// Products and sums of Splits err by 2^-101 of the terms' sizes at most, where no part falls below the normal numbers.
+inline Split joined(double high, double low) {
   const double sum = high + low;
   return {sum, low - (sum - high)};
 }
 
-inline Pair operator*(Pair a, Pair b) {
-  const Pair product = pair_product(a.high, b.high);
-  return joined(product.high, product.low + (a.high * b.low + a.low * b.high));
+inline Split operator*(Split a, Split b) {
+  const Split product = exact_product(a.value, b.value);
+  return joined(product.value, product.rest + (a.value * b.rest + a.rest * b.value));
 }
-inline Pair operator+(Pair a, Pair b) {
-  const Pair sum = pair_sum(a.high, b.high);
-  return joined(sum.high, sum.low + (a.low + b.low));
+inline Split operator+(Split a, Split b) {
+  const Split sum = exact_sum(a.value, b.value);
+  return joined(sum.value, sum.rest + (a.rest + b.rest));
 }
-inline Pair operator-(Pair a, Pair b) {
-  return a + Pair{-b.high, -b.low};
+inline Split operator-(Split a, Split b) {
+  return a + Split{-b.value, -b.rest};
 }
 
-// A whole number: sign and size, lowest limb first, no zero limb on top.
+// An integer: sign and magnitude, lowest limb first, no leading zero limb.
 template <int kCapacity>
 struct Whole {
   Limb limb[kCapacity];
@@ -99,7 +81,7 @@ Parts parts_of(double x) {
   return {mantissa >> zeros, (biased != 0 ? biased : 1) - 1075 + zeros, bits >> 63 != 0};
 }
 
-// parts / 2^unit, which is whole.
+// parts / 2^unit, which is an integer.
 Whole<kLimbs> whole_of(const Parts& parts, int unit) {
   Whole<kLimbs> w;
   w.is_negative = parts.is_negative;
@@ -269,29 +251,30 @@ int sign_in_limbs(const Multiples& m) {
   return sum.is_negative ? -1 : 1;
 }
 
-// The determinant but for 2^-98 of the size of its products.
+// The determinant, with an error of at most 2^-98 of the size of its products.
 [[gnu::noinline]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
-  Pair edge[3][3];
+  Split edge[3][3];
   for (int p = 0; p < 3; ++p) {
     const Vec3<double>&to = point[p + 1], &from = point[0];
-    edge[p][0] = pair_sum(to.x, -from.x);
-    edge[p][1] = pair_sum(to.y, -from.y);
-    edge[p][2] = pair_sum(to.z, -from.z);
+    edge[p][0] = exact_sum(to.x, -from.x);
+    edge[p][1] = exact_sum(to.y, -from.y);
+    edge[p][2] = exact_sum(to.z, -from.z);
   }
   const auto &u = edge[0], &v = edge[1], &w = edge[2];
-  Pair sum = {0, 0};
+  Split sum = {0, 0};
   for (int k = 0; k < 3; ++k) {
     const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
     sum = sum + (u[i] * v[j] - u[j] * v[i]) * w[k];
   }
-  return sum.high;
+  return sum.value;
 }
 
 inline bool are_same(double a, double b, double c, double d) {
   return a == b && a == c && a == d;
 }
 
-// What is in one plane at a glance: a way that begins in a corner meets all its edges there, and axes have planes.
+// Trivially coplanar points: a segment that begins in a corner touches all its edges there, and meshes have axis-aligned
+// planes.
 inline bool is_plainly_flat(const Vec3<double> (&point)[4]) {
   const auto &a = point[0], &b = point[1], &c = point[2], &d = point[3];
   for (int i = 1; i < 4; ++i) {
@@ -327,7 +310,7 @@ int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<doubl
   const double yz = u.y * v.z, zy = u.z * v.y, zx = u.z * v.x, xz = u.x * v.z, xy = u.x * v.y, yx = u.y * v.x;
   const double det = (yz - zy) * w.x + (zx - xz) * w.y + (xy - yx) * w.z;
   const double size = (fabs(yz) + fabs(zy)) * fabs(w.x) + (fabs(zx) + fabs(xz)) * fabs(w.y) + (fabs(xy) + fabs(yx)) * fabs(w.z);
-  // Three differences, two products and three sums, each off by half an epsilon at most: under 7/2 epsilon of the size.
+  // Three differences, two products and three sums, each with an error of half an epsilon: under 7/2 epsilon of the size.
   constexpr double kErrorBound = 4 * DBL_EPSILON;
   const double bound = kErrorBound * size + kUnderflow;
   if (det > bound) return 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One finger's tick in a scene: what scene_look.cpp finds out for it, and scene_step.cpp acts on.
+// One finger's tick in a scene: the result of the broad phase (scene_look.cpp), used by scene_step.cpp.
 #pragma once
 
 #include "scene/reach.hpp"
@@ -7,7 +7,7 @@
 
 namespace fdcg {
 
-// What is held back of a distance in the world: more than the rounding of computing with it.
+// Safety margin subtracted from a distance in the world: more than its rounding error.
 inline constexpr double kHoldBack = 1 - 0x1p-30;
 
 // One finger's tick.
@@ -26,27 +26,28 @@ struct LocalWay {
   World from, to;
 };
 
-// 16 bits of the finger's own. Fingers that all come in at once would go on to look at the objects in one and the same tick; so
-// each looks somewhat earlier than it must, or later than it might, by these.
+// 16 pseudo-random bits of the finger. Fingers added at once would update their broad phase in the same ticks; these bits shift
+// each update slightly within its allowed range.
 inline uint32_t own_bits(const fdcg_scene& scene, const Finger& finger) {
   return (static_cast<uint32_t>(&finger - scene.fingers()) * 0x9E3779B9u) >> 16;
 }
 
-// The friction curve's speeds and depths, which are the world's, in the metres of an object of this scale.
+// The friction curve's speeds and depths, converted from the world to the frame of an object of this scale.
 inline void measure_in_object(double scale, fdcg_params* params) {
   params->stribeck_m_per_s /= scale;
   params->viscous_s_per_m *= scale;
   params->unique_solution_depth_m /= scale;
 }
 
-// The object's parameters as this finger meets them: with its material, and speeds and depths in the object's metres.
+// The object's parameters for this finger: with its material, and with speeds and depths in the object's frame.
 fdcg_params params_met(const Object& object, const Finger& finger);
 
-// Whether the finger can have met the object in this tick; *way is set where the sphere says so.
+// Whether the finger can have touched the object in this tick; *way is set if the bounding sphere is reached.
 bool can_have_met(const Tick& tick, const Object& object, LocalWay* way);
 
-// Looks at every object: the near ones get the finger's free slots, and the finger learns how far it is from the others. Cost:
-// 2 to 3 ns an object, some 20 more for one near the way. Slots of objects removed or disabled are empty.
+// Broad-phase update over all objects: the near ones get the finger's free slots, and the least distance to the others is
+// stored in the finger. Cost: 2 to 3 ns per object, some 20 more for one near the way. Slots of removed or disabled objects are
+// empty.
 void look(const Tick& tick);
 
 }  // namespace fdcg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An object's pose made ready for use, and the ways between its frame and the world.
+// An object's pose prepared for use, and the transforms between its frame and the world.
 #pragma once
 
 #include "fdcg/scene.h"
@@ -12,12 +12,12 @@ inline constexpr double kUnitTolerance = 1e-3;
 
 using World = Vec3<double>;
 
-// What a graph's bounds are in its object's frame, in metres; grown by more than what rounding, a float graph's included, can
-// move a point near it.
+// A graph's bounds in its object's frame, in metres; enlarged by more than rounding (also that of a float graph) can move a
+// point near it.
 struct Bounds {
   World centre, half;
   double radius;            // of the sphere around centre
-  bool is_endless = false;  // all that is below z = 0: the rest says nothing
+  bool is_endless = false;  // the half-space z < 0: the other fields are not used
 
   explicit Bounds(const fdcg_header& header) {
     constexpr double kGrowth = 0x1p-16;
@@ -48,7 +48,7 @@ struct Bounds {
     bounds.is_endless = true;
     return bounds;
   }
-  // Stands for the radius of what has none: farther than any HIP, and its square a number.
+  // Used as the radius of an endless object: farther than any HIP, with a finite square.
   static constexpr double kEndless_m = 1e110;
   Bounds() = default;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Can a finger have met an object in this tick? Two tests that never say no to one that it met: the bounding sphere, seen from
-// its moving centre, and the bounding box, seen from the object's frame.
+// Whether a finger can have touched an object in this tick: two conservative tests (no false negatives), with the bounding
+// sphere relative to its moving centre, and with the bounding box in the object's frame.
 #pragma once
 
 #include "scene/pose.hpp"

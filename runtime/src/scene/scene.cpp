@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's memory, and what comes into it and goes. scene_step.cpp is its tick.
+// A scene's memory, and what comes into it and goes.
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "graph/material_section.hpp"
@@ -117,7 +117,7 @@ Object* find(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {
   return find(scene->objects(), scene->object_end, id, "object: not in the scene, or removed", error);
 }
 
-// Takes the latest pose as it is, without a way there, and makes every finger look anew.
+// Sets the latest pose without a motion to it, and invalidates the broad phase of every finger.
 void put_in_place(fdcg_scene* scene, Object* object) {
   settle_object(*scene, static_cast<uint32_t>(object - scene->objects()), false);
   ++scene->look;
@@ -208,7 +208,7 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
   if (status != FDCG_OK) return status;
   layout.bytes = lay_out(layout.config, &layout);
   if (const fdcg_status room = check_room(memory, bytes, layout.bytes, error); room != FDCG_OK) return room;
-  // Slots, contacts, touches and what is soft are set when a finger comes into use.
+  // Slots, contacts, touches and soft-finger data are initialised when a finger is added.
   memset(memory, 0, layout.slots_at);
   memcpy(memory, &layout, sizeof layout);
   *scene = static_cast<fdcg_scene*>(memory);

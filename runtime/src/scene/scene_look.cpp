@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which objects a finger can have met in a tick, and which it could meet soon.
+// Broad phase: the objects that a finger can have touched in a tick, and those that it could touch soon.
 #include "scene/finger_tick.hpp"
 
 namespace fdcg {
@@ -26,16 +26,16 @@ bool can_have_met(const Tick& tick, const Object& object, LocalWay* way) {
 
 namespace {
 
-// An object is near when a finger could reach it within this many ticks at the speeds of this tick (a look in so many), and is
-// no further from its bounding sphere than the sphere's radius (where a finger jumps, not everything is near).
+// An object is near when a finger could reach it within this many ticks at the speeds of this tick (the interval of broad-phase
+// updates), and is no further from its bounding sphere than the sphere's radius (so that a jump does not make everything near).
 constexpr double kTicksAhead = 64;
-// What the rounding of distances in the world can amount to, as a share of the coordinates.
+// Bound on the rounding error of distances in the world, as a share of the coordinates.
 constexpr double kPlaceRounding = 64 * RealLimits<double>::kEpsilon;
 
 struct Approach {
   bool is_in_reach;
-  double depth;  // of the HIP within the bounding sphere, negative outside: the least is felt last where slots are short
-  double gap;    // that the HIP, or the object, must yet move before the object can be met; may be negative
+  double depth;  // of the HIP within the bounding sphere, negative outside: the deepest get slots first
+  double gap;    // motion of HIP and object before they can touch; may be negative
 };
 
 Approach approach(const Tick& tick, const Object& object) {
@@ -49,8 +49,8 @@ Approach approach(const Tick& tick, const Object& object) {
   const double outside = norm(tick.hip - now.centre) - now.radius;
   LocalWay way;
   Approach result = {can_have_met(tick, object, &way), -outside, outside};
-  // Where the box alone keeps them apart, the HIP is within two radii of the centre, and within three until the gap is used up:
-  // largest_move counts on it.
+  // If only the box separates them, the HIP is within two radii of the centre, and within three until the gap is used up: a
+  // precondition of largest_move.
   if (!result.is_in_reach && outside < now.radius) {
     const World local = now.to_object(tick.hip, tick.scene.skips(FDCG_OPT_ROTATION)) - object.bounds.centre;
     result.gap = larger(outside, smaller(box_distance(local, object.bounds.half) * now.scale, now.radius));
@@ -58,7 +58,7 @@ Approach approach(const Tick& tick, const Object& object) {
   return result;
 }
 
-// The nearest objects that a look has found, best first: those in reach by depth, then the others by gap.
+// The nearest objects of a broad-phase update, best first: those in reach by depth, then the others by gap.
 struct Candidates {
   struct Candidate {
     uint32_t object;
@@ -168,7 +168,7 @@ double find_candidates(const Tick& tick, double ahead, double rounding, Candidat
   return least;
 }
 
-// Gives the finger's free slots to what was found; one that the object has already stays as it is.
+// Assigns the finger's free slots to the objects found; existing slots are kept.
 void assign_slots(const Tick& tick, const Candidates& found) {
   const uint32_t slot_count = tick.scene.config.touches_per_finger;
   bool has_place[Candidates::kMost] = {};

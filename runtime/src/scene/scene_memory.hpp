@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene's memory holds:
+// Layout of a scene's memory:
 //
 //   fdcg_scene | Object[objects] | the scan's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
 //   | fdcg_contact[fingers][touches] | fdcg_touch[fingers][touches] | SoftFinger[fingers] | SoftTouch[fingers][touches]
@@ -18,11 +18,11 @@ namespace fdcg {
 
 // Less than any reach, and finite, so that sums with it are.
 inline constexpr double kNoReach = -1e300;
-// The scan's arrays are looked at in runs of this many, a length that compilers make vectors of without being asked twice.
+// The scan's arrays are processed in runs of this length, which compilers vectorise.
 inline constexpr uint32_t kRun = 16;
 
-// What is no plain graph steps by an address, and so does its normal: who adds no surface does not link surfaces, and likewise
-// deformable meshes.
+// Objects other than plain graphs step, and give their normal, through function pointers, so that programs without surfaces or
+// deformable meshes do not link their code.
 struct Object;
 using ShapeStep = void(const Object&, const fdcg_params*, fdcg_contact*, const double hip_object_m[3], fdcg_result*);
 using ShapeNormal = void(const Object&, const fdcg_result*, double normal[3]);
@@ -44,21 +44,21 @@ struct Object {
   uint32_t is_changing;  // not 0: listed in `changing`. 2: its pose was set since the last advance; 1: before that one
 };
 
-// One of a finger's places for an object: one that it touches, or one near by.
-// Apart from the contacts, so that a finger's slots lie together.
+// A slot of a finger for an object that it touches or that is near. Separate from the contacts, so that a finger's slots are
+// contiguous.
 struct Slot {
   uint32_t object;   // FDCG_NONE: empty
-  uint32_t is_held;  // touched, or a sweep carried over: the contact is more than the last HIP, and must be kept
+  uint32_t is_held;  // touched, or a sweep carried over: the contact has state that must be kept
   uint32_t step;     // of the finger, when the contact was last stepped
 };
 
 // The first 112 bytes are all that a step reads of a finger out of reach.
 struct Finger {
-  World hip;      // asked for
+  World hip;      // requested position
   World last;     // of the last step
-  World anchor;   // where it last looked at all objects
-  double limit;   // what then lay between it and the nearest object without a slot, plus fdcg_scene.travel of then
-  uint32_t look;  // fdcg_scene.look of then; another one now: the limit holds no more
+  World anchor;   // its position at the last broad-phase update
+  double limit;   // distance to the nearest object without a slot at that time, plus fdcg_scene.travel at that time
+  uint32_t look;  // fdcg_scene.look at that time; if it has changed since, the limit is invalid
   uint32_t tick;  // of the last step
   uint32_t busy;  // slots in use
   uint32_t is_started;
@@ -83,19 +83,19 @@ struct fdcg_scene {
   uint32_t first_free_object, first_free_finger;                                             // no index below is free
   uint32_t changing_count;
   uint32_t tick;
-  uint32_t look;  // changes when objects come, go or change their size: then every finger looks anew
+  uint32_t look;  // changes when objects are added, removed or resized: invalidates the broad phase of every finger
   uint32_t contact_bytes;
-  fdcg::SoftStep* step_soft;  // null: no finger ever was soft
+  fdcg::SoftStep* step_soft;  // null: no finger was ever soft
   uint64_t soft_fingers_at, soft_touches_at;
-  fdcg::DeformStart* start_on_deforms;  // null: no deformable mesh ever was in it
+  fdcg::DeformStart* start_on_deforms;  // null: no deformable mesh was ever added
   double tick_travel;                   // the largest move of any object in this tick
   double travel;                        // the sum of those, rounded up
   double farthest;                      // the largest |x| + |y| + |z| of any object's place: scales rounding
 
   fdcg::Object* objects() { return fdcg::part_at<fdcg::Object>(this, objects_at); }
   const fdcg::Object* objects() const { return fdcg::part_at<fdcg::Object>(this, objects_at); }
-  // Centre x, y, z and reach of every object, array after array: what a look reads. The reach is the bounding sphere's radius
-  // and its move in this tick; kNoReach where there is nothing to meet.
+  // Centre x, y, z and reach of every object, array after array: the input of a broad-phase update. The reach is the bounding
+  // sphere's radius plus its motion in this tick; kNoReach for objects that cannot be touched.
   double* scan(uint32_t array) { return fdcg::part_at<double>(this, scan_at) + array * scan_length(); }
   const double* scan(uint32_t array) const { return fdcg::part_at<double>(this, scan_at) + array * scan_length(); }
   uint64_t scan_length() const { return (uint64_t{config.object_capacity} + fdcg::kRun - 1) / fdcg::kRun * fdcg::kRun; }
@@ -116,7 +116,7 @@ struct fdcg_scene {
     return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
   }
   bool skips(uint32_t what) const { return (config.disabled_optimizations & what) == 0; }
-  // Where config.has_soft_fingers says so.
+  // Present if config.has_soft_fingers.
   fdcg::SoftFinger* soft_fingers() { return fdcg::part_at<fdcg::SoftFinger>(this, soft_fingers_at); }
   fdcg::SoftTouch* soft_touches(uint32_t finger) {
     return fdcg::part_at<fdcg::SoftTouch>(this, soft_touches_at) + finger * uint64_t{config.touches_per_finger};
@@ -128,11 +128,11 @@ struct fdcg_scene {
 
 namespace fdcg {
 
-// scene_step.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a way,
-// the latest too.
+// scene_advance.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a
+// way, the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 
-// scene_step.cpp: no finger has a slot for the object any more. One that comes before the next step may be given its index.
+// scene_advance.cpp: no finger has a slot for the object any more. One that comes before the next step may be given its index.
 void let_go_of(fdcg_scene& scene, uint32_t object);
 
 // Steps an object's contact to a place in its frame.
@@ -142,7 +142,7 @@ inline void step_object(const Object& object, const fdcg_params* params, fdcg_co
   fdcg_step(object.graph, params, contact, local, result);
 }
 
-// Of an object where a step has just touched it; object's frame, unit. Zero where it has none: on a graph's edges and corners.
+// The normal of an object at the contact of the step just done; object's frame, unit. Zero on a graph's edges and corners.
 inline World object_normal(const Object& object, const fdcg_result& result) {
   if (object.shape_normal != nullptr) {
     double normal[3];
@@ -167,7 +167,7 @@ inline const SoftTouch* soft_touch(const fdcg_scene& scene, uint32_t finger, uin
   return touch->is_on != 0 && held.is_held != 0 && held.object == touch->object.index ? touch : nullptr;
 }
 
-// A HIP further away is no place: the squares of distances in the step stay finite below it.
+// Largest accepted HIP coordinate: below it the squares of distances in the step stay finite.
 inline constexpr double kFarthestPlace_m = 1e100;
 inline bool is_place(World x) {
   return norm1(x) <= kFarthestPlace_m;

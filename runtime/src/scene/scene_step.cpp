@@ -1,52 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's tick: take in poses, and for each finger find out which objects it can have met, and step those contacts.
+// A scene's tick: take in poses (scene_advance.cpp), and for each finger find out which objects it can have met, and step those
+// contacts.
 //
-//   out of reach     the finger's own way since its last look and the objects' largest since then have not used up the distance
-//                    that it saw: nothing to do
-//   look             the distance to every object; the near ones get the finger's free slots
-//   near             sphere and box say that the tick's way may have met it: fdcg_step or its like, in the object's frame
+//   out of reach     the motion of the finger since its last broad-phase update, plus the largest motion of an object, is less
+//                    than the distance found then: nothing to do
+//   look             broad-phase update: the distance to every object; the near ones get the finger's free slots
+//   near             the tick's way may have touched its sphere and box: fdcg_step or its like, in the object's frame
 //   touched          fdcg_step
 //
-// Which contacts are stepped depends on the places of this tick and the last alone, never on when the finger last looked: so
-// the skips leave every force as it is. A free contact is nothing but the HIP's last place in the object's frame (contact-model
-// FREE-1), so it can be made anew whenever it is wanted.
+// Which contacts are stepped depends only on the positions of this tick and the last, never on the time of the last broad-phase
+// update, so the optimizations do not change any force. The state of a free contact is only the HIP's last position in the
+// object's frame (contact-model FREE-1), so it can be created again at any time.
 #include "scene/finger_tick.hpp"
 
 namespace fdcg {
-
 namespace {
 
-// After as many steps in which it reached none of the objects near by, the finger looks whether they still are.
+// After as many steps in which it reached none of its near objects, the finger updates its broad phase.
 constexpr uint32_t kIdleSteps = 64;
-
-// The objects whose pose was set; and, once more, those that have come to rest.
-void settle_changing(fdcg_scene& scene) {
-  uint32_t* const changing = scene.changing();
-  uint32_t still_changing = 0;
-  for (uint32_t i = 0; i < scene.changing_count; ++i) {
-    Object& object = scene.objects()[changing[i]];
-    settle_object(scene, changing[i], true);
-    if (--object.is_changing != 0) changing[still_changing++] = changing[i];
-  }
-  scene.changing_count = still_changing;
-}
-
-// No sphere holds it, and a turn moves it by any length: fingers then look anew.
-void settle_endless(fdcg_scene& scene, uint32_t index) {
-  const Object& object = scene.objects()[index];
-  const Pose &now = object.now, &last = object.last;
-  const World moved = now.translation - last.translation;
-  scene.tick_travel = larger(scene.tick_travel, norm(moved));
-  for (int k = 0; k < 3; ++k) {
-    if (norm1(now.row[k] - last.row[k]) == 0) continue;
-    ++scene.look;
-    break;
-  }
-  for (uint32_t array = 0; array < 3; ++array)
-    scene.scan(array)[index] = 0;
-  scene.scan(3)[index] = object.is_used != 0 && object.is_enabled != 0 ? Bounds::kEndless_m : kNoReach;
-  scene.farthest = larger(scene.farthest, norm1(now.translation));
-}
 
 }  // namespace
 
@@ -67,36 +38,9 @@ fdcg_params params_met(const Object& object, const Finger& finger) {
   return params;
 }
 
-void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
-  Object& object = scene.objects()[index];
-  const Pose latest(object.asked, object.bounds);
-  if (latest.scale != object.now.scale) ++scene.look;
-  object.last = has_way ? object.now : latest;
-  object.now = latest;
-  if (object.bounds.is_endless) return settle_endless(scene, index);
-  scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
-  const double moved = norm(latest.centre - object.last.centre);
-  const double in_scan[4] = {
-      latest.centre.x, latest.centre.y, latest.centre.z,
-      object.is_used != 0 && object.is_enabled != 0 ? larger(latest.radius, object.last.radius) + moved : kNoReach};
-  for (uint32_t array = 0; array < 4; ++array)
-    scene.scan(array)[index] = in_scan[array];
-  scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
-}
-
-void let_go_of(fdcg_scene& scene, uint32_t object) {
-  for (uint32_t f = 0; f < scene.finger_end; ++f) {
-    const uint32_t slot_count = scene.fingers()[f].is_used != 0 ? scene.config.touches_per_finger : 0;
-    for (uint32_t s = 0; s < slot_count; ++s) {
-      Slot& slot = scene.slots(f)[s];
-      if (slot.object == object) slot = {FDCG_NONE, 0, slot.step};
-    }
-  }
-}
-
 namespace {
 
-// Whether nothing without a slot can have been met since the last look.
+// Whether no object without a slot can have been touched since the last broad-phase update.
 inline bool is_out_of_reach(const fdcg_scene& scene, const Finger& finger, World hip) {
   const double left = finger.limit - scene.travel - 4 * RealLimits<double>::kEpsilon * scene.travel;
   const World way = hip - finger.anchor;
@@ -116,9 +60,9 @@ void step_contact(const Object& object, const Finger& finger, fdcg_contact* cont
   step_object(object, params, contact, at, result);
 }
 
-// Whether the contact with an object near by is to be made anew at the beginning of the tick's way. One with a deformable mesh
-// also knows of the mesh's motion since its last step: it stays as long as every step of the finger has stepped it, from the
-// first on (deform_scene.cpp). One that is made anew comes from outside of all places where the mesh can be.
+// Whether the contact with a near object is created again at the start of the tick's way. A contact with a deformable mesh also
+// tracks the mesh's motion since its last step: it is kept as long as every step of the finger has stepped it, from the first
+// on (deform_scene.cpp). A new one starts outside of all places where the mesh can be.
 bool is_renewed(const Tick& tick, const Object& object, const Slot& slot, bool missed) {
   if (slot.step != tick.finger.step) return true;
   return object.deform == nullptr && (missed || !tick.scene.skips(FDCG_OPT_RENEWAL));
@@ -132,7 +76,7 @@ void renew(const Object& object, fdcg_contact* contact) {
   }
 }
 
-// The slot's contact in this tick. Returns whether there is anything to feel or to carry over.
+// Steps the slot's contact. Returns whether there is a contact force or a sweep to carry over.
 bool step_slot(const Tick& tick, Slot& slot, fdcg_contact* contact, bool missed, fdcg_result* result) {
   const fdcg_scene& scene = tick.scene;
   const Object& object = scene.objects()[slot.object];
@@ -201,7 +145,7 @@ void step_slots(const Tick& tick, bool missed, bool is_felt) {
   finger.force = force;
 }
 
-// Everything but the finger that is out of reach and has no slot in use.
+// The tick of a finger that is in reach of an object or has slots in use.
 [[gnu::noinline]] void step_near(fdcg_scene& scene, Finger& finger) {
   const auto index = static_cast<uint32_t>(&finger - scene.fingers());
   const bool is_felt = is_place(finger.hip);
@@ -241,22 +185,6 @@ inline void step_finger(fdcg_scene& scene, Finger& finger) {
 
 }  // namespace
 }  // namespace fdcg
-
-extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
-  if (scene == nullptr) return;
-  ++scene->tick;
-  scene->tick_travel = 0;
-  if (!scene->skips(FDCG_OPT_STILL)) {
-    for (uint32_t i = 0; i < scene->object_end; ++i) {
-      if (scene->objects()[i].is_used != 0) fdcg::settle_object(*scene, i, true);
-    }
-  } else if (scene->changing_count > 0) {
-    fdcg::settle_changing(*scene);
-  }
-  if (scene->tick_travel > 0) {
-    scene->travel = (scene->travel + scene->tick_travel) * (1 + 2 * fdcg::RealLimits<double>::kEpsilon);
-  }
-}
 
 extern "C" void fdcg_scene_step(fdcg_scene* scene) {
   if (scene == nullptr) return;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soft fingers. Twist and tangential stretch are one vector (r, a * twist) that the load's circle limits: a god-object in one
-// dimension more. The step itself knows r alone; so it is told the coefficient at which its own circle ends where the larger
-// one does.
+// Soft fingers. Tangential stretch and twist form one vector (r, a * twist), limited by the friction circle of the load: a
+// god-object with one more dimension. The step itself handles r only, so it gets the friction coefficient for which its circle
+// in r agrees with the section of the larger one.
 #include "fdcg/soft_finger.h"
 
 #include "base/message.hpp"
 #include "scene/finger_tick.hpp"
-#include "step/friction_terms.hpp"
 
 namespace fdcg {
 namespace {
 
 constexpr double kLeastRadius_m = 1e-9, kMostRadius_m = 1e3;
+constexpr double kPadSticksAgain = 1 - 0x1p-20;  // as step/friction_terms.hpp
 
 Turn product(const Turn& a, const Turn& b) {
   return {a.v * b.w + b.v * a.w + cross(a.v, b.v), a.w * b.w - dot(a.v, b.v)};
@@ -57,7 +57,7 @@ Turn reference_for(const Turn& now, World normal, double tangent) {
   return unit(product(about(normal, -tangent), now));
 }
 
-// Where the object says none, the spring's direction.
+// The normal of the object or, where it has none, the direction of the spring.
 World normal_at(const Object& object, const fdcg_result& result, World gap) {
   if (object.shape_normal != nullptr || result.state == FDCG_FACE) return object_normal(object, result);
   const double length = norm(gap);
@@ -75,18 +75,18 @@ struct Stretch {
   [[nodiscard]] double length() const { return root(tangential * tangential + twist * twist); }
 };
 
-// What of the twist and of the tangential stretch stays, 0 to 1; 1: sticks, or rests on the circle.
+// The share of twist and tangential stretch that remains, 0 to 1; 1: sticks, or is on the circle.
 double kept(const fdcg_params& params, const Stretch& stretch, uint32_t* is_slipping) {
   const double length = stretch.length(), circle = params.mu_dynamic * stretch.depth;
   if (*is_slipping != 0) {
-    if (length <= kStickAgainShare * circle) *is_slipping = 0;
+    if (length <= kPadSticksAgain * circle) *is_slipping = 0;
   } else if (length > params.mu_static * stretch.depth) {
     *is_slipping = 1;
   }
   return *is_slipping != 0 && length > circle * (1 + 4 * DBL_EPSILON) ? circle / length : 1;
 }
 
-// The coefficient that leaves the step the tangential part of what the circle bears.
+// The friction coefficient for the step: the tangential part of the circle's limit.
 void share_friction(const Stretch& stretch, double share, bool is_slipping, fdcg_params* params) {
   constexpr double kNoSlip = 1 + 0x1p-16, kMostMu = 1e9;  // more than a float's rounding
   const double across = stretch.tangential / stretch.depth, turned = stretch.twist / stretch.depth;
@@ -100,7 +100,7 @@ void share_friction(const Stretch& stretch, double share, bool is_slipping, fdcg
   if (mu <= kMostMu) params->mu_static = params->mu_dynamic = mu;
 }
 
-// The torque of what is left of the twist when the step is over: never beyond what the tangential force leaves of the limit.
+// The torque of the remaining twist after the step: at most the part of the limit that the tangential force leaves.
 void take_torque(const Object& object, const fdcg_params& met, const SoftFinger& finger, const Turn& now, World gap,
                  double tangent, SoftTouch* touch) {
   const Stretch stretch(gap, touch->normal, object.now.scale, finger.radius_m, tangent);

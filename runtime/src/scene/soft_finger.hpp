@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene keeps of soft fingers: after its other arrays, SoftFinger[fingers] | SoftTouch[fingers][touches].
+// Data of soft fingers in a scene's memory: after its other arrays, SoftFinger[fingers] | SoftTouch[fingers][touches].
 #pragma once
 
 #include "fdcg/scene.h"
@@ -28,8 +28,8 @@ struct SoftTouch {
   World torque_n_m;  // world, on the finger
 };
 
-// soft_finger.cpp, by its address: who has no soft fingers does not link it. Steps the contact of a finger's slot to a HIP in
-// the object's frame.
+// In soft_finger.cpp, called through a pointer so that programs without soft fingers do not link it. Steps the contact of a
+// finger's slot to a HIP in the object's frame.
 using SoftStep = void(fdcg_scene* scene, uint32_t finger, uint32_t slot, fdcg_object_id object, fdcg_contact* contact,
                       World hip, fdcg_result* result);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ball around a free contact that no face touches (contact-model FREE-7): while the HIP stays in it, the way of a tick meets
-// nothing, and nothing need be looked at. How large it is asked for depends on the speed: some ticks' way is worth a look, more
-// is not.
+// A ball around a free contact that no face touches (contact-model FREE-7): while the HIP stays in it, a tick's way is free of
+// collisions and needs no sweep. The requested radius depends on the speed: a few ticks' way is worth its computation, more is
+// not.
 #pragma once
 
 #include "graph/box_tree.hpp"

@@ -128,13 +128,8 @@ inline Steepest<Real> steepest_by_tree(Walk<Geometry>& walk, CornerRef<Geometry>
     const Waiting first = {bound_of(level, child), child, level};
     const Waiting second = {has_two ? bound_of(level, child + 1) : Real(0), child + 1, level};
     const bool second_is_better = has_two && second.bound > first.bound;
-    if (second_is_better) {
-      stack[waiting++] = first;
-      stack[waiting++] = second;
-    } else {
-      if (has_two) stack[waiting++] = second;
-      stack[waiting++] = first;
-    }
+    if (has_two) stack[waiting++] = second_is_better ? first : second;
+    stack[waiting++] = second_is_better ? second : first;
   }
   // Boxes cannot tell apart what reaches as far up to rounding error; the neighbours of the one found may yet be nearer.
   const uint32_t entries = corner.fan_count();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-7, LEAVE-1, BOUND-2): is a sweep needed,
-// what becomes of what it met, what is left for later ticks. docs/internals/sweep.md tells it in order.
+// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-7, LEAVE-1, BOUND-2): whether a sweep is
+// needed, the contact with what it met, and the work carried over to later ticks. docs/internals/sweep.md has the sequence.
 #pragma once
 
 #include "step/clear_ball.hpp"
@@ -16,7 +16,7 @@ inline Vec3<Real> onto_slab(const Walk<Geometry>& walk, Vec3<Real> point, uint32
   return node.is_inexact() ? point - node.normal() * node.plane().distance(point) : point;
 }
 
-// Puts the contact where the way met something first, or at its end.
+// Places the contact at the first collision on the way, or at its end.
 template <class Geometry, class Real = typename Geometry::Real>
 inline void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
@@ -51,13 +51,13 @@ template <class Geometry, class Real = typename Geometry::Real>
   carried->is_carried = 0;
   const Vec3<Real> from = walk.god_object;
   arrive(walk, sweep, to, first);
-  const bool is_held = norm1(walk.hip - to) <= walk.hip_bound;  // a hand that has gone on may be let go by both
+  const bool is_held = norm1(walk.hip - to) <= walk.hip_bound;  // else the HIP has moved: either feature may release it
   const bool is_where_it_was = is_held && first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
   carried->stalled_sweeps = is_where_it_was ? carried->stalled_sweeps + 1 : 0;
   return true;
 }
 
-// What free space costs and leaves for later ticks. It belongs to the contact but for the work.
+// Work and state of free space carried over between ticks; all but the work is part of the contact.
 struct FreeSpace {
   fdcg_carried_sweep* carried;
   fdcg_clear_ball* ball;
@@ -117,8 +117,8 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
     if (!(walk.active == kFree)) return 0;
   }
-  // Two features at one point may hand the contact to one another by way of free space. Within a tick the trail sees that; here
-  // each turn has taken a tick, and the contact rests where it is (contact-model LEAVE-4).
+  // Two features at one point may pass the contact to each other by way of free space. Within a tick the trail detects that;
+  // here each pass has taken a tick, and the contact rests where it is (contact-model LEAVE-4).
   constexpr uint32_t kMostStalledSweeps = 4;
   if (!(left == kFree) && carried->stalled_sweeps >= kMostStalledSweeps) {
     carried->stalled_sweeps = 0;

@@ -22,13 +22,13 @@ struct TermSlip {
 struct FrictionTerms {
   const fdcg_params* params;
   const fdcg_graph* graph;  // null: the ground of a pile, which has no nodes
-  fdcg_material material;   // of the feature that was asked last
+  fdcg_material material;   // of the feature selected last
   double unit_m;
   double held_stiffness;  // of the contact, N/m; 0: a new one, or of no matter
   double lagged;          // what is left of the speed before this tick, units a second
   double per_way;         // and what one unit of way in this tick adds to it
   double way;             // of the god-object in this tick, up to `last`
-  Vec3<double> last;      // where it was asked last
+  Vec3<double> last;      // its position at the last call
   bool has_last;
   Vec3<double> yielded;  // in the end: from the remembered place to the god-object that is felt
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the way to the HIP starts when a feature lets the god-object go (contact-model LEAVE-2).
+// The start of the way to the HIP when a feature releases the god-object (contact-model LEAVE-2).
 //
 // The god-object is on its face or edge up to rounding error, which may put it into the solid. From there the way could pass
 // below the face that it should pass over, and under the rim beyond, without ever meeting the surface from outside. So it

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presliding (contact-model CURVE-5): how far a contact that holds yields. The remembered place A is what the rules move, with
-// cones wider by 1 / (1 - l), l = k / (k + k_p), of the stiffness k and presliding's k_p; the god-object that is felt lies
-// between it and the surface point where the two springs balance:
+// Presliding (contact-model CURVE-5): the elastic displacement of a sticking contact. The rules move the anchor A, with cones
+// wider by 1 / (1 - l), l = k / (k + k_p), of the stiffness k and presliding's k_p; the output god-object x lies between it and
+// the surface point, where the two springs balance:
 //   x = A + l (SP - A), within the face's concave edges or the edge's ends,
-// which is where k |x - HIP|^2 / 2 + k_p |x - A|^2 / 2 is least. So with A at rest the force is that of a potential, and no
-// creep comes of it. A concave edge bounds x because there the wall across bears what friction did: A comes to the edge with
-// nothing stored beyond it. Other edges do not: a triangulated plane feels like the plane.
+// which minimises k |x - HIP|^2 / 2 + k_p |x - A|^2 / 2. So with A at rest the force is conservative, and there is no creep. A
+// concave edge bounds x because the wall across takes over the load of friction: A reaches the edge with no energy stored
+// beyond it. Other edges do not: a triangulated plane behaves like the plane.
 #pragma once
 
 #include "step/walk.hpp"
@@ -44,8 +44,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   return a >= 0 ? x - first.normal * a - second.normal * b : x - second.normal * out;
 }
 
-// The material of a feature that no rule may have asked for in this tick. At a vertex the stiffness of before holds; a contact
-// that begins there has that of a face beside it.
+// Selects the material of a feature for which no rule may have selected it in this tick. At a vertex the previous stiffness is
+// kept; a contact that begins there has that of an adjacent face.
 template <class Geometry>
 [[gnu::noinline, gnu::cold]] void select_material(const Walk<Geometry>& walk, Feature at) {
   FrictionTerms& terms = *walk.friction.terms;
@@ -61,7 +61,7 @@ template <class Geometry>
   }
 }
 
-// From the remembered place to the god-object that is felt. Cost: one plane, and those of the face's concave edges.
+// The offset from the anchor to the output god-object. Cost: one plane, and those of the face's concave edges.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Vec3<double> presliding_offset(const Walk<Geometry>& walk, Feature at, Vec3<double> anchor) {
   const Vec3<double> stays = {0, 0, 0}, hip = widen(walk.hip);
@@ -82,16 +82,16 @@ template <class Geometry, class Real = typename Geometry::Real>
   return stays;
 }
 
-// Twice what the two springs store, for each newton per metre of stiffness.
+// Twice the energy of the two springs, per unit of stiffness.
 inline double stored(const FrictionTerms& terms, Vec3<double> gap, Vec3<double> yielded) {
   const Vec3<double> spring = gap + yielded;
   return dot(spring, spring) + (terms.give() > 1 ? dot(yielded, yielded) / (terms.give() - 1) : 0);
 }
 
-// contact-model CURVE-7: the stiffness at the end of a tick, and how far the contact yields. Where the rules have moved the
-// contact, from `before` and the feature `was`, more may not be stored at this HIP than there: the stiffness holds back, and
-// rises again where sliding has lost as much. Two materials, or a wall that the yielding god-object meets behind a seam, would
-// push the hand else.
+// contact-model CURVE-7: the stiffness at the end of a tick, and the presliding offset. If the rules have moved the contact,
+// from `before` and the feature `was`, the energy stored at this HIP must not exceed the energy there: the stiffness is
+// reduced, and rises again as sliding dissipates. Otherwise a change of material, or a wall behind a seam, would do work on the
+// hand.
 template <class Geometry>
 [[gnu::noinline, gnu::cold]] double settle(const Walk<Geometry>& walk, Feature was, Vec3<double> before) {
   FrictionTerms& terms = *walk.friction.terms;

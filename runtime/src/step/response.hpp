@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What damping makes of the spring between hand and god-object (contact-model RESP-2), on graphs and surfaces alike.
+// Damping of the spring between hand and god-object (contact-model RESP-2), for graphs and surfaces.
 #pragma once
 
 #include "fdcg/fdcg.h"
@@ -12,7 +12,7 @@ inline double damped(const fdcg_params& params, double stiffness, Vec3<double> s
   const double length2 = dot(spring, spring);
   if (!(length2 > 0)) return stiffness;
   const double left = stiffness - params.damping_n_s_per_m * (dot(moved, spring) / length2) / params.tick_s;
-  return left > 0 ? left : 0;  // never a pull
+  return left > 0 ? left : 0;  // never adhesive
 }
 
 }  // namespace fdcg

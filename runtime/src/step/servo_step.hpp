@@ -18,12 +18,12 @@
 
 #include "base/config.hpp"
 #include "base/hooks.hpp"
-#include "base/near_zero.hpp"
 #include "step/corner.hpp"
 #include "step/edge.hpp"
 #include "step/face.hpp"
 #include "step/free_space.hpp"
 #include "step/leave.hpp"
+#include "step/near_zero.hpp"
 #include "step/presliding.hpp"
 #include "step/response.hpp"
 
@@ -64,9 +64,9 @@ class Trail {
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
 
-  // Where the step would rest (contact-model TICK-6). The next tick knows nothing of Walk::rounding_residual: a rest must be
-  // one without it. So it is forgotten, and the way goes on as that tick would go; once for each time that the god-object came
-  // nearer.
+  // Called where the step would rest (contact-model TICK-6). Walk::rounding_residual is not kept between ticks, so a rest must
+  // hold without it: it is set to zero and the step continues as the next tick would; once for each time that the god-object
+  // came nearer.
   bool retry_without_residual(Walk<Geometry>& walk) {
     if (has_begun_again_ || norm1(walk.rounding_residual) == 0) return false;
     walk.rounding_residual = {0, 0, 0};
@@ -190,7 +190,7 @@ inline bool to_local(const fdcg_header& header, const double hip_object_m[3], do
   return true;
 }
 
-// Whether the graph has such a feature: asked by an assertion alone.
+// Whether the graph has such a feature; used by an assertion only.
 [[maybe_unused]] bool is_of_graph(Feature feature, const fdcg_header& header) {
   const uint32_t count[] = {0, header.node_count, header.connection_count, header.corner_count};
   return feature == kFree || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
@@ -229,7 +229,7 @@ inline Friction<Real> friction_of(const fdcg_params& params, const fdcg_contact&
           contact.slipping != 0, nullptr};
 }
 
-// The force of so much spring, damped along the same line. Call before the contact learns of the new HIP.
+// The force of a spring, damped along its direction. Call before the new HIP is stored in the contact.
 inline void spring_damper_force(const fdcg_header& header, const fdcg_params& params, const fdcg_contact& contact,
                                 double newtons_per_metre, Vec3<double> local_hip, Vec3<double> spring, fdcg_result* result) {
   if (params.damping_n_s_per_m > 0) {

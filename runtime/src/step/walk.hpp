@@ -31,9 +31,9 @@ struct Walk {
   Feature active;
   Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
   uint32_t work_left;  // for the rules, see work.hpp
-  // contact-model FACE-7: what rounding took from the god-object when it was placed on the edge by which it crossed into the
-  // active face. The way goes on from god_object + rounding_residual: else a tick across hundreds of needle faces adds up their
-  // roundings.
+  // contact-model FACE-7: the rounding error of placing the god-object on the edge by which it crossed into the active face.
+  // The way continues from god_object + rounding_residual; otherwise a tick across hundreds of needle faces would accumulate
+  // these errors.
   Vec3<Real> rounding_residual = {0, 0, 0};
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
@@ -92,9 +92,9 @@ struct EdgeLine : Edge<Real> {
   [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };
 
-// Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. A god-object
-// put there would lose more distance than a step may; it stays at u, and the corner's rule decides all the same: two edges of a
-// needle's tip would hand it to one another.
+// Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. Placing the
+// god-object there would increase the distance by more than a step may; it stays at u, but the corner's rule decides, since two
+// edges of a needle's tip would pass it to each other.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line, uint32_t end,
                                                    Real from_end) {

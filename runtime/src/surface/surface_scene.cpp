@@ -5,6 +5,7 @@
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "scene/scene_memory.hpp"
+#include "surface/surface_kinds.hpp"
 
 namespace fdcg {
 namespace {
@@ -44,7 +45,7 @@ extern "C" fdcg_status fdcg_scene_add_surface(fdcg_scene* scene, const fdcg_surf
   if (const fdcg_status status = fdcg_check_surface(surface, error); status != FDCG_OK) return status;
   fdcg::Object shape = {};
   fdcg_surface room;
-  shape.surface = fdcg::in_full(*surface, &room, fdcg_surface_init);
+  shape.surface = fdcg::in_full(*surface, &room, fdcg::clear_surface);
   shape.step_shape = fdcg::step_surface;
   shape.shape_normal = fdcg::surface_normal;
   shape.bounds = fdcg::bounds_of(shape.surface);

@@ -1,236 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step on a surface without a mesh: the same states, friction and response as servo_step.hpp, with shapes in place of a
-// graph's features.
-#include "base/near_zero.hpp"
+// The step on a surface without a mesh: by its kind, of those that the program links.
+#define FDCG_SURFACE_DISPATCH 1  // its references to the kinds are weak
 #include "base/struct_bytes.hpp"
-#include "step/response.hpp"
-#include "surface/surface_box.hpp"
-#include "surface/surface_cone.hpp"
-#include "surface/surface_round.hpp"
-#include "surface/surface_torus.hpp"
+#include "surface/surface_drive.hpp"
 
 namespace fdcg {
 namespace {
 
-constexpr uint32_t kMostTransitions = 24;  // of one tick; two or three are usual
-
-// From free space, or from the surface that was just left: the contact is placed on what the way to the HIP meets, or at the
-// HIP.
-template <class Shape>
-void sweep(const Shape& shape, SurfaceWalk& walk, bool begins_outside) {
-  const Entry entry = shape.enter(walk.god_object, walk.hip, begins_outside);
-  walk.god_object = entry.is_met ? entry.point : walk.hip;
-  walk.active = entry.is_met ? entry.feature : kFree;
-}
-
-// Drives the rules until one rests.
-template <class Shape>
-Progress move_god_object(const Shape& shape, SurfaceWalk& walk) {
-  Progress progress = {0, 0};
-  if (walk.active == kFree) {
-    sweep(shape, walk, shape.is_outside(walk.god_object));
-    if (walk.active == kFree) return progress;
-    ++progress.transitions;
-  }
-  for (; progress.transitions < kMostTransitions; ++progress.transitions) {
-    const Decision decision = shape.rule(walk);
-    if (decision.is_rest()) {
-      if (walk.moves_left == 0) progress.flags = FDCG_RESULT_TRANSITION_BOUND;
-      return progress;
-    }
-    if (!(decision.next() == kFree)) {
-      walk.active = decision.next();
-      continue;
-    }
-    const bool is_convex_solid = Shape::kIsConvex && shape.sign > 0;  // what leaves it cannot meet it
-    // In front of a tangent plane and yet in the solid: by rounding alone. Free, it would fall through.
-    if (is_convex_solid && !shape.is_outside(walk.hip)) return progress;
-    ++progress.transitions;
-    if (is_convex_solid) {
-      walk.god_object = walk.hip;
-      walk.active = kFree;
-    } else {
-      sweep(shape, walk, true);
-    }
-    if (walk.active == kFree) return progress;
-  }
-  progress.flags = FDCG_RESULT_TRANSITION_BOUND;
-  return progress;
-}
-
-bool is_usable_place(const double p[3]) {
-  constexpr double kFar = RealLimits<double>::kFar;
-  return absolute(p[0]) <= kFar && absolute(p[1]) <= kFar && absolute(p[2]) <= kFar;
-}
-
-Point place_of(const double p[3], double extent) {
-  const double least = kLeastShare * extent;
-  return {zero_below(least, p[0]), zero_below(least, p[1]), zero_below(least, p[2])};
-}
-
-// Whether place_of() leaves a place as it is: nothing but a jump waits for that.
-FDCG_HOT bool is_plain_place(Point p, double extent) {
-  const double least = kLeastShare * extent;
-  return !((absolute(p.x) < least && p.x != 0) || (absolute(p.y) < least && p.y != 0) || (absolute(p.z) < least && p.z != 0));
-}
-
-void start_on_surface(Point hip, fdcg_contact* contact) {
-  store(hip, contact->hip);
-  store(hip, contact->god_object);
-  contact->started = 1;
-  contact->state = contact->seat_state = FDCG_FREE;
-  contact->feature = contact->seat_feature = FDCG_NONE;
-  contact->slipping = 0;
-}
-
-// Where the contact is; one of zeros is free, and on nothing.
-FDCG_HOT void report(const fdcg_contact& contact, fdcg_result* result) {
-  store(vec(contact.god_object), result->god_object_m);
-  result->state = contact.state;
-  result->feature = contact.state == FDCG_FREE ? FDCG_NONE : contact.feature;
-  result->slipping = contact.slipping;
-}
-
-struct SurfaceTick {
-  const fdcg_surface& surface;
-  const fdcg_params& params;
-  fdcg_contact* contact;
-  const double* hip_m;
-  fdcg_result* result;
-};
-
-// Stores a contact on the surface in its new place, and what the hand feels of it.
-FDCG_HOT void respond(const SurfaceTick& tick, const Touch& touch, Feature feature) {
-  fdcg_contact& contact = *tick.contact;
-  fdcg_result& result = *tick.result;
-  const Point spring = touch.god_object - touch.hip;
-  double newtons_per_metre = tick.params.stiffness_n_per_m;
-  if (tick.params.damping_n_s_per_m > 0)
-    newtons_per_metre = damped(tick.params, newtons_per_metre, spring, touch.hip - vec(contact.hip));
-  store(spring * newtons_per_metre, result.force_n);
-  store(touch.god_object, contact.god_object);
-  store(touch.god_object, result.god_object_m);
-  store(touch.hip, contact.hip);
-  contact.state = result.state = feature.state;
-  contact.feature = result.feature = feature.index;
-  contact.slipping = result.slipping = touch.friction.is_slipping ? 1 : 0;
-}
-// Free, and at the HIP or on the way to it.
-FDCG_HOT void respond_free(const SurfaceTick& tick, Point at, Point hip) {
-  store(at, tick.contact->god_object);
-  store(hip, tick.contact->hip);
-  tick.contact->state = FDCG_FREE;
-  tick.contact->feature = FDCG_NONE;
-  tick.contact->slipping = 0;
-  report(*tick.contact, tick.result);
-}
-
-FDCG_HOT Touch touch_of(const SurfaceTick& tick, Point hip) {
-  const fdcg_params& params = tick.params;
-  return {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, tick.contact->slipping != 0},
-          hip,
-          vec(tick.contact->god_object)};
-}
-
-template <class Shape>
-[[gnu::noinline]] void step_by_rules(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at,
-                                     const double* hip_m, fdcg_result* result) {
-  const SurfaceTick tick = {*surface, *params, at, hip_m, result};
-  fdcg_contact& contact = *at;
-  const Shape shape(tick.surface);
-  SurfaceWalk walk = {
-      touch_of(tick, place_of(tick.hip_m, shape.extent)), {contact.state, contact.feature}, FDCG_SURFACE_MAX_MOVES};
-  if (contact.started == 0) {
-    start_on_surface(walk.hip, &contact);
-    report(contact, tick.result);
-    return;
-  }
-  const Progress progress = move_god_object(shape, walk);
-  tick.result->transitions = progress.transitions;
-  tick.result->flags = progress.flags;
-  contact.transition_bound_ticks += progress.flags != 0 ? 1 : 0;
-  if (walk.active == kFree) {
-    respond_free(tick, walk.god_object, walk.hip);
-  } else {
-    respond(tick, walk, walk.active);
-  }
-}
-
-// No less than a way's length, and all roundings of where it leads.
-FDCG_HOT double way_bound(Point way, double extent) {
-  return norm1(way) * (1 + 0x1p-20) + 16 * kEps * extent;
-}
-
-// What most ticks are, before the rules. All of it stays in registers: nothing here is handed to another function. Quick: what
-// of the shape that needs, with is_clear(), slide_quickly() and extent.
-template <class Shape, class Quick>
-void step_on(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* at, const double* hip_m,
-             fdcg_result* result) {
-  const SurfaceTick tick = {*surface, *params, at, hip_m, result};
-  fdcg_contact& contact = *at;
-  const Quick shape(*surface);
-  const Point hip = {hip_m[0], hip_m[1], hip_m[2]};
-  if (!is_plain_place(hip, shape.extent)) return step_by_rules<Shape>(surface, params, at, hip_m, result);
-  Touch touch = touch_of(tick, hip);
-  const Point way = touch.hip - touch.god_object;
-  if (contact.state == FDCG_FREE && contact.started != 0 && shape.is_clear(touch.hip, way_bound(way, shape.extent))) {
-    respond_free(tick, touch.hip, touch.hip);
-  } else if (contact.state == FDCG_FACE && shape.slide_quickly(contact.feature, touch)) {
-    respond(tick, touch, {FDCG_FACE, contact.feature});
-  } else {
-    step_by_rules<Shape>(surface, params, at, hip_m, result);
-  }
-}
-
-template <class Shape>
-Point normal_on(const fdcg_surface& surface, const fdcg_result& result) {
-  const Point at = vec(result.god_object_m);
-  return Shape(surface).normal({result.state, result.feature}, at, at - vec(result.force_n));
-}
-
-// What is done with a surface, by its kind.
 struct SurfaceKind {
-  decltype(&fdcg_surface_step) step;
-  Point (*normal)(const fdcg_surface& surface, const fdcg_result& result);
+  SurfaceStep* step;
+  SurfaceNormal* normal;
 };
-template <class Shape, class Quick = Shape>
-inline constexpr SurfaceKind kKind = {step_on<Shape, Quick>, normal_on<Shape>};
 
-const SurfaceKind& kind_of(const fdcg_surface& surface) {
-  static constexpr SurfaceKind kKinds[] = {kKind<PlaneSurface>, kKind<Sphere>,     kKind<ConeSurface, QuickCylinder>,
-                                           kKind<Capsule>,      kKind<BoxSurface>, kKind<ConeSurface, QuickCone>,
-                                           kKind<Torus>,        kKind<Ellipsoid>};
-  return kKinds[surface.kind <= FDCG_SURFACE_ELLIPSOID ? surface.kind : 0];
+const SurfaceKind& kind_of(uint32_t kind) {
+  static constexpr SurfaceKind kKinds[] = {{step_plane, normal_of_plane},       {step_sphere, normal_of_sphere},
+                                           {step_cylinder, normal_of_cylinder}, {step_capsule, normal_of_capsule},
+                                           {step_box, normal_of_box},           {step_cone, normal_of_cone},
+                                           {step_torus, normal_of_torus},       {step_ellipsoid, normal_of_ellipsoid}};
+  return kKinds[kind <= FDCG_SURFACE_ELLIPSOID ? kind : 0];
 }
 
 }  // namespace
+
+bool is_linked(uint32_t kind) {
+  return kind_of(kind).step != nullptr;
+}
+
 }  // namespace fdcg
 
 extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* contact,
                                   const double hip_object_m[3], fdcg_result* result) {
   using namespace fdcg;
+  using namespace fdcg::surface_drive;
   *result = {};
-  if (is_usable_place(hip_object_m)) {
-    fdcg_surface surface_room;
-    fdcg_params params_room;
-    const fdcg_surface& whole = in_full(*surface, &surface_room, fdcg_surface_init);
-    kind_of(whole).step(&whole, &in_full(*params, &params_room, fdcg_params_init), contact, hip_object_m, result);
+  fdcg_surface surface_room;
+  fdcg_params params_room;
+  const fdcg_surface& whole = in_full(*surface, &surface_room, clear_surface);
+  const SurfaceKind& kind = kind_of(whole.kind);
+  if (kind.step != nullptr && is_usable_place(hip_object_m)) {
+    kind.step(whole, in_full(*params, &params_room, fdcg_params_init), contact, hip_object_m, result);
   } else {
-    ++contact->non_finite_ticks;
-    result->flags = FDCG_RESULT_NON_FINITE;
+    if (kind.step != nullptr) ++contact->non_finite_ticks;
+    result->flags = kind.step != nullptr ? FDCG_RESULT_NON_FINITE : 0;
     report(*contact, result);
   }
 }
 
 extern "C" void fdcg_surface_get_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]) {
   using namespace fdcg;
-  Point n = {0, 0, 0};
-  if (result->state != FDCG_FREE) {
-    fdcg_surface room;
-    const fdcg_surface& whole = in_full(*surface, &room, fdcg_surface_init);
-    n = kind_of(whole).normal(whole, *result);
-  }
-  normal[0] = n.x;
-  normal[1] = n.y;
-  normal[2] = n.z;
+  normal[0] = normal[1] = normal[2] = 0;
+  if (result->state == FDCG_FREE) return;
+  fdcg_surface room;
+  const fdcg_surface& whole = in_full(*surface, &room, clear_surface);
+  if (SurfaceNormal* const normal_of = kind_of(whole.kind).normal; normal_of != nullptr) normal_of(whole, *result, normal);
 }

@@ -37,7 +37,7 @@ std::vector<Bytes> dumps() {
 
 }  // namespace
 
-TEST_CASE("firmware: the document's dumps are what the core makes and takes") {
+TEST_CASE("firmware: the core writes and accepts the document's dumps") {
   const std::vector<Bytes> dump = dumps();
   REQUIRE(dump.size() == 6);  // two descriptors, feature, two outputs, input
   CHECK(dump[1] == Bytes(std::begin(fdcg_fw_report_descriptor), std::end(fdcg_fw_report_descriptor)));

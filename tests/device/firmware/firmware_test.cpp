@@ -24,7 +24,7 @@ TEST_CASE("firmware: no force at power-up until a report without enable has come
   CHECK(device.status() == FDCG_FW_ENABLED);
 }
 
-TEST_CASE("firmware: the watchdog drops the force after its time, and is not talked out of it by enabled reports") {
+TEST_CASE("firmware: the watchdog drops the force after its time, and enabled reports do not reset it") {
   Device device = pushing();
   device.time_us += 19999;
   CHECK(device.force() == kPush);
@@ -39,7 +39,7 @@ TEST_CASE("firmware: the watchdog drops the force after its time, and is not tal
   CHECK(device.force() == kPush);
 }
 
-TEST_CASE("firmware: the watchdog trips also where only reports ask, and across the clock's wrap") {
+TEST_CASE("firmware: the watchdog also trips when only reports arrive, and across the clock's wrap") {
   Device device;
   device.time_us = 0xFFFFFFF0u;
   device.send(kZero, 0);
@@ -56,7 +56,7 @@ TEST_CASE("firmware: the watchdog trips also where only reports ask, and across 
   CHECK(device.force() == kZero);
 }
 
-TEST_CASE("firmware: reports that are not used feed no watchdog") {
+TEST_CASE("firmware: rejected reports do not reset the watchdog") {
   Device device = pushing();
   for (int i = 0; i < 20; ++i) {
     device.time_us += 1000;
@@ -130,7 +130,7 @@ TEST_CASE("firmware: what makes an output report invalid") {
   CHECK(device.take(output(next + 1, other, device.fw.sequence, FDCG_FW_ENABLE)) == FDCG_FW_TAKEN);
 }
 
-TEST_CASE("firmware: a host that begins again is heard by its first report without enable") {
+TEST_CASE("firmware: the first report without enable of a restarted host is accepted") {
   Device device = pushing();
   device.take(output(1000000, kPush, 0, FDCG_FW_ENABLE));
   CHECK(device.take(output(1, kPush, 0, FDCG_FW_ENABLE)) == FDCG_FW_OLD);
@@ -147,7 +147,7 @@ TEST_CASE("firmware: sequence numbers wrap") {
   CHECK(device.take(output(0xFFFFFFFFu, kPush, 0, FDCG_FW_ENABLE)) == FDCG_FW_OLD);
 }
 
-TEST_CASE("firmware: faults, a stop and a bad configuration mean no force, and none by surprise afterwards") {
+TEST_CASE("firmware: faults, a stop and a bad configuration give no force, also afterwards") {
   Device device = pushing();
   SECTION("each fault") {
     for (const unsigned fault : {FDCG_FW_NOT_CALIBRATED, FDCG_FW_TOO_HOT, FDCG_FW_POWER_OFF, FDCG_FW_FAULT}) {
@@ -209,7 +209,7 @@ TEST_CASE("firmware: faults, a stop and a bad configuration mean no force, and n
   CHECK(device.force() == kZero);
 }
 
-TEST_CASE("firmware: a force beyond the peak is shortened, its direction kept; axes that are not there get none") {
+TEST_CASE("firmware: a force beyond the peak is scaled down; missing axes get none") {
   Device device = pushing();
   for (const std::array<float, 3>& force_n :
        {std::array<float, 3>{3.3f, 0, 0}, {-4, 0, 0}, {3, 3, 3}, {1e30f, -1e38f, 3e38f}, {1e-40f, 3.4e38f, 0}, {2, 2, 1.7f}}) {
@@ -239,7 +239,7 @@ TEST_CASE("firmware: a force beyond the peak is shortened, its direction kept; a
 }
 
 // Random bytes seldom have the right CRC, so most are made from good reports with some part of them changed.
-TEST_CASE("firmware: whatever comes, the force is finite, within the peak, and zero where the watchdog's time has passed") {
+TEST_CASE("firmware: with any input the force is finite, within the peak, and zero after the watchdog's time") {
   constexpr unsigned kSeed = 48;
   std::mt19937 random(kSeed);
   INFO("seed " << kSeed);

@@ -57,7 +57,7 @@ void crash_with_force(int descriptor, const std::function<void()>& crash) try {
 }
 
 // What a process that crashes so sends, and how it ends.
-std::vector<std::uint8_t> last_words(const std::function<void()>& crash, int* status) {
+std::vector<std::uint8_t> reports_after_crash(const std::function<void()>& crash, int* status) {
   static_cast<void>(cube_file());
   int ends[2];
   REQUIRE(pipe(ends) == 0);
@@ -79,9 +79,9 @@ std::vector<std::uint8_t> last_words(const std::function<void()>& crash, int* st
 }
 
 // Zero force, twice where the writer was sending meanwhile, then the safe stop.
-void check_last_words(const std::function<void()>& crash, int number) {
+void check_reports_after_crash(const std::function<void()>& crash, int number) {
   int status = 0;
-  const std::vector<std::uint8_t> data = last_words(crash, &status);
+  const std::vector<std::uint8_t> data = reports_after_crash(crash, &status);
   CHECK(WIFSIGNALED(status));
   CHECK(WTERMSIG(status) == number);
   const Profile profile = fake_profile();
@@ -101,18 +101,18 @@ void check_last_words(const std::function<void()>& crash, int number) {
 
 }  // namespace
 
-TEST_CASE("a crash sends zero force and the safe stop on the descriptor kept for it, then dies of its signal") {
+TEST_CASE("crash handler: sends zero force and the safe stop, then the process ends by its signal") {
   for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGUSR1})
-    check_last_words([crash] { raise(crash); }, crash);
+    check_reports_after_crash([crash] { raise(crash); }, crash);
 }
 
-TEST_CASE("a stack that has run out, and threads that crash together, leave zero force too") {
-  check_last_words(
+TEST_CASE("crash handler: stack overflow and simultaneous crashes leave zero force") {
+  check_reports_after_crash(
       [] {
         volatile char more = 1;
         overflow_stack(&more);
       },
       SIGSEGV);
   for (int round = 0; round < 10; ++round)
-    check_last_words(crash_in_four_threads, SIGSEGV);
+    check_reports_after_crash(crash_in_four_threads, SIGSEGV);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole host against everything that a device can do to it, in real time, with all its threads: one simulated device for
-// each kind of fault, all in one scene, each struck twenty times at random moments while its hand taps on a cube. After each
-// strike the force must be gone, and stay gone until somebody arms again; at the end every device must be felt again. Times are
-// bounded loosely here, since any machine may be busy; tests/device/vm measures them on a clock that counts instructions. Built
-// once more with each sanitizer (CMakeLists.txt).
+// Fault injection into the whole host, in real time, with all its threads: one simulated device for each kind of fault, all in
+// one scene, each with twenty faults at random times while its hand taps on a cube. After each fault the force must be zero
+// until the device is armed again; at the end every device must give force again. Time limits are loose here, since any machine
+// may be busy; tests/device/vm measures times on a clock that counts instructions. Also built with each sanitizer
+// (CMakeLists.txt).
 #include <pthread.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ constexpr double kSlot_s = 0.5, kFirst_s = 0.6;  // one strike in each slot, aft
 constexpr double kRun_s = kFirst_s + kStrikes * kSlot_s;
 constexpr double kStruck_s = 0.05;  // lasts a strike that has a length
 constexpr int kStruckReports = 30;  // ... or that is counted in reports
-// A strike is in the first part of its slot; arming is asked for in the last part alone.
+// A fault is in the first part of its slot; the device is armed in the last part only.
 constexpr double kStrikeEnd = 0.3, kArmFrom = 0.75;
 constexpr float kMost_n = 2;       // below what a tap would give
 constexpr double kLoose_s = 0.25;  // for the force to go, on a machine that may be busy
@@ -35,7 +35,7 @@ constexpr double kLoose_s = 0.25;  // for the force to go, on a machine that may
 struct Case {
   Kind kind;
   const char* name;
-  // Reports that change places leave every other one good: the force goes on. Everything else takes it away until it is armed
+  // With swapped reports every other one is good: the force continues. Every other fault removes it until the device is armed
   // again.
   bool takes_force = true;
 };
@@ -111,14 +111,14 @@ double seconds_since(std::uint64_t start_ns) {
   return static_cast<double>(monotonic_ns() - start_ns) * 1e-9;
 }
 
-// Where in the slots a time since the first opening is: 0 to 1, the first strike's slot and all after it.
+// The position of a time since the first opening within its slot: 0 to 1.
 double slot_part(double time_s) {
   const double slots = (time_s - kFirst_s) / kSlot_s;
   return slots < 0 ? kArmFrom : slots - std::floor(slots);
 }
 
-// On a machine that holds this test up an arming may come late, into the next strike: was there one between the two times?
-// Both on the host's clock, and some time before the first is no time before it for a thread that waits for its turn.
+// On a busy machine an arming may come late, during the next fault: whether there was one between the two times. Both are on
+// the host's clock; a margin before the first covers scheduling delays.
 bool is_armed_between(const std::vector<std::uint64_t>& armed_ns, std::uint64_t from_ns, std::uint64_t to_ns) {
   constexpr std::uint64_t kMarginNs = 30'000'000;
   return std::any_of(armed_ns.begin(), armed_ns.end(),
@@ -139,7 +139,7 @@ void check_strikes(const Case& c, const SimulationConfig& device, const std::vec
     with_force += record.most_force_between(struck_ns - kBeforeNs, struck_ns) > 0;
     const std::uint64_t zero_ns = record.zero_at(at_ns);
     slowest_s = std::max(slowest_s, static_cast<double>(zero_ns - at_ns) * 1e-9);
-    // until the slot's last part nobody arms
+    // no arming until the slot's last part
     const auto until_ns = static_cast<std::uint64_t>((kFirst_s + kSlot_s * (i + kArmFrom)) * 1e9);
     if (zero_ns >= until_ns || is_armed_between(armed_ns, record.origin_ns + at_ns, record.origin_ns + until_ns)) continue;
     ++judged;
@@ -154,9 +154,9 @@ void check_strikes(const Case& c, const SimulationConfig& device, const std::vec
   CHECK(judged >= kStrikes / 2);
 }
 
-// is_shared: all of them in one loop, where none may hold up the others.
+// is_shared: all of them in one loop, where none may delay the others.
 void strike_all(bool is_shared) {
-  // Where it is granted, so that what else the machine does is no fault of a device's.
+  // Real-time priority if granted, so that other load on the machine does not look like a device's fault.
   const sched_param real_time{5};
   pthread_setschedparam(pthread_self(), SCHED_FIFO, &real_time);
   Host host;
@@ -213,10 +213,10 @@ void strike_all(bool is_shared) {
 
 }  // namespace
 
-TEST_CASE("thirteen devices, each with its fault, twenty times: the force goes, and comes back only when it is armed") {
+TEST_CASE("thirteen devices with one fault each: force goes to zero, and returns only after arming") {
   strike_all(false);
 }
 
-TEST_CASE("the same thirteen devices in one scene: each is struck alone") {
+TEST_CASE("thirteen devices in one scene: each fault affects its device only") {
   strike_all(true);
 }

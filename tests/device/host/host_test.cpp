@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host as a whole, on devices in memory: it starts, feels, survives what devices do, and leaves zero force behind.
+// The whole host, on devices in memory: start, forces, faults of devices, and zero force at the end.
 #include <signal.h>
 
 #include "catch.hpp"
@@ -9,7 +9,7 @@
 using namespace fdcg::dev;
 using namespace fdcg::dev::test;
 
-TEST_CASE("a host starts and stops, again and again, and every device is closed") {
+TEST_CASE("host: repeated start and stop close every device") {
   for (int round = 0; round < 20; ++round) {
     Hosted hosted(round % 3 + 1);
     hosted.start();
@@ -24,7 +24,7 @@ TEST_CASE("a host starts and stops, again and again, and every device is closed"
   }
 }
 
-TEST_CASE("a host that is destroyed without a stop leaves zero force") {
+TEST_CASE("host: destruction without a stop leaves zero force") {
   FakeDevice device;
   {
     Host host([&](const DeviceConfig&, const LoopConfig&) { return std::make_unique<FakeTransport>(device); });
@@ -36,7 +36,7 @@ TEST_CASE("a host that is destroyed without a stop leaves zero force") {
   CHECK_FALSE(device.is_open);
 }
 
-TEST_CASE("what is pressed is felt, and a stop takes it away") {
+TEST_CASE("host: a press gives force, and a stop removes it") {
   Hosted hosted;
   hosted.start();
   CHECK(hosted.fault() == Fault::kCommanded);
@@ -57,7 +57,7 @@ TEST_CASE("what is pressed is felt, and a stop takes it away") {
   CHECK(status.work.total > status.interval.total);
 }
 
-TEST_CASE("a disarm takes the force away, and arming again brings it back from zero") {
+TEST_CASE("host: a disarm removes the force, and arming ramps it up from zero") {
   Hosted hosted;
   hosted.start();
   hosted.press();
@@ -72,7 +72,7 @@ TEST_CASE("a disarm takes the force away, and arming again brings it back from z
   hosted.press();
 }
 
-TEST_CASE("a device that is pulled out is closed, and opened again when it is back, with no force until it is armed") {
+TEST_CASE("host: an unplugged device is closed and reopened when back, without force until armed") {
   Hosted hosted;
   hosted.start();
   for (int round = 1; round <= 5; ++round) {
@@ -96,7 +96,7 @@ TEST_CASE("a device that is pulled out is closed, and opened again when it is ba
   CHECK(hosted.device().closed == hosted.device().opened);
 }
 
-TEST_CASE("a device that is not there at the start is waited for") {
+TEST_CASE("host: a device missing at the start is opened when it appears") {
   Hosted hosted(2);
   hosted.device(1).is_plugged = false;
   hosted.start();
@@ -109,7 +109,7 @@ TEST_CASE("a device that is not there at the start is waited for") {
   CHECK(hosted.host.stop() == "");
 }
 
-TEST_CASE("a device that goes silent gets zero and is disarmed") {
+TEST_CASE("host: a silent device gets zero force and is disarmed") {
   Hosted hosted;
   hosted.start();
   hosted.press();
@@ -120,7 +120,7 @@ TEST_CASE("a device that goes silent gets zero and is disarmed") {
   CHECK(within_ms(1000, [&] { return hosted.phase() == Phase::kDisarmed; }));
 }
 
-TEST_CASE("a writer that is held does not hold the servo thread, disarms it, and sends zero first when it is let go") {
+TEST_CASE("host: a blocked write does not block the servo loop, disarms, and zero force is sent first afterwards") {
   Hosted hosted;
   hosted.start();
   hosted.press();
@@ -134,7 +134,7 @@ TEST_CASE("a writer that is held does not hold the servo thread, disarms it, and
   CHECK(hosted.host.stop() == "");
 }
 
-TEST_CASE("a device that takes no output does not keep the host from stopping within 6 s", "[slow]") {
+TEST_CASE("host: stops within 6 s although a device takes no output", "[slow]") {
   auto device = std::make_unique<FakeDevice>();
   {
     Hosted hosted;
@@ -150,14 +150,14 @@ TEST_CASE("a device that takes no output does not keep the host from stopping wi
     CHECK(hosted.device().closed == 0);  // somebody is inside
     hosted.devices[0].swap(device);
   }
-  // The thread that was left alone lives on what it kept, though the host is gone.
+  // The detached thread still uses the data that it keeps alive, although the host is destroyed.
   device->holds_writes = false;
   CHECK(within_ms(5000, [&] { return device->inside_writes == 0; }));
   sleep_ms(50);
   CHECK(device->misused == 0);
 }
 
-TEST_CASE("a device that refuses its last zero force is told of") {
+TEST_CASE("host: a refused last zero force is reported") {
   Hosted hosted;
   hosted.start();
   hosted.device().refuses_writes = true;
@@ -171,7 +171,7 @@ TEST_CASE("a device that refuses its last zero force is told of") {
   CHECK(gone.host.stop() == "");
 }
 
-TEST_CASE("a read that does not return leaves no force, and does not keep the host from stopping", "[slow]") {
+TEST_CASE("host: a blocked read leaves no force, and the host still stops", "[slow]") {
   auto device = std::make_unique<FakeDevice>();
   {
     Hosted hosted;
@@ -195,7 +195,7 @@ TEST_CASE("a read that does not return leaves no force, and does not keep the ho
   CHECK(device->misused == 0);
 }
 
-TEST_CASE("of devices that share a scene one that is silent or pulled out takes no force from another, and comes back") {
+TEST_CASE("shared scene: a silent or unplugged device does not affect the others' forces") {
   Hosted hosted(3);
   hosted.share();
   hosted.start();
@@ -223,7 +223,7 @@ TEST_CASE("of devices that share a scene one that is silent or pulled out takes 
   }
 }
 
-TEST_CASE("a read that does not return takes the force from all that share the scene, until it returns") {
+TEST_CASE("shared scene: a blocked read removes the force of all devices until it returns") {
   Hosted hosted(2);
   hosted.share();
   hosted.start();
@@ -238,7 +238,7 @@ TEST_CASE("a read that does not return takes the force from all that share the s
   CHECK(hosted.device(0).misused + hosted.device(1).misused == 0);
 }
 
-TEST_CASE("an object that spins or is driven is where its motion says, for every device") {
+TEST_CASE("host: spinning and driven objects have their pose for every device") {
   Hosted hosted(2);
   hosted.config.objects[0].motion.kind = MotionKind::kDriven;
   hosted.start();
@@ -255,7 +255,7 @@ TEST_CASE("an object that spins or is driven is where its motion says, for every
   CHECK(fixed.host.set_pose("cube", away).find("driven") != std::string::npos);
 }
 
-TEST_CASE("a stop that is asked for ends the wait at once, from any thread or signal") {
+TEST_CASE("host: a stop request ends the wait at once, from any thread or signal") {
   Hosted hosted;
   hosted.start();
   CHECK_FALSE(hosted.host.wait_ms(10));
@@ -275,7 +275,7 @@ TEST_CASE("a stop that is asked for ends the wait at once, from any thread or si
   CHECK(other.join_within(1'000'000'000));
 }
 
-TEST_CASE("a scene that cannot be run is refused with its reason") {
+TEST_CASE("host: an invalid scene is refused with its reason") {
   Host host;
   HostConfig config = fake_config("no_such_file.fdcg");
   CHECK(host.open(config).find("no_such_file.fdcg") != std::string::npos);
@@ -297,7 +297,7 @@ TEST_CASE("a scene that cannot be run is refused with its reason") {
   CHECK(host.open(config).find("at most 16") != std::string::npos);
 }
 
-TEST_CASE("the C API refuses what is not right, with the reason") {
+TEST_CASE("the C API refuses invalid arguments with the reason") {
   CHECK(refuses_from_c() == 0);
 }
 

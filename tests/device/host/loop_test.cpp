@@ -81,7 +81,7 @@ struct Running {
 
 }  // namespace
 
-TEST_CASE("an event keeps a signal until it is waited for, and a wait without one ends in time") {
+TEST_CASE("event: a signal is kept until the next wait, and a wait without one times out") {
   Event event;
   event.signal();
   event.signal();
@@ -91,7 +91,7 @@ TEST_CASE("an event keeps a signal until it is waited for, and a wait without on
   CHECK(monotonic_ns() - before_ns >= 20 * kMsNs);
 }
 
-TEST_CASE("an event wakes its waiter, every time") {
+TEST_CASE("event: wakes its waiter every time") {
   Event ping, pong;
   std::atomic<int> missed{0};
   Running other([&] {
@@ -127,7 +127,7 @@ TEST_CASE("a thread that does not end is reported, and can be left alone") {
   CHECK(within_ms(5000, [&] { return has_ended.load(); }));
 }
 
-TEST_CASE("nobody is inside a link when it is closed") {
+TEST_CASE("link: no thread is inside when it is closed") {
   Link link;
   std::atomic<bool> is_usable{false}, ends{false};
   std::atomic<int> wrong{0};
@@ -206,7 +206,7 @@ TEST_CASE("the writer sends each force at once, numbered, with the echo, and zer
   CHECK(status.write.total == status.writes);
 }
 
-TEST_CASE("after a write that was held the first thing sent is the newest") {
+TEST_CASE("writer: after a blocked write the newest force is sent first") {
   Rig rig;
   rig.open();
   const GatedForce force = gated_force();
@@ -227,7 +227,7 @@ TEST_CASE("after a write that was held the first thing sent is the newest") {
   CHECK(writer.ends_within_ms(1000));
 }
 
-TEST_CASE("a refused write shows until one is taken, and a closed link is no failure") {
+TEST_CASE("writer: a failed write is reported until one succeeds, and a closed link is no failure") {
   Rig rig;
   Running writer([&] { rig.writer.run(); });
   rig.send(GatedForce(), 1);
@@ -247,7 +247,7 @@ TEST_CASE("a refused write shows until one is taken, and a closed link is no fai
   CHECK(writer.ends_within_ms(1000));
 }
 
-TEST_CASE("a writer that is muted sends nothing more, not even its farewell") {
+TEST_CASE("writer: a muted writer sends nothing, not even its safe stop") {
   Rig rig;
   rig.open();
   Running writer([&] { rig.writer.run(); });
@@ -279,7 +279,7 @@ TEST_CASE("a tick drains to the newest report and counts the others") {
   CHECK(status.counters.lost == 0);
 }
 
-TEST_CASE("a report that is too long is refused, however long") {
+TEST_CASE("servo loop: a report that is too long is refused") {
   for (const int excess : {1, 100, 111, 112, 1000}) {
     Rig rig;
     rig.open();
@@ -295,7 +295,7 @@ TEST_CASE("a report that is too long is refused, however long") {
   }
 }
 
-TEST_CASE("a loss is told once, after its zero force is on the way, and the device is left alone until it is opened anew") {
+TEST_CASE("servo loop: a loss is signalled once, after zero force, and the device is not read until reopened") {
   Rig rig;
   rig.open();
   rig.servo.tick();
@@ -328,7 +328,7 @@ TEST_CASE("a loss is told once, after its zero force is on the way, and the devi
   CHECK(rig.device.misused == 0);
 }
 
-TEST_CASE("the servo thread calls no heap and takes no lock, whatever happens to the device") {
+TEST_CASE("servo loop: no heap and no lock, whatever happens to the device") {
   if (!can_count_thread_calls()) return;
   Rig rig;
   LogRing log(1u << 16);  // too small for all of it: a full ring is part of the test

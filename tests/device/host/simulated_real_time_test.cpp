@@ -33,7 +33,7 @@ TEST_CASE("simulated: a host that does not read keeps the oldest reports") {
   CHECK(host.record->reports_lost > 600);
 }
 
-TEST_CASE("simulated: a host that reads late reads what was, in its order") {
+TEST_CASE("simulated: a host that reads late gets the reports in order") {
   SimulationConfig config = still();
   config.is_real_time = true;
   config.rate_hz = 200;
@@ -60,7 +60,7 @@ TEST_CASE("simulated: a device that takes no output for 7 s fails the write afte
   CHECK(host.record->verdicts[FDCG_FW_TAKEN] == 0);
 }
 
-TEST_CASE("simulated: in real time the device keeps its own, and a write that is not taken blocks") {
+TEST_CASE("simulated: in real time the device uses the real clock, and a write that is not taken blocks") {
   constexpr std::uint64_t kMs = 1000000;
   SimulationConfig config = still();
   config.is_real_time = true;

@@ -35,7 +35,7 @@ TEST_CASE("a quantile of times is at least the true one, and at most a fourth ro
   }
 }
 
-TEST_CASE("every time has a bin, the longest and none at all too") {
+TEST_CASE("every time has a bin, also zero and the longest") {
   TimeHistogram histogram;
   CHECK(histogram.quantile(0.5) == 0);
   histogram.add(0);

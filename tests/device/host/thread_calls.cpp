@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in front of the C library's heap and locks, counts on the thread that asked, and passes on.
+// Interposes the C library's heap and lock functions, counts calls on registered threads, and forwards them.
 #include "thread_calls.hpp"
 
 #include <dlfcn.h>

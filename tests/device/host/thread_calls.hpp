@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts calls of the heap and of locks on one thread: the one that has asked for it.
+// Counts calls of heap and locks on one thread, the one that starts the count.
 #pragma once
 
 #include <cstdint>

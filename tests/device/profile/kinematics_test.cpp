@@ -96,7 +96,7 @@ TEST_CASE("kinematics: known poses") {
   check_position(kDeltaRobot, 3, {kPi / 2, kPi / 2, kPi / 2}, 0, 0, 0.1 + std::sqrt(0.2 * 0.2 - 0.03 * 0.03) - 0.15);
 }
 
-TEST_CASE("kinematics: a delta whose arms are numbered the other way round hangs on the same side") {
+TEST_CASE("kinematics: a delta with reversed arm order has the same side") {
   const KinematicsParams there = params(KinematicsKind::kDelta, {0.06, 0.1, 0.2, 0.03, 0}, {0, 2 * kPi / 3, 4 * kPi / 3});
   const KinematicsParams back = params(KinematicsKind::kDelta, {0.06, 0.1, 0.2, 0.03, 0}, {0, 4 * kPi / 3, 2 * kPi / 3});
   const TipPose one = pose(there, 3, {0.1, 0.3, -0.2}), other = pose(back, 3, {0.1, -0.2, 0.3});
@@ -107,7 +107,7 @@ TEST_CASE("kinematics: a delta whose arms are numbered the other way round hangs
   }
 }
 
-TEST_CASE("kinematics: the Jacobian is what differences say") {
+TEST_CASE("kinematics: the Jacobian equals finite differences") {
   Random random(61);
   for (const Case& c : kCases)
     for (int round = 0; round < 300; ++round) {
@@ -127,7 +127,7 @@ TEST_CASE("kinematics: the Jacobian is what differences say") {
     }
 }
 
-// What the motors do in a small motion is what the hand feels: effort . dq = force . dx, to the second order.
+// Virtual work: in a small motion effort . dq = force . dx, to second order.
 TEST_CASE("kinematics: efforts do the work of the force") {
   Random random(62);
   for (const Case& c : kCases)
@@ -193,7 +193,7 @@ TEST_CASE("kinematics: the inverse closes the loop") {
   }
 }
 
-TEST_CASE("kinematics: what has no pose is refused") {
+TEST_CASE("kinematics: unreachable positions are refused") {
   TipPose tip;
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   for (const Case& c : kCases)

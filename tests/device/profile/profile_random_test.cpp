@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Profiles changed at random are accepted, and then in order, or refused by the name of a field. 100,000 of them (a tenth where
-// the build is slow); as many as FDCG_RANDOM_PROFILES says where it is set: a million take a minute and a half.
+// the build is slow), or FDCG_RANDOM_PROFILES if set: a million take a minute and a half.
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -276,7 +276,7 @@ TEST_CASE("profiles changed at random are accepted and in order, or refused by t
     if (changes == 1 && !null_place.empty() && error.rfind("r.json: " + null_place + " is null", 0) != 0)
       FAIL(i << ": " << error << " should be of " << null_place);
   }
-  // A generator of nonsense, or of nothing but sense, would test little.
+  // Both valid and invalid profiles must be frequent, or little is tested.
   CHECK(accepted > count / 20);
   CHECK(accepted < count / 2);
 }

@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/json_reader.hpp"
 #include "catch.hpp"
 #include "profile/kinematics.hpp"
 #include "profile/profile_json.hpp"
 #include "profile/report_codec.hpp"
+#include "shared/json/reader.hpp"
 
 namespace {
 
@@ -93,7 +93,7 @@ TEST_CASE("of the built-in profiles the reference device alone has every limit")
   }
 }
 
-TEST_CASE("a profile becomes the table that its text says") {
+TEST_CASE("a profile is translated to its table") {
   std::vector<std::string> warnings;
   const Profile p = parsed(full(), &warnings);
   CHECK(warnings.empty());
@@ -146,7 +146,7 @@ TEST_CASE("a profile becomes the table that its text says") {
   CHECK(p.limits.device_watchdog_s == 0.02);
 }
 
-TEST_CASE("what may be left out has its default") {
+TEST_CASE("profile: optional fields have their defaults") {
   Json json = full();
   for (const char* key : {"$schema", "source", "notes", "output", "init", "safe_stop", "limits"})
     json.erase(key);
@@ -166,7 +166,7 @@ TEST_CASE("what may be left out has its default") {
   CHECK(p.limits.force_n == 0);
 }
 
-TEST_CASE("a jointed device's parameters stand where the kinematics look for them") {
+TEST_CASE("profile: kinematic parameters are stored where kinematics reads them") {
   Json json = full();
   for (int axis = 0; axis < 3; ++axis) {
     json["input"]["fields"][2 + axis]["unit"] = "rad";
@@ -248,10 +248,10 @@ TEST_CASE("every error of a profile is one line that names the file, the field a
 }
 
 TEST_CASE("a text beyond the limit of bytes is refused") {
-  CHECK(refusal(std::string(kMostJsonBytes + 1, ' ')) == "p.json: has 1000001 bytes; the limit is 1000000");
+  CHECK(refusal(std::string(fdcg::json::Limits{}.bytes + 1, ' ')) == "p.json: has 1000001 bytes; the limit is 1000000");
 }
 
-TEST_CASE("each limit that is not known is a warning, and zero") {
+TEST_CASE("profile: each unknown limit is a warning, and zero") {
   for (const char* key : {"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m", "device_watchdog_s"}) {
     INFO(key);
     Json json = full();
@@ -276,12 +276,13 @@ TEST_CASE("each limit that is not known is a warning, and zero") {
 }
 
 TEST_CASE("a file that cannot be read is refused with a reason") {
+  using fdcg::json::read_text_file;
   std::string text;
   const std::filesystem::path folder = std::filesystem::path(FDCG_SOURCE_DIR) / "testdata" / "profiles";
-  CHECK(read_text_file((folder / "full.json").string(), kMostJsonBytes, &text) == "");
+  CHECK(read_text_file((folder / "full.json").string(), fdcg::json::Limits{}.bytes, &text) == "");
   CHECK(text == testdata("full.json"));
   CHECK(read_text_file((folder / "full.json").string(), text.size(), &text) == "");
   CHECK(read_text_file((folder / "full.json").string(), text.size() - 1, &text).find("has more than ") != std::string::npos);
-  CHECK(read_text_file(folder.string(), 10, &text) == folder.string() + ": is a folder; name a file in it");
+  CHECK(read_text_file(folder.string(), 10, &text) == folder.string() + ": is a directory; name a file in it");
   CHECK(read_text_file("no/such/file", 10, &text) == "no/such/file: does not exist; check the path");
 }

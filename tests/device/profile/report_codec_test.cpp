@@ -56,7 +56,7 @@ double half_count(const Field& field, double value) {
   return (std::fabs(value) + std::fabs(field.bias)) * 1.2e-7 + std::fabs(field.scale) * 1e-37;
 }
 
-// A value in the middle half of what the field can say.
+// A value in the middle half of the field's range.
 double value_within(const Field& field, std::mt19937_64& random) {
   const double most = field.type == NumberType::kF32 ? 1000 : std::ldexp(1.0, 8 * bytes_of(field.type) - 1) - 1;
   const bool is_signed = field.type != NumberType::kU8 && field.type != NumberType::kU16 && field.type != NumberType::kU32;
@@ -101,7 +101,7 @@ TEST_CASE("checksums have their published check values") {
   CHECK(crc_of(CrcKind::kCrc32, digits, 0) == 0);
 }
 
-TEST_CASE("numbers stand in the report as their type and byte order say") {
+TEST_CASE("report codec: numbers are encoded by type and byte order") {
   CHECK(encoded(single(NumberType::kU8, false, 1, 0), 200) == Bytes{7, 200});
   CHECK(encoded(single(NumberType::kI8, false, 1, 0), -2) == Bytes{7, 0xFE});
   CHECK(encoded(single(NumberType::kU16, false, 1, 0), 0x1234) == Bytes{7, 0x34, 0x12});
@@ -128,13 +128,13 @@ TEST_CASE("an effort is rounded to the nearest count and held in the range of it
   CHECK(encoded(single(NumberType::kF32, false, 1, 0), kInfinity) == Bytes{7, 0xFF, 0xFF, 0x7F, 0x7F});
 }
 
-TEST_CASE("an effort that is no number is no force") {
+TEST_CASE("report codec: a NaN effort gives no force") {
   CHECK(encoded(single(NumberType::kI16, false, 1, 0), kNan) == Bytes{7, 0, 0});
   CHECK(encoded(single(NumberType::kF32, false, 1, 0), kNan) == Bytes{7, 0, 0, 0, 0});
   CHECK(encoded(single(NumberType::kU8, false, 1, -128), kNan) == Bytes{7, 128});  // where 128 is the raw value of no force
 }
 
-TEST_CASE("a report is refused by what is wrong with it") {
+TEST_CASE("report codec: a report is refused with the kind of error") {
   Profile profile = single(NumberType::kF32, false, 1, 0);
   ReportLayout& layout = profile.input;
   layout.bytes = 9;
@@ -185,7 +185,7 @@ TEST_CASE("status bits of the mask are a fault, others are not; several fields a
   CHECK(has_fault({0, 0, 0x04}));
 }
 
-TEST_CASE("an output report says that forces are on only where the gate is armed") {
+TEST_CASE("report codec: output reports enable forces only if the gate is armed") {
   Profile profile = single(NumberType::kI16, false, 1, 0);
   profile.output.bytes = 4;
   profile.output.fields[1] = {Role::kEnable, NumberType::kU8, false, 0, 3, 1, 0, 0xAA};
@@ -207,7 +207,7 @@ TEST_CASE("an output report says that forces are on only where the gate is armed
   CHECK_FALSE(decode_output(profile, data.data(), 4, &command));
 }
 
-TEST_CASE("what a random profile encodes it decodes again, and every byte of it is its own") {
+TEST_CASE("report codec: random profiles decode what they encode, and fields do not overlap") {
   const unsigned seed = 20260101;
   std::mt19937_64 random(seed);
   for (int i = 0; i < 20000; ++i) {

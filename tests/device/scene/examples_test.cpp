@@ -88,7 +88,7 @@ Held replay(const std::string& log, double from_s, double to_s) {
       REQUIRE(touch.state == FDCG_FACE);
       held.slipping += touch.slipping;
       held.least_force_n = std::min(held.least_force_n, std::hypot(touch.force_n[0], touch.force_n[1], touch.force_n[2]));
-      // A touch is told with the pose before the last substep: the two can be compared where the body is at rest.
+      // A touch is reported in the pose before the last substep, so it is compared only while the body is at rest.
       const fdcg_body& body = tick.state->setup.bodies[0].body;
       const double *const v = body.velocity_m_per_s, *const turn = body.spin_rad_per_s;
       if (std::hypot(v[0], v[1], v[2]) > kStill || std::hypot(turn[0], turn[1], turn[2]) * kSize > kStill) continue;
@@ -204,7 +204,7 @@ TEST_CASE("with friction for half of its weight the cube stays on the ground, an
   CHECK(highest_m < 0.001);
 }
 
-TEST_CASE("a soft sheet dents under a finger, holds its god-object, and comes back") {
+TEST_CASE("a soft sheet deforms under a finger, carries its god-object, and recovers") {
   const Folder folder;
   HostConfig config = read(kScenes + "press_sheet.json");
   config.objects[0].file = FDCG_SHEET;
@@ -244,7 +244,7 @@ TEST_CASE("a soft sheet dents under a finger, holds its god-object, and comes ba
   CHECK(last_m < 1e-4);
 }
 
-TEST_CASE("two contacts press one sheet beside a ball, and the sheet bears what both of them feel of it") {
+TEST_CASE("two contacts press one sheet beside a ball, and the sheet's load is the sum of their forces") {
   const Folder folder;
   HostConfig config = read(kScenes + "press_sheet.json");
   config.objects[0].file = FDCG_SHEET;
@@ -303,7 +303,7 @@ TEST_CASE("a run without real time writes the same log every time") {
   CHECK(a.substr(reader.offset()) == b.substr(reader.offset()));
 }
 
-TEST_CASE("a recording is played as fast as it goes, to its end, and gives the forces that it gave") {
+TEST_CASE("a recording is played without real time to its end, with the same forces") {
   const Folder folder;
   run(read(kScenes + "lift_cube.json"), 3, folder.file("a.fdcglog"));
   HostConfig config = read(kScenes + "lift_cube.json");
@@ -368,7 +368,7 @@ TEST_CASE("a recording with a silence of hours is not played without waiting") {
   CHECK(play(hours).find("are played: record it in parts") != std::string::npos);
 }
 
-TEST_CASE("what cannot run without real time is refused, and says what to do") {
+TEST_CASE("devices that need real time are refused with a remedy") {
   HostConfig config = read(kScenes + "lift_cube.json");
   FastRun fast;
   REQUIRE(fast.open(config) == "");
@@ -377,7 +377,7 @@ TEST_CASE("what cannot run without real time is refused, and says what to do") {
   CHECK(fast.open(config).find("without --fast") != std::string::npos);
 }
 
-TEST_CASE("a body must weigh something") {
+TEST_CASE("a body without mass is refused") {
   std::string text = bytes_of(kScenes + "lift_cube.json");
   HostConfig config;
   const auto replaced = [&](const std::string& what, const std::string& by) {

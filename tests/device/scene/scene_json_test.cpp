@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: what is read, what is refused and how it is told, and that what is written reads back. Over 400 lines: a
+// Scenes: reading, refusals with their messages, and writing with reading back. Over 400 lines: a
 // case for each kind of thing that a scene may hold.
 #include <algorithm>
 #include <cmath>
@@ -148,7 +148,7 @@ TEST_CASE("every key of a scene is read") {
   CHECK(config.log_megabytes == 12.5);
 }
 
-TEST_CASE("what a scene leaves out takes its default") {
+TEST_CASE("scene: optional fields have their defaults") {
   HostConfig config;
   REQUIRE(parse_scene(small().dump(), "s.json", &config) == "");
   const fdcg_params params = fdcg_make_params();
@@ -257,7 +257,7 @@ TEST_CASE("bodies, surfaces, soft sheets, grips and scripts are read, and writte
   CHECK(write_scene(back) == text);
 }
 
-TEST_CASE("what is wrong with a grasp is told too") {
+TEST_CASE("scene: errors of a grasp are reported") {
   struct Wrong {
     const char *pointer, *value;
     std::vector<const char*> words;
@@ -304,7 +304,7 @@ TEST_CASE("what is wrong with a grasp is told too") {
   }
 }
 
-TEST_CASE("what is wrong is told in one line: file, field, value, limit") {
+TEST_CASE("scene: an error is one line with file, field, value and limit") {
   struct Wrong {
     const char* pointer;  // where
     const char* value;    // JSON; empty: taken away
@@ -406,7 +406,7 @@ TEST_CASE("a device without limits is accepted, and a warning says that it gives
                     [](const std::string& warning) { return warning.find("limits") != std::string::npos; }));
 }
 
-TEST_CASE("a device whose reports come as seldom as silence is accepted with a warning, once, that says what rate will do") {
+TEST_CASE("scene: a device rate in the range of silence gives one warning with the minimum rate") {
   json profile = json::parse(std::string(find_builtin_profile("fdcg-reference")->text));
   for (const double rate_hz : {1.0, 10.0, 100.0, 100.5, 1000.0}) {
     profile["rate_hz"] = rate_hz;
@@ -432,7 +432,7 @@ TEST_CASE("a device whose reports come as seldom as silence is accepted with a w
   }
 }
 
-TEST_CASE("whatever is changed in a scene, it is accepted, or refused in one line that names the file") {
+TEST_CASE("scene: any change is accepted, or refused in one line that names the file") {
   std::mt19937_64 random(22);
   const json full = json::parse(kFull);
   const std::vector<json> values = {nullptr,
@@ -491,7 +491,7 @@ TEST_CASE("whatever is changed in a scene, it is accepted, or refused in one lin
   CHECK(refused > 2500);
 }
 
-TEST_CASE("a motion begins at the pose and stays on its way") {
+TEST_CASE("a motion begins at the pose and stays on its path") {
   HostConfig config;
   REQUIRE(parse_scene(kFull, "s.json", &config) == "");
   for (const ObjectConfig& object : config.objects) {

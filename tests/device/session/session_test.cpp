@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A session's log: the ring, the file, and what its reader makes of damage.
+// A session's log: the ring, the file, and its reader on damaged files.
 #include "session/session_log.hpp"
 
 #include <sys/resource.h>
@@ -41,7 +41,7 @@ void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
-// What a log of `count` ticks of one device is, and what start and stop said.
+// A log of `count` ticks of one device, and the results of start and stop.
 struct Written {
   std::string started, stopped;
 };
@@ -81,7 +81,7 @@ std::vector<std::uint64_t> read_ticks(SessionReader& reader) {
 
 }  // namespace
 
-TEST_CASE("a log gives back every tick, in order, and says that it is whole") {
+TEST_CASE("log: every tick is read back in order, and the log is reported complete") {
   const Folder folder;
   const HostConfig config = config_for(folder.file("a.fdcglog"));
   const Written written = write_log(config, 500);
@@ -116,7 +116,7 @@ TEST_CASE("the header is made again from what was read, byte for byte") {
   CHECK(encode_session_header(reader.header()) == encode_session_header(header));
 }
 
-TEST_CASE("a log that was cut at any byte gives the ticks before the cut, and says where it ends") {
+TEST_CASE("log: truncated at any byte, it gives the ticks before, and the place") {
   const Folder folder;
   const HostConfig config = config_for(folder.file("a.fdcglog"));
   write_log(config, 6);
@@ -149,7 +149,7 @@ TEST_CASE("a log that was cut at any byte gives the ticks before the cut, and sa
   }
 }
 
-TEST_CASE("a byte changed anywhere is found, and only the ticks before it are given") {
+TEST_CASE("log: any changed byte is detected, and only the ticks before it are given") {
   const Folder folder;
   const HostConfig config = config_for(folder.file("a.fdcglog"));
   write_log(config, 4);
@@ -170,7 +170,7 @@ TEST_CASE("a byte changed anywhere is found, and only the ticks before it are gi
   }
 }
 
-TEST_CASE("what is no log, and what follows a log, is refused by name") {
+TEST_CASE("log: other files and trailing bytes are refused by name") {
   const Folder folder;
   SessionReader missing, empty, other, appended, newer;
   CHECK(missing.open(folder.file("missing")).find("No such file") != std::string::npos);
@@ -191,7 +191,7 @@ TEST_CASE("what is no log, and what follows a log, is refused by name") {
   CHECK(newer.open(folder.file("newer")).find("version 2") != std::string::npos);
 }
 
-TEST_CASE("a full ring drops ticks and counts them, and the numbers of the rest show which") {
+TEST_CASE("log: a full ring drops and counts ticks, and tick numbers show which") {
   LogRing ring(LogRing::kLeastBytes);
   TickInput input;
   input.report_count = 1;
@@ -226,7 +226,7 @@ TEST_CASE("a full ring drops ticks and counts them, and the numbers of the rest 
   CHECK(reader.end().ticks == std::vector<std::uint64_t>{taken + dropped + 1});
 }
 
-TEST_CASE("rings filled by threads of their own come whole into one file") {
+TEST_CASE("log: rings filled by several threads are written completely to one file") {
   constexpr std::uint64_t kTicks = 20000;
   const Folder folder;
   const HostConfig config = config_for(folder.file("a.fdcglog"), 0, 2);
@@ -269,7 +269,7 @@ TEST_CASE("rings filled by threads of their own come whole into one file") {
   CHECK(counts[0] > 0);
 }
 
-TEST_CASE("a disk that fills up costs the log its end, is told, and leaves whole ticks") {
+TEST_CASE("log: a full disk truncates the log after a complete tick and is reported") {
   const Folder folder;
   const HostConfig config = config_for(folder.file("a.fdcglog"));
   rlimit before{};

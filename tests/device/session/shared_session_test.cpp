@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices that share a scene, as whole sessions on simulated ones: what becomes of the cube when one of them dies, their log,
-// and what is refused.
+// Devices that share a scene, as whole sessions on simulated ones: the cube when one of them fails, their log, and refusals.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -78,7 +77,7 @@ Story run(HostConfig config, const std::string& log) {
 
 }  // namespace
 
-TEST_CASE("when one of two devices is pulled out for ever the cube falls, and the other stays safe and armed") {
+TEST_CASE("shared scene: one of two devices is unplugged: the cube falls, the other stays armed") {
   const Folder folder;
   HostConfig config = example();
   config.devices[1].simulation.faults.push_back(fault_at(SimulatedFaultKind::kUnplug, 3.5, 0));
@@ -97,7 +96,7 @@ TEST_CASE("when one of two devices is pulled out for ever the cube falls, and th
   CHECK(story.worst_slew_n <= 1);
 }
 
-TEST_CASE("when the third of three devices dies the two others hold the cube, whatever kind of death it is") {
+TEST_CASE("shared scene: the third of three devices fails in any way: the others hold the cube") {
   const auto kind = GENERATE(SimulatedFaultKind::kUnplug, SimulatedFaultKind::kStall, SimulatedFaultKind::kNoOutput,
                              SimulatedFaultKind::kDeviceFault, SimulatedFaultKind::kShort);
   const bool is_first = GENERATE(false, true);  // of the scene: then it is the clock
@@ -160,7 +159,7 @@ TEST_CASE("a recording of devices that share a scene is played to the same force
   CHECK(compared >= 7990);
 }
 
-TEST_CASE("two devices press one sheet, and it bears them both") {
+TEST_CASE("shared scene: two devices press one sheet") {
   const bool is_shared = GENERATE(true, false);
   const Folder folder;
   HostConfig config;
@@ -218,7 +217,7 @@ TEST_CASE("a log that was cut off replays up to the last tick that all devices h
   }
 }
 
-TEST_CASE("a record that is missing, and one that differs, end the replay of all that share the scene") {
+TEST_CASE("shared scene: a missing or different record ends the replay of all devices") {
   const Folder folder;
   HostConfig config = example();
   config.log_file = folder.file("a.fdcglog");
@@ -258,7 +257,7 @@ TEST_CASE("a record that is missing, and one that differs, end the replay of all
   CHECK(thumb.ended_by == "finger");
 }
 
-TEST_CASE("devices share a scene where there is something to share, and say so in the log") {
+TEST_CASE("shared scene: used where objects can move, and recorded in the log") {
   HostConfig config = example();
   CHECK(config.is_shared);
   HostConfig back;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device in memory with knobs for all that a real one does wrong, and a profile and a scene for it: the tip moves along z,
-// the top of a cube is at z = 0 of the device's frame. It counts what the host must never do: read, write or close it at the
-// wrong time. Reading takes no lock and no heap.
+// A device in memory with switches for the faults of real ones, and a profile and a scene for it: the tip moves along z, the
+// top of a cube is at z = 0 of the device's frame. It counts protocol violations of the host: reading, writing or closing at
+// the wrong time. Reading takes no lock and no heap.
 #pragma once
 
 #include <time.h>
@@ -86,7 +86,7 @@ struct Written {
   Command command;
 };
 
-// What a device has done and had done to it; outlives its transport.
+// The state and history of a device; outlives its transport.
 struct FakeDevice {
   // Knobs.
   std::atomic<bool> is_plugged{true}, is_silent{false}, holds_reads{false}, holds_writes{false}, refuses_writes{false};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every profile that the parser accepts keeps to, said a second time: what the loop relies on without looking.
+// An independent check of the invariants of accepted profiles, on which the loop relies without checks.
 #pragma once
 
 #include <algorithm>

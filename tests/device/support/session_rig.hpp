@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ticks for the tests of a session's log: any that there can be, and ones that say their own number.
+// Ticks for the tests of a session's log: random ones, and ones that contain their own number.
 #pragma once
 
 #include <stdlib.h>
@@ -56,7 +56,7 @@ inline void fill(Random& random, TickInput* input) {
   }
 }
 
-// The bytes of a tick that says its own number.
+// The bytes of a tick that contains its own number.
 inline void number_tick(std::uint64_t number, TickInput* input, TickOutput* output) {
   Random random(number);
   fill(random, input);

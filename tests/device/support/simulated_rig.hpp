@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated device and a host of few words, through the host's own codec and judge, in one thread.
+// A simulated device and a minimal host, with the host's own codec and judge, in one thread.
 #pragma once
 
 #include <cstring>
@@ -33,7 +33,7 @@ inline SimulatedFault fault(SimulatedFaultKind kind, double at_s, double for_s =
   return f;
 }
 
-// A host of few words: one output report a read, enabled from the second on.
+// A minimal host: one output report per read, enabled from the second on.
 struct SmallHost {
   SimulationConfig config;
   std::shared_ptr<SimulationRecord> record = std::make_shared<SimulationRecord>();

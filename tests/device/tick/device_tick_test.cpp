@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pure tick: from reports to a gated force, and what it counts on the way.
+// The pure tick: from reports to a gated force, and its counters.
 #include "tick/device_tick.hpp"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ struct Rig {
     report(x, y, z);
     return tick();
   }
-  // As many reports as arming wants.
+  // As many reports as arming needs.
   void begin_at(double x, double y, double z) {
     for (int i = 0; i < kSamplesToArm; ++i)
       at(x, y, z);
@@ -101,7 +101,7 @@ struct Rig {
 
 }  // namespace
 
-TEST_CASE("a press into a face is felt as the spring has it") {
+TEST_CASE("device tick: the force of a press into a face is that of the spring") {
   Rig rig;
   rig.press(0.002);
   CHECK(rig.output.has_sample);
@@ -113,7 +113,7 @@ TEST_CASE("a press into a face is felt as the spring has it") {
   CHECK(rig.output.wanted_force_n[2] == Approx(2));
 }
 
-TEST_CASE("the mapping turns, scales and moves the hand, and turns the force back") {
+TEST_CASE("device tick: the mapping transforms the tip, and the force back") {
   Mapping mapping;
   const double turned[9] = {0, 0, 1, 1, 0, 0, 0, 1, 0};  // device's x is the world's y, y is z, z is x
   std::copy_n(turned, 9, mapping.rotation);
@@ -161,7 +161,7 @@ TEST_CASE("of several reports the newest good one counts") {
   CHECK(counters.late == 0);
 }
 
-TEST_CASE("rejected reports leave all as it was, and three of them are three missed ticks") {
+TEST_CASE("device tick: rejected reports change nothing and count as missed ticks") {
   Rig rig;
   rig.press(0.002);
   for (int i = 0; i < 5; ++i) {
@@ -222,7 +222,7 @@ TEST_CASE("arming is refused while a finger is pressed into something") {
   CHECK(rig.output.phase == Phase::kRamping);
 }
 
-TEST_CASE("a device that has been away begins where it is: nothing on the way is met, its numbers begin anew") {
+TEST_CASE("device tick: after reopening, a device starts at its position without contact on the way") {
   Rig rig;
   rig.press(0.002);
   rig.at(0.1, 0.1, 0.505);
@@ -238,7 +238,7 @@ TEST_CASE("a device that has been away begins where it is: nothing on the way is
   CHECK(rig.device.counters.lost == 0);
 }
 
-TEST_CASE("a driven object that moves onto the hand is felt") {
+TEST_CASE("device tick: a driven object that moves onto the hand is felt") {
   Rig rig({}, {{0, 0, 0}}, true);
   rig.at(0.1, 0.1, 0.505);
   rig.input.pose_count = 1;
@@ -248,7 +248,7 @@ TEST_CASE("a driven object that moves onto the hand is felt") {
   CHECK(rig.output.wanted_force_n[2] == Approx(2));
 }
 
-TEST_CASE("the same inputs give the same bits, whatever lies in the unused part of an input") {
+TEST_CASE("device tick: the same inputs give the same bits, whatever the unused part contains") {
   std::vector<double> seen[2];
   for (int run = 0; run < 2; ++run) {
     Rig rig;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate's promise, kept whatever comes in.
+// The gate's guarantees under random input.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -45,7 +45,7 @@ struct Violation {
   }
 };
 
-// The promise at the top of gate.hpp, recomputed from outside.
+// The guarantees at the top of gate.hpp, checked independently.
 struct Promise {
   DeviceLimits limits;
   double last_n[3] = {};
@@ -120,7 +120,7 @@ void run_random(std::uint64_t ticks, std::uint64_t seed, Promise& promise, std::
 }  // namespace
 
 // FDCG_GATE_INPUTS: how many; the suite makes a million, 10^8 were made for each release.
-TEST_CASE("whatever comes in, what leaves the gate keeps its promise") {
+TEST_CASE("gate: with any input the output is within its guarantees") {
   const char* const asked = std::getenv("FDCG_GATE_INPUTS");
   const std::uint64_t ticks = asked ? std::strtoull(asked, nullptr, 10) : 1'000'000;
   Promise promise;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The safety gate: what it lets through, and everything that makes it let through nothing.
+// The safety gate: its output limits, and every fault that makes it give zero.
 #include "tick/gate.hpp"
 
 #include <cmath>
@@ -60,7 +60,7 @@ void check_is_zero(const GatedForce& force) {
   CHECK_FALSE(force.is_enabled());
 }
 
-// After `fault`: no force, now and for ever, until armed again.
+// After `fault`: no force until armed again.
 void check_is_latched(Rig& rig, Fault fault) {
   CHECK(rig.gate.phase() == Phase::kDisarmed);
   CHECK(rig.gate.fault() == fault);
@@ -80,7 +80,7 @@ void check_is_latched(Rig& rig, Fault fault) {
 
 }  // namespace
 
-TEST_CASE("a gate gives no force until it is armed") {
+TEST_CASE("gate: no force until armed") {
   Rig rig;
   rig.input.wanted_force_n[0] = 1;
   for (int i = 0; i < 100; ++i)
@@ -123,7 +123,7 @@ TEST_CASE("after arming the force grows from zero over the ramp's time") {
   CHECK(rig.gate.phase() == Phase::kArmed);
 }
 
-TEST_CASE("the ramp holds for a wish far beyond the limit, too") {
+TEST_CASE("gate: the ramp also holds for a requested force far beyond the limit") {
   Rig rig;
   rig.tick();
   rig.input.arm = true;
@@ -133,7 +133,7 @@ TEST_CASE("the ramp holds for a wish far beyond the limit, too") {
     CHECK(norm(rig.tick().force_n()) <= 3 * (tick + 1) * 0.001 / kRampS * 1.000001);
 }
 
-TEST_CASE("a tick that comes late gives no right to a larger step, nor does a force from before a fault") {
+TEST_CASE("gate: neither a late tick nor a force from before a fault allows a larger step") {
   DeviceLimits limits = sound_limits();
   limits.slew_n_per_s = 5;
   Rig rig(limits);
@@ -154,7 +154,7 @@ TEST_CASE("a tick that comes late gives no right to a larger step, nor does a fo
     CHECK(norm(rig.tick().force_n()) <= 5 * 0.001 * (i + 1) + 0.001);
 }
 
-TEST_CASE("every limit that is unknown means no force") {
+TEST_CASE("gate: an unknown limit means no force") {
   const double unknowns[] = {0, -1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
   for (const double unknown : unknowns) {
     for (int which = 0; which < 7; ++which) {
@@ -204,7 +204,7 @@ TEST_CASE("an effort beyond its axis' limit makes the whole force smaller and ke
   CHECK(force.force_n()[1] == Approx(0.625));
 }
 
-TEST_CASE("three missed ticks take the force to zero; reports that come back bring it back by the ramp") {
+TEST_CASE("gate: three missed ticks fade the force out; returning reports ramp it up") {
   Rig rig;
   rig.push(2);
   CHECK(norm(rig.tick(false).force_n()) == Approx(2));
@@ -220,7 +220,7 @@ TEST_CASE("three missed ticks take the force to zero; reports that come back bri
   CHECK(norm(rig.tick().force_n()) == Approx(2));
 }
 
-TEST_CASE("ten milliseconds of silence disarm") {
+TEST_CASE("gate: ten milliseconds of silence disarm") {
   Rig rig;
   rig.push(2);
   for (int i = 0; i < 9; ++i)
@@ -230,7 +230,7 @@ TEST_CASE("ten milliseconds of silence disarm") {
   check_is_latched(rig, Fault::kSilence);
 }
 
-TEST_CASE("everything else that goes wrong disarms at once") {
+TEST_CASE("gate: every other fault disarms at once") {
   const auto after = [](Fault fault, const auto& cause) {
     Rig rig;
     rig.push(2);
@@ -266,7 +266,7 @@ TEST_CASE("a host that was away for ten milliseconds is disarmed although a repo
   check_is_latched(rig, Fault::kHostLate);
 }
 
-TEST_CASE("a clock that goes back disarms") {
+TEST_CASE("gate: a clock that goes back disarms") {
   Rig rig;
   rig.push(2);
   rig.input.now_ns -= 100 * kMs;
@@ -274,7 +274,7 @@ TEST_CASE("a clock that goes back disarms") {
   check_is_latched(rig, Fault::kClock);
 }
 
-TEST_CASE("the first fault is the one that is kept") {
+TEST_CASE("gate: the first fault is kept") {
   Rig rig;
   rig.push(2);
   rig.input.device_fault = true;

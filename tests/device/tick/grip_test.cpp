@@ -22,7 +22,7 @@ Grip quarter_turn() {
 
 }  // namespace
 
-TEST_CASE("a held button closes in its time, one that is let go opens again, others do nothing") {
+TEST_CASE("grip: a held button closes in its time, a released one opens, others do nothing") {
   const Grip grip = quarter_turn();
   GripState state;
   for (int tick = 0; tick < 250; ++tick)
@@ -42,7 +42,7 @@ TEST_CASE("a held button closes in its time, one that is let go opens again, oth
   CHECK(state.turned == 0);
 }
 
-TEST_CASE("a contact goes from its open place to its closed one without a leap, and turns about the tip") {
+TEST_CASE("grip: a contact moves smoothly from open to closed, and turns about the tip") {
   const Grip grip = quarter_turn();
   const double open_m[3] = {0.03, 0.001, -0.002};
   GripState state;
@@ -66,7 +66,7 @@ TEST_CASE("a contact goes from its open place to its closed one without a leap, 
   CHECK(std::fabs(at_m[2]) < 1e-15);
 }
 
-TEST_CASE("a turn keeps every distance from the tip, on the way too") {
+TEST_CASE("grip: a turn keeps every distance from the tip") {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   for (int round = 0; round < 1000; ++round) {

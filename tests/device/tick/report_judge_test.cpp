@@ -61,7 +61,7 @@ constexpr NumberType kU8 = NumberType::kU8, kU16 = NumberType::kU16, kU32 = Numb
 
 }  // namespace
 
-TEST_CASE("a sequence that goes round is good, and none of it is lost") {
+TEST_CASE("report judge: a wrapping sequence is good without loss") {
   for (const NumberType type : {kU8, kU16, kU32}) {
     Stream stream(&type, nullptr);
     stream.sequence = 0xFFFFFF00;
@@ -70,7 +70,7 @@ TEST_CASE("a sequence that goes round is good, and none of it is lost") {
   }
 }
 
-TEST_CASE("a device's clock that goes round is good") {
+TEST_CASE("report judge: a wrapping device clock is good") {
   for (const NumberType type : {kU16, kU32}) {
     Stream stream(&kU32, &type);
     stream.device_start_s = type == kU32 ? 4294.0 : 0.06;  // shortly before it
@@ -94,7 +94,7 @@ TEST_CASE("gaps are counted as lost reports") {
   }
 }
 
-TEST_CASE("a report that comes again is repeated, for as long as it comes") {
+TEST_CASE("report judge: a repeated report is detected every time") {
   Stream stream(&kU16, &kU32);
   double now_s = stream.run(0, 0.1);
   const Sample sample = stream.made(now_s);
@@ -105,7 +105,7 @@ TEST_CASE("a report that comes again is repeated, for as long as it comes") {
   stream.run(now_s + 1, 0.1);
 }
 
-TEST_CASE("without a sequence a clock that stands still tells a repeated report, if it is fine enough") {
+TEST_CASE("report judge: without a sequence, a fine clock detects repeated reports") {
   Stream stream(nullptr, &kU32);
   const double now_s = stream.run(0, 0.1);
   const Sample sample = stream.made(now_s);
@@ -116,13 +116,13 @@ TEST_CASE("without a sequence a clock that stands still tells a repeated report,
   coarse.run(0, 1);
 }
 
-TEST_CASE("with neither sequence nor clock all is good") {
+TEST_CASE("report judge: with neither sequence nor clock every report is good") {
   Stream stream(nullptr, nullptr);
   for (int i = 0; i < 10; ++i)
     CHECK(stream.read(Sample{}, 0.5) == Verdict::kGood);
 }
 
-TEST_CASE("one report that was overtaken is out of order, and the stream goes on") {
+TEST_CASE("report judge: one overtaken report is out of order, the next are good") {
   for (const NumberType type : {kU8, kU16, kU32}) {
     Stream stream(&type, &kU32);
     const double now_s = stream.run(0, 0.1);
@@ -166,7 +166,7 @@ TEST_CASE("a restart is out of order for a while, then taken as new") {
   }
 }
 
-TEST_CASE("a restart that looks like a leap ahead is found too") {
+TEST_CASE("report judge: a restart that looks like a jump ahead is detected") {
   Stream stream(&kU32, &kU32);
   stream.sequence = 0xE0000000;  // 0 is 2^29 ahead of it
   double now_s = stream.run(0, 1);
@@ -195,7 +195,7 @@ TEST_CASE("noise in a report without a checksum costs that report") {
 }
 
 // The host sleeps for 300 ms: the kernel keeps the 64 oldest reports and drops the newer.
-TEST_CASE("after the host's sleep the reports that have waited are stale, and the next one is good") {
+TEST_CASE("report judge: queued reports after a host's sleep are stale, the next one is good") {
   for (const NumberType type : {kU8, kU16, kU32}) {
     Stream stream(&type, &kU32);
     const double asleep_s = stream.run(0, 1), awake_s = asleep_s + 0.3;
@@ -216,7 +216,7 @@ TEST_CASE("after the host's sleep the reports that have waited are stale, and th
   }
 }
 
-TEST_CASE("age is found by the clock alone, to within a millisecond") {
+TEST_CASE("report judge: the clock alone gives the age to within a millisecond") {
   Stream stream(nullptr, &kU32);
   const double now_s = stream.run(0, 1);
   Stream fresh = stream, stale = stream;
@@ -224,7 +224,7 @@ TEST_CASE("age is found by the clock alone, to within a millisecond") {
   CHECK(stale.read(stale.made(now_s), now_s + kMaxAgeS + 0.001) == Verdict::kStale);
 }
 
-TEST_CASE("after a silence that the clock cannot count all is stale until it has settled") {
+TEST_CASE("report judge: after a silence longer than the clock's range reports are stale until it settles") {
   Stream stream(&kU32, &kU16);  // goes round in 65 ms
   const double asleep_s = stream.run(0, 1);
   // A sleep of exactly ten rounds: by the clock alone the waiting reports would be fresh.
@@ -264,14 +264,14 @@ TEST_CASE("clocks that drift by 200 ppm either way stay fresh for hours, and age
   }
 }
 
-TEST_CASE("a queue that forms and stays is stale for at least twenty seconds") {
+TEST_CASE("report judge: a persistent queue is stale for at least twenty seconds") {
   Stream stream(&kU32, &kU32);
   const double now_s = stream.run(0, 10);
   for (int i = 0; i < 20000; ++i)
     REQUIRE(stream.read(stream.made(now_s + i * kPeriod), now_s + i * kPeriod + 0.0111) == Verdict::kStale);
 }
 
-TEST_CASE("whatever the counters say, the judge keeps its own numbers in order") {
+TEST_CASE("report judge: any counters keep its state consistent") {
   std::mt19937_64 random(7);
   for (int run = 0; run < 200; ++run) {
     const NumberType types[3] = {kU8, kU16, kU32};

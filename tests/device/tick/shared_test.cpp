@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices that share a scene, tick by tick: whose report moves it on, who touches what is in it. Whole sessions:
+// Devices that share a scene, tick by tick: the clock device, and the fingers that take part. Whole sessions:
 // shared_session_test.cpp.
 #include <cmath>
 #include <memory>
@@ -122,7 +122,7 @@ TEST_CASE("a device that has not reported yet has no finger in the scene") {
   CHECK(rig.height_m() == Approx(-0.5 * kGravity * 0.2 * 0.2).epsilon(0.01));
 }
 
-TEST_CASE("what one device moves, the other feels") {
+TEST_CASE("shared scene: motion caused by one device is felt by the other") {
   Rig rig({1000, 1000});
   rig.press_both();
   const double before_m = rig.body().translation_m[0];
@@ -137,7 +137,7 @@ TEST_CASE("what one device moves, the other feels") {
   CHECK(rig.outputs[0].wanted_force_n[0] == Approx(-rig.outputs[1].wanted_force_n[0]).epsilon(0.05));
 }
 
-TEST_CASE("the scene goes on with the next device when its clock falls silent, at the same speed") {
+TEST_CASE("shared scene: when the clock device is silent the next one takes over, at the same speed") {
   const bool is_slow = GENERATE(false, true);
   Rig rig({1000, is_slow ? 250.0 : 1000.0});
   const auto second = [&](int i) {
@@ -165,7 +165,7 @@ TEST_CASE("the scene goes on with the next device when its clock falls silent, a
   }
 }
 
-TEST_CASE("nothing moves while no device reports") {
+TEST_CASE("shared scene: nothing moves while no device reports") {
   Rig rig({1000, 1000});
   rig.press_both();
   for (int i = 0; i < 4; ++i)
@@ -176,7 +176,7 @@ TEST_CASE("nothing moves while no device reports") {
   CHECK(rig.height_m() == height_m);
 }
 
-TEST_CASE("a device that falls silent holds for 10 ms, then its finger leaves and the box falls") {
+TEST_CASE("shared scene: a silent device holds for 10 ms, then its finger is removed and the box falls") {
   Rig rig({1000, 1000});
   rig.press_both();
   rig.hold(8, false);
@@ -195,7 +195,7 @@ TEST_CASE("a device that falls silent holds for 10 ms, then its finger leaves an
   CHECK(rig.devices[0]->counters.bodies_lost == 0);
 }
 
-TEST_CASE("after a fault a finger stays out until its device is armed again") {
+TEST_CASE("shared scene: after a fault a finger is absent until its device is armed again") {
   HostConfig config = config_of({1000, 1000});
   config.gravity_m_per_s2[2] = 0;
   config.objects[0].motion.body.linear_damping_per_s = 100;  // let go, it stays near
@@ -230,7 +230,7 @@ TEST_CASE("after a fault a finger stays out until its device is armed again") {
   CHECK(most_n > 0.01);
 }
 
-TEST_CASE("a device that is gone takes its finger with it at once, and comes back with the next report if it was not armed") {
+TEST_CASE("shared scene: an unplugged device loses its finger at once, and regains it with the next report if not armed") {
   Rig rig({1000, 1000});
   rig.hold(10, true);
   CHECK(rig.is_in(1));
@@ -242,7 +242,7 @@ TEST_CASE("a device that is gone takes its finger with it at once, and comes bac
   CHECK(rig.is_in(1));
 }
 
-TEST_CASE("a device that is disarmed by command goes on holding") {
+TEST_CASE("shared scene: a device disarmed by command still holds objects") {
   Rig rig({1000, 1000});
   rig.press_both();
   rig.inputs[1].disarm = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soft sheets: how a load is spread over them, and that a hand gets no more work out of one than it put in.
+// Soft sheets: the distribution of a load, and passivity (a hand gains no work).
 #include "tick/soft.hpp"
 
 #include <algorithm>
@@ -106,7 +106,7 @@ struct Rig {
     }
     sheet.relax(0.001);
   }
-  // The steepest that the sheet is anywhere.
+  // The largest slope of the sheet.
   double steepest() {
     const fdcg_graph& now = *fdcg_deform_get_graph(sheet.deform());
     double least = 1;
@@ -118,7 +118,7 @@ struct Rig {
 
 }  // namespace
 
-TEST_CASE("the shares of a spread load are one together, none negative, and as far out as the radius says") {
+TEST_CASE("spread load: shares sum to one, are not negative, and extend to the radius") {
   for (const bake::PolygonSoup& soup : {plane_grid(24, 24), plane_jittered(24, 3), geodesic_sphere(12)}) {
     const Mesh mesh(soup);
     SoftLoad load;
@@ -143,7 +143,7 @@ TEST_CASE("the shares of a spread load are one together, none negative, and as f
   }
 }
 
-TEST_CASE("what one corner bears of another's load is the same the other way round, and its own is positive") {
+TEST_CASE("spread load: the shares are symmetric with a positive diagonal") {
   for (const bake::PolygonSoup& soup : {plane_jittered(12, 8), ico_sphere(2), star_sphere(2, 0.3, 1)}) {
     const Mesh mesh(soup);
     SoftLoad load;
@@ -170,7 +170,7 @@ TEST_CASE("what one corner bears of another's load is the same the other way rou
   }
 }
 
-TEST_CASE("a load that is to be spread too wide is refused with what the mesh allows") {
+TEST_CASE("spread load: a radius too large for the mesh is refused with the limit") {
   const Mesh mesh(plane_grid(24, 24));
   SoftLoad load;
   const std::string problem = load.begin(mesh.corners, mesh.place_m, 0.1, 0.1);
@@ -185,7 +185,7 @@ TEST_CASE("a load that is to be spread too wide is refused with what the mesh al
   CHECK(load.radius_m() > 0);
 }
 
-TEST_CASE("a finger makes a dent and not a pit") {
+TEST_CASE("soft sheet: a finger makes a wide dent, not a deep pit") {
   double steepest[2], deepest[2];
   for (const int spread : {0, 1}) {
     SoftConfig soft;
@@ -207,7 +207,7 @@ TEST_CASE("a finger makes a dent and not a pit") {
   CHECK(deepest[1] > 0.003);
 }
 
-TEST_CASE("hands that wander over a soft sheet get no more work out of it than they put in") {
+TEST_CASE("soft sheet: wandering hands gain no work") {
   for (const double mu : {0.0, 0.4}) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
       SoftConfig soft;

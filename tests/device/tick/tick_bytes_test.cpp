@@ -45,7 +45,7 @@ LoggedOutput any_output(Random& random) {
 
 }  // namespace
 
-TEST_CASE("a tick's input and output come back from their bytes") {
+TEST_CASE("a tick's input and output are read back from their bytes") {
   Random random(11);
   std::uint8_t first[kMostTickBytes], second[kMostTickBytes];
   std::size_t most_output = 0;
@@ -72,7 +72,7 @@ TEST_CASE("a tick's input and output come back from their bytes") {
   CHECK(most_output > kMostOutputBytes / 2);
 }
 
-TEST_CASE("the largest tick fits into what is kept for one") {
+TEST_CASE("the largest tick fits into its buffer") {
   TickInput input;
   input.pose_count = kMaxDriven;
   input.report_count = kMaxDrain;
@@ -82,7 +82,7 @@ TEST_CASE("the largest tick fits into what is kept for one") {
   CHECK(encode_tick_input(input, bytes) <= kMostInputBytes);
 }
 
-TEST_CASE("bytes that are no tick are refused, and none is read beyond the end") {
+TEST_CASE("invalid tick bytes are refused without reading beyond the end") {
   Random random(12);
   std::uint8_t bytes[kMostTickBytes];
   TickInput input, back;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices over hidapi: which one is meant, what is sent, what is said when it cannot be. hidapi is a fake one, found before the
-// real one on this program's run path (tests/device/vm tries the real one on a real kernel).
+// Devices over hidapi: selection, reports, and messages on failure. hidapi is a fake library, found before the real one on this
+// program's run path (tests/device/vm tests the real one on a real kernel).
 #include <dlfcn.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -51,7 +51,7 @@ LoopConfig loop_with(HidBackend backend) {
   return loop;
 }
 
-// root may do everything: asked by a process that has given that up.
+// root may do everything, so the check runs in a process that has dropped its privileges.
 std::string problem_of_nobody(const HidDevice& device) {
   if (geteuid() != 0) return permission_problem(device);
   constexpr uid_t kNobody = 65534;
@@ -95,7 +95,7 @@ TEST_CASE("hidraw gets two handles, one to read and one to write, libusb one for
   }
 }
 
-TEST_CASE("a report goes out as it is where the device has ids, and behind a 0 where it has none") {
+TEST_CASE("hid: an output report is preceded by 0 if the device has no report ids") {
   for (const bool has_ids : {true, false}) {
     fake_hidapi& fake = fresh(HidBackend::kHidraw);
     const auto transport = make_hid_transport(config_with_ids(has_ids), loop_with(HidBackend::kHidraw));
@@ -115,7 +115,7 @@ TEST_CASE("a report goes out as it is where the device has ids, and behind a 0 w
   }
 }
 
-TEST_CASE("reads tell a report, a time-out and a loss apart") {
+TEST_CASE("hid: reads distinguish a report, a time-out and a loss") {
   fake_hidapi& fake = fresh(HidBackend::kHidraw);
   const auto transport = make_hid_transport(config_with_ids(true), loop_with(HidBackend::kHidraw));
   REQUIRE(transport->open() == "");
@@ -131,7 +131,7 @@ TEST_CASE("reads tell a report, a time-out and a loss apart") {
   CHECK(transport->read(data, sizeof data, 0).status == ReadStatus::kLost);
 }
 
-TEST_CASE("init reports go out at each opening, and one that is not taken closes the device again") {
+TEST_CASE("hid: init reports are sent at each opening, and a failed one closes the device") {
   fake_hidapi& fake = fresh(HidBackend::kHidraw);
   DeviceConfig config = config_with_ids(false);
   config.profile.init_count = 2;
@@ -150,7 +150,7 @@ TEST_CASE("init reports go out at each opening, and one that is not taken closes
   CHECK(fake.opened == fake.closed);
 }
 
-TEST_CASE("a device that is not there is told by what was looked for and what was seen") {
+TEST_CASE("hid: the message for a missing device has what was sought and what was found") {
   fake_hidapi& hidraw = fresh(HidBackend::kHidraw);
   fresh(HidBackend::kLibusb).is_absent = 1;
   DeviceConfig config = config_with_ids(true);
@@ -168,7 +168,7 @@ TEST_CASE("a device that is not there is told by what was looked for and what wa
   CHECK(problem.find("none is seen") != std::string::npos);
 }
 
-TEST_CASE("either back end will do where any is wanted, hidraw first") {
+TEST_CASE("hid: with any back end allowed, hidraw is tried first") {
   fake_hidapi& hidraw = fresh(HidBackend::kHidraw);
   fake_hidapi& libusb = fresh(HidBackend::kLibusb);
   const auto transport = make_hid_transport(config_with_ids(true), loop_with(HidBackend::kAny));
@@ -182,7 +182,7 @@ TEST_CASE("either back end will do where any is wanted, hidraw first") {
   transport->close();
 }
 
-TEST_CASE("serial and path choose among devices that are alike") {
+TEST_CASE("hid: serial and path select among equal devices") {
   std::vector<HidDevice> devices(3);
   for (std::size_t i = 0; i < devices.size(); ++i) {
     devices[i].vendor = 1;
@@ -213,7 +213,7 @@ TEST_CASE("serial and path choose among devices that are alike") {
   CHECK(choose_hid_device(devices, match, "", "", &problem) == &devices[1]);
 }
 
-TEST_CASE("libusb does not tell usages: of several interfaces none is taken on a guess") {
+TEST_CASE("hid: libusb reports no usages, so none of several interfaces is guessed") {
   fake_hidapi& fake = fresh(HidBackend::kLibusb);
   DeviceConfig config = config_with_ids(true);
   config.profile.match.usage_page = 0xff00;
@@ -234,7 +234,7 @@ TEST_CASE("libusb does not tell usages: of several interfaces none is taken on a
   CHECK(placed->open() == "");
 }
 
-TEST_CASE("no permission is told with the node, its owner, one's own groups and the remedy") {
+TEST_CASE("hid: a permission error names the node, its owner, the user's groups and the remedy") {
   HidDevice device;
   device.path = "/dev/null";
   CHECK(permission_problem(device) == "");
@@ -257,7 +257,7 @@ TEST_CASE("no permission is told with the node, its owner, one's own groups and 
   CHECK(problem.find("--udev") != std::string::npos);
 }
 
-TEST_CASE("a device that another program holds, or that cannot be opened, says so") {
+TEST_CASE("hid: a device in use, or one that cannot be opened, gives that reason") {
   fake_hidapi& fake = fresh(HidBackend::kHidraw);
   std::ofstream(fake.path) << "a file that may be read and written";
   fake.refuses_open = 1;

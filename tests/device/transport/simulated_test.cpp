@@ -58,7 +58,7 @@ TEST_CASE("simulated: a mass on the hand's spring swings as the closed form says
   }
 }
 
-TEST_CASE("simulated: stable whatever the spring and the mass") {
+TEST_CASE("simulated: stable for any spring and mass") {
   SimulationConfig config;
   config.mass_kg = 0.001;
   config.damping_n_s_per_m = 0;
@@ -75,7 +75,7 @@ TEST_CASE("simulated: stable whatever the spring and the mass") {
   }
 }
 
-TEST_CASE("simulated: the hand goes where its target goes") {
+TEST_CASE("simulated: the hand follows its target") {
   SimulationConfig config;
   config.is_real_time = false;
   config.hand_stiffness_n_per_m = 5000;
@@ -93,7 +93,7 @@ TEST_CASE("simulated: the hand goes where its target goes") {
   CHECK(least == Approx(-0.02).epsilon(0.01));
 }
 
-TEST_CASE("simulated: the device feels what is written, and says which report it took") {
+TEST_CASE("simulated: the device applies the written force, and echoes its report") {
   Host host(still());
   CHECK(bad(host.run(1000)).empty());
   CHECK(host.sample.echo == host.sequence - 1);
@@ -138,7 +138,7 @@ TEST_CASE("simulated: the device's watchdog ends the force of a host that falls 
   CHECK(host.record->most_force_between(zero, host.record->end_ns) == 0);
 }
 
-TEST_CASE("simulated: damaged reports are what the host's judge calls them") {
+TEST_CASE("simulated: the host's judge classifies damaged reports") {
   SimulationConfig config = still();
   Kind kind = Kind::kShort;
   Verdict verdict = Verdict::kLength;
@@ -175,7 +175,7 @@ TEST_CASE("simulated: damaged reports are what the host's judge calls them") {
   CHECK(host.record->noticed_ns[0] == 101000000);
 }
 
-TEST_CASE("simulated: reports that change places, and those that come late") {
+TEST_CASE("simulated: swapped and late reports") {
   SimulationConfig config = still();
   SECTION("out of order") {
     config.faults = {fault(Kind::kOutOfOrder, 0.1004)};
@@ -241,7 +241,7 @@ TEST_CASE("simulated: unplugged, plugged in again, restarted") {
     CHECK(host.run(1000).size() == 99);
     CHECK(host.record->noticed_ns[1] == 500000000);
     host.transport->close();
-    CHECK(host.transport->open() == "the simulated device is unplugged, for ever: its script says so");
+    CHECK(host.transport->open() == "the simulated device is unplugged for good by its fault script");
   }
   SECTION("what was waiting when it was unplugged is gone") {
     config.faults = {fault(Kind::kOutOfOrder, 0.0985), fault(Kind::kStale, 0.09, 0.005), fault(Kind::kUnplug, 0.1, 0.2)};
@@ -286,7 +286,7 @@ TEST_CASE("simulated: unplugged, plugged in again, restarted") {
   }
 }
 
-TEST_CASE("simulated: a body that was left alone for a day is there at once") {
+TEST_CASE("simulated: a body left for a day is advanced at once") {
   SimulatedBody body{SimulationConfig()};
   const std::uint64_t begin = monotonic_ns();
   body.advance(86400000000000);

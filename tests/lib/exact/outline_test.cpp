@@ -19,7 +19,7 @@ namespace {
 
 using Loop = std::vector<Vec3>;
 
-// CGAL's word for the loop in the plane z = 0, whichever way it runs.
+// CGAL's result for the loop in the plane z = 0, in either orientation.
 bool is_simple_2(const Loop& loop) {
   std::vector<Kernel::Point_2> points;
   for (const Vec3& p : loop)
@@ -55,7 +55,7 @@ Loop comb(std::uint32_t teeth, double lean) {
 
 }  // namespace
 
-TEST_CASE("a polygon is simple where CGAL says so, in any plane, and can then be cut") {
+TEST_CASE("outline: simple as CGAL decides, in any plane, and then triangulable") {
   std::mt19937 rng(31);
   const auto below = [&](int n) { return static_cast<int>(rng() % static_cast<unsigned>(n)); };
   int simple = 0, crossing = 0, inward = 0;
@@ -89,7 +89,7 @@ TEST_CASE("a polygon is simple where CGAL says so, in any plane, and can then be
   CHECK(inward > 20000);
 }
 
-TEST_CASE("rounding decides nothing about an outline") {
+TEST_CASE("outline: the result does not depend on rounding") {
   // The inward corner stands off the edge from 0 to 1 by one unit in the last place, on it, and beyond it.
   for (const double z : {0.0, 1.0}) {
     const double up = std::nextafter(0.1, 1), down = std::nextafter(0.1, 0);
@@ -100,7 +100,7 @@ TEST_CASE("rounding decides nothing about an outline") {
   }
 }
 
-TEST_CASE("a far from flat polygon is seen from where it does not cross itself") {
+TEST_CASE("outline: a far from planar polygon is projected so that it is simple") {
   // Of a real mesh: crosses itself seen along z, where its area is largest, and not along y.
   const Loop folded{{-12.2318, 2.65882, -0.920534},
                     {-15.7188, 3.4787, -0.930416},
@@ -121,7 +121,7 @@ TEST_CASE("a far from flat polygon is seen from where it does not cross itself")
   CHECK(simple_view(frame));
 }
 
-TEST_CASE("outlines of extreme size are judged alike") {
+TEST_CASE("outline: results are the same at extreme sizes") {
   for (const double scale : {1e-300, 1e-160, 1.0, 1e160, 1e300}) {
     CAPTURE(scale);
     const auto scaled = [&](Loop loop) {
@@ -134,7 +134,7 @@ TEST_CASE("outlines of extreme size are judged alike") {
   }
 }
 
-TEST_CASE("outlines of 65,536 corners take no more than their share of time") {
+TEST_CASE("outline: time is near linear up to 65,536 corners") {
   const auto start = std::chrono::steady_clock::now();
   for (const double lean : {0.0, 1.0, 30000.0}) {
     CAPTURE(lean);

@@ -64,7 +64,7 @@ TEST_CASE("normals are good to two units in the last place on triangles of every
 }
 
 // What a deformable mesh computes each tick, and what the compiler stores: the same bits, with every sign of zero.
-TEST_CASE("a normal that is had with less work is the same to the bit") {
+TEST_CASE("the fast path of a normal gives the same bits") {
   Random random(11);
   int quick64 = 0, quick32 = 0, known = 0;
   constexpr int kTriangles = 200000;
@@ -97,7 +97,7 @@ TEST_CASE("a normal that is had with less work is the same to the bit") {
   CHECK(quick32 > kTriangles / 2);
 }
 
-TEST_CASE("normals survive the ends of the exponent's range") {
+TEST_CASE("normals are accurate at both ends of the exponent range") {
   Random random(2);
   for (const double size : {1e-300, 1e-150, 1e-60, 1e60, 1e150, 1e300}) {
     for (int i = 0; i < 50; ++i) {
@@ -111,7 +111,7 @@ TEST_CASE("normals survive the ends of the exponent's range") {
   }
 }
 
-TEST_CASE("an edge's direction turns exactly with its ends") {
+TEST_CASE("edge direction: swapping the ends negates it exactly") {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 a = random.direction(), b = random.direction();
@@ -119,7 +119,7 @@ TEST_CASE("an edge's direction turns exactly with its ends") {
   }
 }
 
-TEST_CASE("the offset balances what rounding the normal did") {
+TEST_CASE("the offset compensates the rounding of the normal") {
   Random random(4);
   for (int i = 0; i < 2000; ++i) {
     const std::array<Vec3, 3> p{100 * random.direction(), 100 * random.direction(), 100 * random.direction()};

@@ -74,7 +74,7 @@ std::string contact_with_floor(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-TEST_CASE("triangles without a common corner: every kind of contact") {
+TEST_CASE("triangle contact without a common corner: every kind") {
   CHECK(contact_with_floor({1, 1, 1}, {2, 1, 1}, {1, 2, 2}) == "none");           // above
   CHECK(contact_with_floor({5, 5, -1}, {5, 6, 1}, {6, 5, 1}) == "none");          // through the plane, beside
   CHECK(contact_with_floor({3, 3, -1}, {3, 3, 1}, {4, 4, 0}) == "none");          // beside, boxes overlap
@@ -93,7 +93,7 @@ TEST_CASE("triangles without a common corner: every kind of contact") {
   CHECK(contact_with_floor({2, 0, 0}, {2, 1, 1}, {2, 1, -1}) == "crossing");      // and from inside
 }
 
-TEST_CASE("triangles in one plane without a common corner") {
+TEST_CASE("triangle contact in one plane without a common corner") {
   CHECK(contact_with_floor({1, 1, 0}, {1.5, 1, 0}, {1, 1.5, 0}) == "crossing");  // inside
   CHECK(contact_with_floor({-9, -9, 0}, {20, 0, 0}, {0, 20, 0}) == "crossing");  // around
   CHECK(contact_with_floor({1, 1, 0}, {9, 1, 0}, {9, 2, 0}) == "crossing");      // across the rim
@@ -105,7 +105,7 @@ TEST_CASE("triangles in one plane without a common corner") {
   CHECK(contact_with_floor({0.1, 4.5, 0}, {4.5, 0.1, 0}, {9, 9, 0}) == "none");  // beside, boxes overlap
 }
 
-TEST_CASE("triangles that share a corner: what they have beyond it") {
+TEST_CASE("triangle contact with a shared corner: further common points") {
   const auto with = [](const Vec3& b, const Vec3& c) {
     std::vector<Vec3> points = kFloor;
     points.insert(points.end(), {b, c});
@@ -126,7 +126,7 @@ TEST_CASE("triangles that share a corner: what they have beyond it") {
   CHECK(with({9, -1, 0}, {-1, 9, 0}) == "crossing");  // around in the plane
 }
 
-TEST_CASE("triangles that share a side, or all corners") {
+TEST_CASE("triangle contact with a shared side, or all corners shared") {
   const auto with = [](const Vec3& c, unsigned seams = 0) {
     std::vector<Vec3> points = kFloor;
     points.push_back(c);
@@ -145,7 +145,7 @@ TEST_CASE("triangles that share a side, or all corners") {
   CHECK(contact(kFloor, {0, 1, 2}, {0, 1, 2}) == "crossing");
 }
 
-TEST_CASE("a polygon's cuts are inside of it") {
+TEST_CASE("triangle contact: diagonals of a polygon count as interior") {
   // The first triangle's side from its corner 1 to 2 is a cut, and stands in the plane of the other.
   const std::vector<Vec3> points{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 2}, {2, 2, 0}, {2.5, 1.5, 0}};
   CHECK(contact(points, {3, 4, 5}, {0, 1, 2}) == "touching");
@@ -155,7 +155,7 @@ TEST_CASE("a polygon's cuts are inside of it") {
   CHECK(contact(inner, {3, 4, 5}, {0, 1, 2}, 2) == "crossing");
 }
 
-TEST_CASE("what is off by one unit in the last place is told apart") {
+TEST_CASE("triangle contact: one unit in the last place is distinguished") {
   const double above = 0x1p-1074, beside = 4 * (1 - 0x1p-53);
   CHECK(contact_with_floor({1, 1, above}, {1, 2, 1}, {2, 1, 1}) == "none");
   CHECK(contact_with_floor({1, 1, -above}, {1, 2, 1}, {2, 1, 1}) == "crossing");
@@ -164,7 +164,7 @@ TEST_CASE("what is off by one unit in the last place is told apart") {
   CHECK(contact_with_floor({4 * (1 + 0x1p-52), 0, 0}, {5, 0, 1}, {5, 0, -1}) == "none");
 }
 
-TEST_CASE("the filter tells most neighbours apart and never wrongly") {
+TEST_CASE("triangle filter: decides most neighbours and is never wrong") {
   constexpr std::uint64_t kSeed = 20261121;
   INFO("seed " << kSeed);
   fdcg::test::Random random(kSeed);

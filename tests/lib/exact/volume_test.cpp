@@ -69,7 +69,7 @@ TEST_CASE("the exact sum has the sign of the sum in rationals, over the whole ra
   }
 }
 
-TEST_CASE("extremes neither overflow nor underflow") {
+TEST_CASE("the exact sum neither overflows nor underflows") {
   constexpr double kHuge = std::numeric_limits<double>::max(), kTiny = std::numeric_limits<double>::denorm_min();
   ExactSum sum;
   CHECK(sum.sign() == 0);

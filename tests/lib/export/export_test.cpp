@@ -108,7 +108,7 @@ PolygonSoup square() {
 
 }  // namespace
 
-TEST_CASE("a random soup written in any format reads back the same to the bit") {
+TEST_CASE("a random soup written in any format reads back bit for bit") {
   for (const ExportOptions& options : kEveryFormat) {
     const bool is_stl = options.format == Format::stl;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -129,7 +129,7 @@ TEST_CASE("a random soup written in any format reads back the same to the bit") 
   }
 }
 
-TEST_CASE("PLY holds floats where that loses nothing, and doubles else") {
+TEST_CASE("PLY stores floats where that is exact, else doubles") {
   PolygonSoup soup = square();
   CHECK(bytes_of(soup, {Format::ply, false}).find("property float x") != std::string::npos);
   CHECK(bytes_of(soup, {Format::ply, true}).find("property float x") != std::string::npos);
@@ -155,7 +155,7 @@ TEST_CASE("OBJ and text STL name the parts where they start") {
   CHECK(bytes_of(soup, {Format::stl, true}).starts_with("solid \nfacet"));
 }
 
-TEST_CASE("STL refuses what it would lose, with the place and the remedy") {
+TEST_CASE("STL refuses what it cannot represent, with place and remedy") {
   const auto check_words = [](const PolygonSoup& soup, std::initializer_list<const char*> words) {
     for (const bool is_text : {false, true}) {
       const std::string message = refusal_of(soup, {Format::stl, is_text});
@@ -178,7 +178,7 @@ TEST_CASE("STL refuses what it would lose, with the place and the remedy") {
   check_words(soup, {"face 1 names a vertex that there is not"});
 }
 
-TEST_CASE("binary STL refuses what is no float, and text STL holds it") {
+TEST_CASE("binary STL refuses coordinates that are no floats, text STL keeps them") {
   for (const double y : {0.1, 4e38, 1e-300}) {
     PolygonSoup soup = square();
     soup.points[2].y = y;
@@ -209,7 +209,7 @@ TEST_CASE("the normals of STL are of unit length, and zero where the triangle ha
   CHECK(normal == std::array<float, 3>{0, 0, 0});
 }
 
-TEST_CASE("every mesh at hand survives every format that can hold it") {
+TEST_CASE("every available mesh survives every format that can represent it") {
   std::size_t meshes = 0, written = 0, refused = 0;
   auto paths = files_in(testdata() / "meshes");
   for (const auto& path : real_meshes())

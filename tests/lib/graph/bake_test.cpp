@@ -49,7 +49,7 @@ std::vector<PolygonSoup> all_generated() {
 
 }  // namespace
 
-TEST_CASE("a cube has 6 nodes, 12 convex connections and 8 corners however it is cut, turned and stored") {
+TEST_CASE("a cube has 6 nodes, 12 convex connections and 8 corners for any triangulation, rotation and precision") {
   check_cube(compile_sound(cube()));
   check_cube(compile_sound(triangulated(cube(), 1)));
   check_cube(compile_sound(subdivided(cube(), 2)));
@@ -134,7 +134,7 @@ TEST_CASE("every generated mesh gives a file that breaks no rule, with every opt
   }
 }
 
-TEST_CASE("optional sections are left out when asked, and only then") {
+TEST_CASE("optional sections are left out only on request") {
   CompileOptions options;
   const WalkedGraph whole = compile_sound(triangulated(cube()), options);
   CHECK(whole.voronoi.size() == whole.sides.size());
@@ -150,7 +150,7 @@ TEST_CASE("optional sections are left out when asked, and only then") {
   CHECK(lean.info.empty());
 }
 
-TEST_CASE("INFO tells source, options and verdict and nothing of path, time or threads") {
+TEST_CASE("INFO has source, options and verdict, but no path, time or threads") {
   PolygonSoup soup = triangulated(cube());
   soup.name = "/somewhere/secret-name.ply";
   CompileOptions options;
@@ -228,7 +228,7 @@ TEST_CASE("options that contradict one another fail as wrong usage") {
   CHECK(exit_code([](CompileOptions&) {}) == 0);
 }
 
-TEST_CASE("the header tells unit, origin, bounds and quantum") {
+TEST_CASE("the header has unit, origin, bounds and quantum") {
   PolygonSoup soup = rounded_to_float(transformed(cube(), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, 2, {1000, 0, 0}));
   CompileOptions options;
   options.metres_per_unit = 0.0254;
@@ -269,7 +269,7 @@ TEST_CASE("the source map names a node that a face's centre lies on") {
   }
 }
 
-TEST_CASE("every sound real mesh at hand gives a file that breaks no rule") {
+TEST_CASE("every valid real mesh available gives a file that breaks no rule") {
   std::size_t compiled_meshes = 0;
   for (const PolygonSoup& soup : real_meshes()) {
     const auto compiled = compile(soup, {});

@@ -106,7 +106,7 @@ TEST_CASE("signs survive very large and very small coordinates") {
     check_signs(classified(scaled(star_sphere(2, 0.3, 1), scale), {Coplanar::Kind::exact, 0}));
 }
 
-TEST_CASE("signs equal rational arithmetic on every edge of the real meshes at hand") {
+TEST_CASE("signs equal rational arithmetic on every edge of the real meshes available") {
   std::size_t meshes = 0, edges = 0;
   for (const PolygonSoup& soup : real_meshes()) {
     const auto report = validate(soup);
@@ -121,7 +121,7 @@ TEST_CASE("signs equal rational arithmetic on every edge of the real meshes at h
   WARN("real meshes: " << meshes << ", edges: " << edges);
 }
 
-TEST_CASE("the three tiers of a hinge") {
+TEST_CASE("edge classes: the three tiers at a hinge") {
   const Coplanar exact{Coplanar::Kind::exact, 0}, quantum{}, degree{Coplanar::Kind::angle, 0.0174533};
   const auto with_quantum = [](PolygonSoup soup, double q) {
     soup.relative_quantum = 0;
@@ -139,7 +139,7 @@ TEST_CASE("the three tiers of a hinge") {
   CHECK(hinge_class(with_quantum(hinge(1e-6), 2e-7), degree) == EdgeClass(FDCG_CONCAVE, Flat::quantum));
 }
 
-TEST_CASE("a fold is no flat edge") {
+TEST_CASE("edge classes: a fold is not flat") {
   const PolygonSoup fold = make_soup("fold", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 2, 0}}, {{0, 1, 2}, {1, 0, 3}});
   CHECK(hinge_class(fold, {}).is_fold());
   const double almost = 3.14159265;

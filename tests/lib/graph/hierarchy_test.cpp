@@ -64,7 +64,7 @@ TEST_CASE("boxes hold their nodes at any scale and precision and are little larg
   }
 }
 
-TEST_CASE("flat, needle-like, far and huge meshes have sound boxes") {
+TEST_CASE("flat, needle-like, far and huge meshes have valid boxes") {
   for (const PolygonSoup& soup : {plane_grid(9, 7), thin_plate(1e-9, 5), moved(needle_strip(100, 0.3, 2), {1e6, -1e6, 0}),
                                   scaled(torus(20, 12), 1e30), scaled(torus(20, 12), 1e-30), cone(500)}) {
     CHECK(!compile_sound(soup).boxes.empty());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mass properties: against formulas, against rationals, and against themselves on the same solid cut, turned and moved. A few
-// lines over 400: solids and what they weigh, one after another.
+// Mass properties: against formulas, against rational arithmetic, and invariance under triangulation, rotation and translation.
+// A few lines over 400: a list of solids with their mass.
 #include <gmpxx.h>
 
 #include <cmath>
@@ -236,7 +236,7 @@ TEST_CASE("a finer sphere of triangles comes nearer to the ball's volume and ine
   }
 }
 
-TEST_CASE("mass does not change when the same solid is cut otherwise") {
+TEST_CASE("mass does not depend on the triangulation") {
   for (const PolygonSoup& soup : {cube(), grid_box(3, 4, 5, {1, 2, 3}), l_prism(), corner_pit(), thin_plate(0.25, 4)}) {
     CAPTURE(soup.name);
     const fdcg_mass whole = mass_of(soup);
@@ -256,7 +256,7 @@ TEST_CASE("mass does not change when the same solid is cut otherwise") {
   }
 }
 
-TEST_CASE("mass turns, moves and grows with the mesh") {
+TEST_CASE("mass properties transform with the mesh") {
   for (const PolygonSoup& soup : solids()) {
     const fdcg_mass still = mass_of(triangulated(soup));
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
@@ -320,7 +320,7 @@ TEST_CASE("coordinates that span hundreds of bits are summed exactly") {
   CHECK(mass_of(scaled(cube(), 1e50)).inertia_per_density_m5[0] == Approx(1e250 / 6).epsilon(kBar));
 }
 
-TEST_CASE("a density gives the mass and a mass the density, each stored as it was given") {
+TEST_CASE("density and mass determine each other, and the given one is stored exactly") {
   bake::CompileOptions options;
   CHECK(mass_of(cube()).mass_kg == 0);
   CHECK(mass_of(cube()).density_kg_per_m3 == 0);
@@ -334,7 +334,7 @@ TEST_CASE("a density gives the mass and a mass the density, each stored as it wa
   CHECK(mass_of(cube(), options).density_kg_per_m3 == Approx(0.3e6).epsilon(1e-15));
 }
 
-TEST_CASE("a mesh that is no solid has no mass section, and the reason; asked for a density it is refused") {
+TEST_CASE("an open mesh has no mass section but a reason; with a density it is refused") {
   PolygonSoup inside_out = cube();
   std::reverse(inside_out.corners.begin(), inside_out.corners.end());
   const struct {
@@ -378,7 +378,7 @@ TEST_CASE("options about mass that make no sense are refused") {
   CHECK(code([](Options& o) { o.without = {"mass"}; }) == 0);
 }
 
-TEST_CASE("mass numbers that no solid has are refused in full verification and by the reader of a trusted file") {
+TEST_CASE("impossible mass properties are refused by full verification and by the reader of a trusted file") {
   const bake::Compiled compiled = compile_whole(cube());
   const auto damaged = [&](std::size_t at, double value) {
     AlignedBytes file(compiled.bytes);

@@ -87,7 +87,7 @@ TEST_CASE("the corners that remain do not depend on how a region was cut") {
   }
 }
 
-TEST_CASE("float noise on a turned, finely cut plate does not survive") {
+TEST_CASE("merging removes float noise on a rotated, finely triangulated plate") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     const PolygonSoup fine = subdivided(subdivided(subdivided(holed_plate())));
     const WalkedGraph graph = compile_sound(rounded_to_float(transformed(fine, random_rotation(seed))));
@@ -129,7 +129,7 @@ TEST_CASE("thin plates keep both sides") {
   }
 }
 
-TEST_CASE("without merging, faces stay what they were and still share their region's plane") {
+TEST_CASE("without merging, faces are kept and still share their region's plane") {
   const WalkedGraph boxes = compile_sound(grid_box(3, 3, 3, {1, 1, 1}), unmerged());
   CHECK(boxes.nodes.size() == 54);
   CHECK(connections_of(boxes, FDCG_COPLANAR) == 72);
@@ -176,7 +176,7 @@ TEST_CASE("polygons that are not convex, not planar or too many-sided are split 
   CHECK(graph.nodes.size() == 3);
 }
 
-TEST_CASE("a straight open boundary loses its needless corners, a bent one does not") {
+TEST_CASE("collinear corners of an open boundary are removed, others are not") {
   std::vector<Vec3> points;
   std::vector<std::vector<std::uint32_t>> faces;
   constexpr std::uint32_t kSteps = 50;

@@ -78,7 +78,7 @@ PolygonSoup arc(int n, double angle) {
 
 }  // namespace
 
-TEST_CASE("each side of a cut cube is one exact region") {
+TEST_CASE("each side of a triangulated cube is one exact region") {
   const Found found = regions_of(subdivided(cube()));
   REQUIRE(found.regions.list.size() == 6);
   for (const Region& region : found.regions.list)
@@ -91,7 +91,7 @@ TEST_CASE("a mesh without flat edges has no regions") {
   CHECK(found.regions.of_face.empty());
 }
 
-TEST_CASE("a turned and rounded plane is one region within its quantum") {
+TEST_CASE("a rotated and rounded plane is one region within its quantum") {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     for (const int n : {3, 30, 100}) {
       const Found found = regions_of(rounded_to_float(transformed(plane_jittered(n, seed), random_rotation(seed))));

@@ -53,7 +53,7 @@ TEST_CASE("sections are aligned, ascending, adjacent, padded with zeros and seal
   }
 }
 
-TEST_CASE("a float file says what the double file says, to float precision") {
+TEST_CASE("a float file equals the double file to float precision") {
   const PolygonSoup soup = rounded_to_float(star_sphere(3, 0.3, 1));
   CompileOptions options;
   const WalkedGraph wide = compile_sound(soup, options);
@@ -74,7 +74,7 @@ TEST_CASE("a float file says what the double file says, to float precision") {
   }
 }
 
-TEST_CASE("corner normals weigh faces by their angle, so that a cut does not turn them") {
+TEST_CASE("corner normals weigh faces by angle and do not depend on the triangulation") {
   const auto normal_at = [](const PolygonSoup& soup, double x, double y, double z) {
     CompileOptions options;
     options.merge = false;
@@ -91,7 +91,7 @@ TEST_CASE("corner normals weigh faces by their angle, so that a cut does not tur
   }
 }
 
-TEST_CASE("corners of many faces carry a tree") {
+TEST_CASE("corners of many faces have a fan tree") {
   for (const int sides : {33, 500, 10000}) {
     const std::vector<std::byte> bytes = compile_whole(cone(sides)).bytes;
     const WalkedGraph graph = read_graph(bytes);
@@ -106,7 +106,7 @@ TEST_CASE("corners of many faces carry a tree") {
   }
 }
 
-TEST_CASE("what is stored and what is derived have the same bits") {
+TEST_CASE("stored and derived planes have the same bits") {
   const PolygonSoup tiny = scaled(star_sphere(2, 0.3, 5), 1e-8);
   for (const auto precision : {Precision::f64, Precision::f32}) {
     for (const PolygonSoup& soup : {star_sphere(3, 0.3, 1), transformed(grid_box(5, 4, 3, {1, 2, 3}), random_rotation(1)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The child is limited in memory and time, dies alone, and leaves nothing behind.
+// The guarded child: limits on memory and time, isolation of crashes, no leaked resources.
 #include <dirent.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -53,7 +53,7 @@ extern "C" void count_signal(int) {
 
 }  // namespace
 
-TEST_CASE("what the child answers comes back; what it does otherwise stays in it") {
+TEST_CASE("guarded child: the result is returned, other effects stay in the child") {
   int changed = 0;
   const ChildResult result = run_guarded(kLimits, [&changed](ChildAnswer& answer) {
     changed = 1;
@@ -66,7 +66,7 @@ TEST_CASE("what the child answers comes back; what it does otherwise stays in it
   CHECK_FALSE(has_children());
 }
 
-TEST_CASE("a child that wants too much memory is refused it") {
+TEST_CASE("guarded child: the memory limit is enforced") {
   const ChildResult result = run_guarded(kLimits, [](ChildAnswer& answer) {
     std::vector<char> much(std::size_t{16} << 30, 'x');
     say(answer, std::string(1, much[much.size() / 2]));
@@ -81,7 +81,7 @@ TEST_CASE("a child that wants too much memory is refused it") {
     say(answer, pieces[0]);
   });
   CHECK(bit_by_bit.trouble() == result.trouble());
-  // And what it is given, it has, however much this process holds.
+  // Its allowance does not depend on the memory used by this process.
   const std::vector<char> ours(256 * kMebibyte, 'y');
   const ChildResult fits = run_guarded(kLimits, [&ours](ChildAnswer& answer) {
     const std::vector<char> some(48 * kMebibyte, 'x');
@@ -90,7 +90,7 @@ TEST_CASE("a child that wants too much memory is refused it") {
   CHECK(fits.trouble().empty());
 }
 
-TEST_CASE("a child that goes on for ever is stopped") {
+TEST_CASE("guarded child: the time limit is enforced") {
   ChildLimits limits = kLimits;
   limits.cpu_seconds = 1;
   const ChildResult result = run_guarded(limits, [](ChildAnswer&) {
@@ -101,7 +101,7 @@ TEST_CASE("a child that goes on for ever is stopped") {
   CHECK(result.trouble() == "took more than the 1 s of processor time that a file of this size is given");
 }
 
-TEST_CASE("a child that crashes, exits or throws says so and harms nobody") {
+TEST_CASE("guarded child: crash, exit and exception are reported") {
   const auto trouble = [](const std::function<void(ChildAnswer&)>& work) { return run_guarded(kLimits, work).trouble(); };
   CHECK(trouble([](ChildAnswer&) { ::raise(SIGSEGV); }) == "crashed with signal 11");
   CHECK(trouble([](ChildAnswer&) { std::abort(); }) == "crashed with signal 6");
@@ -117,7 +117,7 @@ TEST_CASE("a child that crashes, exits or throws says so and harms nobody") {
   CHECK_FALSE(has_children());
 }
 
-TEST_CASE("the handlers of this program do not run in the child, nor does its exit") {
+TEST_CASE("guarded child: signal and exit handlers of the parent do not run") {
   struct sigaction ours {
   }, before{};
   ours.sa_handler = count_signal;
@@ -132,7 +132,7 @@ TEST_CASE("the handlers of this program do not run in the child, nor does its ex
   CHECK(signals_seen == 0);
 }
 
-TEST_CASE("signals that interrupt the wait, or a program that ignores its children, do not matter") {
+TEST_CASE("guarded child: works with interrupting signals and ignored SIGCHLD") {
   struct sigaction ours {
   }, before{};
   ours.sa_handler = count_signal;  // without SA_RESTART: waitpid is interrupted
@@ -163,7 +163,7 @@ TEST_CASE("signals that interrupt the wait, or a program that ignores its childr
   ::signal(SIGCHLD, SIG_DFL);
 }
 
-TEST_CASE("many threads may run children at once while others allocate, and nothing is left behind") {
+TEST_CASE("guarded child: thread-safe, and leaves no process or descriptor behind") {
   const std::size_t before = open_descriptors();
   std::atomic<bool> is_done{false};
   std::vector<std::thread> busy, callers;

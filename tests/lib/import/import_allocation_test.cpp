@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of its own, because it replaces operator new: the import asks for no more memory than the file's bytes can fill.
+// A separate program, because it replaces operator new: import allocates no more memory than the file's bytes can fill.
 #include <cstdlib>
 #include <new>
 
@@ -31,7 +31,7 @@ void operator delete(void* memory, const std::nothrow_t&) noexcept {
 using namespace fdcg::bake;
 using namespace fdcg::bake::test;
 
-TEST_CASE("counts of four billion in a small file ask for no memory") {
+TEST_CASE("counts of four billion in a small file allocate no memory") {
   const std::string vertices = "property float x\nproperty float y\nproperty float z\n",
                     list = "property list uchar int vertex_indices\n";
   std::string stl(80, ' ');
@@ -112,7 +112,7 @@ std::string gltf_with(const std::string& nodes, const std::string& accessor, con
 
 }  // namespace
 
-TEST_CASE("counts of four billion in glTF and Draco ask for no memory") {
+TEST_CASE("counts of four billion in glTF and Draco allocate no memory") {
   const std::string node = R"({"mesh":0})", huge = R"("count":4000000000)";
   std::string draco("DRACO\x02\x02\x01\x01\0\0\0", 12);  // edgebreaker: vertices, faces, no attributes, symbols, no splits
   for (const char* count : {"\x80\xC6\x86\x8F\x01", "\x80\xCA\xB5\xEE\x01", "\1", "\x80\xCA\xB5\xEE\x01", "\1"})
@@ -132,7 +132,7 @@ TEST_CASE("counts of four billion in glTF and Draco ask for no memory") {
   }
 }
 
-TEST_CASE("a scene that shows its mesh over and over stays below a multiple of its file") {
+TEST_CASE("a scene with many instances is limited to a multiple of its file") {
   constexpr std::size_t kMultiple = 1500;  // 16 points, corners and their faces for each byte; their arrays grow by doubling
   for (const std::size_t points : {3, 3000}) {
     std::string nodes = R"({"mesh":0})";
@@ -149,7 +149,7 @@ TEST_CASE("a scene that shows its mesh over and over stays below a multiple of i
   }
 }
 
-TEST_CASE("JSON that glTF has no use for costs a small multiple of its bytes") {
+TEST_CASE("JSON that glTF does not use costs a small multiple of its bytes") {
   for (const std::string item : {"[]", "{}", "0", "\"\"", R"({"":[]})", "[[[[[[[[]]]]]]]]"}) {
     std::string extras = ",\"extras\":[" + item;
     for (int i = 0; i < 100'000; ++i)

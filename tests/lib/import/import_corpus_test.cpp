@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes and fuzz finds under testdata: the good ones agree, each bad one is what its name says, none of their truncations
-// and single-byte changes leads anywhere but to a soup or a refusal (run with the sanitizers, that is a proof for these bytes).
+// The meshes and fuzz finds under testdata: the good ones agree, each bad one has the defect in its name, and all truncations
+// and single-byte changes give a soup or a refusal (with the sanitizers this excludes memory errors for these bytes).
 #include <cmath>
 
 #include "../../support/import_support.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Format kFormats[] = {Format::off, Format::obj, Format::ply, Format::stl, Format::gltf, Format::drc};
 
-// Either a sound soup or a proper refusal.
+// Either a valid soup or a refusal with its message.
 void check_any(std::string_view bytes, std::optional<Format> format) {
   const Result<PolygonSoup> soup = import_memory(bytes, "mesh", {format, {}});
   if (soup) {
@@ -63,7 +63,7 @@ TEST_CASE("every good mesh is read") {
   }
 }
 
-TEST_CASE("a bad mesh is refused under the rule in its name, or shows the defect that its name says") {
+TEST_CASE("a bad mesh is refused under the rule in its name, or has the defect in its name") {
   int refused = 0, defective = 0;
   for (const auto& path : files_in(testdata() / "meshes" / "bad")) {
     INFO(path);
@@ -150,7 +150,7 @@ TEST_CASE("every fuzz find is a soup or a refusal in every format") {
   CHECK(finds > 0);
 }
 
-TEST_CASE("real meshes are read, where there are any") {
+TEST_CASE("real meshes are read, if available") {
   const auto meshes = real_meshes();
   WARN(meshes.size() << " real meshes found");
   for (const auto& path : meshes) {

@@ -39,7 +39,7 @@ TEST_CASE("a sequential, unquantised Draco file gives back the mesh, bit by bit 
   CHECK(soup.absolute_quantum == 0);
 }
 
-TEST_CASE("doubles in a Draco file stay doubles") {
+TEST_CASE("doubles in a Draco file are kept exactly") {
   const PolygonSoup mesh = bumpy_sphere(6, 7);
   const PolygonSoup soup = import_text(write_drc(mesh));
   CHECK(soup.points == mesh.points);
@@ -72,7 +72,7 @@ TEST_CASE("the quantum of a quantised Draco file is half a step") {
   }
 }
 
-TEST_CASE("points on seams of other attributes keep Draco's numbers and are joined by the weld alone") {
+TEST_CASE("points on seams of other attributes keep Draco's indices and are joined only by the weld") {
   // Two triangles with a corner each of their own colour: four places, six points.
   const std::string bytes = fdcg::test::write_drc_with_seam();
   const PolygonSoup soup = import_text(bytes);

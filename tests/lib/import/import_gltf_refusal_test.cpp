@@ -49,7 +49,7 @@ class Folder {
 }  // namespace
 
 TEST_CASE("what is wrong in the JSON is refused by its path") {
-  CHECK(without("", "asset") == "the JSON: has no 'asset', which it needs");
+  CHECK(without("", "asset") == "asset is missing");
   CHECK(with("/asset/version", "1.0") == "is glTF 1.0; version 2.0 is read: convert the file");
   CHECK(with("/asset/version", 1) == "is glTF 1; version 2.0 is read: convert the file");
   CHECK(with("/asset/minVersion", "2.1") == "is glTF for readers of version 2.1; version 2.0 is read: convert the file");
@@ -57,39 +57,39 @@ TEST_CASE("what is wrong in the JSON is refused by its path") {
       with("/extensionsRequired", {"KHR_texture_transform", "EXT_meshopt_compression"}) ==
       "extensionsRequired[1]: the file needs the extension EXT_meshopt_compression, which may change the triangles and is not "
       "read; export it without");
-  CHECK(with("/scene", 1) == "scene: is 1, but the file has 1 scenes");
-  CHECK(with("/scene", -1) == "scene: is -1, not a whole number of 0 or more");
-  CHECK(with("/scene", 0.5) == "scene: is 0.5, not a whole number of 0 or more");
-  CHECK(with("/scene", "0") == "scene: is not a number");
-  CHECK(with("/scenes/0/nodes/0", 1) == "scenes[0].nodes[0]: is 1, but the file has 1 nodes");
-  CHECK(with("/scenes/0/nodes/1", 0) == "scenes[0].nodes[1]: lists nodes[0] a second time; export the scene again");
-  CHECK(with("/nodes/0/mesh", 3) == "nodes[0].mesh: is 3, but the file has 1 meshes");
+  CHECK(with("/scene", 1) == "scene is 1, but the file has 1 scenes");
+  CHECK(with("/scene", -1) == "scene is -1; it must be an integer from 0 to 9007199254740991");
+  CHECK(with("/scene", 0.5) == "scene is 0.5; it must be an integer from 0 to 9007199254740991");
+  CHECK(with("/scene", "0") == "scene is \"0\"; it must be an integer from 0 to 9007199254740991");
+  CHECK(with("/scenes/0/nodes/0", 1) == "scenes[0].nodes[0] is 1, but the file has 1 nodes");
+  CHECK(with("/scenes/0/nodes/1", 0) == "scenes[0].nodes[1] lists nodes[0] a second time; export the scene again");
+  CHECK(with("/nodes/0/mesh", 3) == "nodes[0].mesh is 3, but the file has 1 meshes");
   CHECK(with("/nodes/0/children", {0}) == "nodes[0] is its own ancestor; export the scene again");
-  CHECK(with("/nodes/0/children", 0) == "nodes[0].children: is not an array");
-  CHECK(with("/nodes/0/matrix", {1, 2, 3}) == "nodes[0].matrix: has 3 numbers, not 16");
+  CHECK(with("/nodes/0/children", 0) == "nodes[0].children is 0; it must be a list: [ ... ]");
+  CHECK(with("/nodes/0/matrix", {1, 2, 3}) == "nodes[0].matrix has 3 numbers, not 16");
   CHECK(with("/nodes/0/matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2}) ==
         "nodes[0].matrix: its last row is not 0, 0, 0, 1; export the scene again");
   CHECK(with("/nodes/0/rotation", {0, 0, 0, 0}) ==
-        "nodes[0].rotation: is no rotation: its length is not that of a unit quaternion");
-  CHECK(with("/meshes/0/primitives", Json::object()) == "meshes[0].primitives: is not an array");
-  CHECK(without("/meshes/0/primitives/0", "attributes") == "meshes[0].primitives[0]: has no 'attributes', which it needs");
+        "nodes[0].rotation is no rotation: its length is not that of a unit quaternion");
+  CHECK(with("/meshes/0/primitives", Json::object()) == "meshes[0].primitives is an object; it must be a list: [ ... ]");
+  CHECK(without("/meshes/0/primitives/0", "attributes") == "meshes[0].primitives[0].attributes is missing");
   CHECK(with("/meshes/0/primitives/0/mode", 7) ==
-        "meshes[0].primitives[0].mode: is 7; use one of the modes, 0 (points) to 6 (fan)");
+        "meshes[0].primitives[0].mode is 7; use one of the modes, 0 (points) to 6 (fan)");
   CHECK(with("/meshes/0/primitives/0/attributes/POSITION", 7) ==
-        "meshes[0].primitives[0].attributes.POSITION: is 7, but the file has 2 accessors");
+        "meshes[0].primitives[0].attributes.POSITION is 7, but the file has 2 accessors");
   CHECK(with("/meshes/0/primitives/0/attributes/POSITION", 1) ==
         "meshes[0].primitives[0].attributes.POSITION: accessors[1] is not of VEC3 of floats, nor of 8- or 16-bit integers "
         "(KHR_mesh_quantization)");
   CHECK(with("/meshes/0/primitives/0/indices", 0) ==
         "meshes[0].primitives[0].indices: accessors[0] is not of SCALAR of unsigned 8-, 16- or 32-bit integers");
   CHECK(with("/accessors/0/componentType", 5124) ==
-        "accessors[0].componentType: is 5124; the types are 5120 to 5123, 5125 and 5126");
+        "accessors[0].componentType is 5124; the types are 5120 to 5123, 5125 and 5126");
   CHECK(with("/accessors/0/type", "VEC9") ==
-        "accessors[0].type: is 'VEC9'; the types are SCALAR, VEC2 to VEC4 and MAT2 to MAT4");
-  CHECK(with("/accessors/0/bufferView", 2) == "accessors[0].bufferView: is 2, but the file has 2 bufferViews");
-  CHECK(with("/bufferViews/1/buffer", 1) == "bufferViews[1].buffer: is 1, but the file has 1 buffers");
+        "accessors[0].type is \"VEC9\"; the types are SCALAR, VEC2 to VEC4 and MAT2 to MAT4");
+  CHECK(with("/accessors/0/bufferView", 2) == "accessors[0].bufferView is 2, but the file has 2 bufferViews");
+  CHECK(with("/bufferViews/1/buffer", 1) == "bufferViews[1].buffer is 1, but the file has 1 buffers");
   CHECK(with("/bufferViews/0/byteStride", 8) ==
-        "bufferViews[0].byteStride: is 8, less than the 12 bytes of a value of accessors[0]");
+        "bufferViews[0].byteStride is 8, less than the 12 bytes of a value of accessors[0]");
 }
 
 TEST_CASE("no accessor, view or buffer reaches beyond its bytes, however large the numbers") {
@@ -99,7 +99,7 @@ TEST_CASE("no accessor, view or buffer reaches beyond its bytes, however large t
   CHECK(with("/accessors/0/byteOffset", 1).starts_with("truncated: accessors[0] promises 4 values of 12 bytes"));
   CHECK(with("/accessors/0/byteOffset", 9007199254740991).starts_with("truncated: accessors[0] promises 4 values"));
   CHECK(with("/accessors/0/count", 9007199254740991).starts_with("truncated: accessors[0] promises 9007199254740991 values"));
-  CHECK(with("/accessors/0/count", 1e300).starts_with("accessors[0].count: is 1e+300, not a whole number"));
+  CHECK(with("/accessors/0/count", 1e300).starts_with("accessors[0].count is 1e+300; it must be an integer"));
   CHECK(with("/bufferViews/1/byteLength", 25) ==
         "bufferViews[1]: needs 25 bytes from byte 48 on, buffers[0] has 72; fetch or export the file again");
   CHECK(with("/bufferViews/1/byteOffset", 9007199254740991).starts_with("bufferViews[1]: needs 24 bytes from byte 90071992"));
@@ -113,11 +113,11 @@ TEST_CASE("no accessor, view or buffer reaches beyond its bytes, however large t
     other[Json::json_pointer(pointer)] = value;
     return with("/accessors/0/sparse", other);
   };
-  CHECK(changed("/count", 5) == "accessors[0].sparse.count: is 5, more than the accessor's 4");
+  CHECK(changed("/count", 5) == "accessors[0].sparse.count is 5, more than the accessor's 4");
   CHECK(changed("/count", 2).starts_with("truncated: accessors[0].sparse.indices promises 2 values"));
   CHECK(changed("/values/byteOffset", 40).starts_with("truncated: accessors[0].sparse.values promises 1 values of 12 bytes"));
   CHECK(changed("/indices/componentType", kF32) ==
-        "accessors[0].sparse.indices.componentType: is not the type of an unsigned integer");
+        "accessors[0].sparse.indices.componentType is not the type of an unsigned integer");
   Json unsorted = sparse;
   unsorted["count"] = 3;
   unsorted["indices"]["byteOffset"] = 4;  // 1, 2, 0
@@ -125,16 +125,18 @@ TEST_CASE("no accessor, view or buffer reaches beyond its bytes, however large t
         "accessors[0].sparse.indices: value 2 is 0, neither above the one before it nor below the accessor's count 4");
 }
 
-TEST_CASE("JSON that is broken, cut short or nested without end is refused by its place") {
+TEST_CASE("broken, truncated or too deeply nested JSON is refused with its place") {
   const std::string text = square().text();
-  CHECK(refusal(text.substr(0, text.size() - 1)) == "mesh: truncated: the JSON ends at line 1, byte " +
-                                                        std::to_string(text.size() - 1) + "; fetch or export the file again");
-  CHECK(refusal("{\n\"asset\":}", Format::gltf) ==
-        "mesh: the JSON is broken at line 2, byte 11; fetch or export the file again");
-  CHECK(refusal("{\"asset\":" + std::string(200, '[')) ==
-        "mesh: the JSON is nested deeper than 128 levels; the file is damaged or forged");
-  CHECK(refusal("{\"asset\":1e999}") == "mesh: the JSON has a number out of range; export the file again");
-  CHECK(refusal("[]", Format::gltf) == "mesh: the JSON: is not an object; correct the file or export it again");
+  const std::string remedy = "; fetch or export the file again";
+  const std::string cut = refusal(text.substr(0, text.size() - 1));
+  CHECK(cut.starts_with("mesh: truncated: it is no JSON: line 1, column " + std::to_string(text.size()) + ": unexpected end"));
+  CHECK(cut.ends_with(remedy));
+  const std::string broken = refusal("{\n\"asset\":}", Format::gltf);
+  CHECK(broken.starts_with("mesh: is no JSON: line 2, column 9: "));
+  CHECK(broken.ends_with(remedy));
+  CHECK(refusal("{\"asset\":" + std::string(200, '[')) == "mesh: nests deeper than 128 levels; write it flatter" + remedy);
+  CHECK(refusal("{\"asset\":1e999}") == "mesh: is no JSON: number overflow parsing '1e999'" + remedy);
+  CHECK(refusal("[]", Format::gltf) == "mesh: is a list of 0; it must be an object: { ... }");
 }
 
 TEST_CASE("a GLB is refused where its lengths, its version or its first chunk are wrong") {
@@ -154,7 +156,7 @@ TEST_CASE("a GLB is refused where its lengths, its version or its first chunk ar
   CHECK(import_text(glb + std::string(4, '\0')).face_count() == 2);
 }
 
-TEST_CASE("a GLB without the chunk that its buffer is in says so") {
+TEST_CASE("a GLB without the chunk of its buffer is refused with that reason") {
   GltfScene scene = square();
   scene.json["buffers"] = {{{"byteLength", scene.buffer().size()}}};
   CHECK(refusal(glb_container(scene.json.dump(), std::nullopt)) ==
@@ -186,7 +188,7 @@ TEST_CASE("buffers in files beside or beneath the glTF file are read, by their p
       "square.gltf: truncated: buffers[0].byteLength promises 72 bytes, there are 71; fetch or export the file again"));
 }
 
-TEST_CASE("files that are missing, elsewhere or no files are refused by name") {
+TEST_CASE("referenced files that are missing, elsewhere or no regular files are refused by name") {
   const Folder folder;
   GltfScene scene = square();
   const auto message = [&](const std::string& uri) {
@@ -212,7 +214,7 @@ TEST_CASE("files that are missing, elsewhere or no files are refused by name") {
   }
 }
 
-TEST_CASE("Draco data that is none is refused, by the primitive that has it") {
+TEST_CASE("invalid Draco data is refused with its primitive") {
   std::string glb = write_glb_draco(import_text(square().text()));
   const std::size_t at = glb.rfind("DRACO");
   glb[at] = 'X';

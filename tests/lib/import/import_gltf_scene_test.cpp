@@ -40,7 +40,7 @@ double distance(const Points& a, const Points& b) {
 
 }  // namespace
 
-TEST_CASE("a node that moves nothing leaves every bit as it is, also under others") {
+TEST_CASE("identity transforms keep every bit, also in a hierarchy") {
   GltfScene scene = square_mesh();
   const float tiny = std::numeric_limits<float>::denorm_min(), huge = std::numeric_limits<float>::max();
   scene.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
@@ -79,7 +79,7 @@ TEST_CASE("transforms apply from the mesh outwards, in double") {
   CHECK(import_text(scene.text()).points == Points{{10.1, 0, 0}, {20.1, 0, 0}, {20.1, 10, 0}, {10.1, 10, 0}});
 }
 
-TEST_CASE("a node that mirrors turns its faces over, so that they keep facing outwards") {
+TEST_CASE("a mirroring node flips its faces, so that they stay outward") {
   GltfScene scene = square_mesh();
   scene.node({{"mesh", 0}, {"scale", {-1, 1, 1}}}, false);
   scene.node({{"children", {0}}});
@@ -94,7 +94,7 @@ TEST_CASE("a node that mirrors turns its faces over, so that they keep facing ou
   }
 }
 
-TEST_CASE("integer positions that a node stretches and mirrors back make the unit cube") {
+TEST_CASE("integer positions scaled and mirrored by a node give the unit cube") {
   const Result<PolygonSoup> soup = import_mesh(testdata() / "meshes" / "good" / "mirrored_bytes.gltf");
   REQUIRE(soup);
   double volume = 0;
@@ -106,7 +106,7 @@ TEST_CASE("integer positions that a node stretches and mirrors back make the uni
   CHECK(volume == Approx(1));
 }
 
-TEST_CASE("a mesh appears once for each node that shows it, each time with points of its own where it moved") {
+TEST_CASE("a mesh is instanced once per node, with separate points where transformed") {
   GltfScene scene = square_mesh();
   scene.node({{"mesh", 0}, {"name", "first"}});
   scene.node({{"mesh", 0}, {"name", "second"}, {"translation", {5, 0, 0}}});
@@ -121,7 +121,7 @@ TEST_CASE("a mesh appears once for each node that shows it, each time with point
   CHECK(soup.parts[2].first_point == 0);
 }
 
-TEST_CASE("the default scene is shown, else the first, else every root; what is outside is counted") {
+TEST_CASE("the default scene is read, else the first, else every root; others are counted") {
   GltfScene scene = square_mesh();
   scene.node({{"mesh", 0}, {"translation", {1, 0, 0}}});
   scene.node({{"mesh", 0}, {"translation", {2, 0, 0}}}, false);
@@ -141,7 +141,7 @@ TEST_CASE("the default scene is shown, else the first, else every root; what is 
   CHECK(ignored(all, "nodes with a mesh outside the scene") == 0);
 }
 
-TEST_CASE("skins and morph targets are left at rest, and counted") {
+TEST_CASE("skins and morph targets are read in rest pose, and counted") {
   GltfScene scene = square();
   scene.json["nodes"][0]["skin"] = 0;
   scene.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}, {{"POSITION", 0}}};
@@ -151,7 +151,7 @@ TEST_CASE("skins and morph targets are left at rest, and counted") {
   CHECK(ignored(soup, "primitives with morph targets (shown at rest)") == 1);
 }
 
-TEST_CASE("a chain of a hundred thousand nodes is walked") {
+TEST_CASE("a chain of a hundred thousand nodes is read") {
   GltfScene scene = square_mesh();
   constexpr int kDepth = 100'000;
   for (int i = 0; i < kDepth; ++i)
@@ -160,7 +160,7 @@ TEST_CASE("a chain of a hundred thousand nodes is walked") {
   CHECK(import_text(scene.text()).points[0] == Vec3{kDepth, 0, 0});
 }
 
-TEST_CASE("flat faces stay flat within the quantum wherever a node puts them") {
+TEST_CASE("flat faces stay flat within the quantum under any transform") {
   // Points of a plane through the origin, rounded to floats; then turned, stretched and moved far away.
   GltfScene scene;
   std::vector<float> xyz;

@@ -62,15 +62,14 @@ TEST_CASE("a mesh comes back from glTF, GLB and GLB with Draco, bit by bit and n
   check_same(import_text(write_glb_draco(mesh)), mesh);
 }
 
-TEST_CASE("glTF is known by its content, also behind a byte-order mark, and by its ending") {
+TEST_CASE("glTF is detected by content, also after a byte-order mark, and by extension") {
   const std::string text = square().text();
   CHECK(import_text("\xEF\xBB\xBF" + text).face_count() == 2);
   CHECK(import_text(" \r\n\t" + text).face_count() == 2);
   for (const char* name : {"a.gltf", "a.GLB"}) {
     const Result<PolygonSoup> soup = import_memory("{}", name);
     REQUIRE_FALSE(soup);
-    CHECK(soup.error().message ==
-          std::string(name) + ": the JSON: has no 'asset', which it needs; correct the file or export it again");
+    CHECK(soup.error().message == std::string(name) + ": asset is missing; correct the file or export it again");
   }
 }
 
@@ -104,7 +103,7 @@ TEST_CASE("strips and fans are wound as the specification says") {
   CHECK(faces_of(import_text(row(6, {0, 1, 2, 3, 4}).text())) == Faces{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
 }
 
-TEST_CASE("what joins strips is counted, not a face; a face with an index out of range stays one") {
+TEST_CASE("joints of strips are counted and not faces; a face with an index out of range is kept") {
   const PolygonSoup soup = import_text(row(5, {0, 1, 2, 2, 3, 3, 4, 5}).text());
   CHECK(faces_of(soup) == Faces{{0, 1, 2}, {3, 5, 4}});  // between them 1 2 2, 2 2 3, 2 3 3 and 3 3 4
   CHECK(ignored(soup, "strip joints") == 4);
@@ -136,7 +135,7 @@ TEST_CASE("points and lines are counted, not faces") {
   CHECK(soup.parts[0].name == "nodes[0]/meshes[0]/primitive 0");
 }
 
-TEST_CASE("values may stand apart, behind an offset, or between others") {
+TEST_CASE("accessor values may have a stride, an offset, or be interleaved") {
   GltfScene scene;
   std::string bytes = "head";
   for (const float x : {1.0f, 2.0f, 3.0f}) {
@@ -183,7 +182,7 @@ TEST_CASE("sparse accessors replace values, of zeros too") {
   CHECK(faces_of(import_text(indexed.text())) == Faces{{0, 1, 3}, {0, 2, 1}});
 }
 
-TEST_CASE("positions may be integers, whole or normalised, and say how coarse they are") {
+TEST_CASE("positions may be integers, normalised or not, and give their quantum") {
   GltfScene scene = square_mesh();
   Json& primitive = scene.json["meshes"][0]["primitives"][0];
   primitive.erase("indices");

@@ -52,7 +52,7 @@ TEST_CASE("OBJ: a comment or a name that ends in a backslash does not swallow th
   CHECK(import_text("# made in C:\\models\\\nv 0 0 0\no C:\\models\\\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").points.size() == 3);
 }
 
-TEST_CASE("OBJ: everything that is no geometry is ignored") {
+TEST_CASE("OBJ: statements that are no geometry are ignored") {
   const PolygonSoup soup = import_text(
       "# comment\nmtllib a b.mtl\no thing\ng one two\n" + kPoints +
       "vn 0 0 1\nvt 0 0\nvp 1\nusemtl v\ns off\nl 1 2\np 1\n\n   f 1 2 3 # face\ncurv 0 1 1 2\nend\nf  1\t3  4  \n");
@@ -60,7 +60,7 @@ TEST_CASE("OBJ: everything that is no geometry is ignored") {
   CHECK(ignored_of(soup) == Lines{"line elements: 1", "point elements: 1", "free-form curves: 1"});
 }
 
-TEST_CASE("OBJ: geometry that is not read is counted by kind, and so are statements that nobody knows") {
+TEST_CASE("OBJ: unsupported geometry and unknown statements are counted by kind") {
   const PolygonSoup soup = import_text(kPoints +
                                        "l 1 2\nl 2 3\np 1 2 3\ncstype bezier\ncurv 0 1 1 2\ncurv2 1 2\nparm u 0 1\nend\n"
                                        "surf 0 1 0 1 1 2 3 4\nbzp 1 2\ncall more.obj\nfacet 1 2 3\nf 1 2 3\nL 1 2\n");
@@ -91,7 +91,7 @@ TEST_CASE("OBJ: a part's name is short and on one line, cut between two characte
   CHECK(name(std::string(46, 'x') + "\xC3\xA4" + "y") == std::string(46, 'x') + "\xC3\xA4...");
 }
 
-TEST_CASE("OBJ: a file that switches parts all the time keeps a bounded number of them, and says so") {
+TEST_CASE("OBJ: the number of parts is bounded, and reaching the bound is reported") {
   std::string text = kPoints;
   constexpr int kFaces = 20'000;
   for (int f = 0; f < kFaces; ++f)
@@ -107,7 +107,7 @@ TEST_CASE("OBJ: a file that switches parts all the time keeps a bounded number o
   CHECK(soup.ignored[0].count + soup.parts.size() == kFaces - 1);
 }
 
-TEST_CASE("OBJ: line numbers hold over CRLF, joined lines and comments") {
+TEST_CASE("OBJ: line numbers are right after CRLF, joined lines and comments") {
   const PolygonSoup soup =
       import_text("# one\r\nv 0 0 0\r\nv 1 \\\r\n  0 0\r\n\r\nv 1 1 0 # \\\r\nf 1 \\\r\n2 \\\r\n3\r\nf 1 2 3\r\n");
   CHECK(soup.point_line == std::vector<std::uint32_t>{2, 3, 6});
@@ -116,7 +116,7 @@ TEST_CASE("OBJ: line numbers hold over CRLF, joined lines and comments") {
   CHECK(refusal("v 0 0 0\r\nv 1 \\\r\n x 0\r\n").find("mesh: line 3: the vertex coordinate 'x'") == 0);
 }
 
-TEST_CASE("OBJ: lines end in LF, CRLF or CR, the last one perhaps in nothing") {
+TEST_CASE("OBJ: lines end in LF, CRLF or CR; the last line end is optional") {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     const PolygonSoup soup = import_text("v 0 0 0" + end + "v 1 0 0" + end + "v 1 1 0" + end + "f 1 2 3");
     CHECK(faces_of(soup) == Faces{{0, 1, 2}});

@@ -75,7 +75,7 @@ TEST_CASE("OFF: kinds that are not read are refused by name") {
   CHECK(refusal("nOFF 4\n1 1 0\n0 0 0 1\n1 0\n").find("'nOFF'") != std::string::npos);
 }
 
-TEST_CASE("OFF: a refusal names the line, what was promised and what was found") {
+TEST_CASE("OFF: a refusal names the line, what was expected and what was found") {
   CHECK(refusal("OFF\n3 2 0\n" + kTriangle) ==
         "mesh: line 7: truncated: the header promises 2 faces, the file ends after 1; fetch or export it again");
   CHECK(refusal("OFF\n3 1 0\n0 0 0\n1 0\n").find("line 5: truncated: the header promises 3 vertices, the file ends after 1") !=
@@ -109,7 +109,7 @@ TEST_CASE("OFF: a face of more corners than the limit is refused, one at the lim
   CHECK(refusal(file(65'537)) == "mesh: line 7: face 1 has 65537 corners; the limit is 65536: cut it into smaller polygons");
 }
 
-TEST_CASE("OFF: line numbers hold over CRLF, CR, comments and empty lines") {
+TEST_CASE("OFF: line numbers are right after CRLF, CR, comments and empty lines") {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     std::string text;
     for (const char c : std::string("# made by hand\nCOFF # colours\n\n3 # vertices\n1 0\n") + kTriangle)

@@ -111,7 +111,7 @@ TEST_CASE("PLY binary: lists in a vertex and elements with lists around the geom
   CHECK(faces_of(soup) == Faces{{2, 1, 0}});
 }
 
-TEST_CASE("PLY binary: large meshes come out the same, whatever mixture of polygons and types") {
+TEST_CASE("PLY binary: large meshes are read right with any mixture of polygons and types") {
   // Long enough for the block-wise loops, with polygons that interrupt them now and then.
   std::mt19937 random(2);
   for (const std::string types : {"uchar int", "char uint", "int int", "uint uint", "short int", "uchar ushort"}) {
@@ -215,7 +215,7 @@ TEST_CASE("PLY binary: the body starts right behind the header's last line, what
   }
 }
 
-TEST_CASE("PLY binary: a refusal names the byte, what was promised and what was found") {
+TEST_CASE("PLY binary: a refusal names the byte, what was expected and what was found") {
   const std::string start = header(false, vertex_element(1, "uchar") + face_element(2, "char uchar"));
   const std::string at = "byte " + std::to_string(start.size());
   CHECK(refusal(start + "ab")

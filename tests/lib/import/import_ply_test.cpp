@@ -172,7 +172,7 @@ TEST_CASE("PLY: a header that contradicts itself is refused with the reason") {
   CHECK(refusal("solid\n", Format::ply).find("does not start with 'ply'") != std::string::npos);
 }
 
-TEST_CASE("PLY text: a refusal names the line, what was promised and what was found") {
+TEST_CASE("PLY text: a refusal names the line, what was expected and what was found") {
   const auto body = [](const std::string& rows) { return refusal(ascii(kVertices + "element face 1\n" + kFace, rows)); };
   CHECK(body(kPoints + "3 0 1\n") ==
         "mesh: line 15: truncated: the file ends in row 0 of 1 of element 'face'; fetch or export it again");
@@ -186,7 +186,7 @@ TEST_CASE("PLY text: a refusal names the line, what was promised and what was fo
         "mesh: line 14: face 0 has 65537 corners; the limit is 65536: cut it into smaller polygons");
 }
 
-TEST_CASE("PLY text: a list of more values than the file has bytes is refused before any of them is looked for") {
+TEST_CASE("PLY text: a list of more values than the file has bytes is refused at once") {
   // A control character was taken for a value of no length, 2^62 times over.
   const std::string vertex = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   for (const std::string count : {"4611686018427387904", "99999999999999999999", "1000"}) {

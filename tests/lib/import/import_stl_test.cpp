@@ -62,7 +62,7 @@ TEST_CASE("STL text: named solids are parts") {
   CHECK(parts("\xEF\xBB\xBFSolid  a\n" + kFacet + "EndSolid\n") == Lines{"a@0"});
 }
 
-TEST_CASE("STL text: any blanks between the words, and none of them a line's end") {
+TEST_CASE("STL text: any blanks between words, also without line ends") {
   CHECK(import_text(
             "  solid a\n\tfacet\tnormal 0 0 1\n\n outer\n loop vertex 0\v0\f0\nvertex 1 0\n0 VERTEX 0 1 0 endloop endfacet "
             "endsolid")
@@ -116,7 +116,7 @@ TEST_CASE("STL binary: triangles keep their float coordinates") {
   }
 }
 
-TEST_CASE("STL binary: a size that belies the count is refused, padding of less than a triangle is not") {
+TEST_CASE("STL binary: a size contradicting the count is refused, padding of less than a triangle is not") {
   CHECK(refusal(binary("solid a", 4, 3)).find("promises 4 triangles") != std::string::npos);  // its zero bytes give it away
   CHECK(refusal(binary("a", 4, 3), Format::stl) ==
         "mesh: truncated: the header promises 4 triangles (284 bytes), the file has 234 bytes; fetch or export it again");
@@ -128,7 +128,7 @@ TEST_CASE("STL binary: a size that belies the count is refused, padding of less 
   CHECK(import_text(binary("a", 3, 3) + std::string(49, '\0'), Format::stl).face_count() == 3);
 }
 
-TEST_CASE("STL binary: a header that says solid does not make it text, whatever the size says") {
+TEST_CASE("STL binary: a header with \"solid\" is not mistaken for text") {
   for (const std::string title :
        {"solid", "solid ascii", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "SOLID x"}) {
     INFO(title);

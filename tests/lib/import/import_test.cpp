@@ -39,7 +39,7 @@ PolygonSoup obj_with(const std::string& coordinates) {
 
 }  // namespace
 
-TEST_CASE("the content decides the format, not the ending") {
+TEST_CASE("the content determines the format, not the extension") {
   const TemporaryFolder folder;
   for (const std::string ending : {".off", ".obj", ".ply", ".stl", ".txt", ""}) {
     INFO(ending);
@@ -48,7 +48,7 @@ TEST_CASE("the content decides the format, not the ending") {
   }
 }
 
-TEST_CASE("the ending decides where the content does not") {
+TEST_CASE("the extension determines the format where the content does not") {
   const TemporaryFolder folder;
   CHECK(import_mesh(folder.write("a.OFF", kOff.substr(4)))->format == Format::off);
   CHECK(import_mesh(folder.write("a.Obj", "end\n" + kObj))->format == Format::obj);
@@ -58,7 +58,7 @@ TEST_CASE("the ending decides where the content does not") {
       "a.dat: is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read: export it as one of them"));
 }
 
-TEST_CASE("a format that the caller names is not doubted") {
+TEST_CASE("a format given by the caller is not questioned") {
   CHECK(import_text("end\n" + kObj, Format::obj).face_count() == 1);
   CHECK(refusal(kObj, Format::off).find("in place of the keyword OFF") != std::string::npos);
 }
@@ -109,7 +109,7 @@ TEST_CASE("UTF-16 text is refused by name") {
   CHECK(refusal(std::string("\xFE\xFF\0v\0 ", 6)).find("UTF-16") != std::string::npos);
 }
 
-TEST_CASE("what is compressed, packed or of a format that is not read is refused by name, with what to do") {
+TEST_CASE("compressed, packed and unsupported formats are refused by name, with a remedy") {
   const auto says = [](const std::string& bytes, const std::string& what) {
     INFO(what);
     CHECK(refusal(bytes).find(what) != std::string::npos);

@@ -105,7 +105,7 @@ TEST_CASE("NaN and infinity are understood in the spellings of C libraries") {
   }
 }
 
-TEST_CASE("what is no number is refused, and the cursor stays") {
+TEST_CASE("invalid numbers are refused, and the cursor does not move") {
   for (const char* text : {"",      "-",     "+",     ".",   "e5",  "1e",  "1e+",    "1.2.3",    "1,5",  "0x10", "1f",
                            "infi",  "nano",  "nan(",  "--1", "+-1", "1.#", "1.#FOO", "one",      "\xff", "1d5",  "1D+5",
                            "0x1p3", "1'000", "1_000", "1;",  "..5", ".e5", "1e5.5",  "\xC2\xB2", "inf1"}) {
@@ -163,7 +163,7 @@ TEST_CASE("lines are counted over LF, CRLF, CR, comments and joined lines") {
   }
 }
 
-TEST_CASE("a control character is a word of its own, so that reading words always ends") {
+TEST_CASE("a control character is a separate word, so that reading words terminates") {
   TextScanner scan(std::string_view("\x01\0b\x02 c", 6), {});
   std::vector<std::string> words;
   while (words.size() < 10 && scan.find_token())
@@ -185,7 +185,7 @@ TEST_CASE("a comment ends a number, and a byte order mark is skipped") {
   CHECK(value == 1);
 }
 
-TEST_CASE("the rest of a line is a name, with all that stands in it") {
+TEST_CASE("the rest of a line is one name") {
   TextScanner scan("o  a #1 \\ \t\r\n\r\nb", {.hash_comments = true, .continuation = true});
   CHECK(scan.read_word() == "o");
   CHECK(scan.read_rest_of_line() == "a #1 \\");

@@ -105,13 +105,13 @@ fdcg::test::Faces faces_in(const PolygonSoup& soup) {
 
 }  // namespace
 
-TEST_CASE("a repair that nobody asks for is refused") {
+TEST_CASE("a repair without any step is refused") {
   const Result<Repaired> result = repair(cube(), {});
   REQUIRE_FALSE(result);
   CHECK(result.error().exit_code == 2);
 }
 
-TEST_CASE("a clean mesh stays as it is, and every step says that it did nothing") {
+TEST_CASE("a clean mesh is unchanged, and every step reports no repairs") {
   for (const PolygonSoup& soup : {cube(), bumpy_sphere(12, 16), joined(cube({}, 4), reversed(cube({}, 2)))}) {
     const Repaired r = repaired(soup, all_safe());
     CHECK(r.actions.size() == 6);
@@ -149,7 +149,7 @@ TEST_CASE("weld joins vertices at equal coordinates, or within a distance, to th
   CHECK(totals(r.after)["boundary-edge"] == 6);
 }
 
-TEST_CASE("without a weld vertices at equal coordinates are judged as one and written as they were") {
+TEST_CASE("without a weld, equal vertices count as one but are written separately") {
   PolygonSoup soup = make_soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {9, 9, 9}},
                                {{0, 1, 2}, {3, 5, 4}, {0, 3, 5}});
   RepairOptions options;
@@ -187,7 +187,7 @@ TEST_CASE("faces that name a vertex twice are dropped, and polygons with spikes 
   CHECK(totals(r.after)["isolated-vertex"] == 1);
 }
 
-TEST_CASE("a polygon with a bridge to its hole, and one of two leaves, is left and said") {
+TEST_CASE("a polygon with a bridge to its hole, or of two lobes, is left and reported") {
   const std::vector<Vec3> points{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}};
   RepairOptions options;
   options.drop_degenerate_faces = true;
@@ -200,7 +200,7 @@ TEST_CASE("a polygon with a bridge to its hole, and one of two leaves, is left a
   }
 }
 
-TEST_CASE("a triangle without area between two faces goes, and the far one is cut at its corner") {
+TEST_CASE("a triangle without area between two faces is removed, and the opposite face is split") {
   // a 0, c 1, b 4 on the edge 0-1; faces below on the halves, above across the whole.
   const std::vector<Vec3> points{{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, -2, 0}, {1, 0, 0}};
   RepairOptions options;
@@ -222,7 +222,7 @@ TEST_CASE("a triangle without area between two faces goes, and the far one is cu
   CHECK(totals(r.after) == Totals{{"boundary-edge", 5}});
 }
 
-TEST_CASE("chains and pairs of triangles without area go one after the other") {
+TEST_CASE("chains and pairs of triangles without area are removed") {
   // Vertices 0 .. 4 on a line; a strip below on its four parts, one triangle above on the whole.
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {2, 4, 0}, {2, -4, 0}};
   const fdcg::test::Faces below{{0, 6, 1}, {1, 6, 2}, {2, 6, 3}, {3, 6, 4}};
@@ -246,7 +246,7 @@ TEST_CASE("chains and pairs of triangles without area go one after the other") {
   CHECK(totals(r.after) == Totals{{"boundary-edge", 4}, {"isolated-vertex", 1}});
 }
 
-TEST_CASE("a face without area at the border goes where nothing hangs together by it alone") {
+TEST_CASE("a face without area at the border is removed unless it alone connects its neighbours") {
   const std::vector<Vec3> points{{0, 0, 0}, {2, 0, 0}, {1, -2, 0}, {1, 0, 0}, {0, -2, 0}, {2, -2, 0}};
   RepairOptions options;
   options.drop_degenerate_faces = true;
@@ -259,7 +259,7 @@ TEST_CASE("a face without area at the border goes where nothing hangs together b
   CHECK(totals(bridge.after).count("non-manifold-vertex") == 0);
 }
 
-TEST_CASE("a face without area at an edge of three faces is left and said, until a copy is dropped") {
+TEST_CASE("a face without area at an edge of three faces is left and reported, until a copy is dropped") {
   const std::vector<Vec3> points{{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, 0, 2}, {1, -2, 0}, {1, 0, 0}};
   const fdcg::test::Faces faces{{0, 1, 2}, {0, 1, 3}, {0, 5, 1}, {0, 4, 5}, {5, 4, 1}};
   RepairOptions options;
@@ -279,7 +279,7 @@ TEST_CASE("a face without area at an edge of three faces is left and said, until
   CHECK(totals(r.after) == Totals{{"boundary-edge", 4}, {"isolated-vertex", 1}});
 }
 
-TEST_CASE("of faces on the same vertices the first stays; polygons in another order are left and said") {
+TEST_CASE("of duplicate faces the first is kept; polygons in another order are left and reported") {
   PolygonSoup soup = cube();
   const fdcg::test::Faces clean = faces_in(soup);
   fdcg::test::Faces faces = clean;
@@ -297,7 +297,7 @@ TEST_CASE("of faces on the same vertices the first stays; polygons in another or
   CHECK(faces_in(r.soup) == expected);
 }
 
-TEST_CASE("each fan gets a vertex of its own, and the file is then to be read without a weld") {
+TEST_CASE("each fan gets its own vertex, and the file must then be read without a weld") {
   // Three cubes in a row that meet at corners, their vertices given separately.
   const PolygonSoup soup = joined(joined(cube({0, 0, 0}), cube({2, 2, 2})), cube({4, 4, 4}));
   RepairOptions options;
@@ -320,7 +320,7 @@ TEST_CASE("each fan gets a vertex of its own, and the file is then to be read wi
   CHECK(action(repaired(pinched, options), "split-non-manifold-vertices").total == 1);
 }
 
-TEST_CASE("orient and reverse-inside-out are apart: mixed winding is one's, whole patches are the other's") {
+TEST_CASE("orient repairs mixed winding only, reverse-inside-out whole patches only") {
   PolygonSoup soup = joined(cube({0, 0, 0}), reversed(cube({9, 0, 0})));
   std::reverse(soup.corners.begin() + 4, soup.corners.begin() + 8);  // face 1
   RepairOptions orient_only, reverse_only;
@@ -338,7 +338,7 @@ TEST_CASE("orient and reverse-inside-out are apart: mixed winding is one's, whol
   CHECK(action(repaired(joined(cube({}, 4), reversed(cube({}, 2))), all_safe()), "reverse-inside-out").total == 0);
 }
 
-TEST_CASE("a patch that cannot be made consistent is left and said") {
+TEST_CASE("a patch that cannot be made consistent is left and reported") {
   std::vector<Vec3> points;
   for (int i = 0; i < 5; ++i)
     points.push_back({i * 1.0, i * i * 1.0, i * i * i * 1.0});
@@ -373,7 +373,7 @@ TEST_CASE("parts keep their faces, and elements their lines and parts") {
   CHECK_FALSE(r.soup.is_text);
 }
 
-TEST_CASE("what no step repairs stays: numbers that are none, vertices that are missing, edges of three faces") {
+TEST_CASE("defects that no step repairs are kept: NaN, missing vertices, edges of three faces") {
   PolygonSoup soup = cube();
   soup.points.push_back({std::nan(""), 0, 0});
   fdcg::test::Faces faces = faces_in(soup);

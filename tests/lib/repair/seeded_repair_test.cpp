@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Defects that a repair can undo surely, planted in clean meshes: what comes back is the clean mesh, face for face.
+// Defects that repair can undo completely, planted in clean meshes: the result is the clean mesh, face for face.
 // FDCG_REPAIR_CASES sets how many random meshes (default 60).
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What simplify promises, measured by others: distances by CGAL's AABB tree, topology by counting.
+// The guarantees of simplify, measured independently: distances by CGAL's AABB tree, topology by counting.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -97,7 +97,7 @@ Repaired simplified(const PolygonSoup& soup, double error) {
   return *result;
 }
 
-// Everything that is promised of `r`, simplified from `soup`.
+// All guarantees for `r`, simplified from `soup`.
 std::size_t check_promises(const PolygonSoup& soup, const Repaired& r, double error, std::size_t samples) {
   INFO(r.actions[0].message << " " << r.actions[0].left_message);
   REQUIRE(r.actions[0].left == 0);
@@ -169,7 +169,7 @@ TEST_CASE("closed surfaces keep their shape within the distance, from both sides
   check_promises(hollow, 0.05, 3000);
 }
 
-TEST_CASE("what is not a manifold of triangles wound alike is left, and the reason said") {
+TEST_CASE("simplify: a mesh that is no oriented triangle manifold is left, with the reason") {
   const auto reason = [](const PolygonSoup& soup) {
     const Repaired r = simplified(soup, 0.1);
     CHECK(r.actions[0].total == 0);
@@ -192,7 +192,7 @@ TEST_CASE("what is not a manifold of triangles wound alike is left, and the reas
   CHECK(reason(pinched).find("more than one fan") != std::string::npos);
 }
 
-TEST_CASE("an error that is no number above 0 is refused") {
+TEST_CASE("simplify: an error that is not a positive number is refused") {
   for (const double error : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
     RepairOptions options;
     options.simplify_error = error;
@@ -202,12 +202,12 @@ TEST_CASE("an error that is no number above 0 is refused") {
   }
 }
 
-TEST_CASE("a distance below what doubles tell apart changes nothing") {
+TEST_CASE("simplify: a distance below double precision changes nothing") {
   const PolygonSoup sphere = bumpy_sphere(10, 12);
   CHECK(simplified(sphere, 1e-12).soup.corners == sphere.corners);
 }
 
-TEST_CASE("real meshes keep every promise") {
+TEST_CASE("simplify: every guarantee holds on real meshes") {
   const char* asked = std::getenv("FDCG_SIMPLIFY_FACES");  // of the largest mesh to be tried
   const std::size_t largest = asked != nullptr ? std::strtoul(asked, nullptr, 10) : 6000;
   std::size_t found = 0, checked = 0, faces_before = 0, faces_after = 0;

@@ -93,7 +93,7 @@ TEST_CASE("a large triangle over many small ones is covered, however small the d
   }
 }
 
-TEST_CASE("what passes is near: no point of the triangle is farther than the distance from the candidates") {
+TEST_CASE("the cover test is conservative: no point of a passing triangle is farther than the distance") {
   Random random(9);
   int passed = 0, failed = 0;
   for (int round = 0; round < 400; ++round) {

@@ -33,7 +33,7 @@ TEST_CASE("a full report is the JSON report with every element") {
   CHECK(full(report, spool) == report_json({report}));
 }
 
-TEST_CASE("a pile of elements that outgrows memory comes back whole and in order") {
+TEST_CASE("elements buffered in a file come back complete and in order") {
   constexpr std::uint32_t kMany = 30000;  // some 6 MB: several times what a pile keeps
   Report report = sample_report();
   report.issues[0].total = kMany;
@@ -53,7 +53,7 @@ TEST_CASE("a pile of elements that outgrows memory comes back whole and in order
   CHECK(document["files"][0]["issues"][2]["elements"].empty());
 }
 
-TEST_CASE("every finding passes the callback once, in source order, and known ones give way in the list") {
+TEST_CASE("every finding reaches the callback once, in source order, and known ones are replaced in the list") {
   PolygonSoup soup = fdcg::test::bumpy_sphere(40, 40);
   for (std::uint32_t i = 0; i < 500; ++i)
     soup.points.push_back({i + 10.0, 0, 0});  // 500 isolated vertices

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The official schema is checked by tests/contract/validate_cli_test.py; this is what the schema cannot say.
+// The official schema is checked by tests/contract/validate_cli_test.py; these are properties that the schema cannot express.
 #include <string>
 
 #include "catch.hpp"
@@ -20,7 +20,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("JUnit: a suite a file, a case a rule that ran, a failure for what fails the verdict alone") {
+TEST_CASE("JUnit: a suite per file, a case per rule that ran, failures only for what fails the verdict") {
   const std::string xml = report_string(ReportFormat::junit, {sample_report(), unreadable_report()});
   CAPTURE(xml);
   CHECK(count(xml, "<testsuite ") == 2);
@@ -48,7 +48,7 @@ TEST_CASE("JUnit: the level from which findings fail decides") {
   CHECK(count(report_string(ReportFormat::junit, {report}), "<failure ") == 0);
 }
 
-TEST_CASE("JUnit: no byte of a name gets out of its place") {
+TEST_CASE("JUnit: names are escaped") {
   Report report = sample_report();
   for (int byte = 1; byte < 256; ++byte)
     report.file += static_cast<char>(byte);

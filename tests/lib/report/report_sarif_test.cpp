@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The official schema is checked by tests/contract/validate_cli_test.py; this is what the schema cannot say.
+// The official schema is checked by tests/contract/validate_cli_test.py; these are properties that the schema cannot express.
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -22,7 +22,7 @@ json run_of(const std::vector<Report>& reports, const ReportOptions& options = {
 
 }  // namespace
 
-TEST_CASE("SARIF: one result a rule has the exact total, all listed places, and links to the first") {
+TEST_CASE("SARIF: one result per rule has the exact total, all listed places, and links to the first") {
   const json run = run_of({sample_report()});
   REQUIRE(run["results"].size() == 3);
   const json& error = run["results"][0];
@@ -65,7 +65,7 @@ TEST_CASE("SARIF: every rule of the catalogue is described, and results point to
     CHECK(described[result["ruleIndex"].get<std::size_t>()]["id"] == result["ruleId"]);
 }
 
-TEST_CASE("SARIF: a result for each element adds up to the exact total, each with a print of its own") {
+TEST_CASE("SARIF: results per element add up to the exact total and have distinct fingerprints") {
   ReportOptions options;
   options.result_per_element = true;
   Report report = sample_report();
@@ -88,7 +88,7 @@ TEST_CASE("SARIF: a result for each element adds up to the exact total, each wit
   CHECK(run["results"].size() == 101 + 1 + 1);
 }
 
-TEST_CASE("SARIF: what is known or allowed is suppressed, the rest is not") {
+TEST_CASE("SARIF: known and allowed findings are suppressed, others are not") {
   const json run = run_of({sample_report()});
   CHECK(run["results"][0]["baselineState"] == "updated");  // 2 of 300 are known
   CHECK(run["results"][0]["suppressions"].empty());
@@ -100,7 +100,7 @@ TEST_CASE("SARIF: what is known or allowed is suppressed, the rest is not") {
   CHECK(run_of({plain})["results"][0].count("baselineState") == 0);
 }
 
-TEST_CASE("SARIF: the print of a rule's result stays when findings come, go and move, and differs between files") {
+TEST_CASE("SARIF: the fingerprint of a rule's result does not depend on its findings, and differs between files") {
   const auto print = [](const Report& report) {
     return run_of({report})["results"][0]["partialFingerprints"]["primaryLocationLineHash"].get<std::string>();
   };
@@ -113,7 +113,7 @@ TEST_CASE("SARIF: the print of a rule's result stays when findings come, go and 
   CHECK(print(other) != print(sample_report()));
 }
 
-TEST_CASE("SARIF: files are URIs, relative below the source root, and the run tells its exit code") {
+TEST_CASE("SARIF: files are URIs, relative below the source root, and the run has its exit code") {
   ReportOptions options;
   options.source_root = "/data";
   Report inside = sample_report();

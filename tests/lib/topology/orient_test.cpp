@@ -64,7 +64,7 @@ void flip_face(PolygonSoup& soup, std::uint32_t f) {
 
 }  // namespace
 
-TEST_CASE("a consistent outward mesh is left alone") {
+TEST_CASE("a consistent outward mesh is not changed") {
   for (const PolygonSoup& soup : {cube(), bumpy_sphere(12, 16), joined(cube({}, 4), reversed(cube({}, 2)))}) {
     const Oriented result = oriented(soup);
     CHECK(result.flipped.empty());
@@ -72,7 +72,7 @@ TEST_CASE("a consistent outward mesh is left alone") {
   }
 }
 
-TEST_CASE("flipping any subset of the faces of a solid is undone, and what was flipped is named") {
+TEST_CASE("flipping any subset of the faces of a solid is undone, and the flipped faces are reported") {
   std::mt19937 rng(31);
   const PolygonSoup hollow = joined(joined(cube({}, 4), reversed(cube({}, 2))), cube({9, 0, 0}, 3));
   for (const PolygonSoup& clean : {cube(), bumpy_sphere(8, 9), hollow}) {
@@ -94,7 +94,7 @@ TEST_CASE("flipping any subset of the faces of a solid is undone, and what was f
   }
 }
 
-TEST_CASE("a closed part inside out is turned, one that bounds a cavity is not") {
+TEST_CASE("a closed part inside out is flipped, one that bounds a cavity is not") {
   CHECK(oriented(reversed(cube())).flipped == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5});
   CHECK(oriented(joined(cube({-3, 0, 0}), reversed(cube({3, 0, 0})))).flipped ==
         std::vector<std::uint32_t>{6, 7, 8, 9, 10, 11});
@@ -102,7 +102,7 @@ TEST_CASE("a closed part inside out is turned, one that bounds a cavity is not")
   CHECK(oriented(joined(cube({}, 4), cube({}, 2))).flipped.empty());
 }
 
-TEST_CASE("an open patch keeps the side of its majority, of equal halves that of the first face") {
+TEST_CASE("an open patch keeps the orientation of its majority, of equal halves that of the first face") {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {3, 1, 0}};
   const PolygonSoup strip = make_soup(points, {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}});
   for (std::uint32_t f = 0; f < 3; ++f) {
@@ -115,7 +115,7 @@ TEST_CASE("an open patch keeps the side of its majority, of equal halves that of
   CHECK(oriented(two).flipped == std::vector<std::uint32_t>{1});
 }
 
-TEST_CASE("what cannot be oriented stays as it is and is reported") {
+TEST_CASE("a patch that cannot be oriented is unchanged and reported") {
   std::vector<Vec3> points;
   for (int i = 0; i < 6; ++i)
     points.push_back({i * 1.0, i * i * 1.0, i * i * i * 1.0});

@@ -79,7 +79,7 @@ TEST_CASE("face_of is left empty only where every face is a triangle") {
   CHECK(pair_halfedges(weld(mixed)).face(HalfedgeId{3}) == FaceId{0});
 }
 
-TEST_CASE("boundary, same-way and non-manifold edges are told apart, and skipped faces take no part") {
+TEST_CASE("boundary, same-way and non-manifold edges are distinguished, and skipped faces are ignored") {
   const PolygonSoup soup = make_soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {5, 5, 5}},
                                      {{0, 1, 2}, {0, 1, 3}, {0, 1, 0}, {0, 1, 9}, {0, 1}});
   Topology two = pair_halfedges(weld(soup));
@@ -99,7 +99,7 @@ TEST_CASE("boundary, same-way and non-manifold edges are told apart, and skipped
   CHECK(pair_halfedges(weld(fan), states).twin[0] == HalfedgeId{3});
 }
 
-TEST_CASE("a polygon that names a corner twice is recognised however far apart") {
+TEST_CASE("a polygon with a repeated corner is recognised at any distance in the loop") {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 2, 2}};
   const auto states = face_states(
       weld(make_soup(points, {{0, 1, 2, 3}, {0, 1, 2, 0}, {0, 1, 2, 1, 3}, {0, 1, 2, 3, 4}, {}, {3}, {7, 7, 7, 7}})));
@@ -108,7 +108,7 @@ TEST_CASE("a polygon that names a corner twice is recognised however far apart")
                                          invalid_corner});
 }
 
-TEST_CASE("the pairing agrees with a tree of pairs on random polygons over few and many vertices") {
+TEST_CASE("the pairing agrees with a search tree on random polygons over few and many vertices") {
   std::mt19937 rng(99);
   for (int round = 0; round < 300; ++round) {
     const std::uint32_t vertices = 3 + rng() % (round % 3 == 0 ? 5 : 60);
@@ -142,7 +142,7 @@ TEST_CASE("a vertex of a hundred thousand faces is paired like any other") {
   }
 }
 
-TEST_CASE("faces that are all unsound have no edges to pair") {
+TEST_CASE("a mesh of invalid faces only has no edges to pair") {
   const Mesh mesh = weld(make_soup({{0, 0, 0}, {1, 0, 0}}, {{0, 1, 7}, {0, 0, 1}, {}}));
   CHECK(pair_halfedges(mesh).twin == std::vector<HalfedgeId>(6, Topology::kSkipped));
 }

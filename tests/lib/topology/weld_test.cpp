@@ -62,7 +62,7 @@ TEST_CASE("minus zero and zero are one vertex, a unit in the last place apart ar
   CHECK_FALSE(std::signbit(weld_points(points_only({{-0.0, 1, 1}, {1, -1, -1}}), kExact, Precision::f64).points[0].x));
 }
 
-TEST_CASE("single precision rounds local coordinates and joins what falls together") {
+TEST_CASE("single precision rounds local coordinates and joins those that become equal") {
   const PolygonSoup soup = points_only({{0.1, 1, -1}, {0.1 + 1e-12, 1, -1}, {-0.1, -1, 1}, {1e300, -1, 1}});
   const Mesh mesh = weld_points(soup, kExact, Precision::f32);
   REQUIRE(mesh.points.size() == 3);
@@ -73,7 +73,7 @@ TEST_CASE("single precision rounds local coordinates and joins what falls togeth
   CHECK(weld_points(soup, kNoWeld, Precision::f32).points.size() == 4);
 }
 
-TEST_CASE("corners follow their vertex, and those that name none are marked") {
+TEST_CASE("corners refer to the joined vertices, and invalid ones are marked") {
   PolygonSoup soup = make_soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, -1, 1}}, {{0, 1, 2}, {2, 3, 4}, {0, 1, 5}});
   soup.corners[0] = PolygonSoup::kInvalidVertex;
   const Mesh mesh = weld_points(soup, kExact, Precision::f64);
@@ -106,7 +106,7 @@ TEST_CASE("the exact weld agrees with an ordered map on random points of few dis
   }
 }
 
-TEST_CASE("a weld by distance joins each point to the first standing vertex in reach, as a search over all pairs does") {
+TEST_CASE("a weld by distance joins each point to the first kept vertex within it, as brute force does") {
   std::mt19937 rng(7);
   std::uniform_real_distribution<double> coordinate(-1, 1);
   for (const double distance : {0.01, 0.1, 0.5, 10.0}) {
@@ -126,7 +126,7 @@ TEST_CASE("a weld by distance joins each point to the first standing vertex in r
   }
 }
 
-TEST_CASE("a weld by no distance is the exact one; points exactly the distance apart are joined") {
+TEST_CASE("a weld by distance 0 is the exact one; points exactly the distance apart are joined") {
   const PolygonSoup soup = points_only({{-3, 0, 0}, {-2, 0, 0}, {-1, 0, 0}, {0, 0, 0}, {-0.0, 0, 0}, {3, 3, 3}});
   CHECK(weld_points(soup, {Weld::Kind::distance, 0}, Precision::f64).points.size() == 5);
   // -3 takes -2; -1 stands on its own, takes 0: no chain

@@ -69,7 +69,7 @@ TEST_CASE("every bad mesh raises the rule in its name, and every rule has a mesh
   }
 }
 
-TEST_CASE("a degenerate face is told what is wrong with it") {
+TEST_CASE("a degenerate face is reported with its kind of degeneracy") {
   CHECK(
       message_of("degenerate-face-on-a-line.off", "degenerate-face").starts_with("1 face has all corners on one line. Delete"));
   CHECK(message_of("degenerate-face-repeated-corner.off", "degenerate-face")

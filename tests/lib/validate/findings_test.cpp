@@ -93,7 +93,7 @@ PolygonSoup renumbered(const PolygonSoup& soup, std::mt19937& rng) {
 
 }  // namespace
 
-TEST_CASE("fingerprints stay when a file is renumbered") {
+TEST_CASE("fingerprints do not change when a file is renumbered") {
   const Prints before = fingerprints(full(defective()));
   CHECK(before.size() >= 9);
   std::mt19937 rng(20);
@@ -103,7 +103,7 @@ TEST_CASE("fingerprints stay when a file is renumbered") {
   }
 }
 
-TEST_CASE("fingerprints stay when a file changes elsewhere, and differ where the finding does") {
+TEST_CASE("fingerprints do not change when a file changes elsewhere, and distinguish findings") {
   const Prints before = fingerprints(full(defective()));
   const Prints after = fingerprints(full(joined(defective(), cube({100, 0, 0}))));
   CHECK(after == before);
@@ -201,7 +201,7 @@ TEST_CASE("an edge of many faces lists 32 of them and counts the rest") {
   CHECK(report_json({report}).find("\"more_faces\": 18") != std::string::npos);
 }
 
-TEST_CASE("severities: a rule is run as asked or not at all") {
+TEST_CASE("severities: a rule runs with the given severity or not at all") {
   ValidateOptions options;
   options.severities = {{"boundary-edge", Severity::error}, {"inside-out", Severity::note}, {"isolated-vertex", std::nullopt}};
   PolygonSoup soup = joined(reversed(cube()), make_soup({{9, 9, 9}, {8, 9, 9}, {9, 8, 9}, {7, 7, 7}}, {{0, 1, 2}}));

@@ -85,7 +85,7 @@ struct EdgeVisitor : PMP::Default_orientation_visitor {
 
 }  // namespace
 
-TEST_CASE("every face of every real file is kept or listed under what is wrong with it") {
+TEST_CASE("every face of every real file is kept or listed under its defect") {
   std::size_t read = 0, refused = 0;
   for (const auto& path : real_mesh_files()) {
     INFO(path.string());

@@ -150,7 +150,7 @@ TEST_CASE("clean meshes have no finding in any format") {
   }
 }
 
-TEST_CASE("a single defect of each kind is found where it is, and nothing else") {
+TEST_CASE("a single defect of each kind is found in its place, and nothing else") {
   for (const std::string& defect : Seeder::kinds()) {
     int planted = 0;
     for (int i = 0; i < 33; ++i) {
@@ -169,7 +169,7 @@ TEST_CASE("a single defect of each kind is found where it is, and nothing else")
   }
 }
 
-TEST_CASE("many defects that keep apart give exactly the sum of their findings") {
+TEST_CASE("many separate defects give exactly the sum of their findings") {
   const std::uint32_t cases = setting("FDCG_SEEDED_CASES", 150), most_faces = setting("FDCG_SEEDED_FACES", 20'000);
   std::map<std::string, int> planted;
   for (std::uint32_t i = 0; i < cases; ++i) {

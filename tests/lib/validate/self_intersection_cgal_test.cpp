@@ -237,7 +237,7 @@ PolygonSoup random_soup(Random& random) {
 
 }  // namespace
 
-TEST_CASE("on random soups the pairs and how they meet are those of an exact construction") {
+TEST_CASE("self-intersection: pairs and contact types on random soups equal an exact construction") {
   const std::uint64_t seeds = setting("FDCG_PAIR_SEEDS", 300);
   std::map<Contact, std::size_t> seen;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {

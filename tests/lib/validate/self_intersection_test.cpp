@@ -118,7 +118,7 @@ PolygonSoup soup_of(const std::vector<Rectangle>& rectangles) {
 
 }  // namespace
 
-TEST_CASE("rectangles meet as their intervals say, whichever way they are cut") {
+TEST_CASE("rectangles intersect as their intervals do, for any triangulation") {
   std::map<Contact, std::size_t> seen;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     INFO("seed " << seed);
@@ -154,7 +154,7 @@ TEST_CASE("rectangles meet as their intervals say, whichever way they are cut") 
     CHECK(seen[contact] > 1000);
 }
 
-TEST_CASE("polygons, concave ones too, are judged by their inside") {
+TEST_CASE("self-intersection: polygons, also concave ones, are tested by their interior") {
   // A C of seven squares around an empty middle, and needles through the middle, the arm, the inner rim.
   const std::vector<Vec3> c{{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {1, 1, 0}, {1, 2, 0}, {3, 2, 0}, {3, 3, 0}, {0, 3, 0}};
   const auto with_needle = [&](double x, double y) {
@@ -172,7 +172,7 @@ TEST_CASE("polygons, concave ones too, are judged by their inside") {
   CHECK((contacts_of(Subject(bow).found()) == Contacts{{{0, 1}, Contact::crossing}}));
 }
 
-TEST_CASE("faces without area, without all their corners or not finite take no part") {
+TEST_CASE("self-intersection: degenerate, invalid and non-finite faces are ignored") {
   const std::vector<Vec3> points{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 0}, {1, 1, 1}, {NAN, 1, 1}, {2, 1, -1}};
   const auto pairs = [&](const Faces& faces) { return Subject(make_soup(points, faces)).found().listed.size(); };
   CHECK(pairs({{0, 1, 2}, {3, 5, 7}}) == 1);
@@ -185,7 +185,7 @@ TEST_CASE("faces without area, without all their corners or not finite take no p
   CHECK(pairs({}) == 0);
 }
 
-TEST_CASE("totals and the listed pairs depend on neither the threads nor the cap") {
+TEST_CASE("self-intersection: totals and listed pairs depend on neither threads nor cap") {
   PolygonSoup other = bumpy_sphere(24, 24);
   for (Vec3& p : other.points)
     p.x += 0.7;
@@ -210,7 +210,7 @@ TEST_CASE("totals and the listed pairs depend on neither the threads nor the cap
   }
 }
 
-TEST_CASE("very many faces around a vertex or an edge: every pair, in little time") {
+TEST_CASE("self-intersection: very many faces around a vertex or an edge, in bounded time") {
   constexpr std::uint32_t kMany = 700;
   Random random(5);
   const auto turned = [](double angle, double radius, double z) {
@@ -257,7 +257,7 @@ TEST_CASE("very many faces around a vertex or an edge: every pair, in little tim
   }
 }
 
-TEST_CASE("a vertex far away, or parts far apart, do not make the search slow or wrong") {
+TEST_CASE("self-intersection: outliers and distant parts make the search neither slow nor wrong") {
   PolygonSoup soup = bumpy_sphere(100, 100);
   for (const double far : {1e9, 1e300}) {
     PolygonSoup with = soup;

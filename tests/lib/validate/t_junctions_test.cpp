@@ -104,7 +104,7 @@ TEST_CASE("vertices off the edge by more than the rounding, or at its ends, are 
   CHECK(with_middle({0.5, -0.5, 0}) == 0);
 }
 
-TEST_CASE("an exact T-junction is one however the numbers round") {
+TEST_CASE("an exact T-junction is found whatever the rounding") {
   // (0.1, 0.3, 0.7) times 3 is not representable; the points below are on one line exactly, the last far out.
   const Vec3 d{0.1, 0.3, 0.7};
   const PolygonSoup soup = make_soup({{0, 0, 0}, {1024 * d.x, 1024 * d.y, 1024 * d.z}, {5, 0, 0}, d, {-5, 0, 0}, {0, -5, 0}},
@@ -137,7 +137,7 @@ TEST_CASE("the corners of the edge's own face do not lie inside it") {
   CHECK(total(soup, "sliver-face") == 1);
 }
 
-TEST_CASE("open meshes of many faces take no more than their share of time") {
+TEST_CASE("T-junctions: time is near linear on open meshes of many faces") {
   const auto start = std::chrono::steady_clock::now();
   ValidateOptions loose;
   loose.weld = {Weld::Kind::none, 0};

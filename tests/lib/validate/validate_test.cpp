@@ -207,7 +207,7 @@ TEST_CASE("a polygon rotated in floating point counts as planar, in double and i
   }
 }
 
-TEST_CASE("a Moebius strip is not orientable once, however it is wound; a plain band is clean but for its rims") {
+TEST_CASE("a Moebius strip gives one finding, however it is wound; a plain band has boundary edges only") {
   for (const std::uint32_t quads : {3U, 4U, 5U, 50U}) {
     CAPTURE(quads);
     Totals strip = totals(band(quads, true));
@@ -224,7 +224,7 @@ TEST_CASE("a Moebius strip is not orientable once, however it is wound; a plain 
   }
 }
 
-TEST_CASE("a cavity in a solid is not inside out, whatever stands around it") {
+TEST_CASE("a cavity in a solid is not inside out, whatever other parts there are") {
   const PolygonSoup hollow = joined(cube({}, 4), reversed(cube({}, 2)));
   CHECK(totals(hollow).empty());
   CHECK(totals(reversed(hollow)) == Totals{{"inside-out", 1}});  // the shell; the core is a solid in it
@@ -249,7 +249,7 @@ TEST_CASE("of two separate cubes the one inside out is found, and may be allowed
   CHECK(totals(reversed(cube({1e6, 1e6, 1e6}, 1e-3))) == Totals{{"inside-out", 1}});
 }
 
-TEST_CASE("parts that touch in a vertex are judged by one that does not touch") {
+TEST_CASE("nesting of parts that touch in a vertex is found from a vertex that does not touch") {
   // The small cube shares the corner (2, 2, 2) with the large one that holds it.
   const PolygonSoup inner = joined(cube({}, 4), reversed(cube({1, 1, 1}, 2)));
   // Each of three walls of the large one has one of the small one's faces on it and the edges of four others.
@@ -258,7 +258,7 @@ TEST_CASE("parts that touch in a vertex are judged by one that does not touch") 
   CHECK(totals(outer) == Totals{{"non-manifold-vertex", 1}, {"duplicate-vertex", 1}, {"inside-out", 1}});
 }
 
-TEST_CASE("many nested shells alternate") {
+TEST_CASE("nested shells alternate between outward and inward") {
   PolygonSoup soup = cube({}, 1);
   for (int i = 2; i <= 41; ++i)
     soup = joined(soup, reversed(cube({}, i)));
@@ -380,7 +380,7 @@ TEST_CASE("all totals agree with a recount by definition on random small meshes 
   }
 }
 
-TEST_CASE("a polygon of 65,000 corners and a vertex of 100,000 faces take no more than their share of time") {
+TEST_CASE("a polygon of 65,000 corners and a vertex of 100,000 faces are checked in near linear time") {
   constexpr std::uint32_t kSides = 65000;
   std::vector<Vec3> points;
   std::vector<std::uint32_t> floor, roof;

@@ -118,7 +118,7 @@ nlohmann::json info_of(const Compiled& compiled) {
 
 }  // namespace
 
-TEST_CASE("compile refuses a mesh exactly where validate fails it, and stores what was found") {
+TEST_CASE("compile refuses a mesh exactly where validate fails it, and stores the findings") {
   const char* const asked = std::getenv("FDCG_VERDICT_ROUNDS");
   const unsigned rounds = asked != nullptr ? static_cast<unsigned>(std::atoi(asked)) : 4000;
   unsigned refused = 0, accepted = 0;

@@ -25,7 +25,7 @@ void keep_line(void* context, fdcg_log_level level, const char* text) {
   static_cast<Lines*>(context)->emplace_back(level, text);
 }
 
-// Takes the handlers away again, whatever a test does.
+// Resets the handlers after each test.
 struct Handlers {
   ~Handlers() {
     fdcg_set_log_handler(nullptr, nullptr);
@@ -41,7 +41,7 @@ AlignedBytes compiled_cube() {
 
 }  // namespace
 
-TEST_CASE("the log handler is told of each graph opened or refused, with the error's own message") {
+TEST_CASE("the log handler is called for each graph opened or refused, with the error's message") {
   const Handlers restore;
   AlignedBytes file = compiled_cube();
   fdcg_graph graph;
@@ -54,14 +54,14 @@ TEST_CASE("the log handler is told of each graph opened or refused, with the err
   CHECK(fdcg_open_memory(file.data(), file.size() - 1, FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_TRUNCATED);
   REQUIRE(lines.size() == 2);
   CHECK(lines[1] == std::make_pair(FDCG_LOG_ERROR, std::string(error.message)));
-  // a caller who does not ask for the message is told by the log
+  // a caller without an error struct gets the message in the log
   CHECK(fdcg_open_memory(file.data(), 3, FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_E_TRUNCATED);
   CHECK(fdcg_open_file("/no/such/file.fdcg", FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_E_IO);
   REQUIRE(lines.size() == 4);
   CHECK(lines[3].second.find("/no/such/file.fdcg") != std::string::npos);
 }
 
-TEST_CASE("without a log handler nothing is told, and the step never tells") {
+TEST_CASE("without a log handler nothing is logged, and the step never logs") {
   const Handlers restore;
   AlignedBytes file = compiled_cube();
   Lines lines;
@@ -74,7 +74,7 @@ TEST_CASE("without a log handler nothing is told, and the step never tells") {
   CHECK(lines.empty());
 }
 
-TEST_CASE("a sound step finds no fault of the library's own") {
+TEST_CASE("a valid step triggers no assertion") {
   const Handlers restore;
   std::string faults;
   fdcg_set_assert_handler([](void* context, const char* condition, const char*,
@@ -87,7 +87,7 @@ TEST_CASE("a sound step finds no fault of the library's own") {
   CHECK(faults == "");
 }
 
-TEST_CASE("a fault of the library's own reaches the handler with its place, and traps where there is none") {
+TEST_CASE("a failed assertion calls the handler with its place, and traps without one") {
   const Handlers restore;
   struct Seen {
     std::string condition, file;

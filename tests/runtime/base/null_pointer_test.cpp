@@ -212,7 +212,7 @@ const std::vector<Call> kPilesAndSheets = {
 
 }  // namespace
 
-TEST_CASE("a null pointer is refused by name wherever there is a status, with and without room for the error") {
+TEST_CASE("null pointers: refused by name in every call with a status, with and without an error struct") {
   World world;
   for (const std::vector<Call>* calls : {&kObjectsAndFingers, &kShapesAndBodies, &kPilesAndSheets}) {
     for (std::size_t i = 0; i < calls->size(); ++i) {
@@ -227,7 +227,7 @@ TEST_CASE("a null pointer is refused by name wherever there is a status, with an
   }
 }
 
-TEST_CASE("without a status a null pointer does nothing, or gives zeros") {
+TEST_CASE("null pointers: calls without a status do nothing or return zeros") {
   World world;
   const fdcg_body before = world.body.body;
   fdcg_body_step(nullptr, world.place, world.place, 1e-3);

@@ -20,7 +20,7 @@ namespace bake = fdcg::bake;
 
 namespace {
 
-// fdcg_params as a header of long ago would have had it.
+// fdcg_params as in an early header.
 struct OlderParams {
   std::uint32_t struct_bytes;
   std::uint32_t edge_friction;
@@ -66,7 +66,7 @@ std::vector<double> forces(const fdcg_graph& graph, const fdcg_params* params) {
 
 }  // namespace
 
-TEST_CASE("an older, shorter struct is filled, checked and stepped with, and its memory is not left") {
+TEST_CASE("an older, shorter struct is filled, checked and used, within its memory") {
   const LastBytes memory(sizeof(OlderParams));
   fdcg_params* params = memory.params();
   fdcg_params_init(params, sizeof(OlderParams));
@@ -94,7 +94,7 @@ TEST_CASE("an older, shorter struct is filled, checked and stepped with, and its
   CHECK(forces(graph, params) != forces(graph, &other));
 }
 
-TEST_CASE("every length that a header may have had is accepted, others and longer ones are refused") {
+TEST_CASE("every valid struct length is accepted, others are refused") {
   fdcg_error error = {};
   for (std::uint32_t bytes = 0; bytes <= sizeof(fdcg_params) + 16; ++bytes) {
     fdcg_params params = fdcg_make_params();
@@ -106,7 +106,7 @@ TEST_CASE("every length that a header may have had is accepted, others and longe
   CHECK(std::string(error.message).find("the library is older than the header") != std::string::npos);
 }
 
-TEST_CASE("a newer, longer struct is given defaults where the library knows them, zeros behind") {
+TEST_CASE("a newer, longer struct gets the known defaults, then zeros") {
   alignas(8) unsigned char longer[sizeof(fdcg_params) + 16];
   std::memset(longer, 0xA5, sizeof longer);
   auto* params = reinterpret_cast<fdcg_params*>(longer);
@@ -117,7 +117,7 @@ TEST_CASE("a newer, longer struct is given defaults where the library knows them
     CHECK(longer[i] == (i < sizeof longer - 8 ? 0 : 0xA5));
 }
 
-TEST_CASE("a surface of an older, shorter struct is stepped on as the whole one, and its memory is not left") {
+TEST_CASE("a surface in an older, shorter struct steps as in the full one, within its memory") {
   constexpr std::uint32_t kOlderBytes = offsetof(fdcg_surface, top_radius_m);  // no length yet: its default is 0
   const LastBytes memory(kOlderBytes);
   auto* const older = memory.as<fdcg_surface>();

@@ -5,13 +5,13 @@
 #include "catch.hpp"
 #include "fdcg/fdcg.h"
 
-TEST_CASE("the linked library tells the version of its headers") {
+TEST_CASE("the linked library returns the version of its headers") {
   CHECK(fdcg_version() == FDCG_VERSION);
   CHECK(FDCG_VERSION_STRING == std::to_string(FDCG_VERSION / 10000) + "." + std::to_string(FDCG_VERSION / 100 % 100) + "." +
                                    std::to_string(FDCG_VERSION % 100));
 }
 
-TEST_CASE("every status has a text of its own, and a number that is none has one too") {
+TEST_CASE("every status has a distinct text, and an invalid number has one too") {
   std::set<std::string> texts;
   for (int status = FDCG_OK; status <= FDCG_E_ABSENT; ++status)
     texts.insert(fdcg_status_text(static_cast<fdcg_status>(status)));

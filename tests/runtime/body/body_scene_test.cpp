@@ -72,7 +72,7 @@ class Grip {
     const Place along = turned_corner(pose);
     return {along[0] + pose.translation_m[0], along[1] + pose.translation_m[1], along[2] + pose.translation_m[2]};
   }
-  // How far its centre hangs below where it was gripped.
+  // The distance of its centre below its position when gripped.
   [[nodiscard]] double sunk() const { return -(body_.body.centre_m[1] * up_[1] + body_.body.centre_m[2] * up_[2]); }
   void pull(double gravity) {
     for (int k = 0; k < 3; ++k)
@@ -126,7 +126,7 @@ TEST_CASE("two fingers hold a cube under gravity for 10^6 ticks, and it does not
   CHECK(worst < 1e-9);
 }
 
-TEST_CASE("a cube in a gripper that swings and turns for 10^6 ticks is in the same place of it in every period") {
+TEST_CASE("a cube in a gripper that swings and turns for 10^6 ticks has the same relative pose in every period") {
   Grip grip(0.6, 0.001);
   grip.settle();
   constexpr int kPeriod = 1000, kPeriods = 1000, kFirst = 5;  // until it swings alike
@@ -176,7 +176,7 @@ TEST_CASE("a cube slips from two fingers exactly when it weighs more than fricti
         for (const double share : {0.999, 1.001}) {
           CAPTURE(mu, lean_rad, deep, share);
           Grip grip(mu, deep, holds_kg * share, lean_rad);
-          // let down as slowly as it is damped: no swing beyond the load itself
+          // loaded as slowly as it is damped: no overshoot
           constexpr int kLowering = 20000;
           for (int tick = 0; tick < kLowering; ++tick) {
             grip.pull(kGravity * (tick + 1) / kLowering);
@@ -192,7 +192,7 @@ TEST_CASE("a cube slips from two fingers exactly when it weighs more than fricti
   }
 }
 
-TEST_CASE("a cube let go falls freely and is felt no more") {
+TEST_CASE("a released cube falls freely and gives no force") {
   Grip grip(0.6, 0.001);
   grip.settle();
   const double from = grip.corner()[2];
@@ -223,7 +223,7 @@ TEST_CASE("a held cube falls asleep, keeps every bit, and wakes when the fingers
   CHECK(grip.corner()[2] - at[2] == Approx(0.0002).epsilon(0.01));
 }
 
-TEST_CASE("a tick of bodies that cannot be is refused by name") {
+TEST_CASE("a tick with invalid bodies is refused by name") {
   Grip grip(0.6, 0.001);
   SceneRig rig(fdcg_make_scene_config());
   fdcg_scene_body body{};

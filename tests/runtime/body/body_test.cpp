@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rigid body: what it conserves, how fast it converges, where it stays stable, when it sleeps, what it refuses.
+// One rigid body: conservation, order of convergence, stability, sleep, refusals.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -135,7 +135,7 @@ TEST_CASE("a free turn, a heavy top and a spring are followed at second order") 
   }
 }
 
-TEST_CASE("gravity is followed to rounding, damping at its rate") {
+TEST_CASE("gravity is exact up to rounding error, damping has its rate") {
   fdcg_body_config config = lopsided();
   config.gravity_m_per_s2[2] = -9.80665;
   fdcg_body falling = made(config, {1, 0, 2}, {0, 0, 0});
@@ -188,7 +188,7 @@ TEST_CASE("a spring is stable up to the stated bound and not beyond; substeps ke
   CHECK(fdcg_body_get_substeps(&body, std::nan(""), 0, 1e-3) == 0);
 }
 
-TEST_CASE("a body at rest falls asleep, stays where it is to the bit, and wakes when pushed otherwise") {
+TEST_CASE("a body at rest falls asleep, does not move by a bit, and wakes when the force changes") {
   fdcg_body_config config = lopsided();
   config.gravity_m_per_s2[2] = -10;
   config.sleep_after_s = 0.1;
@@ -220,7 +220,7 @@ TEST_CASE("a body at rest falls asleep, stays where it is to the bit, and wakes 
   CHECK(thrown.is_asleep == 0);
 }
 
-TEST_CASE("a step with numbers that are none moves nothing and is counted") {
+TEST_CASE("a step with NaN or infinity moves nothing and is counted") {
   fdcg_body body = made(lopsided(), {1, 0, 0}, {1, 2, 3});
   fdcg_body before = body;
   const double nan[3] = {0, std::nan(""), 0}, huge[3] = {0, 0, 1e300};
@@ -233,7 +233,7 @@ TEST_CASE("a step with numbers that are none moves nothing and is counted") {
   CHECK(std::memcmp(&body, &before, sizeof body) == 0);
 }
 
-TEST_CASE("a body that turns too fast for its step keeps its momentum and its unit quaternion") {
+TEST_CASE("a body that rotates too fast for its step keeps its momentum and unit quaternion") {
   fdcg_body body = made(lopsided(), {0, 0, 0}, {1e6, -3e5, 2e5});
   const Triple momentum = triple(body.angular_momentum);
   for (int tick = 0; tick < 1000; ++tick)
@@ -245,7 +245,7 @@ TEST_CASE("a body that turns too fast for its step keeps its momentum and its un
   CHECK(std::abs(square - 1) < 1e-14);
 }
 
-TEST_CASE("bodies that cannot be are refused, with the field, its value and its limit") {
+TEST_CASE("invalid bodies are refused with field, value and limit") {
   CHECK(refusal([](auto& config, auto&) { config.mass_kg = 0; }).find("config.mass_kg is 0, allowed 1e-12 to 1e12") == 0);
   CHECK(refusal([](auto& config, auto&) { config.mass_kg = std::nan(""); }).find("config.mass_kg") == 0);
   CHECK(refusal([](auto& config, auto&) { config.linear_damping_per_s = -1; }).find("linear_damping_per_s") !=

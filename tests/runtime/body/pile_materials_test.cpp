@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two bodies are made of: of faces, on edges and corners too, and on the ground the friction curve.
+// Materials of two bodies in contact: of faces, on edges and corners too; and the friction curve on the ground.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kGravity = 9.80665, kMass_kg = 0.05;
 const fdcg_material kOwn = {0.64, 0.49, 4000};  // of the body
-// Rubber and ice; what has neither, and so is never asked in what follows, would hold nothing.
+// Rubber and ice; the default material, not used by these tests, has no friction.
 const fdcg_material kTable[2] = {{0.9, 0.8, 2000}, {0.2, 0.1, 800}};
 
 double coefficient(double a, double b) {
@@ -92,7 +92,7 @@ class Bead {
 
 }  // namespace
 
-TEST_CASE("in a groove between two materials a body is held by both, each by its load, and its swing dies out") {
+TEST_CASE("a body in a groove of two materials is held by both, weighted by load, and its oscillation decays") {
   constexpr double kOpening = 1.3;
   const bake::PolygonSoup groove = painted(v_groove(kOpening), [](const Place& middle) { return middle[1] < 0; });
   for (const double lean : {-0.4, 0.0, 0.25}) {
@@ -124,7 +124,7 @@ TEST_CASE("in a groove between two materials a body is held by both, each by its
   }
 }
 
-TEST_CASE("at a corner of faces with materials what holds is theirs") {
+TEST_CASE("at a corner of faces with materials, their materials apply") {
   // the pit's corner upwards: its three faces look along +x, +y, +z
   const bake::PolygonSoup pit = painted(corner_pit(), [](const Place& middle) { return middle[2] < 0; });
   Bead bead(pit, {0.002, 0.002, 0.002});
@@ -139,7 +139,7 @@ TEST_CASE("at a corner of faces with materials what holds is theirs") {
   CHECK(bead.speed() < 1e-6);
 }
 
-TEST_CASE("what slides from one material to another has the other's friction and spring, and gains nothing by it") {
+TEST_CASE("sliding onto another material uses its friction and stiffness and gains no energy") {
   for (const bool begins_on_ice : {false, true}) {
     const bake::PolygonSoup floor = painted(moved(grid_box(2, 1, 1, {2, 1, 0.1}), {0, 0, -0.05}),
                                             [begins_on_ice](const Place& middle) { return (middle[0] < 0) != begins_on_ice; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies on the ground, on ramps, on one another: what sticks, what slides and how fast, what comes to rest and stays.
+// Bodies on the ground, on ramps, on one another: sticking, sliding and its speed, coming to rest and staying at rest.
 #include <cmath>
 
 #include "catch.hpp"
@@ -33,7 +33,7 @@ class Ramp {
     rig_.add_body(block, kMass_kg, friction(mu_static, mu_dynamic), posed({-9, 0, 0.005}), wakeful(), 8);
     rig_.ticks(400);
   }
-  // As slowly as it takes for nothing to swing: the last bit by bit.
+  // So slowly that nothing oscillates, at the end in ever smaller steps.
   void lean(double angle_rad) {
     constexpr int kLeaning = 300;
     const double from = angle_rad_;
@@ -133,7 +133,7 @@ TEST_CASE("a block slides down a ramp at g (sin - mu_d cos)") {
   }
 }
 
-TEST_CASE("a block that was pushed, slid and was let go is not dragged back by more than mu_d of its depth") {
+TEST_CASE("a block released after a slide is pulled back by at most mu_d times its depth") {
   for (const double mu : {0.1, 0.4, 0.9}) {
     Ramp ramp(mu, mu);
     const double depth = kMass_kg * kGravity / (4 * 500);
@@ -193,7 +193,7 @@ TEST_CASE("a box falls on the ground, does not bounce, falls asleep there and wa
   }
 }
 
-TEST_CASE("boxes stacked flush and askew stay where they settle, asleep") {
+TEST_CASE("boxes stacked flush and askew settle and sleep") {
   for (const double turn : {0.0, 0.3}) {
     PileRig rig;
     const auto cube = rig.box(kSide, kSide, kSide);
@@ -236,7 +236,7 @@ TEST_CASE("a stack on a tilted table does not creep, on graphs of either precisi
   }
 }
 
-TEST_CASE("a heap of all sorts of bodies thrown on a slope and the ground comes to rest, gains no energy and sleeps") {
+TEST_CASE("a heap of various bodies thrown on a slope and the ground gains no energy, comes to rest and sleeps") {
   for (const std::uint32_t substeps : {1U, 4U}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       fdcg_pile_config config = fdcg_make_pile_config();

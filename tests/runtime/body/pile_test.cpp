@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pile is made of, what it conserves, what it leaves undone, what it refuses.
+// Piles: contact points, conservation, skipped work, refusals.
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -30,7 +30,7 @@ Totals totals(PileRig& rig) {
   Totals sum;
   for (std::size_t i = 0; i < rig.bodies().size(); ++i) {
     const fdcg_body& body = rig.body(i);
-    // less what the last step gave ahead
+    // without the predicted impulse of the last step
     const Place momentum = rig.velocity(i) * body.config.mass_kg - place(body.predicted_impulse_n_s);
     sum.momentum = sum.momentum + momentum;
     sum.angular = sum.angular + place(body.angular_momentum) - place(body.given_n_m_s) + cross(rig.centre(i), momentum);
@@ -46,7 +46,7 @@ void set_motion(fdcg_body& body, const Place& velocity, const Place& spin) {
 
 }  // namespace
 
-TEST_CASE("points of a box are its corners, then the middles of its edges, drawn in by a thousandth") {
+TEST_CASE("contact points of a box are its corners, then its edges' midpoints, inset by a thousandth") {
   PileRig rig;
   const auto box = rig.box(0.06, 0.04, 0.02);
   const Place half = {0.03, 0.02, 0.01};
@@ -109,7 +109,7 @@ TEST_CASE("bodies that collide keep momentum and angular momentum and gain no en
   }
 }
 
-TEST_CASE("bodies far apart are not looked at, and a thousand others near nobody cost no step") {
+TEST_CASE("distant bodies are skipped by the broad phase, and a thousand isolated ones cost no step") {
   fdcg_scene_config scene = fdcg_make_scene_config();
   PileRig rig(fdcg_make_pile_config(), scene);
   const auto cube = rig.box(kSide, kSide, kSide);
@@ -125,7 +125,7 @@ TEST_CASE("bodies far apart are not looked at, and a thousand others near nobody
   CHECK(counts.broadphase_updates <= 12);
 }
 
-TEST_CASE("a plate that moves carries what lies on it; taken away, it lets it fall") {
+TEST_CASE("a moving plate carries the body on it; removed, the body falls") {
   PileRig rig;
   const auto cube = rig.box(kSide, kSide, kSide), plate = rig.box(0.5, 0.5, 0.02);
   const fdcg_object_id floor = rig.add_fixed(plate, friction(0.5, 0.4), posed({0, 0, -0.01}));
@@ -178,7 +178,7 @@ TEST_CASE("a copy of scene, pile and bodies goes on with the same bits") {
   CHECK(std::memcmp(bodies.data(), rig.bodies().data(), sizeof(fdcg_scene_body) * 3) == 0);
 }
 
-TEST_CASE("a pile without room for a touch says so, and one that is too stiff for its step does not run away") {
+TEST_CASE("a pile without room for a touch reports it, and one too stiff for its step stays bounded") {
   fdcg_pile_config config = fdcg_make_pile_config();
   config.touch_capacity = 2;
   PileRig small(config);
@@ -201,7 +201,7 @@ TEST_CASE("a pile without room for a touch says so, and one that is too stiff fo
   CHECK(stiff.centre(2)[2] == Approx(0.1).margin(0.001));
 }
 
-TEST_CASE("piles that cannot be are refused, with the field, its value and its limit") {
+TEST_CASE("invalid piles are refused with field, value and limit") {
   fdcg_error error = {};
   fdcg_pile_config config = fdcg_make_pile_config();
   config.touch_capacity = 0;
@@ -305,7 +305,7 @@ TEST_CASE("a block on a plane that is a surface sticks and slides as on the grou
   CHECK(rig.centre(0)[2] == Approx(1.005).margin(1e-3));
 }
 
-TEST_CASE("what two objects are made of counts together: friction by the geometric mean, springs in series") {
+TEST_CASE("materials of two objects combine: friction by the geometric mean, springs in series") {
   PileRig rig;
   fdcg_body_config awake = fdcg_make_body_config();
   awake.sleep_after_s = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable meshes: clear balls change nothing that is felt, whose ever they are; the count of ticks has no seam.
+// Deformable meshes: clear balls of any contact do not change forces; the tick count may pass 2^32.
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -53,7 +53,7 @@ void move_finger(Finger* finger, Random& random) {
 }  // namespace
 
 // More fingers than the mesh watches balls of; some are copied over others.
-TEST_CASE("clear balls over a sheet that moves change nothing that is felt") {
+TEST_CASE("clear balls over a moving sheet do not change any force") {
   constexpr int kFingers = 20;
   const std::uint64_t steps = steps_or(6000);
   for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
@@ -95,8 +95,8 @@ TEST_CASE("clear balls over a sheet that moves change nothing that is felt") {
   }
 }
 
-// The number of a tick once took 32 bits, and what counted from one tick to the next began anew.
-TEST_CASE("nothing happens to a contact when the count of ticks passes 2^32") {
+// Regression: with a 32-bit tick number, state counted from tick to tick was lost at the wrap.
+TEST_CASE("a contact is not affected when the tick count passes 2^32") {
   const bake::PolygonSoup rest = plane_grid(12, 12);
   DeformableMesh young(rest), old(rest);
   constexpr std::uint64_t kBefore = 40;

@@ -225,7 +225,7 @@ TEST_CASE("a sheet that heaves under and over a finger never lets it through") {
                  << " flags " << result.flags);
     if ((result.flags & FDCG_RESULT_SWEEP_BOUND) == 0 && result.state == FDCG_FREE) REQUIRE(above >= -16 * kEpsilon);
     if (result.state != FDCG_FREE) {
-      // compared with the planes that were looked at; those of the whole are computed now and then below
+      // compared with the planes used by the step; all planes are compared below, in some ticks only
       REQUIRE(std::isfinite(result.god_object_m[2]));
       const double off = sheet.off_surface(result.god_object_m);
       most_off = std::max(most_off, off);

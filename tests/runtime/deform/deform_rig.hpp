@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of deformable meshes share: a compiled mesh that can be deformed, in memory of its own, with the corner of
-// each vertex of its soup; places added and scaled; how long to go on.
+// Shared by the tests of deformable meshes: a compiled deformable mesh with its memory and the corner of each vertex of its
+// soup; arithmetic on positions; the number of steps.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable meshes as objects of a scene: felt as by hand, by several fingers, beside graphs and surfaces, at rest and on the
-// move; nothing falls through.
+// Deformable meshes as objects of a scene: same forces as when stepped by hand, several fingers, beside graphs and surfaces, at
+// rest and in motion; no finger falls through.
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -32,7 +32,7 @@ fdcg_object_id add(SceneRig& rig, DeformableMesh& mesh, const fdcg_params& param
   return id;
 }
 
-// Every vertex of a sheet as high as a wave that runs over it says.
+// Sets every vertex of a sheet to the height of a travelling wave.
 void heave(DeformableMesh& sheet, double height, double phase) {
   for (std::size_t v = 0; v < sheet.points().size(); ++v) {
     const bake::Vec3& p = sheet.points()[v];
@@ -40,7 +40,7 @@ void heave(DeformableMesh& sheet, double height, double phase) {
   }
 }
 
-// A ball that breathes and is dented: every vertex at its own distance from the middle.
+// A ball that expands, shrinks and is dented: every vertex has its own distance from the centre.
 void breathe(DeformableMesh& ball, const std::vector<bake::Vec3>& unit, double phase) {
   for (std::size_t v = 0; v < unit.size(); ++v) {
     const bake::Vec3& p = unit[v];
@@ -137,8 +137,8 @@ struct Placed {
 };
 
 // Fingers near a sheet that heaves are put somewhere else all the time and stay there for a few ticks, at rest or on the move.
-// Whether a finger is placed before the vertices move, after that, or between advance and step, `turn` says, and who is stepped
-// first. Returns how many were caught in the tick after their placing.
+// `turn` selects whether a finger is placed before the vertices move, after that, or between advance and step, and the order of
+// the steps. Returns how many were caught in the tick after their placing.
 std::uint64_t place_everywhere(std::uint32_t disabled_optimizations, bake::Precision precision, std::uint64_t ticks) {
   constexpr std::size_t kFingers = 4;
   DeformableMesh in_scene(plane_grid(10, 10), triangle_options(precision)),
@@ -207,7 +207,7 @@ std::uint64_t place_everywhere(std::uint32_t disabled_optimizations, bake::Preci
 
 }  // namespace
 
-TEST_CASE("what a scene skips among deformable meshes leaves no trace, nor does the order of fingers") {
+TEST_CASE("optimizations among deformable meshes, and the order of fingers, do not change results") {
   const Outcome quick = play(0, false);
   CHECK(quick.on_soft > 1000);
   CHECK(quick.caught > 20);
@@ -261,7 +261,7 @@ TEST_CASE("a scene gives the bits of a contact with a deformable mesh stepped by
   }
 }
 
-TEST_CASE("a finger just put somewhere is caught by what passes over it in the next tick, in a scene as by hand") {
+TEST_CASE("a new finger is caught by a surface passing over it in the next tick, in a scene as by hand") {
   CHECK(place_everywhere(0, bake::Precision::f64, steps_or(3000)) > 100);
   CHECK(place_everywhere(0, bake::Precision::f32, steps_or(1000)) > 30);
   for (const std::uint32_t off : {1u, 2u, 4u, 8u, 16u, 31u}) {
@@ -314,7 +314,7 @@ TEST_CASE("no finger is within a ball that breathes, moves and turns without bei
   CHECK(inside > 1000);
 }
 
-TEST_CASE("a force on a deformable mesh is in the world's measure, and its object feels the opposite") {
+TEST_CASE("a force on a deformable mesh is in world units, and its object gets the opposite") {
   DeformableMesh sheet(plane_grid(4, 4));
   SceneRig rig(config_of());
   fdcg_params params = fdcg_make_params();
@@ -335,7 +335,7 @@ TEST_CASE("a force on a deformable mesh is in the world's measure, and its objec
   CHECK(reaction.torque_n_m[1] == Approx(0.3 * 10 - 0.3 * 20));
 }
 
-TEST_CASE("a deformable mesh is refused where there is no room for it, and by piles") {
+TEST_CASE("a deformable mesh is refused without room for it, and by piles") {
   DeformableMesh sheet(plane_grid(2, 2));
   const fdcg_params params = fdcg_make_params();
   const fdcg_pose pose = fdcg_make_identity_pose();

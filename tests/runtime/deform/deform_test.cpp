@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C API of deformable meshes: what it refuses, and a flat sheet whose contact can be computed by hand.
+// The C API of deformable meshes: refusals, and a flat sheet whose contact has a closed form.
 #include <cmath>
 #include <limits>
 #include <set>
@@ -27,7 +27,7 @@ void lift(DeformableMesh& sheet, const bake::PolygonSoup& rest, double z, double
 
 }  // namespace
 
-TEST_CASE("a graph with other faces than triangles, or a corner of too many, is refused with the remedy") {
+TEST_CASE("a graph with faces other than triangles, or a corner of too many faces, is refused with the remedy") {
   fdcg_deform* deform = nullptr;
   fdcg_error error;
   const fdcg_deform_config config = fdcg_make_deform_config();
@@ -69,7 +69,7 @@ TEST_CASE("memory and settings out of range are refused") {
   CHECK(fdcg_deform_create(memory.data(), bytes, &mesh.view(), &config, &deform, nullptr) == FDCG_OK);
 }
 
-TEST_CASE("each vertex is found as a corner of its own, and no place has a corner that is not there") {
+TEST_CASE("every vertex is found as its corner, and other places give none") {
   const bake::PolygonSoup rest = plane_grid(9, 7);
   DeformableMesh sheet(rest);
   std::set<std::uint32_t> corners;
@@ -94,7 +94,7 @@ TEST_CASE("each vertex is found as a corner of its own, and no place has a corne
   }
 }
 
-TEST_CASE("a vertex is not moved to what is no place, and stays where it was") {
+TEST_CASE("moving a vertex to an invalid position is refused, and it does not move") {
   const bake::PolygonSoup rest = plane_grid(2, 2);
   DeformableMesh sheet(rest, triangle_options(), 0.5);
   const std::uint32_t corner = sheet.corner_of(4);
@@ -148,7 +148,7 @@ TEST_CASE("many moves in one call are those of as many calls, up to the first th
   CHECK(bytes_of(sheet.updated()) == bytes_of(other.updated()));
 }
 
-TEST_CASE("a sheet that rises over a still finger lifts it, and lets it go where it sinks again") {
+TEST_CASE("a sheet that rises over a still finger touches it, and releases it when it sinks") {
   const bake::PolygonSoup rest = plane_grid(8, 8);
   for (const double x : {0.013, 0.125}) {  // over a face, over the line between two
     DeformableMesh sheet(rest);
@@ -171,7 +171,7 @@ TEST_CASE("a sheet that rises over a still finger lifts it, and lets it go where
   }
 }
 
-TEST_CASE("a god-object rides with the sheet while friction holds") {
+TEST_CASE("a god-object moves with the sheet while friction holds") {
   const bake::PolygonSoup rest = plane_grid(8, 8);
   DeformableMesh sheet(rest);
   const fdcg_params params = contact_params(0.5, 0.3);
@@ -191,7 +191,7 @@ TEST_CASE("a god-object rides with the sheet while friction holds") {
   CHECK(felt.god_object_m[0] == Approx(0.013 + 0.3 * 0.05).margin(1e-15));
 }
 
-TEST_CASE("moves between two steps count as one straight way, and a contact that missed ticks is told") {
+TEST_CASE("moves between two steps count as one straight way, and missed ticks are reported") {
   const bake::PolygonSoup rest = plane_grid(8, 8);
   DeformableMesh sheet(rest);
   const fdcg_params params = contact_params(0.5, 0.3);
@@ -228,7 +228,7 @@ TEST_CASE("a HIP that is no number leaves a contact on a moving sheet valid") {
 
 // Beside the line from -(1, 1/3) to (1, 1/3) by the rounding of a third of their x: exact signs tell them off it, and the
 // products of their normals vanish. Each has the other across its longest side.
-TEST_CASE("two triangles too thin for a normal do not ask each other for a plane for ever") {
+TEST_CASE("two neighbouring triangles without a normal do not recurse") {
   const double third = 1.0 / 3;
   const bake::PolygonSoup rest =
       make_soup("thin", {{1, third, 0}, {-1, -third, 0}, {0.5, -1, 0}, {-0.5, 1, 0}}, {{0, 1, 3}, {1, 0, 2}});

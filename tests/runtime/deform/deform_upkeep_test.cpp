@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable meshes: what is brought up to date lazily is what a computation of the whole gives, bit for bit.
+// Deformable meshes: lazy updates give the bits of a full computation.
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -79,7 +79,7 @@ TEST_CASE("a deformed mesh has the planes, types and normals that the compiler g
   }
 }
 
-TEST_CASE("a deformable mesh keeps to its memory, and begins at a line of the cache, wherever that memory begins") {
+TEST_CASE("a deformable mesh stays within its memory, aligned to a cache line at any start address") {
   const CompiledMesh sheet(rounded_to_float(ico_sphere(1)), triangle_options());
   const std::uint64_t bytes = fdcg_deform_bytes(&sheet.view());
   constexpr std::size_t kMost = 8, kMargin = 8;  // eights of bytes
@@ -138,7 +138,7 @@ TEST_CASE("lazy steps are those on a mesh computed anew as a whole, bit for bit"
   }
 }
 
-TEST_CASE("a deformed mesh that has come to rest is felt as any other") {
+TEST_CASE("a deformed mesh at rest behaves like any other") {
   const bake::PolygonSoup rest = star_sphere(3, 0.2, 5);
   DeformableMesh mesh(rest);
   Random random(3);

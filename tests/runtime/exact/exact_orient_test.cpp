@@ -106,7 +106,7 @@ TEST_CASE("orientation is exact for coordinates of every size a double has, up t
   CHECK(decided[2] > 100);
 }
 
-TEST_CASE("orientation spends as little as a sign needs") {
+TEST_CASE("orientation uses no more work than a sign needs") {
   using fdcg::kExactWork, fdcg::kLongExactWork, fdcg::kPairsWork;
   const auto spent = [](const Point& a, const Point& b, const Point& c, const Point& d) {
     uint32_t left = 1000;
@@ -124,7 +124,7 @@ TEST_CASE("orientation spends as little as a sign needs") {
   CHECK(spent({0, 0, 0}, {0x1p-60, 1, 0}, {0x1p-60, 1, 1}, {0x1p-59, 2, 5}) == kPairsWork + kLongExactWork);
 }
 
-TEST_CASE("orientation is right beside planes nearer than pairs of doubles tell") {
+TEST_CASE("orientation is right beside planes closer than double-double arithmetic resolves") {
   for (const double off : {0x1p-100, 0x1p-150, 0x1p-300, -0x1p-101, -0x1p-400}) {
     const Point a = {0, 0, 0}, b = {1, 3, 0}, c = {2, 1, 1}, d = {3, 4, 1};  // d = b + c
     INFO(off);

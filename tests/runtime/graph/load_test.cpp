@@ -102,7 +102,7 @@ void corrupt(AlignedBytes& file, Random& random) {
 
 }  // namespace
 
-TEST_CASE("opening a compiled file gives its graph, in both precisions and both trusts") {
+TEST_CASE("opening a compiled file gives its graph, in both precisions and verification levels") {
   for (const auto precision : {bake::Precision::f64, bake::Precision::f32}) {
     bake::CompileOptions options;
     options.precision = precision;
@@ -122,7 +122,7 @@ TEST_CASE("opening a compiled file gives its graph, in both precisions and both 
   }
 }
 
-TEST_CASE("a degree of trust that there is not is refused") {
+TEST_CASE("an unknown verification level is refused") {
   AlignedBytes file = compiled(cube(), {});
   fdcg_graph graph;
   fdcg_error error = {};
@@ -228,7 +228,7 @@ TEST_CASE("every fuzz find and seed is refused or harmless to step on") {
   CHECK(opened >= 8);
 }
 
-TEST_CASE("a busy corner without its tree is refused: the step would look at every edge") {
+TEST_CASE("a corner with many faces but no fan tree is refused") {
   AlignedBytes file = compiled(cone(40), small_f32());
   fdcg_graph graph;
   REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr) == FDCG_OK);
@@ -284,7 +284,7 @@ TEST_CASE("a Voronoi plane that cannot be derived is refused") {
   CHECK(std::string(error.message).find("Voronoi") != std::string::npos);
 }
 
-TEST_CASE("optional sections may be absent, and the step feels the same") {
+TEST_CASE("optional sections may be absent without effect on the step") {
   bake::CompileOptions bare;
   bare.without = {"hierarchy", "source-map", "info"};
   bare.store_planes = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene skips leaves no trace: logs of scenes full of events, with every combination of switches, are the same bit for
-// bit. FDCG_SCENE_TICKS in the environment sets the ticks of each run.
+// Optimizations of a scene do not change results: logs of scenes full of events are the same bit for bit for every combination
+// of flags. FDCG_SCENE_TICKS in the environment sets the ticks of each run.
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -22,7 +22,7 @@ std::size_t ticks_of_a_run(std::size_t usual) {
   return asked != nullptr ? static_cast<std::size_t>(std::atoi(asked)) : usual;
 }
 
-// FNV-1a over everything that a user can see.
+// FNV-1a over all results of the API.
 class Log {
  public:
   void add(const void* data, std::size_t bytes) {
@@ -218,7 +218,7 @@ class Performance {
 
 }  // namespace
 
-TEST_CASE("every combination of skips gives the same forces") {
+TEST_CASE("every combination of optimizations gives the same forces") {
   const Place here = {0, 0, 0};
   const Play plays[] = {
       {1, 1, 4, 3, 0.2, 0, here, false, false},                    // one finger, one still object

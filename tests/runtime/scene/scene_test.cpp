@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene call by call. Over 400 lines: short cases, one for each promise of scene.h, in its order.
+// The functions of a scene. Over 400 lines: short cases, one for each guarantee of scene.h, in its order.
 #include <cstring>
 #include <limits>
 #include <string>
@@ -175,7 +175,7 @@ TEST_CASE("damping acts on the motion against the object") {
   CHECK(fdcg_scene_reset_finger(rig.scene.get(), finger, hip, nullptr) == FDCG_OK);
 }
 
-TEST_CASE("a HIP that is no number stands still and is counted") {
+TEST_CASE("a NaN HIP moves nothing and is counted") {
   Rig rig;
   const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});
   CHECK(rig.scene.result(finger).force_n[2] == Approx(10));
@@ -206,7 +206,7 @@ TEST_CASE("a HIP that is no number stands still and is counted") {
   CHECK(rig.scene.result(blind).force_n[0] == Approx(100));
 }
 
-TEST_CASE("a first HIP that is no number starts nothing") {
+TEST_CASE("a first HIP of NaN starts no contact") {
   Rig rig;
   const fdcg_finger_id finger = rig.scene.add({kNaN, 0, 0});
   rig.scene.step();
@@ -230,7 +230,7 @@ TEST_CASE("a reset finger meets nothing on its way") {
   CHECK(rig.scene.result(finger).touch_count == 0);
 }
 
-TEST_CASE("objects that are removed or disabled are let go of") {
+TEST_CASE("objects that are removed or disabled are released") {
   Rig rig;
   const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});
   REQUIRE(fdcg_scene_enable_object(rig.scene.get(), rig.object, 0, nullptr) == FDCG_OK);
@@ -249,7 +249,7 @@ TEST_CASE("objects that are removed or disabled are let go of") {
   CHECK(rig.scene.result(finger).touch_count == 0);
 }
 
-TEST_CASE("what is taken away and put back between two steps is as if just added") {
+TEST_CASE("an object removed and added again between two steps is new") {
   Rig rig;
   const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});
   REQUIRE(fdcg_scene_enable_object(rig.scene.get(), rig.object, 0, nullptr) == FDCG_OK);
@@ -281,7 +281,7 @@ TEST_CASE("an object that takes the index of one removed between two steps does 
     CHECK(scene.result(finger).touch_count == 0);
 }
 
-TEST_CASE("names of what was removed are not found again") {
+TEST_CASE("ids of removed objects stay invalid") {
   Rig rig;
   fdcg_error error = {};
   REQUIRE(fdcg_scene_remove_object(rig.scene.get(), rig.object, &error) == FDCG_OK);
@@ -298,7 +298,7 @@ TEST_CASE("names of what was removed are not found again") {
   CHECK(fdcg_scene_step_finger(rig.scene.get(), {0, 0}, nullptr) == FDCG_E_ARGUMENT);
 }
 
-TEST_CASE("what is added takes the lowest free place") {
+TEST_CASE("added objects get the lowest free index") {
   fdcg_scene_config config = fdcg_make_scene_config();
   config.finger_capacity = 4;
   Rig rig(config);
@@ -360,7 +360,7 @@ TEST_CASE("a config out of range is refused with its reason") {
   config = fdcg_make_scene_config();
   config.struct_bytes = 0;
   CHECK_THAT(refusal_of(config), Contains("config.struct_bytes is 0") && Contains("fdcg_make_scene_config"));
-  // a program built against a shorter struct: what it does not know takes its default
+  // a program built against a shorter struct: missing fields have their defaults
   config = fdcg_make_scene_config();
   config.struct_bytes = 8;
   config.touches_per_finger = 99;
@@ -407,7 +407,7 @@ TEST_CASE("memory that is too small or badly placed is refused") {
   CHECK(memory[bytes / 8 + 1] == 0xA5A5A5A5A5A5A5A5u);
 }
 
-TEST_CASE("where places are short the touched objects keep theirs, and the nearest get the others") {
+TEST_CASE("with too few slots touched objects keep theirs, and the nearest get the others") {
   fdcg_scene_config config = fdcg_make_scene_config();
   config.touches_per_finger = 2;
   Rig rig(config);
@@ -429,7 +429,7 @@ TEST_CASE("where places are short the touched objects keep theirs, and the neare
   CHECK(felt.touches[1].object.index == others[1].index);
 }
 
-TEST_CASE("a copy of a scene's memory goes its own way") {
+TEST_CASE("a copy of a scene's memory is independent") {
   Rig rig;
   const fdcg_finger_id finger = rig.pressing({0, 0, 0.49});
   std::vector<std::uint64_t> copy = rig.scene.memory();
@@ -445,7 +445,7 @@ TEST_CASE("a copy of a scene's memory goes its own way") {
   CHECK(felt.touches < static_cast<void*>(copy.data() + copy.size()));
 }
 
-TEST_CASE("a finger may be stepped several times in a tick, and is told of ticks that it missed") {
+TEST_CASE("a finger may be stepped several times in a tick, and missed ticks are reported") {
   Rig rig;
   const fdcg_finger_id finger = rig.scene.add({0, 0, 0.7});
   fdcg_scene* const scene = rig.scene.get();
@@ -468,7 +468,7 @@ TEST_CASE("a finger may be stepped several times in a tick, and is told of ticks
   CHECK(rig.scene.result(finger).force_n[2] == Approx(20));
 }
 
-TEST_CASE("fingers on threads feel what they feel one after the other") {
+TEST_CASE("fingers stepped on threads give the same forces as sequentially") {
   fdcg_scene_config config = fdcg_make_scene_config();
   config.finger_capacity = 16;
   Rig one(config), many(config);
@@ -503,7 +503,7 @@ TEST_CASE("fingers on threads feel what they feel one after the other") {
   }
 }
 
-TEST_CASE("out of reach nobody looks, however many objects there are") {
+TEST_CASE("out of reach the broad phase is skipped for any number of objects") {
   fdcg_scene_config config = fdcg_make_scene_config();
   config.object_capacity = 1000;
   Rig rig(config);
@@ -517,7 +517,7 @@ TEST_CASE("out of reach nobody looks, however many objects there are") {
   CHECK(rig.scene.result(finger).broadphase_updates < 10);
 }
 
-TEST_CASE("after a scene's memory is there the heap is never called") {
+TEST_CASE("a scene never uses the heap") {
   if (!can_count_heap_calls()) return;
   const fdcg_scene_config config = fdcg_make_scene_config();
   const CompiledMesh mesh(star_sphere(2, 0.3, 5));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soft fingers: what torque they bear, together with a pull sideways; that they do not creep and give no energy; a beam held by
-// two of them.
+// Soft fingers: the limit of torque combined with tangential force; no creep and no energy gain; a beam held by two of them.
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -78,7 +77,7 @@ double angle_for(double tangent_of_half) {
 
 }  // namespace
 
-TEST_CASE("a soft finger that is turned bears mu N a before it slips, and mu_d N a then") {
+TEST_CASE("a soft finger that is turned resists mu N a before it slips, then mu_d N a") {
   for (const double radius : {0.002, 0.01}) {
     for (const double mu : {0.1, 0.5, 1.2}) {
       for (const double depth : {0.0005, 0.002}) {
@@ -105,7 +104,7 @@ TEST_CASE("a soft finger that is turned bears mu N a before it slips, and mu_d N
   }
 }
 
-TEST_CASE("torque and tangential force share the limit: an ellipsoid, at which both slip by the same share") {
+TEST_CASE("torque and tangential force share an ellipsoidal limit, at which both slip in proportion") {
   for (int degrees = 0; degrees <= 90; degrees += 10) {
     const double mu = 0.6, mu_dynamic = 0.45, radius = 0.004, depth = 0.001, c = std::cos(degrees * M_PI / 180),
                  s = std::sin(degrees * M_PI / 180);
@@ -158,7 +157,7 @@ TEST_CASE("a twist within the limit does not creep in 10^5 ticks of tremor") {
   CHECK(press.force() == force);
 }
 
-TEST_CASE("two soft fingers hold a beam off its middle up to the load at which ellipsoid and weight meet") {
+TEST_CASE("two soft fingers hold a beam off its middle up to the load of the ellipsoid's limit") {
   // pressed along x; the beam's weight pulls down and turns it about x
   const double mu = 0.5, radius = 0.006, depth = 0.002, aside = 0.004, load = kStiffness * depth;
   // its twist takes the lever down to the cosine
@@ -199,7 +198,7 @@ TEST_CASE("two soft fingers hold a beam off its middle up to the load at which e
   }
 }
 
-TEST_CASE("room for soft fingers changes no bit of those that are not, and what cannot be is refused") {
+TEST_CASE("room for soft fingers does not change other fingers, and invalid values are refused") {
   for (int soft = 0; soft < 2; ++soft) {
     static std::vector<Place> forces;
     SceneRig scene(soft == 0 ? fdcg_make_scene_config() : with_soft_fingers());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clear ball of free space: what a step feels is the same bit for bit with and without it, and there is no face in it.
+// The clear ball of free space: results are the same bit for bit with and without it, and there is no face in it.
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -138,7 +138,7 @@ TEST_CASE("no face reaches into a clear ball") {
   }
 }
 
-TEST_CASE("copied and reset contacts go their own way with their ball") {
+TEST_CASE("copied and reset contacts are independent, with their clear ball") {
   const CompiledMesh mesh(ico_sphere(3));
   Contact contact(mesh.view(), with_skips(0));
   contact.step(0.01, 0.02, 1.5);
@@ -160,7 +160,7 @@ TEST_CASE("copied and reset contacts go their own way with their ball") {
   CHECK(contact.result.state != FDCG_FREE);
 }
 
-TEST_CASE("a skip that there is not is refused") {
+TEST_CASE("an unknown optimization flag is refused") {
   fdcg_params params = fdcg_make_params();
   CHECK(params.disabled_optimizations == 0);
   params.disabled_optimizations = FDCG_STEP_OPT_ALL;

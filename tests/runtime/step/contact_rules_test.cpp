@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One test for each rule of the contact model that an implementer gets wrong; each fails when its rule is taken out. The rule's
-// name stands in brackets as a tag. Over 400 lines: the list of rules stays in one place, in the model's order.
+// One test for each rule of the contact model that is easily implemented wrong; each fails when its rule is removed. The rule's
+// name is the tag in brackets. Over 400 lines: the list of rules stays in one place, in the model's order.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -94,7 +94,7 @@ TEST_CASE("no step cycles, with HIP exactly on features and god-objects on seams
 
 // ---- crossings, planes, seats: contact-model FACE-1, FACE-5, FACE-7, SIDE-2 ------------------------------------------------
 
-TEST_CASE("a god-object on or a rounding beyond a Voronoi plane still crosses it", "[crossing]") {
+TEST_CASE("a god-object on or within rounding error beyond a Voronoi plane still crosses it", "[crossing]") {
   const PlainGraph graph(cube(), Precision::f64);
   const std::uint32_t top = face_towards(graph, {0, 0, 1});
   for (const double beyond : {-kEps, 0.0, kEps, 4 * kEps}) {
@@ -112,7 +112,7 @@ TEST_CASE("a god-object on or a rounding beyond a Voronoi plane still crosses it
   CHECK(contact.result.state == FDCG_FREE);
 }
 
-TEST_CASE("of the planes crossed the first one along the way counts", "[first-crossing]") {
+TEST_CASE("the first Voronoi plane crossed along the way counts", "[first-crossing]") {
   // On the floor z = 0 towards a place behind both walls: the way meets the seam with y = 0 first, and friction holds there.
   const PlainGraph graph(corner_pit(), Precision::f64);
   Contact contact(graph.view(), contact_params(1.5, 1.5));
@@ -147,7 +147,7 @@ TEST_CASE("a way along a side is not stopped where it begins", "[along-side]") {
 }
 
 // A tick that drags the god-object across hundreds of needles places it on as many edges, each time rounded.
-TEST_CASE("a tick across hundreds of faces does not add up their roundings", "[lost]") {
+TEST_CASE("rounding errors do not accumulate over a tick across hundreds of faces", "[lost]") {
   const PolygonSoup soup = needle_strip(500, 0.2, 3);
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     const PlainGraph graph(soup, precision);
@@ -176,7 +176,7 @@ TEST_CASE("a tick across hundreds of faces does not add up their roundings", "[l
   }
 }
 
-TEST_CASE("on a plane is outside", "[on-plane]") {
+TEST_CASE("a point on a plane is outside", "[on-plane]") {
   const PlainGraph graph(cube(), Precision::f64);
   for (const double mu : {0.0, 1.0}) {
     Contact contact(graph.view(), contact_params(mu, mu));
@@ -260,7 +260,7 @@ TEST_CASE("tremor in a concave corner never falls through, in any orientation", 
   CHECK(contact_ticks > 100000);
 }
 
-TEST_CASE("a seam held by friction lets go only by its own rule", "[seat]") {
+TEST_CASE("a seam held by friction releases only by its own rule", "[seat]") {
   // GO on the seam, the floor active, HIP in front of the floor but behind the wall: without the seat a rounding decides.
   int held = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -299,7 +299,7 @@ TEST_CASE("an object that moves onto a still HIP is met", "[last-tick-segment]")
   }
 }
 
-TEST_CASE("a HIP that passes an edge or a corner exactly is not caught from thin air", "[exact-feature]") {
+TEST_CASE("a HIP that passes an edge or a corner exactly is not caught", "[exact-feature]") {
   const PlainGraph graph(cube(), Precision::f64);
   const struct {
     Hip from, to;
@@ -322,7 +322,7 @@ TEST_CASE("a HIP that passes an edge or a corner exactly is not caught from thin
   }
 }
 
-TEST_CASE("no segment slips in between faces, at edges and corners in any orientation", "[watertight]") {
+TEST_CASE("no segment passes between faces, at edges and corners in any orientation", "[watertight]") {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const PolygonSoup soup = tilted(seed % 2 == 0 ? ico_sphere(1) : star_sphere(1, 0.3, seed), seed);
     const PlainGraph graph(soup, Precision::f64);
@@ -393,7 +393,7 @@ TEST_CASE("over a convex edge and out is out: neither of its faces catches HIP a
   }
 }
 
-TEST_CASE("losing contact towards another wall however near is no way through it", "[no-distance-tolerance]") {
+TEST_CASE("a HIP that leaves contact towards a nearby wall does not pass through it", "[no-distance-tolerance]") {
   // A slit 1e-9 wide at its top: HIP leaves one wall and in the same tick is deep behind the other.
   const PlainGraph graph(v_groove(2e-9), Precision::f64);
   Contact contact(graph.view(), contact_params(0.2, 0.2));
@@ -472,7 +472,7 @@ TEST_CASE("the slip flag survives changes of feature and is reset by a free tick
   CHECK(contact.god_object()[0] == x);
 }
 
-TEST_CASE("at rest the god-object is not touched", "[rest-untouched]") {
+TEST_CASE("at rest the god-object does not change", "[rest-untouched]") {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const PlainGraph graph(tilted(triangulated(cube()), seed), Precision::f64);
     Contact contact(graph.view(), contact_params(0.6, 0.4));
@@ -539,7 +539,7 @@ TEST_CASE("behind both faces of a convex edge the steeper descent is taken", "[s
 
 // ---- corners: contact-model CORNER-1, CORNER-5 -----------------------------------------------------------------------------
 
-TEST_CASE("open corners: beyond the border is free, beneath the patch is its face", "[open-corner]") {
+TEST_CASE("open corners: free beyond the border, in contact beneath the patch", "[open-corner]") {
   const PlainGraph graph(plane_quad(), Precision::f64);
   const std::uint32_t corner = corner_at(graph, {0.5, 0.5, 0});
   const struct {
@@ -563,7 +563,7 @@ TEST_CASE("open corners: beyond the border is free, beneath the patch is its fac
   }
 }
 
-TEST_CASE("at a corner the longest way wins, saddles included", "[steepest-at-vertex]") {
+TEST_CASE("at a corner the steepest descent is chosen, saddles included", "[steepest-at-vertex]") {
   const PolygonSoup soup = saddle_block();
   const PlainGraph graph(soup, Precision::f64);
   const ReferenceSurface<HighPrecision> surface(graph.view());

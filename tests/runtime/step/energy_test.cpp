@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passivity: what the spring stores never rises at a fixed HIP, a closed loop gives the user no more than sampling allows, and
-// a contact at rest is still to the last bit.
+// Passivity: at a fixed HIP the spring energy never rises, a closed loop gives the user no more energy than sampling allows,
+// and a contact at rest does not change by a bit.
 #include <limits>
 
 #include "catch.hpp"
@@ -74,7 +74,7 @@ TEST_CASE("a closed loop of HIP gives no more work than the sampling's term") {
 
 // Straight down into a plane by n steps of d / n and straight up again: on the way up the hand gets k d^2 / 2 (1 + 1 / n) back,
 // for k d^2 / 2 (1 - 1 / n) that it gave.
-TEST_CASE("the account of a press and release is the one worked out by hand") {
+TEST_CASE("the energy balance of a press and release equals the analytic one") {
   const PlainGraph graph(scaled(plane_quad(), 2), Precision::f64);
   fdcg_params params = contact_params(0, 0);
   params.stiffness_n_per_m = 800;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The friction curve: what is felt at steady speed lies on it, it has one solution and no jump, nothing creeps while it holds,
-// and no term gives the hand work. The laws are written down here anew; the runtime's functions are not asked. Over 400 lines,
-// since all of it holds the step against that one curve.
+// The friction curve: forces at steady speed lie on it, it has one solution and no jump, there is no creep while sticking, and
+// no term does work on the hand. The laws are implemented here independently of the runtime's functions. Over 400 lines: all
+// cases compare the step with one curve.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -173,7 +173,7 @@ TEST_CASE("a path does not depend on how a plane is cut up, with the curve on") 
   CHECK(farthest < 1e-9);  // N, of some 5: roundings of places, times 1,000 N/m
 }
 
-TEST_CASE("presliding yields by the stiffness it is given, comes back, and never creeps") {
+TEST_CASE("presliding has the given stiffness, is elastic, and does not creep") {
   const Plane plane(11);
   fdcg_params params = curve_params(FDCG_FRICTION_PRESLIDING);
   params.presliding_n_per_m = 2e4;
@@ -233,7 +233,7 @@ TEST_CASE("with all terms a held contact is still to the last bit over a million
   }
 }
 
-TEST_CASE("after a slide the hold comes back as the lag's memory fades") {
+TEST_CASE("after a slide, sticking returns as the lag decays") {
   const Plane plane(17);
   fdcg_params params = curve_params(FDCG_FRICTION_STRIBECK | FDCG_FRICTION_LAG);
   const double depth = 3e-3;
@@ -268,7 +268,7 @@ TEST_CASE("after a slide the hold comes back as the lag's memory fades") {
   CHECK(before == Approx(params.mu_static).epsilon(1e-6));
 }
 
-TEST_CASE("no term gives the hand work: closed loops over many bodies") {
+TEST_CASE("friction terms: closed loops over many bodies give the hand no work") {
   const Rotation tilt = random_rotation(31);
   const std::vector<PolygonSoup> bodies = {cube(),
                                            transformed(triangulated(corner_pit()), tilt),
@@ -303,9 +303,9 @@ TEST_CASE("no term gives the hand work: closed loops over many bodies") {
   }
 }
 
-// Tick by tick, which is stronger than the sum over a loop: what is stored never grows by more than the hand's work and the
-// hold's term. With presliding two springs store.
-TEST_CASE("what two springs store grows by the hand's work alone, tick by tick, on every body") {
+// Tick by tick, which is stronger than the sum over a loop: stored energy never grows by more than the hand's work plus the
+// zero-order-hold term. With presliding two springs store energy.
+TEST_CASE("the energy of both springs grows by at most the hand's work in each tick, on every body") {
   const Rotation tilt = random_rotation(31);
   const std::vector<PolygonSoup> bodies = {cube(),         transformed(triangulated(corner_pit()), tilt),
                                            v_groove(1.2),  cone_pit(12),
@@ -351,7 +351,7 @@ TEST_CASE("what two springs store grows by the hand's work alone, tick by tick, 
   }
 }
 
-TEST_CASE("terms that are off leave every bit as it is, whatever their fields say") {
+TEST_CASE("disabled friction terms do not change any bit, whatever their fields") {
   const PolygonSoup soup = star_sphere(2, 0.3, 8);
   const PlainGraph graph(soup, Precision::f64);
   fdcg_params plain = contact_params(0.6, 0.4), odd = plain;
@@ -372,8 +372,8 @@ TEST_CASE("terms that are off leave every bit as it is, whatever their fields sa
   }
 }
 
-// Every term on, and none of them with anything to add: a curve that is flat, a bristle that is all but rigid.
-TEST_CASE("terms that add nothing come to what the step without them does") {
+// Every term enabled with zero effect: a flat curve, a nearly rigid bristle.
+TEST_CASE("friction terms with zero effect give the result of the step without them") {
   const PolygonSoup soup = star_sphere(2, 0.3, 8);
   const PlainGraph graph(soup, Precision::f64);
   fdcg_params plain = contact_params(0.5, 0.5), terms = plain;

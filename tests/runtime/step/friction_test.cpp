@@ -60,7 +60,7 @@ TEST_CASE("on a plane the tangential force breaks away at mu_s and slides at mu_
   }
 }
 
-TEST_CASE("a groove holds along its line what the chosen rule says: wedge or paper") {
+TEST_CASE("friction along a groove follows the chosen rule: wedge or paper") {
   constexpr double kDegree = std::numbers::pi / 180;
   for (const double opening : {30 * kDegree, 60 * kDegree, 90 * kDegree, 150 * kDegree}) {
     const PlainGraph graph(v_groove(opening), Precision::f64);
@@ -97,7 +97,7 @@ TEST_CASE("a groove holds along its line what the chosen rule says: wedge or pap
 }
 
 // A million sizes away the corners are rounded to 1e-10 of the size; the walls are merged over that and lie off their corners.
-TEST_CASE("the two walls of a groove bear what its friction asks for, where the faces lie off their corners too") {
+TEST_CASE("groove friction is borne by its two walls, also where faces are off their corners") {
   const Vec3 offset = {7e5, -6e5, 4e5};
   int inexact = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

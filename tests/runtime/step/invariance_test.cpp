@@ -102,7 +102,7 @@ TEST_CASE("the god-object's path does not depend on how a block's faces are cut 
   }
 }
 
-TEST_CASE("contact turns, moves a million sizes away and scales with the object") {
+TEST_CASE("contact is invariant under rotation, translation by a million sizes, and scale") {
   const PolygonSoup body = star_sphere(2, 0.25, 6);
   std::vector<Hip> path;
   for (int i = 0; i < 3000; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials as they are felt: where they are, combined as the header says, and no change of stiffness pushes the hand.
+// Materials in the step: by place, combined as the header specifies, and no change of stiffness does work on the hand.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -103,7 +103,7 @@ TEST_CASE("stiffness falls at once, rises by what sliding loses, and never pushe
   CHECK(slippery.back() < 410 * depth);
 }
 
-TEST_CASE("with any materials and terms, what is stored grows by the hand's work alone") {
+TEST_CASE("with any materials and terms, stored energy grows by at most the hand's work") {
   Random random(12);
   const Rotation tilt = random_rotation(5);
   const std::vector<PolygonSoup> bodies = {transformed(triangulated(corner_pit()), tilt), v_groove(1.2), saddle_block(),
@@ -255,7 +255,7 @@ TEST_CASE("the curve's speeds are those in the world, whatever the object's scal
   }
 }
 
-TEST_CASE("a table that makes no sense is refused with the row") {
+TEST_CASE("an invalid material table is refused with the row") {
   std::vector<fdcg_material> table = {{0.9, 0.8, 1000}, {0.2, 0.3, 500}};
   fdcg_params params = fdcg_make_params();
   params.friction_flags = FDCG_FRICTION_MATERIALS;

@@ -51,7 +51,7 @@ TEST_CASE("a mesh without materials has no section of them; faces before the fir
     CHECK(fdcg_get_node_material(&mesh.view(), mesh.view().source_map[f]) == expected[f]);
 }
 
-TEST_CASE("however faces are merged, each source face's node has its material, and pieces of a plane share it to the bit") {
+TEST_CASE("with any merging, each source face's node has its material, and parts of a plane share it bit for bit") {
   Random random(4);
   for (int round = 0; round < 6; ++round) {
     const Rotation tilt = random_rotation(static_cast<std::uint64_t>(round));
@@ -128,7 +128,7 @@ TEST_CASE("repair and OBJ keep the materials") {
   CHECK(again.face_material == repaired->soup.face_material);
 }
 
-TEST_CASE("names that are long or no UTF-8 are told apart, in 63 bytes") {
+TEST_CASE("long and non-UTF-8 names stay distinct in 63 bytes") {
   const std::string stem(60, 'm');
   const bake::PolygonSoup soup =
       imported("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl " + stem + "one\nf 1 3 2\nusemtl " + stem +
@@ -143,7 +143,7 @@ TEST_CASE("names that are long or no UTF-8 are told apart, in 63 bytes") {
   CHECK_THAT(fdcg_get_material_name(&mesh.view(), 1), Catch::StartsWith(stem.substr(0, 54) + "~"));
 }
 
-TEST_CASE("a file whose materials are out of range is refused, by name") {
+TEST_CASE("a file with materials out of range is refused by name") {
   const auto compiled = bake::compile(imported(kStrip), {});
   REQUIRE(compiled);
   struct Damage {

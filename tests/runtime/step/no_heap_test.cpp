@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing in the runtime asks the heap for memory: neither opening nor stepping nor a scene that is built up and taken down.
+// The runtime does not use the heap: neither opening nor stepping nor building up and taking down a scene.
 #include <cstdio>
 #include <string>
 #include <vector>

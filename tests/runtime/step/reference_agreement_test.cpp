@@ -132,7 +132,7 @@ TEST_CASE("without a hierarchy the step is the same") {
   check(graph.view(), soup, 0.3, 0.2, 5);
 }
 
-TEST_CASE("the reference in long double agrees with itself in 150 digits") {
+TEST_CASE("the reference in long double agrees with itself at 150 digits") {
   for (const PolygonSoup& soup : {corner_pit(), star_sphere(1, 0.3, 1), saddle_block(), bumpy_patch(3, 0.2, 1)}) {
     const PlainGraph graph(soup, Precision::f64);
     const ReferenceSurface<long double> surface(graph.view());

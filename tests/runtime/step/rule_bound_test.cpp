@@ -15,7 +15,7 @@ using fdcg::bake::CompileOptions;
 using fdcg::bake::PolygonSoup;
 using fdcg::bake::Precision;
 
-// servo_step.cpp again, with all the work it wants.
+// servo_step.cpp again, with an unlimited work budget.
 extern "C" void fdcg_step_unbounded(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                                     const double hip_object_m[3], fdcg_result* result);
 

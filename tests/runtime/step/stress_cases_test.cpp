@@ -18,8 +18,8 @@ constexpr double kInside = 0.999;  // winding number beyond which rounding at th
 
 struct Walked {
   std::uint64_t contacts = 0;
-  // HIPs put within rounding of the surface, judged outside there, and moved inside unseen: where coordinates are noise, the
-  // surface is. Until HIP has been outside again nothing is asked.
+  // HIPs placed within rounding error of the surface may count as outside and then move inside undetected. Nothing is checked
+  // until the HIP has been outside again.
   std::uint64_t slipped_in = 0;
 };
 
@@ -56,7 +56,7 @@ Walked check_never_through(const PolygonSoup& soup, const fdcg_graph& graph, dou
   return walked;
 }
 
-// Where the corners are dyadic and the faces axis-aligned, nothing rounds and nobody may slip in.
+// With dyadic corners and axis-aligned faces nothing rounds, so no HIP may get inside.
 void check_body(const PolygonSoup& soup, int ticks = 1500, std::uint64_t allowed_slips = 0) {
   const PlainGraph graph(soup, Precision::f64);
   for (const auto& [mu_s, mu_d] : {std::pair(0.0, 0.0), std::pair(0.6, 0.4), std::pair(2.0, 1.0)}) {
@@ -90,7 +90,7 @@ TEST_CASE("needle faces and strips end every step within the tick or carry it ov
   CHECK(contact.god_object()[0] > 0.4);
 }
 
-TEST_CASE("near-coplanar edges with float noise neither hold nor drop the god-object") {
+TEST_CASE("near-coplanar edges with float noise neither block nor drop the god-object") {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const PolygonSoup soup = rounded_to_float(transformed(triangulated(grid_box(6, 6, 6, {1, 1, 1})), random_rotation(seed)));
     check_body(soup, 600);
@@ -138,7 +138,7 @@ TEST_CASE("a HIP pushed through a thin plate in one tick or slowly is held on th
   }
 }
 
-TEST_CASE("a corner of 10,000 faces is a corner like any other") {
+TEST_CASE("a corner of 10,000 faces behaves like any other") {
   const PolygonSoup pit = fan_block(10000, 0, 0.6, 0.6);
   const PlainGraph graph(pit, Precision::f64);
   Contact contact(graph.view(), contact_params(0, 0));
@@ -184,7 +184,7 @@ TEST_CASE("concave corners of three and more faces, saddles and spikes hold") {
   check_body(prism(500), 400);
 }
 
-TEST_CASE("steps of 1e-12 through faces, edges and corners are seen") {
+TEST_CASE("steps of 1e-12 through faces, edges and corners are detected") {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Rotation tilt = random_rotation(seed);
     const PolygonSoup soup = transformed(triangulated(cube()), tilt);
@@ -259,7 +259,7 @@ TEST_CASE("NaN and infinity: the contact keeps its state, the force is zero, the
   CHECK(contact.force()[2] > 0);
 }
 
-TEST_CASE("coordinates too large to square do no harm") {
+TEST_CASE("coordinates too large to square are handled") {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     const PlainGraph graph(cube(), precision);
     for (const double far : {1e9, 1e30, 1e60, 1e160, 1e308, std::numeric_limits<double>::max()}) {
@@ -303,7 +303,7 @@ TEST_CASE("open borders: over the border is free, under the patch is contact, no
   }
 }
 
-TEST_CASE("a HIP that starts inside is free until it has left, then it is met") {
+TEST_CASE("a HIP that starts inside is free until it has left, then contact works") {
   const PlainGraph graph(cube(), Precision::f64);
   Contact contact(graph.view(), contact_params(0.3, 0.3));
   for (const double z : {0.0, 0.2, 0.4}) {

@@ -61,7 +61,7 @@ PolygonSoup needle_cone(int needles, double radius) {
 
 }  // namespace
 
-TEST_CASE("a way through the apex of ten thousand faces arrives in the end") {
+TEST_CASE("a sweep through the apex of ten thousand faces terminates") {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     CompileOptions options;
     options.precision = precision;
@@ -85,7 +85,7 @@ TEST_CASE("a way through the apex of ten thousand faces arrives in the end") {
   }
 }
 
-TEST_CASE("ten thousand needles with one tip neither hold a way for ever nor let it through") {
+TEST_CASE("ten thousand needles with one tip neither block a sweep forever nor let it pass") {
   const CompiledMesh mesh(needle_cone(kFaces, 1e-3));
   Random random(5);
   for (int i = 0; i < 20; ++i) {
@@ -117,7 +117,7 @@ TEST_CASE("with and without a hierarchy a bounded sweep ends on the same feature
   CHECK(bounded > 0);
 }
 
-TEST_CASE("a HIP that moves on while its sweep is carried over is met where it passed the surface") {
+TEST_CASE("a HIP that moves on during a carried sweep contacts where it crossed the surface") {
   const CompiledMesh mesh(cone(kFaces));
   Contact contact(mesh.view(), contact_params(0.2, 0.2));
   contact.step(0, 0, 1.5);
@@ -136,7 +136,7 @@ TEST_CASE("a HIP that moves on while its sweep is carried over is met where it p
   CHECK(distance(contact.god_object(), {0, 0, 3}) == 0);
 }
 
-TEST_CASE("a reset contact forgets the sweep that it carried") {
+TEST_CASE("a reset contact drops its carried sweep") {
   CompileOptions bare;
   bare.without = {"hierarchy"};
   const CompiledMesh mesh(spiky_sphere(3, 0.8, 3), bare);

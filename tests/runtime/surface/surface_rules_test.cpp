@@ -140,7 +140,7 @@ TEST_CASE("a tremor about a resting contact moves no god-object in a million tic
   }
 }
 
-TEST_CASE("after a slide a still hand creeps nowhere in a million ticks") {
+TEST_CASE("after a slide a still hand causes no creep in a million ticks") {
   for (const fdcg_surface& surface : kEach) {
     INFO(describe(surface));
     SurfaceContact contact(surface, 0.5, 0.4);
@@ -314,7 +314,7 @@ TEST_CASE("a finger that starts in the material passes out of it") {
   }
 }
 
-TEST_CASE("a HIP that is no number moves nothing, gives no force and is counted") {
+TEST_CASE("a NaN HIP moves nothing, gives no force and is counted") {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
   for (const fdcg_surface& surface : kEach) {
     SurfaceContact contact(surface, 0.5, 0.4);
@@ -340,7 +340,7 @@ TEST_CASE("a HIP that is no number moves nothing, gives no force and is counted"
   }
 }
 
-TEST_CASE("any bits for a HIP leave a contact whole") {
+TEST_CASE("any bit pattern of a HIP keeps the contact valid") {
   for (const bool is_hollow : {false, true}) {
     for (const fdcg_surface& solid : kEach) {
       if (is_hollow && solid.kind == FDCG_SURFACE_PLANE) continue;

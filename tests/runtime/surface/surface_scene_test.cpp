@@ -84,7 +84,7 @@ Outcome play(std::uint64_t seed, std::uint32_t disabled_optimizations, bool has_
 
 }  // namespace
 
-TEST_CASE("what a scene skips among surfaces leaves no trace") {
+TEST_CASE("optimizations among surfaces do not change results") {
   for (const bool has_plane : {false, true}) {
     for (const bool plane_turns : {false, true}) {
       const Outcome quick = play(7, 0, has_plane, plane_turns);
@@ -132,7 +132,7 @@ TEST_CASE("a scene gives the bits of a contact stepped by hand") {
   }
 }
 
-TEST_CASE("a finger high above a plane looks at it now and then only") {
+TEST_CASE("a finger high above a plane updates its broad phase rarely") {
   SceneRig rig(fdcg_make_scene_config());
   add(rig, fdcg_make_plane(), fdcg_make_params(), fdcg_make_identity_pose());
   const fdcg_finger_id finger = rig.add({0, 0, 1});

@@ -61,7 +61,7 @@ TEST_CASE("every maker makes a surface that is accepted") {
   }
 }
 
-TEST_CASE("a surface out of range is refused by field, value and limit") {
+TEST_CASE("an invalid surface is refused with field, value and limit") {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   CHECK(refused(fdcg_make_sphere(0)).find("surface.radius_m is 0, allowed") == 0);
   CHECK(refused(fdcg_make_sphere(-1)).find("surface.radius_m is -1") == 0);
@@ -95,7 +95,7 @@ TEST_CASE("a surface out of range is refused by field, value and limit") {
   CHECK(fdcg_check_surface(nullptr, &error) == FDCG_E_ARGUMENT);
 }
 
-TEST_CASE("the range that a refused surface is told of is the one that is accepted") {
+TEST_CASE("the range in a surface's error message is the accepted one") {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
   const struct {
     fdcg_surface surface;
@@ -158,7 +158,7 @@ TEST_CASE("a box has the mass of its mesh to 1e-14") {
     CHECK(mass.inertia_per_density_m5[k] == Approx(meshed.inertia_per_density_m5[k]).epsilon(1e-14));
 }
 
-TEST_CASE("what has no end has no mass") {
+TEST_CASE("infinite surfaces have no mass") {
   fdcg_surface cavity = fdcg_make_sphere(1);
   cavity.is_hollow = 1;
   for (const fdcg_surface& surface : {fdcg_make_plane(), cavity}) {

@@ -134,7 +134,7 @@ void walk_about(const fdcg_surface& surface, const Friction& friction, std::uint
 
 }  // namespace
 
-TEST_CASE("on every surface a god-object stays on it, comes nearer, keeps to its cone, and no hand falls through") {
+TEST_CASE("on every surface the god-object stays on it, approaches the HIP, respects the friction cone, and is not lost") {
   for (std::uint32_t kind = FDCG_SURFACE_PLANE; kind <= FDCG_SURFACE_ELLIPSOID; ++kind) {
     for (const bool is_hollow : {false, true}) {
       int touches = 0, bounds = 0, steps = 0;

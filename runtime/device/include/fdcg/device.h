@@ -35,7 +35,7 @@
 #ifndef FDCG_DEVICE_H
 #define FDCG_DEVICE_H
 
-#include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -124,7 +124,7 @@ typedef struct fdcg_device_status {
   double interval_p999_s;    /**< between good reports: exceeded by one in a thousand */
   double work_p50_s;         /**< work of a tick: median */
   double work_p999_s;        /**< work of a tick: exceeded by one in a thousand */
-  fdcg_host_message problem; /**< why it is not open; empty: it is, or nobody has tried yet */
+  fdcg_host_message problem; /**< why it is not open; empty: it is open, or no attempt was made yet */
 } fdcg_device_status;
 
 /** Reads a device's status, some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, a null pointer,

@@ -27,7 +27,7 @@ inline constexpr int kVerdicts = 9;
 // Why there is no force. Part of the log and the status: never renumber.
 enum class Fault : std::uint8_t {
   kNone = 0,
-  kUnknownLimit = 1,  // the profile does not say what the device and the hand can stand: never armed
+  kUnknownLimit = 1,  // the profile lacks a limit of the device or the hand: never armed
   kSilence = 2,
   kWriterStuck = 3,
   kWriteFailed = 4,

@@ -14,6 +14,7 @@
 
 #include "fdcg/device_status.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg/scene.h"
 
 namespace fdcg::dev {
 
@@ -62,7 +63,7 @@ struct DeviceLook {
   bool takes_output = false;
   bool is_open = false;
   bool is_over = false;  // a recording that has ended
-  std::string problem;   // why it is not open; empty: it is, or nobody has tried yet
+  std::string problem;   // why it is not open; empty: it is open, or no attempt was made yet
   Phase phase = Phase::kDisarmed;
   Fault fault = Fault::kNone;
   std::uint32_t state = 0;                       // fdcg_state, of the contact with the largest force

@@ -34,10 +34,10 @@ constexpr int kMostSignal = 64;
 struct sigaction handled_before[kMostSignal + 1];
 
 constexpr std::size_t kHandlerStackBytes = 64 * 1024;
-constexpr std::uint64_t kInFlightNs = 20'000'000;  // that a write which has begun gets; a device that takes output needs 1 ms
+constexpr std::uint64_t kInFlightNs = 20'000'000;  // wait for a write in progress; a device that takes output needs 1 ms
 
-enum class LastWord : int { kUnsaid, kBeingSaid, kSaid };
-std::atomic<LastWord> last_word{LastWord::kUnsaid};
+enum class EmergencyState : int { kIdle, kSending, kSent };
+std::atomic<EmergencyState> emergency_state{EmergencyState::kIdle};
 
 // hidraw wants the report id first, 0 where the device has none, as hid_write does.
 void write_report(int descriptor, const std::uint8_t* report, int bytes, bool has_id) {
@@ -46,7 +46,7 @@ void write_report(int descriptor, const std::uint8_t* report, int bytes, bool ha
   if (bytes < 0 || bytes > kMaxReportBytes) return;
   std::memcpy(data + skipped, report, static_cast<std::size_t>(bytes));
   const ssize_t ignored = write(descriptor, data, static_cast<std::size_t>(bytes + skipped));
-  static_cast<void>(ignored);  // nobody is left to tell
+  static_cast<void>(ignored);  // the process is ending
 }
 
 void write_fixed(int descriptor, const FixedReport& report) {
@@ -70,18 +70,18 @@ void send_zero(int descriptor, const Profile& profile, std::uint32_t sequence) {
   write_report(descriptor, report, profile.output.bytes, profile.output.id != 0);
 }
 
-// Threads may crash together: the first speaks, the others must not end the process under it. A fault within the handler ends
-// it at once, since every signal is blocked.
-void on_last_signal(int signal) {
-  LastWord unsaid = LastWord::kUnsaid;
-  if (last_word.compare_exchange_strong(unsaid, LastWord::kBeingSaid)) {
+// Several threads may crash at once: the first sends the reports, the others must not end the process meanwhile. A fault within
+// the handler ends the process at once, since every signal is blocked.
+void on_fatal_signal(int signal) {
+  EmergencyState expected = EmergencyState::kIdle;
+  if (emergency_state.compare_exchange_strong(expected, EmergencyState::kSending)) {
     send_emergency_zeros();
-    last_word.store(LastWord::kSaid);
+    emergency_state.store(EmergencyState::kSent);
   }
-  while (last_word.load() != LastWord::kSaid)
+  while (emergency_state.load() != EmergencyState::kSent)
     poll(nullptr, 0, 1);
-  // Back to what was there before: it meets this signal, raised anew, when this handler returns. A host that has been muted
-  // must not live on because somebody ignored the signal.
+  // Restores the previous handler, which gets this signal, raised again, when this handler returns. A process with muted
+  // writers must not continue because the signal was ignored.
   struct sigaction before = handled_before[signal];
   if ((before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_IGN) before.sa_handler = SIG_DFL;
   sigaction(signal, &before, nullptr);
@@ -94,13 +94,13 @@ void install(int signal, bool is_crash) {
   const bool is_default = (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_DFL;
   if (!is_crash && !is_default) return;
   struct sigaction action {};
-  action.sa_handler = on_last_signal;
+  action.sa_handler = on_fatal_signal;
   action.sa_flags = SA_ONSTACK;
   sigfillset(&action.sa_mask);
   sigaction(signal, &action, nullptr);
 }
 
-// Where the calling thread's own stack is what ran out.
+// An alternate stack, needed when the calling thread's stack has overflowed.
 void give_handler_stack() {
   alignas(16) static char bytes[kHandlerStackBytes];
   stack_t now{};
@@ -131,7 +131,7 @@ void remove_emergency_exit(EmergencyExit* exit) {
 void send_emergency_zeros() noexcept {
   int descriptors[kMaxEmergencyExits];
   bool was_sending[kMaxEmergencyExits] = {};
-  // Zero everywhere first: a safe stop may take its time.
+  // Zero force on all devices first: safe-stop reports may take longer.
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
     descriptors[i] = -1;
     EmergencyExit* const exit = exits[i].load();
@@ -141,8 +141,8 @@ void send_emergency_zeros() noexcept {
     descriptors[i] = exit->descriptor.exchange(-1);
     if (descriptors[i] >= 0) send_zero(descriptors[i], *exit->profile, sequence);
   }
-  // A force that was on its way may have come behind that zero. Where the writer's thread itself is the one that was
-  // interrupted this waits in vain, once.
+  // A force in transmission may have arrived after that zero. If the interrupted thread is the writer itself, the wait runs
+  // into its limit, once.
   const std::uint64_t until_ns = monotonic_ns() + kInFlightNs;
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
     EmergencyExit* const exit = exits[i].load();

@@ -42,7 +42,7 @@ struct Group {
   DeviceRange devices;
   DeviceScene scene;
   std::uint64_t clock_ns = 0;
-  int clock = 0;  // the device whose report is waited for
+  int clock = 0;  // the device whose reports drive the ticks
 };
 
 }  // namespace
@@ -128,7 +128,7 @@ bool FastRun::Impl::has_ended(const Group& group) const {
   return true;
 }
 
-// The one whose clock is behind the others', as long as it is before the end; null: all are done.
+// The device whose clock is furthest behind and before the end; null: all have finished.
 Group* FastRun::Impl::earliest(std::uint64_t until_ns) const {
   Group* first = nullptr;
   for (const auto& group : groups) {
@@ -168,7 +168,7 @@ std::string FastRun::run(double seconds, bool arm, const std::function<bool()>& 
   return problem.empty() ? of_log : problem;
 }
 
-// One that is alone waits until its device is there; among others it is tried once, and they go on without it.
+// A single device is opened with repeated attempts; one of several is tried once, and the others continue without it.
 std::string FastRun::Impl::open_device(std::size_t index, bool is_alone) {
   Unit& unit = *units[index];
   std::string problem = "it could not be opened";
@@ -207,7 +207,7 @@ void FastRun::Impl::read_reports(Unit& unit, int timeout_ms) const {
   }
 }
 
-// What else has come up to then: each device has a clock of its own, which only its reads carry forward.
+// Reads the other devices' reports up to that time. Each device has its own clock, advanced only by its reads.
 void FastRun::Impl::catch_up(Unit& unit, std::uint64_t until_ns) const {
   bool is_behind = true;
   while (is_behind && unit.is_open && unit.input.read != ReadStatus::kLost && unit.input.report_count < kMaxDrain) {
@@ -245,7 +245,7 @@ void FastRun::Impl::send(Unit& unit, const GatedForce& force, std::uint32_t echo
   unit.status.write_failures += unit.has_write_failed;
 }
 
-// Opens what can be opened, waits for the report of the device that goes on first, and sets the group's clock by it.
+// Opens the devices that can be opened, reads the report of the device that is next, and sets the group's clock by it.
 std::string FastRun::Impl::choose_clock(Group& group) {
   const DeviceRange& devices = group.devices;
   Unit* waiting = nullptr;
@@ -285,7 +285,7 @@ std::string FastRun::Impl::tick(Group& group) {
   for (int i = 0; i < count; ++i) {
     Unit& unit = *units[first + static_cast<std::size_t>(i)];
     if (unit.is_open) send(unit, unit.output.force, unit.output.echo);
-    if (unit.output.phase != Phase::kDisarmed) unit.wants_arming = false;  // after a fault it is the user's to ask again
+    if (unit.output.phase != Phase::kDisarmed) unit.wants_arming = false;  // after a fault the user must arm again
   }
   Event never;
   while (ring != nullptr && !ring->has_room())

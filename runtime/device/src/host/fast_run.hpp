@@ -25,7 +25,7 @@ class FastRun {
   FastRun(const FastRun&) = delete;
   FastRun& operator=(const FastRun&) = delete;
 
-  // Empty: fine. Otherwise the file or the device, what is wrong with it, and what to do.
+  // Returns an empty string on success; else the file or the device, the error and the remedy.
   std::string open(HostConfig config);
   // Once. seconds: of the devices' time; 0: until every recording has ended (refused where a device is simulated: it never
   // ends). arm: asks each device's gate until it has granted it once. is_stopping (may be empty) is asked every 1,000 ticks.

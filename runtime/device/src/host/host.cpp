@@ -33,7 +33,7 @@ struct Unit {
   ServoLoop servo;
   std::vector<std::size_t> moving;  // objects
   EmergencyExit emergency;
-  // What the threads have said last.
+  // The latest status from the threads.
   DeviceStatus status;
   WriterStatus writes;
 };
@@ -46,7 +46,7 @@ struct Group {
   std::vector<ServoLoop*> loops;
 };
 
-// All that any thread of a host may touch. A thread that cannot be ended keeps its share: nothing is freed under it.
+// All data shared by the threads of a host. A thread that cannot be joined keeps its shared_ptr, so that its data is not freed.
 struct Shared {
   HostConfig config;
   SceneGraphs graphs;
@@ -207,7 +207,7 @@ std::string Host::Impl::start_threads() {
   return supervisor.start("fdcg-supervisor", [share] { share->supervisor.run(); });
 }
 
-// From outside, so that no thread of the loop makes a string.
+// Called outside of the servo loop, which must not allocate strings.
 void Host::Impl::make_punctual() {
   const LoopConfig& loop = shared->config.loop;
   const auto warn = [&](std::string warning) {
@@ -337,7 +337,7 @@ std::string Host::stop() {
   return problem;
 }
 
-// The writers first, and all of them at once: each sends its zero without waiting for anybody.
+// The writers are stopped first, all at once: each sends its zero report without waiting for another thread.
 std::string Host::Impl::end_threads() {
   const std::uint64_t until_ns = monotonic_ns() + kStopNs - kStopMarginNs;
   const auto join = [&](Thread& thread) {

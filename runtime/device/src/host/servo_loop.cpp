@@ -52,7 +52,8 @@ void ServoLoop::tick() {
   tick_together(&alone, 1, &clock);
 }
 
-// Who is waited for: the clock, as long as it is there, else the first that is; where none is, the clock, which then sleeps.
+// The device whose report the loop waits for: the clock device while it is open, else the first open one; if none is open, the
+// clock device, whose wait is then a sleep.
 void ServoLoop::tick_together(ServoLoop* const* loops, int count, int* clock) {
   int waiting = *clock;
   for (int i = 0; i < count && !loops[waiting]->is_open(); ++i)
@@ -85,7 +86,7 @@ void ServoLoop::gather(bool waits) {
     begins_ = true;
     is_lost_ = false;
   }
-  // Once lost it is left alone until it has been opened anew: a read would fail at once, and this thread would spin.
+  // After a loss there are no reads until it has been reopened: they would fail at once, and this thread would spin.
   was_inside_ = !is_lost_ && parts_.link->enter(Link::kReader);
   if (was_inside_) {
     read_reports(waits);
@@ -103,8 +104,8 @@ void ServoLoop::gather(bool waits) {
   set_poses();
 }
 
-// The oldest with a wait, then all that are there. A device that sends faster than this drains is cut at kMaxDrain: what is
-// left is read by the next tick, and judged by its age.
+// Waits for the oldest report, then reads all that are queued, at most kMaxDrain. The rest is read by the next tick, and judged
+// by its age.
 void ServoLoop::read_reports(bool waits) {
   if (!read_one(waits ? kReadTimeoutMs : 0)) return;
   while (input_.report_count < kMaxDrain && read_one(0)) {
@@ -139,11 +140,11 @@ void ServoLoop::set_poses() {
   }
 }
 
-// What has been put is on its way: no writer waits for another's wake, which takes microseconds.
+// Wakes the writers after all forces have been stored: no writer waits for another's wake-up, which takes microseconds.
 void ServoLoop::send_force() {
   done_ns_ = monotonic_ns();
   parts_.writer->wake();
-  // Only now may the supervisor act: the zero force of this tick is on its way.
+  // The supervisor is notified only now, after the zero force of this tick has been handed to the writer.
   if (input_.read == ReadStatus::kLost && !is_lost_ && was_inside_) {
     is_lost_ = true;
     lost_opening_.store(seen_opened_, std::memory_order_release);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's servo loop: waits for a report, drains to the newest, gathers all that device_tick works on, hands the force to
-// the writer and the tick to the log. The thread sleeps in the read, 1 ms at most; while the device is away it ticks all the
-// same, so that commands and faults go on. No heap, no lock, no exception from the first tick to the last (but for what
-// hidapi's libusb back end does inside its read).
+// A device's servo loop: waits for a report, drains to the newest, gathers the input of device_tick, hands the force to the
+// writer and the tick to the log. The thread sleeps in the read, 1 ms at most; it also ticks while the device is absent, so
+// that commands and faults are processed. No heap, no lock, no exception from the first tick to the last (except inside the
+// read of hidapi's libusb back end).
 //
-// Devices that share a scene have one thread: run_together ticks their loops as one. It waits for the clock's report
-// (scene_tick.hpp) and takes what is there of the others, so a device that is silent or away holds nobody up: at most 1 ms.
+// Devices that share a scene have one thread: run_together ticks their loops as one. It waits for the report of the clock
+// device (scene_tick.hpp) and takes the queued reports of the others, so a silent or absent device delays the others by at most
+// 1 ms.
 #pragma once
 
 #include <atomic>
@@ -42,19 +43,19 @@ class ServoLoop {
   // The thread's body, until request_stop; or tick by tick, by one thread.
   void run();
   void tick();
-  // The same for loops that share a scene, in the scene's order: until one of them is asked to stop. *clock: which of them is
-  // waited for; 0 at first.
+  // The same for loops that share a scene, in the scene's order, until one of them gets request_stop. *clock: the index of the
+  // loop whose report is waited for; 0 at first.
   static void run_together(ServoLoop* const* loops, int count);
   static void tick_together(ServoLoop* const* loops, int count, int* clock);
 
-  // Anybody's. Both at once: disarmed.
+  // Callable from any thread. Both at once: disarmed.
   void request_arm() { arm_.store(true, std::memory_order_release); }
   void request_disarm() { disarm_.store(true, std::memory_order_release); }
   void request_stop();
-  // The supervisor's sign to close: which opening of the link (Link::opened()) the reader has found gone. 0: none yet.
+  // For the supervisor: the opening of the link (Link::opened()) at which the reader found the device lost. 0: none yet.
   std::uint64_t lost_opening() const { return lost_opening_.load(std::memory_order_acquire); }
 
-  // One thread's at a time. `moving`: place in ServoParts::moving; only an object with MotionKind::kDriven heeds it.
+  // For one thread at a time. `moving`: index in ServoParts::moving; has an effect only on objects with MotionKind::kDriven.
   void set_pose(int moving, const fdcg_pose& pose) { driven_poses_[moving].put(pose); }
   bool take_status(DeviceStatus* status) { return status_.take(status); }
 

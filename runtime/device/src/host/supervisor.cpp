@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::uint64_t kMs = 1'000'000;
 constexpr std::uint64_t kSoonNs = 100 * kMs, kLaterNs = 1000 * kMs;  // between attempts to open
-constexpr std::uint64_t kSoonForNs = 5000 * kMs;                     // a device that was pulled out is mostly back by then
-constexpr std::uint64_t kLastWordNs = 20 * kMs;                      // for the zero force of the tick that found the loss
-constexpr std::uint64_t kClosingLookNs = 2 * kMs;                    // while a reader or writer is still inside
+constexpr std::uint64_t kSoonForNs = 5000 * kMs;                     // an unplugged device is usually back by then
+constexpr std::uint64_t kZeroForceNs = 20 * kMs;                     // for the zero force of the tick that found the loss
+constexpr std::uint64_t kClosingPollNs = 2 * kMs;                    // poll interval while a reader or writer is inside
 constexpr std::uint64_t kIdleNs = 200 * kMs;
 
 }  // namespace
@@ -39,7 +39,7 @@ void Supervisor::run() {
     const std::uint64_t now_ns = monotonic_ns();
     std::uint64_t until_ns = now_ns + kIdleNs;
     for (const auto& device : devices_) {
-      if (device->state == State::kClosing) until_ns = std::min(until_ns, now_ns + kClosingLookNs);
+      if (device->state == State::kClosing) until_ns = std::min(until_ns, now_ns + kClosingPollNs);
       if (device->state == State::kAbsent) until_ns = std::min(until_ns, device->next_try_ns);
     }
     if (until_ns > now_ns) wake_.wait(until_ns - now_ns);
@@ -54,7 +54,7 @@ void Supervisor::look_after(Watched& device) {
 }
 
 void Supervisor::begin_closing(Watched& device) {
-  device.parts.writer->flush_within(kLastWordNs);
+  device.parts.writer->flush_within(kZeroForceNs);
   device.parts.link->close();
   device.state = State::kClosing;
 }
@@ -64,7 +64,7 @@ void Supervisor::try_to_close(Watched& device, std::uint64_t now_ns) {
   device.parts.emergency->descriptor.store(-1);
   device.parts.transport->close();
   device.absent_since_ns = now_ns;
-  device.next_try_ns = now_ns - device.opened_ns < kSoonForNs ? now_ns + kSoonNs : now_ns;  // one that opens and fails in turns
+  device.next_try_ns = now_ns - device.opened_ns < kSoonForNs ? now_ns + kSoonNs : now_ns;  // delays repeated failures
   const bool is_over = device.parts.transport->is_over();
   device.state = is_over ? State::kOver : State::kAbsent;
   device.is_over.store(is_over, std::memory_order_release);

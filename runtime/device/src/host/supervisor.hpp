@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that opens devices, notices that one is gone, closes it once its reader and writer have left it, and opens it
-// again when it is back. All calls that enumerate, open or close are made here, one device after another: hidapi wants one
-// thread for them, and they take milliseconds.
+// The thread that opens devices, closes a lost one after its reader and writer have left it, and reopens it when it is back.
+// All calls that enumerate, open or close are made here, one device after another: hidapi needs one thread for them, and they
+// take milliseconds.
 #pragma once
 
 #include <atomic>

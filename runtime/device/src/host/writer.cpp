@@ -10,8 +10,7 @@ namespace {
 constexpr std::uint64_t kSilenceNs = static_cast<std::uint64_t>(kSilenceS * 1e9);
 constexpr std::uint64_t kPublishNs = 20'000'000;
 constexpr std::uint64_t kAwakeNs = 100'000'000;  // with nothing to do: often enough to see a stop, even if its wake were lost
-// A write may hold the thread for 5.1 s, and a host that is told to stop ends within 6 s: a device that does not take what it
-// is sent gets no further try after that.
+// A write may block the thread for 5.1 s, and a host must stop within 6 s: after a failed write there is no other attempt.
 constexpr std::uint64_t kGoodbyeNs = 800'000'000;
 
 }  // namespace
@@ -50,7 +49,7 @@ void Writer::flush_within(std::uint64_t timeout_ns) {
 
 void Writer::run() {
   Letter letter;
-  bool is_zeroed = true;  // nothing was sent that would have to be taken back
+  bool is_zeroed = true;  // the last force sent was zero, or none was sent
   while (!is_stopping_.load(std::memory_order_acquire)) {
     if (letters_.take(&letter)) {
       send(letter.force, letter.echo);
@@ -90,7 +89,7 @@ bool Writer::send_fixed(const FixedReport& report) {
   });
 }
 
-// True also where the device is not there: that is the reader's to tell.
+// True also if the device is absent: the reader reports that.
 template <class Write>
 bool Writer::timed(const Write& write) {
   if (!link_.enter(Link::kWriter)) return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's writer: a thread of its own, since a device that does not take output holds hid_write for 5 s. It always sends the
-// newest force. Nothing new for kSilenceS: it sends zero by itself, once, so that a servo thread that hangs leaves no force.
+// A device's writer: a separate thread, since a device that does not take output blocks hid_write for 5 s. It always sends the
+// newest force. If nothing new is stored for kSilenceS it sends zero once, so that a hanging servo thread leaves no force.
 #pragma once
 
 #include <atomic>
@@ -26,8 +26,8 @@ class Writer {
   // All three must outlive it.
   Writer(const Profile& profile, Transport& transport, Link& link);
 
-  // The servo thread's. No lock, no heap, no wait. What is put is sent by the thread's next look: wake has it look now (a call
-  // of the kernel's, of some microseconds, where the thread sleeps).
+  // For the servo thread. No lock, no heap, no wait. put stores a force, which the writer sends in its next iteration; wake
+  // starts that iteration now (a system call of some microseconds if the thread sleeps).
   void put(const GatedForce& force, std::uint32_t echo);
   void wake() { wake_.signal(); }
   std::uint64_t busy_ns(std::uint64_t now_ns) const;  // for how long the write in progress has been going on; 0: there is none
@@ -39,12 +39,12 @@ class Writer {
   // After run: false where a device that is there did not take its zero force.
   bool has_left_zero() const { return has_left_zero_.load(std::memory_order_acquire); }
 
-  // The supervisor's: waits until what was put last has been sent, or for that long.
+  // For the supervisor: waits until the force stored last has been sent, or for that long.
   void flush_within(std::uint64_t timeout_ns);
   void forget_failure() { has_failed_.store(false, std::memory_order_release); }  // the device has been opened anew
 
-  // A crash's (emergency.hpp), async-signal-safe: nothing is sent from now on, but what is_sending says is under way. Returns
-  // the sequence number of the next report, another one each time.
+  // For crash handlers (emergency.hpp), async-signal-safe: nothing is sent from now on, except a write in progress
+  // (is_sending). Returns the sequence number of the next report, a new one each time.
   std::uint32_t mute() {
     is_muted_.store(true);
     return sequence_.fetch_add(1);

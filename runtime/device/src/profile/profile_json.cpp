@@ -4,105 +4,103 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/json_reader.hpp"
-#include "base/words.hpp"
 #include "profile/profile_kinematics.hpp"
 #include "profile/profile_reports.hpp"
+#include "shared/json/reader.hpp"
+#include "shared/text.hpp"
 #include "tick/gate.hpp"
 
 namespace fdcg::dev {
 namespace {
 
 // Bounds that no device for a hand comes near: what is beyond them is a slip of the unit.
-constexpr NumberRange kForce{0, 1000, false, "N"};
-constexpr NumberRange kEffort{0, 1000, false, "N or N m"};
-constexpr NumberRange kSlew{0, 1e8, false, "N/s"};
-constexpr NumberRange kVelocity{0, 1000, false, "m/s"};
-constexpr NumberRange kPlace{-100, 100, true, "m"};
-constexpr NumberRange kWatchdog{0, 10, true, "s"};
-constexpr NumberRange kRate{1, 100000, true, "Hz"};
+constexpr json::NumberRange kForce{0, 1000, false, "N"};
+constexpr json::NumberRange kEffort{0, 1000, false, "N or N m"};
+constexpr json::NumberRange kSlew{0, 1e8, false, "N/s"};
+constexpr json::NumberRange kVelocity{0, 1000, false, "m/s"};
+constexpr json::NumberRange kPlace{-100, 100, true, "m"};
+constexpr json::NumberRange kWatchdog{0, 10, true, "s"};
+constexpr json::NumberRange kRate{1, 100000, true, "Hz"};
 constexpr std::size_t kLongestText = 1000;
 
-constexpr Keys kReportKeys{"report_id", "bytes", "fields", "crc"};
+constexpr json::Keys kReportKeys{"report_id", "bytes", "fields", "crc"};
 
-void read_match(const JsonObject& json, Match* match) {
-  match->vendor = static_cast<std::uint16_t>(json.id("vendor_id", 0xFFFF));
-  match->product = static_cast<std::uint16_t>(json.id("product_id", 0xFFFF));
-  if (match->vendor == 0) json.fail("vendor_id", "is 0; no maker has that: look for it with lsusb");
-  if (json.has("usage_page")) match->usage_page = static_cast<std::int32_t>(json.id("usage_page", 0xFFFF));
-  if (json.has("usage")) match->usage = static_cast<std::int32_t>(json.id("usage", 0xFFFF));
-  match->interface_number = static_cast<std::int32_t>(json.integer_or("interface", -1, 0, 255));
+void read_match(const json::Value& json, Match* match) {
+  match->vendor = static_cast<std::uint16_t>(json["vendor_id"].id(0xFFFF));
+  match->product = static_cast<std::uint16_t>(json["product_id"].id(0xFFFF));
+  if (match->vendor == 0) json["vendor_id"].fail("is 0; no maker has that: look for it with lsusb");
+  if (json["usage_page"]) match->usage_page = static_cast<std::int32_t>(json["usage_page"].id(0xFFFF));
+  if (json["usage"]) match->usage = static_cast<std::int32_t>(json["usage"].id(0xFFFF));
+  match->interface_number = static_cast<std::int32_t>(json["interface"].integer_or(-1, 0, 255));
 }
 
-void read_fixed(const JsonObject& json, const char* key, FixedReport* reports, int* count) {
-  if (!json.has(key)) return;
-  for (const JsonObject& report : json.objects(key, 0, kMaxFixedReports, {"kind", "hex"})) {
+void read_fixed(const json::Value& json, const char* key, FixedReport* reports, int* count) {
+  if (!json[key]) return;
+  for (const json::Value& report : json[key].objects(0, kMaxFixedReports, {"kind", "hex"})) {
     FixedReport& fixed = reports[(*count)++];
-    fixed.is_feature = report.choice("kind", {"output", "feature"}) == 1;
-    const std::vector<std::uint8_t> bytes = report.hex("hex", 1, kMaxReportBytes);
+    fixed.is_feature = report["kind"].choice({"output", "feature"}) == 1;
+    const std::vector<std::uint8_t> bytes = report["hex"].hex(1, kMaxReportBytes);
     fixed.bytes = static_cast<std::uint16_t>(bytes.size());
     std::copy(bytes.begin(), bytes.end(), fixed.data);
   }
 }
 
-void read_workspace(const JsonObject& json, DeviceLimits* limits) {
-  json.numbers("min", limits->workspace_min_m, 3, kPlace);
-  json.numbers("max", limits->workspace_max_m, 3, kPlace);
+void read_workspace(const json::Value& json, DeviceLimits* limits) {
+  const json::Value min = json["min"];
+  min.numbers(limits->workspace_min_m, 3, kPlace);
+  json["max"].numbers(limits->workspace_max_m, 3, kPlace);
   for (int i = 0; i < 3; ++i) {
     if (!(limits->workspace_min_m[i] < limits->workspace_max_m[i]))
-      json.fail("min", "[" + std::to_string(i) + "] is " + shown_number(limits->workspace_min_m[i]) +
-                           "; it must be below max[" + std::to_string(i) + "], " + shown_number(limits->workspace_max_m[i]));
+      min.item(static_cast<std::size_t>(i))
+          .must_be("below max[" + std::to_string(i) + "], " + shown_number(limits->workspace_max_m[i]));
   }
 }
 
-void read_limits(const JsonObject& json, int axis_count, DeviceLimits* limits) {
-  if (json.has("force_n")) limits->force_n = json.number("force_n", kForce);
-  if (json.has("effort")) json.numbers("effort", limits->effort, axis_count, kEffort);
-  if (json.has("slew_n_per_s")) limits->slew_n_per_s = json.number("slew_n_per_s", kSlew);
-  if (json.has("velocity_m_per_s")) limits->velocity_m_per_s = json.number("velocity_m_per_s", kVelocity);
-  if (json.has("workspace_m")) read_workspace(json.object("workspace_m", {"min", "max"}), limits);
-  limits->device_watchdog_s = json.number_or("device_watchdog_s", 0, kWatchdog);
+void read_limits(const json::Value& json, int axis_count, DeviceLimits* limits) {
+  json.allow_only({"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m", "device_watchdog_s"});
+  if (json["force_n"]) limits->force_n = json["force_n"].number(kForce);
+  if (json["effort"]) json["effort"].numbers(limits->effort, axis_count, kEffort);
+  if (json["slew_n_per_s"]) limits->slew_n_per_s = json["slew_n_per_s"].number(kSlew);
+  if (json["velocity_m_per_s"]) limits->velocity_m_per_s = json["velocity_m_per_s"].number(kVelocity);
+  if (json["workspace_m"]) read_workspace(json["workspace_m"].object({"min", "max"}), limits);
+  limits->device_watchdog_s = json["device_watchdog_s"].number_or(0, kWatchdog);
 }
 
 // What is not known, for a device that could push, and what it is too slow for.
-void warn(const JsonObject* json, double rate_hz, const std::string& file_name, std::vector<std::string>* warnings) {
+void warn(const json::Value& limits, double rate_hz, const std::string& file_name, std::vector<std::string>* warnings) {
   if (const std::string warning = rate_warning(rate_hz); !warning.empty())
     warnings->push_back(one_line(file_name + ": " + warning));
   for (const char* key : {"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m"}) {
-    if (json == nullptr || !json->has(key))
+    if (!limits || !limits[key])
       warnings->push_back(one_line(file_name + ": limits." + key +
                                    " is not known: the device is read but gives no force; measure it, or ask its maker"));
   }
-  if (json == nullptr || !json->has("device_watchdog_s"))
+  if (!limits || !limits["device_watchdog_s"])
     warnings->push_back(one_line(file_name +
                                  ": limits.device_watchdog_s is not known and taken as none: forces stay low, since "
                                  "nothing would stop the device when the host dies"));
 }
 
-void read_profile(const JsonObject& json, const std::string& file_name, Profile* profile, std::vector<std::string>* warnings) {
-  json.integer("fdcg_profile", 1, 1);
-  const std::string name = json.text("name", kProfileNameBytes - 1);
+void read_profile(const json::Value& json, const std::string& file_name, Profile* profile, std::vector<std::string>* warnings) {
+  (void)json["fdcg_profile"].integer(1, 1);
+  const std::string name = json["name"].text(kProfileNameBytes - 1);
   std::memcpy(profile->name, name.data(), name.size());
-  json.text_or("source", "", kLongestText);
-  if (json.has("notes")) json.texts("notes", 0, 100, kLongestText);
-  read_match(json.object("match", {"vendor_id", "product_id", "usage_page", "usage", "interface"}), &profile->match);
-  profile->rate_hz = json.number("rate_hz", kRate);
-  read_kinematics(json.object("kinematics", kKinematicsKeys), &profile->kinematics);
+  if (json["source"]) (void)json["source"].text(kLongestText);
+  if (json["notes"]) (void)json["notes"].texts(0, 100, kLongestText);
+  read_match(json["match"].object({"vendor_id", "product_id", "usage_page", "usage", "interface"}), &profile->match);
+  profile->rate_hz = json["rate_hz"].number(kRate);
+  const json::Value kinematics = json["kinematics"].object(kKinematicsKeys);
+  read_kinematics(kinematics, &profile->kinematics);
   const KinematicsKind kind = profile->kinematics.kind;
-  read_input(json.object("input", kReportKeys), kind, &profile->input, &profile->axis_count);
-  check_axis_count(json, kind, profile->axis_count);
-  profile->has_output = json.has("output");
-  if (profile->has_output) read_output(json.object("output", kReportKeys), kind, profile->axis_count, &profile->output);
+  read_input(json["input"].object(kReportKeys), kind, &profile->input, &profile->axis_count);
+  check_axis_count(kinematics, kind, profile->axis_count);
+  profile->has_output = static_cast<bool>(json["output"]);
+  if (profile->has_output) read_output(json["output"].object(kReportKeys), kind, profile->axis_count, &profile->output);
   read_fixed(json, "init", profile->init, &profile->init_count);
   read_fixed(json, "safe_stop", profile->safe_stop, &profile->safe_stop_count);
-  if (json.has("limits")) {
-    const JsonObject limits =
-        json.object("limits", {"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m", "device_watchdog_s"});
-    read_limits(limits, profile->axis_count, &profile->limits);
-    if (warnings != nullptr && profile->has_output) warn(&limits, profile->rate_hz, file_name, warnings);
-  } else if (warnings != nullptr && profile->has_output) {
-    warn(nullptr, profile->rate_hz, file_name, warnings);
-  }
+  const json::Value limits = json["limits"];
+  if (limits) read_limits(limits, profile->axis_count, &profile->limits);
+  if (warnings != nullptr && profile->has_output) warn(limits, profile->rate_hz, file_name, warnings);
 }
 
 }  // namespace
@@ -119,11 +117,15 @@ std::string rate_warning(double rate_hz) {
 std::string parse_profile(std::string_view text, const std::string& file_name, Profile* profile,
                           std::vector<std::string>* warnings) {
   *profile = {};
-  JsonFile file(file_name);
-  const JsonObject json = file.parse(text, {"$schema", "fdcg_profile", "name", "source", "notes", "match", "rate_hz", "input",
-                                            "output", "init", "safe_stop", "kinematics", "limits"});
-  read_profile(json, file_name, profile, warnings);
-  return file.error();
+  try {
+    const json::Document file(text);
+    const json::Value json = file.object({"$schema", "fdcg_profile", "name", "source", "notes", "match", "rate_hz", "input",
+                                          "output", "init", "safe_stop", "kinematics", "limits"});
+    read_profile(json, file_name, profile, warnings);
+  } catch (const json::Refusal& refusal) {
+    return one_line(file_name + ": " + refusal.message);
+  }
+  return "";
 }
 
 }  // namespace fdcg::dev

@@ -16,10 +16,10 @@ constexpr double kMostTimeStepS = kMaxAgeS / 2;
 constexpr double kLeastTimeRoundS = 10 * kMaxAgeS;
 
 // In the order of NumberType, Role and CrcKind.
-constexpr Keys kTypes{"u8", "i8", "u16", "i16", "u32", "i32", "f32"};
-constexpr Keys kRoles{"axis", "effort", "sequence", "time", "echo", "buttons", "status", "enable", "constant"};
-constexpr Keys kCrcKinds{"none", "crc16-ccitt-false", "crc16-modbus", "crc32", "crc8", "sum8", "xor8"};
-constexpr Keys kEndians{"little", "big"};
+constexpr json::Keys kTypes{"u8", "i8", "u16", "i16", "u32", "i32", "f32"};
+constexpr json::Keys kRoles{"axis", "effort", "sequence", "time", "echo", "buttons", "status", "enable", "constant"};
+constexpr json::Keys kCrcKinds{"none", "crc16-ccitt-false", "crc16-modbus", "crc32", "crc8", "sum8", "xor8"};
+constexpr json::Keys kEndians{"little", "big"};
 
 const char* name_of(Role role) {
   return kRoles.begin()[static_cast<int>(role)];
@@ -41,17 +41,17 @@ std::string byte_range(int offset, int bytes) {
 // One report while it is read.
 class Report {
  public:
-  Report(const JsonObject& json, bool is_input, KinematicsKind kinematics, ReportLayout* layout)
+  Report(const json::Value& json, bool is_input, KinematicsKind kinematics, ReportLayout* layout)
       : json_(json), is_input_(is_input), is_cartesian_(kinematics == KinematicsKind::kCartesian), layout_(layout) {}
 
   void read() {
-    layout_->id = static_cast<std::uint8_t>(json_.id("report_id", 0xFF));
-    layout_->bytes = static_cast<std::uint16_t>(json_.integer("bytes", 1, kMaxReportBytes));
+    layout_->id = static_cast<std::uint8_t>(json_["report_id"].id(0xFF));
+    layout_->bytes = static_cast<std::uint16_t>(json_["bytes"].integer(1, kMaxReportBytes));
     owners_.assign(layout_->bytes, "");
-    if (layout_->id != 0) owners_[0] = json_.path("report_id");
-    for (const JsonObject& field : json_.objects("fields", 1, kMaxFields, kFieldKeys))
+    if (layout_->id != 0) owners_[0] = json_["report_id"].path();
+    for (const json::Value& field : json_["fields"].objects(1, kMaxFields, kFieldKeys))
       read_field(field, &layout_->fields[layout_->field_count++]);
-    if (json_.has("crc")) read_crc(json_.object("crc", {"kind", "offset", "first", "bytes", "endian"}));
+    if (json_["crc"]) read_crc(json_["crc"].object({"kind", "offset", "first", "bytes", "endian"}));
   }
 
   // The axes (or efforts) 0, 1, ... up to the largest stand there once each; how many.
@@ -62,39 +62,40 @@ class Report {
       if (axis == count)
         ++count;
       else
-        json_.fail("fields", std::string("have ") + name_of(role) + " " + std::to_string(axis) + " but no " + name_of(role) +
-                                 " " + std::to_string(count) + "; number them from 0 on");
+        json_["fields"].fail(std::string("have ") + name_of(role) + " " + std::to_string(axis) + " but no " + name_of(role) +
+                             " " + std::to_string(count) + "; number them from 0 on");
     }
     return count;
   }
 
  private:
-  static constexpr Keys kFieldKeys{"role", "axis", "offset", "type", "endian", "scale", "bias", "unit", "fault_mask", "value"};
+  static constexpr json::Keys kFieldKeys{"role",  "axis", "offset", "type",       "endian",
+                                         "scale", "bias", "unit",   "fault_mask", "value"};
 
   // The bytes are within the report, and nobody else's.
-  void claim(const JsonObject& json, const char* key, int offset, int bytes) {
+  void claim(const json::Value& json, const char* key, int offset, int bytes) {
     const int last = layout_->bytes - bytes;
     if (offset > last) {
-      json.fail(key, "is " + std::to_string(offset) + "; the report has " + std::to_string(layout_->bytes) + " bytes, and " +
-                         std::to_string(bytes) + " from there on " +
-                         (last < 0 ? "do not fit anywhere" : "fit at 0 to " + std::to_string(last)));
+      json[key].fail("is " + std::to_string(offset) + "; the report has " + std::to_string(layout_->bytes) + " bytes, and " +
+                     std::to_string(bytes) + " from there on " +
+                     (last < 0 ? "do not fit anywhere" : "fit at 0 to " + std::to_string(last)));
       return;
     }
     for (int i = offset; i < offset + bytes; ++i) {
       std::string& owner = owners_[static_cast<std::size_t>(i)];
       if (!owner.empty()) {
-        json.fail(key, "is " + std::to_string(offset) + "; " + byte_range(offset, bytes) + " overlap " + owner);
+        json[key].fail("is " + std::to_string(offset) + "; " + byte_range(offset, bytes) + " overlap " + owner);
         return;
       }
-      owner = json.path(key) + " (" + byte_range(offset, bytes) + ")";
+      owner = json[key].path() + " (" + byte_range(offset, bytes) + ")";
     }
   }
 
-  void read_field(const JsonObject& json, Field* field) {
-    const Role role = field->role = static_cast<Role>(json.choice("role", kRoles));
-    field->type = static_cast<NumberType>(json.choice("type", kTypes));
-    field->is_big_endian = json.choice_or("endian", 0, kEndians) == 1;
-    field->offset = static_cast<std::uint16_t>(json.integer("offset", 0, layout_->bytes - 1));
+  void read_field(const json::Value& json, Field* field) {
+    const Role role = field->role = static_cast<Role>(json["role"].choice(kRoles));
+    field->type = static_cast<NumberType>(json["type"].choice(kTypes));
+    field->is_big_endian = json["endian"].choice_or(0, kEndians) == 1;
+    field->offset = static_cast<std::uint16_t>(json["offset"].integer(0, layout_->bytes - 1));
     claim(json, "offset", field->offset, bytes_of(field->type));
     switch (role) {
       case Role::kAxis:
@@ -107,15 +108,15 @@ class Report {
         break;
       case Role::kStatus:
         allow(json, role, {"role", "offset", "type", "endian", "fault_mask"});
-        field->constant = json.id("fault_mask", largest(field->type));
-        if (field->constant == 0) json.fail("fault_mask", "is 0; set the bits that say that the device has a fault");
+        field->constant = json["fault_mask"].id(largest(field->type));
+        if (field->constant == 0) json["fault_mask"].fail("is 0; set the bits that say that the device has a fault");
         break;
       case Role::kEnable:
       case Role::kConstant:
         allow(json, role, {"role", "offset", "type", "endian", "value"});
-        field->constant = json.id("value", largest(field->type));
+        field->constant = json["value"].id(largest(field->type));
         if (role == Role::kEnable && field->constant == 0)
-          json.fail("value", "is 0; name what stands there while forces are on");
+          json["value"].fail("is 0; name what stands there while forces are on");
         break;
       case Role::kSequence:
       case Role::kEcho:
@@ -126,71 +127,70 @@ class Report {
     check_role(json, *field);
   }
 
-  static void allow(const JsonObject& json, Role role, Keys keys) {
+  static void allow(const json::Value& json, Role role, json::Keys keys) {
     json.allow_only(keys, (std::string(" of ") + name_of(role) + " fields").c_str());
   }
 
-  void read_number(const JsonObject& json, Field* field) {
+  void read_number(const json::Value& json, Field* field) {
     allow(json, field->role, {"role", "axis", "offset", "type", "endian", "scale", "bias", "unit"});
-    field->axis = static_cast<std::uint8_t>(json.integer("axis", 0, kMaxAxes - 1));
-    field->scale = json.number("scale", {-1e6, 1e6});
-    if (std::fabs(field->scale) < 1e-12) json.fail("scale", "is too near 0 (1e-12 at least); it is the value of one count");
-    field->bias = json.number_or("bias", 0, {-1e6, 1e6});
+    field->axis = static_cast<std::uint8_t>(json["axis"].integer(0, kMaxAxes - 1));
+    field->scale = json["scale"].number({-1e6, 1e6});
+    if (std::fabs(field->scale) < 1e-12) json["scale"].fail("is too near 0 (1e-12 at least); it is the value of one count");
+    field->bias = json["bias"].number_or(0, {-1e6, 1e6});
     const bool is_axis = field->role == Role::kAxis;
     const std::string wanted = is_cartesian_ ? is_axis ? "m" : "N" : is_axis ? "rad" : "N.m";
-    const std::string unit = json.text("unit", 16);
+    const std::string unit = json["unit"].text(16);
     if (unit != wanted)
-      json.fail("unit", "is \"" + unit + "\"; " + (is_axis ? "axes" : "efforts") + " of a " +
-                            (is_cartesian_ ? "cartesian" : "jointed") + " device are in \"" + wanted +
-                            "\": convert by the scale");
+      json["unit"].fail("is \"" + unit + "\"; " + (is_axis ? "axes" : "efforts") + " of a " +
+                        (is_cartesian_ ? "cartesian" : "jointed") + " device are in \"" + wanted + "\": convert by the scale");
     if (found_[field->axis]++ > 0)
-      json.fail("axis", "is " + std::to_string(field->axis) + ", which another field has too; each stands there once");
+      json["axis"].fail("is " + std::to_string(field->axis) + ", which another field has too; each stands there once");
   }
 
-  static void read_time(const JsonObject& json, Field* field) {
-    field->scale = json.number("scale", {0, kMostTimeStepS, false, "s"});
-    if (const std::string unit = json.text("unit", 16); unit != "s") json.fail("unit", "is \"" + unit + "\"; it must be \"s\"");
+  static void read_time(const json::Value& json, Field* field) {
+    field->scale = json["scale"].number({0, kMostTimeStepS, false, "s"});
+    if (const std::string unit = json["unit"].text(16); unit != "s") json["unit"].fail("is \"" + unit + "\"; it must be \"s\"");
     const double round_s = std::ldexp(field->scale, 8 * bytes_of(field->type));
     if (round_s < kLeastTimeRoundS)
-      json.fail("scale", "lets the clock go round in " + std::to_string(round_s) + " s; the age of reports shows from " +
-                             std::to_string(kLeastTimeRoundS) + " s on: leave the field out");
+      json["scale"].fail("lets the clock go round in " + std::to_string(round_s) + " s; the age of reports shows from " +
+                         std::to_string(kLeastTimeRoundS) + " s on: leave the field out");
   }
 
-  void check_role(const JsonObject& json, const Field& field) {
+  void check_role(const json::Value& json, const Field& field) {
     const Role role = field.role;
     const bool is_of_input = role == Role::kAxis || role == Role::kTime || role == Role::kButtons || role == Role::kStatus;
     const bool is_of_output = role == Role::kEffort || role == Role::kEnable;
     if (is_input_ ? is_of_output : is_of_input)
-      json.fail("role",
-                std::string("is ") + name_of(role) + ", which only an " + (is_input_ ? "output" : "input") + " report has");
+      json["role"].fail(std::string("is ") + name_of(role) + ", which only an " + (is_input_ ? "output" : "input") +
+                        " report has");
     const bool is_number = role == Role::kAxis || role == Role::kEffort;
     if (!is_number && !is_unsigned(field.type))
-      json.fail("type", std::string("of a ") + name_of(role) + " field must be u8, u16 or u32");
+      json["type"].fail(std::string("of a ") + name_of(role) + " field must be u8, u16 or u32");
     const bool may_repeat = is_number || role == Role::kStatus || role == Role::kConstant;
     for (const Field* other = layout_->fields; !may_repeat && other != &field; ++other) {
       if (other->role == role)
-        json.fail("role", std::string("is ") + name_of(role) + ", which another field has too; one is read");
+        json["role"].fail(std::string("is ") + name_of(role) + ", which another field has too; one is read");
     }
   }
 
-  void read_crc(const JsonObject& json) {
+  void read_crc(const json::Value& json) {
     Crc& crc = layout_->crc;
-    crc.kind = static_cast<CrcKind>(json.choice("kind", kCrcKinds));
+    crc.kind = static_cast<CrcKind>(json["kind"].choice(kCrcKinds));
     if (crc.kind == CrcKind::kNone) {
       json.allow_only({"kind"}, " where there is no CRC");
       return;
     }
-    crc.is_big_endian = json.choice_or("endian", 0, kEndians) == 1;
-    crc.offset = static_cast<std::uint16_t>(json.integer("offset", 0, layout_->bytes - 1));
-    crc.first = static_cast<std::uint16_t>(json.integer("first", 0, layout_->bytes - 1));
-    crc.bytes = static_cast<std::uint16_t>(json.integer("bytes", 1, layout_->bytes - crc.first));
+    crc.is_big_endian = json["endian"].choice_or(0, kEndians) == 1;
+    crc.offset = static_cast<std::uint16_t>(json["offset"].integer(0, layout_->bytes - 1));
+    crc.first = static_cast<std::uint16_t>(json["first"].integer(0, layout_->bytes - 1));
+    crc.bytes = static_cast<std::uint16_t>(json["bytes"].integer(1, layout_->bytes - crc.first));
     claim(json, "offset", crc.offset, bytes_of(crc.kind));
     if (crc.offset + bytes_of(crc.kind) > crc.first && crc.offset < crc.first + crc.bytes)
-      json.fail("offset", "is " + std::to_string(crc.offset) + ", within the " + byte_range(crc.first, crc.bytes) +
-                              " that it is computed over");
+      json["offset"].fail("is " + std::to_string(crc.offset) + ", within the " + byte_range(crc.first, crc.bytes) +
+                          " that it is computed over");
   }
 
-  const JsonObject& json_;
+  const json::Value& json_;
   bool is_input_, is_cartesian_;
   ReportLayout* layout_;
   std::vector<std::string> owners_;  // of each byte: which key, for the message
@@ -199,20 +199,20 @@ class Report {
 
 }  // namespace
 
-void read_input(const JsonObject& json, KinematicsKind kinematics, ReportLayout* layout, int* axis_count) {
+void read_input(const json::Value& json, KinematicsKind kinematics, ReportLayout* layout, int* axis_count) {
   Report report(json, true, kinematics, layout);
   report.read();
   *axis_count = report.count_axes(Role::kAxis);
-  if (*axis_count == 0) json.fail("fields", "have no axis: say where the device's positions are");
+  if (*axis_count == 0) json["fields"].fail("have no axis: say where the device's positions are");
 }
 
-void read_output(const JsonObject& json, KinematicsKind kinematics, int axis_count, ReportLayout* layout) {
+void read_output(const json::Value& json, KinematicsKind kinematics, int axis_count, ReportLayout* layout) {
   Report report(json, false, kinematics, layout);
   report.read();
   const int efforts = report.count_axes(Role::kEffort);
   if (efforts != axis_count)
-    json.fail("fields", "have " + std::to_string(efforts) + " efforts; the input report has " + std::to_string(axis_count) +
-                            " axes, and each of them needs one");
+    json["fields"].fail("have " + std::to_string(efforts) + " efforts; the input report has " + std::to_string(axis_count) +
+                        " axes, and each of them needs one");
 }
 
 }  // namespace fdcg::dev

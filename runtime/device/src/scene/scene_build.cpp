@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/rotation.hpp"
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "tick/scene_bodies.hpp"
 
 #include <algorithm>

@@ -11,18 +11,15 @@ namespace fdcg::dev {
 namespace {
 
 constexpr int kMostObjects = 1000;
-constexpr std::size_t kMostSceneBytes = kMostJsonBytes;
-constexpr Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices", "loop", "log",
-                             "limits",     "gravity_m_per_s2", "ground", "shared"};
-constexpr Keys kObjectKeys = {
+constexpr std::size_t kMostSceneBytes = json::Limits{}.bytes;
+constexpr json::Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices", "loop", "log",
+                                   "limits",     "gravity_m_per_s2", "ground", "shared"};
+constexpr json::Keys kObjectKeys = {
     "name",       "file",          "surface", "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static",
     "mu_dynamic", "edge_friction", "motion",  "notes"};
-constexpr Keys kDeviceKeys = {"name",          "source",     "profile",   "serial", "path", "mapping", "contacts",
-                              "force_limit_n", "simulation", "recording", "notes",  "grip", "turn"};
-constexpr Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
-constexpr Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend"};
-constexpr Keys kLogKeys = {"file", "limit_mb"};
-constexpr Keys kLimitsKeys = {"force_n"};
+constexpr json::Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
+constexpr json::Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend"};
+constexpr json::Keys kLogKeys = {"file", "limit_mb"};
 
 }  // namespace
 
@@ -38,46 +35,46 @@ double norm(const double* x, int count) {
   return std::sqrt(square);
 }
 
-bool read_unit(const JsonObject& from, const char* key, double* x, int count, double tolerance) {
-  from.numbers(key, x, count, {-1e6, 1e6});
+void read_unit(const json::Value& from, double* x, int count) {
+  from.numbers(x, count, {-1e6, 1e6});
   const double length = norm(x, count);
-  if (std::fabs(length - 1) <= tolerance) return true;
-  from.fail(key, "has length " + shown_number(length) + "; it must be 1" +
-                     (count == 4 ? ": a unit quaternion x, y, z, w; no rotation is [0, 0, 0, 1]" : ""));
-  return false;
+  if (std::fabs(length - 1) <= kUnitTolerance) return;
+  from.fail("has length " + shown_number(length) + "; it must be 1" +
+            (count == 4 ? ": a unit quaternion x, y, z, w; no rotation is [0, 0, 0, 1]" : ""));
 }
 
-std::string SceneParser::parse(std::string_view text) {
-  const JsonObject scene = file_.parse(text, kSceneKeys);
-  scene.integer("fdcg_scene", 1, 1);
-  if (scene.has("limits")) {
-    scene_force_n_ = scene.object("limits", kLimitsKeys).number("force_n", above_0(kMostForce, "N"));
+void SceneParser::parse(std::string_view text) {
+  const json::Document document(text);
+  const json::Value scene = document.object(kSceneKeys);
+  (void)scene["fdcg_scene"].integer(1, 1);
+  if (const json::Value limits = scene["limits"]) {
+    limits.allow_only({"force_n"});
+    scene_force_n_ = limits["force_n"].number(above_0(kMostForce, "N"));
   }
-  for (const JsonObject& object : scene.objects("objects", 0, kMostObjects, kObjectKeys))
+  for (const json::Value& object : scene["objects"].objects(0, kMostObjects, kObjectKeys))
     read_object(object);
-  for (const JsonObject& device : scene.objects("devices", 1, kMaxDevices, kDeviceKeys))
+  for (const json::Value& device : scene["devices"].objects(1, kMaxDevices))
     read_device(device);
-  if (scene.has("gravity_m_per_s2")) scene.numbers("gravity_m_per_s2", config_.gravity_m_per_s2, 3, {-1e4, 1e4});
-  if (scene.has("ground")) read_ground(scene.object("ground", kGroundKeys));
+  if (scene["gravity_m_per_s2"]) scene["gravity_m_per_s2"].numbers(config_.gravity_m_per_s2, 3, {-1e4, 1e4});
+  if (scene["ground"]) read_ground(scene["ground"].object(kGroundKeys));
   read_shared(scene);
-  if (scene.has("loop")) read_loop(scene.object("loop", kLoopKeys));
-  if (scene.has("log")) read_log(scene.object("log", kLogKeys));
-  return file_.error();
+  if (scene["loop"]) read_loop(scene["loop"].object(kLoopKeys));
+  if (scene["log"]) read_log(scene["log"].object(kLogKeys));
 }
 
-void SceneParser::read_loop(const JsonObject& from) {
+void SceneParser::read_loop(const json::Value& from) {
   LoopConfig& loop = config_.loop;
-  const auto priority = [&](const char* key, int fallback) { return static_cast<int>(from.integer_or(key, fallback, 0, 99)); };
+  const auto priority = [&](const char* key, int fallback) { return static_cast<int>(from[key].integer_or(fallback, 0, 99)); };
   loop.servo_priority = priority("servo_priority", loop.servo_priority);
   loop.writer_priority = priority("writer_priority", loop.writer_priority);
-  loop.cpu = static_cast<int>(from.integer_or("cpu", loop.cpu, -1, 1023));
-  loop.lock_memory = from.boolean_or("lock_memory", loop.lock_memory);
-  loop.backend = static_cast<HidBackend>(from.choice_or("backend", 0, {"any", "hidraw", "libusb"}));
+  loop.cpu = static_cast<int>(from["cpu"].integer_or(loop.cpu, -1, 1023));
+  loop.lock_memory = from["lock_memory"].boolean_or(loop.lock_memory);
+  loop.backend = static_cast<HidBackend>(from["backend"].choice_or(0, {"any", "hidraw", "libusb"}));
 }
 
-void SceneParser::read_log(const JsonObject& from) {
-  config_.log_file = beside(file_name_, from.text("file", kLongestPath));
-  config_.log_megabytes = from.number_or("limit_mb", 0, from_0(1e9, "MB"));
+void SceneParser::read_log(const json::Value& from) {
+  config_.log_file = beside(file_name_, from["file"].text(kLongestPath));
+  config_.log_megabytes = from["limit_mb"].number_or(0, from_0(1e9, "MB"));
 }
 
 std::string parse_scene(std::string_view text, const std::string& file_name, HostConfig* config,
@@ -85,12 +82,17 @@ std::string parse_scene(std::string_view text, const std::string& file_name, Hos
   *config = HostConfig{};
   config->scene_file = file_name;
   config->scene_text = std::string(text);
-  return SceneParser(file_name, config, warnings, options).parse(text);
+  try {
+    SceneParser(file_name, config, warnings, options).parse(text);
+  } catch (const json::Refusal& refusal) {
+    return one_line(file_name + ": " + refusal.message);
+  }
+  return "";
 }
 
 std::string read_scene(const std::string& path, HostConfig* config, std::vector<std::string>* warnings) {
   std::string text;
-  if (std::string error = read_text_file(path, kMostSceneBytes, &text); !error.empty()) return error;
+  if (std::string error = json::read_text_file(path, kMostSceneBytes, &text); !error.empty()) return error;
   return parse_scene(text, path, config, warnings);
 }
 

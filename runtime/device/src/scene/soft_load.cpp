@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/words.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::dev {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A session's log: every TickInput and TickOutput of every device, so that it can be replayed bit for bit. The servo thread
-// puts records into a ring that was made at the start and never waits; a thread of its own writes them to the file. A full ring
-// or a full disk costs records, never a tick: they are counted, the status says so, and the replay ends before the gap.
+// puts records into a preallocated ring buffer and never waits; a separate thread writes them to the file. If the ring or the
+// disk is full, records are dropped and no tick is delayed: they are counted and reported in the status, and the replay ends
+// before the gap.
 #pragma once
 
 #include <atomic>
@@ -13,7 +14,7 @@
 
 namespace fdcg::dev {
 
-// One servo thread's way into the log, for one device or several.
+// The ring buffer between one servo thread, with one device or several, and the log.
 class LogRing {
  public:
   // bytes: a power of two, at least kLeastBytes for each device. Allocates and touches every page.
@@ -22,8 +23,8 @@ class LogRing {
   LogRing(const LogRing&) = delete;
   LogRing& operator=(const LogRing&) = delete;
   static constexpr std::uint32_t kLeastBytes = 1 << 15;  // more than two ticks with all that a tick can hold
-  // The servo thread's. False: the ring is full, and the tick is counted as dropped. No lock, no heap. device: among the
-  // ring's.
+  // For the servo thread. False: the ring is full, and the tick is counted as dropped. No lock, no heap. device: index among
+  // the ring's devices.
   bool put(const TickInput& input, const TickOutput& output, int device = 0);
   // One tick of every device of the ring, one after another in the log; or of none.
   bool put_all(const Member* members);
@@ -52,8 +53,8 @@ class LogRing {
   std::atomic<std::uint64_t> dropped_[kMaxDevices] = {};
 };
 
-// Whether a session of this scene could be logged where config.log_file says, as far as can be told without touching it. Empty:
-// it could, or there is no log. Otherwise why not: the name is that of an input or a folder, or in none; the scene could not be
+// Checks without touching the file whether a session of this scene can be logged to config.log_file. Empty: it can, or there is
+// no log. Otherwise the reason: the name is that of an input or a folder, its folder does not exist, or the scene could not be
 // read back.
 std::string log_problem(const HostConfig& config);
 
@@ -70,7 +71,7 @@ class SessionLog {
   // After the servo threads have put their last tick. Writes what is left, closes the file. Empty, or what went wrong since the
   // start ("disk full"). A log that has come to its limit is well.
   std::string stop();
-  // The file takes no more: failure() says why, and how many ticks are not in it. Its limit counts here.
+  // The file is closed for writing: failure() has the reason and the number of missing ticks. True also at the size limit.
   bool has_failed() const;
   std::string failure() const;  // any thread
 

@@ -110,8 +110,8 @@ bool SessionReader::read_record() {
   if (got == 0 && std::ferror(file_) != 0) return ends(Ending::kDamaged, std::strerror(errno));
   if (got == 0)
     return ends(Ending::kUnclosed,
-                "the log ends here without its last record: whoever wrote it was ended or ran "
-                "out of disk");
+                "the log ends here without its last record: the program that wrote it was "
+                "ended or the disk was full");
   const std::uint64_t length = got == 4 ? get(bytes_.data(), 4) : 0;
   if (got == 4 && (length < kRecordFrameBytes || length > kMostRecordBytes)) {
     return ends(Ending::kDamaged, "a record of " + std::to_string(length) + " bytes; " + std::to_string(kRecordFrameBytes) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A session's log, read from its start to its end or to the first byte that is not as it was written (schemas/session-log.md).
+// Reads a session's log from its start to its end or to the first damaged byte (schemas/session-log.md).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A session again: the scene rebuilt from its log, every recorded input fed through device_tick, every output compared bit for
-// bit. Devices do not know of each other, so each ends on its own: at its first difference, or before a lost tick. Those that
+// Replay of a session: the scene is rebuilt from its log, every recorded input is processed by device_tick, every output
+// compared bit for bit. Devices with separate scenes end separately: at the first difference, or before a lost tick. Those that
 // share a scene end together.
 #pragma once
 
@@ -35,7 +35,7 @@ class SessionReplay {
   const HostConfig& config() const;
   const fdcg_graph& graph(std::size_t object) const;
   const SessionReader& reader() const;
-  // Replays the log's next tick; those of a device that is over are passed by. False: the log has ended.
+  // Replays the log's next tick; ticks of devices that have ended are skipped. False: the log has ended.
   bool next(ReplayedTick* tick);
   const std::vector<DeviceReplay>& devices() const;
   // Every tick was there and the same, and the log was closed in order (at its limit, too).

@@ -67,7 +67,7 @@ bool take_reports(const Member& member) {
   const bool has_sample = newest_good(device, *member.input, &sample);
   member.output->has_sample = has_sample;
   count_tick(device, *member.input, has_sample);
-  if (!has_sample) return false;  // all stays as it was last seen; the gate knows how old that is
+  if (!has_sample) return false;  // the last state is kept; the gate checks its age
   const Profile& profile = device.setup.profile;
   device.sample = sample;
   device.samples = std::min(device.samples + 1, kSamplesToArm);

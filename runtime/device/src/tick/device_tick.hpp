@@ -4,11 +4,11 @@
 // and the record to the log. So a session is replayed bit for bit by feeding the same inputs, and every fault can be tested
 // without a device. No heap, no lock, no clock.
 //
-// Bodies (fdcg/body.h) live in ticks: each tick with a good report moves them on by one period of the device, whatever the
-// clock says, and while no report comes they stand still. So a busy computer makes them slow, never wild.
+// The time of bodies (fdcg/body.h) is counted in ticks: each tick with a good report advances them by one period of the device,
+// whatever the clock, and without reports they do not move. So a busy computer slows them down but does not destabilise them.
 //
-// Devices that share a scene are ticked together, by group_tick (scene_tick.hpp has what is theirs in common). Each has its own
-// judge, gate and counters, as if it were alone.
+// Devices that share a scene are ticked together by group_tick (scene_tick.hpp has the common part). Each has its own judge,
+// gate and counters, as a single device has.
 #pragma once
 
 #include <cstdint>
@@ -99,7 +99,7 @@ struct DeviceSetup {
   fdcg_object_id soft_id[kMaxSoft] = {};
 };
 
-// All that a device's loop remembers from tick to tick, but for the scene's memory.
+// The state of a device between ticks, except for the scene's memory.
 struct DeviceState {
   DeviceSetup setup;
   Gate gate;
@@ -132,8 +132,9 @@ struct Member {
   const TickInput* input = nullptr;
   TickOutput* output = nullptr;
 };
-// 1 to kMaxDevices of them, always the same; each has a tick, whatever came of it. Where it is one, it is device_tick. Returns
-// which of them is the clock: the loop waits for its next report, and takes what is there of the others.
+// 1 to kMaxDevices devices, the same in every call; each gets a tick, with or without a report. For one device equal to
+// device_tick. Returns the index of the clock device: the loop waits for its next report, and takes the queued ones of the
+// others.
 int group_tick(const Member* members, int count);
 
 }  // namespace fdcg::dev

@@ -7,10 +7,10 @@
 namespace fdcg::dev {
 namespace {
 
-// So that a product rounded up does not pass a limit by its last bit.
+// Keeps a rounded product from exceeding a limit by its last bit.
 constexpr double kJustBelow = 1 - 0x1p-50;
 
-// Beyond this a limit limits nothing, and its square may be no number.
+// Larger limits have no effect, and their squares may overflow.
 constexpr double kAbsurd = 1e9;
 
 bool is_known(double limit) {
@@ -55,8 +55,8 @@ void shorten(double v[3], double limit) {
     v[i] *= limit / length * kJustBelow;
 }
 
-// Towards `force` from `last`: to what lies within `most` of t * last, scaled by t, for the t (0 to 1) that comes nearest. So
-// the change is within `most`, or a change within `most` made smaller.
+// Slew limit from `last` towards `force`: the nearest point within `most` of t * last, for the best t in 0 to 1. So the change
+// is at most `most`, apart from a scaling towards zero.
 void limit_slew(const double last[3], double most, double force[3]) {
   const double square = dot(last, last);
   const double t = square > 0 ? std::clamp(dot(force, last) / square, 0.0, 1.0) : 1;
@@ -138,7 +138,7 @@ GatedForce Gate::step(const GateInput& input) {
   return let_through(input.wanted_force_n, step_s);
 }
 
-// Whatever must take the force away now.
+// The fault, if any, that must remove the force now.
 Fault Gate::fault_of(const GateInput& input, double since_step_s) const {
   if (input.read_failed) return Fault::kReadFailed;
   if (input.write_failed) return Fault::kWriteFailed;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The safety gate: the last stage before the device, and the only maker of a GatedForce, which is all that a writer takes.
-// Pure: the clock comes in as a number. No heap, no lock, every step bounded.
+// The safety gate: the last stage before the device. Only the gate creates a GatedForce, the only type that a writer accepts. A
+// pure function: the time is an argument. No heap, no lock, bounded work.
 //
-// What leaves it is finite; its norm is at most force_n; its efforts are at most effort[] each; and it is a force within slew
-// of the last one, or such a force made smaller: towards zero it may go at once. Not armed, or after a fault: zero.
+// Its output is finite; its norm is at most force_n; its efforts are at most effort[] each; and it is a force within the slew
+// limit of the last one, or such a force scaled down: it may go to zero at once. Not armed, or after a fault: zero.
 //
-// Armed by a command, near zero force; the force then grows over kRampS. kMissedTicksToFade periods without a good report: it
-// goes to zero within kFadeS, and comes back with the ramp when reports do. Everything else that goes wrong disarms, at once
-// and until the next command.
+// Arming needs a command and near zero force; the force is then ramped up over kRampS. After kMissedTicksToFade periods without
+// a good report it fades to zero within kFadeS, and is ramped up again when reports return. Every other fault disarms at once,
+// until the next command.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ double moved(const HeldButton& button, std::uint32_t buttons, double period_s, d
   return std::clamp((buttons & button.mask) != 0 ? share + step : share - step, 0.0, 1.0);
 }
 
-// Without a jump of the speed at either end, which what is held would feel as a blow.
+// Smoothstep: a jump of the speed at either end would be an impact on the held object.
 double smooth(double share) {
   return share * share * (3 - 2 * share);
 }

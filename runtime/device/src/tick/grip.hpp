@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts that open and close, and turn about the tip, while a button of the device is held: a gripper for devices that have
-// no axis for one. A button that is held takes its share from 0 to 1 in `seconds`, and one that is let go takes it back;
-// contacts go smoothly with it. Pure, no heap, and no sine: the same bits on every machine.
+// Contacts that open and close, and turn about the tip, while a button of the device is held: a gripper for devices without an
+// axis for one. While a button is held its share goes from 0 to 1 in `seconds`, after release back to 0; the contacts follow
+// smoothly. Pure, no heap, no trigonometric functions: the same bits on every machine.
 #pragma once
 
 #include <cstdint>

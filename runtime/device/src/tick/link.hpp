@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may be inside a device's transport. The supervisor opens and closes it; the reader and the writer go in only while it is
-// open, and it is closed only once both are out. No lock: each side first says what it is about to do, then looks at what the
-// other has said (sequentially consistent, so that at least one of them sees the other).
+// Access control of a device's transport. The supervisor opens and closes it; the reader and the writer use it only while it is
+// open, and it is closed only when neither is using it. Lock-free: each side first stores its own flag, then reads the other's
+// (sequentially consistent, so that at least one of them sees the other).
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ class Link {
  public:
   enum Party { kReader = 0, kWriter = 1 };
 
-  // The reader's and the writer's. False: it is closed; stay out.
+  // For the reader and the writer. False: it is closed and must not be used.
   bool enter(Party party) {
     inside_[party].store(true);
     if (is_open_.load()) return true;
@@ -22,7 +22,7 @@ class Link {
   }
   void leave(Party party) { inside_[party].store(false); }
 
-  // The supervisor's. After close() nobody enters; the transport may be closed when is_empty().
+  // For the supervisor. After close() no thread can enter; the transport may be closed when is_empty().
   void open() {
     opened_.fetch_add(1);
     is_open_.store(true);
@@ -30,7 +30,7 @@ class Link {
   void close() { is_open_.store(false); }
   bool is_empty() const { return !inside_[kReader].load() && !inside_[kWriter].load(); }
 
-  // Anybody's.
+  // For any thread.
   bool is_open() const { return is_open_.load(std::memory_order_acquire); }
   std::uint64_t opened() const { return opened_.load(std::memory_order_acquire); }  // how often
 

@@ -8,12 +8,12 @@
 namespace fdcg::dev {
 namespace {
 
-// The quickest report sets the zero of ages; it is forgotten faster than clocks drift apart, and no faster, since a queue that
-// forms and stays would be forgotten with it.
+// The fastest report defines age zero. It is forgotten faster than clocks drift apart, but not much faster, since a persistent
+// queue would otherwise not be detected.
 constexpr double kCreep = 1.25 * kMostDrift;
-// A report cannot come before it was made. What shows a lead of this much over the quickest so far is another clock.
+// A report cannot arrive before it was made. A lead of this much over the fastest so far means that the clock has restarted.
 constexpr double kMostLeadS = 0.1;
-// A leap of the sequence is loss up to this and so many times what the rate explains; else it is another sequence (or noise).
+// A jump of the sequence is loss up to this and so many times what the rate explains; else it is a new sequence (or noise).
 constexpr std::uint32_t kMostLost = 65536;
 constexpr double kMostLostRates = 16;
 
@@ -24,7 +24,7 @@ const Field* find(const ReportLayout& layout, Role role) {
   return nullptr;
 }
 
-// The fields that tell order, and how far they count before they begin again.
+// The fields that give the order of reports, and their ranges before they wrap.
 struct Counters {
   const Field* sequence;
   const Field* time;
@@ -89,7 +89,7 @@ bool is_restart(const Counters& counters, const Sample& sample, ReportJudge* jud
 // Of a report in order.
 Verdict age(const Counters& counters, const Sample& sample, double host_s, ReportJudge* judge) {
   const double elapsed_s = host_s - judge->last_host_s;
-  if (elapsed_s > counters.round_s / 2) {  // the clock went round unseen, and the host's queue may hold what is as old
+  if (elapsed_s > counters.round_s / 2) {  // the clock may have wrapped unseen, and queued reports may be as old
     judge->has_offset = false;
     judge->settled_host_s = host_s + kSettleS;
   }

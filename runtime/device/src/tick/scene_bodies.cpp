@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/words.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::dev {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr double kPi = 3.141592653589793;
 constexpr std::uint32_t kTouchesPerPoint = 3;  // a point in a corner of three objects
 
-// Where a surface lies farthest in a direction of length 1; of a torus, on its outside.
+// The support point of a surface in a unit direction; of a torus, on its outside.
 void farthest(const fdcg_surface& surface, const double d[3], double p[3]) {
   const double across = std::hypot(d[0], d[1]), end = d[2] > 0 ? 1 : -1, r = surface.radius_m;
   const double round[2] = {across > 0 ? d[0] / across : 1, across > 0 ? d[1] / across : 0};
@@ -224,7 +224,7 @@ void Builder::hand_over() {
   setup_.reaction_count = static_cast<std::uint32_t>(objects_.size());
 }
 
-// Damping goes by the time between two steps, which now are substeps.
+// Damping depends on the time between two steps, here a substep.
 std::string Builder::set_steps() {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     fdcg_params params = config_.objects[i].params;

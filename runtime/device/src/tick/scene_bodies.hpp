@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies of a scene: what they weigh, where they touch, how often a tick they are stepped. Load time only;
-// allocates.
+// The bodies of a scene: their masses, contact points and substeps. Load time only; allocates.
 #pragma once
 
 #include <string>
@@ -10,8 +9,8 @@
 
 namespace fdcg::dev {
 
-// `objects`: of config.objects, in setup->scene. Fills the scene's bodies, pile and reactions, and what *setup says of them;
-// nothing where there is no body. Empty: fine. Otherwise the object and what is wrong with it.
+// `objects`: of config.objects, in setup->scene. Creates the scene's bodies, pile and reactions, and sets the fields of *setup;
+// nothing without bodies. Returns an empty string on success; else the object and the error.
 std::string build_bodies(const HostConfig& config, const SceneLoad& load, const SceneGraphs& graphs,
                          const std::vector<fdcg_object_id>& objects, DeviceScene* scene, DeviceSetup* setup);
 

@@ -9,7 +9,7 @@
 namespace fdcg::dev {
 namespace {
 
-// Where a device's contacts are to be at the end of the tick, world.
+// The targets of a device's contacts at the end of the tick, world.
 struct Target {
   double place_m[kMaxContacts][3];
   double turn_xyzw[4];
@@ -34,7 +34,7 @@ void turn_of_contacts(const DeviceSetup& setup, const GripState& grip, double tu
   turn_xyzw[3] = q[3];
 }
 
-// Pads resist being turned against what they touch, so they have to know how they stand.
+// Sets the fingers' rotations, which pads (soft fingers) need.
 void turn_pads(const DeviceSetup& setup, const double turn_xyzw[4]) {
   for (int contact = 0; contact < setup.contact_count; ++contact)
     if (setup.pads_m[contact] > 0) fdcg_scene_set_finger_rotation(setup.scene, setup.fingers[contact], turn_xyzw, nullptr);
@@ -58,7 +58,7 @@ void remove_fingers(DeviceState& device) {
   device.has_place = false;
 }
 
-// The fingers begin anew at a place: nothing on the way there is met.
+// Resets the fingers to a position: no contact on the way there.
 void place_fingers(DeviceState& device, const Target& target) {
   if (device.has_left) {
     add_fingers(device, target.place_m, nullptr);  // there is room: it had them before
@@ -72,7 +72,7 @@ void place_fingers(DeviceState& device, const Target& target) {
   device.has_place = true;
 }
 
-// What share of the way from the last tick's place to the target is done; 1: it is there, to the bit.
+// Interpolates from the last tick's position to the target; at a share of 1 exactly the target.
 void move_fingers(const DeviceState& device, const Target& target, double share) {
   const DeviceSetup& setup = device.setup;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
@@ -88,7 +88,7 @@ void move_fingers(const DeviceState& device, const Target& target, double share)
   turn_pads(setup, at_xyzw);
 }
 
-// Of a tick of the clock: a slower clock has more of them, none longer than those that the scene was built for.
+// Substeps of a tick: a slower clock device needs more of them, none longer than those that the scene was built for.
 std::uint32_t substeps_of(const DeviceSetup& clock) {
   const double rate_hz = clock.profile.rate_hz;
   if (!(clock.scene_rate_hz > rate_hz)) return clock.substeps;
@@ -96,7 +96,7 @@ std::uint32_t substeps_of(const DeviceSetup& clock) {
   return static_cast<std::uint32_t>(std::ceil(clock.substeps * (clock.scene_rate_hz / rate_hz) - kRounding));
 }
 
-// Substeps, in which the fingers go in even steps to where they are now: what they hold is not struck once a tick.
+// Substeps, in which the fingers move in equal parts: a held object does not get one impact per tick.
 void step_bodies(const Member* members, int count, const Target* targets, const DeviceSetup& clock) {
   const std::uint32_t substeps = substeps_of(clock);
   const double substep_s = 1 / clock.profile.rate_hz / substeps;
@@ -117,7 +117,7 @@ bool may_touch(const DeviceState& device, bool has_moved) {
   return device.has_place || (has_moved && !device.is_waiting);
 }
 
-// The contacts to where tips and grips have them now, and the scene steps.
+// Moves the contacts to the positions given by tips and grips, and steps the scene.
 void step_scene(const Member* members, int count, const bool* has_moved, const DeviceState& clock) {
   Target targets[kMaxDevices];
   for (int m = 0; m < count; ++m) {
@@ -143,7 +143,7 @@ void step_scene(const Member* members, int count, const bool* has_moved, const D
   }
 }
 
-// What all contacts of the device feel together. The state that is told is that of the touch with the largest force.
+// The sum of the forces on all contacts of the device. The reported state is that of the touch with the largest force.
 void sum_touches(DeviceState& device) {
   const DeviceSetup& setup = device.setup;
   double largest = 0;
@@ -164,7 +164,7 @@ void sum_touches(DeviceState& device) {
   }
 }
 
-// What gives way does, under what the fingers have just felt of it: they feel that in the next tick.
+// Steps the soft sheets with the forces of this tick; their motion takes effect in the next tick.
 void yield_to(const Member* members, int count, const DeviceSetup& clock) {
   for (int soft = 0; soft < clock.soft_count; ++soft) {
     for (int m = 0; m < count; ++m) {
@@ -182,7 +182,7 @@ void yield_to(const Member* members, int count, const DeviceSetup& clock) {
 
 bool is_heard_within(const Member& member, double seconds) {
   if (member.device->last_good_ns == 0 || member.input->read == ReadStatus::kLost) return false;
-  // a clock that went back is the gate's to see
+  // a clock that went back is detected by the gate
   const std::uint64_t now_ns = std::max(member.input->now_ns, member.device->last_good_ns);
   return static_cast<double>(now_ns - member.device->last_good_ns) * 1e-9 < seconds;
 }

@@ -20,7 +20,7 @@ void less(const double a[3], const double b[3], double difference[3]) {
     difference[i] = a[i] - b[i];
 }
 
-// Shares of a point in a triangle's corners, each 0 to 1, 1 together; a third each where it has no area.
+// Barycentric coordinates of a point, clamped to 0 to 1 with sum 1; a third each if the triangle has no area.
 void shares_in(const double (&corner)[3][3], const double point[3], double share[3]) {
   double a[3], b[3], p[3];
   less(corner[1], corner[0], a);
@@ -67,7 +67,7 @@ std::string SoftObject::begin(const fdcg_graph& graph, const SoftConfig& config,
   return load_.begin(corners_, rest_m_, pose.scale, config.radius_m);
 }
 
-// To the corners of the face, of one of the edge's faces, or to the corner itself: what the hand feels, the other way.
+// Applies the reaction force to the corners of the face, of one of the edge's faces, or to the corner itself.
 void SoftObject::press(const fdcg_touch& touch) {
   if (touch.state == FDCG_FREE) return;
   double pressed_n[3], off_m[3], god_object_m[3];
@@ -89,7 +89,7 @@ void SoftObject::press(const fdcg_touch& touch) {
     load_.press(corner[i], pressed_n, share[i]);
 }
 
-// Corner after corner, each with its neighbours as they are now: the order is the graph's, so the bits are the same every time.
+// Gauss-Seidel: corners in the graph's order, each with its neighbours' latest positions, so that the bits are reproducible.
 void SoftObject::relax(double tick_s) {
   const double give = config_.damping_n_s_per_m / tick_s, scale = pose_.scale;
   double deepest = 0;

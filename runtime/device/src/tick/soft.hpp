@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A soft sheet (fdcg/deform.h), an object of a scene: a graph whose corners give way under contacts and come back. Each corner
-// hangs on a spring to where the file has it and on one to each neighbour, in something thick: it has no mass and no speed of
-// its own, so it never swings. A contact's force goes to the three corners of the triangle that it is on, by how near the
-// god-object is to each, and from there to those around them.
+// A soft sheet (fdcg/deform.h), an object of a scene: a graph whose corners yield elastically under contacts. Each corner has a
+// spring to its rest position and one to each neighbour, with viscous damping and without mass (overdamped, no oscillation). A
+// contact's force is distributed to the three corners of its triangle by barycentric coordinates of the god-object, and from
+// there over a radius (soft_load.hpp).
 //
 //   damping * du/dt = force - stiffness * u + tension * sum over neighbours (u_neighbour - u)
 //
-// Stepped once a tick by backward differences in the corner's own place: stable at any stiffness. A corner that is hardly out
-// of its place and feels nothing is put back and costs nothing but the look. No heap after begin.
+// Stepped once per tick, implicitly (backward Euler) in each corner's own position: stable at any stiffness. An unloaded corner
+// close to its rest position is reset to it and costs only a test. No heap after begin.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ class SoftObject {
   fdcg_deform* deform_ = nullptr;
   double deepest_m_ = 0;
   std::vector<std::uint64_t> memory_;
-  // By corner, in the object's frame: where it belongs, how far it is from there.
+  // By corner, in the object's frame: rest position and displacement.
   std::vector<double> rest_m_, moved_m_;
   CornerNeighbours corners_;
   SoftLoad load_;

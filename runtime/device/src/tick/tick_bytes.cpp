@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each struct's fields stand once, in a visit function; writing, reading and comparing are archives that go over them.
+// Each struct's fields are listed once, in a visit function; writing, reading and comparing are visitors.
 #include "tick/tick_bytes.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tick's input and output as bytes, as they stand in a session's log (schemas/session-log.md). Little-endian; only the
-// reports that were read, only the parts of the output that are not all zero. No heap.
+// Serialisation of a tick's input and output in a session's log (schemas/session-log.md). Little-endian; only the reports that
+// were read, only the parts of the output that are not all zero. No heap.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ inline constexpr std::size_t kBodyBytes = 56;  // rotation and translation
 inline constexpr std::size_t kMostOutputBytes = 192 + 1 + kMaxBodies * kBodyBytes;
 inline constexpr std::size_t kMostTickBytes = kMostInputBytes + kMostOutputBytes;
 
-// A TickOutput as the log has it: only the gate makes a GatedForce, so what is read back has the numbers alone.
+// A TickOutput read from a log: only the gate creates a GatedForce, so this has plain numbers.
 struct LoggedOutput {
   double effort[kMaxAxes] = {};
   double force_n[3] = {};
@@ -35,8 +35,8 @@ LoggedOutput logged(const TickOutput& output);
 std::size_t encode_tick_input(const TickInput& input, std::uint8_t* to);
 std::size_t encode_tick_output(const LoggedOutput& output, std::uint8_t* to);
 
-// The bytes taken, or 0 where they are no such thing: too few, or a count or a code beyond its limit. *input's reports and
-// poses beyond the counts stay as they are.
+// The number of bytes read, or 0 where they are invalid: too few, or a count or a code beyond its limit. *input's reports and
+// poses beyond the counts are not changed.
 std::size_t decode_tick_input(const std::uint8_t* from, std::size_t bytes, TickInput* input);
 std::size_t decode_tick_output(const std::uint8_t* from, std::size_t bytes, LoggedOutput* output);
 

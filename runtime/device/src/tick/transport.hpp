@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way to a device: HID, simulated or recorded. One reader thread and one writer thread use it, at the same time; open and
-// close belong to a third, the supervisor, and never run while one of the two is inside.
+// The interface to a device: HID, simulated or recorded. One reader thread and one writer thread use it concurrently; a third,
+// the supervisor, opens and closes it, never while one of the two is inside.
 //
 // Reports are the bytes that the profile lays out: the first is the report id where the device has ids, and data where it has
 // none (profile.hpp).
@@ -24,7 +24,7 @@ class Transport {
   virtual ~Transport() = default;
   // Supervisor's. An empty string is success; otherwise why not, and what to do, for the user. May take as long as it needs.
   virtual std::string open() = 0;
-  // Supervisor's. Harmless where nothing is open.
+  // Supervisor's. No effect if nothing is open.
   virtual void close() = 0;
   // Supervisor's, after a loss: true where there is nothing more to come (a recording's end), so that opening again is no use.
   virtual bool is_over() const { return false; }
@@ -36,8 +36,8 @@ class Transport {
   // Writer's. May block (a device that does not take output: 5 s). False: the device did not take it, or is lost.
   virtual bool write(const std::uint8_t* data, int bytes) = 0;
   virtual bool write_feature(const std::uint8_t* data, int bytes) = 0;
-  // Any thread's while it is open: a file descriptor that takes output reports by write(2), for the last word of a process that
-  // crashes (emergency.hpp); -1: there is none.
+  // Any thread's while it is open: a file descriptor that accepts output reports by write(2), for crash handlers
+  // (emergency.hpp); -1: there is none.
   virtual int emergency_descriptor() const { return -1; }
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "base/json_reader.hpp"
 #include "fdcg/device_tools.hpp"
 #include "profile/profile_json.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_log.hpp"
+#include "shared/json/reader.hpp"
 #include "transport/make_transport.hpp"
 
 namespace fdcg::dev {
@@ -63,7 +63,7 @@ FileCheck check_profile(const std::string& file, const std::string& text) {
 FileCheck check_file(const std::string& path) {
   FileCheck check;
   std::string text;
-  check.problem = read_text_file(path, kMostJsonBytes, &text);
+  check.problem = json::read_text_file(path, json::Limits{}.bytes, &text);
   check.is_unreadable = !check.problem.empty();
   if (check.is_unreadable) return check;
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "base/json_reader.hpp"
 #include "fdcg/device_tools.hpp"
 #include "profile/profile_json.hpp"
+#include "shared/json/reader.hpp"
 #include "transport/hid_devices.hpp"
 
 namespace fdcg::dev {
@@ -24,7 +24,7 @@ std::string read_profiles(const std::vector<std::string>& files, std::vector<Nam
   for (const std::string& file : files) {
     NamedProfile named{file, {}};
     std::string text;
-    std::string problem = read_text_file(file, kMostJsonBytes, &text);
+    std::string problem = json::read_text_file(file, json::Limits{}.bytes, &text);
     if (problem.empty()) problem = parse_profile(text, file, &named.profile);
     if (!problem.empty()) return problem;
     profiles->push_back(named);

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "base/words.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::dev {
 

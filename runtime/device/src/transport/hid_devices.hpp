@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The HID devices of this machine: what there is, which one a profile means, and why one may not be opened. For the thread that
+// The HID devices of this machine: enumeration, the match with a profile, and diagnosis of permissions. For the thread that
 // opens and closes; takes milliseconds.
 #pragma once
 
@@ -19,18 +19,19 @@ struct HidDevice {
   std::string serial, manufacturer, product_name;
 };
 
-// Of one vendor and product; 0, 0: all. libusb opens every device that it lists, to read its strings: ask it for few.
+// Those of one vendor and product; 0, 0: all. libusb opens every device that it lists, to read its strings, so limit the
+// request.
 std::vector<HidDevice> list_hid_devices(const HidLibrary& library, std::uint16_t vendor = 0, std::uint16_t product = 0);
 
 enum class Fit {
   kNo,
   kYes,
-  kUnsure,  // the profile asks for a usage page or usage that this back end does not tell
+  kUnsure,  // the profile has a usage page or usage that this back end does not report
 };
 Fit fit_of(const Match& match, const HidDevice& device);
 
-// The first of `devices` that fits and has that serial number and path (empty: any). An unsure one is taken only where it is
-// its device's one interface that could be meant. Null with *problem, which says what was looked for and what was seen.
+// The first of `devices` that fits and has that serial number and path (empty: any). An unsure one is chosen only if it is the
+// only candidate interface of its device. Null with *problem: what was sought and what was found.
 const HidDevice* choose_hid_device(const std::vector<HidDevice>& devices, const Match& match, const std::string& serial,
                                    const std::string& path, std::string* problem);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// hidapi's two back ends, each loaded when it is first asked for: hidraw (the kernel's driver stays in place; the one to
-// prefer) and libusb (detaches the kernel's driver; where there is no hidraw). So a program starts, and runs simulated devices,
-// on a machine that has neither. All of this belongs to one thread, the one that opens and closes.
+// hidapi's two back ends, each loaded on first use: hidraw (the kernel's driver stays in place; preferred) and libusb (detaches
+// the kernel's driver; where there is no hidraw). So a program starts, and runs simulated devices, on a machine that has
+// neither. To be called by one thread only, the one that opens and closes.
 #pragma once
 
 #include <hidapi/hidapi.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transports by their source. Each says no word and touches no device until it is opened.
+// Creates transports by their source. A transport does not access its device until it is opened.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const 
 std::unique_ptr<Transport> make_simulated_transport(const DeviceConfig& config);
 std::unique_ptr<Transport> make_recorded_transport(const DeviceConfig& config);
 
-// Whichever config.source says.
+// The transport for config.source.
 std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop);
 
 }  // namespace fdcg::dev

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated device itself, behind its USB socket: mass, hand, encoders, firmware. One thread; time only goes forward, and
-// only when it is told to.
+// The simulated device behind its USB connection: mass, hand, encoders, firmware. For one thread; time advances only by
+// advance().
 #pragma once
 
 #include "fdcg_firmware.h"
@@ -11,12 +11,12 @@ namespace fdcg::dev {
 class SimulatedBody {
  public:
   explicit SimulatedBody(const SimulationConfig& config);
-  // The firmware begins anew, without force; the hand and the mass are where they are.
+  // The firmware restarts without force; the hand and the mass keep their state.
   void power_up();
-  // The force ends; what was on its way to the firmware is lost.
+  // Sets zero force; reports in transmission to the firmware are lost.
   void unplug();
-  // Lets time pass, with the force that the firmware gives at each moment. Earlier times do nothing. Reaches back at most
-  // kMostCatchUpS: what lies before that is left out.
+  // Advances the simulation with the firmware's force at each moment. Earlier times have no effect. Covers at most
+  // kMostCatchUpS; time before that is skipped.
   void advance(std::uint64_t time_ns);
   void set_fault(bool has_fault);
   void make_report(std::uint8_t* report);  // FDCG_FW_INPUT_BYTES of it

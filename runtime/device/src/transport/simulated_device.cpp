@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kStepS = 50e-6;  // of the mass: a hundredth of the fastest that a hand and a handle swing
-// Device clocks begin three seconds before they wrap, so that whoever runs longer has seen that, too.
+// Device clocks start three seconds before they wrap, so that every longer run includes a wrap.
 constexpr std::uint32_t kClockAtBootUs = 0u - 3000000u;
 constexpr std::uint8_t kFaultBits = FDCG_FW_WATCHDOG | FDCG_FW_FAULTS;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device made of numbers: a mass with damping, held by a hand (a spring and damper to a moving target), seen through
-// quantised encoders, driven by the last force that it was sent. It speaks the reference protocol through the same firmware
-// core that makers embed (runtime/device/firmware), watchdog included, so what is tried here is what a real one does.
+// A simulated device: a mass with damping, held by a hand (a spring and damper to a moving target), measured by quantised
+// encoders and driven by the last force received. It uses the reference protocol through the same firmware core that makers
+// embed (runtime/device/firmware), watchdog included, so that it behaves as a real device does.
 //
-// For tests it goes wrong on request (SimulatedFault) and writes down what it was made to feel (SimulationRecord).
+// For tests it can inject faults (SimulatedFault) and record what it received (SimulationRecord).
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace fdcg::dev {
 
 enum class SimulatedFaultKind : std::uint8_t {
   kUnplug,   // for_s long; 0: for ever
-  kRestart,  // the device resets and goes on: its sequence and clock begin again
+  kRestart,  // the device resets: its sequence and clock restart
   kShort,    // half a report
   kLong,     // 16 bytes too many
   kGarbled,  // one to eight bits flipped
@@ -29,7 +29,7 @@ enum class SimulatedFaultKind : std::uint8_t {
   kNotFinite,   // an axis is NaN: only of a device with has_float_axes
   kStall,       // no report for for_s; it still takes forces
   kNoOutput,    // takes no force for for_s: writes block until then, or fail after kWriteTimeoutS
-  kDeviceFault  // says for for_s that it has a fault of its own, and gives no force meanwhile
+  kDeviceFault  // reports a fault for for_s, without force meanwhile
 };
 inline constexpr int kSimulatedFaultKinds = 13;
 
@@ -41,8 +41,8 @@ struct SimulatedFault {
   int reports = 1;  // kShort to kOutOfOrder and kNotFinite: how many in a row, from the first one made at or after at_s
 };
 
-// What the device lived through. Times are nanoseconds since it was first opened. To be read after the host has stopped, but
-// for noticed_ns.
+// The record of a run. Times are nanoseconds since the device was first opened. To be read after the host has stopped, except
+// noticed_ns.
 struct SimulationRecord {
   static constexpr int kMaxFaults = 256;
   static constexpr std::size_t kMaxForces = 1 << 20;
@@ -59,8 +59,8 @@ struct SimulationRecord {
   std::uint64_t watchdog_trips = 0;
   std::uint64_t reports = 0, reports_lost = 0;  // made; not read in time (64 are kept, newer ones lost)
   std::uint64_t origin_ns = 0, end_ns = 0;      // origin: on the host's clock (CLOCK_MONOTONIC; 0 in virtual time)
-  // By the fault's place in SimulationConfig::faults: when the host had its first chance to know of it (the read that returned
-  // the first such report or the loss, the report that did not come, the write that blocked). kNever: it had none yet.
+  // By the fault's index in SimulationConfig::faults: the first time at which the host could detect it (the read that returned
+  // the first such report or the loss, the report that did not come, the write that blocked). kNever: not yet.
   std::atomic<std::uint64_t> noticed_ns[kMaxFaults];
 
   SimulationRecord();
@@ -70,8 +70,8 @@ struct SimulationRecord {
   float most_force_between(std::uint64_t from_ns, std::uint64_t to_ns) const;
 };
 
-// Where the hand's target is at a time since the device was first opened, and what is pressed from then on. Between two steps
-// it goes from rest to rest; before the first and after the last it stays.
+// The position of the hand's target at a time since the device was first opened, and the buttons pressed from then on. Between
+// two steps it moves from rest to rest; before the first and after the last it does not move.
 struct ScriptStep {
   double at_s = 0;
   double place_m[3] = {};     // device's frame
@@ -88,8 +88,8 @@ struct SimulationConfig {
   double frequency_hz[3] = {1, 1, 0.5};
   static constexpr int kMaxScript = 256;
   std::vector<ScriptStep> script;  // in place of start and swing, which are then not read; times ascend
-  // false: as fast as it is read. Reads with a time-out carry a clock of its own forward, and writes never block: for tests
-  // that take their time from the reports, since a host's threads live in real time.
+  // false: virtual time. Reads with a time-out advance the device's own clock, and writes never block: for tests that take
+  // their time from the reports, since a host's threads run in real time.
   bool is_real_time = true;
   std::uint64_t seed = 1;
   double force_n = 10;  // that its motors can give

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The script of a simulated device's faults: when each lasts, and what becomes of the reports it touches. Times are nanoseconds
-// since the device was first opened.
+// The fault script of a simulated device: the duration of each fault, and its effect on reports. Times are nanoseconds since
+// the device was first opened.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace fdcg::dev {
 struct SimulatedPacket {
   std::uint64_t arrival_ns = 0;
   int bytes = 0;
-  int fault = -1;  // the place of the one that has touched it
+  int fault = -1;  // the index of the fault that changed it
   std::uint8_t data[kMaxReportBytes] = {};
 };
 
@@ -22,7 +22,7 @@ class SimulatedFaults {
  public:
   explicit SimulatedFaults(const SimulationConfig& config);
 
-  // Any thread's: they only look at the script.
+  // For any thread: they only read the script.
   static constexpr int kNone = -1;
   int lasting(SimulatedFaultKind kind, std::uint64_t time_ns) const;  // the first of that kind that lasts then, or kNone
   std::uint64_t begin_ns(int fault) const;
@@ -33,7 +33,7 @@ class SimulatedFaults {
 
   // The reader's.
   bool restarts(std::uint64_t time_ns);  // once for each restart whose time has come
-  // Touches the report that is made at its arrival_ns. True: it is to change places with the next.
+  // Applies faults to the report made at its arrival_ns. True: it is to be swapped with the next.
   bool touch(SimulatedPacket* packet);
 
  private:

@@ -7,10 +7,10 @@
 //
 // libusb: an interface can be claimed once only, so there is ONE handle. That is safe: its hid_error is a constant, the handle
 // keeps no string, reads take reports from a queue under a mutex of the handle's, and writes are libusb transfers, which any
-// thread may make. That mutex is held for moments only, but it is one, and a report's memory is freed: on this back end hidapi
-// itself does so in the servo thread. Reports come in through a thread of hidapi's, which gets the servo thread's priority by
-// being started under it, or a busy machine would hold up every report. A read's time-out runs on the wall clock: when that is
-// set back, a read of a silent device lasts as much longer; the writer's own 10 ms take the force away then.
+// thread may make. So on this back end hidapi briefly locks a mutex and frees a report's memory in the servo thread. Reports
+// are received by a thread of hidapi, which inherits the servo thread's priority because it is started with it; otherwise a
+// busy machine would delay every report. A read's time-out uses the wall clock: if that is set back, a read of a silent device
+// lasts longer by as much; the writer's own limit of 10 ms then removes the force.
 #include <fcntl.h>
 #include <unistd.h>
 

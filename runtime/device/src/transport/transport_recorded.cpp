@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reports of one device of a session, as they were read, at the times between them, or as fast as they are asked for. What
-// is written goes nowhere: the hand and the device of a recording do not feel.
+// The reports of one device of a session, at their recorded intervals or, without real time, as fast as they are read. Writes
+// are discarded.
 #include <time.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <memory>
 
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_reader.hpp"
 #include "transport/make_transport.hpp"
@@ -63,7 +63,7 @@ class RecordedTransport final : public Transport {
   std::string path_, name_;
   const bool is_real_time_;
   std::uint64_t clock_ns_ = 0;  // the reader's, where it is not in real time
-  // All of it is read before the first report is asked for: the loop's thread touches no file.
+  // The whole recording is read at opening: the servo thread accesses no file.
   std::vector<Report> reports_;
   std::vector<std::uint8_t> bytes_;
   std::size_t next_ = 0;
@@ -132,7 +132,7 @@ ReadResult RecordedTransport::read(std::uint8_t* data, int capacity, int timeout
   has_started_ = true;
   const Report& report = reports_[next_];
   const std::uint64_t after_ns = report.host_ns - std::min(report.host_ns, reports_[0].host_ns);
-  const std::uint64_t due_ns = started_ns_ + std::min(after_ns, ~started_ns_);  // a hostile time is never, not long ago
+  const std::uint64_t due_ns = started_ns_ + std::min(after_ns, ~started_ns_);  // saturates: an absurd time is never due
   const std::uint64_t until_ns = time_ns() + static_cast<std::uint64_t>(std::max(timeout_ms, 0)) * kMillisecond_ns;
   if (due_ns > until_ns) {
     if (timeout_ms > 0) wait_until(until_ns);

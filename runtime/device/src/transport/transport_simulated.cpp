@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader carries the device forward: each read lets it live up to now, in the order in which things happened, taking the
-// forces that the writer has left in a ring with the times at which it wrote them. So there is no third thread, no lock, and
-// the device feels each force from the very moment of its write, however late the reader comes.
+// The reader advances the simulation: each read simulates up to the present in order of time, with the forces that the writer
+// has put in a ring buffer with their times. So there is no third thread and no lock, and each force acts from the time of its
+// write, however late the reader is.
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
 
 #include "base/threads.hpp"
-#include "base/words.hpp"
+#include "shared/text.hpp"
 #include "transport/make_transport.hpp"
 #include "transport/simulated_body.hpp"
 #include "transport/simulated_faults.hpp"
@@ -122,9 +122,9 @@ std::string SimulatedTransport::open() {
   const std::uint64_t now = now_ns();
   if (const int fault = faults_.lasting(Kind::kUnplug, now); fault != SimulatedFaults::kNone) {
     const std::uint64_t end = faults_.end_ns(fault);
-    if (end == SimulationRecord::kNever) return "the simulated device is unplugged, for ever: its script says so";
-    return "the simulated device is unplugged, for another " + std::to_string((end - now) / 1'000'000) +
-           " ms: its script says so";
+    if (end == SimulationRecord::kNever) return "the simulated device is unplugged for good by its fault script";
+    return "the simulated device is unplugged for another " + std::to_string((end - now) / 1'000'000) +
+           " ms by its fault script";
   }
   while (outputs_.front() != nullptr)
     outputs_.drop();
@@ -174,7 +174,7 @@ std::uint64_t SimulatedTransport::next_due_ns() const {
   return opened_ns_ + static_cast<std::uint64_t>(static_cast<double>(next_report_) * 1e9 / rate_hz_);
 }
 
-// Everything up to then in its order: forces that were written, reports that are due, the plug.
+// Processes all events up to then in order: forces written, reports due, unplugging.
 void SimulatedTransport::live_until(std::uint64_t time_ns) {
   const std::uint64_t unplugged = faults_.unplugged_at(opened_ns_);
   while (is_plugged_) {

@@ -1,49 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/printable.hpp"
+#include "base/json_writer.hpp"
 
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "base/json_writer.hpp"
 #include "catch.hpp"
 
 using namespace fdcg::bake;
 using nlohmann::json;
-
-TEST_CASE("valid_utf8 agrees with another decoder on every pair of bytes and many longer texts") {
-  const auto other = [](const std::string& text) {
-    try {
-      return json::parse(json(text).dump()).get<std::string>() == text;
-    } catch (const json::exception&) {
-      return false;
-    }
-  };
-  std::string text(2, ' ');
-  for (int a = 0; a < 256; ++a) {
-    for (int b = 0; b < 256; ++b) {
-      text[0] = static_cast<char>(a);
-      text[1] = static_cast<char>(b);
-      if ((valid_utf8(text) == text) != other(text)) FAIL(a << " " << b);
-    }
-  }
-  for (const char* good : {"\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {
-    CHECK(other(good));
-    CHECK(valid_utf8(good) == good);
-  }
-  for (const char* bad :
-       {"\xE0\x9F\x80", "\xED\xA0\x80", "\xF0\x8F\x80\x80", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xE2\x82"}) {
-    CHECK_FALSE(other(bad));
-    CHECK(valid_utf8(bad) != bad);
-  }
-  CHECK(valid_utf8("a\xFFz") == "a\xEF\xBF\xBDz");
-  CHECK(valid_utf8("\xC3\xA9t\xC3\xA9", 3) == "\xC3\xA9t...");
-  CHECK(valid_utf8("\xC3\xA9t\xC3\xA9", 4) == "\xC3\xA9t...");
-}
-
-TEST_CASE("printable text holds no control characters") {
-  CHECK(printable("a\x1b[31m\n\x7f\xC2\x9B z\xC3\xA9") == "a?[31m??? z\xC3\xA9");
-}
 
 TEST_CASE("JsonWriter writes what another parser reads back") {
   std::string out;

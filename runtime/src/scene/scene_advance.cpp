@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The objects of a scene from tick to tick: where they are, and how far they move.
+#include "scene/reach.hpp"
+#include "scene/scene_memory.hpp"
+
+namespace fdcg {
+namespace {
+
+// No sphere holds it, and a turn moves it by any length: fingers then look anew.
+void settle_endless(fdcg_scene& scene, uint32_t index) {
+  const Object& object = scene.objects()[index];
+  const Pose &now = object.now, &last = object.last;
+  const World moved = now.translation - last.translation;
+  scene.tick_travel = larger(scene.tick_travel, norm(moved));
+  for (int k = 0; k < 3; ++k) {
+    if (norm1(now.row[k] - last.row[k]) == 0) continue;
+    ++scene.look;
+    break;
+  }
+  for (uint32_t array = 0; array < 3; ++array)
+    scene.scan(array)[index] = 0;
+  scene.scan(3)[index] = object.is_used != 0 && object.is_enabled != 0 ? Bounds::kEndless_m : kNoReach;
+  scene.farthest = larger(scene.farthest, norm1(now.translation));
+}
+
+// The objects whose pose was set; and, once more, those that have come to rest.
+void settle_changing(fdcg_scene& scene) {
+  uint32_t* const changing = scene.changing();
+  uint32_t still_changing = 0;
+  for (uint32_t i = 0; i < scene.changing_count; ++i) {
+    Object& object = scene.objects()[changing[i]];
+    settle_object(scene, changing[i], true);
+    if (--object.is_changing != 0) changing[still_changing++] = changing[i];
+  }
+  scene.changing_count = still_changing;
+}
+
+}  // namespace
+
+void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
+  Object& object = scene.objects()[index];
+  const Pose latest(object.asked, object.bounds);
+  if (latest.scale != object.now.scale) ++scene.look;
+  object.last = has_way ? object.now : latest;
+  object.now = latest;
+  if (object.bounds.is_endless) return settle_endless(scene, index);
+  scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
+  const double moved = norm(latest.centre - object.last.centre);
+  const double in_scan[4] = {
+      latest.centre.x, latest.centre.y, latest.centre.z,
+      object.is_used != 0 && object.is_enabled != 0 ? larger(latest.radius, object.last.radius) + moved : kNoReach};
+  for (uint32_t array = 0; array < 4; ++array)
+    scene.scan(array)[index] = in_scan[array];
+  scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
+}
+
+void let_go_of(fdcg_scene& scene, uint32_t object) {
+  for (uint32_t f = 0; f < scene.finger_end; ++f) {
+    const uint32_t slot_count = scene.fingers()[f].is_used != 0 ? scene.config.touches_per_finger : 0;
+    for (uint32_t s = 0; s < slot_count; ++s) {
+      Slot& slot = scene.slots(f)[s];
+      if (slot.object == object) slot = {FDCG_NONE, 0, slot.step};
+    }
+  }
+}
+
+}  // namespace fdcg
+
+extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
+  if (scene == nullptr) return;
+  ++scene->tick;
+  scene->tick_travel = 0;
+  if (!scene->skips(FDCG_OPT_STILL)) {
+    for (uint32_t i = 0; i < scene->object_end; ++i) {
+      if (scene->objects()[i].is_used != 0) fdcg::settle_object(*scene, i, true);
+    }
+  } else if (scene->changing_count > 0) {
+    fdcg::settle_changing(*scene);
+  }
+  if (scene->tick_travel > 0) {
+    scene->travel = (scene->travel + scene->tick_travel) * (1 + 2 * fdcg::RealLimits<double>::kEpsilon);
+  }
+}
