@@ -60,6 +60,15 @@ class ConsumerCase(AnywhereCase):
 
 
 class Package(ConsumerCase):
+    def test_manual_pages_and_completions_stand_where_shells_look(self):
+        share = os.path.join(self.prefix, "share")
+        for file in ("man/man1/fdcg.1", "man/man1/fdcg-compile.1", "man/man1/fdcg-servo-run.1", "bash-completion/completions/fdcg",
+                     "bash-completion/completions/fdcg-servo", "zsh/site-functions/_fdcg", "zsh/site-functions/_fdcg-servo"):
+            self.assertGreater(os.path.getsize(os.path.join(share, file)), 500, file)
+        headers = os.listdir(os.path.join(self.prefix, "include", "fdcg"))
+        self.assertIn("device.h", headers)
+        self.assertNotIn("device_tools.hpp", headers)  # fdcg-servo's own
+
     def test_the_examples_build_against_it_and_print_what_the_documents_promise(self):
         folder = self.path("build")
         self.configure(EXAMPLES, folder)

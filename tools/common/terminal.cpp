@@ -38,6 +38,12 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
 ProgressBar::ProgressBar(bool enabled) : enabled_(enabled && is_terminal(Stream::standard_error)) {}
 
 void ProgressBar::update(std::string_view stage, double fraction) {

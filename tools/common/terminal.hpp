@@ -17,6 +17,7 @@ bool is_terminal(Stream stream);
 bool wants_colour(Stream stream);
 
 std::string grouped(std::uint64_t number);  // 1234567 -> "1,234,567"
+std::string short_number(double value);     // six significant digits
 
 // A bar on standard error, drawn once the work has taken a second, wiped when it ends. Nothing where standard error is no
 // terminal or `enabled` is false.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "../common/program.hpp"
@@ -13,12 +12,7 @@ namespace fdcg::servo {
 namespace {
 
 using tools::grouped;
-
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+using tools::short_number;
 
 std::string shown_name(const std::string& name) {
   return name.empty() ? "--path" : name == "-" ? "standard input" : name;

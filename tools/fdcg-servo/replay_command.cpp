@@ -24,6 +24,7 @@ namespace {
 
 using tools::AtomicFile;
 using tools::grouped;
+using tools::short_number;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kChunkTicks =
@@ -151,12 +152,6 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
   return text;
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string quantiles(const StepTimeHistogram& histogram, const char* unit) {
   const auto value = [&](double fraction) { return grouped(histogram.quantile(fraction)); };
   return "p50 " + value(0.5) + ", p99 " + value(0.99) + ", p99.9 " + value(0.999) + ", max " + grouped(histogram.largest()) +
@@ -242,7 +237,7 @@ int check_inputs(const ReplayArguments& arguments) {
     if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK)
       return fail(kFile, std::string("neither a session's log nor a graph: ") + error.message);
     fdcg_close(&graph);
-    return fail(kUsage, "--trajectory or --path is required: '" + arguments.graph +
+    return fail(kUsage, "--trajectory is required, or --path: '" + arguments.graph +
                             "' is no session's log, and a graph needs a path of the hand");
   }
   if (!arguments.graphs.empty() || !arguments.touches.empty() || !arguments.rewritten.empty()) {

@@ -46,12 +46,6 @@ std::string escaped_for_make(const std::string& name) {
   return text;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string plural(std::uint64_t count, const std::string& singular) {
   return grouped(count) + " " + singular + (count == 1 ? "" : "s");
 }
@@ -64,9 +58,9 @@ std::string mass_summary(const bake::Compiled& compiled) {
       fdcg_open_memory(compiled.file().data(), compiled.file().size(), FDCG_VERIFY_TRUSTED, &graph, nullptr) == FDCG_OK &&
       fdcg_get_mass(&graph, &mass, nullptr) == FDCG_OK;
   if (!has_mass) return compiled.no_mass.empty() ? "" : "no mass properties: " + compiled.no_mass + "\n";
-  const std::string volume = "volume " + number(mass.volume_m3) + " m^3";
+  const std::string volume = "volume " + short_number(mass.volume_m3) + " m^3";
   if (mass.mass_kg == 0) return volume + "; its mass is not known (--density, --mass)\n";
-  return volume + ", " + number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + number(mass.mass_kg) + " kg\n";
+  return volume + ", " + short_number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + short_number(mass.mass_kg) + " kg\n";
 }
 
 // What came out, for a person: sizes, types, and everything that was changed on the way.
@@ -76,7 +70,7 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   const double scale = header.metres_per_unit;
   std::string size;
   for (int axis = 0; axis < 3; ++axis) {
-    size += (axis == 0 ? "" : " x ") + number((header.bounds_max[axis] - header.bounds_min[axis]) * scale);
+    size += (axis == 0 ? "" : " x ") + short_number((header.bounds_max[axis] - header.bounds_min[axis]) * scale);
   }
   const std::uint32_t* const types = header.connection_type_count;
   std::string text = soup.name + ": " + plural(soup.points.size(), "point") + ", " + plural(soup.face_count(), "face") + "\n";
@@ -87,7 +81,7 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   changed(compiled.flipped_faces, "turned round by --orient");
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
-  text += "corners lie within " + number(header.max_deviation * scale) + " m of their nodes' planes\n";
+  text += "corners lie within " + short_number(header.max_deviation * scale) + " m of their nodes' planes\n";
   text += mass_summary(compiled);
   text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") +
           " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
@@ -106,8 +100,9 @@ std::string deviation_warning(const bake::Compiled& compiled) {
   for (int axis = 0; axis < 3; ++axis)
     size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
   if (!(header.max_deviation > kLargestShare * size)) return {};
-  return "planes lie up to " + number(header.max_deviation * header.metres_per_unit) + " m off the corners of their faces, " +
-         number(100 * header.max_deviation / size) + " % of the object's size (warned of above " + number(100 * kLargestShare) +
+  return "planes lie up to " + short_number(header.max_deviation * header.metres_per_unit) +
+         " m off the corners of their faces, " + short_number(100 * header.max_deviation / size) +
+         " % of the object's size (warned of above " + short_number(100 * kLargestShare) +
          " %); --coplanar with a smaller angle keeps the shape";
 }
 
@@ -120,7 +115,7 @@ std::string size_warning(const CompileArguments& arguments, const bake::Compiled
   double size_m = 0;
   for (int axis = 0; axis < 3; ++axis)
     size_m = std::max(size_m, (header.bounds_max[axis] - header.bounds_min[axis]) * header.metres_per_unit);
-  const std::string measures = "the object measures " + number(size_m) + " m; ";
+  const std::string measures = "the object measures " + short_number(size_m) + " m; ";
   if (size_m > kLargest_m && arguments.has_default_unit())
     return measures + "if the file is in millimetres, compile with --units mm (--units m: it is in metres, and no warning)";
   if (size_m < kSmallest_m) {

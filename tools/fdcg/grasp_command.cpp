@@ -6,6 +6,7 @@
 
 #include "../common/atomic_file.hpp"
 #include "../common/options.hpp"
+#include "../common/terminal.hpp"
 #include "fdcg/grasp.hpp"
 #include "fdcg_commands.hpp"
 #include "grasp_contacts.hpp"
@@ -31,12 +32,6 @@ struct GraspArguments {
   bool json = false;
 };
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 // The numbers of "a,b,c"; a ValidationError where there are not as many as one of `counts`.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, const std::vector<std::size_t>& counts) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -58,8 +53,8 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
 int check_torsion(const GraspArguments& arguments, const NamedContact& asked, double torsion_m, double torque_scale_m) {
   const double most_m = grasp::kMostTorsionScales * torque_scale_m;
   if (torsion_m <= most_m) return kClean;
-  const std::string words =
-      number(torsion_m) + ", allowed 0 to " + number(most_m) + " m, " + number(grasp::kMostTorsionScales) + " torque scales";
+  const std::string words = short_number(torsion_m) + ", allowed 0 to " + short_number(most_m) + " m, " +
+                            short_number(grasp::kMostTorsionScales) + " torque scales";
   if (asked.torsion_m) return fail(kFile, arguments.contacts + ": " + asked.name + ": torsion is " + words);
   return fail(kUsage, "--torsion is " + words);
 }
@@ -85,8 +80,8 @@ int place_contacts(const GraspArguments& arguments, const GraspObject& object, G
     if (found.distance_m > kFar * object.size_m()) {
       const bool is_elsewhere = found.distance_m > kElsewhere * object.size_m();
       report.has_far_contacts = report.has_far_contacts || is_elsewhere;
-      report.warnings.push_back(asked.name + " was moved " + number(found.distance_m) + " m to the surface, " +
-                                number(100 * found.distance_m / object.size_m()) + " % of the object's size" +
+      report.warnings.push_back(asked.name + " was moved " + short_number(found.distance_m) + " m to the surface, " +
+                                short_number(100 * found.distance_m / object.size_m()) + " % of the object's size" +
                                 (is_elsewhere ? "; are both in metres, in the same frame (--units)?" : ""));
     }
     if (found.is_on_edge && !asked.inward) {
@@ -122,7 +117,7 @@ int set_load(const GraspArguments& arguments, const GraspObject& object, GraspRe
     const Vec3 g = arguments.gravity_m_per_s2.value_or(Vec3{0, 0, -kStandardGravity});
     const double mass = arguments.mass_kg.value_or(object.mass_kg().value_or(1));
     report.load.force_n = {mass * g.x, mass * g.y, mass * g.z};
-    report.load_text = "the weight of " + number(mass) + " kg";
+    report.load_text = "the weight of " + short_number(mass) + " kg";
   }
   if (const auto problem = grasp::problem_of(report.load, report.grasp.torque_scale_m))
     return fail(kUsage, *problem + " (--load, --gravity, --mass)");
@@ -187,7 +182,7 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, std::optiona
     if (!parsed || *parsed < 0 || (*parsed < kLeast && !may_be_zero) || *parsed > most)
       throw CLI::ValidationError(
           name, "'" + text + "' is no number " + (may_be_zero ? "from 0 " : "above 0") +
-                    (has_most ? (may_be_zero ? "to " : " and up to ") + number(most) : (may_be_zero ? "up" : "")));
+                    (has_most ? (may_be_zero ? "to " : " and up to ") + short_number(most) : (may_be_zero ? "up" : "")));
     value = parsed;
   };
   return command.add_option_function<std::string>(name, parse, help)->type_name(type);

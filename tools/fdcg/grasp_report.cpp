@@ -82,16 +82,10 @@ Json margin_json(const GraspReport& report) {
 
 // ---- text ----------------------------------------------------------------------------------------------------------------
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 // What is small beside `size` is a rounding, and no news.
 std::string shown(double value, double size) {
   constexpr double kSmall = 1e-8;
-  return number(std::abs(value) <= kSmall * size ? 0 : value);
+  return short_number(std::abs(value) <= kSmall * size ? 0 : value);
 }
 std::string triple(const Vec3& v, double size) {
   return "(" + shown(v.x, size) + ", " + shown(v.y, size) + ", " + shown(v.z, size) + ")";
@@ -130,9 +124,10 @@ std::string contacts_text(const GraspReport& report) {
     const grasp::Contact& contact = report.grasp.contacts[i];
     text += "    " + padded(report.asked[i].name, name_width(report)) + "at " + triple(contact.point_m, scale) + " m, " +
             shown(report.found[i].distance_m, scale) + " m from the point given, on node " +
-            std::to_string(report.found[i].node) + ", presses along " + triple(contact.inward) + ", mu " + number(contact.mu);
-    if (contact.torsion_m > 0) text += ", torsion " + number(contact.torsion_m) + " m";
-    if (std::isfinite(contact.cap_n)) text += ", at most " + number(contact.cap_n) + " N";
+            std::to_string(report.found[i].node) + ", presses along " + triple(contact.inward) + ", mu " +
+            short_number(contact.mu);
+    if (contact.torsion_m > 0) text += ", torsion " + short_number(contact.torsion_m) + " m";
+    if (std::isfinite(contact.cap_n)) text += ", at most " + short_number(contact.cap_n) + " N";
     text += "\n";
   }
   return text;
@@ -157,15 +152,15 @@ std::string margin_text(const GraspReport& report) {
   std::string text =
       "  load           " + wrench_text(report.load, report.grasp.torque_scale_m) + " (" + report.load_text + ")\n";
   text += "  margin         " + std::string(margin.load_factor >= 1 ? "holds: " : "slips: ") + "up to " +
-          number(margin.load_factor) + " times the load" +
-          (report.grip_n ? ", contacts pressing with " + number(*report.grip_n) + " N together" : "") + "\n";
+          short_number(margin.load_factor) + " times the load" +
+          (report.grip_n ? ", contacts pressing with " + short_number(*report.grip_n) + " N together" : "") + "\n";
   text += "  at the limit\n";
   for (std::size_t i = 0; i < margin.forces.size(); ++i) {
     const grasp::ContactForce& force = margin.forces[i];
-    text += "    " + padded(report.asked[i].name, name_width(report)) + "presses " + number(force.press_n) + " N, " +
-            number(100 * force.used) + " % of its friction used, " + number(100 * force.carried) +
+    text += "    " + padded(report.asked[i].name, name_width(report)) + "presses " + short_number(force.press_n) + " N, " +
+            short_number(100 * force.used) + " % of its friction used, " + short_number(100 * force.carried) +
             " % of the load carried; without it " +
-            (force.factor_without > 0 ? number(force.factor_without) + " times the load" : "nothing of it") + "\n";
+            (force.factor_without > 0 ? short_number(force.factor_without) + " times the load" : "nothing of it") + "\n";
   }
   return text;
 }
@@ -214,13 +209,13 @@ std::string grasp_report_text(const GraspReport& report) {
   std::string text =
       report.object + ": " + counted(report.asked.size(), "contact") + " on " + counted(report.faces, "node") + "\n";
   text += "  centre         " + triple(report.grasp.centre_m, scale) + " m (" + report.centre_from + ")\n";
-  text += "  torque scale   " + number(report.grasp.torque_scale_m) + " m (" + report.torque_scale_from + ")\n";
+  text += "  torque scale   " + short_number(report.grasp.torque_scale_m) + " m (" + report.torque_scale_from + ")\n";
   text += contacts_text(report);
   text += "  force closure  " + closure_text(closure) + "\n";
   if (is_closed) {
-    text += "  epsilon        " + number(epsilon.value) + " (1 N of normal force " +
+    text += "  epsilon        " + short_number(epsilon.value) + " (1 N of normal force " +
             (report.effort == grasp::Effort::together ? "together" : "each") + "; proved to " +
-            number(epsilon.value - epsilon.lower) + ")\n";
+            short_number(epsilon.value - epsilon.lower) + ")\n";
   }
   text += "  weakest        " + wrench_text(is_closed ? epsilon.weakest : closure.weakest, report.grasp.torque_scale_m) + "\n";
   return text + margin_text(report);

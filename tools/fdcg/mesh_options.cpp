@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_options.hpp"
 
-#include <cstdio>
 #include <functional>
 #include <limits>
 
 #include "../common/options.hpp"
+#include "../common/terminal.hpp"
 #include "shared/text.hpp"
 
 namespace fdcg::tools {
@@ -87,10 +87,8 @@ void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& u
   const auto parse_scale = [&metres_per_unit, &unit_text](const std::string& text) {
     const auto scale = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
     if (!scale) throw CLI::ValidationError("--scale", "'" + text + "' is no number above 0 (metres for one unit of the file)");
-    char number[32];
-    std::snprintf(number, sizeof number, "%.6g", *scale);
     metres_per_unit = *scale;
-    unit_text = std::string("1 unit = ") + number + " m";
+    unit_text = "1 unit = " + short_number(*scale) + " m";
   };
   CLI::Option* const units = command.add_option_function<std::string>(
       "--units", parse_units, one_of("Unit of the mesh's coordinates.", {"m", "mm", "cm", "in"}));
