@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "fdcg/scene.h"
 #include "materials_rig.hpp"
 #include "random.hpp"
 
