@@ -62,15 +62,23 @@ void compare_written(const std::string& file, OpenMesh::IO::Options options) {
 }
 
 struct Totals {
-  std::size_t faces = 0, points = 0;
+  std::size_t faces = 0, points = 0, corners = 0;
   double sum = 0;  // of the absolute coordinates of all faces' corners
 };
 
+// A corner that repeats the one before it in its face does not count: OpenMesh drops it.
+
 Totals totals_of(const PolygonSoup& soup) {
-  Totals totals{soup.face_count(), soup.points.size(), 0};
-  for (const std::uint32_t c : soup.corners) {
-    const Vec3& p = soup.points[c];
-    totals.sum += std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z);
+  Totals totals{soup.face_count(), soup.points.size()};
+  for (std::size_t f = 0; f < totals.faces; ++f) {
+    const std::uint32_t end = soup.face_first[f + 1];
+    if (soup.face_first[f] == end) continue;
+    for (std::uint32_t i = soup.face_first[f], before = soup.corners[end - 1]; i < end; before = soup.corners[i++]) {
+      if (soup.corners[i] == before) continue;
+      const Vec3& p = soup.points[soup.corners[i]];
+      totals.sum += std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z);
+      ++totals.corners;
+    }
   }
   return totals;
 }
@@ -111,7 +119,7 @@ TEST_CASE("OpenMesh reads no more faces from real meshes, and the same ones wher
         ++corners;
       }
     }
-    CHECK(corners == soup->corners.size());
+    CHECK(corners == ours.corners);
     if (std::isfinite(ours.sum)) CHECK(sum == Approx(ours.sum).epsilon(1e-6));
     ++same;
   }
