@@ -110,6 +110,10 @@ Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : statu
   error->message[length] = '\0';
 }
 
+fdcg_status refuse_silently(fdcg_error* error, fdcg_status status) {
+  return Message(error, status);
+}
+
 #endif
 
 }  // namespace fdcg

@@ -7,7 +7,7 @@ namespace fdcg {
 namespace {
 
 // No sphere holds it, and a turn moves it by any length: fingers then look anew.
-void settle_endless(fdcg_scene& scene, uint32_t index) {
+[[gnu::cold]] void settle_endless(fdcg_scene& scene, uint32_t index) {
   const Object& object = scene.objects()[index];
   const Pose &now = object.now, &last = object.last;
   const World moved = now.translation - last.translation;
@@ -54,7 +54,7 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
   scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
 }
 
-void let_go_of(fdcg_scene& scene, uint32_t object) {
+[[gnu::cold]] void let_go_of(fdcg_scene& scene, uint32_t object) {
   for (uint32_t f = 0; f < scene.finger_end; ++f) {
     const uint32_t slot_count = scene.fingers()[f].is_used != 0 ? scene.config.touches_per_finger : 0;
     for (uint32_t s = 0; s < slot_count; ++s) {
