@@ -23,7 +23,7 @@ SUPPORT = {"body", "body_scene", "body_step", "deform", "deform_boxes", "deform_
 KB = 1024
 X86_BOTH = {"bar": 48 * KB, "limit": 131 * KB}
 X86_F64 = {"bar": 48 * KB, "limit": 80 * KB}
-M7_F32 = {"bar": 20 * KB, "limit": 39 * KB}
+M7_F32 = {"bar": 20 * KB, "limit": 40_000}  # as docs/limits.md says
 M7_F32_TERMS = {"bar": 20 * KB, "limit": 44 * KB}
 
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}

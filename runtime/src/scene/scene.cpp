@@ -136,6 +136,17 @@ void start(fdcg_scene* scene, Finger* finger, World hip) {
   finger->force = {0, 0, 0};
 }
 
+// Removes the object from all slots: an object added before the next step may get its index.
+[[gnu::noinline]] void empty_slots_of(fdcg_scene& scene, uint32_t object) {
+  for (uint32_t f = 0; f < scene.finger_end; ++f) {
+    const uint32_t slot_count = scene.fingers()[f].is_used != 0 ? scene.config.touches_per_finger : 0;
+    for (uint32_t s = 0; s < slot_count; ++s) {
+      Slot& slot = scene.slots(f)[s];
+      if (slot.object == object) slot = {FDCG_NONE, 0, slot.step};
+    }
+  }
+}
+
 }  // namespace
 
 fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
@@ -232,7 +243,7 @@ extern "C" fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_i
   object->is_used = 0;
   if (id.index < scene->first_free_object) scene->first_free_object = id.index;
   put_in_place(scene, object);
-  let_go_of(*scene, id.index);
+  empty_slots_of(*scene, id.index);
   return FDCG_OK;
 }
 
@@ -264,7 +275,7 @@ extern "C" fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_i
   if (object->is_enabled == (is_enabled != 0 ? 1u : 0u)) return FDCG_OK;
   object->is_enabled = is_enabled != 0 ? 1 : 0;
   put_in_place(scene, object);
-  if (is_enabled == 0) let_go_of(*scene, id.index);
+  if (is_enabled == 0) empty_slots_of(*scene, id.index);
   return FDCG_OK;
 }
 

@@ -6,8 +6,8 @@
 namespace fdcg {
 namespace {
 
-// No sphere holds it, and a turn moves it by any length: fingers then look anew.
-[[gnu::cold]] void settle_endless(fdcg_scene& scene, uint32_t index) {
+// It has no bounding sphere, and a rotation moves its points without bound: that invalidates the broad phase of all fingers.
+void settle_endless(fdcg_scene& scene, uint32_t index) {
   const Object& object = scene.objects()[index];
   const Pose &now = object.now, &last = object.last;
   const World moved = now.translation - last.translation;
@@ -52,16 +52,6 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
   for (uint32_t array = 0; array < 4; ++array)
     scene.scan(array)[index] = in_scan[array];
   scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
-}
-
-[[gnu::cold]] void let_go_of(fdcg_scene& scene, uint32_t object) {
-  for (uint32_t f = 0; f < scene.finger_end; ++f) {
-    const uint32_t slot_count = scene.fingers()[f].is_used != 0 ? scene.config.touches_per_finger : 0;
-    for (uint32_t s = 0; s < slot_count; ++s) {
-      Slot& slot = scene.slots(f)[s];
-      if (slot.object == object) slot = {FDCG_NONE, 0, slot.step};
-    }
-  }
 }
 
 }  // namespace fdcg

@@ -132,9 +132,6 @@ namespace fdcg {
 // way, the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 
-// scene_advance.cpp: no finger has a slot for the object any more. One that comes before the next step may be given its index.
-void let_go_of(fdcg_scene& scene, uint32_t object);
-
 // Steps an object's contact to a place in its frame.
 inline void step_object(const Object& object, const fdcg_params* params, fdcg_contact* contact, World at, fdcg_result* result) {
   const double local[3] = {at.x, at.y, at.z};
