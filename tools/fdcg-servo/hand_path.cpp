@@ -20,12 +20,13 @@ constexpr double kLiftTime = 0.3;     // s of leaving
 constexpr double kStrokes = 4;        // there and back
 constexpr double kFollow = 0.12;      // how much of the error in depth the hand would mend in a tick
 constexpr double kEase = 0.4;         // how much of a change of its speed it manages in a tick
-constexpr double kFastest = 0.0005;   // of the object's size a tick, across the picture plane
-constexpr double kDepth = 0.0065;     // of the size: the largest depth
-constexpr double kMostDepth = 0.005;  // m: 5 N at the default stiffness, however large the object is
-constexpr double kAbove = 0.1;        // of the size: where the hand starts above what it will touch
-constexpr double kLowest = 0.25;      // of the size: how far it goes below, where the surface ends under it
+constexpr double kFastest = 0.0005;   // of the span a tick, across the picture plane
+constexpr double kDepth = 0.0065;     // of the span: the largest depth
+constexpr double kMostDepth = 0.005;  // m: 5 N at the default stiffness
+constexpr double kAbove = 0.1;        // of the span: where the hand starts above what it will touch
+constexpr double kLowest = 0.25;      // of the span: how far it goes below, where the surface ends under it
 constexpr int kProbeSteps = 300;      // from one side of the object to the other
+constexpr int kMostHalvings = 60;     // of a step of the probe
 
 Vec operator+(const Vec& a, const Vec& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -34,7 +35,7 @@ Vec operator*(double s, const Vec& a) {
   return {s * a[0], s * a[1], s * a[2]};
 }
 
-// Where the hand wants to be in the plane, in parts of the object's size, and how deep, in parts of the largest depth.
+// Where the hand wants to be in the plane, in parts of the span, and how deep, in parts of the largest depth.
 struct Wish {
   double right, up, depth;
 };
@@ -57,7 +58,8 @@ View view_from(const Vec& centre, double turn, double tilt) {
   return {centre, {ct, 0, -st}, {-st * sl, cl, -ct * sl}, {st * cl, sl, ct * cl}};
 }
 
-// From where, and which part of the plane: its middle and how far the hand goes, in parts of the object's size.
+// From where, and which part of the plane: its middle in parts of the object's size, and how far the hand goes in parts of the
+// span.
 struct Place {
   View view;
   double right = 0, up = 0, reach = 1;
@@ -92,6 +94,7 @@ class Hand {
       square += side * side;
     }
     size_ = std::sqrt(square);
+    span_ = std::min(size_, kMostDepth / kDepth);
   }
 
   // The hand goes over the plane as it wishes, and presses so that the spring of a frictionless contact keeps the wished
@@ -99,15 +102,15 @@ class Hand {
   [[nodiscard]] Try try_path(const Place& place) const {
     Try tried;
     const auto at = [&](const Wish& wish, double height) {
-      return place.view.place((place.reach * wish.right + place.right) * size_, (place.reach * wish.up + place.up) * size_,
-                              height);
+      return place.view.place(place.reach * wish.right * span_ + place.right * size_,
+                              place.reach * wish.up * span_ + place.up * size_, height);
     };
     const std::optional<double> surface = probe([&](double height) { return at(wish_at(0), height); });
     if (!surface) return tried;
     fdcg_contact contact{}, felt{};
     fdcg_result result{}, felt_result{};
-    const double fastest = kFastest * size_, lowest = *surface - kLowest * size_;
-    double height = *surface + kAbove * size_, speed = 0, t = 0, touch_time = 0;
+    const double fastest = kFastest * span_, lowest = *surface - kLowest * span_;
+    double height = *surface + kAbove * span_, speed = 0, t = 0, touch_time = 0;
     bool has_touched = false;
     for (long tick = 0; !has_touched || t < touch_time + kStrokeTime + kLiftTime; ++tick) {
       t = static_cast<double>(tick) * kTick;
@@ -151,25 +154,36 @@ class Hand {
   }
 
  private:
-  // The height at which a hand that comes straight down first touches; none where it passes by.
+  // The height at which a hand that comes straight down first touches, to within a step of the span; none where it passes by.
   template <class At>
   [[nodiscard]] std::optional<double> probe(const At& at) const {
-    fdcg_contact contact{};
+    constexpr double kPart = 1.2 / kProbeSteps;
+    fdcg_contact contact{}, free{};
     fdcg_result result{};
     for (int i = 0; i <= kProbeSteps; ++i) {
-      const double height = (0.6 - 1.2 * i / kProbeSteps) * size_;
+      const double height = (0.6 - kPart * i) * size_;
+      free = contact;
       fdcg_step(&graph_, &params_, &contact, at(height).data(), &result);
-      if (result.state != FDCG_FREE) return height;
+      if (result.state == FDCG_FREE) continue;
+      double inside = height, outside = height + kPart * size_;
+      for (int halving = 0; size_ > span_ && outside - inside > kPart * span_ && halving < kMostHalvings; ++halving) {
+        const double middle = inside + (outside - inside) / 2;
+        contact = free;
+        fdcg_step(&graph_, &params_, &contact, at(middle).data(), &result);
+        (result.state == FDCG_FREE ? outside : inside) = middle;
+      }
+      return inside;
     }
     return std::nullopt;
   }
-  [[nodiscard]] double largest_depth() const { return std::min(kDepth * size_, kMostDepth); }
+  [[nodiscard]] double largest_depth() const { return kDepth * span_; }
   static double distance(const double (&a)[3], const Vec& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
   const fdcg_graph& graph_;
   fdcg_params params_, with_friction_;
   Vec centre_{};
   double size_ = 0;  // the bounding box's diagonal, metres
+  double span_ = 0;  // metres that the hand moves over: the size, or of a large object a part that suits a hand
 };
 
 }  // namespace
