@@ -29,21 +29,20 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-// What was likely meant by the first word that was not expected.
-std::string hint_for(const CLI::App& app, const CLI::App& command) {
-  for (const std::string& word : app.remaining(true)) {
+// The first word that was not expected, as a message, with what was likely meant by it. "": none, or one too many.
+std::string unknown_word(const CLI::App& app, const CLI::App& command) {
+  const std::vector<std::string> words = app.remaining(true);
+  if (words.empty()) return "";
+  const std::string word = words.front().substr(0, words.front().find('='));
+  if (word.starts_with("-")) {
     std::vector<std::string> names;
-    if (word.starts_with("-")) {
-      for (const CLI::Option* const option : command.get_options()) {
-        for (const std::string& name : option->get_lnames())
-          names.push_back("--" + name);
-      }
-    } else if (&command == &app) {
-      names = command_names(app);
+    for (const CLI::Option* const option : command.get_options()) {
+      for (const std::string& name : option->get_lnames())
+        names.push_back("--" + name);
     }
-    return did_you_mean(word.substr(0, word.find('=')), names);
+    return "'" + word + "' is no option" + did_you_mean(word, names);
   }
-  return "";
+  return &command == &app ? "'" + word + "' is no command" + did_you_mean(word, command_names(app)) : "";
 }
 
 int usage_error(const CLI::ParseError& error, const CLI::App& app) {
@@ -54,7 +53,8 @@ int usage_error(const CLI::ParseError& error, const CLI::App& app) {
   std::string message = error.what();
   message = message.substr(0, message.find('\n'));
   if (message == "A subcommand is required") message = "a command is required";
-  return fail(kUsage, message + hint_for(app, *command));
+  const std::string unknown = unknown_word(app, *command);
+  return fail(kUsage, unknown.empty() ? message : unknown);
 }
 
 // `fdcg help`, `fdcg help compile`.

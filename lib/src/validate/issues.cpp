@@ -37,7 +37,9 @@ const std::vector<Rule>& rules() {
        "Split the surface along the edge, or remove the inner faces.", false},
       {"non-manifold-vertex", error, "vertices whose faces form more than one fan",
        "At such a vertex separate sheets touch in a point; the faces around it have no cyclic order.",
-       "Give each fan a vertex of its own: `fdcg repair --split-non-manifold-vertices` does.", false},
+       "Give each fan a vertex of its own: `fdcg repair --split-non-manifold-vertices` does; read its result with `--weld "
+       "none`.",
+       false},
       {"winding-inconsistent", error, "edges whose two faces run along them in the same direction",
        "One of the two faces looks inwards: the hand would fall through it.",
        "Compile with `--orient`, or flip the faces in the modelling program.", false},
