@@ -128,8 +128,8 @@ struct fdcg_scene {
 
 namespace fdcg {
 
-// scene_advance.cpp: takes an object's latest pose. Its last one becomes the present one or, where it is put there without a
-// way, the latest too.
+// scene_advance.cpp: applies an object's latest pose. Its last pose becomes the present one or, where it is placed without a
+// motion, the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 
 // Steps an object's contact to a place in its frame.
