@@ -57,6 +57,12 @@ const ForeignKind* foreign_kind(std::string_view bytes) {
   return kind == std::end(kForeignKinds) ? nullptr : kind;
 }
 
+// As of a download or a copy that was cut off. A binary STL's header may be zeros.
+bool starts_with_zeros(std::string_view bytes) {
+  constexpr std::size_t kLooked = 512;
+  return bytes.substr(0, kLooked).find_first_not_of('\0') == std::string_view::npos && !has_binary_stl_size(bytes);
+}
+
 std::optional<Format> format_by_content(std::string_view bytes) {
   if (bytes.starts_with("DRACO")) return Format::drc;
   if (is_glb(bytes) || is_gltf_json(bytes)) return Format::gltf;
@@ -120,6 +126,7 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
     return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
   }
+  if (starts_with_zeros(bytes)) return refuse(name, "starts with zeros alone, so that it is no mesh; fetch or export it again");
   if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);
