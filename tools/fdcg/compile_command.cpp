@@ -26,6 +26,7 @@ struct CompileArguments {
   std::string output;
   std::string depfile;
   std::string report;
+  std::string repair;  // a level; empty: none
   std::string unit_text = kDefaultUnit;
   std::optional<bake::Format> input_format;
   bake::CompileOptions options;
@@ -63,6 +64,19 @@ std::string mass_summary(const bake::Compiled& compiled) {
   return volume + ", " + short_number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + short_number(mass.mass_kg) + " kg\n";
 }
 
+// What the repair did, and how far it moved the surface.
+std::string repair_summary(const bake::RepairAccount& account, double metres_per_unit) {
+  std::string text;
+  for (const bake::RepairAction& action : account.actions) {
+    if (action.total != 0) text += "  " + action.name + ": " + action.message + "\n";
+    if (action.left != 0) text += "  " + action.name + ": " + action.left_message + "\n";
+  }
+  if (text.empty()) return "repair: nothing blocked\n";
+  const double cube = metres_per_unit * metres_per_unit * metres_per_unit;
+  return "repair: the surface moved by at most " + short_number(account.distance * metres_per_unit) +
+         " m, its volume changed by " + short_number((account.volume_after - account.volume_before) * cube) + " m^3\n" + text;
+}
+
 // What came out, for a person: sizes, types, and everything that was changed on the way.
 std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
   fdcg_header header;
@@ -79,6 +93,7 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
     if (count != 0) text += plural(count, "face") + " " + what + "\n";
   };
   changed(compiled.flipped_faces, "turned round by --orient");
+  if (compiled.repair) text += repair_summary(*compiled.repair, header.metres_per_unit);
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
   text += "corners lie within " + short_number(header.max_deviation * scale) + " m of their nodes' planes\n";
@@ -130,7 +145,7 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 }
 
 // Everything is written before anything gets its name, so that a failure leaves nothing.
-int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report,
+int write_outputs(const CompileArguments& arguments, const std::string& mesh_report,
                   const std::vector<std::string>& other_files, const std::vector<std::byte>& buffer, AtomicFile& out) {
   out.write(as_text(buffer));  // empty where the file was made in place
   std::optional<AtomicFile> depfile, report;
@@ -144,7 +159,7 @@ int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_re
   }
   if (!arguments.report.empty()) {
     report.emplace(arguments.report);
-    report->write(bake::report_json({mesh_report}));
+    report->write(mesh_report);
     if (!report->ok()) return fail(kFile, report->error());
   }
   if (report && !report->commit()) return fail(kFile, report->error());
@@ -154,12 +169,13 @@ int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_re
 }
 
 // The mesh is refused: its report on standard error, and in --report.
-int refuse(const CompileArguments& arguments, const bake::Report& report) {
-  const std::string text = bake::report_text(report, wants_colour(Stream::standard_error));
+int refuse(const CompileArguments& arguments, const bake::Compiled& compiled) {
+  const std::string text = bake::report_text(compiled.report, wants_colour(Stream::standard_error));
   std::fputs(text.c_str(), stderr);
+  if (arguments.repair.empty()) std::fputs("--repair repairs the mesh first, and says what that does to it\n", stderr);
   if (arguments.report.empty()) return kFindings;
   AtomicFile file(arguments.report);
-  file.write(bake::report_json({report}));
+  file.write(bake::compile_report_json(compiled));
   return file.commit() ? kFindings : fail(kFile, file.error());
 }
 
@@ -203,6 +219,11 @@ std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<
 
 int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
+  if (!arguments.repair.empty()) {
+    if (arguments.repair != "safe" && arguments.repair != "full")
+      return fail(kUsage, "--repair: '" + arguments.repair + "' is no level; there are safe and full");
+    arguments.options.repair = arguments.repair == "safe" ? bake::RepairLevel::safe : bake::RepairLevel::full;
+  }
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
   keep_large_arrays();
@@ -224,12 +245,12 @@ int compile_mesh(CompileArguments& arguments) {
   bar.wipe();
   if (!out.ok()) return fail(kFile, out.error());
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
-  if (compiled->file().empty()) return refuse(arguments, compiled->report);
+  if (compiled->file().empty()) return refuse(arguments, *compiled);
   if (const int code = check_loads(*compiled); code != kClean) return code;
   const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
   const std::string warnings[] = {deviation_warning(*compiled), size_warning(arguments, *compiled)};
-  if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
+  if (const int code = write_outputs(arguments, bake::compile_report_json(*compiled), soup->other_files, buffer, out); code != kClean) return code;
   if (arguments.quiet) return kClean;
   std::FILE* const stream = is_streamed ? stderr : stdout;
   if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
@@ -373,6 +394,12 @@ give the same bytes.
   command
       ->add_flag("--self-intersections", arguments->options.self_intersections,
                  "Also find faces that cross or touch others, and report them as warnings.")
+      ->group("Mesh checks");
+  command
+      ->add_flag("--repair{full}", arguments->repair,
+                 "Where the mesh has errors, repair it first; what was done is measured and stored in the file. --repair=safe: no "
+                 "point of the surface moves; --repair or --repair=full: also unfolds slivers, triangulates polygons that cross "
+                 "themselves, and drops what no graph can have.")
       ->group("Mesh checks");
   add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
   add_graph_options(*command, arguments);
