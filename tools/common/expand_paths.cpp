@@ -6,6 +6,8 @@
 #include <set>
 #include <system_error>
 
+#include "shared/text.hpp"
+
 namespace fdcg::tools {
 namespace {
 
@@ -149,13 +151,6 @@ void walk(const std::string& prefix, const std::vector<std::string>& endings, st
   }
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 // The files of one argument, sorted; or its problem.
 std::vector<NamedFile> expand(const std::string& argument, const std::vector<std::string>& endings) {
   std::error_code ignored;
@@ -163,7 +158,7 @@ std::vector<NamedFile> expand(const std::string& argument, const std::vector<std
   const bool is_there = fs::exists(argument, ignored);
   if (argument != "-" && fs::is_directory(argument, ignored)) {
     walk(argument.ends_with('/') ? argument : argument + "/", endings, found);
-    if (found.empty()) return {{argument, "is a directory without a mesh file (" + joined(endings) + "); name a mesh file"}};
+    if (found.empty()) return {{argument, "is a directory without a mesh file (" + listed(endings) + "); name a mesh file"}};
   } else if (argument == "-" || is_there || !is_pattern(argument)) {
     return {{argument, ""}};
   } else {

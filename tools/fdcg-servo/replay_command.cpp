@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "../common/atomic_file.hpp"
 #include "../common/options.hpp"
@@ -122,7 +121,7 @@ void append_row(std::string& text, const TrajectoryPoint& point, const fdcg_resu
 
 // Steps every point, logs every tick. The clock is read around the step alone.
 Summary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
-               fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile* log) {
+               fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log) {
   Summary summary;
   std::vector<Tick> ticks(std::min(kChunkTicks, points.size()));
   std::string text = kLogHeader;
@@ -137,9 +136,9 @@ Summary replay(const fdcg_graph& graph, const fdcg_params& params, const std::ve
     for (std::size_t i = 0; i < count; ++i) {
       summary.add(ticks[i]);
       measure_force(graph, ticks[i].result, summary);
-      if (log != nullptr) append_row(text, points[begin + i], ticks[i].result);
+      if (log.is_wanted()) append_row(text, points[begin + i], ticks[i].result);
     }
-    if (log != nullptr) log->write(text);
+    log.write(text);
     text.clear();
   }
   return summary;
@@ -256,17 +255,15 @@ int get_path(const ReplayArguments& arguments, const fdcg_graph& graph, std::vec
   }
   *points = slide_path(graph, &message);
   if (points->empty()) return fail(kFile, arguments.graph + ": " + message);
-  if (arguments.written_path.empty()) return kClean;
   AtomicFile file(arguments.written_path);
   file.write(trajectory_csv(*points));
-  return file.commit() ? kClean : fail(kFile, file.error());
+  return tools::commit_all({&file});
 }
 
 int run_replay(const ReplayArguments& arguments) {
   if (const int code = check_inputs(arguments); code != kClean) return code;
-  std::optional<AtomicFile> log;
-  if (!arguments.log.empty()) log.emplace(arguments.log);
-  if (log && !log->ok()) return fail(kFile, log->error());
+  AtomicFile log(arguments.log);
+  if (!log.ok()) return fail(kFile, log.error());
   fdcg_graph graph{};
   fdcg_error error{};
   if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
@@ -279,52 +276,33 @@ int run_replay(const ReplayArguments& arguments) {
   }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};
-  const Summary summary = replay(graph, arguments.params, points, contact, clock_ns, log ? &*log : nullptr);
+  const Summary summary = replay(graph, arguments.params, points, contact, clock_ns, log);
   if (summary.in_state[FDCG_FREE] == summary.ticks) warn_of_nothing_touched(graph, points, arguments.trajectory);
   fdcg_close(&graph);
-  if (log && !log->commit()) return fail(kFile, log->error());
+  if (const int code = tools::commit_all({&log}); code != kClean) return code;
   if (!arguments.quiet)
     std::fputs(summary_text(summary, contact, clock_ns).c_str(),
                tools::is_stream(arguments.log) || tools::is_stream(arguments.written_path) ? stderr : stdout);
   return kClean;
 }
 
-void add_graph_options(CLI::App& command, const std::shared_ptr<ReplayArguments>& arguments) {
+void add_graph_options(CLI::App& command, ReplayArguments& arguments) {
   constexpr double kLargest = 1e9;  // fdcg_check_params
-  CLI::Option* const trajectory = command.add_option(
-      "--trajectory", arguments->trajectory, "Recorded HIP: a CSV file with columns t, x, y and z. - is standard input.");
-  trajectory->type_name("FILE")->group("Path of the hand");
-  CLI::Option* const path =
-      tools::choice_option(command, "--path", arguments->path,
-                           "Make a path for this graph: approach, press, slide there and back, lift.", {"slide"});
-  path->type_name("KIND")->excludes(trajectory)->group("Path of the hand");
-  command.add_option("--write-path", arguments->written_path, "Write the path that --path made to FILE (CSV).")
-      ->type_name("FILE")
-      ->needs(path)
-      ->group("Path of the hand");
-  fdcg_params& params = arguments->params;
-  tools::number_option(command, "--mu-s", params.mu_static, {0, kLargest}, "Coefficient of static friction, not below --mu-d.")
-      ->type_name("MU")
-      ->default_str("0.6")
-      ->group("Contact");
-  tools::number_option(command, "--mu-d", params.mu_dynamic, {0, kLargest}, "Coefficient of dynamic friction.")
-      ->type_name("MU")
-      ->default_str("0.4")
-      ->group("Contact");
-  tools::number_option(command, "--stiffness", params.stiffness_n_per_m, {0, kLargest, " N/m"}, "Stiffness of the spring, N/m.")
-      ->type_name("K")
-      ->default_str("1000")
-      ->group("Contact");
-  const auto set_edge_friction = [arguments](const std::string& name) {
-    arguments->params.edge_friction = name == "wedge" ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
-  };
-  tools::choice_option(command, "--edge-friction", set_edge_friction,
-                       "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 "
-                       "paper.",
-                       {"wedge", "paper"})
-      ->type_name("RULE")
-      ->default_str("wedge")
-      ->group("Contact");
+  const tools::OptionGroup path(command, "Path of the hand"), contact(command, "Contact");
+  CLI::Option* const trajectory = path.text("--trajectory", "FILE", arguments.trajectory,
+                                            "Recorded HIP: a CSV file with columns t, x, y and z. - is standard input.");
+  CLI::Option* const kind =
+      path.choice<std::string>("--path", "KIND", {{"slide", "slide"}}, arguments.path,
+                               "Make a path for this graph: approach, press, slide there and back, lift.", "");
+  kind->excludes(trajectory);
+  path.text("--write-path", "FILE", arguments.written_path, "Write the path that --path made to FILE (CSV).")->needs(kind);
+  fdcg_params& params = arguments.params;
+  contact.number("--mu-s", "MU", params.mu_static, {0, kLargest}, "Coefficient of static friction, not below --mu-d.", "0.6");
+  contact.number("--mu-d", "MU", params.mu_dynamic, {0, kLargest}, "Coefficient of dynamic friction.", "0.4");
+  contact.number("--stiffness", "K", params.stiffness_n_per_m, {0, kLargest, " N/m"}, "Stiffness of the spring, N/m.", "1000");
+  contact.choice<std::uint32_t>(
+      "--edge-friction", "RULE", {{"wedge", FDCG_EDGE_WEDGE}, {"paper", FDCG_EDGE_PAPER}}, params.edge_friction,
+      "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 paper.");
 }
 
 }  // namespace
@@ -347,22 +325,14 @@ every output is compared bit for bit.
 
 )" + tools::exit_codes("success; of a log: every output is the same", "of a log: an output differs, or ticks are missing"));
   const auto arguments = std::make_shared<ReplayArguments>();
-  command->add_option("graph", arguments->graph, "FDCG file, or the log of a session.")->required()->type_name("GRAPH");
-  add_graph_options(*command, arguments);
-  command->add_option("-o,--output", arguments->log, "Write a row for each tick to FILE (CSV). - is standard output.")
-      ->type_name("FILE")
-      ->group("Output");
-  command->add_flag("-q,--quiet", arguments->quiet, "Print no summary.")->group("Output");
-  command->add_option("--graphs", arguments->graphs, "Folder of the graphs.")
-      ->type_name("FOLDER")
-      ->default_str("where they were")
-      ->group("Log of a session");
-  command->add_option("--touches", arguments->touches, "Write a row for each touch of each contact to FILE (CSV).")
-      ->type_name("FILE")
-      ->group("Log of a session");
-  command->add_option("--write", arguments->rewritten, "Write the log anew, from the replay, to FILE.")
-      ->type_name("FILE")
-      ->group("Log of a session");
+  tools::required_argument(*command, "graph", "GRAPH", arguments->graph, "FDCG file, or the log of a session.");
+  add_graph_options(*command, *arguments);
+  const tools::OptionGroup output(*command, "Output"), session(*command, "Log of a session");
+  output.text("-o,--output", "FILE", arguments->log, "Write a row for each tick to FILE (CSV). - is standard output.");
+  output.flag("-q,--quiet", arguments->quiet, "Print no summary.");
+  session.text("--graphs", "FOLDER", arguments->graphs, "Folder of the graphs.", "where they were");
+  session.text("--touches", "FILE", arguments->touches, "Write a row for each touch of each contact to FILE (CSV).");
+  session.text("--write", "FILE", arguments->rewritten, "Write the log anew, from the replay, to FILE.");
   return {command, [arguments, command] {
             arguments->has_mu_dynamic = command->count("--mu-d") != 0;
             if (!dev::is_session_log(arguments->graph)) return run_replay(*arguments);

@@ -63,10 +63,8 @@ Command add_explain(CLI::App& app) {
   command->footer("Examples:\n  fdcg explain\n  fdcg explain winding-inconsistent\n\n" +
                   exit_codes("success", "not used by this command"));
   const auto name = std::make_shared<std::string>();
-  command
-      ->add_option("rule", *name,
-                   offering("Name of a rule, as validate prints it. Without it: the list of all rules.", rule_names()))
-      ->type_name("RULE");
+  const std::string help = "Name of a rule, as validate prints it. Without it: the list of all rules.";
+  command->add_option("rule", *name, offering(help, rule_names()))->type_name("RULE");
   const auto run = [name]() -> int {
     const bake::Rule* const rule = bake::find_rule(*name);
     if (!name->empty() && rule == nullptr) {
@@ -75,7 +73,7 @@ Command add_explain(CLI::App& app) {
     }
     AtomicFile out("-");
     out.write(rule == nullptr ? list_of_rules() : explanation(*rule));
-    return out.commit() ? kClean : fail(kFile, out.error());
+    return commit_all({&out});
   };
   return {command, run};
 }

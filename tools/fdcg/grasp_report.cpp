@@ -105,11 +105,6 @@ std::string wrench_text(const grasp::Wrench& w, double torque_scale_m) {
   return "force " + triple(w.force_n, size) + " N, torque " + triple(w.torque_nm, size * torque_scale_m) + " Nm";
 }
 
-// "1 contact", "2,000 nodes"
-std::string counted(std::size_t count, const char* what) {
-  return grouped(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 std::size_t name_width(const GraspReport& report) {
   std::size_t width = 0;
   for (const NamedContact& contact : report.asked)
