@@ -12,16 +12,9 @@
 namespace fdcg::tools {
 namespace {
 
-std::string_view severity_name(bake::Severity severity) {
-  switch (severity) {
-    case bake::Severity::note:
-      return "note";
-    case bake::Severity::warning:
-      return "warning";
-    case bake::Severity::error:
-      break;
-  }
-  return "error";
+std::string severity_name(bake::Severity severity) {
+  constexpr const char* kNames[] = {"note", "warning", "error"};
+  return kNames[static_cast<int>(severity)];
 }
 
 std::vector<std::string> rule_names() {
@@ -36,7 +29,7 @@ std::string list_of_rules() {
   for (const bake::Rule& rule : bake::rules()) {
     std::string line(rule.name);
     line.resize(std::max<std::size_t>(line.size(), 24), ' ');
-    std::string severity(severity_name(rule.severity));
+    std::string severity = severity_name(rule.severity);
     severity.resize(9, ' ');
     text += line + severity + std::string(rule.meaning) + "\n";
   }
@@ -44,7 +37,7 @@ std::string list_of_rules() {
 }
 
 std::string explanation(const bake::Rule& rule) {
-  std::string text = std::string(rule.name) + " (" + std::string(severity_name(rule.severity)) + ")\n\n";
+  std::string text = std::string(rule.name) + " (" + severity_name(rule.severity) + ")\n\n";
   text += "What it counts\n  " + std::string(rule.meaning) + "\n\n";
   text += "Why it matters\n  " + std::string(rule.why) + "\n\n";
   text += "What to do\n  " + std::string(rule.remedy) + "\n";

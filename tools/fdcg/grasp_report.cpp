@@ -28,15 +28,8 @@ Json finite(double value) {
 }
 
 const char* verdict_name(grasp::Verdict verdict) {
-  switch (verdict) {
-    case grasp::Verdict::closure:
-      return "closure";
-    case grasp::Verdict::no_closure:
-      return "no-closure";
-    case grasp::Verdict::marginal:
-      break;
-  }
-  return "marginal";
+  constexpr const char* kNames[] = {"closure", "no-closure", "marginal"};
+  return kNames[static_cast<int>(verdict)];
 }
 
 Json contact_json(const GraspReport& report, std::size_t i) {
@@ -129,14 +122,8 @@ std::string contacts_text(const GraspReport& report) {
 }
 
 std::string closure_text(const grasp::Closure& closure) {
-  switch (closure.verdict) {
-    case grasp::Verdict::closure:
-      return "yes";
-    case grasp::Verdict::marginal:
-      return "marginal: neither yes nor no is proved";
-    case grasp::Verdict::no_closure:
-      break;
-  }
+  if (closure.verdict == grasp::Verdict::closure) return "yes";
+  if (closure.verdict == grasp::Verdict::marginal) return "marginal: neither yes nor no is proved";
   return closure.is_flat ? "no: nothing resists the weakest direction, nor its opposite"
                          : "no: nothing resists the weakest direction";
 }

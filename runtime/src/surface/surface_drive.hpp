@@ -190,3 +190,14 @@ void normal_on(const fdcg_surface& surface, const fdcg_result& result, double no
 }
 
 }  // namespace fdcg::surface_drive
+
+// What surface_kinds.hpp declares of a kind, once in the kind's own source. Quick: what most ticks need of the shape.
+#define FDCG_SURFACE_KIND(name, kind, Shape, Quick)                                                                            \
+  extern "C" const uint32_t fdcg_linked_##name = kind;                                                                         \
+  void fdcg::step_##name(const fdcg_surface& surface, const fdcg_params& params, fdcg_contact* contact, const double hip_m[3], \
+                         fdcg_result* result) {                                                                                \
+    surface_drive::step_on<Shape, Quick>(surface, params, contact, hip_m, result);                                             \
+  }                                                                                                                            \
+  void fdcg::normal_of_##name(const fdcg_surface& surface, const fdcg_result& result, double normal[3]) {                      \
+    surface_drive::normal_on<Shape>(surface, result, normal);                                                                  \
+  }
