@@ -133,12 +133,6 @@ void match(const std::string& prefix, const std::vector<std::string>& components
   }
 }
 
-bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
-  std::string ending = fs::path(name).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), lower);
-  return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
-
 void walk(const std::string& prefix, const std::vector<std::string>& endings, std::set<std::string>& found) {
   for (const fs::directory_entry& entry : entries_of(prefix)) {
     const std::string name = entry.path().filename().string();
@@ -175,6 +169,17 @@ std::vector<NamedFile> expand(const std::string& argument, const std::vector<std
 }
 
 }  // namespace
+
+const std::vector<std::string>& mesh_endings() {
+  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc"};
+  return kEndings;
+}
+
+bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
+  std::string ending = fs::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), lower);
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
 
 bool matches_pattern(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0;

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "../common/atomic_file.hpp"
+#include "../common/expand_paths.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "fdcg/device_tools.hpp"
@@ -26,8 +27,8 @@ using tools::grouped;
 using tools::short_number;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kChunkTicks =
-    4096;  // stepped in one go, then logged: so that writing the log does not chill the step's caches
+// Stepped in one go, then logged: writing the log must not empty the caches between two steps.
+constexpr std::size_t kChunkTicks = 4096;
 constexpr int kClockSamples = 20001;
 constexpr int kBarWidth = 50;
 constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
@@ -179,8 +180,10 @@ std::string histogram_text(const StepTimeHistogram& histogram) {
 
 std::string summary_text(const Summary& summary, const fdcg_contact& contact, std::uint64_t clock_ns) {
   const std::uint64_t touching = summary.ticks - summary.in_state[FDCG_FREE];
-  std::string text = "ticks            " + grouped(summary.ticks) + ", " + percent(touching, summary.ticks) + " in contact, " +
-                     percent(summary.slipping, touching) + " of these slipping\n";
+  std::string text = "ticks            " + grouped(summary.ticks) + ", ";
+  text += touching == 0 ? "never in contact: the path touches nothing\n"
+                        : percent(touching, summary.ticks) + " in contact, " + percent(summary.slipping, touching) +
+                              " of these slipping\n";
   text += "states          ";
   for (int state = FDCG_FREE; state <= FDCG_VERTEX; ++state) {
     text += std::string(state == 0 ? " " : ", ") + kStates[state] + " " + grouped(summary.in_state[state]);
@@ -188,11 +191,13 @@ std::string summary_text(const Summary& summary, const fdcg_contact& contact, st
   text += "\ntransitions      p50 " + grouped(summary.transitions.quantile(0.5)) + ", p99.9 " +
           grouped(summary.transitions.quantile(0.999)) + ", max " + grouped(summary.transitions.largest()) + " a step\n";
   text += "step time        " + quantiles(summary.step_ns, " ns") + "\n";
-  text += "  in contact     " + quantiles(summary.contact_ns, " ns") + "\n";
+  if (touching != 0) text += "  in contact     " + quantiles(summary.contact_ns, " ns") + "\n";
   text +=
       "  (the clock's own " + grouped(clock_ns) + " ns, a median, subtracted from each)\n" + histogram_text(summary.step_ns);
-  text += "largest force    " + short_number(summary.largest_force_n) + " N\n";
-  text += "friction ratio   " + short_number(summary.largest_ratio) + " at most on faces (tangential over normal force)\n";
+  if (touching != 0) {
+    text += "largest force    " + short_number(summary.largest_force_n) + " N\n";
+    text += "friction ratio   " + short_number(summary.largest_ratio) + " at most on faces (tangential over normal force)\n";
+  }
   const auto counted = [&text](std::uint64_t ticks, const char* what) {
     if (ticks != 0) text += grouped(ticks) + (ticks == 1 ? " tick " : " ticks ") + what + "\n";
   };
@@ -228,13 +233,23 @@ int run_session(const ReplayArguments& arguments, const std::string& given) {
       {arguments.graph, arguments.graphs, arguments.log, arguments.touches, arguments.rewritten, arguments.quiet});
 }
 
-// What the command line asks for is no replay of a graph.
+// Opens the graph, or returns fail's code. `otherwise`: what the file could have been instead.
+int open_graph(const std::string& path, fdcg_graph* graph, const std::string& otherwise = {}) {
+  fdcg_error error{};
+  if (fdcg_open_file(path.c_str(), FDCG_VERIFY_FULL, graph, &error) == FDCG_OK) return kClean;
+  if (!tools::is_stream(path) && tools::has_ending(path, tools::mesh_endings())) {
+    const std::string stem = path.substr(0, path.rfind('.'));
+    return fail(kFile, "'" + path + "' is a mesh; compile it first: fdcg compile " + path + " -o " + stem + ".fdcg");
+  }
+  return fail(kFile, otherwise + error.message);
+}
+
+// Refuses a command line that is no replay of a graph.
 int check_inputs(const ReplayArguments& arguments) {
   if (arguments.trajectory.empty() && arguments.path.empty()) {
     fdcg_graph graph{};
-    fdcg_error error{};
-    if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK)
-      return fail(kFile, std::string("neither a session's log nor a graph: ") + error.message);
+    if (const int code = open_graph(arguments.graph, &graph, "neither a session's log nor a graph: "); code != kClean)
+      return code;
     fdcg_close(&graph);
     return fail(kUsage, "--trajectory is required, or --path: '" + arguments.graph +
                             "' is no session's log, and a graph needs a path of the hand");
@@ -265,10 +280,7 @@ int run_replay(const ReplayArguments& arguments) {
   AtomicFile log(arguments.log);
   if (!log.ok()) return fail(kFile, log.error());
   fdcg_graph graph{};
-  fdcg_error error{};
-  if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
-    return fail(kFile, error.message);
-  }
+  if (const int code = open_graph(arguments.graph, &graph); code != kClean) return code;
   std::vector<TrajectoryPoint> points;
   if (const int code = get_path(arguments, graph, &points); code != kClean) {
     fdcg_close(&graph);

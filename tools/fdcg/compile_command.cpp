@@ -77,7 +77,9 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   changed(compiled.flipped_faces, "turned round by --orient");
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
-  text += "corners lie within " + short_number(header.max_deviation * scale) + " m of their nodes' planes\n";
+  text += header.max_deviation == 0
+              ? std::string("every corner lies on the planes of its faces\n")
+              : "corners lie up to " + short_number(header.max_deviation * scale) + " m off the planes of their faces\n";
   text += mass_summary(compiled);
   text += arguments.output + ": " + counted(header.node_count, "node") + ", " + counted(header.connection_count, "connection") +
           " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +

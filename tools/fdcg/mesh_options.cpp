@@ -33,11 +33,6 @@ void add_mesh_argument(CLI::App& command, std::string& mesh) {
   required_argument(command, "mesh", "MESH", mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco. - is standard input.");
 }
 
-const std::vector<std::string>& mesh_endings() {
-  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc"};
-  return kEndings;
-}
-
 void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& unit_text) {
   const OptionGroup input(command, "Input");
   CLI::Option* const units = input.choice<double>("--units", "UNIT", {{"m", 1}, {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}},

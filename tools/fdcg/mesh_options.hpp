@@ -33,7 +33,4 @@ void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& u
 void add_precision_option(const OptionGroup& group, bake::Precision& precision, const std::string& help);
 void add_allow_option(const OptionGroup& group, std::set<std::string>& allow, Allowable allowable);
 
-// Of the files that are meshes by their names, in lower case: ".off" and so on.
-const std::vector<std::string>& mesh_endings();
-
 }  // namespace fdcg::tools

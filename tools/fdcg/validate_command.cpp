@@ -213,9 +213,13 @@ int run_validate(const ValidateArguments& arguments) {
   run.jobs = arguments.jobs;
   run.wants_all_elements = !arguments.full.empty();
   run.shows_progress = !arguments.quiet;
+  // The text report says it too: once is enough for a person who sees both.
+  const bool is_in_sight = is_terminal(Stream::standard_output) && is_terminal(Stream::standard_error) &&
+                           arguments.output == "-" &&
+                           arguments.format.value_or(bake::ReportFormat::text) == bake::ReportFormat::text;
   int code = kClean;
   validate_all(run, [&](Validated& result) {
-    if (!result.error.empty()) fail(result.exit_code, result.error);
+    if (!result.error.empty() && !is_in_sight) fail(result.exit_code, result.error);
     code = std::max(code, result.exit_code);
     outputs.add(result);
   });
