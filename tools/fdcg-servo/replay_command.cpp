@@ -72,7 +72,7 @@ std::uint64_t nanoseconds(Clock::duration time) {
       std::max<std::int64_t>(0, std::chrono::duration_cast<std::chrono::nanoseconds>(time).count()));
 }
 
-// Between two readings with nothing between them: what each measured step contains of the clock itself.
+// The time between two readings of the clock: the part of each measured step that is the clock's own.
 std::uint64_t clock_cost_ns() {
   StepTimeHistogram cost;
   for (int i = 0; i < kClockSamples; ++i) {

@@ -38,7 +38,7 @@ class RunSession {
     dev::Phase phase = dev::Phase::kDisarmed;
     bool wants_arming = false;  // --arm: until the gate has granted it once
     bool was_asked = false;     // to arm
-    double asked_s = -1;        // when; -1: answered, or told
+    double asked_s = -1;        // when; -1: granted, or its refusal was printed
     std::uint64_t ticks = 0;    // at the last status line
   };
 

@@ -9,7 +9,7 @@
 namespace fdcg {
 namespace {
 
-// Which of several moves is refused; FDCG_NONE: there is but one.
+// The index of the move that is refused; FDCG_NONE: there is only one.
 Message& say_which(Message& message, uint64_t move) {
   if (move != FDCG_NONE) message.say("move ", move, ": ");
   return message;
@@ -65,7 +65,7 @@ inline bool is_finite(double x) {
   return is_inside != 0;
 }
 
-// A corner's place where the graph has it, or where it was rounded to: no further out than it was asked for.
+// A corner's place in the graph's numbers, rounded so that it is no further out than the one given.
 template <class Real>
 inline Vec3<Real> rounded_to(Vec3<double> p) {
   return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)};
@@ -175,7 +175,7 @@ extern "C" fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint3
     return fdcg::Message(error, FDCG_E_ARGUMENT).text("deform, corners or positions: null pointer");
   return fdcg::with_real_of(deform->header, [&](auto real) {
     using Place = fdcg::Place<decltype(real)>;
-    constexpr uint64_t kAhead = 8;  // so that scattered corners are in the cache when their turn comes
+    constexpr uint64_t kAhead = 8;  // prefetch distance: scattered corners are in the cache when they are moved
     fdcg_status status = FDCG_OK;
     for (uint64_t i = 0; i < count && status == FDCG_OK; ++i) {
       if (i + kAhead < count && corners[i + kAhead] < deform->header.corner_count)

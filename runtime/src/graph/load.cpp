@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t kMaxSections = 64;
 
-// Without a hierarchy the free-space sweep looks at every node, which must stay a bounded piece of work.
+// Without a hierarchy the free-space sweep tests every node, and its work must stay bounded.
 constexpr uint32_t kMaxNodesWithoutHierarchy = 4096;
 
 // With more, connection << 1 would not fit into 32 bits.
@@ -283,7 +283,7 @@ fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, f
   return status;
 }
 
-// Tells the log handler how an opening went, and hands the status on.
+// Logs the result of an opening, and returns the status.
 fdcg_status told(fdcg_status status, const fdcg_graph& graph, const fdcg_error& error) {
   if (status != FDCG_OK) {
     log(FDCG_LOG_ERROR, error.message);

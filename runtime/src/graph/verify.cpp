@@ -37,7 +37,7 @@ bool is_across(Vec3<Real> along, Vec3<Real> normal) {
 constexpr float kFarthestBox = 8;
 constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
 
-// Its passes are functions of their own: inlined into one, they take a third longer for want of registers.
+// Its passes are functions of their own: inlined into one, they take a third longer, since registers run out.
 template <class Real>
 class Verifier {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface may be. surface_step.cpp steps on it.
+// Checks of a surface's fields. surface_step.cpp steps on it.
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "surface/surface_kinds.hpp"
@@ -34,7 +34,7 @@ fdcg_status refuse_field(const char* field, uint32_t value, const char* allowed,
 
 constexpr uint32_t kSizes = 7;
 
-// Each by itself first: what is compared then is finite.
+// Each size by itself first, so that all are finite when they are compared.
 fdcg_status check_sizes(const fdcg_surface& s, fdcg_error* error) {
   const bool is_cone = s.kind == FDCG_SURFACE_CONE;  // one end may be an apex
   const Size sizes[kSizes] = {{"radius_m", s.radius_m, kLargest_m, is_cone && s.top_radius_m != 0},

@@ -59,7 +59,7 @@ double number_of(NumberType type, std::uint32_t raw) {
   return raw > info.most ? raw - std::ldexp(1.0, 8 * info.bytes) : raw;
 }
 
-// Held in the type's range. Never NaN: that is 0.
+// Clamped to the type's range. Never NaN: that is 0.
 std::uint32_t raw_of(NumberType type, double number) {
   const TypeInfo& range = info_of(type);
   if (std::isnan(number)) number = 0;
@@ -77,7 +77,7 @@ std::uint32_t raw_of_value(const Field& field, double value) {
   return raw_of(field.type, ((std::isnan(value) ? 0 : value) - field.bias) / field.scale);
 }
 
-// The device's clock goes round.
+// The device's clock wraps.
 std::uint32_t raw_of_time(const Field& field, double time_s) {
   const double round = std::ldexp(1.0, 8 * bytes_of(field.type));
   const double ticks = std::fmod(std::nearbyint(time_s / field.scale), round);
