@@ -75,31 +75,17 @@ std::optional<Format> format_by_content(std::string_view bytes) {
 
 std::optional<Format> format_by_ending(const std::string& name) {
   const std::string ending = lower_case(std::filesystem::path(name).extension().string());
-  if (ending == ".off") return Format::off;
-  if (ending == ".obj") return Format::obj;
-  if (ending == ".ply") return Format::ply;
-  if (ending == ".stl") return Format::stl;
-  if (ending == ".gltf" || ending == ".glb") return Format::gltf;
-  if (ending == ".drc") return Format::drc;
+  constexpr std::pair<std::string_view, Format> kEndings[] = {
+      {".off", Format::off},   {".obj", Format::obj},  {".ply", Format::ply}, {".stl", Format::stl},
+      {".gltf", Format::gltf}, {".glb", Format::gltf}, {".drc", Format::drc}};
+  for (const auto& [known, format] : kEndings)
+    if (ending == known) return format;
   return std::nullopt;
 }
 
 Result<PolygonSoup> read_as(Format format, const MeshText& input) {
-  switch (format) {
-    case Format::off:
-      return read_off(input);
-    case Format::obj:
-      return read_obj(input);
-    case Format::ply:
-      return read_ply(input);
-    case Format::stl:
-      return read_stl(input);
-    case Format::drc:
-      return read_drc(input);
-    case Format::gltf:
-      return read_gltf(input);
-  }
-  return Failure{4, "import: a format without a reader", {}};
+  constexpr Result<PolygonSoup> (*kReaders[])(const MeshText&) = {read_off, read_obj, read_ply, read_stl, read_gltf, read_drc};
+  return kReaders[static_cast<int>(format)](input);
 }
 
 bool is_float(double c) {

@@ -22,9 +22,9 @@ struct FieldRange {
 fdcg_status check_range(const char* of, const FieldRange& range, fdcg_error* error, const char* remedy = "") {
   if (range.value >= range.low && range.value <= range.high) return FDCG_OK;
   Message message(error, FDCG_E_ARGUMENT);
-  message.text(of).text(range.name);
-  if (range.index >= 0) message.text("[").number(static_cast<uint64_t>(range.index)).text("]");
-  return message.text(" is ").real(range.value).text(", allowed ").real(range.low).text(" to ").real(range.high).text(remedy);
+  message.say(of, range.name);
+  if (range.index >= 0) message.say("[", static_cast<uint64_t>(range.index), "]");
+  return message.say(" is ", range.value, ", allowed ", range.low, " to ", range.high, remedy);
 }
 
 // The triangle inequality of the moments of inertia: checked on the diagonal and, in general, by leading minors.
@@ -47,9 +47,8 @@ fdcg_status check_solid(const char* of, const fdcg_body_config& config, const ch
   }
   if (status != FDCG_OK || is_solid_inertia(config.inertia_kg_m2)) return status;
   return Message(error, FDCG_E_ARGUMENT)
-      .text(of)
-      .text("inertia_kg_m2 is no solid's: it must be positive definite, and no axis may have more than the two others")
-      .text(remedy);
+      .say(of, "inertia_kg_m2 is no solid's: it must be positive definite, and no axis may have more than the two others",
+           remedy);
 }
 
 fdcg_status check_config(const fdcg_body_config& config, fdcg_error* error) {

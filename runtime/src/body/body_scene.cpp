@@ -14,12 +14,8 @@ fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fd
   for (uint32_t i = 0; i < body_count; ++i) {
     if (bodies[i].object.index < reaction_count) continue;
     return Message(error, FDCG_E_ARGUMENT)
-        .text("body ")
-        .number(i)
-        .text(": its object has index ")
-        .number(bodies[i].object.index)
-        .text(", there is room for the reactions of ")
-        .number(reaction_count);
+        .say("body ", i, ": its object has index ", bodies[i].object.index, ", there is room for the reactions of ",
+             reaction_count);
   }
   for (uint32_t i = body_count; i-- > 0;)
     reactions[bodies[i].object.index].force_n[0] = i;
@@ -32,9 +28,9 @@ fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fd
   for (uint32_t i = 0; i < reaction_count; ++i)
     reactions[i] = {};
   Message message(error, FDCG_E_ARGUMENT);
-  message.text("body ").number(bad);
+  message.say("body ", bad);
   if (first == bad) return message.text(": has no mass; make it with fdcg_body_init");
-  return message.text(": its object is that of body ").number(first).text(" too; an object is one body's: give each its own");
+  return message.say(": its object is that of body ", first, " too; an object is one body's: give each its own");
 }
 
 }  // namespace
@@ -64,23 +60,14 @@ fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies,
     return Message(error, FDCG_E_ARGUMENT).text("scene, bodies or reactions: null pointer");
   if (substeps == 0 || substeps > FDCG_BODY_MAX_SUBSTEPS) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("substeps is ")
-        .number(substeps)
-        .text(", allowed 1 to ")
-        .number(FDCG_BODY_MAX_SUBSTEPS)
-        .text(substeps == 0 ? "; where fdcg_body_substeps returns 0 too many would be needed: a" : "; a")
-        .text(" shorter tick, a softer contact or a heavier body needs fewer");
+        .say("substeps is ", substeps, ", allowed 1 to ", FDCG_BODY_MAX_SUBSTEPS,
+             substeps == 0 ? "; where fdcg_body_substeps returns 0 too many would be needed: a" : "; a",
+             " shorter tick, a softer contact or a heavier body needs fewer");
   }
   constexpr double kLeastStep_s = 1e-9, kLongestStep_s = 1;  // of fdcg_body_step
   if (!(tick_s / substeps >= kLeastStep_s && tick_s / substeps <= kLongestStep_s)) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("tick_s is ")
-        .real(tick_s)
-        .text(", allowed for each of the substeps ")
-        .real(kLeastStep_s)
-        .text(" to ")
-        .real(kLongestStep_s)
-        .text(" s");
+        .say("tick_s is ", tick_s, ", allowed for each of the substeps ", kLeastStep_s, " to ", kLongestStep_s, " s");
   }
   return check_objects(bodies, body_count, reactions, reaction_count, error);
 }

@@ -169,4 +169,22 @@ void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch);
 // The inverse effective mass of both at `at`, summed over the x, y and z directions: an upper bound for any direction. 1/kg.
 double looseness_at(const PileMember* a, const PileMember* b, World at);
 
+// Returns the touches of a point for which `is_gone` is true to the free list.
+template <class IsGone>
+void drop_touches(fdcg_pile& pile, PileMember& member, PilePoint& point, IsGone is_gone) {
+  uint32_t* link = &point.touch;
+  while (*link != FDCG_NONE) {
+    PileTouch& touch = pile.touches()[*link];
+    if (!is_gone(touch)) {
+      link = &touch.next;
+      continue;
+    }
+    const uint32_t gone = *link;
+    *link = touch.next;
+    touch.next = pile.free_touch;
+    pile.free_touch = gone;
+    --member.touch_count;
+  }
+}
+
 }  // namespace fdcg

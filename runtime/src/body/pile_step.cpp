@@ -120,20 +120,9 @@ void try_new_touch(const Meeting& meeting, PileMember* owner, PilePoint* point, 
 
 // Steps the point's touches where either side has moved, and drops those that have ended.
 void step_touches(const Meeting& meeting, PileMember* owner, PilePoint* point, const PointWay& way) {
-  fdcg_pile& pile = meeting.pile;
-  uint32_t* link = &point->touch;
-  while (*link != FDCG_NONE) {
-    PileTouch& touch = pile.touches()[*link];
-    if (!is_awake(pile, *owner, touch.on) || step_touch(meeting, *owner, way, false, &touch)) {
-      link = &touch.next;
-      continue;
-    }
-    const uint32_t gone = *link;
-    *link = touch.next;
-    touch.next = pile.free_touch;
-    pile.free_touch = gone;
-    --owner->touch_count;
-  }
+  drop_touches(meeting.pile, *owner, *point, [&](PileTouch& touch) {
+    return is_awake(meeting.pile, *owner, touch.on) && !step_touch(meeting, *owner, way, false, &touch);
+  });
 }
 
 PointWay way_of(const Object& object, const PilePoint& point) {

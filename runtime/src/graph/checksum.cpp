@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The format's checksum: eight 64-bit lanes, each a chain of steps that can be undone (xor with a word, times an odd number,
 // rotation), folded by steps that can be undone in each lane. So two inputs of one length that differ inside a single word
-// always differ in the result; elsewhere they agree by chance once in 2^64. It guards against damage, not against malice.
+// always differ in the result; elsewhere they agree by chance once in 2^64. It detects damage, not deliberate changes.
 #include <string.h>
 
 #include "fdcg/fdcg.h"
