@@ -21,7 +21,7 @@ struct HandReport {
   void add(const HandReport& other);
 };
 
-// Steps a new contact along the HIPs (metres, the object's frame), the first of them outside.
+// Steps a new contact along the HIPs (metres, the object's frame). As long as they have not been outside, nothing is owed.
 HandReport probe_hand(const fdcg_graph& graph, const ExactSolid& solid, const fdcg_params& params,
                       const std::vector<Hip>& way_m);
 

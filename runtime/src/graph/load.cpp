@@ -160,6 +160,7 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional},
     {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional},
     {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional},
+    {FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), sizeof(fdcg_fan_run), Presence::optional},
 };
 
 uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
@@ -194,6 +195,8 @@ uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found
       return header.node_count;
     case FDCG_SECTION_MATERIAL_NAMES:
       return found <= FDCG_NO_MATERIAL ? found : FDCG_NO_MATERIAL;
+    case FDCG_SECTION_FAN_RUNS:
+      return found <= header.busy_count ? found : header.busy_count;
     default:
       return found;
   }
@@ -271,6 +274,9 @@ fdcg_graph view(const void* data, const fdcg_header& header) {
   graph.materials = static_cast<const fdcg_material_record*>(section(FDCG_SECTION_MATERIAL_NAMES));
   if (graph.materials != nullptr)
     graph.material_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_MATERIAL_NAMES)->record_count);
+  graph.fan_runs = static_cast<const fdcg_fan_run*>(section(FDCG_SECTION_FAN_RUNS));
+  if (graph.fan_runs != nullptr)
+    graph.fan_run_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_FAN_RUNS)->record_count);
   if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;
   return graph;
 }
