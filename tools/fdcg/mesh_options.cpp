@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_options.hpp"
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 
@@ -66,7 +68,7 @@ void add_weld_option(CLI::App& command, std::optional<bake::Weld>& weld) {
 }
 
 const std::vector<std::string>& mesh_endings() {
-  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc"};
+  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc", ".dae", ".3mf"};
   return kEndings;
 }
 
@@ -111,15 +113,16 @@ void add_precision_option(CLI::App& command, bake::Precision& precision, const s
 }
 
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format) {
-  const auto parse = [&format](const std::string& text) {
-    require_choice("--input-format", text, {"off", "obj", "ply", "stl", "gltf", "glb", "drc"});
+  const std::vector<std::string> names{"off", "obj", "ply", "stl", "gltf", "glb", "drc", "dae", "3mf"};
+  const auto parse = [&format, names](const std::string& text) {
+    require_choice("--input-format", text, names);
     using enum bake::Format;
-    format = text == "off" ? off : text == "obj" ? obj : text == "ply" ? ply : text == "stl" ? stl : text == "drc" ? drc : gltf;
+    constexpr std::array kFormats{off, obj, ply, stl, gltf, gltf, drc, dae, threemf};
+    format = kFormats[static_cast<std::size_t>(std::find(names.begin(), names.end(), text) - names.begin())];
   };
   command
       .add_option_function<std::string>("--input-format", parse,
-                                        one_of("Input format; required for standard input whose content does not tell.",
-                                               {"off", "obj", "ply", "stl", "gltf", "glb", "drc"}))
+                                        one_of("Input format; required for standard input whose content does not tell.", names))
       ->type_name("FORMAT")
       ->default_str("detected by content, then by extension")
       ->group("Input");

@@ -24,6 +24,10 @@ const char* name_of(Format format) {
       return "gltf";
     case Format::drc:
       return "drc";
+    case Format::dae:
+      return "dae";
+    case Format::threemf:
+      return "3mf";
   }
   return "";
 }
