@@ -34,7 +34,8 @@ class EdgeTable {
   // In no particular order.
   [[nodiscard]] std::span<const Entry> at(VertexId u, VertexId v) const {
     const auto is_before = [](const Entry& a, const Entry& b) { return a.ends < b.ends; };
-    const auto [first, end] = std::equal_range(entries_.begin(), entries_.end(), Entry{key(+u, +v), FaceId{0}, false}, is_before);
+    const auto [first, end] =
+        std::equal_range(entries_.begin(), entries_.end(), Entry{key(+u, +v), FaceId{0}, false}, is_before);
     return {first, end};
   }
   struct Count {

@@ -16,8 +16,8 @@ namespace fdcg::bake {
 // Pairs the half-edges of an edge of more than two faces. The faces are sorted by their angle around the edge, exactly, and
 // those that bound one wedge of solid are paired: first a face that turns its inside to the larger angles, then the next one
 // that turns it to the smaller, innermost pairs first, as with brackets. So solids that touch along the edge become separate
-// ones. Faces at one angle are taken as lying apart with nothing solid between; no pair is a fold. Where as many faces run along
-// the edge as against it, all are paired; of others some are left over.
+// ones. Faces at one angle are taken as lying apart with nothing solid between; no pair is a fold. Where as many faces run
+// along the edge as against it, all are paired; of others some are left over.
 class RadialPairing {
  public:
   // `geometry` is that of the mesh. Faces that are degenerate or not finite are left over.

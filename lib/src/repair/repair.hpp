@@ -80,7 +80,8 @@ RepairAction drop_unusable_step(Workpiece& piece);
 RepairAction triangulate_crossing_step(Workpiece& piece);
 
 // Folded pairs of triangles of which one is no thicker than `thickness`: the diagonal of the two together is exchanged, which
-// leaves what they do not both cover. Flaps, a triangle and its back that reach no farther from where they hang, go. Returns the number of exchanges; may be called again.
+// leaves what they do not both cover. Flaps, a triangle and its back that reach no farther from where they hang, go. Returns
+// the number of exchanges; may be called again.
 struct UnfoldTally : Tally {
   double thickest = 0;  // of the slivers taken away
   std::uint64_t flaps = 0;

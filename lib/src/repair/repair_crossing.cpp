@@ -101,9 +101,8 @@ class CrossingParter {
     Loop& inner = on_edges_[whole];
     const Vec3 start = at(whole[0]);
     inner.push_back(point);
-    std::sort(inner.begin(), inner.end(), [&](std::uint32_t s, std::uint32_t t) {
-      return squared_length(at(s) - start) < squared_length(at(t) - start);
-    });
+    std::sort(inner.begin(), inner.end(),
+              [&](std::uint32_t s, std::uint32_t t) { return squared_length(at(s) - start) < squared_length(at(t) - start); });
   }
 
   Workpiece& piece_;
@@ -113,7 +112,8 @@ class CrossingParter {
 
 class CrossingMender {
  public:
-  CrossingMender(Workpiece& piece, Tally& tally) : piece_(piece), tally_(tally), view_(piece), geometry_(view_.mesh, view_.states) {}
+  CrossingMender(Workpiece& piece, Tally& tally)
+      : piece_(piece), tally_(tally), view_(piece), geometry_(view_.mesh, view_.states) {}
 
   // Returns the number of polygons mended; some may wait for the next round, since their neighbour was changed.
   std::uint64_t run() {
@@ -258,10 +258,10 @@ RepairAction triangulate_crossing_step(Workpiece& piece) {
   }
   std::sort(tally.done.begin(), tally.done.end());
   tally.done.erase(std::unique(tally.done.begin(), tally.done.end()), tally.done.end());
-  return action_of(piece, "triangulate-crossing", Kind::faces,
-                   counted(tally.done.size(), "polygon that crosses itself was", "polygons that cross themselves were") +
-                       " triangulated",
-                   tally);
+  return action_of(
+      piece, "triangulate-crossing", Kind::faces,
+      counted(tally.done.size(), "polygon that crosses itself was", "polygons that cross themselves were") + " triangulated",
+      tally);
 }
 
 }  // namespace fdcg::bake

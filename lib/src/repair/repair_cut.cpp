@@ -4,8 +4,8 @@
 // faces run in one direction, as a one-sided strip has somewhere.
 //
 // Vertices hold faces together, and edges are known by their vertices. So each vertex at a cut edge becomes one for each group
-// of faces that hang together there. Where both ends of the edge still are the same vertices for several pairs of faces, all but
-// one pair get a corner more in the middle of the edge.
+// of faces that hang together there. Where both ends of the edge still are the same vertices for several pairs of faces, all
+// but one pair get a corner more in the middle of the edge.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -206,8 +206,7 @@ class EdgeCutter {
   std::uint64_t add_middle(HalfedgeId h, std::unordered_map<std::uint32_t, std::uint32_t>& middle) {
     const std::uint32_t a = piece_.soup.corners[+h], b = piece_.soup.corners[+after(h)];
     Vec3 m = 0.5 * piece_.soup.points[a] + 0.5 * piece_.soup.points[b];
-    if (piece_.has_floats)
-      m = {static_cast<float>(m.x), static_cast<float>(m.y), static_cast<float>(m.z)};
+    if (piece_.has_floats) m = {static_cast<float>(m.x), static_cast<float>(m.y), static_cast<float>(m.z)};
     const std::uint32_t point = add_point(m, piece_.source_point[a]);
     middle[+h] = point;
     if (is_halfedge(twin_[+h])) middle[+twin_[+h]] = point;
@@ -283,7 +282,8 @@ std::string cut_message(const CutTally& tally) {
   add(tally.count[kCrowded], "edge of more than two faces was cut, since as many do not run along it as against it",
       "edges of more than two faces were cut, since as many do not run along them as against them");
   add(tally.count[kFold], "folded edge was cut", "folded edges were cut");
-  add(tally.count[kOneSided], "edge was cut that makes its patch one-sided", "edges were cut that make their patches one-sided");
+  add(tally.count[kOneSided], "edge was cut that makes its patch one-sided",
+      "edges were cut that make their patches one-sided");
   if (text.empty()) return "no edge was cut";
   add(tally.new_points, "new vertex", "new vertices");
   add(tally.middles, "edge got a corner in its middle", "edges got a corner in their middle");

@@ -63,8 +63,7 @@ RepairAction drop_unusable_step(Workpiece& piece) {
   replace_faces(piece, edits);
   drop_points_not_finite(piece);
   return action_of(piece, "drop-unusable", Kind::faces,
-                   counted(tally.done.size(), "face was", "faces were") +
-                       " dropped: a corner is not finite or not in the file",
+                   counted(tally.done.size(), "face was", "faces were") + " dropped: a corner is not finite or not in the file",
                    tally);
 }
 

@@ -46,7 +46,8 @@ void drop_faces(Workpiece& piece, const RepairOptions& options, DegenerateTally&
   for (bool is_first = true;; is_first = false) {
     std::uint64_t done = 0;
     if (options.drop_degenerate_faces) done += drop_degenerate(piece, degenerate);
-    if (options.drop_duplicate_faces && (is_first || done != 0)) done += drop_duplicates(piece, duplicates, options.cut_non_manifold);
+    if (options.drop_duplicate_faces && (is_first || done != 0))
+      done += drop_duplicates(piece, duplicates, options.cut_non_manifold);
     if (done == 0 || !(options.drop_degenerate_faces && options.drop_duplicate_faces)) break;
   }
 }

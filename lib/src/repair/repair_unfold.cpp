@@ -166,11 +166,12 @@ std::uint64_t unfold(Workpiece& piece, double thickness, UnfoldTally& tally) {
 }
 
 RepairAction unfold_action(const Workpiece& piece, UnfoldTally& tally) {
-  return action_of(piece, "unfold", Kind::faces,
-                   counted(tally.done.size() - tally.flaps, "folded sliver was", "folded slivers were") + " unfolded" +
-                       (tally.flaps == 0 ? "" : "; " + counted(tally.flaps, "flap of two faces was", "flaps of two faces were") +
-                                                    " dropped"),
-                   tally);
+  return action_of(
+      piece, "unfold", Kind::faces,
+      counted(tally.done.size() - tally.flaps, "folded sliver was", "folded slivers were") + " unfolded" +
+          (tally.flaps == 0 ? ""
+                            : "; " + counted(tally.flaps, "flap of two faces was", "flaps of two faces were") + " dropped"),
+      tally);
 }
 
 }  // namespace fdcg::bake

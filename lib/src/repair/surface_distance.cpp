@@ -173,7 +173,9 @@ double two_sided(const TriangleSet& before, const TriangleSet& after) {
 TriangleSet triangles_of(const PolygonSoup& soup, const Mesh& mesh, const std::vector<FaceState>& states, const Vec3& middle) {
   const FaceGeometry geometry(mesh, states);
   const FaceTriangles cut(mesh, geometry, 1);
-  const auto point = [&](VertexId v) { return soup.points[mesh.source_point[+v]] - middle; };  // the mesh's own origin may change
+  const auto point = [&](VertexId v) {
+    return soup.points[mesh.source_point[+v]] - middle;
+  };  // the mesh's own origin may change
   TriangleSet triangles;
   triangles.reserve(cut.count());
   for (std::uint32_t t = 0; t < cut.count(); ++t) {

@@ -17,7 +17,8 @@ using namespace fdcg::bake;
 namespace {
 
 constexpr double kFloat = 0x1p-24, kDouble = 0x1p-53;
-constexpr const char* kFaces[] = {"0 2 1", "0 3 2", "4 5 6", "4 6 7", "0 1 5", "0 5 4", "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 0 4", "3 4 7"};
+constexpr const char* kFaces[] = {"0 2 1", "0 3 2", "4 5 6", "4 6 7", "0 1 5", "0 5 4",
+                                  "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 0 4", "3 4 7"};
 
 using Print = std::function<std::string(double)>;
 

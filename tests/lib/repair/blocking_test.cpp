@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repairs of what no graph can have: edges of many faces, folds, polygons that cross themselves, faces with corners that are not
-// finite. Assemblies of cells at random have every kind of edge and vertex that solids can touch in.
-// FDCG_REPAIR_CASES sets how many assemblies (default 40).
+// Repairs of what no graph can have: edges of many faces, folds, polygons that cross themselves, faces with corners that are
+// not finite. Assemblies of cells at random have every kind of edge and vertex that solids can touch in. FDCG_REPAIR_CASES sets
+// how many assemblies (default 40).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,8 @@ std::uint64_t total(const Report& report, const std::string& rule) {
 }
 
 const RepairAction& action(const Repaired& repaired, const std::string& name) {
-  const auto found = std::find_if(repaired.actions.begin(), repaired.actions.end(), [&](const auto& a) { return a.name == name; });
+  const auto found =
+      std::find_if(repaired.actions.begin(), repaired.actions.end(), [&](const auto& a) { return a.name == name; });
   REQUIRE(found != repaired.actions.end());
   return *found;
 }
@@ -110,7 +111,9 @@ class Assembly {
       }
     }
   }
-  void add_square(Place at, int axis, bool is_far, bool faces_up) { add_square(at, axis, is_far, faces_up, random_.chance(0.5)); }
+  void add_square(Place at, int axis, bool is_far, bool faces_up) {
+    add_square(at, axis, is_far, faces_up, random_.chance(0.5));
+  }
   void add_square(Place at, int axis, bool is_far, bool faces_up, bool is_split_one_way) {
     if (is_far) ++at[axis];
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -210,7 +213,8 @@ TEST_CASE("solids that touch in edges, vertices and walls become closed surfaces
 
 TEST_CASE("at an edge of three faces the two that bound solid go on into each other, and the third ends there") {
   // a floor of two faces, and a wall on it
-  const Repaired repaired = fully_repaired(read_off("6 3 0\n0 0 0\n0 1 0\n1 0 0\n-1 0 0\n0 0 1\n0 0.5 1\n3 0 2 1\n3 0 1 3\n3 0 1 4\n"));
+  const Repaired repaired =
+      fully_repaired(read_off("6 3 0\n0 0 0\n0 1 0\n1 0 0\n-1 0 0\n0 0 1\n0 0.5 1\n3 0 2 1\n3 0 1 3\n3 0 1 4\n"));
   CHECK(repaired.after.passes());
   CHECK(total(repaired.after, "boundary-edge") == 7);  // four of the floor, three of the wall
   CHECK(action(repaired, "cut-non-manifold").total == 1);
@@ -219,8 +223,8 @@ TEST_CASE("at an edge of three faces the two that bound solid go on into each ot
 
 TEST_CASE("a folded sliver is unfolded; a folded sheet is cut") {
   // a square of two triangles, and a sliver at the diagonal that lies on one of them
-  const Repaired repaired = fully_repaired(
-      read_off("5 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5003 0.5 0\n3 0 1 2\n3 0 2 4\n3 0 4 3\n3 4 2 3\n"));
+  const Repaired repaired =
+      fully_repaired(read_off("5 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5003 0.5 0\n3 0 1 2\n3 0 2 4\n3 0 4 3\n3 4 2 3\n"));
   CHECK(total(repaired.before, "folded-edge") > 0);
   CHECK(repaired.after.passes());
   CHECK(action(repaired, "unfold").total == 1);
@@ -241,7 +245,8 @@ TEST_CASE("a polygon that crosses itself becomes triangles with the side that it
   CHECK(bow.after.passes());
   CHECK(bow.soup.points.size() == 5);  // the crossing is new
   CHECK(bow.soup.face_count() == 2);
-  const Repaired beside = fully_repaired(read_off("6 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0.5 0.5 2\n0 0.2 3\n4 0 1 2 3\n3 2 1 4\n"));
+  const Repaired beside =
+      fully_repaired(read_off("6 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0.5 0.5 2\n0 0.2 3\n4 0 1 2 3\n3 2 1 4\n"));
   CHECK(beside.after.passes());  // the neighbour has the crossing too
 
   const Repaired star = fully_repaired(
@@ -260,7 +265,8 @@ TEST_CASE("a one-sided strip is cut once, and faces with a corner that is not fi
     const double a = i * 0.7853981633974483, half = a / 2;
     for (const double s : {-0.3, 0.3}) {
       const double r = 1 + s * std::cos(half);
-      strip += std::to_string(r * std::cos(a)) + " " + std::to_string(r * std::sin(a)) + " " + std::to_string(s * std::sin(half)) + "\n";
+      strip += std::to_string(r * std::cos(a)) + " " + std::to_string(r * std::sin(a)) + " " +
+               std::to_string(s * std::sin(half)) + "\n";
     }
   }
   for (int i = 0; i < 8; ++i) {

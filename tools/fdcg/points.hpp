@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arithmetic of three numbers.
+#pragma once
+
+#include "fdcg/bake.hpp"
+
+namespace fdcg::tools {
+
+inline bake::Vec3 plus(const bake::Vec3& a, double factor, const bake::Vec3& b) {
+  return {a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
+}
+inline double dot(const bake::Vec3& a, const bake::Vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline bake::Vec3 cross(const bake::Vec3& a, const bake::Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+}  // namespace fdcg::tools
