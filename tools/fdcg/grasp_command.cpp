@@ -13,7 +13,7 @@
 #include "grasp_object.hpp"
 #include "grasp_report.hpp"
 #include "mesh_options.hpp"
-#include "vec3.hpp"
+#include "vector_math.hpp"
 
 namespace fdcg::tools {
 namespace {
