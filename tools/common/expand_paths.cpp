@@ -171,7 +171,7 @@ std::vector<NamedFile> expand(const std::string& argument, const std::vector<std
 }  // namespace
 
 const std::vector<std::string>& mesh_endings() {
-  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc"};
+  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc", ".dae", ".3mf"};
   return kEndings;
 }
 

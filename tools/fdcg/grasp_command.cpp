@@ -13,7 +13,7 @@
 #include "grasp_object.hpp"
 #include "grasp_report.hpp"
 #include "mesh_options.hpp"
-#include "vector_math.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "vector_math.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {

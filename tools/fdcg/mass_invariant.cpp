@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "invariants.hpp"
-#include "vector_math.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {

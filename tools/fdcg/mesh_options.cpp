@@ -30,7 +30,8 @@ bake::Weld parse_weld_value(const std::string& text) {
 }
 
 void add_mesh_argument(CLI::App& command, std::string& mesh) {
-  required_argument(command, "mesh", "MESH", mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco. - is standard input.");
+  required_argument(command, "mesh", "MESH", mesh,
+                    "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA or 3MF. - is standard input.");
 }
 
 void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& unit_text) {
@@ -53,10 +54,18 @@ void add_precision_option(const OptionGroup& group, bake::Precision& precision, 
 void add_input_format_option(CLI::App& command, std::optional<bake::Format>& format) {
   using enum bake::Format;
   OptionGroup(command, "Input")
-      .choice<bake::Format>(
-          "--input-format", "FORMAT",
-          {{"off", off}, {"obj", obj}, {"ply", ply}, {"stl", stl}, {"gltf", gltf}, {"glb", gltf}, {"drc", drc}}, format,
-          "Input format; required for standard input whose content does not tell.", "detected by content, then by extension");
+      .choice<bake::Format>("--input-format", "FORMAT",
+                            {{"off", off},
+                             {"obj", obj},
+                             {"ply", ply},
+                             {"stl", stl},
+                             {"gltf", gltf},
+                             {"glb", gltf},
+                             {"drc", drc},
+                             {"dae", dae},
+                             {"3mf", threemf}},
+                            format, "Input format; required for standard input whose content does not tell.",
+                            "detected by content, then by extension");
 }
 
 void add_allow_option(const OptionGroup& group, std::set<std::string>& allow, Allowable allowable) {

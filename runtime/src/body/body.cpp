@@ -201,6 +201,23 @@ extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double veloci
   return FDCG_OK;
 }
 
+extern "C" fdcg_status fdcg_body_set_push(fdcg_body* body, const double force_n[3], const double torque_n_m[3],
+                                          fdcg_error* error) {
+  using namespace fdcg;
+  if (body == nullptr || force_n == nullptr || torque_n_m == nullptr)
+    return Message(error, FDCG_E_ARGUMENT).text("body, force or torque: null pointer");
+  for (int k = 0; k < 3; ++k) {
+    const FieldRange ranges[] = {{"force_n", force_n[k], -kLargestField, kLargestField, k},
+                                 {"torque_n_m", torque_n_m[k], -kLargestField, kLargestField, k}};
+    for (const FieldRange& range : ranges) {
+      if (const fdcg_status status = check_range("", range, error); status != FDCG_OK) return status;
+    }
+  }
+  memcpy(body->push_n, force_n, sizeof body->push_n);
+  memcpy(body->push_n_m, torque_n_m, sizeof body->push_n_m);
+  return FDCG_OK;
+}
+
 extern "C" fdcg_pose fdcg_body_get_pose(const fdcg_body* body) {
   fdcg_pose pose = {};
   if (body == nullptr) return pose;

@@ -2,6 +2,7 @@
 // Bodies that a scene's fingers push.
 #include "body/body_scene.hpp"
 #include "base/message.hpp"
+#include "scene/scene_memory.hpp"
 
 namespace fdcg {
 namespace {
@@ -44,7 +45,10 @@ fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction)
 
 fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_reaction& push, double dt_s, fdcg_error* error) {
   const bool was_asleep = body->body.is_asleep != 0;
-  fdcg_body_step(&body->body, push.force_n, push.torque_n_m, dt_s);
+  fdcg_reaction all = push;
+  put(vec(push.force_n) + vec(body->body.push_n), all.force_n);
+  put(vec(push.torque_n_m) + vec(body->body.push_n_m), all.torque_n_m);
+  fdcg_body_step(&body->body, all.force_n, all.torque_n_m, dt_s);
   if (was_asleep && body->body.is_asleep != 0) return FDCG_OK;  // it has not moved
   const fdcg_pose pose = fdcg_body_get_pose(&body->body);
   return fdcg_scene_set_pose(scene, body->object, &pose, error);
@@ -68,13 +72,35 @@ fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies,
   return check_objects(bodies, body_count, reactions, reaction_count, error);
 }
 
+void begin_ways(fdcg_scene* scene) {
+  for (uint32_t i = 0; i < scene->finger_end; ++i)
+    scene->fingers()[i].goal = scene->fingers()[i].hip;
+}
+
+void move_fingers(fdcg_scene* scene, uint32_t step, uint32_t substeps) {
+  const double share = 1.0 / (substeps - step);  // of the way that is left
+  for (uint32_t i = 0; i < scene->finger_end; ++i) {
+    Finger& finger = scene->fingers()[i];
+    if (finger.is_started == 0 || !is_place(finger.goal)) continue;
+    finger.hip = step + 1 < substeps ? finger.last + (finger.goal - finger.last) * share : finger.goal;
+  }
+}
+
+void end_ways(fdcg_scene* scene) {
+  for (uint32_t i = 0; i < scene->finger_end; ++i)
+    scene->fingers()[i].hip = scene->fingers()[i].goal;
+}
+
 }  // namespace fdcg
 
 extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count,
                                               uint32_t substeps, double tick_s, fdcg_reaction* reactions,
                                               uint32_t reaction_count, fdcg_error* error) {
   fdcg_status status = fdcg::check_bodies(scene, bodies, body_count, substeps, tick_s, reactions, reaction_count, error);
+  if (status != FDCG_OK) return status;
+  fdcg::begin_ways(scene);
   for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
+    fdcg::move_fingers(scene, step, substeps);
     fdcg_scene_step(scene);
     fdcg_scene_get_reactions(scene, reactions, reaction_count);
     for (uint32_t i = 0; status == FDCG_OK && i < body_count; ++i) {
@@ -82,5 +108,6 @@ extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body
       status = fdcg::move_body(scene, bodies + i, push, tick_s / substeps, error);
     }
   }
+  fdcg::end_ways(scene);
   return status;
 }

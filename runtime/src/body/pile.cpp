@@ -231,6 +231,7 @@ extern "C" uint32_t fdcg_pile_get_touches(const fdcg_pile* pile, fdcg_pile_touch
         to.state = touch.contact.state;
         to.feature = touch.contact.feature;
         to.slipping = touch.contact.slipping;
+        to.softened = touch.is_softened;
       }
     }
   }

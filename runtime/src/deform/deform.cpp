@@ -227,6 +227,8 @@ void place_parts(void* memory, const Layout& layout, const fdcg_graph& graph, fd
   own.mapping_bytes = 0;
   own.node_offsets = nullptr;
   own.edges = own.fan_boxes = nullptr;
+  own.fan_runs = nullptr;
+  own.fan_run_count = 0;
   own.nodes = deform->nodes;
   own.connections = deform->connections;
   own.corners = deform->corners;

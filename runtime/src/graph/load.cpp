@@ -146,6 +146,7 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional, nullptr},
     {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional, &fdcg_header::node_count},
     {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional, nullptr},
+    {FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), sizeof(fdcg_fan_run), Presence::optional, nullptr},
 };
 
 uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
@@ -158,6 +159,7 @@ uint64_t expected_records(const SectionRule& rule, const fdcg_header& header, ui
   if (rule.id == FDCG_SECTION_HIERARCHY) return BoxTree(header.node_count).records;
   if (rule.id == FDCG_SECTION_MASS) return 1;
   if (rule.id == FDCG_SECTION_MATERIAL_NAMES && found > FDCG_NO_MATERIAL) return FDCG_NO_MATERIAL;
+  if (rule.id == FDCG_SECTION_FAN_RUNS && found > header.busy_count) return header.busy_count;
   return rule.id == FDCG_SECTION_NODES && header.node_bytes != 0 ? header.node_count : found;
 }
 
@@ -226,6 +228,9 @@ fdcg_graph view(const void* data, const fdcg_header& header) {
   graph.materials = static_cast<const fdcg_material_record*>(section(FDCG_SECTION_MATERIAL_NAMES));
   if (graph.materials != nullptr)
     graph.material_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_MATERIAL_NAMES)->record_count);
+  graph.fan_runs = static_cast<const fdcg_fan_run*>(section(FDCG_SECTION_FAN_RUNS));
+  if (graph.fan_runs != nullptr)
+    graph.fan_run_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_FAN_RUNS)->record_count);
   if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;
   return graph;
 }

@@ -32,6 +32,8 @@ struct GraphRecords {
   const uint32_t* fans;
   const FanBox* fan_boxes;
   const fdcg_box8* hierarchy;
+  const fdcg_fan_run* fan_runs;
+  uint32_t fan_run_count;
 
   explicit GraphRecords(const fdcg_graph& graph)
       : header(graph.header),
@@ -45,7 +47,9 @@ struct GraphRecords {
         busy_corners(graph.busy_corners),
         fans(graph.fans),
         fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
-        hierarchy(graph.hierarchy) {}
+        hierarchy(graph.hierarchy),
+        fan_runs(graph.fan_runs),
+        fan_run_count(graph.fan_run_count) {}
 };
 
 template <class RealType>

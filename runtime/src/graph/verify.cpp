@@ -4,6 +4,7 @@
 #include "base/config.hpp"
 #include "base/message.hpp"
 #include "graph/box_tree.hpp"
+#include "graph/fan_run_section.hpp"
 #include "graph/graph_view.hpp"
 #include "graph/implicit_tree.hpp"
 #include "graph/sections.hpp"
@@ -379,7 +380,9 @@ fdcg_status verify_checksums(const void* data, const fdcg_header& header, fdcg_e
 }
 
 fdcg_status verify_graph(const fdcg_graph& graph, fdcg_error* error) {
-  return with_real_of(*graph.header, [&](auto real) { return Verifier<decltype(real)>(graph, error).run(); });
+  const fdcg_status status =
+      with_real_of(*graph.header, [&](auto real) { return Verifier<decltype(real)>(graph, error).run(); });
+  return status == FDCG_OK ? verify_fan_runs(graph, error) : status;
 }
 
 }  // namespace fdcg
