@@ -2,6 +2,7 @@
 #include "base/sha256.hpp"
 
 #include <openssl/evp.h>
+#include <array>
 
 #include <algorithm>
 #include <memory>
