@@ -2,9 +2,9 @@
 #include "base/sha256.hpp"
 
 #include <openssl/evp.h>
-#include <array>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <system_error>
 
