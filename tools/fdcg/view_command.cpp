@@ -116,7 +116,7 @@ int run_view(const ViewArguments& arguments) {
   const int code = add_inputs(arguments, inputs, page);
   if (code != kClean && named.size() == 1) return code;  // a page of nothing helps nobody
   page.finish();
-  if (!out.commit()) return fail(kFile, out.error());
+  if (const int failed = commit_all({&out}); failed != kClean) return failed;
   if (!arguments.quiet && !is_stream(output)) std::printf("%s\n", output.c_str());
   return arguments.open ? std::max(code, open_page(output)) : code;
 }
@@ -136,13 +136,10 @@ compiled, so that the mouse feels it. A replay's log goes with the graph before 
 
 )" + exit_codes("the page is written, whatever was found", "not used"));
   const auto arguments = std::make_shared<ViewArguments>();
-  command
-      ->add_option(
-          "input", arguments->inputs,
-          "Mesh files, FDCG files, logs of 'fdcg-servo replay', patterns, or folders to search for meshes. - is a mesh on "
-          "standard input.")
-      ->required()
-      ->type_name("INPUT...");
+  required_argument(
+      *command, "input", "INPUT...", arguments->inputs,
+      "Mesh files, FDCG files, logs of 'fdcg-servo replay', patterns, or folders to search for meshes. - is a mesh on standard "
+      "input.");
   const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks"), touch(*command, "Touch");
   output.text("-o,--output", "FILE", arguments->output, "Page to write. - is standard output.",
               "the first input's name with .html");
