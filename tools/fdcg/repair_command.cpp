@@ -39,11 +39,11 @@ struct FormatName {
   const char* name;
   bake::Format format;
 };
-constexpr FormatName kFormats[] = {
+constexpr FormatName kFormatNames[] = {
     {"off", bake::Format::off}, {"obj", bake::Format::obj}, {"ply", bake::Format::ply}, {"stl", bake::Format::stl}};
 
 std::optional<bake::Format> format_named(const std::string& name) {
-  for (const FormatName& known : kFormats) {
+  for (const FormatName& known : kFormatNames) {
     if (name == known.name) return known.format;
   }
   return std::nullopt;
