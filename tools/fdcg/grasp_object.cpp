@@ -10,7 +10,7 @@
 #include "../common/terminal.hpp"
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
-#include "vec3.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {

@@ -28,15 +28,8 @@ Json finite(double value) {
 }
 
 const char* verdict_name(grasp::Verdict verdict) {
-  switch (verdict) {
-    case grasp::Verdict::closure:
-      return "closure";
-    case grasp::Verdict::no_closure:
-      return "no-closure";
-    case grasp::Verdict::marginal:
-      break;
-  }
-  return "marginal";
+  constexpr const char* kNames[] = {"closure", "no-closure", "marginal"};
+  return kNames[static_cast<int>(verdict)];
 }
 
 Json contact_json(const GraspReport& report, std::size_t i) {
@@ -119,11 +112,6 @@ std::string interval(double lower, double upper) {
   return "[" + rounded(lower, false) + ", " + rounded(upper, true) + "]";
 }
 
-// "1 contact", "2,000 nodes"
-std::string counted(std::size_t count, const char* what) {
-  return grouped(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 std::size_t name_width(const GraspReport& report) {
   std::size_t width = 0;
   for (const NamedContact& contact : report.asked)
@@ -148,14 +136,8 @@ std::string contacts_text(const GraspReport& report) {
 }
 
 std::string closure_text(const grasp::Closure& closure) {
-  switch (closure.verdict) {
-    case grasp::Verdict::closure:
-      return "yes";
-    case grasp::Verdict::marginal:
-      return "marginal: neither yes nor no is proved";
-    case grasp::Verdict::no_closure:
-      break;
-  }
+  if (closure.verdict == grasp::Verdict::closure) return "yes";
+  if (closure.verdict == grasp::Verdict::marginal) return "marginal: neither yes nor no is proved";
   return closure.is_flat ? "no: nothing resists the weakest direction, nor its opposite"
                          : "no: nothing resists the weakest direction";
 }

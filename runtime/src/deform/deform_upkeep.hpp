@@ -17,7 +17,7 @@
 #include "shared/face_plane.hpp"
 
 struct fdcg_deform {
-  fdcg_graph graph;  // first: the step is handed a graph, and finds its way back from it (deform_of)
+  fdcg_graph graph;  // first member: the step gets a pointer to the graph, which deform_of casts back
   fdcg_header header;
   unsigned char* nodes;
   void* corners;
@@ -31,8 +31,8 @@ struct fdcg_deform {
   uint32_t* leaf_first;  // corner c is in the leaves leaf_first[c] .. leaf_first[c + 1] - 1
   uint32_t* leaves;      // leaf << FDCG_LEAF_NODES | a bit for each of its nodes that the corner belongs to
   fdcg::BoxTree tree;
-  uint64_t tick;       // counts the motions that steps have seen begin; comes to no end
-  uint32_t has_moved;  // how many corners, since the last step. They bear the number of the tick to come
+  uint64_t tick;       // counts the motions that steps have begun; cannot overflow in practice
+  uint32_t has_moved;  // how many corners, since the last step. They have the number of the next tick
   uint32_t node_bytes;
   uint32_t upkeep_left;  // of a step's upkeep, in units of work.hpp
   uint32_t reserved;
