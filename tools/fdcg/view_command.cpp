@@ -151,10 +151,10 @@ compiled, so that the mouse feels it. A replay's log goes with the graph before 
   command->add_flag("-q,--quiet", arguments->quiet, "Print errors only. No progress bar.")->group("Output");
   add_input_format_option(*command, arguments->mesh.input_format);
   add_unit_options(*command, arguments->mesh.metres_per_unit, arguments->unit_text);
-  add_weld_option(*command, arguments->mesh.weld);
+  add_weld_option(OptionGroup(*command, "Mesh checks"), arguments->mesh.weld);
   command->add_flag("--repair", arguments->mesh.repair, "Show what 'fdcg repair --all' makes of a mesh with errors beside it.")
       ->group("Mesh checks");
-  add_precision_option(*command, arguments->mesh.precision, "Precision of the graph that is touched.", "Touch");
+  add_precision_option(OptionGroup(*command, "Touch"), arguments->mesh.precision, "Precision of the graph that is touched.");
   command->add_flag("!--no-touch", arguments->mesh.touch, "Leave the graph of a mesh out: a smaller page, without touch.")
       ->group("Touch");
   command->add_option("--jobs", arguments->mesh.jobs, "Number of threads. The page does not depend on it.")
