@@ -47,6 +47,12 @@ std::string escaped_for_make(const std::string& name) {
   return text;
 }
 
+fdcg_header header_of(const bake::Compiled& compiled) {
+  fdcg_header header;
+  std::memcpy(&header, compiled.file().data(), sizeof header);
+  return header;
+}
+
 // Of the file as it stands in memory: what it weighs, or why it does not say.
 std::string mass_summary(const bake::Compiled& compiled) {
   fdcg_graph graph{};
@@ -75,8 +81,7 @@ std::string repair_summary(const bake::RepairAccount& account, double metres_per
 
 // What came out, for a person: sizes, types, and everything that was changed on the way.
 std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
+  const fdcg_header header = header_of(compiled);
   const double scale = header.metres_per_unit;
   std::string size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -103,15 +108,20 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   return text;
 }
 
+// Of the bounding box, in the file's unit.
+double largest_side(const fdcg_header& header) {
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  return size;
+}
+
 // A large --coplanar ANGLE flattens what is not flat. Empty where that is no more than a hand may overlook: a step of a
 // thousandth of the object, 0.1 mm on one of 0.1 m, is 0.1 N at 1 N/mm, which is felt.
 std::string deviation_warning(const bake::Compiled& compiled) {
   constexpr double kLargestShare = 1e-3;
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  const fdcg_header header = header_of(compiled);
+  const double size = largest_side(header);
   if (!(header.max_deviation > kLargestShare * size)) return {};
   return "planes lie up to " + short_number(header.max_deviation * header.metres_per_unit) +
          " m off the corners of their faces, " + short_number(100 * header.max_deviation / size) +
@@ -123,11 +133,8 @@ std::string deviation_warning(const bake::Compiled& compiled) {
 // is large on purpose.
 std::string size_warning(const CompileArguments& arguments, const bake::Compiled& compiled) {
   constexpr double kLargest_m = 10, kSmallest_m = 1e-3;
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
-  double size_m = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size_m = std::max(size_m, (header.bounds_max[axis] - header.bounds_min[axis]) * header.metres_per_unit);
+  const fdcg_header header = header_of(compiled);
+  const double size_m = largest_side(header) * header.metres_per_unit;
   const std::string measures = "the object measures " + short_number(size_m) + " m; ";
   if (size_m > kLargest_m && arguments.has_default_unit())
     return measures + "if the file is in millimetres, compile with --units mm (--units m: it is in metres, and no warning)";

@@ -33,7 +33,7 @@ struct RepairArguments {
   bool quiet = false;
 };
 
-const OptionGroup::Words<bake::Format> kFormats{
+const OptionGroup::Words<bake::Format> kFormatNames{
     {"off", bake::Format::off}, {"obj", bake::Format::obj}, {"ply", bake::Format::ply}, {"stl", bake::Format::stl}};
 
 std::string ending_of(const std::string& path) {
@@ -60,7 +60,7 @@ int check(RepairArguments& arguments) {
   if (arguments.dry_run) return kClean;
   if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; --dry-run writes none");
   const std::string ending = ending_of(arguments.output);
-  for (const auto& [name, format] : kFormats)
+  for (const auto& [name, format] : kFormatNames)
     if (!arguments.format && name == ending) arguments.format = format;
   if (!arguments.format)
     return fail(kUsage, "'" + arguments.output + "' does not end in .off, .obj, .ply or .stl; name the format with --format");
@@ -213,7 +213,7 @@ Defects that cannot be repaired safely are left and reported.
   add_mesh_argument(*command, arguments->mesh);
   const OptionGroup output(*command, "Output");
   output.text("-o,--output", "FILE", arguments->output, "File to write the repaired mesh to. - is standard output.");
-  output.choice<bake::Format>("--format", "FORMAT", kFormats, arguments->format, "Format of the repaired mesh.",
+  output.choice<bake::Format>("--format", "FORMAT", kFormatNames, arguments->format, "Format of the repaired mesh.",
                               "by the file's extension");
   add_input_format_option(*command, arguments->input_format);
   output.flag("--ascii", arguments->ascii, "Write PLY and STL as text.");

@@ -49,6 +49,14 @@ Failure refuse(const std::string& name, const std::string& what, const char* rul
 // A name out of a file, for reports: control characters as '?', cut after some 48 bytes between two characters.
 std::string readable_name(std::string_view name);
 
+// Four bytes, the lowest first.
+inline std::uint32_t load_u32(const char* bytes) {
+  std::uint32_t value = 0;
+  for (int i = 3; i >= 0; --i)
+    value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
+
 inline constexpr std::uint32_t kMaxFaceCorners = 65'536;
 // Corner slots are numbered with 32 bits, of which the later stages keep the last few values for themselves.
 inline constexpr std::size_t kMaxCorners = 0xFFFFFF00u;
