@@ -25,10 +25,6 @@ namespace {
 
 using Loops = std::vector<std::vector<std::uint32_t>>;
 
-bool is_halfedge(HalfedgeId h) {
-  return +h < +Topology::kSkipped;
-}
-
 // Turns the faces of patches that no turning makes consistent so that few edges stay along which two faces run in one
 // direction: each face agrees with the one from which it was reached first. Returns the number of faces turned.
 std::uint64_t turn_one_sided(Workpiece& piece) {
