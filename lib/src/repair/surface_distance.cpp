@@ -105,7 +105,7 @@ class OneSided {
 
  private:
   static constexpr double kAllowance = 0x1p-26;
-  static constexpr std::uint64_t kMostParts = 50'000;  // about a second
+  static constexpr std::uint64_t kMostParts = 5'000;  // each some 100 us: about a second of both sides
 
   struct Part {
     double upper;
