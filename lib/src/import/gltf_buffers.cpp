@@ -2,7 +2,6 @@
 #include "import/gltf_buffers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 namespace fdcg::bake::gltf {
@@ -74,6 +73,16 @@ bool stays_beneath(const std::filesystem::path& path, const std::string& text) {
   return std::none_of(path.begin(), path.end(), [](const std::filesystem::path& part) { return part == ".."; });
 }
 
+// With links followed.
+bool lies_beneath(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(path, error);
+  if (error) return false;
+  const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, error);
+  if (error) return false;
+  return std::mismatch(root.begin(), root.end(), real.begin(), real.end()).first == root.end();
+}
+
 }  // namespace
 
 std::optional<std::string> decode_data_uri(std::string_view uri) {
@@ -143,6 +152,10 @@ std::string_view Buffers::fetch_file(Index index, const std::string& uri) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     throw Refusal{place + "the file " + shown + " is missing; put it into the folder of this one, or export as GLB"};
+  }
+  if (!lies_beneath(path, file_->parent_path())) {
+    throw Refusal{place + "the file " + shown +
+                  " is a link to one outside the folder of this one, and others are not read; put it there, or export as GLB"};
   }
   Result<FileBytes> file = FileBytes::open(path);
   if (!file) throw Refusal{place + file.error().message};

@@ -77,7 +77,7 @@ class TextStlReader : TextSoupReader {
 
   Result<PolygonSoup> read() {
     const bool is_read = read_solids();
-    soup_.absolute_quantum = absolute_quantum();
+    set_quanta();
     return result(is_read);
   }
 
