@@ -315,6 +315,11 @@ void add_graph_options(CLI::App& command, const std::shared_ptr<ReplayArguments>
       ->type_name("K")
       ->default_str("1000")
       ->group("Contact");
+  tools::number_option(command, "--damping", params.damping_n_s_per_m, {0, kLargest, " N s/m"},
+                       "Damping along the spring, N s/m, at 1,000 ticks a second.")
+      ->type_name("D")
+      ->default_str("0")
+      ->group("Contact");
   const auto set_edge_friction = [arguments](const std::string& name) {
     arguments->params.edge_friction = name == "wedge" ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
   };

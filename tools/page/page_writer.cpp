@@ -66,7 +66,8 @@ std::string viewer_missing() {
   return std::string(viewer().substr(kMissing.size()));
 }
 
-PageWriter::PageWriter(Write write, std::string_view title) : write_(std::move(write)) {
+PageWriter::PageWriter(Write write, std::string_view name) : write_(std::move(write)) {
+  const std::string title = Json::parse(dumped(Json(name))).get<std::string>();  // valid UTF-8, whatever the name is
   const std::string_view page = viewer();
   const std::size_t at_title = page.find(kTitleMark);
   write_(page.substr(0, at_title));

@@ -30,8 +30,8 @@ struct MeshDetails {
 class PageWriter {
  public:
   using Write = std::function<void(std::string_view)>;
-  // `write` gets pieces of any length, and must live as long. viewer_missing() is empty.
-  PageWriter(Write write, std::string_view title);
+  // `write` gets pieces of any length, and must live as long; `name` is the page's title. viewer_missing() is empty.
+  PageWriter(Write write, std::string_view name);
 
   void add_mesh(const bake::PolygonSoup& soup, const MeshDetails& details);
   // A file that gave no mesh: its report says why.

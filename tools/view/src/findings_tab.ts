@@ -68,6 +68,7 @@ export class FindingsTab implements Tab {
     });
     this.element.append(this.summary());
     if (this.issues.length > 0) this.element.append(this.tools(), this.results);
+    if (item.no_graph !== undefined) this.element.append(h('p.note', { id: 'no-graph' }, `Nothing to touch: ${item.no_graph}.`));
     const first = this.issues[0];
     if (first !== undefined) this.open.set(first.rule, SHOWN_AT_ONCE);
     this.list();
