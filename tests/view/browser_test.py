@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pages in Chromium, from a file: every view by clicks and keys, judged by state and by pixels, and no request leaves."""
 import math
+import pathlib
 import time
 import unittest
 
@@ -173,7 +174,7 @@ class Touch(BrowserCase):
         command = self.find("replay-command").text.split()
         self.assertEqual("fdcg-servo", command[0])
         self.run_program(SERVO, *command[1:], cwd=self.path("saved"))
-        native, page = (open(self.saved(name)).read() for name in ("log.csv", "page-log.csv"))
+        native, page = (pathlib.Path(self.saved(name)).read_text() for name in ("log.csv", "page-log.csv"))
         self.assertTrue(native == page, first_difference(native, page))
         self.assert_quiet()
         print(f"step {state['timing']['stepNs']:.0f} ns, p99 of the period {state['timing']['periodP99Ms']:.2f} ms, {state['recorded']} ticks")
@@ -184,7 +185,7 @@ class Touch(BrowserCase):
         self.wait_for(lambda s: s["ready"])
         self.press(" ")
         soft = self.wait_for(lambda s: s["contact"] == "face" and s["force"] > 1)
-        for _ in range(30):
+        for _ in range(8):
             self.press(Keys.ARROW_RIGHT)
         self.wait_for(lambda s: s["ticks"] > soft["ticks"] + 100)
         self.find("stiffness").send_keys(Keys.END)
@@ -208,7 +209,7 @@ class Log(BrowserCase):
         self.servo("replay", graph, "--trajectory", self.slide(1000), "-o", self.path("log.csv"), "-q")
         self.open(self.view(graph, self.path("log.csv")))
         self.assertEqual(1000, self.state()["ticks"])
-        rows = open(self.path("log.csv")).read().splitlines()[1:]
+        rows = pathlib.Path(self.path("log.csv")).read_text().splitlines()[1:]
         self.press(".")
         self.assertEqual(1, self.state()["at"])
         self.find("scrub").send_keys(Keys.END)
