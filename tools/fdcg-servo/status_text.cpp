@@ -42,7 +42,7 @@ Json times_json(const dev::TimeHistogram& histogram) {
   return json;
 }
 
-// Not a number in JSON: null.
+// NaN and infinities become null.
 Json vector_json(const double* x) {
   Json json = Json::array();
   for (int i = 0; i < 3; ++i)
@@ -113,7 +113,7 @@ std::string rejected_text(const dev::TickCounters& counters) {
   return total == 0 ? text : text + ")";
 }
 
-// A recording's end disarms as an unplugged device does, and is told apart.
+// The end of a recording disarms like an unplugged device, and is not counted here.
 std::string disarmed_text(const dev::TickCounters& counters, bool is_over) {
   std::string text;
   for (int i = 1; i < dev::kFaults; ++i) {

@@ -84,8 +84,17 @@ using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 // ---- import --------------------------------------------------------------------------------------------------------------
 
-/// A mesh file's format; gltf: both JSON (.gltf) and binary (.glb).
-enum class Format { off, obj, ply, stl, gltf, drc };
+/// A mesh file's format.
+enum class Format {
+  off,      ///< OFF and its variants
+  obj,      ///< Wavefront
+  ply,      ///< all three encodings
+  stl,      ///< text and binary
+  gltf,     ///< glTF 2.0: JSON and GLB
+  drc,      ///< Draco
+  dae,      ///< COLLADA 1.4 and 1.5
+  threemf,  ///< 3MF
+};
 
 /// What a file has beside faces, or what its encoding adds: left out of the soup, and counted so that nothing goes in silence.
 struct Ignored {
@@ -125,6 +134,8 @@ struct PolygonSoup {
   std::vector<std::string> materials;
   std::vector<std::uint16_t> face_material;  ///< of each face, or kNoMaterial; empty where there are no materials
   std::vector<Ignored> ignored;              ///< what was left out
+  double metres_per_unit = 0;                ///< as the file states it (COLLADA, 3MF); 0: it does not
+  char up_axis = 0;                          ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
   std::vector<std::string> other_files;      ///< further files that the mesh is from: a glTF file's buffers
 
   /// Faces of the file.
@@ -138,9 +149,9 @@ struct ImportOptions {
 };
 
 /// Reads OFF (also COFF, NOFF, comments), OBJ, PLY (ascii, both binaries), STL (ascii, binary), glTF 2.0 (JSON, GLB; buffers in
-/// files beside or beneath it) and Draco. Never allocates more than a small multiple of the file's size (glTF: of what its
-/// scene may show, see gltf_scene.hpp). Fails with exit code 3 on what cannot be read or holds no face. Draco data is decoded
-/// in a child process (guarded_child.hpp).
+/// files beside or beneath it), Draco, COLLADA and 3MF. Never allocates more than a small multiple of the file's size (formats
+/// with scenes: of what a scene may show, see docs/limits.md). Fails with exit code 3 on what cannot be read or holds no face.
+/// Draco data is decoded in a child process (guarded_child.hpp).
 Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 /// The same from memory; `name` is for messages, and no other file is read.

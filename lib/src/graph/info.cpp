@@ -10,57 +10,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(Format format) {
-  switch (format) {
-    case Format::off:
-      return "off";
-    case Format::obj:
-      return "obj";
-    case Format::ply:
-      return "ply";
-    case Format::stl:
-      return "stl";
-    case Format::gltf:
-      return "gltf";
-    case Format::drc:
-      return "drc";
-  }
-  return "";
-}
-
-const char* name_of(Weld::Kind kind) {
-  switch (kind) {
-    case Weld::Kind::exact:
-      return "exact";
-    case Weld::Kind::none:
-      return "none";
-    case Weld::Kind::distance:
-      return "distance";
-  }
-  return "";
-}
-
-const char* name_of(Coplanar::Kind kind) {
-  switch (kind) {
-    case Coplanar::Kind::exact:
-      return "exact";
-    case Coplanar::Kind::quantum:
-      return "quantum";
-    case Coplanar::Kind::angle:
-      return "angle";
-  }
-  return "";
-}
+// By the values of Format, Weld::Kind and Coplanar::Kind.
+constexpr const char* kFormats[] = {"off", "obj", "ply", "stl", "gltf", "drc", "dae", "3mf"};
+constexpr const char* kWelds[] = {"exact", "none", "distance"};
+constexpr const char* kCoplanars[] = {"exact", "quantum", "angle"};
 
 Json options_json(const CompileOptions& options) {
   Json json;
   json["metres_per_unit"] = options.metres_per_unit;
   json["precision"] = options.precision == Precision::f32 ? "f32" : "f64";
-  json["coplanar"] = name_of(options.coplanar.kind);
+  json["coplanar"] = kCoplanars[static_cast<int>(options.coplanar.kind)];
   if (options.coplanar.kind == Coplanar::Kind::angle) json["coplanar_angle_rad"] = options.coplanar.angle_rad;
   json["merge"] = options.merge && !options.triangles;
   if (options.triangles) json["triangles"] = true;
-  json["weld"] = name_of(options.weld.kind);
+  json["weld"] = kWelds[static_cast<int>(options.weld.kind)];
   if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
   json["orient"] = options.orient;
   json["planes"] = options.store_planes ? "stored" : "derived";
@@ -78,7 +41,7 @@ std::string info_json(const PolygonSoup& soup, const CompileOptions& options, co
   Json json;
   json["tool"] = "fdcg " FDCG_VERSION_STRING;
   json["source"] = {{"file_sha256", soup.sha256},
-                    {"format", name_of(soup.format)},
+                    {"format", kFormats[static_cast<int>(soup.format)]},
                     {"vertices", soup.points.size()},
                     {"faces", soup.face_count()}};
   json["options"] = options_json(options);

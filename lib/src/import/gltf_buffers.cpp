@@ -2,7 +2,6 @@
 #include "import/gltf_buffers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 namespace fdcg::bake::gltf {

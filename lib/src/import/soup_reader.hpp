@@ -31,11 +31,15 @@ Result<PolygonSoup> read_ply(const MeshText& input);
 Result<PolygonSoup> read_stl(const MeshText& input);
 Result<PolygonSoup> read_gltf(const MeshText& input);
 Result<PolygonSoup> read_drc(const MeshText& input);
+Result<PolygonSoup> read_dae(const MeshText& input);
+Result<PolygonSoup> read_3mf(const MeshText& input);
 
 // Detection of formats by content.
 bool is_off_keyword(std::string_view word);  // OFF, COFF, STCNOFF, 4OFF, ...
 bool is_gltf_json(std::string_view bytes);   // an object that has an "asset"
 bool is_glb(std::string_view bytes);
+// The name of an XML text's first element, without prefix, in UTF-8 or UTF-16; empty: it is no XML.
+std::string xml_root_name(std::string_view bytes);
 bool has_binary_stl_size(std::string_view bytes);  // 84 + 50 n, with n where the format has it
 
 // The message "`name`: `what`", on one line whatever the name contains. A remedy follows in `what` after a semicolon; else the

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The JSON report with every element. Findings are buffered per rule, since rules run concurrently and the counts, which
 // precede the elements, are known only at the end.
-#include <algorithm>
 #include <cstdio>
 #include <utility>
 

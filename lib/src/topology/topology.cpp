@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <future>
-#include <limits>
 #include <memory>
 
 #include "base/parallel.hpp"

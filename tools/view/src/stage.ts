@@ -118,7 +118,8 @@ export class Stage {
   }
 
   fit(): void {
-    const box = new Box3().setFromObject(this.content);
+    const box = new Box3();
+    for (const child of this.content.children) if (child.visible) box.expandByObject(child);
     const centre = box.isEmpty() ? new Vector3() : box.getCenter(new Vector3());
     this.flyTo(centre, box.isEmpty() ? 1 : box.getSize(new Vector3()).length() * 0.42);
   }
