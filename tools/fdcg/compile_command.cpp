@@ -26,6 +26,7 @@ struct CompileArguments {
   std::string output;
   std::string depfile;
   std::string report;
+  std::string repair;  // a level; empty: none
   std::string unit_text = kDefaultUnit;
   std::optional<bake::Format> input_format;
   bake::CompileOptions options;
@@ -65,6 +66,19 @@ std::string mass_summary(const bake::Compiled& compiled) {
   return volume + ", " + short_number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + short_number(mass.mass_kg) + " kg\n";
 }
 
+// What the repair did, and how far it moved the surface.
+std::string repair_summary(const bake::RepairAccount& account, double metres_per_unit) {
+  std::string text;
+  for (const bake::RepairAction& action : account.actions) {
+    if (action.total != 0) text += "  " + action.name + ": " + action.message + "\n";
+    if (action.left != 0) text += "  " + action.name + ": " + action.left_message + "\n";
+  }
+  if (text.empty()) return "repair: nothing blocked\n";
+  const double cube = metres_per_unit * metres_per_unit * metres_per_unit;
+  return "repair: the surface moved by at most " + short_number(account.distance * metres_per_unit) +
+         " m, its volume changed by " + short_number((account.volume_after - account.volume_before) * cube) + " m^3\n" + text;
+}
+
 // What came out, for a person: sizes, types, and everything that was changed on the way.
 std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
   const fdcg_header header = header_of(compiled);
@@ -80,6 +94,7 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
     if (count != 0) text += counted(count, "face") + " " + what + "\n";
   };
   changed(compiled.flipped_faces, "turned round by --orient");
+  if (compiled.repair) text += repair_summary(*compiled.repair, header.metres_per_unit);
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
   text += header.max_deviation == 0
@@ -135,7 +150,7 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 }
 
 // Everything is written before anything gets its name, so that a failure leaves nothing.
-int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report,
+int write_outputs(const CompileArguments& arguments, const std::string& mesh_report,
                   const std::vector<std::string>& other_files, const std::vector<std::byte>& buffer, AtomicFile& out) {
   out.write(as_text(buffer));  // empty where the file was made in place
   AtomicFile depfile(arguments.depfile), report(arguments.report);
@@ -143,16 +158,17 @@ int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_re
   for (const std::string& file : other_files)
     rule += " " + escaped_for_make(file);
   depfile.write(rule + "\n");
-  if (report.is_wanted()) report.write(bake::report_json({mesh_report}));
+  if (report.is_wanted()) report.write(mesh_report);
   return commit_all({&report, &depfile, &out});
 }
 
 // The mesh is refused: its report on standard error, and in --report.
-int refuse(const CompileArguments& arguments, const bake::Report& report) {
-  const std::string text = bake::report_text(report, wants_colour(Stream::standard_error));
+int refuse(const CompileArguments& arguments, const bake::Compiled& compiled) {
+  const std::string text = bake::report_text(compiled.report, wants_colour(Stream::standard_error));
   std::fputs(text.c_str(), stderr);
+  if (arguments.repair.empty()) std::fputs("--repair repairs the mesh first, and says what that does to it\n", stderr);
   AtomicFile file(arguments.report);
-  if (file.is_wanted()) file.write(bake::report_json({report}));
+  if (file.is_wanted()) file.write(bake::compile_report_json(compiled));
   return commit_all({&file}, kFindings);
 }
 
@@ -196,6 +212,11 @@ std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<
 
 int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
+  if (!arguments.repair.empty()) {
+    if (arguments.repair != "safe" && arguments.repair != "full")
+      return fail(kUsage, "--repair: '" + arguments.repair + "' is no level; there are safe and full");
+    arguments.options.repair = arguments.repair == "safe" ? bake::RepairLevel::safe : bake::RepairLevel::full;
+  }
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
   keep_large_arrays();
@@ -217,12 +238,14 @@ int compile_mesh(CompileArguments& arguments) {
   bar.wipe();
   if (!out.ok()) return fail(kFile, out.error());
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
-  if (compiled->file().empty()) return refuse(arguments, compiled->report);
+  if (compiled->file().empty()) return refuse(arguments, *compiled);
   if (const int code = check_loads(*compiled); code != kClean) return code;
   const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
   const std::string warnings[] = {deviation_warning(*compiled), size_warning(arguments, *compiled)};
-  if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
+  if (const int code = write_outputs(arguments, bake::compile_report_json(*compiled), soup->other_files, buffer, out);
+      code != kClean)
+    return code;
   if (arguments.quiet) return kClean;
   std::FILE* const stream = is_streamed ? stderr : stdout;
   if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
@@ -328,6 +351,13 @@ give the same bytes.
   checks.flag("--orient", options.orient, "Make the winding consistent and outward, and report the faces that were turned.");
   checks.flag("--self-intersections", options.self_intersections,
               "Also find faces that cross or touch others, and report them as warnings.");
+  command
+      ->add_flag(
+          "--repair{full}", arguments->repair,
+          "Where the mesh has errors, repair it first; what was done is measured and stored in the file. --repair=safe: no "
+          "point of the surface moves; --repair or --repair=full: also unfolds slivers, triangulates polygons that cross "
+          "themselves, and drops what no graph can have.")
+      ->group("Mesh checks");
   add_allow_option(checks, options.allow, Allowable::errors_the_graph_stands);
   add_graph_options(*command, options);
   add_mass_options(*command, options);
