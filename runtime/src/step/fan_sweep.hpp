@@ -109,37 +109,45 @@ class FanSweep : public NodeEntry<Geometry> {
   }
 
   // False: no face of the fan is to be asked.
-  bool spans_arc(const fdcg_fan_run& fan, uint32_t corner, Arc* arc) {
-    constexpr Real kEpsilon = RealLimits<Real>::kEpsilon;
+  // In double: a difference of floats has no rounding there, and the plane of a fine needle's tip and a way is felt in the last
+  // digits of their places.
+  [[gnu::noinline]] bool spans_arc(const fdcg_fan_run& fan, uint32_t corner, Arc* arc) {
     spend(work_left_, kArcWork);
-    const Vec3<Real> point = graph_.corner_point(corner), a = from_ - point, b = to_ - point;
-    const Real length_a = norm(a), length_b = norm(b), length = norm(way_);
+    const Vec3<double> point = widen(graph_.corner_point(corner)), a = widen(from_) - point, b = widen(to_) - point;
+    const Vec3<double> way = widen(to_) - widen(from_);
+    const double length_a = norm(a), length_b = norm(b), length = norm(way);
     if (!(length_b > 0) || !(length > 0)) return false;  // it ends on the planes of all
-    const Vec3<Real> start = length_a > 0 ? a * (1 / length_a) : Vec3<Real>{0, 0, 0}, end = b * (1 / length_b);
-    const Vec3<Real> along = way_ * (1 / length), across = cross(start, end);
+    const Vec3<double> start = length_a > 0 ? a * (1 / length_a) : Vec3<double>{0, 0, 0}, end = b * (1 / length_b);
+    const Vec3<double> along = way * (1 / length), across = cross(start, end);
     // Of the three products of two that have one direction that of the two shorter ones is the most accurate.
     const bool is_a_longest = length_a >= length_b && length_a >= length, is_b_longest = !is_a_longest && length_b >= length;
-    const Vec3<Real> normal = is_a_longest ? cross(end, along) : is_b_longest ? cross(start, along) : across;
-    const Real sine = norm(normal);
-    const Real off = is_a_longest ? sine * length_b : is_b_longest ? sine * length_a : sine * (length_a / length) * length_b;
-    const Real at = -dot(a, along);  // where it is nearest to the corner
-    if (left_ == kFree && is_met(fan, corner, point, at, off, length)) return false;
-    const Real nearest = at > 0 && at < length ? off : length_a < length_b ? length_a : length_b;
+    const Vec3<double> normal = is_a_longest ? cross(end, along) : is_b_longest ? cross(start, along) : across;
+    const double sine = norm(normal);
+    const double off = is_a_longest ? sine * length_b : is_b_longest ? sine * length_a : sine * (length_a / length) * length_b;
+    const double at = -dot(a, along);  // where it is nearest to the corner
+    if (left_ == kFree && is_met(fan, corner, at / length, off)) return false;
+    const double nearest = at > 0 && at < length ? off : length_a < length_b ? length_a : length_b;
     const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;  // and may be entered beside the way
-    Real beside = is_inexact ? seen(slab_ + from_bound_ + to_bound_, nearest) : Real(0);
-    if (!(left_ == kFree)) beside += seen(2 * from_bound_, length_a);  // contact-model LEAVE-3: a wall beside the way's start
-    const bool is_short = dot(start, end) > 0;
-    const Real bulge = dot(across, across) * Real(0.3);  // of an arc below a right angle over its chord, or more
-    arc->start = start;
-    arc->end = end;
-    arc->normal = sine > 0 ? normal * (1 / sine) : normal;
-    arc->after_start = cross(arc->normal, start);
-    arc->before_end = cross(end, arc->normal);
-    arc->slack = sine > 8 * kEpsilon ? 8 * kEpsilon + 8 * kEpsilon / sine + beside : kAnywhere;
-    arc->padding = is_short ? 8 * kEpsilon + beside + bulge : kAnywhere;
-    arc->start_share = length_a / (length_a + length_b);
-    arc->end_share = length_b / (length_a + length_b);
+    Real beside = is_inexact ? seen(slab_ + from_bound_ + to_bound_, static_cast<Real>(nearest)) : Real(0);
+    // contact-model LEAVE-3: a wall beside the way's start
+    if (!(left_ == kFree)) beside += seen(2 * from_bound_, static_cast<Real>(length_a));
+    const double rounding = 8 * RealLimits<double>::kEpsilon;
+    const double bulge = dot(across, across) * 0.3;  // of an arc below a right angle over its chord, or more
+    const Vec3<double> unit = sine > 0 ? normal * (1 / sine) : normal;
+    arc->start = narrowed(start);
+    arc->end = narrowed(end);
+    arc->normal = narrowed(unit);
+    arc->after_start = narrowed(cross(unit, start));
+    arc->before_end = narrowed(cross(end, unit));
+    beside += 8 * RealLimits<Real>::kEpsilon;
+    arc->slack = sine > rounding ? beside + static_cast<Real>(rounding / sine) : kAnywhere;
+    arc->padding = dot(start, end) > 0 ? beside + static_cast<Real>(bulge) : kAnywhere;
+    arc->start_share = static_cast<Real>(length_a / (length_a + length_b));
+    arc->end_share = static_cast<Real>(length_b / (length_a + length_b));
     return true;
+  }
+  static Vec3<Real> narrowed(Vec3<double> v) {
+    return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
   }
 
   // The angle under which something is seen from a distance, or more.
@@ -148,13 +156,12 @@ class FanSweep : public NodeEntry<Geometry> {
   }
 
   // contact-model FREE-8: a way that passes the corner within rounding meets it, and not one of thousands of faces there whose
-  // sides it passes by as little. `at`: how far along the way.
-  bool is_met(const fdcg_fan_run& fan, uint32_t corner, Vec3<Real> point, Real at, Real off, Real length) {
-    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(point) + static_cast<Real>(graph_.header->extent));
-    const Real deviation = static_cast<Real>(graph_.header->max_deviation);
-    if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : Real(0)) && at >= 0 && at < length))
-      return false;
-    const Real fraction = at / length;
+  // sides it passes by as little. `at`: the fraction of the way; `off`: how far from the corner.
+  bool is_met(const fdcg_fan_run& fan, uint32_t corner, double at, double off) {
+    const double extent = graph_.header->extent, deviation = graph_.header->max_deviation;
+    const double rounding = 4.0 * RealLimits<Real>::kEpsilon * (norm1(widen(graph_.corner_point(corner))) + extent);
+    if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : 0) && at >= 0 && at < 1)) return false;
+    const auto fraction = static_cast<Real>(at);
     if (!is_before_best(fraction, fan.first_node)) return true;
     best_.fraction = fraction;
     best_.node = fan.first_node;
