@@ -13,6 +13,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "base/mesh.hpp"
 #include "base/vec3.hpp"
 #include "repair/radial.hpp"
 #include "repair/repair.hpp"
