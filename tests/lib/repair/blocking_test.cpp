@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Repairs of what no graph can have: edges of many faces, folds, polygons that cross themselves, faces with corners that are
 // not finite. Assemblies of cells at random have every kind of edge and vertex that solids can touch in. FDCG_REPAIR_CASES sets
-// how many assemblies (default 40).
+// how many assemblies (default 24).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -152,7 +152,7 @@ class Assembly {
 
 int cases() {
   const char* value = std::getenv("FDCG_REPAIR_CASES");
-  return value != nullptr ? std::atoi(value) : 40;
+  return value != nullptr ? std::atoi(value) : 24;
 }
 
 // Of a triangle's point from another triangle, by trying many points of it: slow, and never too small by more than `step`.
@@ -310,7 +310,7 @@ TEST_CASE("the distance between surfaces is at least what trying many points sho
     after = before;
     after.pop_back();
     if (i % 2 == 0) after.push_back({point(), point(), point()});
-    constexpr int kSteps = 40;
+    constexpr int kSteps = 24;
     const double tried = std::max(tried_distance(before, after, kSteps), tried_distance(after, before, kSteps));
     const SurfaceChange change = surface_change(before, after);
     INFO("case " << i << ", tried " << tried << ", bound " << change.distance);
