@@ -82,7 +82,7 @@ void SceneSoup::finish() {
 
 void SceneSoup::charge(Budget& budget, std::uint64_t more) const {
   constexpr std::uint64_t kFree = 1024, kEachByte = 16;
-  const std::uint64_t limit = (kFree + kEachByte * bytes_) / budget.cost;
+  const std::uint64_t limit = kFree + kEachByte * bytes_ / budget.cost;
   if (more > limit - std::min(budget.used, limit)) {
     throw json::Refusal{"shows more than " + std::to_string(limit) + " " + budget.what +
                         ", the limit for a file of this size; export instances as meshes of their own"};

@@ -26,8 +26,8 @@ struct PrintedPoints {
 // Throws json::Refusal where a limit is passed.
 class SceneSoup {
  public:
-  // A scene may hold 1024 points, and face corners, and 16 for each of `bytes`, all that it is read from; and a 64th of that
-  // many nodes.
+  // A scene may hold 1024 points, and face corners, and 16 for each of `bytes`, all that it is read from; and 1024 nodes and one
+  // for each four bytes.
   SceneSoup(PolygonSoup& soup, std::size_t bytes) : soup_(soup), bytes_(bytes) {}
   void grow_bytes(std::size_t more) { bytes_ += more; }
 

@@ -33,6 +33,9 @@ Result<PolygonSoup> read_gltf(const MeshText& input);
 Result<PolygonSoup> read_drc(const MeshText& input);
 Result<PolygonSoup> read_dae(const MeshText& input);
 Result<PolygonSoup> read_3mf(const MeshText& input);
+Result<PolygonSoup> read_vtk(const MeshText& input);  // also XML
+Result<PolygonSoup> read_vtp(const MeshText& input);
+Result<PolygonSoup> read_x3d(const MeshText& input);
 
 // Detection of formats by content.
 bool is_off_keyword(std::string_view word);  // OFF, COFF, STCNOFF, 4OFF, ...
