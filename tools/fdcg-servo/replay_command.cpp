@@ -16,6 +16,7 @@
 #include "path_warnings.hpp"
 #include "replay_session.hpp"
 #include "servo_commands.hpp"
+#include "status_text.hpp"
 #include "step_time_histogram.hpp"
 #include "trajectory_csv.hpp"
 
@@ -31,7 +32,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kChunkTicks = 4096;
 constexpr int kClockSamples = 20001;
 constexpr int kBarWidth = 50;
-constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
 constexpr const char* kLogHeader = "t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions\n";
 
 struct ReplayArguments {
@@ -50,7 +50,7 @@ struct Tick {
   std::uint64_t step_ns = 0;
 };
 
-struct Summary {
+struct ReplaySummary {
   StepTimeHistogram step_ns, contact_ns, transitions;
   std::uint64_t ticks = 0, slipping = 0;
   std::uint64_t in_state[4] = {};
@@ -83,7 +83,7 @@ std::uint64_t clock_cost_ns() {
 }
 
 // The force against the plane of the active face: its normal and tangential part.
-void measure_force(const fdcg_graph& graph, const fdcg_result& result, Summary& summary) {
+void measure_force(const fdcg_graph& graph, const fdcg_result& result, ReplaySummary& summary) {
   const double* const f = result.force_n;
   const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   summary.largest_force_n = std::max(summary.largest_force_n, std::sqrt(square));
@@ -115,15 +115,15 @@ void append_row(std::string& text, const TrajectoryPoint& point, const fdcg_resu
     append(text, x);
   for (const double x : result.force_n)
     append(text, x);
-  text += kStates[std::min<std::uint32_t>(result.state, FDCG_VERTEX)];
+  text += state_name(result.state);
   text += ',' + (result.feature == FDCG_NONE ? std::string("-1") : std::to_string(result.feature));
   text += ',' + std::to_string(result.slipping) + ',' + std::to_string(result.transitions) + '\n';
 }
 
 // Steps every point, logs every tick. The clock is read around the step alone.
-Summary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
-               fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log) {
-  Summary summary;
+ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
+                     fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log) {
+  ReplaySummary summary;
   std::vector<Tick> ticks(std::min(kChunkTicks, points.size()));
   std::string text = kLogHeader;
   for (std::size_t begin = 0; begin < points.size(); begin += kChunkTicks) {
@@ -178,7 +178,7 @@ std::string histogram_text(const StepTimeHistogram& histogram) {
   return text;
 }
 
-std::string summary_text(const Summary& summary, const fdcg_contact& contact, std::uint64_t clock_ns) {
+std::string replay_text(const ReplaySummary& summary, const fdcg_contact& contact, std::uint64_t clock_ns) {
   const std::uint64_t touching = summary.ticks - summary.in_state[FDCG_FREE];
   std::string text = "ticks            " + grouped(summary.ticks) + ", ";
   text += touching == 0 ? "never in contact: the path touches nothing\n"
@@ -186,7 +186,7 @@ std::string summary_text(const Summary& summary, const fdcg_contact& contact, st
                               " of these slipping\n";
   text += "states          ";
   for (int state = FDCG_FREE; state <= FDCG_VERTEX; ++state) {
-    text += std::string(state == 0 ? " " : ", ") + kStates[state] + " " + grouped(summary.in_state[state]);
+    text += std::string(state == 0 ? " " : ", ") + state_name(state) + " " + grouped(summary.in_state[state]);
   }
   text += "\ntransitions      p50 " + grouped(summary.transitions.quantile(0.5)) + ", p99.9 " +
           grouped(summary.transitions.quantile(0.999)) + ", max " + grouped(summary.transitions.largest()) + " a step\n";
@@ -288,12 +288,12 @@ int run_replay(const ReplayArguments& arguments) {
   }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};
-  const Summary summary = replay(graph, arguments.params, points, contact, clock_ns, log);
+  const ReplaySummary summary = replay(graph, arguments.params, points, contact, clock_ns, log);
   if (summary.in_state[FDCG_FREE] == summary.ticks) warn_of_nothing_touched(graph, points, arguments.trajectory);
   fdcg_close(&graph);
   if (const int code = tools::commit_all({&log}); code != kClean) return code;
   if (!arguments.quiet)
-    std::fputs(summary_text(summary, contact, clock_ns).c_str(),
+    std::fputs(replay_text(summary, contact, clock_ns).c_str(),
                tools::is_stream(arguments.log) || tools::is_stream(arguments.written_path) ? stderr : stdout);
   return kClean;
 }

@@ -24,9 +24,6 @@ double norm(const double* x) {
   return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-const char* state_name(std::uint32_t state) {
-  return kStates[std::min<std::uint32_t>(state, FDCG_VERTEX)];
-}
 const char* phase_name(dev::Phase phase) {
   return kPhases[static_cast<int>(phase)];
 }
@@ -135,6 +132,10 @@ std::uint64_t rejected_in_all(const dev::TickCounters& counters) {
   for (int i = 1; i < dev::kVerdicts; ++i)
     total += counters.rejected[i];
   return total;
+}
+
+const char* state_name(std::uint32_t state) {
+  return kStates[std::min<std::uint32_t>(state, FDCG_VERTEX)];
 }
 
 std::string status_line(const DeviceLook& look, std::size_t name_width) {

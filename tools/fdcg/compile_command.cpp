@@ -26,6 +26,7 @@ struct CompileArguments {
   std::string output;
   std::string depfile;
   std::string report;
+  std::string repair;  // a level; empty: none
   std::string unit_text = kDefaultUnit;
   std::optional<bake::Format> input_format;
   bake::CompileOptions options;
@@ -46,6 +47,12 @@ std::string escaped_for_make(const std::string& name) {
   return text;
 }
 
+fdcg_header header_of(const bake::Compiled& compiled) {
+  fdcg_header header;
+  std::memcpy(&header, compiled.file().data(), sizeof header);
+  return header;
+}
+
 // Of the file as it stands in memory: what it weighs, or why it does not say.
 std::string mass_summary(const bake::Compiled& compiled) {
   fdcg_graph graph{};
@@ -59,10 +66,22 @@ std::string mass_summary(const bake::Compiled& compiled) {
   return volume + ", " + short_number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + short_number(mass.mass_kg) + " kg\n";
 }
 
+// What the repair did, and how far it moved the surface.
+std::string repair_summary(const bake::RepairAccount& account, double metres_per_unit) {
+  std::string text;
+  for (const bake::RepairAction& action : account.actions) {
+    if (action.total != 0) text += "  " + action.name + ": " + action.message + "\n";
+    if (action.left != 0) text += "  " + action.name + ": " + action.left_message + "\n";
+  }
+  if (text.empty()) return "repair: nothing blocked\n";
+  const double cube = metres_per_unit * metres_per_unit * metres_per_unit;
+  return "repair: the surface moved by at most " + short_number(account.distance * metres_per_unit) +
+         " m, its volume changed by " + short_number((account.volume_after - account.volume_before) * cube) + " m^3\n" + text;
+}
+
 // What came out, for a person: sizes, types, and everything that was changed on the way.
 std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
+  const fdcg_header header = header_of(compiled);
   const double scale = header.metres_per_unit;
   std::string size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -75,6 +94,7 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
     if (count != 0) text += counted(count, "face") + " " + what + "\n";
   };
   changed(compiled.flipped_faces, "turned round by --orient");
+  if (compiled.repair) text += repair_summary(*compiled.repair, header.metres_per_unit);
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
   text += header.max_deviation == 0
@@ -88,15 +108,20 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   return text;
 }
 
+// Of the bounding box, in the file's unit.
+double largest_side(const fdcg_header& header) {
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  return size;
+}
+
 // A large --coplanar ANGLE flattens what is not flat. Empty where that is no more than a hand may overlook: a step of a
 // thousandth of the object, 0.1 mm on one of 0.1 m, is 0.1 N at 1 N/mm, which is felt.
 std::string deviation_warning(const bake::Compiled& compiled) {
   constexpr double kLargestShare = 1e-3;
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  const fdcg_header header = header_of(compiled);
+  const double size = largest_side(header);
   if (!(header.max_deviation > kLargestShare * size)) return {};
   return "planes lie up to " + short_number(header.max_deviation * header.metres_per_unit) +
          " m off the corners of their faces, " + short_number(100 * header.max_deviation / size) +
@@ -108,11 +133,8 @@ std::string deviation_warning(const bake::Compiled& compiled) {
 // is large on purpose.
 std::string size_warning(const CompileArguments& arguments, const bake::Compiled& compiled) {
   constexpr double kLargest_m = 10, kSmallest_m = 1e-3;
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
-  double size_m = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size_m = std::max(size_m, (header.bounds_max[axis] - header.bounds_min[axis]) * header.metres_per_unit);
+  const fdcg_header header = header_of(compiled);
+  const double size_m = largest_side(header) * header.metres_per_unit;
   const std::string measures = "the object measures " + short_number(size_m) + " m; ";
   if (size_m > kLargest_m && arguments.has_default_unit())
     return measures + "if the file is in millimetres, compile with --units mm (--units m: it is in metres, and no warning)";
@@ -128,7 +150,7 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 }
 
 // Everything is written before anything gets its name, so that a failure leaves nothing.
-int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report,
+int write_outputs(const CompileArguments& arguments, const std::string& mesh_report,
                   const std::vector<std::string>& other_files, const std::vector<std::byte>& buffer, AtomicFile& out) {
   out.write(as_text(buffer));  // empty where the file was made in place
   AtomicFile depfile(arguments.depfile), report(arguments.report);
@@ -136,16 +158,17 @@ int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_re
   for (const std::string& file : other_files)
     rule += " " + escaped_for_make(file);
   depfile.write(rule + "\n");
-  if (report.is_wanted()) report.write(bake::report_json({mesh_report}));
+  if (report.is_wanted()) report.write(mesh_report);
   return commit_all({&report, &depfile, &out});
 }
 
 // The mesh is refused: its report on standard error, and in --report.
-int refuse(const CompileArguments& arguments, const bake::Report& report) {
-  const std::string text = bake::report_text(report, wants_colour(Stream::standard_error));
+int refuse(const CompileArguments& arguments, const bake::Compiled& compiled) {
+  const std::string text = bake::report_text(compiled.report, wants_colour(Stream::standard_error));
   std::fputs(text.c_str(), stderr);
+  if (arguments.repair.empty()) std::fputs("--repair repairs the mesh first, and says what that does to it\n", stderr);
   AtomicFile file(arguments.report);
-  if (file.is_wanted()) file.write(bake::report_json({report}));
+  if (file.is_wanted()) file.write(bake::compile_report_json(compiled));
   return commit_all({&file}, kFindings);
 }
 
@@ -189,6 +212,11 @@ std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<
 
 int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
+  if (!arguments.repair.empty()) {
+    if (arguments.repair != "safe" && arguments.repair != "full")
+      return fail(kUsage, "--repair: '" + arguments.repair + "' is no level; there are safe and full");
+    arguments.options.repair = arguments.repair == "safe" ? bake::RepairLevel::safe : bake::RepairLevel::full;
+  }
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
   keep_large_arrays();
@@ -214,12 +242,14 @@ int compile_mesh(CompileArguments& arguments) {
   bar.wipe();
   if (!out.ok()) return fail(kFile, out.error());
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
-  if (compiled->file().empty()) return refuse(arguments, compiled->report);
+  if (compiled->file().empty()) return refuse(arguments, *compiled);
   if (const int code = check_loads(*compiled); code != kClean) return code;
   const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
   const std::string warnings[] = {deviation_warning(*compiled), size_warning(arguments, *compiled)};
-  if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
+  if (const int code = write_outputs(arguments, bake::compile_report_json(*compiled), soup->other_files, buffer, out);
+      code != kClean)
+    return code;
   if (arguments.quiet) return kClean;
   std::FILE* const stream = is_streamed ? stderr : stdout;
   if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
@@ -325,6 +355,13 @@ give the same bytes.
   checks.flag("--orient", options.orient, "Make the winding consistent and outward, and report the faces that were turned.");
   checks.flag("--self-intersections", options.self_intersections,
               "Also find faces that cross or touch others, and report them as warnings.");
+  command
+      ->add_flag(
+          "--repair{full}", arguments->repair,
+          "Where the mesh has errors, repair it first; what was done is measured and stored in the file. --repair=safe: no "
+          "point of the surface moves; --repair or --repair=full: also unfolds slivers, triangulates polygons that cross "
+          "themselves, and drops what no graph can have.")
+      ->group("Mesh checks");
   add_allow_option(checks, options.allow, Allowable::errors_the_graph_stands);
   add_graph_options(*command, options);
   add_mass_options(*command, options);

@@ -144,6 +144,7 @@ Json description_of(const fdcg_graph& graph) {
           {"max_deviation_m", header.max_deviation * header.metres_per_unit},
           {"mass", mass_of(graph)},
           {"no_mass", from_info("no_mass")},
+          {"repair", from_info("repair")},
           {"materials", materials_of(graph)},
           {"sections", sections_of(header)},
           {"source",

@@ -15,9 +15,9 @@ namespace fdcg::tools {
 namespace {
 
 constexpr const char* kSteps =
-    "--weld, --drop-degenerate, --drop-duplicates, --split-non-manifold-vertices, --orient, --reverse-inside-out, --simplify, "
-    "or "
-    "--all for the first six";
+    "--all for all but --simplify, or of these: --weld, --drop-unusable, --triangulate-crossing, --drop-degenerate, "
+    "--drop-duplicates, --unfold, --cut-non-manifold, --split-non-manifold-vertices, --orient, --drop-blocking, "
+    "--reverse-inside-out, --simplify";
 
 struct RepairArguments {
   std::string mesh;
@@ -33,7 +33,7 @@ struct RepairArguments {
   bool quiet = false;
 };
 
-const OptionGroup::Words<bake::Format> kFormats{
+const OptionGroup::Words<bake::Format> kFormatNames{
     {"off", bake::Format::off}, {"obj", bake::Format::obj}, {"ply", bake::Format::ply}, {"stl", bake::Format::stl}};
 
 std::string ending_of(const std::string& path) {
@@ -47,22 +47,24 @@ std::string ending_of(const std::string& path) {
 int check(RepairArguments& arguments) {
   bake::RepairOptions& options = arguments.options;
   if (arguments.all) {
-    options.weld = bake::Weld{};
-    options.drop_degenerate_faces = options.drop_duplicate_faces = options.split_non_manifold_vertices = true;
-    options.orient = options.reverse_inside_out = true;
+    const std::optional<double> simplify_error = options.simplify_error;
+    options = bake::repair_options(bake::RepairLevel::full);
+    options.simplify_error = simplify_error;
   }
   if (arguments.weld) options.weld = arguments.weld;
   const bool asks_for_any = options.weld || options.drop_degenerate_faces || options.drop_duplicate_faces ||
                             options.split_non_manifold_vertices || options.orient || options.reverse_inside_out ||
-                            options.simplify_error;
+                            options.simplify_error || options.cut_non_manifold || options.drop_unusable_faces ||
+                            options.triangulate_crossing_faces || options.unfold || options.drop_blocking_faces;
   if (!asks_for_any) return fail(kUsage, std::string("no repair was chosen; give ") + kSteps);
   if (arguments.dry_run) return kClean;
   if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; --dry-run writes none");
   const std::string ending = ending_of(arguments.output);
-  for (const auto& [name, format] : kFormats)
+  for (const auto& [name, format] : kFormatNames)
     if (!arguments.format && name == ending) arguments.format = format;
   if (!arguments.format)
     return fail(kUsage, "'" + arguments.output + "' does not end in .off, .obj, .ply or .stl; name the format with --format");
+  options.part_equal_points = arguments.format == bake::Format::stl;
   const auto is_same = [](const std::string& a, const std::string& b) { return !a.empty() && (a == b || is_same_file(a, b)); };
   if (is_same(arguments.output, arguments.report)) return fail(kUsage, "-o and --report must be different files");
   for (const std::string* path : {&arguments.output, &arguments.report}) {
@@ -109,7 +111,7 @@ int export_repaired(const RepairArguments& arguments, const bake::Repaired& repa
     return fail(kUsage,
                 arguments.output +
                     ": the result has vertices at equal coordinates that are apart on purpose, and STL cannot keep them "
-                    "apart; write OFF, OBJ or PLY, or leave out --split-non-manifold-vertices and --weld none");
+                    "apart; write OFF, OBJ or PLY, or leave out --weld none");
   }
   auto exported = bake::export_mesh(repaired.soup, options);
   if (!exported) return fail(exported.error().exit_code, exported.error().message);
@@ -163,14 +165,25 @@ void add_step_options(CLI::App& command, RepairArguments& arguments) {
   bake::RepairOptions& options = arguments.options;
   const OptionGroup repairs(command, "Repairs");
   repairs.flag("--all", arguments.all,
-               "All repairs that do not move the surface: --weld exact and the flags below, without --simplify.");
+               "All repairs: --weld exact and the flags below, without --simplify. What each did to the surface is measured.");
   add_weld_option(repairs, arguments.weld, "");
+  repairs.flag("--drop-unusable", options.drop_unusable_faces,
+               "Drop faces with a corner that is not finite or not in the file.");
+  repairs.flag(
+      "--triangulate-crossing", options.triangulate_crossing_faces,
+      "Triangulate polygons that cross themselves or come twice to a corner. Implies --weld exact, as do the next two.");
+  repairs.flag("--unfold", options.unfold,
+               "Unfold slivers, thinner than a thousandth of the object's size, that lie on a neighbour.");
+  repairs.flag("--cut-non-manifold", options.cut_non_manifold,
+               "Part edges of more than two faces into pairs of faces; cut what has no partner, folds, and one-sided patches.");
   repairs.flag("--drop-degenerate", options.drop_degenerate_faces,
                "Drop faces without area, and join the faces on either side.");
   repairs.flag("--drop-duplicates", options.drop_duplicate_faces, "Drop faces that have the vertices of an earlier one.");
   repairs.flag("--split-non-manifold-vertices", options.split_non_manifold_vertices,
                "Give each fan of faces around a vertex a vertex of its own. Implies --weld exact; the result must be read with "
                "--weld none.");
+  repairs.flag("--drop-blocking", options.drop_blocking_faces,
+               "Drop faces that no other step could mend and no graph can have.");
   repairs.flag("--orient", options.orient,
                "Make the winding of each patch consistent, and that of closed patches of mixed winding outward.");
   repairs.flag("--reverse-inside-out", options.reverse_inside_out,
@@ -200,7 +213,7 @@ Defects that cannot be repaired safely are left and reported.
   add_mesh_argument(*command, arguments->mesh);
   const OptionGroup output(*command, "Output");
   output.text("-o,--output", "FILE", arguments->output, "File to write the repaired mesh to. - is standard output.");
-  output.choice<bake::Format>("--format", "FORMAT", kFormats, arguments->format, "Format of the repaired mesh.",
+  output.choice<bake::Format>("--format", "FORMAT", kFormatNames, arguments->format, "Format of the repaired mesh.",
                               "by the file's extension");
   add_input_format_option(*command, arguments->input_format);
   output.flag("--ascii", arguments->ascii, "Write PLY and STL as text.");

@@ -44,10 +44,10 @@ struct ValidateArguments {
   bool quiet = false;
 };
 
-const std::map<std::string, bake::ReportFormat> kFormats{{"text", bake::ReportFormat::text},
-                                                         {"json", bake::ReportFormat::json},
-                                                         {"sarif", bake::ReportFormat::sarif},
-                                                         {"junit", bake::ReportFormat::junit}};
+const std::map<std::string, bake::ReportFormat> kReportFormats{{"text", bake::ReportFormat::text},
+                                                               {"json", bake::ReportFormat::json},
+                                                               {"sarif", bake::ReportFormat::sarif},
+                                                               {"junit", bake::ReportFormat::junit}};
 
 std::string now_utc() {
   const std::time_t now = std::time(nullptr);
@@ -242,11 +242,11 @@ void add_report_options(CLI::App& command, ValidateArguments& arguments) {
     const std::string name = value.substr(0, equals);
     require_choice("--format", name, formats);
     if (equals != std::string::npos) {
-      arguments.files.push_back({kFormats.at(name), value.substr(equals + 1)});
+      arguments.files.push_back({kReportFormats.at(name), value.substr(equals + 1)});
     } else if (arguments.format) {
       throw CLI::ValidationError("--format", "two formats for one output; write --format " + name + "=FILE for one of them");
     } else {
-      arguments.format = kFormats.at(name);
+      arguments.format = kReportFormats.at(name);
     }
   };
   output.repeated("--format", "FORMAT", add_format,

@@ -116,7 +116,7 @@ int run_view(const ViewArguments& arguments) {
   const int code = add_inputs(arguments, inputs, page);
   if (code != kClean && named.size() == 1) return code;  // a page of nothing helps nobody
   page.finish();
-  if (!out.commit()) return fail(kFile, out.error());
+  if (const int failed = commit_all({&out}); failed != kClean) return failed;
   if (!arguments.quiet && !is_stream(output)) std::printf("%s\n", output.c_str());
   return arguments.open ? std::max(code, open_page(output)) : code;
 }
@@ -136,31 +136,22 @@ compiled, so that the mouse feels it. A replay's log goes with the graph before 
 
 )" + exit_codes("the page is written, whatever was found", "not used"));
   const auto arguments = std::make_shared<ViewArguments>();
-  command
-      ->add_option("input", arguments->inputs,
-                   "Mesh files, FDCG files, logs of 'fdcg-servo replay', patterns, or folders to search for meshes. - is a mesh on "
-                   "standard input.")
-      ->required()
-      ->type_name("INPUT...");
-  command->add_option("-o,--output", arguments->output, "Page to write. - is standard output.")
-      ->type_name("FILE")
-      ->default_str("the first input's name with .html")
-      ->group("Output");
-  command->add_flag("--open", arguments->open, "Open the page in the browser.")->group("Output");
-  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only. No progress bar.")->group("Output");
+  required_argument(
+      *command, "input", "INPUT...", arguments->inputs,
+      "Mesh files, FDCG files, logs of 'fdcg-servo replay', patterns, or folders to search for meshes. - is a mesh on standard "
+      "input.");
+  const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks"), touch(*command, "Touch");
+  output.text("-o,--output", "FILE", arguments->output, "Page to write. - is standard output.",
+              "the first input's name with .html");
+  output.flag("--open", arguments->open, "Open the page in the browser.");
+  output.flag("-q,--quiet", arguments->quiet, "Print errors only. No progress bar.");
   add_input_format_option(*command, arguments->mesh.input_format);
   add_unit_options(*command, arguments->mesh.metres_per_unit, arguments->unit_text);
-  add_weld_option(*command, arguments->mesh.weld);
-  command->add_flag("--repair", arguments->mesh.repair, "Show what 'fdcg repair --all' makes of a mesh with errors beside it.")
-      ->group("Mesh checks");
-  add_precision_option(*command, arguments->mesh.precision, "Precision of the graph that is touched.", "Touch");
-  command->add_flag("!--no-touch", arguments->mesh.touch, "Leave the graph of a mesh out: a smaller page, without touch.")
-      ->group("Touch");
-  command->add_option("--jobs", arguments->mesh.jobs, "Number of threads. The page does not depend on it.")
-      ->type_name("N")
-      ->default_str("one for each core")
-      ->check(whole_number(1, 1024))
-      ->group("General");
+  add_weld_option(checks, arguments->mesh.weld);
+  checks.flag("--repair", arguments->mesh.repair, "Show what 'fdcg repair --all' makes of a mesh with errors beside it.");
+  add_precision_option(touch, arguments->mesh.precision, "Precision of the graph that is touched.");
+  touch.flag("!--no-touch", arguments->mesh.touch, "Leave the graph of a mesh out: a smaller page, without touch.");
+  OptionGroup(*command, "General").jobs(arguments->mesh.jobs, "The page does not depend on it.");
   return {command, [arguments] {
             arguments->mesh.shows_progress = !arguments->quiet;
             return run_view(*arguments);

@@ -15,7 +15,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 13;
+constexpr std::size_t kRankGrain = 1u << 13;
 
 struct Ranked {
   std::uint64_t key;
@@ -58,7 +58,7 @@ std::vector<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsig
     return static_cast<std::uint32_t>(std::clamp((doubled - 2 * from) * cells_per_unit, 0.0, cells - 1));
   };
   std::vector<Ranked> ranked(mesh.face_count());
-  parallel_for(jobs, ranked.size(), kGrain, [&, from = low](std::size_t begin, std::size_t end) {
+  parallel_for(jobs, ranked.size(), kRankGrain, [&, from = low](std::size_t begin, std::size_t end) {
     for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
       const Vec3 c = doubled_centre(mesh, f);
       ranked[f] = {hilbert_position({cell(c.x, from.x), cell(c.y, from.y), cell(c.z, from.z)}, bits), f};
@@ -144,7 +144,7 @@ class Orderer {
     if (!all_triangles) graph_.node_of_side.resize(mesh_.corners.size());
     if (!regions_.list.empty()) graph_.region.resize(faces.size());
     graph_.regions = std::move(regions_.list);
-    parallel_for(jobs_, faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs_, faces.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
       for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
         const std::uint32_t f = faces[n], first = mesh_.face_first[f], count = mesh_.face_first[f + 1] - first;
         graph_.node_of_face[f] = n;
@@ -163,7 +163,7 @@ class Orderer {
     graph_.twin.resize(mesh_.corners.size());
     graph_.corner.resize(mesh_.corners.size());
     graph_.edges.resize(mesh_.corners.size());
-    parallel_for(jobs_, mesh_.corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs_, mesh_.corners.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const std::uint32_t side = side_of_slot_[slot];
         const HalfedgeId twin = topology_.twin[slot];

@@ -35,6 +35,28 @@ Json options_json(const CompileOptions& options) {
   return json;
 }
 
+// Totals and measures; the lists are for reports.
+Json repair_info(const RepairAccount& account) {
+  Json json;
+  json["level"] = account.level == RepairLevel::safe ? "safe" : "full";
+  json["found"] = account.found;
+  json["actions"] = Json::array();
+  for (const RepairAction& action : account.actions) {
+    if (action.total == 0 && action.left == 0) continue;
+    json["actions"].push_back({{"name", action.name},
+                               {"total", action.total},
+                               {"left", action.left},
+                               {"distance", action.distance},
+                               {"volume_change", action.volume_change}});
+  }
+  json["distance"] = account.distance;
+  json["volume_before"] = account.volume_before;
+  json["volume_after"] = account.volume_after;
+  json["faces_before"] = account.faces_before;
+  json["faces_after"] = account.faces_after;
+  return json;
+}
+
 }  // namespace
 
 std::string info_json(const PolygonSoup& soup, const CompileOptions& options, const Compiled& compiled) {
@@ -64,6 +86,7 @@ std::string info_json(const PolygonSoup& soup, const CompileOptions& options, co
   json["flipped_faces"] = compiled.flipped_faces;
   json["split_faces"] = compiled.split_faces;
   json["merged_faces"] = compiled.merged_faces;
+  if (compiled.repair) json["repair"] = repair_info(*compiled.repair);
   if (!compiled.no_mass.empty()) json["no_mass"] = compiled.no_mass;
   return json.dump();
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -25,7 +24,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 12;
+constexpr std::size_t kRecordGrain = 1u << 12;
 
 struct Records64 {
   using Real = double;
@@ -79,7 +78,7 @@ class Writer {
     fans_ = layout_.records<std::uint32_t>(file_, FDCG_SECTION_FANS);
     find_bounds();
     write_nodes();
-    parallel_for(input_.jobs, graph_.corner_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(input_.jobs, graph_.corner_count(), kRecordGrain, [&](std::size_t begin, std::size_t end) {
       for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
         write_corner(c);
     });
@@ -179,12 +178,12 @@ class Writer {
   }
 
   void write_nodes() {
-    std::vector<NodeTally> tallies((graph_.node_count() + kGrain - 1) / kGrain);
-    parallel_for(input_.jobs, graph_.node_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<NodeTally> tallies((graph_.node_count() + kRecordGrain - 1) / kRecordGrain);
+    parallel_for(input_.jobs, graph_.node_count(), kRecordGrain, [&](std::size_t begin, std::size_t end) {
       NodeTally tally;
       for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n)
         write_node(n, tally);
-      tallies[begin / kGrain] = tally;
+      tallies[begin / kRecordGrain] = tally;
     });
     for (const NodeTally& tally : tallies) {
       for (int type = 0; type < 4; ++type)

@@ -13,6 +13,14 @@
 namespace fdcg::bake {
 namespace {
 
+// libdraco's messages end in a full stop, which ours go on from.
+std::string plain(const draco::Status& status) {
+  std::string text = status.error_msg_string();
+  while (text.ends_with('.'))
+    text.pop_back();
+  return text;
+}
+
 DracoMesh refused(std::string trouble) {
   DracoMesh mesh;
   mesh.trouble = std::move(trouble);
@@ -149,7 +157,7 @@ DracoMesh decode_draco_here(const DracoInput& input) {
   draco::DecoderBuffer buffer;
   buffer.Init(input.bytes.data(), input.bytes.size());
   const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
-  if (!type.ok()) return refused("is not Draco data that libdraco reads: " + type.status().error_msg_string());
+  if (!type.ok()) return refused("is not Draco data that libdraco reads: " + plain(type.status()));
   if (type.value() != draco::TRIANGULAR_MESH) {
     DracoMesh cloud;
     cloud.is_point_cloud = true;
@@ -158,7 +166,7 @@ DracoMesh decode_draco_here(const DracoInput& input) {
   draco::Decoder decoder;
   decoder.SetSkipAttributeTransform(draco::GeometryAttribute::POSITION);
   const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) return refused("cannot be decoded: libdraco says '" + decoded.status().error_msg_string() + "'");
+  if (!decoded.ok()) return refused("cannot be decoded: libdraco says '" + plain(decoded.status()) + "'");
   return read_mesh(*decoded.value(), input);
 }
 

@@ -62,6 +62,12 @@ const ForeignKind* foreign_kind(std::string_view bytes) {
   return kind == std::end(kForeignKinds) ? nullptr : kind;
 }
 
+// As of a download or a copy that was cut off. A binary STL's header may be zeros.
+bool starts_with_zeros(std::string_view bytes) {
+  constexpr std::size_t kLooked = 512;
+  return bytes.substr(0, kLooked).find_first_not_of('\0') == std::string_view::npos && !has_binary_stl_size(bytes);
+}
+
 // What to do about an XML file of a kind that is not read.
 std::string xml_remedy(const std::string& root) {
   if (root == "robot" || root == "sdf")
@@ -126,6 +132,7 @@ double relative_quantum(const std::vector<Vec3>& points) {
 Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options,
                                  const std::filesystem::path* file) {
   if (bytes.empty()) return refuse(name, "is empty; export the mesh again", "empty-mesh");
+  if (starts_with_zeros(bytes)) return refuse(name, "starts with zeros alone, so that it is no mesh; fetch or export it again");
   if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);

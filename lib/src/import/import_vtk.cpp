@@ -40,7 +40,7 @@ class VtkReader : TextSoupReader {
     if (is_read) {
       drop_missing_vertices();
       soup_.is_text = !is_binary_;
-      if (soup_.is_text) soup_.absolute_quantum = absolute_quantum();
+      if (soup_.is_text) set_quanta(are_floats_);
     }
     return result(is_read);
   }
@@ -163,6 +163,7 @@ class VtkReader : TextSoupReader {
     std::uint64_t count = 0;
     const Kind* kind = nullptr;
     if (!read_count(count) || !read_kind(kind)) return false;
+    are_floats_ = kind->bytes == 4 && kind->what == Kind::Class::real;
     if (!soup_.points.empty()) return fail_here("POINTS stands twice; export the file again");
     if (count > kMaxPoints) return fail_here("more than 4,294,967,040 points; cut the mesh into parts");
     if (!begin_values(3 * count, kind->bytes, "coordinates")) return false;
@@ -276,7 +277,7 @@ class VtkReader : TextSoupReader {
     }
   }
 
-  bool is_binary_ = false;
+  bool is_binary_ = false, are_floats_ = false;
 };
 
 }  // namespace

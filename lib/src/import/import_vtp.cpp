@@ -60,8 +60,8 @@ class VtpReader {
     if (!array && promised == 0) return result;
     std::array<double, 3> xyz{};
     std::size_t at = 0;
-    const std::uint64_t there = file_.for_each_real(array, [&](double value, int decimals) {
-      result.note_decimals(decimals);
+    const std::uint64_t there = file_.for_each_real(array, [&](double value, const Printed& number) {
+      result.precision.note(value, number);
       xyz[at++] = value;
       if (at < 3) return;
       result.points.push_back({xyz[0], xyz[1], xyz[2]});

@@ -92,7 +92,7 @@ class X3dReader {
         file_.fail(node, "has " + scan.quote() + " as value " + std::to_string(count) + " of '" + attribute +
                              "', which is not a number");
       }
-      use(value, scan.last_decimals());
+      use(value, printed(scan));
     }
     return count;
   }
@@ -101,7 +101,7 @@ class X3dReader {
   std::array<double, kCount> numbers(const Node& node, const char* attribute, std::array<double, kCount> values) const {
     if (!xml::has(node, attribute)) return values;
     std::size_t at = 0;
-    const std::uint64_t there = for_each_number(node, attribute, [&](double value, int) {
+    const std::uint64_t there = for_each_number(node, attribute, [&](double value, const Printed&) {
       if (at < kCount) values[at++] = value;
     });
     if (there != kCount) {
@@ -198,8 +198,8 @@ class X3dReader {
     coordinate = used(coordinate);
     std::array<double, 3> xyz{};
     std::size_t at = 0;
-    for_each_number(coordinate, "point", [&](double value, int decimals) {
-      result.note_decimals(decimals);
+    for_each_number(coordinate, "point", [&](double value, const Printed& number) {
+      result.precision.note(value, number);
       xyz[at++] = value;
       if (at < 3) return;
       result.points.push_back({xyz[0], xyz[1], xyz[2]});
@@ -222,7 +222,7 @@ class X3dReader {
       if (!face.empty()) scene_.add_face(face, first, points.points.size(), is_turned);
       face.clear();
     };
-    const auto take = [&](double value, int) {
+    const auto take = [&](double value, const Printed&) {
       if (value == -1 && has_ends) return add();
       const bool is_known = value >= 0 && value < static_cast<double>(kMaxPoints) && value == std::floor(value);
       face.push_back(is_known ? static_cast<std::uint32_t>(value) : PolygonSoup::kInvalidVertex);
@@ -236,7 +236,7 @@ class X3dReader {
       scene_.charge_numbers(for_each_number(geometry, list, take));
     } else {
       for (std::size_t i = 0; i < points.points.size(); ++i)
-        take(static_cast<double>(i), 0);
+        take(static_cast<double>(i), {});
     }
     if (has_ends) return add();
     scene_.ignore("corners left over after the last triangle", face.size());

@@ -25,6 +25,7 @@ void write_issue(JsonWriter& json, const Issue& issue, const std::function<void(
   json.member("rule", issue.rule);
   json.member("severity", name_of(issue.severity));
   json.member("total", issue.total);
+  if (issue.is_at_least) json.member("at_least", true);
   json.member("known", issue.known);
   json.member("message", issue.message);
   json.begin_array("elements");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // One touch of a pile: the god-object's step, and the spring between it and the point.
-#include "base/struct_bytes.hpp"
 #include "body/pile_memory.hpp"
 #include "scene/finger_tick.hpp"
 #include "step/friction.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a deformable mesh's memory holds, and how what depends on its corners' places is brought up to date:
+// The memory of a deformable mesh, and the update of all that depends on its corners' places:
 //
 //   fdcg_deform | node blocks | corners | Place[corners] | log of one tick[corners] | of the next | connections | busy corners
 //   | hierarchy | stale[leaves] | loose[records] | leaf_first[corners + 1] | leaves of corners
@@ -85,13 +85,14 @@ inline Edge<Real> derive_edge_or_point(Vec3<Real> corner0, Vec3<Real> corner1) {
   return is_point ? Edge<Real>{corner0, {1, 0, 0}, 0} : derive_edge(corner0, corner1);
 }
 
-// Whether a side has no Voronoi plane: it is a point, or stands on the plane that a triangle without area was lent.
+// Whether a side has no Voronoi plane: it is a point, or stands on the plane that a triangle without area has taken from a
+// neighbour.
 template <class Real>
 inline bool bounds_nothing(Vec3<Real> direction, Vec3<Real> normal, Real length) {
   return length == 0 || norm1(cross(direction, normal)) == 0;
 }
 
-// Whether a triangle's corners are in one line, up to rounding error: its normal means nothing, and may be turned over.
+// Whether a triangle's corners are in one line, up to rounding error: its normal has no meaning, and may be reversed.
 template <class Real>
 FDCG_HOT bool is_line(Vec3<double> a, Vec3<double> b, Vec3<double> c, double extent) {
   constexpr double kRounding = 8 * double{RealLimits<Real>::kEpsilon};
@@ -179,10 +180,10 @@ class Upkeep {
   void compute_sliver(uint32_t n) const;
   [[nodiscard]] Lender plane_lender(uint32_t n) const;
   static constexpr uint32_t kAllSides = 7;  // a bit each
-  // Of some; FDCG_NONE of none.
+  // Of a set of sides; FDCG_NONE where it is empty.
   [[nodiscard]] uint32_t longest_side(uint32_t n, uint32_t sides) const;
   [[nodiscard]] bool is_line(uint32_t n) const;
-  // A corner of the node, or of its lender, that is off side k's line.
+  // A corner of the node, or of the neighbour whose plane it uses, that is off side k's line.
   [[nodiscard]] uint32_t apex(uint32_t n, uint32_t k) const;
   [[nodiscard]] uint32_t side_across(uint32_t n, uint32_t k) const {
     const fdcg_side& side = node(n).sides[k];

@@ -44,12 +44,12 @@ template <class Number>
 constexpr TypeInfo info_of() {
   return {sizeof(Number), std::numeric_limits<Number>::lowest(), std::numeric_limits<Number>::max()};
 }
-constexpr TypeInfo kTypes[] = {info_of<std::uint8_t>(), info_of<std::int8_t>(),   info_of<std::uint16_t>(),
+constexpr TypeInfo kTypeInfos[] = {info_of<std::uint8_t>(), info_of<std::int8_t>(),   info_of<std::uint16_t>(),
                                info_of<std::int16_t>(), info_of<std::uint32_t>(), info_of<std::int32_t>(),
                                info_of<float>()};
 
 const TypeInfo& info_of(NumberType type) {
-  return kTypes[static_cast<int>(type)];
+  return kTypeInfos[static_cast<int>(type)];
 }
 
 // `raw` has no bits beyond the type's own.
