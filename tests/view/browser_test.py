@@ -177,7 +177,7 @@ class Touch(BrowserCase):
         native, page = (pathlib.Path(self.saved(name)).read_text() for name in ("log.csv", "page-log.csv"))
         self.assertTrue(native == page, first_difference(native, page))
         self.assert_quiet()
-        print(f"step {state['timing']['stepNs']:.0f} ns, p99 of the period {state['timing']['periodP99Ms']:.2f} ms, {state['recorded']} ticks")
+        print(f"step {state['recordedStepNs']:.0f} ns, p99 of the period {state['timing']['periodP99Ms']:.2f} ms, {state['recorded']} ticks")
 
     def test_keys_press_and_move_and_sliders_change_what_is_felt(self):
         self.open(self.view(self.write("ball.off", sphere(12))))

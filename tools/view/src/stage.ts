@@ -15,6 +15,20 @@ interface Flight {
   start: number;
 }
 
+/** Undefined where the browser cannot draw: lists, records and forces are there all the same. Without a graphics processor smooth
+ * edges cost more than all the rest. */
+function makeRenderer(): WebGLRenderer | undefined {
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (context === null) return undefined;
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const name = names === null ? '' : String(context.getParameter(names.UNMASKED_RENDERER_WEBGL));
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  const isSlow = /swiftshader|llvmpipe|software|basic render/i.test(name);
+  const renderer = new WebGLRenderer({ antialias: !isSlow, powerPreference: 'high-performance' });
+  renderer.setPixelRatio(isSlow ? 1 : Math.min(devicePixelRatio, 2));
+  return renderer;
+}
+
 export class Stage {
   readonly scene = new Scene();
   readonly content = new Group(); // what there is to look at: fit() shows all of it
@@ -26,14 +40,14 @@ export class Stage {
   frames = 0;
   /** Called before each frame with the time; true: draw again after it. */
   readonly animations = new Set<(now: number) => boolean>();
-  private readonly renderer: WebGLRenderer;
+  private readonly renderer: WebGLRenderer | undefined;
   private flight: Flight | undefined;
   private pending = false;
 
   constructor(private readonly holder: HTMLElement) {
-    this.renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.canvas = this.renderer.domElement;
+    this.renderer = makeRenderer();
+    this.canvas = this.renderer?.domElement ?? document.createElement('canvas');
+    if (this.renderer === undefined) this.canvas.className = 'blank';
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute('role', 'img');
     this.canvas.setAttribute('aria-label', 'The model. Arrow keys turn it, plus and minus come nearer or go away, F shows all of it.');
@@ -66,7 +80,7 @@ export class Stage {
 
   /** One frame, now: for a picture, and to measure. */
   drawNow(): void {
-    this.renderer.render(this.scene, this.camera);
+    this.renderer?.render(this.scene, this.camera);
   }
 
   private draw(now: number): void {
@@ -77,7 +91,7 @@ export class Stage {
     this.camera.near = Math.max(distance * 0.01, 1e-5);
     this.camera.far = distance + 10;
     this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    this.renderer?.render(this.scene, this.camera);
     ++this.frames;
     if (again) this.invalidate();
   }
@@ -113,6 +127,9 @@ export class Stage {
     this.invalidate();
   }
 
+  get isBlank(): boolean {
+    return this.renderer === undefined;
+  }
   get isFlying(): boolean {
     return this.flight !== undefined;
   }
@@ -178,10 +195,10 @@ export class Stage {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height);
+    this.renderer?.setSize(width, height);
     this.resolution.set(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    this.renderer?.render(this.scene, this.camera);
   }
 }
