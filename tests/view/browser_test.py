@@ -111,6 +111,19 @@ class Findings(BrowserCase):
         self.wait_for(lambda s: s["camera"] != before)
 
 
+class Sight(BrowserCase):
+    def test_a_face_that_is_turned_round_is_looked_at_from_outside(self):
+        lines = sphere(12).splitlines()
+        lines[-40] = " ".join(["3", *reversed(lines[-40].split()[1:])])
+        self.open(self.view(self.write("ball.off", "\n".join(lines) + "\n")))
+        for _ in range(3):
+            before = self.state()["camera"]
+            self.press("n")
+            state = self.wait_for(lambda s, before=before: s["camera"] != before and not s["flying"])
+            self.assertEqual("winding-inconsistent", state["rule"])
+            self.assertGreater(math.hypot(*state["camera"]), 0.51)  # the ball's radius is 0.5
+
+
 class Graph(BrowserCase):
     def setUp(self):
         super().setUp()

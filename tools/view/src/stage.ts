@@ -110,13 +110,21 @@ export class Stage {
     return false;
   }
 
-  /** To see a ball from outside along `normal`, or from where the camera is now where there is none. */
-  flyTo(centre: Vector3, radius: number, normal?: Vector3): void {
-    const distance = (radius * 1.15) / Math.sin(MathUtils.degToRad(this.camera.fov / 2)) / Math.min(1, this.camera.aspect);
+  /** From how far a ball fills the picture. */
+  distanceFor(radius: number): number {
+    return (radius * 1.15) / Math.sin(MathUtils.degToRad(this.camera.fov / 2)) / Math.min(1, this.camera.aspect);
+  }
+  /** Where to look from: along the normal, but not straight, since a glance from the side shows the shape; from where the camera
+   * is now where there is no normal. */
+  approach(normal?: Vector3): Vector3 {
     const back = this.camera.position.clone().sub(this.controls.target).normalize();
-    // not straight along the normal: a glance from the side shows the shape
-    const direction = normal !== undefined && normal.lengthSq() > 0 ? normal.clone().normalize().multiplyScalar(1.4).add(back).normalize() : back;
-    if (!(direction.lengthSq() > 0.5)) direction.copy(back);
+    if (normal === undefined || normal.lengthSq() === 0) return back;
+    const direction = normal.clone().normalize().multiplyScalar(1.4).add(back).normalize();
+    return direction.lengthSq() > 0.5 ? direction : back;
+  }
+  /** Flies to where a ball fills the picture, seen from `direction`. */
+  flyTo(centre: Vector3, radius: number, direction = this.approach()): void {
+    const distance = this.distanceFor(radius);
     this.flight = {
       from: this.camera.position.clone(),
       to: centre.clone().addScaledVector(direction, distance),
