@@ -39,6 +39,7 @@ inline constexpr uint32_t kTransitionWork = 10;   // one change of state
 inline constexpr uint32_t kSideWork = 4;          // one side of a face that the god-object slides on
 inline constexpr uint32_t kEdgeWork = 15;         // the rule of an edge
 inline constexpr uint32_t kFanWork = 8;           // one edge of a corner and the face beside it
+inline constexpr uint32_t kFanSignWork = 4;       // one corner against a plane, where rounding cannot matter
 inline constexpr uint32_t kFanBoxWork = 5;        // one box of a corner's fan tree
 inline constexpr uint32_t kRenewedNodeWork = 55;  // a node's plane computed anew
 inline constexpr uint32_t kRenewedLeafWork = 85;  // a leaf's box
