@@ -94,6 +94,19 @@ class Aarch64(HashCase):
         self.assert_same_bits(found, "aarch64 gcc -O3")
 
 
+class Wasm(HashCase):
+    """WebAssembly in node, as in the page of fdcg view: no fused operation there, but a compiler of its own behind it."""
+
+    def test_clang(self):
+        self.need("clang", "clang++", "wasm-ld", "node")
+        if not os.path.isdir("/usr/include/wasm32-wasi"):
+            self.skipTest("wasi-libc is missing; tools/check installs it (group viewer of tools/packages)")
+        flags = ["--target=wasm32-wasi", "--sysroot=/usr", "-O2", "-Wno-unused-command-line-argument"]
+        includes = ["-isystem", "/usr/include/wasm32-wasi"]
+        run = ["node", "--no-warnings", str(ROOT / "tests" / "anywhere" / "run_wasi.mjs")]
+        self.assert_same_bits(self.hashed_by("wasm", "clang", "clang++", [*flags, *includes], None, (), run), "wasm32 clang -O2")
+
+
 class CortexM(HashCase):
     """Bare metal: no operating system, the graphs in flash, -Os, the runtime by its own build and a toolchain file."""
 

@@ -173,6 +173,44 @@ class ByHand(GraspCase):
         about = self.judge("moved.off", [contact(6, 0, 0)], "--mu", "1", "--centre", "1,2,3", "--torque-scale", "7", code=1)["object"]
         self.assertEqual(([1, 2, 3], 7), (about["centre_m"], about["torque_scale_m"]))
 
+    def test_the_centre_changes_no_verdict(self):
+        rng = random.Random(40)
+        verdicts = set()
+        for mu, grip in ((0.5, "30"), (0.3, "3"), (0.15, "12"), (0, "30")):
+            contacts = [contact(1, rng.uniform(-0.8, 0.8), rng.uniform(-0.8, 0.8)), contact(-1, rng.uniform(-0.8, 0.8), 0.4), contact(-1, 0.1, -0.6)]
+            hold = ("--mu", str(mu), "--grip", grip, "--mass", "0.3", "--gravity", "1,-2,-9")
+            first = self.judge("cube.off", contacts, *hold)
+            verdicts.add((first["closure"]["verdict"], first["margin"]["holds"]))
+            for size in (1, 10, 1e4):
+                about = ",".join(repr(size * rng.uniform(-1, 1)) for _ in range(3))
+                other = self.judge("cube.off", contacts, *hold, "--centre", about)
+                self.assertEqual(first["closure"]["verdict"], other["closure"]["verdict"])
+                self.assertAlmostEqual(first["margin"]["load_factor"], other["margin"]["load_factor"], 7)
+                self.assertEqual(first["object"]["com_m"], other["object"]["com_m"])
+        self.assertGreater(len(verdicts), 1)  # they do differ between grasps
+
+    def test_the_load_acts_at_the_centre_of_mass(self):
+        # two soft fingers on the x axis: a weight beside their line turns the cube about it, against their torsion
+        hold = ("--mu", "0.5", "--cap", "10", "--torsion", "0.2", "--load", "0,0,-1")
+        margin = self.judge("cube.off", self.two, *hold, "--com", "0,0.3,0", "--centre", "0,0,0", code=0)["margin"]
+        self.assertAlmostEqual(-0.3, margin["load"]["torque_nm"][0], 12)
+        # limit surface of each: (f / 5)^2 + (m / 2)^2 <= 1 with f = 1 / 2, m = 0.3 / 2 of the load
+        self.assertAlmostEqual(1 / math.hypot(0.5 / 5, 0.15 / 2), margin["load_factor"], 7)
+        again = self.judge("cube.off", self.two, *hold, "--com", "0,0.3,0", "--centre", "3,-2,1", code=0)["margin"]
+        self.assertAlmostEqual(margin["load_factor"], again["load_factor"], 7)
+
+    def test_a_pads_radius_is_torsion_over_mu(self):
+        by_torsion = self.judge("cube.off", self.two, "--mu", "0.5", "--torsion", "0.1")
+        by_radius = self.judge("cube.off", self.two, "--mu", "0.5", "--pad-radius", "0.2")
+        in_file = self.judge("cube.off", [contact(*c["point"], pad_radius=0.2) for c in self.two], "--mu", "0.5")
+        self.assertEqual(by_torsion, by_radius)
+        self.assertEqual(by_torsion, in_file)
+
+    def test_a_normal_that_points_out_of_the_object_is_warned_of(self):
+        report = self.judge("cube.off", [contact(1, 0, 0, normal=[1, 0, 0]), contact(-1, 0, 0, normal=[1, 0, 0])], "--mu", "0.5")
+        self.assertEqual(1, len(report["warnings"]), report["warnings"])
+        self.assertIn("contact 0: its normal points out of the object", report["warnings"][0])
+
     def test_points_go_to_the_surface_and_normals_come_from_it(self):
         report = self.judge("cube.off", [contact(1.3, 0.2, 0.1), contact(0.2, 0.3, 0.6), contact(1, 1, 0.2)], "--mu", "1")
         first, inside, edge = report["contacts"]
@@ -347,6 +385,7 @@ class Input(GraspCase):
             ("x,y,z,mu\n1,0,0,-1\n", ("line 2: mu is -1; it must be a number from 0 to 100",)),
             ("x,y,z,cap\n1,0,0,0\n", ("line 2: cap is 0; it must be a number from 1e-100 to 1e+100 N",)),
             ("x,y,z,cap\n1,0,0,1e101\n", ("cap is 1e+101",)),
+            ("x,y,z,mu,torsion,pad_radius\n1,0,0,1,0.1,0.1\n", ("contact 0 has both torsion and pad_radius",)),
             ("x,y,z,torsion\n1,0,0,-1\n", ("line 2: torsion is -1",)),
             ("x,y,z,torsion\n1,0,0,1e9\n", ("contact 0: torsion is 1e+09", "100 torque scales")),
             ("x,y,z\n1,0,2e12\n", ("line 2: z is 2e+12; it must be a number from -1e+12 to 1e+12 m",)),
@@ -418,7 +457,9 @@ class Input(GraspCase):
         done = self.fdcg("grasp", self.path("none.off"), "--contacts", self.fingers, "--mu", "1", code=3)
         self.assert_one_line(done, "none.off")
         opened = self.write("open.off", CENTRED_CUBE.replace("8 6 0", "8 5 0").replace("4 3 0 4 7\n", ""))
-        self.assert_one_line(self.fdcg("grasp", opened, "--contacts", self.fingers, "--mu", "1", code=2), "open.off", "--centre")
+        self.assert_one_line(self.fdcg("grasp", opened, "--contacts", self.fingers, "--mu", "1", code=2), "open.off", "--com")
+        about = ("--mu", "1", "--centre", "0,0,0", "--grip", "1")
+        self.assert_one_line(self.fdcg("grasp", opened, "--contacts", self.fingers, *about, code=2), "open.off", "--com")
         across = self.write("across.csv", "x,y,z\n0,1,0\n0,-1,0\n")
         self.fdcg("grasp", opened, "--contacts", across, "--mu", "1", "--torsion", "0.1", "--centre", "0,0,0", code=0)
         twisted = self.write("twisted.off", CENTRED_CUBE.replace("4 0 3 2 1", "4 1 2 3 0"))

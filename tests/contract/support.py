@@ -38,19 +38,26 @@ CUBE = """OFF
 """
 
 
-def checksum(block):
+def checksum(data):
     """As schemas/fdcg-v1.md has it, written from there."""
-    mask, multiplier, seed = 2**64 - 1, 0x9E3779B97F4A7C15, 0x4644434700000001
-    lanes = [seed + i for i in range(8)]
-    padded = block + bytes(-len(block) % 64)
-    for at in range(0, len(padded), 64):
-        for i, word in enumerate(struct.unpack_from("<8Q", padded, at)):
-            product = (lanes[i] ^ word) * multiplier & mask
-            lanes[i] = (product << 29 | product >> 35) & mask
-    total = seed ^ (len(block) * multiplier & mask)
-    for lane in lanes:
-        total = (total ^ lane) * multiplier & mask
-        total ^= total >> 32
+    mask, factor, multiplier, seed = 2**64 - 1, 0x9E3779B1, 0x9E3779B97F4A7C15, 0x4644434700000002
+
+    def absorbed(lane, word):
+        mixed = lane ^ word
+        product = (mixed & 0xFFFFFFFF) * factor
+        return ((product << 32 | product >> 32) & mask) ^ mixed >> 32
+
+    total = seed + len(data) * multiplier & mask
+    for index, at in enumerate(range(0, len(data), 4096)):
+        block = data[at:at + 4096]
+        lanes = [seed + i * multiplier & mask for i in range(16)]
+        for words in struct.iter_unpack("<16Q", block + bytes(-len(block) % 128)):
+            lanes = [absorbed(lane, word) for lane, word in zip(lanes, words)]
+        one = seed ^ len(block)
+        for lane in lanes:
+            one = absorbed(one, lane)
+        one = (one + index * multiplier) * multiplier & mask
+        total = total + (one ^ one >> 32) * multiplier & mask
     return total
 
 

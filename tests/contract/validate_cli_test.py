@@ -337,12 +337,25 @@ class Settings(ValidateCase):
 class ManyFiles(ValidateCase):
     def test_a_file_too_large_for_memory_leaves_the_others_their_reports(self):
         limit = 160 << 20
-        done = subprocess.run((FDCG, "validate", "/dev/zero", self.write("cube.off", CUBE), "--format", "json", "--jobs", "1", "--no-config"),
+        large = self.folder / "large.off"
+        with large.open("wb") as file:
+            file.truncate(4 * limit)
+        done = subprocess.run((FDCG, "validate", str(large), self.write("cube.off", CUBE), "--format", "json", "--jobs", "1", "--no-config"),
                               capture_output=True, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
         self.assertEqual(3, done.returncode, done.stderr)
-        self.assert_one_line(done, "/dev/zero", "memory")
+        self.assert_one_line(done, "large.off", "memory")
         self.assertEqual(["fail", "pass"], [file["verdict"] for file in json.loads(done.stdout)["files"]])
+
+    def test_what_has_no_end_is_refused_at_once(self):
+        done = subprocess.run((FDCG, "validate", "/dev/zero", "--no-config"), capture_output=True, check=False, timeout=10)
+        self.assertEqual(3, done.returncode, done.stderr)
+        self.assert_one_line(done, "/dev/zero", "device")
+        with subprocess.Popen(("yes", "v 0 0 0"), stdout=subprocess.PIPE) as endless:
+            done = subprocess.run((FDCG, "validate", "-", "--no-config"), stdin=endless.stdout, capture_output=True, check=False, timeout=30)
+            endless.kill()
+        self.assertEqual(3, done.returncode, done.stderr)
+        self.assert_one_line(done, "64 MiB")
 
     def test_files_come_in_a_stable_order_however_many_threads_there_are(self):
         (self.folder / "sub").mkdir()

@@ -6,6 +6,8 @@
 #include <set>
 #include <system_error>
 
+#include "shared/text.hpp"
+
 namespace fdcg::tools {
 namespace {
 
@@ -131,12 +133,6 @@ void match(const std::string& prefix, const std::vector<std::string>& components
   }
 }
 
-bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
-  std::string ending = fs::path(name).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), lower);
-  return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
-
 void walk(const std::string& prefix, const std::vector<std::string>& endings, std::set<std::string>& found) {
   for (const fs::directory_entry& entry : entries_of(prefix)) {
     const std::string name = entry.path().filename().string();
@@ -149,13 +145,6 @@ void walk(const std::string& prefix, const std::vector<std::string>& endings, st
   }
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 // The files of one argument, sorted; or its problem.
 std::vector<NamedFile> expand(const std::string& argument, const std::vector<std::string>& endings) {
   std::error_code ignored;
@@ -163,7 +152,7 @@ std::vector<NamedFile> expand(const std::string& argument, const std::vector<std
   const bool is_there = fs::exists(argument, ignored);
   if (argument != "-" && fs::is_directory(argument, ignored)) {
     walk(argument.ends_with('/') ? argument : argument + "/", endings, found);
-    if (found.empty()) return {{argument, "is a directory without a mesh file (" + joined(endings) + "); name a mesh file"}};
+    if (found.empty()) return {{argument, "is a directory without a mesh file (" + listed(endings) + "); name a mesh file"}};
   } else if (argument == "-" || is_there || !is_pattern(argument)) {
     return {{argument, ""}};
   } else {
@@ -180,6 +169,17 @@ std::vector<NamedFile> expand(const std::string& argument, const std::vector<std
 }
 
 }  // namespace
+
+const std::vector<std::string>& mesh_endings() {
+  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc", ".dae", ".3mf"};
+  return kEndings;
+}
+
+bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
+  std::string ending = fs::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), lower);
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
 
 bool matches_pattern(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0;

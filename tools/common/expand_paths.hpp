@@ -14,6 +14,11 @@ struct NamedFile {
   std::string problem;  // one line; empty: none
 };
 
+// Of the files that are meshes by their names, in lower case: ".off" and so on.
+const std::vector<std::string>& mesh_endings();
+// Whatever the case of the name's letters.
+bool has_ending(const std::string& name, const std::vector<std::string>& endings);
+
 // Each argument in its turn: "-" and the name of a file stand for themselves, whether it exists or not. A pattern gives the
 // files that match, a folder those below it with one of `endings` (in lower case, ".stl"); both match letters in any case, and
 // give files sorted by their bytes. A pattern knows *, ?, [abc], [!a-c], {a,b} and, as a whole component, ** for any number of

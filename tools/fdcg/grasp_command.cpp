@@ -13,6 +13,7 @@
 #include "grasp_object.hpp"
 #include "grasp_report.hpp"
 #include "mesh_options.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -24,8 +25,8 @@ struct GraspArguments {
   std::string output = "-";
   std::string unit_text;
   bake::CompileOptions compile;
-  std::optional<double> mu, torsion_m, cap_n, torque_scale_m, mass_kg, grip_n;
-  std::optional<Vec3> centre_m, gravity_m_per_s2;
+  std::optional<double> mu, torsion_m, pad_radius_m, cap_n, torque_scale_m, mass_kg, grip_n;
+  std::optional<Vec3> centre_m, com_m, gravity_m_per_s2;
   std::optional<grasp::Wrench> load;
   grasp::Effort effort = grasp::Effort::together;
   std::uint64_t cones = 200'000;
@@ -49,14 +50,31 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   return numbers;
 }
 
+// The largest moment of a contact about its normal for each newton pressed: what the file says of it, else the command line.
+double torsion_of(const GraspArguments& arguments, const NamedContact& asked, double mu) {
+  if (asked.torsion_m) return *asked.torsion_m;
+  if (asked.pad_radius_m) return mu * *asked.pad_radius_m;
+  if (arguments.pad_radius_m) return mu * *arguments.pad_radius_m;
+  return arguments.torsion_m.value_or(0);
+}
+
 // A length that is far beyond the object's: of the file or of the option, whichever said it.
 int check_torsion(const GraspArguments& arguments, const NamedContact& asked, double torsion_m, double torque_scale_m) {
   const double most_m = grasp::kMostTorsionScales * torque_scale_m;
   if (torsion_m <= most_m) return kClean;
   const std::string words = short_number(torsion_m) + ", allowed 0 to " + short_number(most_m) + " m, " +
                             short_number(grasp::kMostTorsionScales) + " torque scales";
-  if (asked.torsion_m) return fail(kFile, arguments.contacts + ": " + asked.name + ": torsion is " + words);
-  return fail(kUsage, "--torsion is " + words);
+  if (asked.torsion_m || asked.pad_radius_m)
+    return fail(kFile, arguments.contacts + ": " + asked.name + ": torsion is " + words);
+  return fail(kUsage, (arguments.pad_radius_m ? "mu times --pad-radius is " : "--torsion is ") + words);
+}
+
+// Pressing against the face's normal is what a contact does; a normal that points the other way is most often one of the
+// surface, which points outward.
+bool points_outward(const NamedContact& asked, const SurfacePoint& found) {
+  if (!asked.inward || found.is_on_edge) return false;
+  constexpr double kRounding = 1e-9;
+  return dot(*asked.inward, found.outward) > kRounding;
 }
 
 // The report's contacts: on the surface, with what the file or the command line says of them.
@@ -69,7 +87,7 @@ int place_contacts(const GraspArguments& arguments, const GraspObject& object, G
     contact.point_m = found.point_m;
     contact.inward = asked.inward ? *asked.inward : Vec3{0 - found.outward.x, 0 - found.outward.y, 0 - found.outward.z};
     contact.mu = *mu;
-    contact.torsion_m = asked.torsion_m.value_or(arguments.torsion_m.value_or(0));
+    contact.torsion_m = torsion_of(arguments, asked, *mu);
     if (const int code = check_torsion(arguments, asked, contact.torsion_m, report.grasp.torque_scale_m); code != kClean)
       return code;
     contact.cap_n = asked.cap_n.value_or(arguments.cap_n.value_or(std::numeric_limits<double>::infinity()));
@@ -88,27 +106,38 @@ int place_contacts(const GraspArguments& arguments, const GraspObject& object, G
       report.warnings.push_back(asked.name + " lies on an edge; its normal is that of node " + std::to_string(found.node) +
                                 ". Move it, or give its normal");
     }
+    if (points_outward(asked, found))
+      report.warnings.push_back(asked.name +
+                                ": its normal points out of the object; a contact presses inward. Turn the normal");
   }
   return kClean;
 }
 
 int set_frame(const GraspArguments& arguments, const GraspObject& object, GraspReport& report) {
-  const auto centroid = object.centroid_m();
-  if (arguments.centre_m) {
-    report.grasp.centre_m = *arguments.centre_m;
-    report.centre_from = "option";
-  } else if (centroid) {
-    report.grasp.centre_m = *centroid;
-    report.centre_from = "volume";
-  } else {
-    return fail(kUsage, arguments.object + ": the surface encloses no volume, so it has no centroid; give --centre X,Y,Z");
+  report.com_m = arguments.com_m ? arguments.com_m : object.centroid_m();
+  report.com_from = arguments.com_m ? "option" : "volume";
+  if (!arguments.centre_m && !report.com_m) {
+    return fail(kUsage, arguments.object + ": the surface encloses no volume, so its centre of mass is not known; " +
+                            "give --com X,Y,Z (or --centre X,Y,Z where no load is asked for)");
   }
+  report.grasp.centre_m = arguments.centre_m ? *arguments.centre_m : *report.com_m;
+  report.centre_from = arguments.centre_m ? "option" : report.com_from;
   report.torque_scale_from = arguments.torque_scale_m ? "option" : "size";
   report.grasp.torque_scale_m = arguments.torque_scale_m.value_or(object.farthest_from(report.grasp.centre_m));
   return kClean;
 }
 
+bool has_grip(const GraspArguments& arguments, const grasp::Grasp& grasp) {
+  return arguments.grip_n.has_value() || std::all_of(grasp.contacts.begin(), grasp.contacts.end(),
+                                                     [](const auto& contact) { return std::isfinite(contact.cap_n); });
+}
+
+// The load acts at the centre of mass, wherever torques are reckoned about: no verdict depends on that choice.
 int set_load(const GraspArguments& arguments, const GraspObject& object, GraspReport& report) {
+  if (!report.com_m && has_grip(arguments, report.grasp)) {
+    return fail(kUsage, arguments.object + ": the surface encloses no volume, so where its weight acts is not known; " +
+                            "give its centre of mass, --com X,Y,Z");
+  }
   constexpr double kStandardGravity = 9.80665;  // m/s^2
   if (arguments.load) {
     report.load = *arguments.load;
@@ -119,20 +148,19 @@ int set_load(const GraspArguments& arguments, const GraspObject& object, GraspRe
     report.load.force_n = {mass * g.x, mass * g.y, mass * g.z};
     report.load_text = "the weight of " + short_number(mass) + " kg";
   }
+  const Vec3 com = report.com_m.value_or(report.grasp.centre_m);
+  const Vec3 arm = plus(com, -1, report.grasp.centre_m);
+  report.load.torque_nm = plus(report.load.torque_nm, 1, cross(arm, report.load.force_n));
   if (const auto problem = grasp::problem_of(report.load, report.grasp.torque_scale_m))
     return fail(kUsage, *problem + " (--load, --gravity, --mass)");
   return kClean;
-}
-
-bool has_grip(const GraspArguments& arguments, const grasp::Grasp& grasp) {
-  return arguments.grip_n.has_value() || std::all_of(grasp.contacts.begin(), grasp.contacts.end(),
-                                                     [](const auto& contact) { return std::isfinite(contact.cap_n); });
 }
 
 int run_grasp(const GraspArguments& arguments) {
   if (arguments.object == "-" && arguments.contacts == "-")
     return fail(kUsage,
                 "OBJECT and --contacts are both '-', and standard input can be only one of them; name a file for the other");
+  if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; it is empty");
   for (const std::string* input : {&arguments.object, &arguments.contacts}) {
     if (is_same_file(*input, arguments.output)) return fail(kUsage, "'" + arguments.output + "' would overwrite an input");
   }
@@ -165,15 +193,16 @@ int run_grasp(const GraspArguments& arguments) {
   }
   AtomicFile out(arguments.output);
   out.write(arguments.json ? grasp_report_json(report) : grasp_report_text(report));
-  if (!out.commit()) return fail(kFile, out.error());
+  if (const int code = commit_all({&out}); code != kClean) return code;
   for (const std::string& warning : report.warnings)
     warn(warning);
   const bool slips = report.margin && !(report.margin->load_factor >= 1);
   return report.closure.verdict == grasp::Verdict::closure && !slips && !report.has_far_contacts ? kClean : kFindings;
 }
 
-CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<double>& value, bool may_be_zero,
-                        const std::string& help, const std::string& type, double most = std::numeric_limits<double>::max()) {
+CLI::Option* add_number(const OptionGroup& group, const std::string& name, const std::string& value_name,
+                        std::optional<double>& value, bool may_be_zero, const std::string& help,
+                        const std::string& shown_default = {}, double most = std::numeric_limits<double>::max()) {
   const auto parse = [name, &value, may_be_zero, most](const std::string& text) {
     const auto parsed =
         parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
@@ -185,24 +214,24 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, std::optiona
                     (has_most ? (may_be_zero ? "to " : " and up to ") + short_number(most) : (may_be_zero ? "up" : "")));
     value = parsed;
   };
-  return command.add_option_function<std::string>(name, parse, help)->type_name(type);
+  return group.parsed(name, value_name, parse, help, shown_default);
 }
 
-CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optional<Vec3>& value, const std::string& help) {
+CLI::Option* add_vector(const OptionGroup& group, const std::string& name, std::optional<Vec3>& value, const std::string& help,
+                        const std::string& shown_default) {
   const auto parse = [name, &value](const std::string& text) {
     const auto v = parse_numbers(name, text, {3});
     value = Vec3{v[0], v[1], v[2]};
   };
-  return command.add_option_function<std::string>(name, parse, help)->type_name("X,Y,Z");
+  return group.parsed(name, "X,Y,Z", parse, help, shown_default);
 }
 
 void add_load_options(CLI::App& command, GraspArguments& arguments) {
-  add_number(command, "--grip", arguments.grip_n, false,
-             "The largest sum of the normal forces of all contacts, in newtons. Asks for the margin.", "N", grasp::kMostForce_n)
-      ->group("Load");
-  add_number(command, "--cap", arguments.cap_n, false,
-             "The largest normal force of each contact, in newtons. Asks for the margin.", "N", grasp::kMostForce_n)
-      ->group("Load");
+  const OptionGroup group(command, "Load");
+  add_number(group, "--grip", "N", arguments.grip_n, false,
+             "The largest sum of the normal forces of all contacts, in newtons. Asks for the margin.", "", grasp::kMostForce_n);
+  add_number(group, "--cap", "N", arguments.cap_n, false,
+             "The largest normal force of each contact, in newtons. Asks for the margin.", "", grasp::kMostForce_n);
   const auto parse_load = [&arguments](const std::string& text) {
     const auto v = parse_numbers("--load", text, {3, 6});
     grasp::Wrench load;
@@ -210,16 +239,13 @@ void add_load_options(CLI::App& command, GraspArguments& arguments) {
     if (v.size() == 6) load.torque_nm = {v[3], v[4], v[5]};
     arguments.load = load;
   };
-  CLI::Option* const load = command.add_option_function<std::string>(
-      "--load", parse_load, "Force (N), and torque about the centre (N m), on the object. The torque may be left out.");
-  load->type_name("FX,FY,FZ,TX,TY,TZ")->default_str("the object's weight")->group("Load");
-  add_number(command, "--mass", arguments.mass_kg, false, "Mass of the object in kg.", "KG")
-      ->default_str("the FDCG file's, else 1, so that the load factor is in kg")
-      ->group("Load");
-  add_vector(command, "--gravity", arguments.gravity_m_per_s2, "Acceleration of gravity, m/s^2.")
-      ->default_str("0,0,-9.80665")
-      ->group("Load");
-  load->excludes("--mass")->excludes("--gravity");
+  CLI::Option* const load = group.parsed(
+      "--load", "FX,FY,FZ,TX,TY,TZ", parse_load,
+      "Force (N) at the centre of mass, and torque about it (N m). The torque may be left out.", "the object's weight");
+  load->excludes(add_number(group, "--mass", "KG", arguments.mass_kg, false, "Mass of the object in kg.",
+                            "the FDCG file's, else 1, so that the load factor is in kg"));
+  load->excludes(add_vector(group, "--gravity", arguments.gravity_m_per_s2, "Acceleration of gravity, m/s^2.", "0,0,-9.80665"));
+  add_vector(group, "--com", arguments.com_m, "Centre of mass, in metres: where the load acts.", "the centroid of the volume");
 }
 
 }  // namespace
@@ -231,54 +257,41 @@ Command add_grasp(CLI::App& app) {
   fdcg grasp part.stl --units mm --contacts fingers.json --mu 0.4 --torsion 0.003 --grip 20 --mass 0.3
   fdcg grasp cube.fdcg --contacts fingers.csv --mu 0.5 --cap 10 --load 0,0,-5,0.1,0,0 --json
 
-Contacts are a CSV file with a header that names x, y and z, and any of mu, torsion, cap, nx, ny, nz and name; or a JSON array
-of objects with "point": [x, y, z] and any of "mu", "torsion", "cap", "normal" and "name". They are in metres in the object's
+Contacts are a CSV file with a header that names x, y and z, and any of mu, torsion, pad_radius, cap, nx, ny, nz and name; or a JSON array
+of objects with "point": [x, y, z] and any of "mu", "torsion", "pad_radius", "cap", "normal" and "name". They are in metres in the object's
 frame, and are moved to the nearest point of the surface.
 
 )" + exit_codes("force closure, and the load holds if a grip is given",
                 "no closure, the load slips, a contact is far from the surface, or the mesh has errors"));
   const auto arguments = std::make_shared<GraspArguments>();
-  command->add_option("object", arguments->object, "FDCG file, or a mesh without errors.")->required()->type_name("OBJECT");
-  command->add_option("--contacts", arguments->contacts, "Where the object is touched: JSON or CSV. - is standard input.")
-      ->required()
-      ->type_name("FILE")
-      ->group("Contacts");
-  add_number(*command, "--mu", arguments->mu, true, "Friction coefficient of contacts that state none.", "MU", grasp::kMostMu)
-      ->group("Contacts");
-  add_number(*command, "--torsion", arguments->torsion_m, true,
-             "Soft fingers: the largest moment about the normal, in N m for each newton of normal force.", "METRES")
-      ->default_str("0, hard fingers")
-      ->group("Contacts");
+  required_argument(*command, "object", "OBJECT", arguments->object, "FDCG file, or a mesh without errors.");
+  const OptionGroup contacts(*command, "Contacts");
+  contacts.text("--contacts", "FILE", arguments->contacts, "Where the object is touched: JSON or CSV. - is standard input.")
+      ->required();
+  add_number(contacts, "--mu", "MU", arguments->mu, true, "Friction coefficient of contacts that state none.", "",
+             grasp::kMostMu);
+  CLI::Option* const torsion = add_number(
+      contacts, "--torsion", "METRES", arguments->torsion_m, true,
+      "Soft fingers: the largest moment about the normal, in N m for each newton of normal force.", "0, hard fingers");
+  add_number(contacts, "--pad-radius", "METRES", arguments->pad_radius_m, true,
+             "Soft fingers by the radius of their pads, as in scenes: the torsion is mu times it.")
+      ->excludes(torsion);
   add_load_options(*command, *arguments);
-  add_vector(*command, "--centre", arguments->centre_m, "Point that torques are about, in metres.")
-      ->default_str("the centroid of the volume")
-      ->group("Quality");
-  add_number(*command, "--torque-scale", arguments->torque_scale_m, false, "Length by which torques are divided, in metres.",
-             "METRES")
-      ->default_str("the largest distance of a corner from the centre")
-      ->group("Quality");
-  const auto parse_epsilon = [arguments](const std::string& text) {
-    require_choice("--epsilon", text, {"together", "each"});
-    arguments->effort = text == "each" ? grasp::Effort::each : grasp::Effort::together;
-  };
-  command
-      ->add_option_function<std::string>(
-          "--epsilon", parse_epsilon,
-          one_of("Epsilon is for 1 N of normal force of all contacts together, or of each.", {"together", "each"}))
-      ->type_name("EFFORT")
-      ->default_str("together")
-      ->group("Quality");
+  const OptionGroup quality(*command, "Quality"), output(*command, "Output");
+  add_vector(quality, "--centre", arguments->centre_m, "Point that torques are reckoned about, in metres; for epsilon alone.",
+             "the centre of mass");
+  add_number(quality, "--torque-scale", "METRES", arguments->torque_scale_m, false,
+             "Length by which torques are divided, in metres.", "the largest distance of a corner from the centre");
+  quality.choice<grasp::Effort>("--epsilon", "EFFORT", {{"together", grasp::Effort::together}, {"each", grasp::Effort::each}},
+                                arguments->effort, "Epsilon is for 1 N of normal force of all contacts together, or of each.");
   command->add_option("--cones", arguments->cones, "The largest number of directions searched for epsilon.")
       ->type_name("N")
       ->default_str("200000")
       ->check(whole_number(1, 100'000'000))
       ->group("Quality");
   add_unit_options(*command, arguments->compile.metres_per_unit, arguments->unit_text);
-  command->add_flag("--json", arguments->json, "Print JSON (schemas/grasp-report.schema.json).")->group("Output");
-  command->add_option("-o,--output", arguments->output, "Write the report to FILE.")
-      ->type_name("FILE")
-      ->default_str("standard output")
-      ->group("Output");
+  output.flag("--json", arguments->json, "Print JSON (schemas/grasp-report.schema.json).");
+  output.text("-o,--output", "FILE", arguments->output, "Write the report to FILE.", "standard output");
   return {command, [arguments] { return run_grasp(*arguments); }};
 }
 

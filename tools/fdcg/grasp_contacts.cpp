@@ -20,7 +20,7 @@ using Contacts = std::vector<NamedContact>;
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
-// What the file holds, short enough for a message that says more.
+// A value of the file, cut to fit into a message.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 40;
   return printable(text, kLongest);
@@ -43,7 +43,7 @@ void set_normal(NamedContact& contact, const bake::Vec3& normal) {
   contact.inward = bake::Vec3{normal.x / length, normal.y / length, normal.z / length};
 }
 
-// What a file can say of a contact.
+// Allowed ranges of the values in a contacts file.
 constexpr json::NumberRange kPlaces{-grasp::kFarthest_m, grasp::kFarthest_m, true, "m"};
 constexpr json::NumberRange kMus{0, grasp::kMostMu};
 constexpr json::NumberRange kTorsions{0, std::numeric_limits<double>::max(), true, "m"};
@@ -62,7 +62,7 @@ std::optional<double> number_in(const json::Value& value, const json::NumberRang
 }
 
 NamedContact contact_of(const json::Value& json, std::size_t index) {
-  json.allow_only({"point", "normal", "mu", "torsion", "cap", "name"});
+  json.allow_only({"point", "normal", "mu", "torsion", "pad_radius", "cap", "name"});
   NamedContact contact;
   const json::Value name = json["name"];
   contact.name = name ? one_line(name.string()) : "contact " + std::to_string(index);
@@ -70,6 +70,7 @@ NamedContact contact_of(const json::Value& json, std::size_t index) {
   if (const json::Value normal = json["normal"]) set_normal(contact, vector_of(normal, {}));
   contact.mu = number_in(json["mu"], kMus);
   contact.torsion_m = number_in(json["torsion"], kTorsions);
+  contact.pad_radius_m = number_in(json["pad_radius"], kTorsions);
   contact.cap_n = number_in(json["cap"], kCaps);
   return contact;
 }
@@ -102,7 +103,7 @@ std::vector<std::string> fields_of(const std::string& line) {
 }
 
 void check_header(const std::vector<std::string>& header) {
-  const std::vector<std::string> known{"x", "y", "z", "mu", "torsion", "cap", "nx", "ny", "nz", "name"};
+  const std::vector<std::string> known{"x", "y", "z", "mu", "torsion", "pad_radius", "cap", "nx", "ny", "nz", "name"};
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto& column = header[i];
     if (std::find(known.begin(), known.end(), column) == known.end())
@@ -141,6 +142,7 @@ NamedContact contact_of_line(const std::vector<std::string>& header, const std::
     if (column == "z") contact.point_m.z = number(kPlaces);
     if (column == "mu") contact.mu = number(kMus);
     if (column == "torsion") contact.torsion_m = number(kTorsions);
+    if (column == "pad_radius") contact.pad_radius_m = number(kTorsions);
     if (column == "cap") contact.cap_n = number(kCaps);
     if (column == "nx") normal.x = number({}), has_normal = true;
     if (column == "ny") normal.y = number({}), has_normal = true;
@@ -170,7 +172,14 @@ Contacts parse_csv(const std::string& text) {
   return contacts;
 }
 
-// The report tells contacts by their names. Those without one have a number, which another may have been given as its name.
+// A soft finger is given by its torsion or its pad radius, not both.
+void refuse_two_radii(const Contacts& contacts) {
+  for (const NamedContact& contact : contacts)
+    if (contact.torsion_m && contact.pad_radius_m)
+      throw json::Refusal{contact.name + " has both torsion and pad_radius; torsion is mu times pad_radius: keep one of them"};
+}
+
+// Names identify contacts in the report. One without a name gets its number, which may be the name of another.
 void refuse_twins(const Contacts& contacts) {
   std::map<std::string_view, std::size_t> first;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -196,6 +205,7 @@ bake::Result<Contacts> parse_contacts(const std::string& bytes, const std::strin
       throw json::Refusal{"there are " + std::to_string(contacts.size()) + " contacts; at most " +
                           std::to_string(grasp::kMostContacts) + " are judged"};
     refuse_twins(contacts);
+    refuse_two_radii(contacts);
     return contacts;
   } catch (const json::Refusal& refusal) {
     return bake::Failure{kFile, path + ": " + one_line(refusal.message)};

@@ -16,11 +16,12 @@ struct NamedContact {
   bake::Vec3 point_m{};
   std::optional<bake::Vec3> inward;  // unit length
   std::optional<double> mu, torsion_m, cap_n;
+  std::optional<double> pad_radius_m;  // in place of torsion_m, which is mu times it
 };
 
-// JSON: {"contacts": [{"point": [x, y, z], "mu": .., "torsion": .., "cap": .., "normal": [..], "name": ".."}, ..]}, or the
-// array alone. CSV: a header that names x, y, z and any of mu, torsion, cap, nx, ny, nz, name. Other members and columns are
-// refused, so that no misspelt one goes unread. At most 16 MiB. The failure's exit code is 3.
+// JSON: {"contacts": [{"point": [x, y, z], "mu": .., "torsion": .., "pad_radius": .., "cap": .., "normal": [..], "name": ".."},
+// ..]}, or the array alone. CSV: a header that names x, y, z and any of mu, torsion, pad_radius, cap, nx, ny, nz, name. Other
+// members and columns are refused, so that no misspelt one goes unread. At most 16 MiB. The failure's exit code is 3.
 bake::Result<std::vector<NamedContact>> read_contacts(const std::string& path);
 
 // The same from a file's text; `path` is for messages.

@@ -10,21 +10,12 @@
 #include "../common/terminal.hpp"
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {
 
 using bake::Vec3;
-
-Vec3 plus(const Vec3& a, double factor, const Vec3& b) {
-  return {a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
-}
-double dot(const Vec3& a, const Vec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 // The point of a triangle with corners a, b, c that is nearest to p: by the regions that the planes through its corners and
 // sides cut out (Ericson 2004, 5.1.5).

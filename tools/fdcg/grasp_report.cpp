@@ -28,15 +28,8 @@ Json finite(double value) {
 }
 
 const char* verdict_name(grasp::Verdict verdict) {
-  switch (verdict) {
-    case grasp::Verdict::closure:
-      return "closure";
-    case grasp::Verdict::no_closure:
-      return "no-closure";
-    case grasp::Verdict::marginal:
-      break;
-  }
-  return "marginal";
+  constexpr const char* kNames[] = {"closure", "no-closure", "marginal"};
+  return kNames[static_cast<int>(verdict)];
 }
 
 Json contact_json(const GraspReport& report, std::size_t i) {
@@ -87,11 +80,11 @@ std::string shown(double value, double size) {
   constexpr double kSmall = 1e-8;
   return short_number(std::abs(value) <= kSmall * size ? 0 : value);
 }
-std::string triple(const Vec3& v, double size) {
+std::string three_numbers(const Vec3& v, double size) {
   return "(" + shown(v.x, size) + ", " + shown(v.y, size) + ", " + shown(v.z, size) + ")";
 }
-std::string triple(const Vec3& v) {
-  return triple(v, std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
+std::string three_numbers(const Vec3& v) {
+  return three_numbers(v, std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
 }
 
 std::string padded(std::string text, std::size_t width) {
@@ -102,12 +95,21 @@ std::string padded(std::string text, std::size_t width) {
 std::string wrench_text(const grasp::Wrench& w, double torque_scale_m) {
   const auto length = [](const Vec3& v) { return std::hypot(v.x, v.y, v.z); };
   const double size = std::max(length(w.force_n), length(w.torque_nm) / torque_scale_m);
-  return "force " + triple(w.force_n, size) + " N, torque " + triple(w.torque_nm, size * torque_scale_m) + " Nm";
+  return "force " + three_numbers(w.force_n, size) + " N, torque " + three_numbers(w.torque_nm, size * torque_scale_m) + " Nm";
 }
 
-// "1 contact", "2,000 nodes"
-std::string counted(std::size_t count, const char* what) {
-  return grouped(count) + " " + what + (count == 1 ? "" : "s");
+// Six digits of a value, rounded down or up.
+std::string rounded(double value, bool up) {
+  constexpr int kDigits = 6;
+  if (value == 0 || !std::isfinite(value)) return short_number(value);
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - (kDigits - 1));
+  std::string text = short_number(value);
+  const double shown = std::strtod(text.c_str(), nullptr);
+  if (up ? shown < value : shown > value) text = short_number(shown + (up ? unit : -unit));
+  return text;
+}
+std::string interval(double lower, double upper) {
+  return "[" + rounded(lower, false) + ", " + rounded(upper, true) + "]";
 }
 
 std::size_t name_width(const GraspReport& report) {
@@ -122,9 +124,9 @@ std::string contacts_text(const GraspReport& report) {
   const double scale = report.grasp.torque_scale_m;
   for (std::size_t i = 0; i < report.asked.size(); ++i) {
     const grasp::Contact& contact = report.grasp.contacts[i];
-    text += "    " + padded(report.asked[i].name, name_width(report)) + "at " + triple(contact.point_m, scale) + " m, " +
+    text += "    " + padded(report.asked[i].name, name_width(report)) + "at " + three_numbers(contact.point_m, scale) + " m, " +
             shown(report.found[i].distance_m, scale) + " m from the point given, on node " +
-            std::to_string(report.found[i].node) + ", presses along " + triple(contact.inward) + ", mu " +
+            std::to_string(report.found[i].node) + ", presses along " + three_numbers(contact.inward) + ", mu " +
             short_number(contact.mu);
     if (contact.torsion_m > 0) text += ", torsion " + short_number(contact.torsion_m) + " m";
     if (std::isfinite(contact.cap_n)) text += ", at most " + short_number(contact.cap_n) + " N";
@@ -134,14 +136,8 @@ std::string contacts_text(const GraspReport& report) {
 }
 
 std::string closure_text(const grasp::Closure& closure) {
-  switch (closure.verdict) {
-    case grasp::Verdict::closure:
-      return "yes";
-    case grasp::Verdict::marginal:
-      return "marginal: neither yes nor no is proved";
-    case grasp::Verdict::no_closure:
-      break;
-  }
+  if (closure.verdict == grasp::Verdict::closure) return "yes";
+  if (closure.verdict == grasp::Verdict::marginal) return "marginal: neither yes nor no is proved";
   return closure.is_flat ? "no: nothing resists the weakest direction, nor its opposite"
                          : "no: nothing resists the weakest direction";
 }
@@ -152,7 +148,7 @@ std::string margin_text(const GraspReport& report) {
   std::string text =
       "  load           " + wrench_text(report.load, report.grasp.torque_scale_m) + " (" + report.load_text + ")\n";
   text += "  margin         " + std::string(margin.load_factor >= 1 ? "holds: " : "slips: ") + "up to " +
-          short_number(margin.load_factor) + " times the load" +
+          short_number(margin.load_factor) + " times the load, proved in " + interval(margin.load_factor, margin.upper) +
           (report.grip_n ? ", contacts pressing with " + short_number(*report.grip_n) + " N together" : "") + "\n";
   text += "  at the limit\n";
   for (std::size_t i = 0; i < margin.forces.size(); ++i) {
@@ -179,6 +175,8 @@ std::string grasp_report_json(const GraspReport& report) {
                     {"nodes", report.faces},
                     {"centre_m", vector(report.grasp.centre_m)},
                     {"centre_from", report.centre_from},
+                    {"com_m", report.com_m ? vector(*report.com_m) : Json(nullptr)},
+                    {"com_from", report.com_m ? Json(report.com_from) : Json(nullptr)},
                     {"torque_scale_m", report.grasp.torque_scale_m},
                     {"torque_scale_from", report.torque_scale_from}}},
                   {"tolerance", grasp::kTolerance},
@@ -208,14 +206,15 @@ std::string grasp_report_text(const GraspReport& report) {
   const double scale = report.grasp.torque_scale_m;
   std::string text =
       report.object + ": " + counted(report.asked.size(), "contact") + " on " + counted(report.faces, "node") + "\n";
-  text += "  centre         " + triple(report.grasp.centre_m, scale) + " m (" + report.centre_from + ")\n";
+  text += "  centre         " + three_numbers(report.grasp.centre_m, scale) + " m (" + report.centre_from + ")\n";
+  if (report.com_m && report.centre_from != report.com_from)
+    text += "  centre of mass " + three_numbers(*report.com_m, scale) + " m (" + report.com_from + ")\n";
   text += "  torque scale   " + short_number(report.grasp.torque_scale_m) + " m (" + report.torque_scale_from + ")\n";
   text += contacts_text(report);
   text += "  force closure  " + closure_text(closure) + "\n";
   if (is_closed) {
-    text += "  epsilon        " + short_number(epsilon.value) + " (1 N of normal force " +
-            (report.effort == grasp::Effort::together ? "together" : "each") + "; proved to " +
-            short_number(epsilon.value - epsilon.lower) + ")\n";
+    text += "  epsilon        " + short_number(epsilon.value) + ", proved in " + interval(epsilon.lower, epsilon.value) +
+            " (1 N of normal force " + (report.effort == grasp::Effort::together ? "together" : "each") + ")\n";
   }
   text += "  weakest        " + wrench_text(is_closed ? epsilon.weakest : closure.weakest, report.grasp.torque_scale_m) + "\n";
   return text + margin_text(report);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What fdcg grasp found, and how it is told.
+// The result of fdcg grasp, and its report as text and as JSON.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,10 @@ namespace fdcg::tools {
 struct GraspReport {
   std::string object;  // the file
   std::uint32_t faces = 0;
-  std::string centre_from;        // "volume" or "option"
-  std::string torque_scale_from;  // "size" or "option"
+  std::string centre_from;          // "volume" or "option"
+  std::optional<bake::Vec3> com_m;  // centre of mass; none: not known, and no load asked for
+  std::string com_from;             // "volume" or "option"
+  std::string torque_scale_from;    // "size" or "option"
   std::vector<NamedContact> asked;
   std::vector<SurfacePoint> found;  // one for each
   grasp::Grasp grasp;

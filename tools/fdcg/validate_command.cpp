@@ -44,10 +44,10 @@ struct ValidateArguments {
   bool quiet = false;
 };
 
-const std::map<std::string, bake::ReportFormat> kFormats{{"text", bake::ReportFormat::text},
-                                                         {"json", bake::ReportFormat::json},
-                                                         {"sarif", bake::ReportFormat::sarif},
-                                                         {"junit", bake::ReportFormat::junit}};
+const std::map<std::string, bake::ReportFormat> kReportFormats{{"text", bake::ReportFormat::text},
+                                                               {"json", bake::ReportFormat::json},
+                                                               {"sarif", bake::ReportFormat::sarif},
+                                                               {"junit", bake::ReportFormat::junit}};
 
 std::string now_utc() {
   const std::time_t now = std::time(nullptr);
@@ -213,9 +213,13 @@ int run_validate(const ValidateArguments& arguments) {
   run.jobs = arguments.jobs;
   run.wants_all_elements = !arguments.full.empty();
   run.shows_progress = !arguments.quiet;
+  // The text report says it too: once is enough for a person who sees both.
+  const bool is_in_sight = is_terminal(Stream::standard_output) && is_terminal(Stream::standard_error) &&
+                           arguments.output == "-" &&
+                           arguments.format.value_or(bake::ReportFormat::text) == bake::ReportFormat::text;
   int code = kClean;
   validate_all(run, [&](Validated& result) {
-    if (!result.error.empty()) fail(result.exit_code, result.error);
+    if (!result.error.empty() && !is_in_sight) fail(result.exit_code, result.error);
     code = std::max(code, result.exit_code);
     outputs.add(result);
   });
@@ -225,93 +229,62 @@ int run_validate(const ValidateArguments& arguments) {
 
 // ---- options
 
-void add_report_options(CLI::App& command, const std::shared_ptr<ValidateArguments>& arguments) {
-  const auto add_format = [arguments](const std::vector<std::string>& values) {
-    for (const std::string& value : values) {
-      const std::size_t equals = value.find('=');
-      const std::string name = value.substr(0, equals);
-      require_choice("--format", name, {"text", "json", "sarif", "junit"});
-      if (equals != std::string::npos) {
-        arguments->files.push_back({kFormats.at(name), value.substr(equals + 1)});
-      } else if (arguments->format) {
-        throw CLI::ValidationError("--format", "two formats for one output; write --format " + name + "=FILE for one of them");
-      } else {
-        arguments->format = kFormats.at(name);
-      }
+void add_report_options(CLI::App& command, ValidateArguments& arguments) {
+  const OptionGroup output(command, "Output");
+  const std::vector<std::string> formats{"text", "json", "sarif", "junit"};
+  const auto add_format = [&arguments, formats](const std::string& value) {
+    const std::size_t equals = value.find('=');
+    const std::string name = value.substr(0, equals);
+    require_choice("--format", name, formats);
+    if (equals != std::string::npos) {
+      arguments.files.push_back({kReportFormats.at(name), value.substr(equals + 1)});
+    } else if (arguments.format) {
+      throw CLI::ValidationError("--format", "two formats for one output; write --format " + name + "=FILE for one of them");
+    } else {
+      arguments.format = kReportFormats.at(name);
     }
   };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--format", add_format,
-          one_of("Format of the report. FORMAT=FILE writes one more report to FILE, and may be repeated.",
-                 {"text", "json", "sarif", "junit"}))
-      ->type_name("FORMAT")
-      ->default_str("text")
-      ->group("Output")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("-o,--output", arguments->output, "Write the report to FILE.")
-      ->type_name("FILE")
-      ->default_str("standard output")
-      ->group("Output");
-  command.add_option("--full", arguments->full, "Write all findings, without a limit, as JSON to FILE: a baseline.")
-      ->type_name("FILE")
-      ->group("Output");
-  command
-      .add_flag(
-          "--sarif-each", arguments->sarif_each,
-          "SARIF: one result for each listed finding, so that code scanning marks every line, instead of one for each rule.")
-      ->group("Output");
+  output.repeated("--format", "FORMAT", add_format,
+                  one_of("Format of the report. FORMAT=FILE writes one more report to FILE, and may be repeated.", formats),
+                  "text");
+  output.text("-o,--output", "FILE", arguments.output, "Write the report to FILE.", "standard output");
+  output.text("--full", "FILE", arguments.full, "Write all findings, without a limit, as JSON to FILE: a baseline.");
+  output.flag(
+      "--sarif-each", arguments.sarif_each,
+      "SARIF: one result for each listed finding, so that code scanning marks every line, instead of one for each rule.");
 }
 
-void add_verdict_options(CLI::App& command, const std::shared_ptr<ValidateArguments>& arguments) {
-  const auto set_baseline = [arguments](const std::string& path) { arguments->settings.baseline = path; };
-  command
-      .add_option_function<std::string>("--baseline", set_baseline,
-                                        "Findings that are in FILE (from --full) are known; only new ones fail.")
-      ->type_name("FILE")
-      ->group("Verdict");
-  const auto set_fail_on = [arguments](const std::string& value) {
+void add_verdict_options(CLI::App& command, ValidateArguments& arguments) {
+  const OptionGroup verdict(command, "Verdict");
+  ValidateSettings& settings = arguments.settings;
+  const auto set_baseline = [&settings](const std::string& path) { settings.baseline = path; };
+  verdict.parsed("--baseline", "FILE", set_baseline, "Findings that are in FILE (from --full) are known; only new ones fail.");
+  const auto set_fail_on = [&settings](const std::string& value) {
     const auto level = parse_fail_on(value);
     if (!level) throw CLI::ValidationError("--fail-on", level.error().message);
-    arguments->settings.fail_on = *level;
+    settings.fail_on = *level;
   };
-  command
-      .add_option_function<std::string>(
-          "--fail-on", set_fail_on,
-          one_of("Exit with code 1 for findings of this severity or a higher one.", {"error", "warning", "note", "never"}))
-      ->type_name("SEVERITY")
-      ->default_str("error")
-      ->group("Verdict");
-  const auto set_severities = [arguments](const std::vector<std::string>& values) {
-    for (const std::string& value : values) {
-      const std::size_t equals = std::min(value.find('='), value.size());
-      if (equals == value.size()) {
-        throw CLI::ValidationError("--severity", "'" + value + "' is no RULE=LEVEL; write boundary-edge=error, say");
-      }
-      const std::string rule = value.substr(0, equals);
-      const auto level = parse_severity(rule, value.substr(equals + 1));
-      if (!level) throw CLI::ValidationError("--severity", level.error().message);
-      arguments->settings.severities[rule] = *level;
-    }
+  verdict.parsed(
+      "--fail-on", "SEVERITY", set_fail_on,
+      one_of("Exit with code 1 for findings of this severity or a higher one.", {"error", "warning", "note", "never"}),
+      "error");
+  const auto set_severity = [&settings](const std::string& value) {
+    const std::size_t equals = value.find('=');
+    if (equals == std::string::npos)
+      throw CLI::ValidationError("--severity", "'" + value + "' is no RULE=LEVEL; write boundary-edge=error, say");
+    const std::string rule = value.substr(0, equals);
+    const auto level = parse_severity(rule, value.substr(equals + 1));
+    if (!level) throw CLI::ValidationError("--severity", level.error().message);
+    settings.severities[rule] = *level;
   };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--severity", set_severities, "Severity of the findings of a rule: error, warning, note or off. May be repeated.")
-      ->type_name("RULE=LEVEL")
-      ->group("Verdict")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_allow_option(command, arguments->settings.allow, Allowable::also_warnings_and_notes);
+  verdict.repeated("--severity", "RULE=LEVEL", set_severity,
+                   "Severity of the findings of a rule: error, warning, note or off. May be repeated.");
+  add_allow_option(OptionGroup(command, "Mesh checks"), settings.allow, Allowable::also_warnings_and_notes);
+  const std::string name = kConfigName;
   CLI::Option* const config =
-      command.add_option("--config", arguments->config, "Read settings from FILE instead of " + std::string(kConfigName) + ".")
-          ->type_name("FILE")
-          ->group("Verdict");
-  command
-      .add_flag("--no-config", arguments->no_config,
-                "Do not look for " + std::string(kConfigName) + " in the mesh's folder and those above.")
-      ->excludes(config)
-      ->group("Verdict");
+      verdict.text("--config", "FILE", arguments.config, "Read settings from FILE instead of " + name + ".");
+  verdict.flag("--no-config", arguments.no_config, "Do not look for " + name + " in the mesh's folder and those above.")
+      ->excludes(config);
 }
 
 }  // namespace
@@ -332,25 +305,18 @@ Settings may stand in a file .fdcg-validate.json in the mesh's folder or one abo
 
 )" + exit_codes("no findings at or above --fail-on", "findings at or above --fail-on"));
   const auto arguments = std::make_shared<ValidateArguments>();
-  command
-      ->add_option("mesh", arguments->meshes,
-                   "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to search. - is standard input.")
-      ->required()
-      ->type_name("MESH...");
-  add_report_options(*command, arguments);
-  add_verdict_options(*command, arguments);
-  add_weld_option(*command, arguments->settings.weld);
-  add_precision_option(*command, arguments->precision, "Check the mesh as a graph of this precision stores it.", "Mesh checks");
-  command->add_flag("--orient", arguments->is_oriented, "Check the mesh as 'fdcg compile --orient' leaves it.")
-      ->group("Mesh checks");
+  required_argument(*command, "mesh", "MESH...", arguments->meshes,
+                    "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to search. - is standard input.");
+  add_report_options(*command, *arguments);
+  add_verdict_options(*command, *arguments);
+  const OptionGroup checks(*command, "Mesh checks");
+  add_weld_option(checks, arguments->settings.weld);
+  add_precision_option(checks, arguments->precision, "Check the mesh as a graph of this precision stores it.");
+  checks.flag("--orient", arguments->is_oriented, "Check the mesh as 'fdcg compile --orient' leaves it.");
   add_input_format_option(*command, arguments->input_format);
-  command->add_option("--jobs", arguments->jobs, "Number of threads. The report does not depend on it.")
-      ->type_name("N")
-      ->default_str("one for each core")
-      ->check(whole_number(1, 1024))
-      ->group("General");
-  command->add_flag("-q,--quiet", arguments->quiet, "Text report: list only files that fail. No progress bar.")
-      ->group("Output");
+  OptionGroup(*command, "General").jobs(arguments->jobs, "The report does not depend on it.");
+  OptionGroup(*command, "Output")
+      .flag("-q,--quiet", arguments->quiet, "Text report: list only files that fail. No progress bar.");
   return {command, [arguments] { return run_validate(*arguments); }};
 }
 

@@ -27,9 +27,11 @@ Result<std::string> export_as(const PolygonSoup& soup, const ExportOptions& opti
       return bytes;
     case Format::gltf:
     case Format::drc:
+    case Format::dae:
+    case Format::threemf:
       break;
   }
-  return Failure{2, soup.name + ": glTF and Draco are read, not written; choose OFF, OBJ, PLY or STL", {}};
+  return Failure{2, soup.name + ": glTF, Draco, COLLADA and 3MF are read, not written; choose OFF, OBJ, PLY or STL", {}};
 }
 
 }  // namespace

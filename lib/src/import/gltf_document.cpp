@@ -215,22 +215,11 @@ class Parser {
   }
 
   static Component read_component(const Value& item) {
-    switch (whole(item)) {
-      case 5120:
-        return Component::i8;
-      case 5121:
-        return Component::u8;
-      case 5122:
-        return Component::i16;
-      case 5123:
-        return Component::u16;
-      case 5125:
-        return Component::u32;
-      case 5126:
-        return Component::f32;
-      default:
-        item.fail("is " + std::to_string(whole(item)) + "; the types are 5120 to 5123, 5125 and 5126");
-    }
+    constexpr std::optional<Component> kComponents[] = {Component::i8, Component::u8,  Component::i16, Component::u16,
+                                                        std::nullopt,  Component::u32, Component::f32};
+    const std::uint64_t index = whole(item) - 5120;
+    if (index < std::size(kComponents) && kComponents[index]) return *kComponents[index];
+    item.fail("is " + std::to_string(whole(item)) + "; the types are 5120 to 5123, 5125 and 5126");
   }
 
   static unsigned read_type(const Value& item) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "import/placing.hpp"
 #include "shared/json/reader.hpp"
 
 namespace fdcg::bake::gltf {
@@ -78,10 +79,6 @@ struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
 };
-
-// Column by column: x' = m[0] x + m[4] y + m[8] z + m[12].
-using Matrix = std::array<double, 16>;
-inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 inline constexpr Index kNone = 0xFFFFFFFF;
 

@@ -2,7 +2,6 @@
 // glTF 2.0 (Khronos), as JSON or in the binary container GLB: the container, and the sequence of stages. A reader of our own
 // keeps every number exactly, names the place of each error and trusts no count. tinygltf does none of that, and loads images
 // and files that the geometry does not need.
-#include <bit>
 #include <cstring>
 #include <string>
 

@@ -14,7 +14,9 @@ void self_intersection(const Subject& subject, Findings& out) {
     out.at_pair(pair.a, pair.b, pair.point);
   out.count_more(total - found.listed.size());
   const std::string remedy = ". " + std::string(find_rule("self-intersection")->remedy);
-  if (total == 1) {
+  if (found.has_more) {
+    out.say_at_least("at least " + std::to_string(total) + " pairs of faces meet, where the count ends" + remedy);
+  } else if (total == 1) {
     out.say((found.crossing == 1 ? "1 pair of faces meets: they cross" : "1 pair of faces meets: they only touch") + remedy);
   } else if (total > 1) {
     out.say(std::to_string(total) + " pairs of faces meet: " + std::to_string(found.crossing) + " cross, " +

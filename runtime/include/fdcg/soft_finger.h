@@ -42,7 +42,8 @@ extern "C" {
 #endif
 
 /** Gives a finger's touches a radius: 1e-9 to 1e3 m of the world; for a pad of pressure p over an area A it is the integral
- * p r dA / N, which is 2/3 of its radius where the pressure is even. 0: a point again. FDCG_E_ARGUMENT where the scene has no
+ * p r dA / N, which is 2/3 of its radius where the pressure is even. The torque's limit for each newton of load is mu radius_m,
+ * which `fdcg grasp` calls torsion; its --pad-radius is this radius. 0: a point again. FDCG_E_ARGUMENT where the scene has no
  * room for soft fingers. `error` may be NULL, here and below. */
 fdcg_status fdcg_scene_set_finger_radius(fdcg_scene* scene, fdcg_finger_id finger, double radius_m, fdcg_error* error);
 

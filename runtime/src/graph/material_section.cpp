@@ -27,7 +27,7 @@ bool is_same(const char* a, const char* b) {
 
 fdcg_status verify_materials(const fdcg_graph& graph, fdcg_error* error) {
   const auto refuse = [error](const char* noun, uint64_t index, const char* what) -> fdcg_status {
-    return Message(error, FDCG_E_GRAPH).text(noun).number(index).text(what).text("; compile the mesh again");
+    return Message(error, FDCG_E_GRAPH).say(noun, index, what, "; compile the mesh again");
   };
   for (uint32_t i = 0; i < graph.material_count; ++i) {
     if (!is_name(graph.materials[i].name)) return refuse("material ", i, ": its name does not end in its record, or is empty");

@@ -4,6 +4,7 @@
 #include "base/config.hpp"
 #include "base/message.hpp"
 #include "graph/box_tree.hpp"
+#include "graph/fan_run_section.hpp"
 #include "graph/graph_view.hpp"
 #include "graph/implicit_tree.hpp"
 #include "graph/sections.hpp"
@@ -37,7 +38,7 @@ bool is_across(Vec3<Real> along, Vec3<Real> normal) {
 constexpr float kFarthestBox = 8;
 constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
 
-// Its passes are functions of their own: inlined into one, they take a third longer for want of registers.
+// Its passes are functions of their own: inlined into one, they take a third longer, since registers run out.
 template <class Real>
 class Verifier {
  public:
@@ -56,13 +57,7 @@ class Verifier {
   using Node = NodeRef<RigidGeometry<Real>>;
 
   fdcg_status refuse(const char* noun, uint64_t index, const char* what) {
-    return Message(error_, FDCG_E_GRAPH)
-        .text(noun)
-        .text(" ")
-        .number(index)
-        .text(": ")
-        .text(what)
-        .text("; compile the mesh again");
+    return Message(error_, FDCG_E_GRAPH).say(noun, " ", index, ": ", what, "; compile the mesh again");
   }
 
   // Blocks follow one another and fill their section. Each side and its twin name each other and the same two corners: asked of
@@ -375,20 +370,19 @@ fdcg_status verify_checksums(const void* data, const fdcg_header& header, fdcg_e
     const uint64_t end = i + 1 < header.section_count ? sections[i + 1].offset : header.file_bytes;
     if (fdcg_checksum(bytes + begin, end - begin) != sections[i].checksum) {
       return Message(error, FDCG_E_CHECKSUM, begin)
-          .text("section ")
-          .number(sections[i].id)
-          .text(": the checksum does not match; the file is damaged, compile the mesh again");
+          .say("section ", sections[i].id, ": the checksum does not match; the file is damaged, compile the mesh again");
     }
     for (uint64_t at = begin + used; at < end; ++at) {
-      if (bytes[at] != 0)
-        return Message(error, FDCG_E_LAYOUT, at).text("section ").number(sections[i].id).text(": padding is not zero");
+      if (bytes[at] != 0) return Message(error, FDCG_E_LAYOUT, at).say("section ", sections[i].id, ": padding is not zero");
     }
   }
   return FDCG_OK;
 }
 
 fdcg_status verify_graph(const fdcg_graph& graph, fdcg_error* error) {
-  return with_real_of(*graph.header, [&](auto real) { return Verifier<decltype(real)>(graph, error).run(); });
+  const fdcg_status status =
+      with_real_of(*graph.header, [&](auto real) { return Verifier<decltype(real)>(graph, error).run(); });
+  return status == FDCG_OK ? verify_fan_runs(graph, error) : status;
 }
 
 }  // namespace fdcg

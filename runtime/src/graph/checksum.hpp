@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The format's checksum in pieces (schemas/fdcg-v1.md): blocks that may be summed in any order, by several threads.
+#pragma once
+
+#include <stdint.h>
+
+namespace fdcg {
+
+inline constexpr uint64_t kChecksumBlock = 4096;  // bytes; the last block of a section may be shorter
+
+constexpr uint64_t checksum_blocks(uint64_t bytes) {
+  return bytes / kChecksumBlock + (bytes % kChecksumBlock != 0 ? 1 : 0);
+}
+
+// The checksum of `bytes` bytes is checksum_start(bytes) plus checksum_of_blocks of all their blocks, modulo 2^64.
+uint64_t checksum_start(uint64_t bytes);
+// The sum over blocks first to end - 1 of the `bytes` bytes at `data`.
+uint64_t checksum_of_blocks(const unsigned char* data, uint64_t bytes, uint64_t first, uint64_t end);
+
+}  // namespace fdcg
