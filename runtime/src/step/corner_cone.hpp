@@ -30,16 +30,16 @@ class WayToEdge {
         target_(far_end(walk.graph, edge)),
         target_bound_(plane_rounding_bound(walk.graph, target_)) {
     const ConnectionRef<Geometry> connection = walk.graph.connection(edge.connection);
-    Real side[2];
+    Real sides[2];
     for (uint32_t k = 0; k < 2; ++k) {
       beside_[k] = connection.node(k);
-      side[k] = walk.side(walk.graph.node(beside_[k]));
+      sides[k] = side(walk.graph.node(beside_[k]));
     }
-    is_outside_ = is_free_of_edge(connection.type(), side[0] < 0, side[1] < 0);
+    is_outside_ = is_free_of_edge(connection.type(), sides[0] < 0, sides[1] < 0);
     // The other corner of the face to the left, so that a HIP on that face's plane is in front of it; on both planes, of the
     // one on whose side of the edge it is.
-    tie_ = side[edge.end] == 0 &&
-                   (side[1 - edge.end] != 0 || turns_left(widen(target_), widen(walk.hip), walk.graph.node(edge.node)))
+    tie_ = sides[edge.end] == 0 &&
+                   (sides[1 - edge.end] != 0 || turns_left(widen(target_), widen(walk.hip), walk.graph.node(edge.node)))
                ? -1
                : 1;
   }
@@ -51,17 +51,18 @@ class WayToEdge {
     const uint32_t left = node.corner(node.next(entry.outgoing)), right = node.corner(node.previous(entry.outgoing));
     const int from = is_beside ? 0 : sign_of(left), to = is_beside ? 0 : sign_of(right);
     if (from == to && from != 0) return;
-    const Real side = walk_.side(node);
-    if (side == 0) is_on_surface_ = is_on_surface_ || is_in_sector(node, left, right);
-    if (side == 0 || is_beside) return;
+    const Real hip_side = side(node);
+    if (hip_side == 0) is_on_surface_ = is_on_surface_ || is_in_sector(node, left, right);
+    if (hip_side == 0 || is_beside) return;
     if (from == 0 && to == 0 ? !is_far_sided(node) : beside(from) == beside(to)) return;
-    if (from != to && beside(from) != (side > 0 ? 1 : -1)) return;  // what is met is the face's other side of the corner
-    const Real target_side = side_of(walk_.graph, node, target_, target_bound_, &walk_.work_left);
+    if (from != to && beside(from) != (hip_side > 0 ? 1 : -1)) return;  // what is met is the face's other side of the corner
+    const Real target_side = side_of(walk_.graph, node, target_, target_bound_, &work_left_);
     if (node.is_inexact() && absolute(target_side) <= walk_.graph.header->max_deviation + target_bound_) return;  // on it
-    if (side > 0 ? target_side < 0 : target_side > 0) is_outside_ = !is_outside_;
+    if (hip_side > 0 ? target_side < 0 : target_side > 0) is_outside_ = !is_outside_;
   }
 
   [[nodiscard]] bool is_outside() const { return is_outside_ || is_on_surface_; }
+  [[nodiscard]] uint32_t work() const { return kMuch - work_left_; }
 
  private:
   static Vec3<Real> far_end(const GraphView<Geometry>& graph, const FanEntry& edge) {
@@ -85,21 +86,28 @@ class WayToEdge {
   // Whether b is to the left of a about the corner, seen from the front of a node that they lie on; or in line with it.
   bool turns_left(const Vec3<double>& a, const Vec3<double>& b, NodeRef<Geometry> node) {
     const Vec3<double> above = corner_ + widen(node.normal()) * walk_.graph.header->extent;
-    return orient3d_sign(corner_, a, b, above, &walk_.work_left) >= 0;
+    return orient3d_sign(corner_, a, b, above, &work_left_) >= 0;
   }
   [[nodiscard]] int beside(int sign) const { return sign == 0 ? tie_ : sign; }
   // Kept for the last: the next face of the fan asks for it again.
   int sign_of(uint32_t corner) {
     if (corner != last_) {
       last_ = corner;
-      walk_.spend(kFanSignWork);
+      spend(&work_left_, kFanSignWork);
       last_sign_ =
-          orient3d_sign(widen(walk_.hip), corner_, widen(target_), widen(walk_.graph.corner_point(corner)), &walk_.work_left);
+          orient3d_sign(widen(walk_.hip), corner_, widen(target_), widen(walk_.graph.corner_point(corner)), &work_left_);
     }
     return last_sign_;
   }
 
+  static constexpr uint32_t kMuch = 1u << 30;
+
+  [[nodiscard]] Real side(NodeRef<Geometry> node) {
+    return side_of(walk_.graph, node, walk_.hip, walk_.hip_bound, &work_left_);
+  }
+
   Walk<Geometry>& walk_;
+  uint32_t work_left_ = kMuch;
   const Vec3<double> corner_;
   Vec3<Real> target_;
   Real target_bound_;
@@ -130,7 +138,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (absolute(dot(normal, vec(box.centre))) <= radius) stack[waiting++] = i << 5 | level;
   };
   push(static_cast<uint32_t>(layout.levels - 1), 0);
-  for (uint32_t work = 0; waiting > 0 && work < kFanSearchWork;) {
+  for (uint32_t work = 0; waiting > 0 && work + way.work() < kFanSearchWork;) {
     const uint32_t level = stack[--waiting] & 31, i = stack[waiting] >> 5;
     work += 2 * kFanBoxWork;
     walk.spend(2 * kFanBoxWork);
@@ -140,7 +148,7 @@ template <class Geometry, class Real = typename Geometry::Real>
       continue;
     }
     const uint32_t end = (i + 1) * FDCG_LEAF_FAN < corner.fan_count() ? (i + 1) * FDCG_LEAF_FAN : corner.fan_count();
-    for (uint32_t k = i * FDCG_LEAF_FAN; k < end; ++k, work += kFanSignWork)
+    for (uint32_t k = i * FDCG_LEAF_FAN; k < end; ++k)
       way.pass(walk.graph.fan_entry(corner, k));
   }
   return waiting == 0;
@@ -171,11 +179,14 @@ template <class Geometry, class Real = typename Geometry::Real>
     graph.for_each_in_fan(corner, choose);
   }
   WayToEdge<Geometry> way(walk, corner, edge);
-  if (!has_tree) {
+  bool is_told = true;
+  if (has_tree) {
+    is_told = pass_by_tree(walk, corner, edge, way);
+  } else {
     graph.for_each_in_fan(corner, [&](const FanEntry& entry) { way.pass(entry); });
-  } else if (!pass_by_tree(walk, corner, edge, way)) {
-    return Beginning::not_told;
   }
+  walk.spend(way.work());
+  if (!is_told) return Beginning::not_told;
   return way.is_outside() ? Beginning::outside : Beginning::inside;
 }
 
