@@ -34,9 +34,17 @@ class FanSweep : public NodeEntry<Geometry> {
     const uint64_t beyond = first + (uint64_t{FDCG_LEAF_NODES} << 3 * (level + 1)), end = beyond < nodes ? beyond : nodes;
     if (end <= graph_.fan_runs[0].first_node) return false;
     if (level >= 0) {
+      // A record with a few fans in it and nothing else costs no less to test than its fans.
       const uint32_t run = run_of(static_cast<uint32_t>(first));
-      if (run == FDCG_NONE || end > uint64_t{graph_.fan_runs[run].first_node} + graph_.fan_runs[run].node_count) return false;
-      look_at_fan(run);
+      uint32_t last = run;
+      while (last != FDCG_NONE && end > end_of(last))
+        last =
+            last + 1 - run < kFewFans && last + 1 < graph_.fan_run_count && graph_.fan_runs[last + 1].first_node == end_of(last)
+                ? last + 1
+                : FDCG_NONE;
+      if (last == FDCG_NONE || (level > 0 && last > run)) return false;
+      for (uint32_t i = run; i <= last; ++i)
+        look_at_fan(i);
       return true;
     }
     spend(work_left_, kLeafWork);
@@ -52,18 +60,19 @@ class FanSweep : public NodeEntry<Geometry> {
   }
 
  private:
-  // The way as seen from a corner, by directions: unit normals of the plane through the corner and the way, and of those that
-  // bound the arc at the way's start and at its end; a direction u is passed where |normal.u| <= slack, after_start.u and
-  // before_end.u >= -slack.
+  // The way as seen from a corner: from direction `start` to `end`, along a great circle. A face in a box is passed only where
+  // the box meets the circle's plane within `slack`, reaches beyond the start and before the end, and, along each of its own
+  // axes, comes within `padding` of what the arc spans.
   struct Arc {
-    Vec3<Real> normal, after_start, before_end;
-    Real slack;
+    Vec3<Real> start, end;
+    Vec3<Real> normal, after_start, before_end;  // of the circle's plane, and of those across it at the arc's ends
+    Real slack, padding;
     Real start_share, end_share;  // of the distances of the way's start and end from the corner
   };
 
+  static constexpr uint32_t kFewFans = 3;
   static constexpr uint32_t kRemembered = 8;  // fans; one that is forgotten is looked at again
   static constexpr Real kAnywhere = 4;        // a slack that every direction is within
-  static constexpr Real kNarrow = sizeof(Real) == 8 ? Real(1e-7) : Real(1e-3);  // radians: about the root of the rounding
   // Of the way. By so much at least is a face entered later that is left out for being entered after another.
   static constexpr Real kLater = Real(1) / 256;
 
@@ -83,6 +92,10 @@ class FanSweep : public NodeEntry<Geometry> {
     return n - run.first_node < run.node_count ? low - 1 : FDCG_NONE;
   }
 
+  [[nodiscard]] uint64_t end_of(uint32_t run) const {
+    return uint64_t{graph_.fan_runs[run].first_node} + graph_.fan_runs[run].node_count;
+  }
+
   void look_at_fan(uint32_t run) {
     for (uint32_t i = 0; i < kRemembered && i < looked_at_; ++i) {
       if (fans_[i] == run) return;
@@ -96,65 +109,59 @@ class FanSweep : public NodeEntry<Geometry> {
   }
 
   // False: no face of the fan is to be asked.
-  bool spans_arc(const fdcg_fan_run& fan, uint32_t corner, Arc* arc) {
-    constexpr Real kEpsilon = RealLimits<Real>::kEpsilon;
-    const Vec3<Real> point = graph_.corner_point(corner), a = from_ - point, b = to_ - point;
-    const Real length_a = norm(a), length_b = norm(b), length = norm(way_);
+  // In double: a difference of floats has no rounding there, and the plane of a fine needle's tip and a way is felt in the last
+  // digits of their places.
+  [[gnu::noinline]] bool spans_arc(const fdcg_fan_run& fan, uint32_t corner, Arc* arc) {
+    spend(work_left_, kArcWork);
+    const Vec3<double> point = widen(graph_.corner_point(corner)), a = widen(from_) - point, b = widen(to_) - point;
+    const Vec3<double> way = widen(to_) - widen(from_);
+    const double length_a = norm(a), length_b = norm(b), length = norm(way);
     if (!(length_b > 0) || !(length > 0)) return false;  // it ends on the planes of all
-    const Vec3<Real> start = length_a > 0 ? a * (1 / length_a) : Vec3<Real>{0, 0, 0}, end = b * (1 / length_b);
-    const Vec3<Real> along = way_ * (1 / length);
+    const Vec3<double> start = length_a > 0 ? a * (1 / length_a) : Vec3<double>{0, 0, 0}, end = b * (1 / length_b);
+    const Vec3<double> along = way * (1 / length), across = cross(start, end);
     // Of the three products of two that have one direction that of the two shorter ones is the most accurate.
     const bool is_a_longest = length_a >= length_b && length_a >= length, is_b_longest = !is_a_longest && length_b >= length;
-    const Vec3<Real> normal = is_a_longest ? cross(end, along) : is_b_longest ? cross(start, along) : cross(start, end);
-    const Real sine = norm(normal);
-    const Real off = is_a_longest ? sine * length_b : is_b_longest ? sine * length_a : sine * (length_a / length) * length_b;
-    if (left_ == kFree && is_met(fan, corner, point, -dot(a, along), off, length)) return false;
-    const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;
-    const Real reach = is_inexact ? slab_ + from_bound_ + to_bound_ : Real(0);  // from the way to where it enters a slab
-    const Real turn = norm(cross(start, end));
-    const bool is_towards = dot(start, end) > 0 && turn < kNarrow;  // it runs towards the corner, or away: one direction
-    if (is_towards) {
-      arc->normal = perpendicular_to(start);
-      arc->after_start = cross(start, arc->normal);
-      arc->before_end = cross(arc->normal, start);
-      arc->slack = turn + 16 * kEpsilon + reach_seen(reach, length_a < length_b ? length_a : length_b);
-      arc->start_share = 0;
-      arc->end_share = 1;
-    } else {
-      arc->normal = sine > 0 ? normal * (1 / sine) : normal;
-      arc->after_start = cross(arc->normal, start);
-      arc->before_end = cross(end, arc->normal);
-      // The normal's rounding, and that of directions and boxes.
-      arc->slack = sine > 8 * kEpsilon ? 8 * kEpsilon + 8 * kEpsilon / sine : kAnywhere;
-      arc->slack += reach_seen(reach, off);
-      arc->start_share = length_a / (length_a + length_b);
-      arc->end_share = length_b / (length_a + length_b);
-    }
-    // contact-model LEAVE-3: walls near the way's start count though it passes them by.
-    if (!(left_ == kFree)) arc->slack += reach_seen(2 * from_bound_, length_a);
+    const Vec3<double> normal = is_a_longest ? cross(end, along) : is_b_longest ? cross(start, along) : across;
+    const double sine = norm(normal);
+    const double off = is_a_longest ? sine * length_b : is_b_longest ? sine * length_a : sine * (length_a / length) * length_b;
+    const double at = -dot(a, along);  // where it is nearest to the corner
+    if (left_ == kFree && is_met(fan, corner, at / length, off)) return false;
+    const double nearest = at > 0 && at < length ? off : length_a < length_b ? length_a : length_b;
+    const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;  // and may be entered beside the way
+    Real beside = is_inexact ? seen(slab_ + from_bound_ + to_bound_, static_cast<Real>(nearest)) : Real(0);
+    // contact-model LEAVE-3: a wall beside the way's start
+    if (!(left_ == kFree)) beside += seen(2 * from_bound_, static_cast<Real>(length_a));
+    const double rounding = 8 * RealLimits<double>::kEpsilon;
+    const double bulge = dot(across, across) * 0.3;  // of an arc below a right angle over its chord, or more
+    const Vec3<double> unit = sine > 0 ? normal * (1 / sine) : normal;
+    arc->start = narrowed(start);
+    arc->end = narrowed(end);
+    arc->normal = narrowed(unit);
+    arc->after_start = narrowed(cross(unit, start));
+    arc->before_end = narrowed(cross(end, unit));
+    beside += 8 * RealLimits<Real>::kEpsilon;
+    arc->slack = sine > rounding ? beside + static_cast<Real>(rounding / sine) : kAnywhere;
+    arc->padding = dot(start, end) > 0 ? beside + static_cast<Real>(bulge) : kAnywhere;
+    arc->start_share = static_cast<Real>(length_a / (length_a + length_b));
+    arc->end_share = static_cast<Real>(length_b / (length_a + length_b));
     return true;
   }
-
-  // The angle under which a reach is seen from a distance, or more.
-  static Real reach_seen(Real reach, Real distance) {
-    return distance > 2 * reach ? 2 * reach / distance : reach > 0 ? kAnywhere : Real(0);
+  static Vec3<Real> narrowed(Vec3<double> v) {
+    return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
   }
-  static Vec3<Real> perpendicular_to(Vec3<Real> unit) {
-    const Real x = absolute(unit.x), y = absolute(unit.y), z = absolute(unit.z);
-    const Vec3<Real> other = cross(unit, x <= y && x <= z ? Vec3<Real>{1, 0, 0}
-                                         : y <= z         ? Vec3<Real>{0, 1, 0}
-                                                          : Vec3<Real>{0, 0, 1});
-    return other * (1 / norm(other));
+
+  // The angle under which something is seen from a distance, or more.
+  static Real seen(Real size, Real distance) {
+    return distance > 2 * size ? 2 * size / distance : size > 0 ? kAnywhere : Real(0);
   }
 
   // contact-model FREE-8: a way that passes the corner within rounding meets it, and not one of thousands of faces there whose
-  // sides it passes by as little. `at`: how far along the way.
-  bool is_met(const fdcg_fan_run& fan, uint32_t corner, Vec3<Real> point, Real at, Real off, Real length) {
-    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(point) + static_cast<Real>(graph_.header->extent));
-    const Real deviation = static_cast<Real>(graph_.header->max_deviation);
-    if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : Real(0)) && at >= 0 && at < length))
-      return false;
-    const Real fraction = at / length;
+  // sides it passes by as little. `at`: the fraction of the way; `off`: how far from the corner.
+  bool is_met(const fdcg_fan_run& fan, uint32_t corner, double at, double off) {
+    const double extent = graph_.header->extent, deviation = graph_.header->max_deviation;
+    const double rounding = 4.0 * RealLimits<Real>::kEpsilon * (norm1(widen(graph_.corner_point(corner))) + extent);
+    if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : 0) && at >= 0 && at < 1)) return false;
+    const auto fraction = static_cast<Real>(at);
     if (!is_before_best(fraction, fan.first_node)) return true;
     best_.fraction = fraction;
     best_.node = fan.first_node;
@@ -166,13 +173,15 @@ class FanSweep : public NodeEntry<Geometry> {
   // The fraction of the way at which it may enter a face in the box, or less; kPassedBy: none.
   template <class FanBox>
   [[nodiscard]] Real entry_of(const FanBox& box, const Arc& arc) const {
-    spend(work_left_, kFanArcWork);
-    const Vec3<Real> centre = vec(box.centre);
+    spend(work_left_, kArcBoxWork);
+    const Vec3<Real> centre = vec(box.centre), start = arc.start - centre, end = arc.end - centre;
     Real off = absolute(dot(arc.normal, centre)) - arc.slack;
     Real after = dot(arc.after_start, centre) - arc.slack, most_after = after + 2 * arc.slack;
     Real before = dot(arc.before_end, centre) + arc.slack;
     for (const auto& stored : box.axis) {
       const Vec3<Real> axis = vec(stored);
+      const Real from = dot(axis, start), to = dot(axis, end), half = dot(axis, axis) + arc.padding * norm1(axis);
+      if ((from < to ? from : to) > half || (from < to ? to : from) < -half) return kPassedBy;
       const Real spread = absolute(dot(arc.after_start, axis));
       off -= absolute(dot(arc.normal, axis));
       after -= spread;
@@ -180,10 +189,10 @@ class FanSweep : public NodeEntry<Geometry> {
       before += absolute(dot(arc.before_end, axis));
     }
     if (off > 0 || most_after < 0 || before < 0) return kPassedBy;
-    if (!(after > 0) || !(arc.start_share > 0)) return 0;
+    if (!(after > 0)) return 0;
     // Where the way has the direction p start + q end it is at q / (p + q).
     const Real q = arc.start_share * after, p = arc.end_share * before;
-    return q / (p + q);
+    return q > 0 ? q / (p + q) : Real(0);
   }
 
   void search_fan(const fdcg_busy_corner& busy, const Arc& arc) {
@@ -197,12 +206,12 @@ class FanSweep : public NodeEntry<Geometry> {
     const CornerRef<Geometry> corner = graph_.corner(busy.corner);
     Waiting stack[kMaxLevels + 2];
     int waiting = 0;
-    stack[waiting++] = {0, 0, layout.levels - 1};
+    stack[waiting++] = {entry_of(boxes[0], arc), 0, layout.levels - 1};
     while (waiting > 0) {
       const Waiting next = stack[--waiting];
       if (*work_left_ == 0) is_cut_short_ = true;
       if (is_cut_short_) return;
-      if (next.entry > best_.fraction + kLater) continue;
+      if (next.entry > best_.fraction + kLater) continue;  // kPassedBy is
       if (next.level == 0) {
         look_at_entries(corner, busy, next.box * FDCG_LEAF_FAN);
         continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-7, LEAVE-1, BOUND-2): whether a sweep is
+// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-8, LEAVE-1, BOUND-2): whether a sweep is
 // needed, the contact with what it met, and the work carried over to later ticks. docs/internals/sweep.md has the sequence.
 #pragma once
 

@@ -257,24 +257,38 @@ class NodeEntry {
   // A bit for a side; the last one for all beyond.
   static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
-  [[gnu::noinline]] bool passes_inside(NodeRef<Geometry> node, Real fraction, uint64_t* met_exactly) const {
+  [[gnu::noinline]] bool passes_inside(NodeRef<Geometry> node, Real fraction, uint64_t* met_exactly) {
     bool must_wind = false;
     uint64_t sure = 0;  // the sides that the line surely passes on their inner side
     Vec3<Real> start = graph_.corner_point(node.corner(0));
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
       const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      const int sign = sure_orientation(start, end);
+      const int sign = ends_on_line(node, k) ? 0 : sure_orientation(start, end);
       if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
       if (sign < 0 && k < kLastBit) sure |= bit_of(k);
       start = end;
     }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if ((sure & bit_of(k)) != 0) continue;
-      const int sign = orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k))));
+      const int sign = ends_on_line(node, k)
+                           ? 0
+                           : orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k))));
       if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
       if (sign == 0) *met_exactly |= bit_of(k);
     }
+    if (node.side_count() == 3) remember_corner(node, *met_exactly);
     return !must_wind || is_wound_by(node);
+  }
+
+  // A line that is not in a triangle's plane and meets two of its sides meets the corner between them; so it does every other
+  // side that ends there, which spares its exact sign.
+  void remember_corner(NodeRef<Geometry> node, uint64_t met_exactly) {
+    if (met_exactly == 3) corner_on_line_ = node.corner(1);
+    if (met_exactly == 6) corner_on_line_ = node.corner(2);
+    if (met_exactly == 5) corner_on_line_ = node.corner(0);
+  }
+  [[nodiscard]] bool ends_on_line(NodeRef<Geometry> node, uint32_t k) const {
+    return node.corner(k) == corner_on_line_ || node.corner(node.next(k)) == corner_on_line_;
   }
 
   // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, may pass inside
@@ -334,6 +348,8 @@ class NodeEntry {
     }
     return nearest;
   }
+
+  uint32_t corner_on_line_ = FDCG_NONE;
 };
 
 }  // namespace fdcg
