@@ -45,7 +45,7 @@ struct ValidateArguments {
   bool quiet = false;
 };
 
-const std::vector<std::string> kFormatNames{"text", "json", "sarif", "junit", "html"};
+const std::vector<std::string> kReportFormatNames{"text", "json", "sarif", "junit", "html"};
 const std::map<std::string, std::optional<bake::ReportFormat>> kReportFormats{{"text", bake::ReportFormat::text},
                                                                               {"json", bake::ReportFormat::json},
                                                                               {"sarif", bake::ReportFormat::sarif},
@@ -269,7 +269,7 @@ void add_report_options(CLI::App& command, ValidateArguments& arguments) {
   const auto add_format = [&arguments](const std::string& value) {
     const std::size_t equals = value.find('=');
     const std::string name = value.substr(0, equals);
-    require_choice("--format", name, kFormatNames);
+    require_choice("--format", name, kReportFormatNames);
     if (equals != std::string::npos) {
       arguments.files.push_back({kReportFormats.at(name), value.substr(equals + 1)});
     } else if (arguments.output_format) {
@@ -282,7 +282,7 @@ void add_report_options(CLI::App& command, ValidateArguments& arguments) {
       "--format", "FORMAT", add_format,
       one_of("Format of the report; html is the page of 'fdcg view'. FORMAT=FILE writes one more report to FILE, and "
              "may be repeated.",
-             kFormatNames),
+             kReportFormatNames),
       "text");
   output.text("-o,--output", "FILE", arguments.output, "Write the report to FILE.", "standard output");
   output.text("--full", "FILE", arguments.full, "Write all findings, without a limit, as JSON to FILE: a baseline.");
