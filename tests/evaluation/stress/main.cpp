@@ -243,8 +243,8 @@ void write_row(Table& table, const Row& row, const BlockResult& r, double second
             r.bounds_allowed, v.most_carried, v.worst_growth_eps, count_of(r, Fault::growth), count_of(r, Fault::push_through),
             count_of(r, Fault::unseen), count_of(r, Fault::thin_air), v.shallow, count_of(r, Fault::not_a_number),
             v.worst_off_surface_eps, count_of(r, Fault::off_surface), count_of(r, Fault::pull), v.worst_pull_eps,
-            count_of(r, Fault::restless), v.worst_restless_eps, v.worst_inside_eps, r.disagreements, hexadecimal(r.hash),
-            seconds);
+            count_of(r, Fault::restless), v.worst_restless_eps, v.worst_inside_eps, count_of(r, Fault::descent),
+            v.worst_descent_eps, count_of(r, Fault::free_air), r.disagreements, hexadecimal(r.hash), seconds);
 }
 
 int judge_whole(const BlockResult& r, const std::string& folder) {
@@ -264,6 +264,8 @@ int judge_whole(const BlockResult& r, const std::string& folder) {
   bars.at_most("god-object off its feature", r.verdicts.worst_off_surface_eps, kMostOffSurface_eps, "eps of the scale");
   none("forces that pull", count_of(r, Fault::pull));
   none("held HIPs that move the god-object", count_of(r, Fault::restless));
+  none("rests without friction from which a face or an edge leads nearer", count_of(r, Fault::descent),
+       std::to_string(count_of(r, Fault::free_air)) + " of them with the HIP outside");
   none("ticks in which the step as it ships differs", r.disagreements, "compared in block 0 of each case");
   return bars.failures();
 }
@@ -304,6 +306,9 @@ int run(const Options& options, const std::string& program) {
                "restless",
                "restless_worst_eps",
                "inside_worst_eps",
+               "descents",
+               "descent_worst_eps",
+               "free_air",
                "disagreements",
                "hash",
                "seconds"});

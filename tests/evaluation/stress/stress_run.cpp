@@ -56,7 +56,7 @@ class Block {
     params_ = contact_params(mu[0], mu[1], random_.chance(0.8) ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER);
     contact_ = {};
     path_.clear();
-    judge_.begin();
+    judge_.begin(params_);
     for (std::uint32_t i = 0; i < ticks && result_.ticks < kBlockTicks; ++i) {
       const Hip hip =
           hand_.next({contact_.god_object[0], contact_.god_object[1], contact_.god_object[2]}, contact_.state == FDCG_FREE);
