@@ -27,6 +27,7 @@ enum class Fault : std::uint8_t {
   pull,          // the HIP is in front of what is said to hold it: the force pulls inwards
   restless,      // the same HIP again: GO came nearer by more than 16 eps of the scale, or moved by more than such a change of
                  // its distance allows, or contact was lost or found
+  no_force,      // inside by more than 4 eps of the size, after having been outside or held, and no force
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
@@ -54,7 +55,8 @@ struct Verdicts {
 
 class Judge {
  public:
-  explicit Judge(const Specimen& specimen);
+  // `owes_force`: of a hand's speed, so that no tick inside may be without force.
+  explicit Judge(const Specimen& specimen, bool owes_force = false);
 
   // A new contact: nothing is known of where its HIP is.
   void begin() { is_known_outside_ = is_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0; }
@@ -85,8 +87,10 @@ class Judge {
   void look_at_way(Tick& tick);
   bool is_let_off(const Hip& point);
   void look_inside(Tick& tick, Verdicts& v);
+  void look_at_owed_force(Tick& tick);
 
   const Specimen& specimen_;
+  bool owes_force_;
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
   bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
   bool is_known_outside_ = false;

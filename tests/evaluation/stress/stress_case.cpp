@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "meshes.hpp"
+#include "stress_points.hpp"
 
 namespace fdcg::test {
 namespace {
@@ -300,6 +301,7 @@ const std::vector<StressCase>& stress_cases() {
        kMayCarry,
        50,
        0.5},
+      {"points", "a force in the tick that gets inside", pointed_bodies, {approach}, kMayCarry, 5, 0.2, true},
   };
   return cases;
 }
