@@ -312,6 +312,8 @@ void add_graph_options(CLI::App& command, ReplayArguments& arguments) {
   contact.number("--mu-s", "MU", params.mu_static, {0, kLargest}, "Coefficient of static friction, not below --mu-d.", "0.6");
   contact.number("--mu-d", "MU", params.mu_dynamic, {0, kLargest}, "Coefficient of dynamic friction.", "0.4");
   contact.number("--stiffness", "K", params.stiffness_n_per_m, {0, kLargest, " N/m"}, "Stiffness of the spring, N/m.", "1000");
+  contact.number("--damping", "D", params.damping_n_s_per_m, {0, kLargest, " N s/m"},
+                 "Damping along the spring, N s/m, at 1,000 ticks a second.", "0");
   contact.choice<std::uint32_t>(
       "--edge-friction", "RULE", {{"wedge", FDCG_EDGE_WEDGE}, {"paper", FDCG_EDGE_PAPER}}, params.edge_friction,
       "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 paper.");
@@ -350,7 +352,7 @@ every output is compared bit for bit.
             if (!dev::is_session_log(arguments->graph)) return run_replay(*arguments);
             std::string given;
             for (const char* const name :
-                 {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness", "--edge-friction"})
+                 {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness", "--damping", "--edge-friction"})
               if (given.empty() && command->count(name) != 0) given = name;
             return run_session(*arguments, given);
           }};

@@ -18,19 +18,20 @@
 #include "validate_config.hpp"
 #include "validate_run.hpp"
 #include "validate_settings.hpp"
+#include "view_mesh.hpp"
 
 namespace fdcg::tools {
 namespace {
 
 struct Output {
-  bake::ReportFormat format;
+  std::optional<bake::ReportFormat> format;  // none: a page, as fdcg view writes it
   std::string path;
 };
 
 struct ValidateArguments {
   std::vector<std::string> meshes;
-  std::optional<bake::ReportFormat> format;  // of -o
-  std::vector<Output> files;                 // FORMAT=FILE
+  std::optional<Output> output_format;  // of -o: its path is not set
+  std::vector<Output> files;            // FORMAT=FILE
   std::string output = "-";
   std::string full;
   std::string config;
@@ -44,10 +45,12 @@ struct ValidateArguments {
   bool quiet = false;
 };
 
-const std::map<std::string, bake::ReportFormat> kReportFormats{{"text", bake::ReportFormat::text},
-                                                               {"json", bake::ReportFormat::json},
-                                                               {"sarif", bake::ReportFormat::sarif},
-                                                               {"junit", bake::ReportFormat::junit}};
+const std::vector<std::string> kReportFormatNames{"text", "json", "sarif", "junit", "html"};
+const std::map<std::string, std::optional<bake::ReportFormat>> kReportFormats{{"text", bake::ReportFormat::text},
+                                                                              {"json", bake::ReportFormat::json},
+                                                                              {"sarif", bake::ReportFormat::sarif},
+                                                                              {"junit", bake::ReportFormat::junit},
+                                                                              {"html", std::nullopt}};
 
 std::string now_utc() {
   const std::time_t now = std::time(nullptr);
@@ -61,9 +64,15 @@ std::string now_utc() {
 // ---- what is to be done
 
 std::vector<Output> outputs_of(const ValidateArguments& arguments) {
-  std::vector<Output> outputs{{arguments.format.value_or(bake::ReportFormat::text), arguments.output}};
+  std::vector<Output> outputs{arguments.output_format.value_or(Output{bake::ReportFormat::text, {}})};
+  outputs.front().path = arguments.output;
   outputs.insert(outputs.end(), arguments.files.begin(), arguments.files.end());
   return outputs;
+}
+
+bool wants_page(const ValidateArguments& arguments) {
+  const std::vector<Output> outputs = outputs_of(arguments);
+  return std::any_of(outputs.begin(), outputs.end(), [](const Output& output) { return !output.format; });
 }
 
 int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>& meshes) {
@@ -150,8 +159,12 @@ class Outputs {
     for (const Output& output : outputs_of(arguments)) {
       options.colour = output.path == "-" && wants_colour(Stream::standard_output);
       AtomicFile& file = files_.emplace_back(output.path);
-      writers_.push_back({output.format, bake::make_report_writer(
-                                             output.format, [&file](std::string_view piece) { file.write(piece); }, options)});
+      const auto write = [&file](std::string_view piece) { file.write(piece); };
+      if (output.format) {
+        writers_.push_back({*output.format, bake::make_report_writer(*output.format, write, options)});
+      } else {
+        pages_.emplace_back(write, "fdcg validate");
+      }
     }
     if (arguments.full.empty()) return;
     AtomicFile& file = files_.emplace_back(arguments.full);
@@ -163,6 +176,13 @@ class Outputs {
       const bool is_wanted = !is_quiet_ || writer.format != bake::ReportFormat::text || !result.report.passes();
       if (is_wanted) writer.to->add(result.report);
     }
+    for (page::PageWriter& page : pages_) {
+      if (result.soup) {
+        add_judged_mesh(page_view(), *result.soup, result.report, page);
+      } else {
+        page.add_report(result.report);
+      }
+    }
     if (full_ && !full_->add(result.report, result.spool)) lost_elements_ = true;
   }
   // An error's line, or nothing.
@@ -170,6 +190,8 @@ class Outputs {
     for (Writer& writer : writers_) {
       if (!is_quiet_ || writer.format != bake::ReportFormat::text) writer.to->finish(exit_code);
     }
+    for (page::PageWriter& page : pages_)
+      page.finish();
     if (full_) full_->finish();
     if (lost_elements_) return "--full needs room for temporary files (TMPDIR), and there is none left";
     std::string first = error();
@@ -190,9 +212,17 @@ class Outputs {
     bake::ReportFormat format;
     std::unique_ptr<bake::ReportWriter> to;
   };
+  // Without a graph: a page of many meshes is large as it is.
+  static MeshView page_view() {
+    MeshView view;
+    view.touch = view.shows_progress = false;
+    return view;
+  }
+
   bool is_quiet_;
   bool lost_elements_ = false;
   std::deque<AtomicFile> files_;  // stay where they are
+  std::deque<page::PageWriter> pages_;
   std::vector<Writer> writers_;
   std::optional<bake::FullReportWriter> full_;
 };
@@ -200,6 +230,8 @@ class Outputs {
 int run_validate(const ValidateArguments& arguments) {
   const std::vector<NamedFile> meshes = expand_paths(arguments.meshes, mesh_endings());
   if (const int code = check_paths(arguments, meshes); code != kClean) return code;
+  if (const std::string reason = page::viewer_missing(); wants_page(arguments) && !reason.empty())
+    return fail(kFile, "--format html: this fdcg has no viewer: " + reason + " (docs/view.md)");
   std::vector<std::string> baselines;
   auto tasks = tasks_of(arguments, meshes, baselines);
   if (!tasks) return fail(tasks.error().exit_code, tasks.error().message);
@@ -212,11 +244,14 @@ int run_validate(const ValidateArguments& arguments) {
   run.input_format = arguments.input_format;
   run.jobs = arguments.jobs;
   run.wants_all_elements = !arguments.full.empty();
+  run.keeps_meshes = wants_page(arguments);
+  for (ValidateTask& task : run.tasks) {
+    if (run.keeps_meshes) task.options.max_elements = kPageElements;
+  }
   run.shows_progress = !arguments.quiet;
   // The text report says it too: once is enough for a person who sees both.
   const bool is_in_sight = is_terminal(Stream::standard_output) && is_terminal(Stream::standard_error) &&
-                           arguments.output == "-" &&
-                           arguments.format.value_or(bake::ReportFormat::text) == bake::ReportFormat::text;
+                           arguments.output == "-" && outputs_of(arguments).front().format == bake::ReportFormat::text;
   int code = kClean;
   validate_all(run, [&](Validated& result) {
     if (!result.error.empty() && !is_in_sight) fail(result.exit_code, result.error);
@@ -231,22 +266,24 @@ int run_validate(const ValidateArguments& arguments) {
 
 void add_report_options(CLI::App& command, ValidateArguments& arguments) {
   const OptionGroup output(command, "Output");
-  const std::vector<std::string> formats{"text", "json", "sarif", "junit"};
-  const auto add_format = [&arguments, formats](const std::string& value) {
+  const auto add_format = [&arguments](const std::string& value) {
     const std::size_t equals = value.find('=');
     const std::string name = value.substr(0, equals);
-    require_choice("--format", name, formats);
+    require_choice("--format", name, kReportFormatNames);
     if (equals != std::string::npos) {
       arguments.files.push_back({kReportFormats.at(name), value.substr(equals + 1)});
-    } else if (arguments.format) {
+    } else if (arguments.output_format) {
       throw CLI::ValidationError("--format", "two formats for one output; write --format " + name + "=FILE for one of them");
     } else {
-      arguments.format = kReportFormats.at(name);
+      arguments.output_format = Output{kReportFormats.at(name), {}};
     }
   };
-  output.repeated("--format", "FORMAT", add_format,
-                  one_of("Format of the report. FORMAT=FILE writes one more report to FILE, and may be repeated.", formats),
-                  "text");
+  output.repeated(
+      "--format", "FORMAT", add_format,
+      one_of("Format of the report; html is the page of 'fdcg view'. FORMAT=FILE writes one more report to FILE, and "
+             "may be repeated.",
+             kReportFormatNames),
+      "text");
   output.text("-o,--output", "FILE", arguments.output, "Write the report to FILE.", "standard output");
   output.text("--full", "FILE", arguments.full, "Write all findings, without a limit, as JSON to FILE: a baseline.");
   output.flag(
@@ -294,6 +331,7 @@ Command add_validate(CLI::App& app) {
   command->footer(R"(Examples:
   fdcg validate part.stl
   fdcg validate 'meshes/**/*.stl' --format junit=report.xml
+  fdcg validate scan.obj --format html=scan.html
   fdcg validate --fail-on warning --allow boundary-edge scan.obj
   fdcg validate meshes --full known.json; fdcg validate meshes --baseline known.json
   convert part.step | fdcg validate - --input-format stl

@@ -90,6 +90,7 @@ Validated judge(const ValidateTask& task, const ValidateRun& run, unsigned jobs,
     result.report = bake::validate(*soup, options);
     if (task.has_baseline) result.report.resolved = known.resolved(result.report.checks);
     result.exit_code = result.report.passes() ? kClean : kFindings;
+    if (run.keeps_meshes) result.soup = std::move(*soup);
   } else {
     refuse(result, task, soup.error());
   }

@@ -26,6 +26,7 @@ struct ValidateRun {
   std::optional<bake::Format> input_format;  // default: by content
   unsigned jobs = 0;                         // threads; 0: one a core
   bool wants_all_elements = false;
+  bool keeps_meshes = false;
   bool shows_progress = false;
 };
 
@@ -34,6 +35,7 @@ struct Validated {
   int exit_code = 0;         // of this file alone
   std::string error;         // one line; why there was no mesh
   bake::ElementSpool spool;  // with wants_all_elements
+  std::optional<bake::PolygonSoup> soup;  // with keeps_meshes, where there is one
 };
 
 // `deliver` gets each file's result in the order of the tasks, one at a time, perhaps from several threads. What it and the

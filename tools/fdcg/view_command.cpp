@@ -136,22 +136,24 @@ compiled, so that the mouse feels it. A replay's log goes with the graph before 
 
 )" + exit_codes("the page is written, whatever was found", "not used"));
   const auto arguments = std::make_shared<ViewArguments>();
+  MeshView& mesh = arguments->mesh;
   required_argument(
       *command, "input", "INPUT...", arguments->inputs,
-      "Mesh files, FDCG files, logs of 'fdcg-servo replay', patterns, or folders to search for meshes. - is a mesh on standard "
-      "input.");
+      "Mesh files, FDCG files, logs of 'fdcg-servo replay', patterns, or folders to search for meshes. - is a mesh "
+      "on standard input.");
   const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks"), touch(*command, "Touch");
   output.text("-o,--output", "FILE", arguments->output, "Page to write. - is standard output.",
               "the first input's name with .html");
   output.flag("--open", arguments->open, "Open the page in the browser.");
   output.flag("-q,--quiet", arguments->quiet, "Print errors only. No progress bar.");
-  add_input_format_option(*command, arguments->mesh.input_format);
-  add_unit_options(*command, arguments->mesh.metres_per_unit, arguments->unit_text);
-  add_weld_option(checks, arguments->mesh.weld);
-  checks.flag("--repair", arguments->mesh.repair, "Show what 'fdcg repair --all' makes of a mesh with errors beside it.");
-  add_precision_option(touch, arguments->mesh.precision, "Precision of the graph that is touched.");
-  touch.flag("!--no-touch", arguments->mesh.touch, "Leave the graph of a mesh out: a smaller page, without touch.");
-  OptionGroup(*command, "General").jobs(arguments->mesh.jobs, "The page does not depend on it.");
+  add_input_format_option(*command, mesh.input_format);
+  add_unit_options(*command, mesh.metres_per_unit, arguments->unit_text);
+  add_weld_option(checks, mesh.weld);
+  checks.flag("--repair", mesh.repair, "Show what 'fdcg repair --all' makes of a mesh with errors beside it.");
+  touch.choice<bake::Precision>("--precision", "PRECISION", {{"f32", bake::Precision::f32}, {"f64", bake::Precision::f64}},
+                                mesh.precision, "Precision of the graph that is touched.");
+  touch.flag("!--no-touch", mesh.touch, "Leave the graph of a mesh out: a smaller page, without touch.");
+  OptionGroup(*command, "General").jobs(mesh.jobs, "The page does not depend on it.");
   return {command, [arguments] {
             arguments->mesh.shows_progress = !arguments->quiet;
             return run_view(*arguments);

@@ -42,7 +42,7 @@ bake::RepairOptions all_repairs(const MeshView& view, const bake::Progress& prog
 // The graph's bytes in *compiled, or why there are none.
 std::string compile_for_touch(const MeshView& view, const bake::PolygonSoup& soup, const bake::Report& report,
                               const bake::Progress& progress, std::optional<bake::Compiled>* compiled) {
-  if (!view.touch) return "the page was made with --no-touch";
+  if (!view.touch) return "the page was made without a graph (fdcg view adds one)";
   if (!report.passes(bake::Severity::error)) return "the mesh has errors, so it cannot be compiled; repair them first";
   if (soup.face_count() > kMostTouchFaces) {
     return "it has more than " + grouped(kMostTouchFaces) + " faces; compile it and view the FDCG file to touch it";

@@ -46,7 +46,8 @@ std::vector<float> local_points(const bake::PolygonSoup& soup) {
   std::vector<float> points;
   points.reserve(3 * soup.points.size());
   for (const bake::Vec3& p : soup.points) {
-    for (const double x : {(p.x - frame.centre.x) / frame.size, (p.y - frame.centre.y) / frame.size, (p.z - frame.centre.z) / frame.size})
+    for (const double x :
+         {(p.x - frame.centre.x) / frame.size, (p.y - frame.centre.y) / frame.size, (p.z - frame.centre.z) / frame.size})
       points.push_back(is_finite(p) ? static_cast<float>(x) : std::numeric_limits<float>::quiet_NaN());
   }
   return points;

@@ -24,10 +24,17 @@ std::string escaped(std::string_view text) {
   std::string safe;
   for (const char c : text) {
     switch (c) {
-      case '&': safe += "&amp;"; break;
-      case '<': safe += "&lt;"; break;
-      case '>': safe += "&gt;"; break;
-      default: safe += c;
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      default:
+        safe += c;
     }
   }
   return safe;
@@ -66,7 +73,8 @@ std::string viewer_missing() {
   return std::string(viewer().substr(kMissing.size()));
 }
 
-PageWriter::PageWriter(Write write, std::string_view title) : write_(std::move(write)) {
+PageWriter::PageWriter(Write write, std::string_view name) : write_(std::move(write)) {
+  const std::string title = Json::parse(dumped(Json(name))).get<std::string>();  // valid UTF-8, whatever the name is
   const std::string_view page = viewer();
   const std::size_t at_title = page.find(kTitleMark);
   write_(page.substr(0, at_title));

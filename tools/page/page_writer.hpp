@@ -20,24 +20,25 @@ std::string viewer_missing();
 
 // What of a mesh is shown beside its faces.
 struct MeshDetails {
-  const bake::Report* report = nullptr;          // never null; its elements are listed in full
-  std::span<const std::byte> graph{};            // to touch it; empty: the page says why not
-  std::string no_graph{};                        // that reason
-  std::string compile_options{};                 // with which `fdcg compile` makes these bytes
-  const bake::Repaired* repaired = nullptr;      // shown beside it
+  const bake::Report* report = nullptr;      // never null; its elements are listed in full
+  std::span<const std::byte> graph{};        // to touch it; empty: the page says why not
+  std::string no_graph{};                    // that reason
+  std::string compile_options{};             // with which `fdcg compile` makes these bytes
+  const bake::Repaired* repaired = nullptr;  // shown beside it
 };
 
 class PageWriter {
  public:
   using Write = std::function<void(std::string_view)>;
-  // `write` gets pieces of any length, and must live as long. viewer_missing() is empty.
-  PageWriter(Write write, std::string_view title);
+  // `write` gets pieces of any length, and must live as long; `name` is the page's title. viewer_missing() is empty.
+  PageWriter(Write write, std::string_view name);
 
   void add_mesh(const bake::PolygonSoup& soup, const MeshDetails& details);
   // A file that gave no mesh: its report says why.
   void add_report(const bake::Report& report);
   // An FDCG file; `log`: a replay's CSV that was made on it, or empty.
-  void add_graph(std::string_view name, std::span<const std::byte> file, std::string_view log_name = {}, std::string_view log = {});
+  void add_graph(std::string_view name, std::span<const std::byte> file, std::string_view log_name = {},
+                 std::string_view log = {});
   // A replay's log whose graph is not at hand.
   void add_log(std::string_view name, std::string_view log);
   void finish();

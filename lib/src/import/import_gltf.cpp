@@ -25,13 +25,6 @@ struct Container {
   std::optional<std::string_view> binary;
 };
 
-std::uint32_t load_u32(const char* bytes) {
-  std::uint32_t value = 0;
-  for (int i = 3; i >= 0; --i)
-    value = value << 8 | static_cast<unsigned char>(bytes[i]);
-  return value;
-}
-
 Refusal truncated(const std::string& what) {
   return Refusal{"truncated: " + what + "; fetch or export the file again"};
 }

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "base/mesh.hpp"
 #include "base/vec3.hpp"
 #include "repair/radial.hpp"
 #include "repair/repair.hpp"
@@ -24,10 +25,6 @@ namespace fdcg::bake {
 namespace {
 
 using Loops = std::vector<std::vector<std::uint32_t>>;
-
-bool is_halfedge(HalfedgeId h) {
-  return +h < +Topology::kSkipped;
-}
 
 // Turns the faces of patches that no turning makes consistent so that few edges stay along which two faces run in one
 // direction: each face agrees with the one from which it was reached first. Returns the number of faces turned.

@@ -7,6 +7,7 @@ import { FindingsTab, describe } from './findings_tab';
 import { GraphModel } from './graph_model';
 import { GraphTab } from './graph_tab';
 import { makeHelp } from './help';
+import { Frame } from './frame';
 import { clearGroup } from './highlight';
 import { MeshModel } from './mesh_model';
 import { MeshView } from './mesh_view';
@@ -14,6 +15,10 @@ import { grouped, short } from './numbers';
 import { Runtime } from './runtime';
 import { Stage } from './stage';
 import { toggleMode } from './theme';
+import { LogTab } from './log_tab';
+import { parseLog } from './touch_csv';
+import { GOD, TICK } from './touch_messages';
+import { TouchTab } from './touch_tab';
 
 class App {
   private readonly stageHolder = h('div.stage');
@@ -80,6 +85,8 @@ class App {
   async show(index: number): Promise<void> {
     this.active?.deactivate();
     this.context.dock(null);
+    for (const tab of this.tabs) if (tab instanceof TouchTab) tab.dispose();
+    clearGroup(this.stage.marks);
     this.tabs = [];
     this.active = undefined;
     this.mesh = undefined;
@@ -99,21 +106,40 @@ class App {
 
   private async addMesh(item: Item): Promise<void> {
     if (item.geometry === undefined) return;
-    const scale = /--scale (\S+)/.exec(item.compile_options ?? '')?.[1];
-    const model = await MeshModel.read(item.geometry, scale === undefined ? 1 : Number(scale));
+    const model = await MeshModel.read(item.geometry, 1);
     this.mesh = new MeshView(this.stage, model);
     this.stage.content.add(this.mesh.group);
   }
 
   private async addGraph(item: Item): Promise<void> {
-    if (item.graph === undefined) return;
+    if (item.graph === undefined) {
+      if (item.log !== undefined) await this.addLog(item, undefined);
+      return;
+    }
+    const graph = await readArray(item.graph);
     const runtime = await Runtime.make(this.context.wasm);
-    runtime.open(await readArray(item.graph));
-    const model = new GraphModel(runtime, this.mesh?.model.frame);
+    runtime.open(graph);
+    const scale = runtime.header().metresPerUnit;
+    const known = this.mesh?.model.frame;
+    const model = new GraphModel(runtime, known && new Frame(known.centre, known.size, scale));
     const showMesh = (shown: boolean): void => {
       if (this.mesh !== undefined) this.mesh.group.visible = shown;
     };
-    this.tabs.push(new GraphTab(this.context, model, showMesh));
+    const graphTab = new GraphTab(this.context, model, showMesh);
+    const base = item.name.replace(/^.*\//, '');
+    const isMesh = item.geometry !== undefined;
+    const graphName = isMesh ? `${base.replace(/\.[^.]*$/, '')}.fdcg` : base;
+    const compile = isMesh ? { compile: `fdcg compile ${base} -o ${graphName} ${item.compile_options ?? ''}` } : {};
+    const touch = new TouchTab(this.context, { frame: model.frame, runtime, graph, graphName, ...compile });
+    if (!isMesh) graphTab.showSurface = true;
+    if (item.log !== undefined) await this.addLog(item, model);
+    this.tabs.push(graphTab, touch);
+  }
+
+  private async addLog(item: Item, model: GraphModel | undefined): Promise<void> {
+    if (item.log === undefined) return;
+    const ticks = parseLog(new TextDecoder().decode(await readArray(item.log)));
+    this.tabs.push(new LogTab(this.context, ticks, model?.frame ?? frameOfLog(ticks), model?.runtime, item.log.name));
   }
 
   private showFacts(item: Item, index: number): void {
@@ -216,6 +242,10 @@ class App {
     this.stage.invalidate();
   }
 
+  /** For tests: so that the picture can be read. */
+  draw(): void {
+    this.stage.drawNow();
+  }
   /** For tests and scripts: what the page shows now. */
   state(): Record<string, unknown> {
     return {
@@ -232,11 +262,25 @@ class App {
   }
 }
 
+/** Where a log's graph is not at hand: about what it has moved over. */
+function frameOfLog(ticks: Float64Array): Frame {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (let at = 0; at < ticks.length; at += TICK) {
+    for (let k = 0; k < 3; ++k) {
+      low[k] = Math.min(low[k]!, ticks[at + GOD + k]!);
+      high[k] = Math.max(high[k]!, ticks[at + GOD + k]!);
+    }
+  }
+  const centre = low.map((x, k) => (x + high[k]!) / 2) as [number, number, number];
+  return new Frame(centre, Math.max(...low.map((x, k) => high[k]! - x)) || 1, 1);
+}
+
 export async function start(): Promise<void> {
   const page = await readPage();
   document.title = page.title;
   const app = new App(page, await readWasm());
-  Object.defineProperty(window, 'fdcgView', { value: { state: () => app.state() } });
+  Object.defineProperty(window, 'fdcgView', { value: { state: () => app.state(), draw: () => app.draw() } });
   if (itemCount() === 0) throw new Error('it holds no file');
   await app.show(0);
 }

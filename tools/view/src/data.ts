@@ -52,8 +52,7 @@ export interface RepairAction {
   name: string;
   total: number;
   message: string;
-  left?: number;
-  left_message?: string;
+  left: { total: number; message: string };
 }
 
 export interface Item {
@@ -65,7 +64,7 @@ export interface Item {
   graph?: ArrayRef;
   no_graph?: string;
   compile_options?: string;
-  repaired?: { geometry: Geometry; report: Report; account: { actions?: RepairAction[]; steps?: RepairAction[] } | null };
+  repaired?: { geometry: Geometry; report: Report; account: { actions?: RepairAction[] } | null };
   log?: ArrayRef & { name: string };
 }
 

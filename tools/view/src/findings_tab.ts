@@ -5,6 +5,7 @@ import type { Element3, Issue, Item, Rule } from './data';
 import { button, checkbox, h, replaceChildren } from './dom';
 import type { MeshView } from './mesh_view';
 import { grouped } from './numbers';
+import { RepairPanel } from './repair_panel';
 
 const SHOWN_AT_ONCE = 100;
 
@@ -52,6 +53,7 @@ export class FindingsTab implements Tab {
   private readonly filter: HTMLInputElement;
   private entries: Entry[] = [];
   private current = -1;
+  private readonly repair: RepairPanel | undefined;
   private readonly open = new Map<string, number>(); // rule -> how many are listed
 
   constructor(
@@ -68,6 +70,11 @@ export class FindingsTab implements Tab {
     });
     this.element.append(this.summary());
     if (this.issues.length > 0) this.element.append(this.tools(), this.results);
+    if (item.repaired !== undefined && view !== undefined) {
+      this.repair = new RepairPanel(context, item.repaired, view);
+      this.element.insertBefore(this.repair.element, this.element.children[1] ?? null);
+    }
+    if (item.no_graph !== undefined) this.element.append(h('p.note', { id: 'no-graph' }, `Nothing to touch: ${item.no_graph}.`));
     const first = this.issues[0];
     if (first !== undefined) this.open.set(first.rule, SHOWN_AT_ONCE);
     this.list();
@@ -192,9 +199,11 @@ export class FindingsTab implements Tab {
     } else return false;
     return true;
   }
-  applyTheme(): void {}
+  applyTheme(): void {
+    this.repair?.applyTheme();
+  }
   state(): Record<string, unknown> {
     const entry = this.entries[this.current];
-    return { entries: this.entries.length, current: this.current, rule: entry?.issue.rule, element: entry?.element };
+    return { version: this.repair?.version, entries: this.entries.length, current: this.current, rule: entry?.issue.rule, element: entry?.element };
   }
 }

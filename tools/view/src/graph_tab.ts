@@ -24,6 +24,7 @@ export class GraphTab implements Tab {
   readonly title = 'Graph';
   readonly element = h('div.tab');
   private readonly group = new Group();
+  private readonly details = new Group(); // what only this tab shows
   private readonly selection = new Group();
   private readonly material = new SurfaceMaterial(true);
   private readonly surface: Mesh;
@@ -45,7 +46,8 @@ export class GraphTab implements Tab {
     });
     const busy = dots(model.busyCorners, { color: themeColor('glow'), width: 2.5 });
     busy.name = 'busy';
-    this.group.add(this.surface, ...this.edges, busy, this.boxes, this.selection);
+    this.details.add(...this.edges, busy, this.boxes, this.selection);
+    this.group.add(this.surface, this.details);
     this.group.visible = false;
     context.stage.content.add(this.group);
     this.element.append(this.counts(), this.looks(), this.finder(), this.records);
@@ -226,13 +228,25 @@ export class GraphTab implements Tab {
     this.pickFeature(this.model.featureAt(this.model.triangleNode[hit.faceIndex]!, hit.point, pixels * perPixel), false);
   }
 
+  /** Where there is no mesh the nodes alone are its surface, also for the other tabs. */
+  set showSurface(shown: boolean) {
+    this.isSurface = shown;
+    this.setInUse(false);
+  }
+  private isSurface = false;
+  private setInUse(inUse: boolean): void {
+    this.group.visible = inUse || this.isSurface;
+    this.details.visible = inUse;
+    if (!inUse) this.material.setFocus(undefined);
+  }
+
   activate(): void {
-    this.group.visible = true;
+    this.setInUse(true);
     this.showMesh(false);
     this.context.hint('Click a face, an edge or a corner to see its record.');
   }
   deactivate(): void {
-    this.group.visible = false;
+    this.setInUse(false);
     this.showMesh(true);
     this.context.hint('');
   }

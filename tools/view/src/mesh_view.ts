@@ -109,7 +109,9 @@ export class MeshView {
     this.stage.invalidate();
     if (element === undefined) return;
     const marks = this.marksOf(element);
-    this.selection.add(marked(marks, { color: themeColor('glow'), opacity: 0.9, width: 4, onTop: true }));
+    const isOfEdges = marks.lines.length > 0; // then the faces beside them are background
+    this.selection.add(marked({ polygons: marks.polygons }, { color: themeColor('glow'), opacity: isOfEdges ? 0.3 : 0.75, onTop: true }));
+    this.selection.add(marked({ lines: marks.lines, points: marks.points }, { color: themeColor('glow'), width: 5, onTop: true }));
     const outlines = marks.polygons.flatMap((outline) => outline.flatMap((p, k) => [p, outline[(k + 1) % outline.length]!]));
     if (outlines.length > 0) this.selection.add(marked({ lines: outlines }, { color: themeColor('glow'), width: 1.5, onTop: true }));
     const ball = this.ballOf(marks);

@@ -17,7 +17,8 @@ interface Flight {
 
 export class Stage {
   readonly scene = new Scene();
-  readonly content = new Group();
+  readonly content = new Group(); // what there is to look at: fit() shows all of it
+  readonly marks = new Group(); // what moves over it
   readonly camera = new PerspectiveCamera(40, 1, 1e-4, 50);
   readonly controls: OrbitControls;
   readonly canvas: HTMLCanvasElement;
@@ -37,7 +38,7 @@ export class Stage {
     this.canvas.setAttribute('role', 'img');
     this.canvas.setAttribute('aria-label', 'The model. Arrow keys turn it, plus and minus come nearer or go away, F shows all of it.');
     holder.append(this.canvas);
-    this.scene.add(this.content);
+    this.scene.add(this.content, this.marks);
     this.camera.position.set(1.1, 0.7, 1.7);
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
@@ -117,9 +118,10 @@ export class Stage {
   }
 
   fit(): void {
-    const box = new Box3().setFromObject(this.content);
+    const box = new Box3();
+    for (const child of this.content.children) if (child.visible) box.expandByObject(child);
     const centre = box.isEmpty() ? new Vector3() : box.getCenter(new Vector3());
-    this.flyTo(centre, box.isEmpty() ? 1 : box.getSize(new Vector3()).length() / 2);
+    this.flyTo(centre, box.isEmpty() ? 1 : box.getSize(new Vector3()).length() * 0.42);
   }
 
   /** The ray through a place of the canvas, in pixels of the page. */
