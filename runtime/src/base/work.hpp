@@ -39,6 +39,7 @@ inline constexpr uint32_t kTransitionWork = 10;   // one change of state
 inline constexpr uint32_t kSideWork = 4;          // one side of a face that the god-object slides on
 inline constexpr uint32_t kEdgeWork = 15;         // the rule of an edge
 inline constexpr uint32_t kFanWork = 8;           // one edge of a corner and the face beside it
+inline constexpr uint32_t kFanSignWork = 4;       // one corner against a plane, where rounding cannot matter
 inline constexpr uint32_t kArcWork = 12;          // a way as seen from a busy corner
 inline constexpr uint32_t kArcBoxWork = 10;       // ... against one box of the corner's fan tree
 inline constexpr uint32_t kFanEntryWork = 3;      // one entry of a fan fetched
