@@ -21,7 +21,7 @@ struct NamedMesh {
   std::string problem;         ///< why it was not found, one line; empty: it was
 };
 
-/// Whether these bytes are a description: XML with the root <robot> or <sdf>.
+/// Whether these bytes are a description: XML whose root is `robot` or `sdf`.
 bool is_robot(std::string_view bytes);
 
 /// The meshes that a URDF or SDF file names in visuals and collisions, each pair of file and scale once, in the file's order.
