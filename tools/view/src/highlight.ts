@@ -19,6 +19,9 @@ export interface Look {
   onTop?: boolean; // also where the surface hides it
 }
 
+/** The name of what filled() makes. */
+export const FILLED = 'filled';
+
 function flat(points: readonly Vector3[]): Float32Array {
   const numbers = new Float32Array(3 * points.length);
   points.forEach((p, i) => p.toArray(numbers, 3 * i));
@@ -63,6 +66,7 @@ export function filled(polygons: readonly (readonly Vector3[])[], look: Look): M
   });
   const mesh = new Mesh(geometry, material);
   mesh.renderOrder = 2;
+  mesh.name = FILLED;
   return mesh;
 }
 

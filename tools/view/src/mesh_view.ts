@@ -2,7 +2,7 @@
 // A mesh on the stage: its surface, its edges, the findings of each rule as a layer, and what is selected.
 import { Box3, BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, Raycaster, Sphere, Vector3 } from 'three';
 import type { Element3, Issue } from './data';
-import { clearGroup, type Marks, marked } from './highlight';
+import { clearGroup, FILLED, type Marks, marked } from './highlight';
 import type { MeshModel } from './mesh_model';
 import type { Stage } from './stage';
 import { SurfaceMaterial } from './surface_material';
@@ -100,13 +100,17 @@ export class MeshView {
       else if (marks.polygons.length > 0) (all.polygons as (readonly Vector3[])[]).push(...marks.polygons);
       else (all.points as Vector3[]).push(...marks.points);
     }
-    return marked(all, { color: themeColor(issue.severity), width: issue.severity === 'error' ? 3 : 2, opacity: 0.9 });
+    const color = themeColor(issue.severity);
+    const layer = marked({ lines: all.lines, points: all.points }, { color, width: issue.severity === 'error' ? 3 : 2, opacity: 0.9 });
+    return layer.add(marked({ polygons: all.polygons }, { color, opacity: 0.5 }));
   }
 
   select(element: Element3 | undefined, fly = true): void {
     clearGroup(this.selection);
     this.material.setFocus(undefined);
     this.stage.invalidate();
+    // faces of a whole rule would hide the one that is looked at
+    for (const layer of this.layers.values()) layer.traverse((part) => (part.visible = part.name === FILLED ? element === undefined : part === layer ? layer.visible : true));
     if (element === undefined) return;
     const marks = this.marksOf(element);
     const isOfEdges = marks.lines.length > 0; // then the faces beside them are background
