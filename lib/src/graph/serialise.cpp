@@ -326,7 +326,7 @@ class Writer {
     }
   }
 
-  // Whether a node at a corner, or one across its sides, is inexact.
+  // Whether a node at a corner, or one across a concave side of such a node, is inexact: these may be entered beside the way.
   [[nodiscard]] bool is_near_inexact(const fdcg_busy_corner& busy) const {
     const auto is_inexact = [&](std::uint32_t n) { return (node(n).flags & FDCG_NODE_INEXACT) != 0; };
     for (const std::uint32_t entry : fans_.subspan(busy.first_fan, busy.fan_count)) {
@@ -336,7 +336,8 @@ class Writer {
       const std::uint32_t n = (entry & 1u) == 0 ? connection.node : graph_.node(graph_.twin[first]);
       if (is_inexact(n)) return true;
       for (std::uint32_t side = graph_.first_side[n]; side < graph_.first_side[n + 1]; ++side) {
-        if (graph_.twin[side] != kNone && is_inexact(graph_.node(graph_.twin[side]))) return true;
+        const bool is_concave = connections_[graph_.connection[side] >> 1].type == FDCG_CONCAVE;
+        if (is_concave && is_inexact(graph_.node(graph_.twin[side]))) return true;
       }
     }
     return false;

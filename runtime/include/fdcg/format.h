@@ -256,7 +256,7 @@ typedef struct fdcg_fan_run {
   uint32_t busy;       /**< the corner's record in section BUSY_CORNERS */
   uint32_t flags;      /**< FDCG_RUN_INEXACT */
 } fdcg_fan_run;
-/** fdcg_fan_run.flags. Set where a node at the corner, or one across a side of such a node, is inexact. */
+/** fdcg_fan_run.flags. Set where a node at the corner, or one across a concave side of such a node, is inexact. */
 #define FDCG_RUN_INEXACT 1u
 
 /** Eight boxes of the hierarchy, on a grid of their own: box j reaches from origin + cell * low[.][j] to origin + cell *
