@@ -244,6 +244,7 @@ Prepared repaired_mesh(const PolygonSoup& soup, const CompileOptions& options, c
   steps.jobs = how.jobs;
   steps.progress = options.progress;
   Result<Repaired> repaired = repair(as_stored(soup, options.precision), steps);
+  if (repaired->soup.face_count() == 0) return {};  // the report before says why
   Prepared ready = prepare(repaired->soup, {Weld::Kind::none, 0}, options.precision, false, how.jobs);
   compiled.flipped_faces = 0;  // the account has those that were turned
   compiled.report = check(repaired->soup, ready.mesh, ready.topology, ready.states, how);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Formats that hold scenes, as other programs wrote them: points, faces and units as an independent reader has them."""
+import json
 import os
 import pathlib
 import subprocess
@@ -9,7 +10,7 @@ import unittest
 import numpy
 import scene_reference
 from real_files import ASSIMP_MODELS
-from support import FDCG, ROOT, Case
+from support import CUBE, FDCG, ROOT, TETRAHEDRON, Case
 
 # what fdcg refuses, and the word that says why
 REFUSED = {"malformed_property_index_oob.3mf": "1000000", "cameras.dae": "no face", "lights.dae": "no face"}
@@ -62,6 +63,54 @@ class RealFiles(Case):
             self.assertTrue((ours == theirs).all(), "a point differs, and none was moved")
         off_by = numpy.abs(ours - theirs).max()
         self.assertLessEqual(off_by, 8 * numpy.spacing(numpy.abs(theirs).max()))
+
+
+class Commands(Case):
+    GOOD = ROOT / "testdata" / "meshes" / "good"
+
+    def metres_per_unit(self, mesh, *options):
+        self.fdcg("compile", self.GOOD / mesh, "-o", self.path("a.fdcg"), "-q", *options)
+        return json.loads(self.fdcg("inspect", self.path("a.fdcg"), "--json").stdout)["metres_per_unit"]
+
+    def test_a_stated_unit_is_taken_unless_one_is_given(self):
+        self.assertEqual(0.001, self.metres_per_unit("cube_quads.dae"))
+        self.assertEqual(0.001, self.metres_per_unit("cube_package.3mf"))
+        self.assertEqual(1, self.metres_per_unit("cube_faces.x3d"))
+        self.assertEqual(1, self.metres_per_unit("cube_quads.off"))
+        self.assertEqual(0.0254, self.metres_per_unit("cube_quads.dae", "--units", "in"))
+        self.assertEqual(1, self.metres_per_unit("cube_quads.dae", "--units", "m"))
+        done = self.fdcg("compile", self.GOOD / "cube_quads.dae", "-o", self.path("a.fdcg"))
+        self.assertIn(b"1 unit = 0.001 m (the file's own)", done.stdout)
+
+    def test_a_robot_stands_for_its_meshes(self):
+        self.write("cube.off", CUBE)
+        self.write("open.off", TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 3 2\n", ""))
+        robot = self.write("robot.urdf", "<robot name='r'><link name='a'>" + "".join(
+            f"<visual><geometry><mesh filename='{name}'/></geometry></visual>"
+            for name in ("cube.off", "cube.off' scale='-2 2 2", "open.off", "gone.stl")) + "</link></robot>")
+        done = self.fdcg("validate", robot, "--format", "json", code=3)
+        reports = json.loads(done.stdout)["files"]
+        self.assertEqual(4, len(reports))
+        self.assertEqual(["cube.off", "cube.off", "open.off", "gone.stl"], [pathlib.Path(r["file"]).name for r in reports])
+        self.assertEqual([[], [], ["boundary-edge"], ["unreadable"]], [[i["rule"] for i in r["issues"]] for r in reports])
+        self.assertIn(b"robot.urdf: names 4 meshes, 1 of them with a scale", done.stderr)
+        self.assertIn(b"link 'a'", done.stderr)
+        done = self.fdcg("compile", robot, "-o", self.path("a.fdcg"), code=3)
+        self.assert_one_line(done, "robot.urdf", "fdcg validate")
+
+    def test_a_search_names_what_it_skipped(self):
+        self.write("cube.off", CUBE)
+        for name in ("b.fbx", "a.STEP"):
+            self.write(name, "x")
+        done = self.fdcg("validate", self.folder)
+        self.assert_one_line(done, "skipped 2 mesh files", "a.STEP", "b.fbx")
+        self.assertEqual(b"", self.fdcg("validate", self.folder, "-q").stderr)
+
+    def test_formats_that_are_not_read_are_refused_with_how_to_convert_them(self):
+        for start, words in (("Kaydara FBX Binary  \0", ("FBX", "glTF")), ("ISO-10303-21;", ("STEP", "mesh it")),
+                             ("PXR-USDC", ("USD", "glTF")), ("#usda 1.0", ("USD", "glTF")), ("BLENDER-v300", ("Blender", "export"))):
+            done = self.fdcg("compile", self.write("mesh.bin", start), "-o", self.path("a.fdcg"), code=3)
+            self.assert_one_line(done, *words)
 
 
 if __name__ == "__main__":

@@ -111,6 +111,19 @@ class Findings(BrowserCase):
         self.wait_for(lambda s: s["camera"] != before)
 
 
+class Sight(BrowserCase):
+    def test_a_face_that_is_turned_round_is_looked_at_from_outside(self):
+        lines = sphere(12).splitlines()
+        lines[-40] = " ".join(["3", *reversed(lines[-40].split()[1:])])
+        self.open(self.view(self.write("ball.off", "\n".join(lines) + "\n")))
+        for _ in range(3):
+            before = self.state()["camera"]
+            self.press("n")
+            state = self.wait_for(lambda s, before=before: s["camera"] != before and not s["flying"])
+            self.assertEqual("winding-inconsistent", state["rule"])
+            self.assertGreater(math.hypot(*state["camera"]), 0.51)  # the ball's radius is 0.5
+
+
 class Graph(BrowserCase):
     def setUp(self):
         super().setUp()
@@ -177,7 +190,7 @@ class Touch(BrowserCase):
         native, page = (pathlib.Path(self.saved(name)).read_text() for name in ("log.csv", "page-log.csv"))
         self.assertTrue(native == page, first_difference(native, page))
         self.assert_quiet()
-        print(f"step {state['timing']['stepNs']:.0f} ns, p99 of the period {state['timing']['periodP99Ms']:.2f} ms, {state['recorded']} ticks")
+        print(f"step {state['recordedStepNs']:.0f} ns, p99 of the period {state['timing']['periodP99Ms']:.2f} ms, {state['recorded']} ticks")
 
     def test_keys_press_and_move_and_sliders_change_what_is_felt(self):
         self.open(self.view(self.write("ball.off", sphere(12))))

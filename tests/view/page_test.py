@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What fdcg view writes: all of the mesh, of the findings and of the graph, in one file that asks for nothing else."""
 import json
+import os
 import re
 import struct
 import unittest
 
-from pages import CUBE, NON_MANIFOLD, TETRAHEDRON, Page, PageCase
+from pages import CUBE, FDCG, NON_MANIFOLD, ROOT, TETRAHEDRON, Page, PageCase
 
 EVIL = "<img src=x onerror=alert(1)></script><script>document.title='gone'</script>"
 
@@ -101,6 +102,24 @@ class Wrong(PageCase):
         mesh = self.write("cube.off", CUBE)
         self.fdcg("view", mesh, "-o", mesh, code=2)
         self.assertEqual(CUBE, open(mesh).read())
+
+
+class Gallery(PageCase):
+    """tools/pages with the programs of this build."""
+
+    @unittest.skipUnless(os.path.exists("/usr/share/doc/libcgal-dev/data.tar.gz"), "libcgal-demo is not installed")
+    def test_every_card_leads_to_a_page(self):
+        site = self.folder / "site"
+        self.run_program(str(ROOT / "tools" / "pages"), "--programs", os.path.dirname(FDCG), "--output", str(site))
+        index = (site / "index.html").read_text()
+        names = re.findall(r'<a href="([^"]+)">', index)
+        self.assertEqual(sorted([*names, "index.html"]), sorted(entry.name for entry in site.iterdir()))
+        self.assertEqual(len(names), index.count("<p>") - 1)
+        items = {name: Page(site / name).items[0] for name in names}
+        self.assertEqual("fail", items["broken.html"]["report"]["verdict"])
+        self.assertEqual("pass", items["broken.html"]["repaired"]["report"]["verdict"])
+        self.assertIn("log", items["slide.html"])
+        self.assertLess((site / "bunny.html").stat().st_size, 6_000_000)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,9 @@ bool has_ending(const std::string& name, const std::vector<std::string>& endings
 // folders; hidden names (a leading dot) match only where the pattern has the dot, and links to folders are not followed. Every
 // path comes once. An argument that names an existing file is no pattern.
 std::vector<NamedFile> expand_paths(const std::vector<std::string>& arguments, const std::vector<std::string>& endings);
+// The same, and adds those files of the folders to `others` that have one of `other_endings`.
+std::vector<NamedFile> expand_paths(const std::vector<std::string>& arguments, const std::vector<std::string>& endings,
+                                    const std::vector<std::string>& other_endings, std::vector<std::string>* others);
 
 // Whether the whole of `name`, one component of a path, matches a pattern without {} and **, whatever the case of its letters.
 bool matches_pattern(std::string_view name, std::string_view pattern);

@@ -231,6 +231,10 @@ int compile_mesh(CompileArguments& arguments) {
     if (is_same_file(file, arguments.output))
       return fail(kUsage, "'" + arguments.output + "' would overwrite a part of the mesh");
   }
+  if (arguments.has_default_unit() && soup->metres_per_unit > 0) {
+    arguments.options.metres_per_unit = soup->metres_per_unit;
+    arguments.unit_text = "1 unit = " + short_number(soup->metres_per_unit) + " m (the file's own)";
+  }
   out.expect(bake::likely_file_bytes(*soup, arguments.options));
   std::vector<std::byte> buffer;
   arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };

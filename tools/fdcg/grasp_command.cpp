@@ -168,7 +168,7 @@ int run_grasp(const GraspArguments& arguments) {
     return fail(kUsage, "--units and --scale are for meshes; '" + arguments.object + "' is an FDCG file, which is in metres");
   const auto contacts = read_contacts(arguments.contacts);
   if (!contacts) return fail(contacts.error().exit_code, contacts.error().message);
-  const auto object = GraspObject::load(arguments.object, arguments.compile);
+  const auto object = GraspObject::load(arguments.object, arguments.compile, !arguments.unit_text.empty());
   if (!object) {
     if (object.error().exit_code != kFindings) return fail(object.error().exit_code, object.error().message);
     std::fputs(object.error().message.c_str(), stderr);

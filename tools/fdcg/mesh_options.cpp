@@ -31,13 +31,13 @@ bake::Weld parse_weld_value(const std::string& text) {
 
 void add_mesh_argument(CLI::App& command, std::string& mesh) {
   required_argument(command, "mesh", "MESH", mesh,
-                    "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA or 3MF. - is standard input.");
+                    "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA, 3MF, VTK or X3D. - is standard input.");
 }
 
 void add_unit_options(CLI::App& command, double& metres_per_unit, std::string& unit_text) {
   const OptionGroup input(command, "Input");
   CLI::Option* const units = input.choice<double>("--units", "UNIT", {{"m", 1}, {"mm", 0.001}, {"cm", 0.01}, {"in", 0.0254}},
-                                                  metres_per_unit, "Unit of the mesh's coordinates.");
+                                                  metres_per_unit, "Unit of the mesh's coordinates.", "the file's own, else m");
   units->each([&unit_text](const std::string& text) { unit_text = text; });
   const auto parse_scale = [&metres_per_unit, &unit_text](const std::string& text) {
     metres_per_unit = positive_number("--scale", text, "no number above 0 (metres for one unit of the file)");
@@ -63,7 +63,10 @@ void add_input_format_option(CLI::App& command, std::optional<bake::Format>& for
                              {"glb", gltf},
                              {"drc", drc},
                              {"dae", dae},
-                             {"3mf", threemf}},
+                             {"3mf", threemf},
+                             {"vtk", vtk},
+                             {"vtp", vtk},
+                             {"x3d", x3d}},
                             format, "Input format; required for standard input whose content does not tell.",
                             "detected by content, then by extension");
 }

@@ -8,12 +8,12 @@
 #include <set>
 
 #include "../common/atomic_file.hpp"
-#include "../common/expand_paths.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "baseline.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
+#include "mesh_list.hpp"
 #include "mesh_options.hpp"
 #include "validate_config.hpp"
 #include "validate_run.hpp"
@@ -75,7 +75,7 @@ bool wants_page(const ValidateArguments& arguments) {
   return std::any_of(outputs.begin(), outputs.end(), [](const Output& output) { return !output.format; });
 }
 
-int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>& meshes) {
+int check_paths(const ValidateArguments& arguments, const std::vector<ListedMesh>& meshes) {
   std::vector<std::string> paths;
   for (const Output& output : outputs_of(arguments))
     paths.push_back(output.path);
@@ -87,7 +87,7 @@ int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>
         return fail(kUsage, "two reports would both be written to '" + paths[i] + "'; name another file for one of them");
     }
     if (paths[i] == "-") continue;
-    for (const NamedFile& mesh : meshes) {
+    for (const ListedMesh& mesh : meshes) {
       if (is_same_file(mesh.path, paths[i])) return fail(kUsage, "'" + paths[i] + "' would overwrite the mesh itself");
     }
   }
@@ -95,11 +95,11 @@ int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>
 }
 
 // Settings of each mesh: its configuration file's, and over them the command line's.
-bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& arguments, const std::vector<NamedFile>& meshes,
+bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& arguments, const std::vector<ListedMesh>& meshes,
                                                  std::vector<std::string>& baselines) {
   ConfigFinder finder;
   std::vector<ValidateTask> tasks;
-  for (const NamedFile& mesh : meshes) {
+  for (const ListedMesh& mesh : meshes) {
     bake::Result<ValidateConfig> config = ValidateConfig{};
     if (!arguments.config.empty()) {
       config = read_config(arguments.config);
@@ -111,6 +111,7 @@ bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& argume
     ValidateTask task;
     task.mesh = mesh.path;
     task.problem = mesh.problem;
+    task.scale = mesh.scale;
     task.config = config->path;
     task.options.weld = settings.weld.value_or(bake::Weld{});
     task.options.precision = arguments.precision;
@@ -228,7 +229,11 @@ class Outputs {
 };
 
 int run_validate(const ValidateArguments& arguments) {
-  const std::vector<NamedFile> meshes = expand_paths(arguments.meshes, mesh_endings());
+  const MeshList list = list_meshes(arguments.meshes);
+  const std::vector<ListedMesh>& meshes = list.meshes;
+  for (const std::string& note : list.notes) {
+    if (!arguments.quiet) std::fputs(("fdcg: " + note + "\n").c_str(), stderr);
+  }
   if (const int code = check_paths(arguments, meshes); code != kClean) return code;
   if (const std::string reason = page::viewer_missing(); wants_page(arguments) && !reason.empty())
     return fail(kFile, "--format html: this fdcg has no viewer: " + reason + " (docs/view.md)");
@@ -344,7 +349,8 @@ Settings may stand in a file .fdcg-validate.json in the mesh's folder or one abo
 )" + exit_codes("no findings at or above --fail-on", "findings at or above --fail-on"));
   const auto arguments = std::make_shared<ValidateArguments>();
   required_argument(*command, "mesh", "MESH...", arguments->meshes,
-                    "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to search. - is standard input.");
+                    "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA, 3MF, VTK, X3D), robots (URDF, SDF) for the "
+                    "meshes that they name, patterns, or folders to search. - is standard input.");
   add_report_options(*command, *arguments);
   add_verdict_options(*command, *arguments);
   const OptionGroup checks(*command, "Mesh checks");

@@ -14,8 +14,9 @@ namespace fdcg::tools {
 
 struct ValidateTask {
   std::string mesh;
-  std::string problem;  // why there is no such file; then it is not read
-  std::string config;   // the file that some of `options` came from
+  std::string problem;        // why there is no such file; then it is not read
+  bake::Vec3 scale{1, 1, 1};  // at which it is checked
+  std::string config;         // the file that some of `options` came from
   bake::ValidateOptions options;
   bool has_baseline = false;
   const BaselineFile* known = nullptr;  // of the baseline; null: it does not have this mesh

@@ -94,6 +94,8 @@ enum class Format {
   drc,      ///< Draco
   dae,      ///< COLLADA 1.4 and 1.5
   threemf,  ///< 3MF
+  vtk,      ///< VTK polydata: legacy and XML (.vtp)
+  x3d,      ///< X3D, XML encoding
 };
 
 /// What a file has beside faces, or what its encoding adds: left out of the soup, and counted so that nothing goes in silence.

@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // By the values of Format, Weld::Kind and Coplanar::Kind.
-constexpr const char* kFormats[] = {"off", "obj", "ply", "stl", "gltf", "drc", "dae", "3mf"};
+constexpr const char* kFormats[] = {"off", "obj", "ply", "stl", "gltf", "drc", "dae", "3mf", "vtk", "x3d"};
 constexpr const char* kWelds[] = {"exact", "none", "distance"};
 constexpr const char* kCoplanars[] = {"exact", "quantum", "angle"};
 

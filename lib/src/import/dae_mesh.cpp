@@ -92,9 +92,9 @@ class MeshReader {
     const Node array = array_of(source, accessor);
     PrintedPoints result;
     std::vector<double> numbers;
-    const std::uint64_t there = file_.for_each_real(array, [&](double value, int decimals) {
+    const std::uint64_t there = file_.for_each_real(array, [&](double value, const Printed& number) {
       numbers.push_back(value);
-      result.note_decimals(decimals);
+      result.precision.note(value, number);
     });
     scene_.charge_numbers(there);
     const std::uint64_t promised = file_.count(array, "count", there);

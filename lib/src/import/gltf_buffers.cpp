@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "import/meshopt_decode.hpp"
+
 namespace fdcg::bake::gltf {
 namespace {
 
@@ -99,13 +101,23 @@ std::optional<std::string> decode_data_uri(std::string_view uri) {
 
 std::string_view Buffers::view(Index index) {
   const View& view = document_.views[index];
-  const std::string_view bytes = buffer(view.buffer);
-  if (view.offset > bytes.size() || view.bytes > bytes.size() - view.offset) {
-    throw Refusal{"bufferViews[" + std::to_string(index) + "]: needs " + std::to_string(view.bytes) + " bytes from byte " +
-                  std::to_string(view.offset) + " on, " + buffer_place(view.buffer) + " has " + std::to_string(bytes.size()) +
-                  "; fetch or export the file again"};
+  const std::string place = "bufferViews[" + std::to_string(index) + "]";
+  if (!view.meshopt) return slice(view.buffer, view.offset, view.bytes, place);
+  const auto known = unpacked_.find(index);
+  if (known != unpacked_.end()) return known->second;
+  const Meshopt& packed = *view.meshopt;
+  const std::string inner = place + ".extensions.EXT_meshopt_compression";
+  std::string bytes = decode_meshopt(packed, slice(packed.buffer, packed.offset, packed.bytes, inner), inner);
+  return unpacked_.emplace(index, std::move(bytes)).first->second;
+}
+
+std::string_view Buffers::slice(Index index, std::uint64_t offset, std::uint64_t size, const std::string& place) {
+  const std::string_view bytes = buffer(index);
+  if (offset > bytes.size() || size > bytes.size() - offset) {
+    throw Refusal{place + ": needs " + std::to_string(size) + " bytes from byte " + std::to_string(offset) + " on, " +
+                  buffer_place(index) + " has " + std::to_string(bytes.size()) + "; fetch or export the file again"};
   }
-  return bytes.substr(static_cast<std::size_t>(view.offset), static_cast<std::size_t>(view.bytes));
+  return bytes.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
 }
 
 std::string_view Buffers::buffer(Index index) {

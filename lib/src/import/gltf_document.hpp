@@ -36,10 +36,21 @@ struct Buffer {
   std::uint64_t bytes = 0;
 };
 
+// How EXT_meshopt_compression has packed a view.
+struct Meshopt {
+  enum class Mode : std::uint8_t { attributes, triangles, indices };
+  enum class Filter : std::uint8_t { none, octahedral, quaternion, exponential };
+  Index buffer = 0;
+  std::uint64_t offset = 0, bytes = 0, stride = 0, count = 0;
+  Mode mode = Mode::attributes;
+  Filter filter = Filter::none;
+};
+
 struct View {
   bool is_used = false;
   Index buffer = 0;
   std::uint64_t offset = 0, bytes = 0, stride = 0;  // stride 0: tightly packed
+  std::optional<Meshopt> meshopt;                   // then buffer and offset are not used
 };
 
 // A run of values in a view.

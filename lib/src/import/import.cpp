@@ -73,14 +73,18 @@ std::string xml_remedy(const std::string& root) {
   if (root == "robot" || root == "sdf")
     return "is a description of a robot or a world, which names meshes and is none; give it to 'fdcg validate', or name a mesh";
   if (root == "model") return "is a 3MF model out of its package; name the .3mf file";
-  return "is XML with the root <" + readable_name(root) +
+  return "is XML (or HTML) with the root <" + readable_name(root) +
          ">, no mesh format that is read; export it as COLLADA, 3MF, glTF, OBJ or PLY";
 }
 
 std::optional<Format> format_by_content(std::string_view bytes) {
   if (bytes.starts_with("DRACO")) return Format::drc;
   if (bytes.starts_with("PK\x03\x04") && !has_binary_stl_size(bytes)) return Format::threemf;
-  if (xml_root_name(bytes) == "COLLADA") return Format::dae;
+  if (bytes.starts_with("# vtk DataFile")) return Format::vtk;
+  const std::string root = xml_root_name(bytes);
+  if (root == "COLLADA") return Format::dae;
+  if (root == "VTKFile") return Format::vtk;
+  if (root == "X3D") return Format::x3d;
   if (is_glb(bytes) || is_gltf_json(bytes)) return Format::gltf;
   if (has_binary_stl_size(bytes)) return Format::stl;
   constexpr std::string_view kBlanks = " \t\r\n";
@@ -98,16 +102,18 @@ std::optional<Format> format_by_content(std::string_view bytes) {
 std::optional<Format> format_by_ending(const std::string& name) {
   const std::string ending = lower_case(std::filesystem::path(name).extension().string());
   constexpr std::pair<std::string_view, Format> kEndings[] = {
-      {".off", Format::off},  {".obj", Format::obj}, {".ply", Format::ply}, {".stl", Format::stl},    {".gltf", Format::gltf},
-      {".glb", Format::gltf}, {".drc", Format::drc}, {".dae", Format::dae}, {".3mf", Format::threemf}};
+      {".off", Format::off},     {".obj", Format::obj},     {".ply", Format::ply}, {".stl", Format::stl},
+      {".gltf", Format::gltf},   {".glb", Format::gltf},    {".drc", Format::drc}, {".dae", Format::dae},
+      {".zae", Format::threemf}, {".3mf", Format::threemf}, {".vtk", Format::vtk}, {".vtp", Format::vtk},
+      {".x3d", Format::x3d}};
   for (const auto& [known, format] : kEndings)
     if (ending == known) return format;
   return std::nullopt;
 }
 
 Result<PolygonSoup> read_as(Format format, const MeshText& input) {
-  constexpr Result<PolygonSoup> (*kReaders[])(const MeshText&) = {read_off,  read_obj, read_ply, read_stl,
-                                                                  read_gltf, read_drc, read_dae, read_3mf};
+  constexpr Result<PolygonSoup> (*kReaders[])(const MeshText&) = {read_off, read_obj, read_ply, read_stl, read_gltf,
+                                                                  read_drc, read_dae, read_3mf, read_vtk, read_x3d};
   return kReaders[static_cast<int>(format)](input);
 }
 
@@ -130,18 +136,21 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);
-  const bool is_xml = format == Format::dae;
+  const bool is_xml = format == Format::dae || format == Format::vtk || format == Format::x3d;
   if (!is_xml && (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")))
     return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
   if (!is_xml && !has_binary_stl_size(bytes)) {
-    if (const std::string root = xml_root_name(bytes); !root.empty()) return refuse(name, xml_remedy(root));
+    if (const std::string root = xml_root_name(bytes); !root.empty() || bytes.starts_with('<'))
+      return refuse(name, xml_remedy(root));
+    if (format != Format::threemf && bytes.starts_with("PK\x03\x04"))
+      return refuse(name, "is a ZIP archive (3MF files are, too); unpack the mesh first, or leave out its format");
   }
   if (!format) format = format_by_ending(name);
   if (!format) {
     return refuse(
         name,
-        "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA and 3MF are read: export it as one "
-        "of them");
+        "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA, 3MF, VTK and X3D are read: export it "
+        "as one of them");
   }
 
   Sha256Task hash(bytes);

@@ -88,6 +88,16 @@ class BuildReader {
   std::map<const void*, Mesh> meshes_;  // by <object>
 };
 
+// Of an archive that holds a COLLADA scene in place of a 3MF package (.zae). Throws Refusal.
+std::optional<std::string> packed_scene(const MeshText& input) {
+  ZipFile zip(input.bytes);
+  if (!zip.find_ending(".model").empty()) return std::nullopt;
+  if (!zip.find_ending(".usdc").empty() || !zip.find_ending(".usda").empty())
+    throw xml::Refusal{"is USDZ, which is not read; in Blender import it and export glTF, or OBJ or PLY"};
+  const std::string scene = zip.find_ending(".dae");
+  return scene.empty() ? std::nullopt : zip.read(scene);
+}
+
 }  // namespace
 }  // namespace threemf
 
@@ -97,6 +107,8 @@ Result<PolygonSoup> read_3mf(const MeshText& input) {
   soup.format = Format::threemf;
   soup.face_first.push_back(0);
   try {
+    if (const std::optional<std::string> scene = threemf::packed_scene(input))
+      return read_dae({*scene, input.name, input.progress, input.file});
     threemf::Package package(input.bytes);
     soup.metres_per_unit = package.metres_per_unit();
     threemf::BuildReader(package, input, soup).read();

@@ -127,7 +127,7 @@ class SceneReader {
   std::array<double, kCount> numbers_of(const Node& node) const {
     std::array<double, kCount> values{};
     std::size_t at = 0;
-    const std::uint64_t there = file_.for_each_real(node, [&](double value, int) {
+    const std::uint64_t there = file_.for_each_real(node, [&](double value, const Printed&) {
       if (at < kCount) values[at++] = value;
     });
     if (there != kCount) file_.fail(node, "has " + std::to_string(there) + " numbers, not " + std::to_string(kCount));

@@ -2,27 +2,12 @@
 #include "import/scene_soup.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "shared/json/reader.hpp"
 
 namespace fdcg::bake {
-namespace {
-
-// Half a unit of the last digit printed, as for the other text formats (TextSoupReader::absolute_quantum).
-double printed_half_step(int finest_decimals, double extent) {
-  if (finest_decimals == TextScanner::kNoDecimals || finest_decimals <= 0) return 0;
-  constexpr double kLargestShare = 1e-5;
-  const std::string half_unit = "5e-" + std::to_string(std::int64_t{finest_decimals} + 1);
-  double value = 0;
-  std::from_chars(half_unit.data(), half_unit.data() + half_unit.size(), value);
-  return std::min(value, kLargestShare * extent);
-}
-
-}  // namespace
-
 std::uint32_t SceneSoup::add_points(const PrintedPoints& source, const Matrix* world) {
   charge(points_, source.points.size());
   const auto first = static_cast<std::uint32_t>(soup_.points.size());
@@ -37,7 +22,9 @@ std::uint32_t SceneSoup::add_points(const PrintedPoints& source, const Matrix* w
     }
   }
   const double extent = *std::max_element(largest.begin(), largest.end());
-  rounding_.note({0x1p-53, printed_half_step(source.finest_decimals, extent)}, largest, world);
+  const bool are_floats = source.precision.are_floats();
+  if (are_floats && world == nullptr) has_floats_ = true;
+  rounding_.note({are_floats ? 0x1p-24 : 0x1p-53, source.precision.half_step(extent)}, largest, world);
   return first;
 }
 
@@ -75,6 +62,7 @@ void SceneSoup::ignore(const std::string& what, std::uint64_t count) {
 void SceneSoup::finish() {
   end_part();
   rounding_.finish(soup_);
+  if (has_floats_ && soup_.relative_quantum == 0) soup_.relative_quantum = 0x1p-24;
   materials_.finish(soup_);
   for (const auto& [what, count] : ignored_)
     soup_.ignored.push_back({what, count});
@@ -82,7 +70,7 @@ void SceneSoup::finish() {
 
 void SceneSoup::charge(Budget& budget, std::uint64_t more) const {
   constexpr std::uint64_t kFree = 1024, kEachByte = 16;
-  const std::uint64_t limit = (kFree + kEachByte * bytes_) / budget.cost;
+  const std::uint64_t limit = kFree + kEachByte * bytes_ / budget.cost;
   if (more > limit - std::min(budget.used, limit)) {
     throw json::Refusal{"shows more than " + std::to_string(limit) + " " + budget.what +
                         ", the limit for a file of this size; export instances as meshes of their own"};

@@ -15,19 +15,17 @@
 
 namespace fdcg::bake {
 
-// Points as a text prints them, with how finely.
+// Points as a text prints them, with how precisely.
 struct PrintedPoints {
   std::vector<Vec3> points;
-  int finest_decimals = TextScanner::kNoDecimals;
-
-  void note_decimals(int decimals) { finest_decimals = decimals > finest_decimals ? decimals : finest_decimals; }
+  PrintedPrecision precision;
 };
 
 // Throws json::Refusal where a limit is passed.
 class SceneSoup {
  public:
-  // A scene may hold 1024 points, and face corners, and 16 for each of `bytes`, all that it is read from; and a 64th of that
-  // many nodes.
+  // A scene may hold 1024 points, and face corners, and 16 for each of `bytes`, all that it is read from; and 1024 nodes and
+  // one for each four bytes.
   SceneSoup(PolygonSoup& soup, std::size_t bytes) : soup_(soup), bytes_(bytes) {}
   void grow_bytes(std::size_t more) { bytes_ += more; }
 
@@ -67,6 +65,7 @@ class SceneSoup {
   Budget nodes_{"nodes", 64, kMaxCorners}, numbers_{"numbers", 1, std::uint64_t{1} << 40};
   std::map<std::string, std::uint64_t> ignored_;
   Rounding rounding_;
+  bool has_floats_ = false;  // points that are not transformed
   MaterialList materials_;
 };
 

@@ -120,38 +120,15 @@ std::string TextSoupReader::not_a_number() const {
 // A decimal of a float's own, rounded to the digits printed, is the float to within half a unit of its last digit. Of random
 // decimals of eight digits one in two passes, of nine one in twelve, so that no mesh of doubles does. Seven digits always pass:
 // printed with so few, a number is known no better than a float.
-void TextSoupReader::look_for_float(double value) {
-  constexpr int kMostDigits = 9;  // that printing a float takes
-  has_long_numbers_ = true;
-  const double nearest = static_cast<double>(static_cast<float>(value));
-  if (nearest == value) return;  // also one printed in full
-  constexpr std::array kHalfUnits = {5e-1, 5e-2, 5e-3, 5e-4, 5e-5, 5e-6, 5e-7, 5e-8, 5e-9, 5e-10, 5e-11, 5e-12};
-  const int decimals = scan_.last_decimals();
-  const bool is_usual = decimals >= 0 && static_cast<std::size_t>(decimals) < kHalfUnits.size();
-  const double half_unit = is_usual ? kHalfUnits[static_cast<std::size_t>(decimals)] : 0.5 * std::pow(10.0, -decimals);
-  constexpr double kRounding = 1 + 1e-6;
-  prints_floats_ = scan_.last_digits() <= kMostDigits && std::fabs(value - nearest) <= half_unit * kRounding;
-}
-
 void TextSoupReader::set_quanta(bool are_floats) {
-  soup_.absolute_quantum = absolute_quantum();
-  if (are_floats || (prints_floats_ && has_long_numbers_)) soup_.relative_quantum = 0x1p-24;
-}
-
-double TextSoupReader::absolute_quantum() const {
-  if (finest_decimals_ == TextScanner::kNoDecimals || finest_decimals_ <= 0) return 0;
-  const std::string half_unit = "5e-" + std::to_string(std::int64_t{finest_decimals_} + 1);
-  double value = 0;
-  std::from_chars(half_unit.data(), half_unit.data() + half_unit.size(), value);  // left 0 where it is below every double
-  // So few digits are typed values, not rounded ones: 0.3 beside 1 means 0.3. No exporter rounds this coarsely.
-  constexpr double kLargestShare = 1e-5;
   double extent = 0;
   for (const Vec3& p : soup_.points) {
     for (const double c : {p.x, p.y, p.z}) {
       if (std::isfinite(c)) extent = std::max(extent, std::fabs(c));
     }
   }
-  return std::min(value, kLargestShare * extent);
+  soup_.absolute_quantum = precision_.half_step(extent);
+  if (are_floats || precision_.are_floats()) soup_.relative_quantum = 0x1p-24;
 }
 
 }  // namespace fdcg::bake

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fdcg/bake.hpp"
+#include "import/printed_precision.hpp"
 #include "import/text_scanner.hpp"
 
 namespace fdcg::bake {
@@ -33,6 +34,9 @@ Result<PolygonSoup> read_gltf(const MeshText& input);
 Result<PolygonSoup> read_drc(const MeshText& input);
 Result<PolygonSoup> read_dae(const MeshText& input);
 Result<PolygonSoup> read_3mf(const MeshText& input);
+Result<PolygonSoup> read_vtk(const MeshText& input);  // also XML
+Result<PolygonSoup> read_vtp(const MeshText& input);
+Result<PolygonSoup> read_x3d(const MeshText& input);
 
 // Detection of formats by content.
 bool is_off_keyword(std::string_view word);  // OFF, COFF, STCNOFF, 4OFF, ...
@@ -152,18 +156,13 @@ class TextSoupReader : public SoupReader {
   // Reads a coordinate at the cursor, and records its number of decimals.
   bool read_coordinate(double& value) {
     if (!scan_.read_real(value)) return false;
-    finest_decimals_ = std::max(finest_decimals_, scan_.last_decimals());
-    if (prints_floats_ && scan_.last_digits() > kFewDigits) look_for_float(value);
+    precision_.note(value, printed(scan_));
     return true;
   }
 
-  // Sets both quanta of the soup, when all points are there. Numbers of seven digits and more that all are floats, printed with
-  // up to nine digits or in full, were floats: their quantum is that of a float, as it is where `are_floats` says so.
+  // Sets both quanta of the soup, when all points are there: as the numbers were printed, or those of floats where
+  // `are_floats`.
   void set_quanta(bool are_floats = false);
-
-  // Half a unit of the last digit of the most precisely printed coordinate. Integers are taken as exact (0): they come from
-  // grids, voxels and manual modelling and not from rounding, and half a unit would flatten a unit cube.
-  [[nodiscard]] double absolute_quantum() const;
 
   // "'x' is not a number", of the token at the cursor, with the remedy where there is one.
   [[nodiscard]] std::string not_a_number() const;
@@ -171,12 +170,7 @@ class TextSoupReader : public SoupReader {
   TextScanner scan_;
 
  private:
-  void look_for_float(double value);
-
-  static constexpr int kFewDigits = 6;  // every decimal of so few digits is some float's shortest one, and tells nothing
-  int finest_decimals_ = TextScanner::kNoDecimals;
-  bool prints_floats_ = true;  // no number was seen that is not a float's
-  bool has_long_numbers_ = false;
+  PrintedPrecision precision_;
 };
 
 }  // namespace fdcg::bake

@@ -54,6 +54,9 @@ class TextScanner {
     line_ += found != nullptr;
   }
 
+  // Over binary data in a text: the lines in it are not counted. At most to the end.
+  void skip(std::size_t bytes) { p_ += bytes < remaining() ? bytes : remaining(); }
+
   // Each of the following starts at the cursor, which must stand on a token. On false the cursor has not moved.
 
   // A real number, up to the token's end. last_decimals() then is the number of its decimals.

@@ -185,9 +185,9 @@ class MeshReader {
     constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
     std::array<double, 3> xyz{};
     for (std::size_t k = 0; k < 3; ++k) {
-      int decimals = TextScanner::kNoDecimals;
-      xyz[k] = part_.file.real(vertex, kAxes[k], decimals);
-      mesh_.points.note_decimals(decimals);
+      Printed number;
+      xyz[k] = part_.file.real(vertex, kAxes[k], number);
+      mesh_.points.precision.note(xyz[k], number);
     }
     if (mesh_.points.points.size() >= kMaxPoints) part_.file.fail(vertex, "is one too many; cut the mesh into parts");
     mesh_.points.points.push_back({xyz[0], xyz[1], xyz[2]});

@@ -98,18 +98,18 @@ std::uint64_t File::count(const Node& node, std::string_view name, std::uint64_t
   return value;
 }
 
-double File::real(const Node& node, std::string_view name, int& decimals) const {
+double File::real(const Node& node, std::string_view name, Printed& number) const {
   const std::string_view text = attribute(node, name);
   if (!has(node, name)) fail(node, "has no attribute '" + std::string(name) + "'");
   TextScanner scan(text, {});
   double value = 0;
   if (!scan.find_token() || !scan.read_real(value) || scan.find_token())
     fail(node, "has " + std::string(name) + "=" + shown(text) + ", which is not a number");
-  decimals = scan.last_decimals();
+  number = printed(scan);
   return value;
 }
 
-bool File::read_comma_real(TextScanner& scan, double& value, int& decimals) {
+bool File::read_comma_real(TextScanner& scan, double& value, Printed& number) {
   TextScanner ahead = scan;
   std::string word(ahead.read_word());
   const std::size_t comma = word.find(',');
@@ -117,9 +117,9 @@ bool File::read_comma_real(TextScanner& scan, double& value, int& decimals) {
       word.find_first_of(",.", comma + 1) != std::string::npos)
     return false;
   word[comma] = '.';
-  TextScanner number(word, {});
-  if (!number.read_real(value)) return false;
-  decimals = number.last_decimals();
+  TextScanner digits(word, {});
+  if (!digits.read_real(value)) return false;
+  number = printed(digits);
   scan = ahead;
   return true;
 }

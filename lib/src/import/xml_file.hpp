@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "import/printed_precision.hpp"
 #include "import/text_scanner.hpp"
 #include "shared/json/reader.hpp"
 
@@ -62,7 +63,7 @@ class File {
     }
     return count;
   }
-  // Likewise real numbers, with the decimals that each was printed with. "1,5" is 1.5, as some exporters have it in some
+  // Likewise real numbers, with how each was printed. "1,5" is 1.5, as some exporters have it in some
   // languages: a list without blanks would not have as many numbers as its file says.
   template <class Use>
   std::uint64_t for_each_real(const Node& node, const Use& use) const {
@@ -71,23 +72,23 @@ class File {
     std::uint64_t count = 0;
     for (; scan.find_token(); ++count) {
       double value = 0;
-      int decimals = TextScanner::kNoDecimals;
-      if (!read_real(scan, value, decimals)) fail_token(node, count, scan, "number");
-      use(value, decimals);
+      Printed number;
+      if (!read_real(scan, value, number)) fail_token(node, count, scan, "number");
+      use(value, number);
     }
     return count;
   }
 
   // All of an attribute's text as one real number.
-  [[nodiscard]] double real(const Node& node, std::string_view name, int& decimals) const;
+  [[nodiscard]] double real(const Node& node, std::string_view name, Printed& number) const;
 
  private:
-  static bool read_real(TextScanner& scan, double& value, int& decimals) {
-    if (!scan.read_real(value)) return read_comma_real(scan, value, decimals);
-    decimals = scan.last_decimals();
+  static bool read_real(TextScanner& scan, double& value, Printed& number) {
+    if (!scan.read_real(value)) return read_comma_real(scan, value, number);
+    number = printed(scan);
     return true;
   }
-  static bool read_comma_real(TextScanner& scan, double& value, int& decimals);
+  static bool read_comma_real(TextScanner& scan, double& value, Printed& number);
   static std::string_view text_of(const Node& node, std::string& joined);
   [[noreturn]] void fail_token(const Node& node, std::uint64_t count, const TextScanner& scan, const char* kind) const;
 

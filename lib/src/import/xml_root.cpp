@@ -37,7 +37,9 @@ std::string xml_root_name(std::string_view bytes) {
                             : rest.starts_with("<!") ? ">"
                                                      : nullptr;
     if (end == nullptr) break;
-    at = text.find(end, at);
+    const std::size_t subset = rest.starts_with("<!DOCTYPE") ? text.find_first_of("[>", at) : std::string::npos;
+    if (subset != std::string::npos && text[subset] == '[') at = text.find(']', subset);  // declarations of its own
+    if (at != std::string::npos) at = text.find(end, at);
     if (at == std::string::npos) return {};
     at = text.find('>', at) + 1;
   }

@@ -20,7 +20,7 @@ struct ZipFile::Archive {
 
 namespace {
 
-constexpr std::uint64_t kFreeBytes = std::uint64_t{1} << 20, kEachByte = 100;
+constexpr std::uint64_t kFreeBytes = std::uint64_t{1} << 18, kEachByte = 100;
 
 std::string lower(std::string_view text) {
   std::string result(text);

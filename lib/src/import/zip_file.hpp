@@ -19,7 +19,7 @@ class ZipFile {
   ZipFile& operator=(const ZipFile&) = delete;
 
   // The unpacked bytes of a part, whatever the case of its letters; nothing where there is none. All parts together unpack to
-  // at most 1 MiB and 100 bytes for each of the archive, so that a small file cannot fill the memory.
+  // at most 256 KiB and 100 bytes for each of the archive, so that a small file cannot fill the memory.
   std::optional<std::string> read(std::string_view name);
   // The first part whose name ends so, in lower case; empty: none.
   [[nodiscard]] std::string find_ending(std::string_view ending) const;

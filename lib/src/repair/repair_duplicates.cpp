@@ -29,7 +29,7 @@ bool is_same_loop(const std::vector<VertexId>& a, const std::vector<VertexId>& b
 }
 
 // Which of the copies bound two solids that touch there, or are the back of a sheet: they run against their original, which has
-// no other copy, and along each of their edges as many faces run as against it.
+// no other copy, along each of their edges as many faces run as against it, and at one there are others.
 std::vector<bool> walls(const View& view, const std::vector<Duplicate>& duplicates) {
   std::vector<bool> is_wall(duplicates.size(), false);
   if (duplicates.empty()) return is_wall;
@@ -40,10 +40,13 @@ std::vector<bool> walls(const View& view, const std::vector<Duplicate>& duplicat
   for (std::size_t i = 0; i < duplicates.size(); ++i) {
     const std::vector<VertexId> copy = loop_of(view.mesh, duplicates[i].copy), first = loop_of(view.mesh, duplicates[i].first);
     is_wall[i] = copies[duplicates[i].first] == 1 && is_rotation(first, {copy.rbegin(), copy.rend()});
+    bool has_neighbour = false;
     for (std::size_t k = 0; k < copy.size() && is_wall[i]; ++k) {
       const EdgeTable::Count count = edges.count(copy[k], copy[(k + 1) % copy.size()]);
       is_wall[i] = count.along == count.against;
+      has_neighbour = has_neighbour || count.along > 1;
     }
+    is_wall[i] = is_wall[i] && has_neighbour;
   }
   return is_wall;
 }

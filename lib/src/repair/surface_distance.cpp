@@ -130,7 +130,7 @@ class OneSided {
     const Vec3 low{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
     const Vec3 high{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
     tree_.in_box(low, high, reach(), candidates_);
-    constexpr std::size_t kMostCandidates = 512;  // else a smaller part is cheaper
+    constexpr std::size_t kMostCandidates = 64;  // else a smaller part is cheaper
     if (candidates_.size() > kMostCandidates) return false;
     return SurfaceCover(reach(), largest_).covers(part, candidates_, used_);
   }

@@ -40,6 +40,11 @@ void* EXPORT(fdcg_web_allocate)(uint32_t bytes) {
   return aligned_alloc(64, ((size_t)bytes + 63) & ~(size_t)63);
 }
 
+/* Gives it back. */
+void EXPORT(fdcg_web_release)(void* room) {
+  free(room);
+}
+
 /* ---- graph -------------------------------------------------------------------------------------------------------------- */
 
 /* Verifies the file in full and makes it the graph; the contact starts anew. An fdcg_status. */

@@ -15,6 +15,8 @@ struct DeformableGeometry : GraphRecords<RealType> {
   using Corner = typename GraphRecords<Real>::Corner;
   using NodeKey = uint32_t;  // its index
 
+  static constexpr bool kKeepsDirections = false;
+
   Upkeep<Real> upkeep;
 
   explicit DeformableGeometry(const fdcg_graph& graph) : GraphRecords<Real>(graph), upkeep(deform_of(graph)) {}

@@ -57,6 +57,8 @@ struct RigidGeometry : GraphRecords<RealType> {
   using Real = RealType;
   using Corner = typename GraphRecords<Real>::Corner;
 
+  static constexpr bool kKeepsDirections = true;  // those in a busy corner's tree hold: its faces do not move
+
   // What a NodeRef holds of its node besides the address of its block.
   struct NodeKey {
     explicit NodeKey(uint32_t) {}

@@ -34,17 +34,11 @@ class FanSweep : public NodeEntry<Geometry> {
     const uint64_t beyond = first + (uint64_t{FDCG_LEAF_NODES} << 3 * (level + 1)), end = beyond < nodes ? beyond : nodes;
     if (end <= graph_.fan_runs[0].first_node) return false;
     if (level >= 0) {
-      // A record with a few fans in it and nothing else costs no less to test than its fans.
-      const uint32_t run = run_of(static_cast<uint32_t>(first));
-      uint32_t last = run;
-      while (last != FDCG_NONE && end > end_of(last))
-        last =
-            last + 1 - run < kFewFans && last + 1 < graph_.fan_run_count && graph_.fan_runs[last + 1].first_node == end_of(last)
-                ? last + 1
-                : FDCG_NONE;
+      uint32_t run = run_of(static_cast<uint32_t>(first));
+      const uint32_t last = last_run(run, end);
       if (last == FDCG_NONE || (level > 0 && last > run)) return false;
-      for (uint32_t i = run; i <= last; ++i)
-        look_at_fan(i);
+      for (; run <= last; ++run)
+        look_at_fan(run);
       return true;
     }
     spend(work_left_, kLeafWork);
@@ -94,6 +88,18 @@ class FanSweep : public NodeEntry<Geometry> {
 
   [[nodiscard]] uint64_t end_of(uint32_t run) const {
     return uint64_t{graph_.fan_runs[run].first_node} + graph_.fan_runs[run].node_count;
+  }
+
+  // The run that node end - 1 is in, where `run` and few others without gaps reach there; else FDCG_NONE. A record of the
+  // lowest level that holds a few fans and nothing else costs as much to test as its fans.
+  [[nodiscard]] uint32_t last_run(uint32_t run, uint64_t end) const {
+    if (run == FDCG_NONE) return FDCG_NONE;
+    for (uint32_t last = run; last < run + kFewFans; ++last) {
+      if (end <= end_of(last)) return last;
+      const uint32_t next = last + 1;
+      if (next >= graph_.fan_run_count || graph_.fan_runs[next].first_node != end_of(last)) return FDCG_NONE;
+    }
+    return FDCG_NONE;
   }
 
   void look_at_fan(uint32_t run) {

@@ -103,14 +103,14 @@ class NodeEntry {
     return !is_beside && *begin <= *end;
   }
 
-  // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie
-  // off its plane is a slab: a way that begins within it still begins in front. So is every node of a graph that has such ones:
-  // where one of them lets a way go, its neighbours' exact planes may lie in front of where that begins.
+  // Entered from its front: the way begins in front of the plane, ends behind it, and passes inside the loop. A node whose
+  // corners lie off its plane is a slab: a way that begins within the slab begins in front. In a graph with such nodes this
+  // holds for all of them: a way that leaves an inexact node may begin behind the exact planes of its neighbours.
   [[gnu::noinline]] void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
     const NodeRef<Geometry> node = graph_.node(n);
     if (node.plane().distance(to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
-      return;  // before any exact sign is asked for
+      return;  // before any exact sign is computed
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
@@ -165,11 +165,11 @@ class NodeEntry {
   }
 
   // contact-model LEAVE-3: a slit may be narrower than the rounding of the god-object's place, which then is behind the other
-  // wall; and that must hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over
-  // it.
+  // wall; that wall must hold it. Where the way crossed the wall cannot be told, for the same reason: it counts if the way
+  // begins over it.
   [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
+    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, wherever the HIP is
       if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
     }
     if (!was_before_clearing(node) && !faces_what_was_left(node)) return;
@@ -184,16 +184,16 @@ class NodeEntry {
     return side(node, stood_, from_bound_) >= 0;
   }
 
-  // Whether the face or edge that the way leaves and the node look at each other, corner by corner: if the former lies in front
-  // of the node, then so did the god-object, whatever rounding made of its place; and to be met, the node must reach in front
-  // of those faces that the way does not enter.
+  // Whether the face or edge that the way leaves and the node are opposite each other, tested corner by corner. If the face or
+  // edge lies in front of the node, the god-object did, whatever its rounded place. The node is met only if it reaches in front
+  // of the faces that the way does not enter.
   [[nodiscard]] bool faces_what_was_left(NodeRef<Geometry> node) const {
     if (left_.state == FDCG_FACE) {
       const NodeRef<Geometry> face = graph_.node(left_.index);
       const bool is_opposite = dot(face.normal(), node.normal()) < 0;  // then rounding of a wall's plane does not matter
       return reaches_before(face, node) && !reaches_behind(node, face, is_opposite ? from_bound_ : Real(0));
     }
-    if (left_.state != FDCG_EDGE) return false;  // a corner is where it is
+    if (left_.state != FDCG_EDGE) return false;  // at a corner its place is exact
     const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
     for (uint32_t end = 0; end < 2; ++end) {
       if (side_of_corner(node, connection.corner(end)) < 0) return false;

@@ -56,7 +56,9 @@ class Sweep : public FanSweep<Geometry> {
       if (*work_left_ == 0) return false;
       const WaitingBoxes::Item next = waiting.pop();
       if (next.key > tree_fraction(best_.fraction)) continue;
-      if (Fans::has_runs() && Fans::looked_at_fans(next.level, next.index)) continue;
+      if constexpr (Geometry::kKeepsDirections) {
+        if (Fans::has_runs() && Fans::looked_at_fans(next.level, next.index)) continue;
+      }
       if (next.level < 0) {
         try_leaf(next.index);
         continue;

@@ -41,7 +41,7 @@ constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SW
 std::string_view name_of(Fault fault) {
   constexpr std::string_view kNames[] = {"nan",          "cycle",   "rule-bound", "sweep-bound", "growth",
                                          "push-through", "unseen",  "thin-air",   "off-surface", "pull",
-                                         "restless",     "descent", "free-air"};
+                                         "restless",     "descent", "free-air",   "no-force"};
   static_assert(std::size(kNames) == kFaults);
   return kNames[static_cast<std::size_t>(fault)];
 }
@@ -67,8 +67,9 @@ void Verdicts::add(const Verdicts& other) {
   worst_descent_eps = std::max(worst_descent_eps, other.worst_descent_eps);
 }
 
-Judge::Judge(const Specimen& specimen)
+Judge::Judge(const Specimen& specimen, bool owes_force)
     : specimen_(specimen),
+      owes_force_(owes_force),
       epsilon_(specimen.epsilon()),
       deviation_(kPerDeviation * specimen.header().max_deviation),
       is_exact_(specimen.header().max_deviation == 0 &&
@@ -93,7 +94,10 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after
       if ((result.flags & kCarried) == 0) look_at_pull(tick, v);
       if ((result.flags & kCarried) == 0 && !has_friction_) look_at_descent(tick, v);
     }
-    if (specimen_.inside != nullptr) look_inside(tick, v);
+    if (specimen_.inside != nullptr) {
+      if (owes_force_) look_at_owed_force(tick);
+      look_inside(tick, v);
+    }
   }
   if ((result.flags & FDCG_RESULT_NON_FINITE) == 0) {
     last_flags_ = result.flags;
@@ -279,6 +283,15 @@ bool Judge::is_let_off(const Hip& point) {
   if (crowd <= kCrowd) return false;
   asked_ += 1;
   return asked_ % (crowd / kCrowd + 1) != 0;
+}
+
+// Where work is carried over: the god-object stays where its way began, the HIP may be inside.
+void Judge::look_at_owed_force(Tick& tick) {
+  const double* force = tick.result.force_n;
+  if (force[0] != 0 || force[1] != 0 || force[2] != 0 || !is_known_outside_ || tick.after.sweep.is_carried == 0) return;
+  if (specimen_.inside->where(tick.hip) != InsideGrid::Where::inside) return;
+  const double depth = specimen_.inside->distance_to_surface(tick.hip) - deviation_;
+  if (depth > kShallow_eps * epsilon_ * specimen_.inside->size()) tick.faults |= bit(Fault::no_force);
 }
 
 void Judge::look_inside(Tick& tick, Verdicts& v) {

@@ -29,6 +29,7 @@ enum class Fault : std::uint8_t {
                  // its distance allows, or contact was lost or found
   descent,       // without friction: at rest though a face or an edge there, or the free way itself, leads nearer to the HIP
   free_air,      // ... and the HIP is outside of the solid
+  no_force,      // inside by more than 4 eps of the size, after having been outside or held, and no force
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
@@ -58,7 +59,8 @@ struct Verdicts {
 
 class Judge {
  public:
-  explicit Judge(const Specimen& specimen);
+  // `owes_force`: of a hand's speed, so that no tick inside may be without force.
+  explicit Judge(const Specimen& specimen, bool owes_force = false);
 
   // A new contact: nothing is known of where its HIP is.
   void begin(const fdcg_params& params) {
@@ -94,8 +96,10 @@ class Judge {
   void look_at_way(Tick& tick);
   bool is_let_off(const Hip& point);
   void look_inside(Tick& tick, Verdicts& v);
+  void look_at_owed_force(Tick& tick);
 
   const Specimen& specimen_;
+  bool owes_force_;
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
   bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
   bool has_friction_ = true;

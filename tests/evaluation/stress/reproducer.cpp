@@ -134,7 +134,7 @@ Reproducer read_reproducer(const std::string& path) {
 }
 
 std::int64_t first_fault(const Specimen& specimen, const Reproducer& r, std::vector<std::string>* log) {
-  Judge judge(specimen);
+  Judge judge(specimen, r.fault == Fault::no_force);
   judge.begin(r.params);
   Verdicts verdicts;
   fdcg_contact contact{};

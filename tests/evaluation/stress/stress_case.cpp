@@ -7,6 +7,7 @@
 
 #include "meshes.hpp"
 #include "squashed.hpp"
+#include "stress_points.hpp"
 
 namespace fdcg::test {
 namespace {
@@ -322,6 +323,7 @@ const std::vector<StressCase>& stress_cases() {
        kMayCarry,
        50,
        0.5},
+      {"points", "a force in the tick that gets inside", pointed_bodies, {approach}, kMayCarry, 5, 0.2, true},
   };
   return cases;
 }

@@ -38,7 +38,7 @@ class Block {
         found_(found),
         random_(seed_of(name, name.block)),
         hand_(specimen, random_.bits()),
-        judge_(specimen) {
+        judge_(specimen, name.stress_case->owes_force) {
     path_.reserve(2 * Hand::kMostTicks);
   }
 
@@ -89,7 +89,8 @@ class Block {
   void report(std::uint32_t faults) {
     constexpr std::uint32_t kRules = 1u << static_cast<unsigned>(Fault::rule_bound);
     constexpr std::uint32_t kSweeps = 1u << static_cast<unsigned>(Fault::sweep_bound);
-    const std::uint32_t allowed = name_.stress_case->may_carry ? kRules | kSweeps : 0;
+    const StressCase& c = *name_.stress_case;
+    const std::uint32_t allowed = !c.may_carry ? 0 : c.owes_force ? kRules : kRules | kSweeps;
     result_.bounds_allowed += static_cast<std::uint64_t>(std::popcount(faults & allowed));
     faults &= ~allowed;
     for (std::size_t i = 0; i < kFaults; ++i) {

@@ -12,6 +12,7 @@ import { clearGroup } from './highlight';
 import { MeshModel } from './mesh_model';
 import { MeshView } from './mesh_view';
 import { grouped, short } from './numbers';
+import { quoted } from './recording';
 import { Runtime } from './runtime';
 import { Stage } from './stage';
 import { toggleMode } from './theme';
@@ -53,6 +54,7 @@ class App {
         replaceChildren(this.dockPlace, content);
       },
     };
+    this.warnOfBlank();
     this.stage.canvas.addEventListener('pointerdown', (event) => (this.down = { x: event.clientX, y: event.clientY }));
     this.stage.canvas.addEventListener('pointerup', (event) => this.onClick(event));
     document.addEventListener('keydown', (event) => this.onKey(event));
@@ -65,6 +67,9 @@ class App {
     place.removeAttribute('aria-busy');
     replaceChildren(place, panel, h('main.main', {}, this.stageHolder, this.dockPlace), this.live, this.help);
     this.stageHolder.append(this.view, this.hintLine);
+  }
+  private warnOfBlank(): void {
+    if (this.stage.isBlank) this.stageHolder.append(h('p.failure', { role: 'alert' }, 'This browser has no WebGL 2, so the model is not drawn. A current Chromium or Firefox has it.'));
   }
 
   private buildTools(): void {
@@ -129,7 +134,7 @@ class App {
     const base = item.name.replace(/^.*\//, '');
     const isMesh = item.geometry !== undefined;
     const graphName = isMesh ? `${base.replace(/\.[^.]*$/, '')}.fdcg` : base;
-    const compile = isMesh ? { compile: `fdcg compile ${base} -o ${graphName} ${item.compile_options ?? ''}` } : {};
+    const compile = isMesh ? { compile: `fdcg compile ${quoted(base)} -o ${quoted(graphName)} ${item.compile_options ?? ''}` } : {};
     const touch = new TouchTab(this.context, { frame: model.frame, runtime, graph, graphName, ...compile });
     if (!isMesh) graphTab.showSurface = true;
     if (item.log !== undefined) await this.addLog(item, model);

@@ -156,7 +156,8 @@ export class GraphTab implements Tab {
       const places = { node: () => this.markNode(this.picked!.number), connection: () => this.markConnection(this.picked!.number), corner: () => this.markCorner(this.picked!.number) }[this.picked.kind]();
       const centre = places.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(places.length);
       const radius = Math.max(0.002, ...places.map((p) => p.distanceTo(centre)));
-      if (fly) this.context.stage.flyTo(centre, Math.min(0.9, radius * 5), this.normalOf(this.picked));
+      if (fly) this.context.stage.flyTo(centre, Math.min(0.9, radius * 5), this.context.stage.approach(this.normalOf(this.picked)));
+      this.context.hint('');
       this.context.announce(`${this.picked.kind} ${this.picked.number}`);
     }
     this.context.stage.invalidate();

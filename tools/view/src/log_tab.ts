@@ -126,7 +126,7 @@ export class LogTab implements Tab {
     const state = this.value(this.at, STATE);
     const feature = this.value(this.at, FEATURE);
     const slips = this.value(this.at, SLIP) === 1;
-    const normal = state === 1 && this.runtime !== undefined ? this.runtime.node(feature).normal : ([0, 0, 0] as const);
+    const normal = state === 1 && this.runtime !== undefined && feature < this.runtime.header().nodes ? this.runtime.node(feature).normal : ([0, 0, 0] as const);
     this.marks.update({ hip: this.three(this.at, HIP), god: this.three(this.at, GOD), force: this.three(this.at, FORCE), normal, mu: 0, state, slips });
     const t = this.value(this.at, T);
     this.readout.textContent = `${t.toFixed(3)} s: ${STATES[state]}${state === 0 ? '' : ` ${feature}, ${slips ? 'slips' : 'sticks'}, ${short(this.force(this.at))} N`}.`;

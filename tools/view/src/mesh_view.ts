@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh on the stage: its surface, its edges, the findings of each rule as a layer, and what is selected.
-import { Box3, Group, LineBasicMaterial, LineSegments, BufferAttribute, BufferGeometry, Mesh, Sphere, Vector3 } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, Raycaster, Sphere, Vector3 } from 'three';
 import type { Element3, Issue } from './data';
 import { clearGroup, type Marks, marked } from './highlight';
 import type { MeshModel } from './mesh_model';
@@ -118,7 +118,20 @@ export class MeshView {
     if (ball === undefined) return;
     const normal = (element.faces ?? []).reduce((sum, f) => sum.add(this.model.faceNormal(f)), new Vector3());
     this.material.setFocus(ball.center, ball.radius * AROUND);
-    if (fly) this.stage.flyTo(ball.center, ball.radius * AROUND, normal);
+    if (fly) this.stage.flyTo(ball.center, ball.radius * AROUND, this.clearSide(ball.center, ball.radius, normal));
+  }
+
+  /** Of both sides that from which the place is seen: a face that is wound wrongly has its normal inside. */
+  private clearSide(centre: Vector3, radius: number, normal: Vector3): Vector3 {
+    const far = this.stage.distanceFor(radius * AROUND);
+    let best = this.stage.approach(normal);
+    let farthest = -1;
+    for (const direction of [best, this.stage.approach(normal.clone().negate()), this.stage.approach()]) {
+      const ray = new Raycaster(centre, direction, radius * 0.02, far);
+      const free = ray.intersectObject(this.surface, false)[0]?.distance ?? far;
+      if (free > farthest * 1.01) [best, farthest] = [direction, free];
+    }
+    return best;
   }
 
   private ballOf(marks: Required<Marks>): Sphere | undefined {

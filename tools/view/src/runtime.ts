@@ -5,6 +5,7 @@ import { shortest } from './numbers';
 interface Exports {
   memory: WebAssembly.Memory;
   fdcg_web_allocate(bytes: number): number;
+  fdcg_web_release(room: number): void;
   fdcg_web_open(data: number, bytes: number): number;
   fdcg_web_message(): number;
   fdcg_web_source_map(): number;
@@ -136,16 +137,23 @@ export class Runtime {
       transitions: v.getUint32(60, true),
     };
   }
-  /** Nanoseconds a step, over this path. */
-  timeSteps(hips: Float64Array): number {
+  /** Nanoseconds a step, over this path, by a contact that begins anew. */
+  timeSteps(hips: Float64Array, params: TouchParams): number {
+    this.setParams(params);
+    this.reset();
     const count = hips.length / 3;
     const input = this.x.fdcg_web_allocate(hips.byteLength);
     const output = this.x.fdcg_web_allocate(72 * count);
-    if (input === 0 || output === 0) return Number.NaN;
-    new Float64Array(this.x.memory.buffer, input, hips.length).set(hips);
-    const before = performance.now();
-    this.x.fdcg_web_run(input, output, count);
-    return ((performance.now() - before) * 1e6) / count;
+    let spent = Number.NaN;
+    if (input !== 0 && output !== 0) {
+      new Float64Array(this.x.memory.buffer, input, hips.length).set(hips);
+      const before = performance.now();
+      this.x.fdcg_web_run(input, output, count);
+      spent = ((performance.now() - before) * 1e6) / count;
+    }
+    this.x.fdcg_web_release(input);
+    this.x.fdcg_web_release(output);
+    return spent;
   }
   /** Where the way from a to b (metres) meets the surface first. */
   cast(a: Triple, b: Triple): Result | undefined {

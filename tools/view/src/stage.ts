@@ -15,6 +15,20 @@ interface Flight {
   start: number;
 }
 
+/** Undefined where the browser cannot draw: lists, records and forces are there all the same. Without a graphics processor smooth
+ * edges cost more than all the rest. */
+function makeRenderer(): WebGLRenderer | undefined {
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (context === null) return undefined;
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const name = names === null ? '' : String(context.getParameter(names.UNMASKED_RENDERER_WEBGL));
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  const isSlow = /swiftshader|llvmpipe|software|basic render/i.test(name);
+  const renderer = new WebGLRenderer({ antialias: !isSlow, powerPreference: 'high-performance' });
+  renderer.setPixelRatio(isSlow ? 1 : Math.min(devicePixelRatio, 2));
+  return renderer;
+}
+
 export class Stage {
   readonly scene = new Scene();
   readonly content = new Group(); // what there is to look at: fit() shows all of it
@@ -26,14 +40,14 @@ export class Stage {
   frames = 0;
   /** Called before each frame with the time; true: draw again after it. */
   readonly animations = new Set<(now: number) => boolean>();
-  private readonly renderer: WebGLRenderer;
+  private readonly renderer: WebGLRenderer | undefined;
   private flight: Flight | undefined;
   private pending = false;
 
   constructor(private readonly holder: HTMLElement) {
-    this.renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.canvas = this.renderer.domElement;
+    this.renderer = makeRenderer();
+    this.canvas = this.renderer?.domElement ?? document.createElement('canvas');
+    if (this.renderer === undefined) this.canvas.className = 'blank';
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute('role', 'img');
     this.canvas.setAttribute('aria-label', 'The model. Arrow keys turn it, plus and minus come nearer or go away, F shows all of it.');
@@ -66,7 +80,7 @@ export class Stage {
 
   /** One frame, now: for a picture, and to measure. */
   drawNow(): void {
-    this.renderer.render(this.scene, this.camera);
+    this.renderer?.render(this.scene, this.camera);
   }
 
   private draw(now: number): void {
@@ -77,7 +91,7 @@ export class Stage {
     this.camera.near = Math.max(distance * 0.01, 1e-5);
     this.camera.far = distance + 10;
     this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    this.renderer?.render(this.scene, this.camera);
     ++this.frames;
     if (again) this.invalidate();
   }
@@ -96,13 +110,21 @@ export class Stage {
     return false;
   }
 
-  /** To see a ball from outside along `normal`, or from where the camera is now where there is none. */
-  flyTo(centre: Vector3, radius: number, normal?: Vector3): void {
-    const distance = (radius * 1.15) / Math.sin(MathUtils.degToRad(this.camera.fov / 2)) / Math.min(1, this.camera.aspect);
+  /** From how far a ball fills the picture. */
+  distanceFor(radius: number): number {
+    return (radius * 1.15) / Math.sin(MathUtils.degToRad(this.camera.fov / 2)) / Math.min(1, this.camera.aspect);
+  }
+  /** Where to look from: along the normal, but not straight, since a glance from the side shows the shape; from where the camera
+   * is now where there is no normal. */
+  approach(normal?: Vector3): Vector3 {
     const back = this.camera.position.clone().sub(this.controls.target).normalize();
-    // not straight along the normal: a glance from the side shows the shape
-    const direction = normal !== undefined && normal.lengthSq() > 0 ? normal.clone().normalize().multiplyScalar(1.4).add(back).normalize() : back;
-    if (!(direction.lengthSq() > 0.5)) direction.copy(back);
+    if (normal === undefined || normal.lengthSq() === 0) return back;
+    const direction = normal.clone().normalize().multiplyScalar(1.4).add(back).normalize();
+    return direction.lengthSq() > 0.5 ? direction : back;
+  }
+  /** Flies to where a ball fills the picture, seen from `direction`. */
+  flyTo(centre: Vector3, radius: number, direction = this.approach()): void {
+    const distance = this.distanceFor(radius);
     this.flight = {
       from: this.camera.position.clone(),
       to: centre.clone().addScaledVector(direction, distance),
@@ -113,6 +135,9 @@ export class Stage {
     this.invalidate();
   }
 
+  get isBlank(): boolean {
+    return this.renderer === undefined;
+  }
   get isFlying(): boolean {
     return this.flight !== undefined;
   }
@@ -178,10 +203,10 @@ export class Stage {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height);
+    this.renderer?.setSize(width, height);
     this.resolution.set(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    this.renderer?.render(this.scene, this.camera);
   }
 }

@@ -40,7 +40,7 @@ void main() {
   vec3 toEye = normalize(-vPosition);
   float facing = abs(dot(normal, toEye));
   float above = 0.5 + 0.5 * normal.y;
-  float light = 0.34 + 0.5 * facing + 0.2 * above;
+  float light = 0.2 + 0.58 * facing + 0.26 * above;
 #ifdef COLOURED
   vec3 base = gl_FrontFacing ? vColor : mix(vColor, back, 0.7);
 #else

@@ -24,18 +24,20 @@ export function logCsv(ticks: Float64Array): string {
   })}`;
 }
 
-/** Reads a log again, into ticks. Throws where it is none. */
+/** Reads a log again, into ticks; of a session's log, which has more columns, the rows of its first device. Throws where it is
+ * none. */
 export function parseLog(text: string): Float64Array {
-  const lines = text.split('\n');
-  if (lines[0]?.trim() !== LOG_HEADER) throw new Error('this is no log of fdcg-servo replay');
-  if (lines.at(-1) === '') lines.pop();
-  const ticks = new Float64Array((lines.length - 1) * TICK);
-  for (let i = 1; i < lines.length; ++i) {
-    const fields = lines[i]!.split(',');
-    const at = (i - 1) * TICK;
-    for (let k = 0; k < TICK; ++k) ticks[at + k] = Number(fields[k]);
-    ticks[at + STATE] = Math.max(0, STATES.indexOf(fields[STATE] as (typeof STATES)[number]));
-    if (fields[FEATURE] === '-1') ticks[at + FEATURE] = NONE;
-  }
+  const lines = text.split('\n').map((line) => line.trim());
+  if (!(lines[0] ?? '').startsWith(LOG_HEADER)) throw new Error('this is no log of fdcg-servo replay');
+  const device = lines[0]!.split(',').indexOf('device');
+  const rows = lines.slice(1).filter((line) => line !== '').map((line) => line.split(','));
+  const kept = device < 0 ? rows : rows.filter((fields) => fields[device] === rows[0]![device]);
+  const ticks = new Float64Array(kept.length * TICK);
+  kept.forEach((fields, i) => {
+    for (let k = 0; k < TICK; ++k) ticks[i * TICK + k] = Number(fields[k]);
+    ticks[i * TICK + STATE] = Math.max(0, STATES.indexOf(fields[STATE] as (typeof STATES)[number]));
+    if (fields[FEATURE] === '-1') ticks[i * TICK + FEATURE] = NONE;
+  });
+  if (kept.length === 0) throw new Error('the log has no tick');
   return ticks;
 }

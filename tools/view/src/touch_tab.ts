@@ -4,26 +4,17 @@ import { Vector3 } from 'three';
 import workerSource from 'worker:./src/touch_worker.ts';
 import { ContactMarks } from './contact_marks';
 import type { Context, Tab } from './context';
-import { button, checkbox, download, h, slider } from './dom';
-import type { Frame } from './frame';
+import { button, checkbox, h, slider } from './dom';
 import { short } from './numbers';
-import { type Runtime, STATES, type TouchParams } from './runtime';
+import { recordingPanel, timeRecording, type TouchSource } from './recording';
+import { STATES, type TouchParams } from './runtime';
 import { SlipSound } from './slip_sound';
 import { Chart } from './traces';
-import { logCsv, pathCsv } from './touch_csv';
 import { FORCE, type FromWorker, GOD, HIP, SLIP, STATE, T, TICK, TICK_S, type Timing, type ToWorker } from './touch_messages';
 
 const HOVER = 0.02; // of the object's size: how far before the surface the hand is while nothing is pressed
 const SHOWN_TICKS = 2000;
 const CHART_MS = 60;
-
-export interface TouchSource {
-  frame: Frame;
-  runtime: Runtime; // of the page, for rays
-  graph: Uint8Array<ArrayBuffer>;
-  graphName: string; // for the command that replays
-  compile?: string; // the command that makes the graph from the mesh; undefined: it is a file of its own
-}
 
 /** A stiffness at which pressing by a hundredth of the object gives some newtons. */
 function usualStiffness(metres: number): number {
@@ -52,6 +43,7 @@ export class TouchTab implements Tab {
   private lastTick: Float64Array | undefined;
   private lastNormal: Float64Array | undefined;
   private timing: Timing = { stepNs: 0, periodP99Ms: 0 };
+  private stepNs = 0; // of the recorded path
   private nextChart = 0;
   private inputs: HTMLInputElement[] = [];
   private readonly readout = h('p.readout', { id: 'readout' });
@@ -304,32 +296,12 @@ export class TouchTab implements Tab {
     this.send({ kind: 'record', on });
   }
 
-  /** What replays the recording natively, to the same bytes. */
-  replayCommand(): string {
-    const p = this.params;
-    const graph = this.source.graphName;
-    const options = `--mu-s ${p.muStatic} --mu-d ${p.muDynamic} --stiffness ${p.stiffness}${p.damping > 0 ? ` --damping ${p.damping}` : ''}`;
-    return `fdcg-servo replay ${graph} --trajectory hip.csv -o log.csv ${options}`;
-  }
-
   private showRecording(ticks: Float64Array): void {
     this.recorded = ticks;
-    const count = ticks.length / TICK;
+    this.stepNs = timeRecording(this.source, ticks, this.params);
     this.context.hint('');
     this.saved.hidden = false;
-    this.saved.replaceChildren(
-      h('p', {}, `${(count * TICK_S).toFixed(2)} s, ${count} ticks.`),
-      h(
-        'div.row',
-        {},
-        button('Path (CSV)', () => download('hip.csv', pathCsv(ticks)), { id: 'save-path' }),
-        button('Log (CSV)', () => download('page-log.csv', logCsv(ticks)), { id: 'save-log' }),
-        button('Graph', () => download(this.source.graphName, this.source.runtime.bytes().slice()), { id: 'save-graph' }),
-      ),
-      h('p.note', {}, 'This writes the same log, byte for byte:'),
-      h('pre.records', { tabIndex: 0, id: 'replay-command' }, this.replayCommand()),
-      this.source.compile !== undefined ? h('p.note', {}, `The graph is also what this makes: ${this.source.compile}`) : '',
-    );
+    this.saved.replaceChildren(...recordingPanel(this.source, ticks, this.params, this.stepNs));
     this.context.announce('The recording is ready to be saved.');
   }
 
@@ -398,6 +370,7 @@ export class TouchTab implements Tab {
       recording: this.recordState,
       recorded: this.recorded === undefined ? 0 : this.recorded.length / TICK,
       timing: this.timing,
+      recordedStepNs: this.stepNs,
       params: { ...this.params },
     };
   }
