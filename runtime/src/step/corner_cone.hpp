@@ -45,7 +45,7 @@ class WayToEdge {
   }
 
   // A face of the fan. Call for each, or for all that the plane of the way can meet.
-  void pass(const FanEntry& entry) {
+  [[gnu::noinline]] void pass(const FanEntry& entry) {
     const NodeRef<Geometry> node = walk_.graph.node(entry.node);
     const bool is_beside = entry.node == beside_[0] || entry.node == beside_[1];
     const uint32_t left = node.corner(node.next(entry.outgoing)), right = node.corner(node.previous(entry.outgoing));
@@ -56,7 +56,7 @@ class WayToEdge {
     if (hip_side == 0 || is_beside) return;
     if (from == 0 && to == 0 ? !is_far_sided(node) : beside(from) == beside(to)) return;
     if (from != to && beside(from) != (hip_side > 0 ? 1 : -1)) return;  // what is met is the face's other side of the corner
-    const Real target_side = side_of(walk_.graph, node, target_, target_bound_, &work_left_);
+    const Real target_side = side(node, target_, target_bound_);
     if (node.is_inexact() && absolute(target_side) <= walk_.graph.header->max_deviation + target_bound_) return;  // on it
     if (hip_side > 0 ? target_side < 0 : target_side > 0) is_outside_ = !is_outside_;
   }
@@ -70,7 +70,7 @@ class WayToEdge {
   }
   // Two sides in one line with the corner, and in the plane of the way: the face is all on the other side of it than corners
   // in it are taken to be.
-  bool is_far_sided(NodeRef<Geometry> node) {
+  [[gnu::noinline]] bool is_far_sided(NodeRef<Geometry> node) {
     for (uint32_t k = 0; k < node.side_count() && node.side_count() > 3; ++k) {
       const int sign = sign_of(node.corner(k));
       if (sign != 0) return sign != tie_;
@@ -84,13 +84,13 @@ class WayToEdge {
            turns_left(hip, widen(walk_.graph.corner_point(right)), node);
   }
   // Whether b is to the left of a about the corner, seen from the front of a node that they lie on; or in line with it.
-  bool turns_left(const Vec3<double>& a, const Vec3<double>& b, NodeRef<Geometry> node) {
+  [[gnu::noinline]] bool turns_left(const Vec3<double>& a, const Vec3<double>& b, NodeRef<Geometry> node) {
     const Vec3<double> above = corner_ + widen(node.normal()) * walk_.graph.header->extent;
     return orient3d_sign(corner_, a, b, above, &work_left_) >= 0;
   }
   [[nodiscard]] int beside(int sign) const { return sign == 0 ? tie_ : sign; }
   // Kept for the last: the next face of the fan asks for it again.
-  int sign_of(uint32_t corner) {
+  [[gnu::noinline]] int sign_of(uint32_t corner) {
     if (corner != last_) {
       last_ = corner;
       spend(&work_left_, kFanSignWork);
@@ -102,8 +102,9 @@ class WayToEdge {
 
   static constexpr uint32_t kMuch = 1u << 30;
 
-  [[nodiscard]] Real side(NodeRef<Geometry> node) {
-    return side_of(walk_.graph, node, walk_.hip, walk_.hip_bound, &work_left_);
+  [[nodiscard]] Real side(NodeRef<Geometry> node) { return side(node, walk_.hip, walk_.hip_bound); }
+  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) {
+    return side_of(walk_.graph, node, x, bound, &work_left_);
   }
 
   Walk<Geometry>& walk_;

@@ -273,9 +273,8 @@ void Judge::look_at_way(Tick& tick) {
   const InsideGrid::Crossing way = specimen_.inside->crossing(hip_of(tick.before.hip), tick.hip);
   tick.is_way_clear = !way.is_through && !way.touches;
   if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
-  // A way past a busy corner within rounding is stopped there, and goes on in the same tick (contact-model FREE-8).
-  const bool goes_on = owes_force_ && tick.after.state == FDCG_FREE;
-  if (tick.is_way_clear && is_stopped && !goes_on) tick.faults |= bit(Fault::thin_air);
+  // A corner that is met within rounding, and let go in the same tick, has held nothing (contact-model FREE-8, CORNER-4).
+  if (tick.is_way_clear && tick.after.state != FDCG_FREE) tick.faults |= bit(Fault::thin_air);
 }
 
 // Around an apex of 10^4 faces the grid's cells hold them all: there one tick in some dozens is asked for.
