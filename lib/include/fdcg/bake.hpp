@@ -187,10 +187,10 @@ struct Issue {
   std::string rule;                     ///< by name
   Severity severity = Severity::error;  ///< of each finding
   std::uint64_t total = 0;              ///< exact, however few elements are listed, unless is_at_least
-  bool is_at_least = false;             ///< the count ended there (self-intersection, at 1,000,000 pairs of triangles)
   std::string message;                  ///< what, how many, and the remedy
   std::vector<Element> elements;        ///< the first max_elements of them, in source order; known ones last
   std::uint64_t known = 0;              ///< of these, accepted by a baseline: they do not fail the verdict
+  bool is_at_least = false;             ///< total is where the count ended (self-intersection, at 1,000,000 pairs of triangles)
 };
 
 /// Everything found in a mesh.
