@@ -234,7 +234,7 @@ int check_inputs(const ReplayArguments& arguments) {
   if (arguments.trajectory.empty() && arguments.path.empty()) {
     fdcg_graph graph{};
     fdcg_error error{};
-    if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK)
+    if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK)
       return fail(kFile, std::string("neither a session's log nor a graph: ") + error.message);
     fdcg_close(&graph);
     return fail(kUsage, "--trajectory is required, or --path: '" + arguments.graph +
@@ -269,7 +269,7 @@ int run_replay(const ReplayArguments& arguments) {
   if (log && !log->ok()) return fail(kFile, log->error());
   fdcg_graph graph{};
   fdcg_error error{};
-  if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
+  if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK) {
     return fail(kFile, error.message);
   }
   std::vector<TrajectoryPoint> points;

@@ -5,7 +5,7 @@
  * fdcg: feel a 3D model through a force-feedback device. The runtime on one screen.
  *
  *     fdcg_graph graph;                              a view, in your memory, of a file in yours or mapped
- *     fdcg_open_file("bunny.fdcg", FDCG_VERIFY_FULL, &graph, &error);
+ *     fdcg_open_file("bunny.fdcg", FDCG_VERIFY_SAFE, &graph, &error);
  *     fdcg_params params = fdcg_make_params();       friction, stiffness, damping
  *     fdcg_contact contact = {0};                    one contact point; zero is its start
  *     each tick:
@@ -111,10 +111,10 @@ void fdcg_set_assert_handler(fdcg_assert_handler handler, void* context);
  * the program nor hold a tick up. FULL asks besides whether the graph is one surface, as fdcg compile writes it: for tools, and
  * where a wrong file is dearer than the time. TRUSTED is for files that are part of the program. */
 typedef enum fdcg_verify {
-  FDCG_VERIFY_FULL = 0,    /**< SAFE; and loops, twins, fans and boxes agree: the graph is one surface. At most 60 ns a face */
+  FDCG_VERIFY_FULL = 0,    /**< SAFE; and loops, twins, fans and boxes agree: the graph is one surface. Reads the file twice */
   FDCG_VERIFY_TRUSTED = 1, /**< header and section bounds only */
   FDCG_VERIFY_SAFE = 2     /**< checksums, and every index, count and number: after it no file whatever leads to undefined
-                              behaviour or an unbounded step. About the time that reading the file takes twice */
+                              behaviour or an unbounded step. Reads the file once */
 } fdcg_verify;
 
 /** A read-only view; the bytes that it points into must outlive it. Read its fields, do not write them. */
