@@ -3,6 +3,9 @@
 #include "graph/verify.hpp"
 
 #include "base/message.hpp"
+#include "graph/checksum.hpp"
+#include "graph/sections.hpp"
+#include "shared/mass_record.hpp"
 
 namespace fdcg {
 namespace {
@@ -27,14 +30,72 @@ void add(const fdcg_verification& part, fdcg_verification* sum) {
     sum->sums[i] += part.sums[i];
 }
 
+fdcg_status refuse_count(fdcg_error* error, const char* field, uint64_t value, const char* what) {
+  return refuse_record(error, field, value, what);
+}
+
+// Whether the bytes are those that were written; and that nothing hides behind a section.
+fdcg_status check_section_sums(const fdcg_header& header, const uint64_t* sums, fdcg_error* error) {
+  const fdcg_section* const sections = section_table(header);
+  const auto* const file = reinterpret_cast<const unsigned char*>(&header);
+  for (uint32_t i = 0; i < header.section_count; ++i) {
+    const uint64_t begin = sections[i].offset, bytes = section_bytes(header, i);
+    if (checksum_start(bytes) + sums[i] != sections[i].checksum) {
+      return Message(error, FDCG_E_CHECKSUM, begin)
+          .text("section ")
+          .number(sections[i].id)
+          .text(": the checksum does not match; the file is damaged, compile the mesh again");
+    }
+    for (uint64_t at = sections[i].record_bytes * sections[i].record_count; at < bytes; ++at) {
+      if (file[begin + at] != 0)
+        return Message(error, FDCG_E_LAYOUT, begin + at).text("section ").number(sections[i].id).text(": padding is not zero");
+    }
+  }
+  return FDCG_OK;
+}
+
+// What is wrong with a record may be that its bytes have changed: then that is what to say.
+fdcg_status or_damaged(fdcg_status status, const fdcg_header& header, fdcg_error* error) {
+  if (status == FDCG_OK) return status;
+  uint64_t sums[FDCG_MOST_SECTIONS] = {};
+  const auto* const file = reinterpret_cast<const unsigned char*>(&header);
+  for (uint32_t i = 0; i < header.section_count; ++i) {
+    const uint64_t bytes = section_bytes(header, i);
+    sums[i] = checksum_of_blocks(file + section_table(header)[i].offset, bytes, 0, checksum_blocks(bytes));
+  }
+  fdcg_error why;
+  if (check_section_sums(header, sums, &why) == FDCG_OK) return status;
+  if (error != nullptr) *error = why;
+  return why.status;
+}
+
+fdcg_status check_safe_sums(const fdcg_graph& graph, const fdcg_verification& sum, fdcg_error* error) {
+  const fdcg_header& header = *graph.header;
+  const fdcg_status status = check_section_sums(header, sum.sums, error);
+  if (status != FDCG_OK) return status;
+  if (sum.sides != header.side_count)
+    return refuse_count(error, "header.side_count", header.side_count, "not the sum of the nodes'");
+  if (sum.first_sides != header.connection_count || 2 * sum.first_sides - sum.types[FDCG_BOUNDARY] != sum.sides)
+    return refuse_count(error, "header.connection_count", header.connection_count, "not the number of pairs of sides");
+  for (uint32_t type = 0; type < 4; ++type) {
+    if (sum.types[type] != header.connection_type_count[type])
+      return refuse_count(error, "header.connection_type_count", type, "wrong");
+  }
+  if (sum.busy_corners != header.busy_count)
+    return refuse_count(error, "header.busy_count", header.busy_count, "not the number of busy corners");
+  if (header.busy_count == 0 && (header.fan_count != 0 || header.fan_box_count != 0))
+    return refuse_count(error, "header.fan_count", header.fan_count, "not the sum of the corners'");
+  return verify_mass(header, error);
+}
+
 fdcg_status check_chunk(const fdcg_graph& graph, fdcg_verify level, Chunk chunk, fdcg_verification* part, fdcg_error* error) {
   ++part->chunks;
-  return level == FDCG_VERIFY_FULL ? verify_full_chunk(graph, chunk, part, error)
-                                   : verify_safe_chunk(graph, chunk, part, error);
+  if (level == FDCG_VERIFY_FULL) return verify_full_chunk(graph, chunk, part, error);
+  return or_damaged(verify_safe_chunk(graph, chunk, part, error), *graph.header, error);
 }
 
 fdcg_status check_sums(const fdcg_graph& graph, fdcg_verify level, const fdcg_verification& sum, fdcg_error* error) {
-  return level == FDCG_VERIFY_FULL ? verify_full_sums(graph, sum, error) : verify_safe_sums(graph, sum, error);
+  return level == FDCG_VERIFY_FULL ? verify_full_sums(graph, sum, error) : check_safe_sums(graph, sum, error);
 }
 
 fdcg_status verify_level(const fdcg_graph& graph, fdcg_verify level, fdcg_error* error) {
@@ -56,6 +117,10 @@ fdcg_status check_arguments(const fdcg_graph* graph, fdcg_verify level, const vo
 }
 
 }  // namespace
+
+fdcg_status refuse_record(fdcg_error* error, const char* noun, uint64_t index, const char* what) {
+  return Message(error, FDCG_E_GRAPH).text(noun).text(" ").number(index).text(": ").text(what).text("; compile the mesh again");
+}
 
 fdcg_status verify_up_to(const fdcg_graph& graph, fdcg_verify level, fdcg_error* error) {
   if (level == FDCG_VERIFY_TRUSTED) return FDCG_OK;

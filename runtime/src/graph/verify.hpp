@@ -18,8 +18,6 @@ struct Chunk {
 // Every index, count and number that the step, scenes, bodies and deformable meshes rely on; adds to *part what all chunks
 // together must come to.
 fdcg_status verify_safe_chunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error);
-// Checksums, padding, sums of counts, mass.
-fdcg_status verify_safe_sums(const fdcg_graph& graph, const fdcg_verification& sum, fdcg_error* error);
 
 // Loops, twins, fans, boxes within boxes: that the graph is one surface, as a compiler writes it.
 fdcg_status verify_full_chunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error);

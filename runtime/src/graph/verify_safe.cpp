@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "base/config.hpp"
-#include "base/message.hpp"
 #include "graph/box_tree.hpp"
 #include "graph/checksum.hpp"
 #include "graph/implicit_tree.hpp"
@@ -18,7 +17,6 @@
 #include "graph/sections.hpp"
 #include "graph/unit_check.hpp"
 #include "graph/verify.hpp"
-#include "shared/mass_record.hpp"
 
 namespace fdcg {
 namespace {
@@ -26,7 +24,7 @@ namespace {
 // An edge and its face's normal give a Voronoi plane where they are far enough from parallel: the compiler joins no face to
 // an edge that leaves its plane by more than 45 degrees.
 template <class Real>
-bool is_across(Vec3<Real> along, Vec3<Real> normal) {
+[[gnu::always_inline]] inline bool is_across(Vec3<Real> along, Vec3<Real> normal) {
   constexpr Real kLeastSquaredSine = Real(1) / 64;
   const Vec3<Real> out = cross(along, normal);
   const Real squared = dot(along, along);
@@ -371,74 +369,10 @@ class SafeChunk {
   Real largest_offset_;
 };
 
-fdcg_status refuse_count(fdcg_error* error, const char* field, uint64_t value, const char* what) {
-  return refuse_record(error, field, value, what);
-}
-
-// Whether the bytes are those that were written; and that nothing hides behind a section.
-fdcg_status check_section_sums(const fdcg_header& header, const uint64_t* sums, fdcg_error* error) {
-  const fdcg_section* const sections = section_table(header);
-  const auto* const file = reinterpret_cast<const unsigned char*>(&header);
-  for (uint32_t i = 0; i < header.section_count; ++i) {
-    const uint64_t begin = sections[i].offset, bytes = section_bytes(header, i);
-    if (checksum_start(bytes) + sums[i] != sections[i].checksum) {
-      return Message(error, FDCG_E_CHECKSUM, begin)
-          .text("section ")
-          .number(sections[i].id)
-          .text(": the checksum does not match; the file is damaged, compile the mesh again");
-    }
-    for (uint64_t at = sections[i].record_bytes * sections[i].record_count; at < bytes; ++at) {
-      if (file[begin + at] != 0)
-        return Message(error, FDCG_E_LAYOUT, begin + at).text("section ").number(sections[i].id).text(": padding is not zero");
-    }
-  }
-  return FDCG_OK;
-}
-
-// What is wrong with a record may be that its bytes have changed: then that is what to say.
-fdcg_status or_damaged(fdcg_status status, const fdcg_header& header, fdcg_error* error) {
-  if (status == FDCG_OK) return status;
-  uint64_t sums[FDCG_MOST_SECTIONS] = {};
-  const auto* const file = reinterpret_cast<const unsigned char*>(&header);
-  for (uint32_t i = 0; i < header.section_count; ++i) {
-    const uint64_t bytes = section_bytes(header, i);
-    sums[i] = checksum_of_blocks(file + section_table(header)[i].offset, bytes, 0, checksum_blocks(bytes));
-  }
-  fdcg_error why;
-  if (check_section_sums(header, sums, &why) == FDCG_OK) return status;
-  if (error != nullptr) *error = why;
-  return why.status;
-}
-
 }  // namespace
 
-fdcg_status refuse_record(fdcg_error* error, const char* noun, uint64_t index, const char* what) {
-  return Message(error, FDCG_E_GRAPH).text(noun).text(" ").number(index).text(": ").text(what).text("; compile the mesh again");
-}
-
 fdcg_status verify_safe_chunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error) {
-  const fdcg_status status =
-      with_real_of(*graph.header, [&](auto real) { return SafeChunk<decltype(real)>(graph, chunk, part, error).run(); });
-  return or_damaged(status, *graph.header, error);
-}
-
-fdcg_status verify_safe_sums(const fdcg_graph& graph, const fdcg_verification& sum, fdcg_error* error) {
-  const fdcg_header& header = *graph.header;
-  const fdcg_status status = check_section_sums(header, sum.sums, error);
-  if (status != FDCG_OK) return status;
-  if (sum.sides != header.side_count)
-    return refuse_count(error, "header.side_count", header.side_count, "not the sum of the nodes'");
-  if (sum.first_sides != header.connection_count || 2 * sum.first_sides - sum.types[FDCG_BOUNDARY] != sum.sides)
-    return refuse_count(error, "header.connection_count", header.connection_count, "not the number of pairs of sides");
-  for (uint32_t type = 0; type < 4; ++type) {
-    if (sum.types[type] != header.connection_type_count[type])
-      return refuse_count(error, "header.connection_type_count", type, "wrong");
-  }
-  if (sum.busy_corners != header.busy_count)
-    return refuse_count(error, "header.busy_count", header.busy_count, "not the number of busy corners");
-  if (header.busy_count == 0 && (header.fan_count != 0 || header.fan_box_count != 0))
-    return refuse_count(error, "header.fan_count", header.fan_count, "not the sum of the corners'");
-  return verify_mass(header, error);
+  return with_real_of(*graph.header, [&](auto real) { return SafeChunk<decltype(real)>(graph, chunk, part, error).run(); });
 }
 
 }  // namespace fdcg
