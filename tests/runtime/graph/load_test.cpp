@@ -160,6 +160,30 @@ TEST_CASE("every change of a single byte is refused with a message") {
   REQUIRE(open(file, file.size(), error) == FDCG_OK);
 }
 
+TEST_CASE("chunks in any order, in parts of several threads, come to what opening does") {
+  AlignedBytes file = compiled(star_sphere(4, 0.3, 5), {});
+  fdcg_graph graph;
+  fdcg_error error = {};
+  REQUIRE(fdcg_open_trusted(file.data(), file.size(), &graph, &error) == FDCG_OK);
+  const std::uint32_t chunks = fdcg_verify_chunk_count(&graph);
+  REQUIRE(chunks > 3);
+  for (const auto level : {FDCG_VERIFY_SAFE, FDCG_VERIFY_FULL}) {
+    fdcg_verification parts[3] = {};
+    for (std::uint32_t i = chunks; i-- > 1;)
+      REQUIRE(fdcg_verify_chunk(&graph, level, i, &parts[i % 3], &error) == FDCG_OK);
+    CHECK(fdcg_verify_sum(&graph, level, parts, 3, &error) == FDCG_E_ARGUMENT);  // one is missing
+    REQUIRE(fdcg_verify_chunk(&graph, level, 0, &parts[0], &error) == FDCG_OK);
+    CHECK(fdcg_verify_sum(&graph, level, parts, 3, &error) == FDCG_OK);
+    CHECK(fdcg_verify_chunk(&graph, level, chunks, &parts[0], &error) == FDCG_E_ARGUMENT);
+  }
+  CHECK(fdcg_verify_chunk(&graph, FDCG_VERIFY_TRUSTED, 0, nullptr, &error) == FDCG_E_ARGUMENT);
+  const_cast<fdcg_corner_f64*>(static_cast<const fdcg_corner_f64*>(graph.corners))->normal[0] ^= 1;
+  fdcg_verification part = {};
+  for (std::uint32_t i = 0; i < chunks; ++i)
+    REQUIRE(fdcg_verify_chunk(&graph, FDCG_VERIFY_SAFE, i, &part, &error) == FDCG_OK);
+  CHECK(fdcg_verify_sum(&graph, FDCG_VERIFY_SAFE, &part, 1, &error) == FDCG_E_CHECKSUM);
+}
+
 TEST_CASE("bytes after the end are refused") {
   AlignedBytes file = compiled(cube(), small_f32());
   AlignedBytes longer(std::vector<std::byte>(file.size() + 64));
@@ -346,6 +370,19 @@ TEST_CASE("a file is mapped, and a foreign one refused") {
     CHECK(graph.header().node_count == 6);
     fdcg::Graph moved = std::move(graph);
     CHECK(moved.header().node_count == 6);
+  }
+  for (const std::uint32_t way : {0u, 1u, 2u}) {
+    fdcg_open_options options = fdcg_make_open_options();
+    options.populate = way == 1;
+    options.huge_pages = way == 2;
+    fdcg_graph opened;
+    REQUIRE(fdcg_open_file_with(path.c_str(), &options, &opened, nullptr) == FDCG_OK);
+    fdcg_warm(&opened);
+    CHECK(opened.mapping_bytes == copy.size());
+    CHECK(std::memcmp(opened.mapping, copy.data(), copy.size()) == 0);
+    fdcg_close(&opened);
+    options.populate = 2;
+    CHECK(fdcg_open_file_with(path.c_str(), &options, &opened, nullptr) == FDCG_E_ARGUMENT);
   }
   const std::string text(400, 'x');
   write(text.data(), text.size());
