@@ -26,6 +26,7 @@
 #include "graph/triangulate.hpp"
 #include "graph/weigh.hpp"
 #include "topology/topology.hpp"
+#include "topology/weld.hpp"
 #include "validate/validate.hpp"
 
 namespace fdcg::bake {
@@ -69,7 +70,8 @@ std::vector<std::uint32_t> trace_sources(std::size_t source_faces, const std::ve
                                          const std::vector<std::uint32_t>& face_of_triangle) {
   if (source_face.empty() && polygon.empty() && face_of_triangle.empty()) return {};
   std::vector<std::uint32_t> face_of_source(source_faces, kNone);
-  const std::size_t triangles = polygon.empty() ? std::max(source_faces, face_of_triangle.size()) : polygon.size();
+  const std::size_t mesh_faces = source_face.empty() ? source_faces : source_face.size();
+  const std::size_t triangles = polygon.empty() ? std::max(mesh_faces, face_of_triangle.size()) : polygon.size();
   for (std::size_t i = triangles; i-- > 0;) {  // downwards: a polygon is where its first triangle is
     const auto triangle = static_cast<std::uint32_t>(i);
     const std::uint32_t mesh_face = polygon.empty() ? triangle : polygon[triangle];
@@ -186,6 +188,75 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   return serialise(graph, input, [&](std::size_t count) { return allocate_in(compiled.bytes, count); });
 }
 
+CheckOptions check_options_of(const CompileOptions& options, unsigned jobs) {
+  CheckOptions how;
+  how.allow = options.allow;
+  if (!options.self_intersections) how.severities["self-intersection"] = std::nullopt;
+  how.max_elements = options.max_elements;
+  how.precision = options.precision;
+  how.jobs = jobs;
+  return how;
+}
+
+// ---- repair
+
+// Before anything is repaired.
+RepairAccount account_of(const Report& report, RepairLevel level, const PolygonSoup& soup) {
+  RepairAccount account;
+  account.level = level;
+  for (const Issue& issue : report.issues)
+    account.found[issue.rule] = issue.total;
+  account.faces_before = account.faces_after = soup.face_count();
+  return account;
+}
+
+// As floats in the local frame hold them, so that what is repaired is what is stored.
+PolygonSoup as_stored(const PolygonSoup& soup, Precision precision) {
+  PolygonSoup stored = soup;
+  if (precision == Precision::f64) return stored;
+  const Mesh mesh = weld_points(soup, {Weld::Kind::none, 0}, precision);
+  for (std::size_t v = 0; v < stored.points.size(); ++v)
+    stored.points[v] = mesh.points[v] + mesh.origin;
+  return stored;
+}
+
+// From the numbering of the repaired mesh to that of the input.
+void number_as_input(const PolygonSoup& input, const Repaired& repaired, Report& report) {
+  for (Issue& issue : report.issues) {
+    for (Element& element : issue.elements) {
+      for (std::uint32_t& f : element.faces)
+        f = repaired.source_face[f];
+      for (std::uint32_t& v : element.vertices)
+        v = repaired.source_point[v];
+      for (auto& [u, v] : element.edges)
+        u = repaired.source_point[u], v = repaired.source_point[v];
+      if (!element.faces.empty() && element.faces[0] < input.face_line.size()) element.line = input.face_line[element.faces[0]];
+    }
+  }
+}
+
+// The mesh after its repair; its report and the account take their places in `compiled`.
+Prepared repaired_mesh(const PolygonSoup& soup, const CompileOptions& options, const CheckOptions& how, Compiled& compiled) {
+  RepairOptions steps = repair_options(*options.repair);
+  steps.weld = options.weld;
+  steps.reverse_inside_out = !options.allow.contains("inside-out");
+  steps.judges = false;
+  steps.jobs = how.jobs;
+  steps.progress = options.progress;
+  Result<Repaired> repaired = repair(as_stored(soup, options.precision), steps);
+  if (repaired->soup.face_count() == 0) return {};  // the report before says why
+  Prepared ready = prepare(repaired->soup, {Weld::Kind::none, 0}, options.precision, false, how.jobs);
+  compiled.flipped_faces = 0;  // the account has those that were turned
+  compiled.report = check(repaired->soup, ready.mesh, ready.topology, ready.states, how);
+  number_as_input(soup, *repaired, compiled.report);
+  std::map<std::string, std::uint64_t> found = std::move(compiled.repair->found);
+  *compiled.repair = std::move(static_cast<RepairAccount&>(*repaired));
+  compiled.repair->level = *options.repair;
+  compiled.repair->found = std::move(found);
+  ready.mesh.source_face = std::move(repaired->source_face);
+  return ready;
+}
+
 }  // namespace
 
 // A closed mesh has half as many connections as sides, and some six fan entries to a corner.
@@ -215,13 +286,12 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   Prepared ready = prepare(soup, options.weld, options.precision, options.orient, jobs);
   compiled.flipped_faces = ready.flipped_faces;
   stage("check", 0.2);
-  CheckOptions how;
-  how.allow = options.allow;
-  if (!options.self_intersections) how.severities["self-intersection"] = std::nullopt;
-  how.max_elements = options.max_elements;
-  how.precision = options.precision;
-  how.jobs = jobs;
+  const CheckOptions how = check_options_of(options, jobs);
   compiled.report = check(soup, ready.mesh, ready.topology, ready.states, how);
+  if (options.repair) {
+    compiled.repair = account_of(compiled.report, *options.repair, soup);
+    if (!compiled.report.passes()) ready = repaired_mesh(soup, options, how, compiled);
+  }
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
   const auto file = build(soup, std::move(ready.mesh), std::move(ready.topology), options, jobs, compiled);

@@ -82,10 +82,10 @@ inline constexpr std::size_t kLongestWord = 40;  // edit_distance takes time by 
 }
 
 // "a, b, c".
-[[nodiscard]] inline std::string listed(const std::vector<std::string>& words) {
+[[nodiscard]] inline std::string listed(const std::vector<std::string>& words, const char* separator = ", ") {
   std::string list;
   for (const std::string& word : words)
-    list += (list.empty() ? "" : ", ") + word;
+    list += (list.empty() ? "" : separator) + word;
   return list;
 }
 

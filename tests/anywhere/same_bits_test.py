@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One trajectory hash a precision, from every compiler, optimisation level and processor: that of the library as it was built."""
 import os
+import re
 import shutil
 import unittest
 
@@ -10,6 +11,8 @@ STEP_HASH = os.environ["FDCG_STEP_HASH"]  # linked with the library that ships
 ARRAYS = os.environ["FDCG_HASH_ARRAYS"]  # graphs.c, compiled for this machine
 GRAPHS = os.environ["FDCG_HASH_GRAPHS"]  # folder of graphs.h and graphs.c
 SOURCE = str(ROOT / "tests" / "anywhere" / "step_hash.c")
+MOVING_HASH = os.environ["FDCG_MOVING_HASH"]  # the same of deformable meshes and bodies
+MOVING_SOURCE = str(ROOT / "tests" / "anywhere" / "moving_hash.c")
 
 
 class HashCase(AnywhereCase):
@@ -30,7 +33,7 @@ class HashCase(AnywhereCase):
 
     def assert_same_bits(self, found, what):
         self.assertEqual(self.expected, found, what)
-        print(f"{what}: {' '.join(line.split()[1] for line in found.splitlines())}")
+        print(f"{what}: {' '.join(re.findall(r'[0-9a-f]{16}', found))}")
 
 
 class Reference(HashCase):
@@ -92,6 +95,30 @@ class Aarch64(HashCase):
         self.need("qemu-aarch64")
         found = self.hashed_by("gcc", "aarch64-linux-gnu-gcc", "aarch64-linux-gnu-g++", ["-O3"], None, ["-static"], ["qemu-aarch64"])
         self.assert_same_bits(found, "aarch64 gcc -O3")
+
+
+class Wasm(HashCase):
+    """WebAssembly in node, as in the page of fdcg view: no fused operation there, but a compiler of its own behind it."""
+
+    def run_wasm(self, source, objects, flags):
+        sources = (source, os.path.join(GRAPHS, "graphs.c"))
+        include = ["-I", str(RUNTIME / "include"), "-I", GRAPHS]
+        programs = self.compile_all([(["clang", *C, *flags, *include, "-c", one], self.path(os.path.basename(one) + ".o")) for one in sources])
+        program = self.path(os.path.basename(source) + ".wasm")
+        self.run_program("clang", *flags, *objects, *programs, "-lm", "-o", program)
+        runner = str(ROOT / "tests" / "anywhere" / "run_wasi.mjs")
+        return self.run_program("node", "--no-warnings", runner, program).stdout.decode()
+
+    def test_steps_scenes_deformable_meshes_and_bodies(self):
+        self.need("clang", "clang++", "wasm-ld", "node")
+        if not os.path.isdir("/usr/include/wasm32-wasi"):
+            self.skipTest("wasi-libc is missing; tools/check installs it (group viewer of tools/packages)")
+        flags = ["--target=wasm32-wasi", "--sysroot=/usr", "-isystem", "/usr/include/wasm32-wasi", "-O2", "-Wno-unused-command-line-argument"]
+        objects = self.runtime_objects("wasm", "clang++", flags)
+        self.assert_same_bits(self.run_wasm(SOURCE, objects, flags), "wasm32 clang -O2")
+        self.expected = self.run_program(MOVING_HASH).stdout.decode()
+        self.assertEqual(2, len(self.expected.splitlines()))
+        self.assert_same_bits(self.run_wasm(MOVING_SOURCE, objects, flags), "wasm32 clang -O2, deform and body")
 
 
 class CortexM(HashCase):

@@ -9,35 +9,10 @@
 #include <string.h>
 
 #include "fdcg/scene.h"
+#include "hash.h"
 #include "say.h"
 
 enum { kTicks = 14400, kTicksOfAWay = 400 };
-
-typedef struct {
-  uint64_t value; /* FNV-1a over 64-bit words, with a rotation, so that each bit reaches every other */
-} hash_t;
-
-static void absorb(hash_t* hash, uint64_t word) {
-  hash->value = (hash->value ^ word) * 0x100000001B3u;
-  hash->value = hash->value << 29 | hash->value >> 35;
-}
-
-static void absorb_real(hash_t* hash, double x) {
-  uint64_t word;
-  memcpy(&word, &x, sizeof word);
-  absorb(hash, word);
-}
-
-static uint64_t random_bits(uint64_t* state) { /* xorshift64 */
-  *state ^= *state << 13;
-  *state ^= *state >> 7;
-  *state ^= *state << 17;
-  return *state;
-}
-
-static double uniform(uint64_t* state) {
-  return (double)(random_bits(state) >> 11) * 0x1p-53;
-}
 
 typedef struct {
   double centre[3], size[3]; /* of the object, metres */

@@ -155,7 +155,7 @@ class BadMeshes(Case):
         for name, content, word in (
             ("none.off", "", "empty"), ("text.txt", "hello world\n", "no known mesh format"),
             ("zip.obj", b"PK\3\4" + bytes(40), "ZIP"), ("packed.ply", b"\x1f\x8b\x08" + bytes(40), "gunzip"),
-            ("page.obj", "<!DOCTYPE html><html></html>\n", "HTML"), ("part.fbx", b"Kaydara FBX Binary  \0" + bytes(40), "FBX"),
+            ("page.obj", "<!DOCTYPE html><html></html>\n", "<html>"), ("part.fbx", b"Kaydara FBX Binary  \0" + bytes(40), "FBX"),
             ("pointer.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:" + 64 * "a" + "\nsize 12\n", "git lfs pull"),
             ("wide.obj", OBJ.encode("utf-16"), "UTF-16"),
         ):

@@ -8,7 +8,7 @@ import unittest
 
 from support import CUBE, FDCG, SERVO, Case
 
-PROGRAMS = {"fdcg": (FDCG, ("compile", "validate", "repair", "inspect", "explain", "grasp", "help")),
+PROGRAMS = {"fdcg": (FDCG, ("compile", "validate", "repair", "inspect", "explain", "grasp", "view", "help")),
             "fdcg-servo": (SERVO, ("run", "devices", "check", "replay", "help"))}
 
 
@@ -56,7 +56,7 @@ class Help(Case):
 
     def test_defaults_are_told_in_words(self):
         text = " ".join(self.fdcg("compile", "--help").stdout.decode().split())
-        for words in ("Default: f64.", "Default: quantum.", "Default: m.", "Default: one for each core.", "One of f64 or f32."):
+        for words in ("Default: f64.", "Default: quantum.", "Default: the file's own, else m.", "Default: one for each core.", "One of f64 or f32."):
             self.assertIn(words, text)
 
     def test_help_command_is_what_the_option_gives(self):

@@ -32,7 +32,7 @@ DEFECTIVE = """OFF
 3 1 1 1
 """
 STEPS = ("--weld", "--drop-degenerate", "--drop-duplicates", "--split-non-manifold-vertices", "--orient",
-         "--reverse-inside-out", "--simplify", "--all")
+         "--drop-unusable", "--triangulate-crossing", "--unfold", "--cut-non-manifold", "--drop-blocking", "--reverse-inside-out", "--simplify", "--all")
 
 
 def check_schema(report):
@@ -57,8 +57,10 @@ class Repair(Case):
         done = self.fdcg("repair", mesh, "-o", self.path("good.ply"), "--all", "--report", self.path("report.json"))
         report = self.report()
         totals = {action["name"]: action["total"] for action in report["actions"]}
-        self.assertEqual({"weld": 0, "drop-degenerate": 2, "drop-duplicates": 1, "split-non-manifold-vertices": 1, "orient": 1,
-                          "reverse-inside-out": 0}, totals)
+        self.assertEqual({"drop-unusable": 0, "weld": 0, "triangulate-crossing": 0, "unfold": 0, "drop-degenerate": 2,
+                          "drop-duplicates": 1, "orient": 1, "cut-non-manifold": 0, "split-non-manifold-vertices": 1,
+                          "drop-blocking": 0, "reverse-inside-out": 0}, totals)
+        self.assertEqual(0, report["effect"]["distance"])
         elements = {action["name"]: action["elements"] for action in report["actions"]}
         self.assertEqual([[9], [10]], [element["faces"] for element in elements["drop-degenerate"]])
         self.assertEqual([[8]], [element["faces"] for element in elements["drop-duplicates"]])
@@ -107,9 +109,36 @@ class Repair(Case):
         done = self.fdcg("repair", self.write("cube.off", CUBE), "-o", self.path("a.stl"), "--orient", code=2)
         self.assert_one_line(done, "face 0", "4 corners", "OFF, OBJ or PLY")
         mesh = self.write("bad.off", DEFECTIVE)
-        done = self.fdcg("repair", mesh, "-o", self.path("a.stl"), "--all", code=2)
+        done = self.fdcg("repair", mesh, "-o", self.path("a.stl"), "--all", "--weld", "none", code=2)
         self.assert_one_line(done, "apart on purpose", "OFF, OBJ or PLY")
         self.assert_only("cube.off", "bad.off")
+
+    def test_stl_holds_a_repaired_mesh_that_compiles_without_options(self):
+        self.fdcg("repair", self.write("bad.off", DEFECTIVE), "-o", self.path("a.stl"), "--all", "--report", self.path("report.json"))
+        actions = {action["name"]: action for action in self.report()["actions"]}
+        self.assertEqual(1, actions["part-equal-vertices"]["total"])
+        self.assertLess(0, actions["part-equal-vertices"]["effect"]["distance"])
+        self.assertGreater(1e-6, self.report()["effect"]["distance"])
+        self.fdcg("compile", self.path("a.stl"), "-o", self.path("a.fdcg"), "-q")
+
+    def test_compile_repairs_on_the_way(self):
+        mesh = self.write("bad.off", DEFECTIVE)
+        self.assertIn(b"--repair", self.fdcg("compile", mesh, "-o", self.path("a.fdcg"), code=1).stderr)
+        done = self.fdcg("compile", mesh, "-o", self.path("a.fdcg"), "--repair=safe", "--report", self.path("compiled.json"))
+        self.assertIn(b"drop-duplicates: 1 face", done.stdout)
+        schema = json.loads((ROOT / "schemas/validate-report.schema.json").read_text())
+        resolver = jsonschema.RefResolver((ROOT / "schemas").as_uri() + "/", schema)
+        report = json.loads((self.folder / "compiled.json").read_text())
+        jsonschema.Draft202012Validator(schema, resolver=resolver).validate(report)
+        entry = report["files"][0]
+        self.assertEqual("pass", entry["verdict"])
+        self.assertEqual("safe", entry["repair"]["level"])
+        self.assertEqual(1, entry["repair"]["found"]["non-manifold-vertex"])
+        self.assertEqual([11, 8], [entry["repair"]["effect"][name] for name in ("faces_before", "faces_after")])
+        info = json.loads(self.fdcg("inspect", "--json", self.path("a.fdcg")).stdout)
+        self.assertIn('"volume_after"', json.dumps(info))
+        self.fdcg("inspect", "--verify", self.path("a.fdcg"))
+        self.assert_one_line(self.fdcg("compile", mesh, "-o", self.path("a.fdcg"), "--repair=most", code=2), "'most'", "safe and full")
 
     def test_standard_input_and_output(self):
         done = subprocess.run([FDCG, "repair", "-", "-o", "-", "--format", "off", "--all"], input=DEFECTIVE.encode(),
@@ -130,9 +159,9 @@ class Repair(Case):
     def test_errors_that_are_left_are_code_1_and_with_strict_nothing_is_written(self):
         fan = "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n3 0 1 2\n3 1 0 3\n3 0 1 4\n"
         mesh = self.write("fan.off", fan)
-        self.fdcg("repair", mesh, "-o", self.path("strict.off"), "--all", "--strict", "-q", code=1)
+        self.fdcg("repair", mesh, "-o", self.path("strict.off"), "--orient", "--strict", "-q", code=1)
         self.assert_only("fan.off")
-        done = self.fdcg("repair", mesh, "-o", self.path("out.off"), "--all", code=1)
+        done = self.fdcg("repair", mesh, "-o", self.path("out.off"), "--orient", code=1)
         self.assertIn(b"non-manifold-edge", done.stdout)
         self.assert_only("fan.off", "out.off")
 

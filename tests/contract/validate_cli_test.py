@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """fdcg validate as CI systems use it: formats, baselines, settings files, many files, standard input. One class a subject, which
 makes it a little longer than 400 lines."""
+import base64
 import json
 import os
 import pathlib
@@ -337,12 +338,54 @@ class Settings(ValidateCase):
 class ManyFiles(ValidateCase):
     def test_a_file_too_large_for_memory_leaves_the_others_their_reports(self):
         limit = 160 << 20
-        done = subprocess.run((FDCG, "validate", "/dev/zero", self.write("cube.off", CUBE), "--format", "json", "--jobs", "1", "--no-config"),
+        large = self.folder / "large.off"
+        with large.open("wb") as file:
+            file.truncate(4 * limit)
+        done = subprocess.run((FDCG, "validate", str(large), self.write("cube.off", CUBE), "--format", "json", "--jobs", "1", "--no-config"),
                               capture_output=True, check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
         self.assertEqual(3, done.returncode, done.stderr)
-        self.assert_one_line(done, "/dev/zero", "memory")
+        self.assert_one_line(done, "large.off", "memory")
         self.assertEqual(["fail", "pass"], [file["verdict"] for file in json.loads(done.stdout)["files"]])
+
+    def test_what_has_no_end_is_refused_at_once(self):
+        done = subprocess.run((FDCG, "validate", "/dev/zero", "--no-config"), capture_output=True, check=False, timeout=10)
+        self.assertEqual(3, done.returncode, done.stderr)
+        self.assert_one_line(done, "/dev/zero", "device")
+        with subprocess.Popen(("yes", "v 0 0 0"), stdout=subprocess.PIPE) as endless:
+            done = subprocess.run((FDCG, "validate", "-", "--no-config"), stdin=endless.stdout, capture_output=True, check=False, timeout=30)
+            endless.kill()
+        self.assertEqual(3, done.returncode, done.stderr)
+        self.assert_one_line(done, "64 MiB")
+
+    def test_a_buffer_that_is_a_link_out_of_the_folder_is_not_read(self):
+        document = json.loads((ROOT / "testdata/meshes/good/cube_embedded.gltf").read_text())
+        bytes_of_buffer = base64.b64decode(document["buffers"][0]["uri"].partition(",")[2])
+        document["buffers"][0]["uri"] = "cube.bin"
+        folder = self.folder / "models"
+        folder.mkdir()
+        (folder / "cube.gltf").write_text(json.dumps(document))
+        (self.folder / "secret.bin").write_bytes(bytes_of_buffer)
+        (folder / "cube.bin").symlink_to(self.folder / "secret.bin")
+        done = subprocess.run((FDCG, "validate", str(folder / "cube.gltf"), "--no-config"), capture_output=True, check=False)
+        self.assertEqual(3, done.returncode, done.stderr)
+        self.assert_one_line(done, "cube.bin", "link")
+        (folder / "cube.bin").unlink()
+        (folder / "real.bin").write_bytes(bytes_of_buffer)
+        (folder / "cube.bin").symlink_to("real.bin")
+        done = subprocess.run((FDCG, "validate", str(folder / "cube.gltf"), "--no-config"), capture_output=True, check=False)
+        self.assertEqual(0, done.returncode, done.stderr)
+
+    def test_stacked_faces_are_counted_up_to_a_limit(self):
+        faces = 3_000
+        stack = f"OFF\n3 {faces} 0\n0 0 0\n1 0 0\n0 1 0\n" + "3 0 1 2\n" * faces
+        done = subprocess.run((FDCG, "validate", self.write("stack.off", stack), "--format", "json", "--no-config"), capture_output=True, check=False)
+        found = {issue["rule"]: issue for issue in json.loads(done.stdout)["files"][0]["issues"]}["self-intersection"]
+        self.assertEqual((1_000_000, True), (found["total"], found["at_least"]))
+        self.assertIn("at least", found["message"])
+        once = subprocess.run((FDCG, "validate", self.path("stack.off"), "--format", "json", "--no-config", "--jobs", "1"), capture_output=True,
+                              check=False)
+        self.assertEqual(done.stdout, once.stdout)
 
     def test_files_come_in_a_stable_order_however_many_threads_there_are(self):
         (self.folder / "sub").mkdir()

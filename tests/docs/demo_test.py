@@ -37,6 +37,21 @@ class Demo(unittest.TestCase):
         for text in ("75408 faces", "step time", "picture.png"):
             self.assertIn(text, done.stdout.replace(",", ""))
 
+    @unittest.skipUnless(shutil.which("gnuplot"), "the group demo of tools/packages is not installed")
+    def test_ones_own_mesh_at_a_size_of_ones_own(self):
+        done = self.demo(ROOT / "runtime" / "examples" / "cube.obj", "--size", "0.04", "--programs", PROGRAMS, "--output", self.folder / "out")
+        self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+        self.assertIn("measures 0.04 x 0.04 x 0.04 m", done.stdout)
+        self.assertTrue((self.folder / "out" / "picture.png").is_file())
+        if "no page" not in done.stdout:
+            self.assertTrue((self.folder / "out" / "page.html").is_file())
+
+    def test_a_mesh_with_errors_is_not_slid_over(self):
+        mesh = ROOT / "testdata" / "meshes" / "bad" / "winding-inconsistent.off"
+        done = self.demo(mesh, "--programs", PROGRAMS, "--output", self.folder / "out")
+        self.assertEqual(1, done.returncode, done.stdout + done.stderr)
+        self.assertIn("has errors", done.stderr)
+
     def test_unknown_options_are_refused(self):
         done = self.demo("--nonsense")
         self.assertEqual(2, done.returncode)

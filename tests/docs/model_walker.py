@@ -116,15 +116,37 @@ class Graph:
                     self.edge.append(Edge(self, f[k], f[(k + 1) % 3], n, across[0] if across else None))
         self.faces_at = [[n for n, f in enumerate(faces) if v in f] for v in range(len(points))]
         self.edges_at = [[i for i, e in enumerate(self.edge) if v in e.corner] for v in range(len(points))]
-        self.vertex_normal = [self.angle_weighted(v) for v in range(len(points))]
 
-    def angle_weighted(self, v):
-        total = (0.0, 0.0, 0.0)
-        for n in self.faces_at[v]:
-            k = self.face[n].index(v)
-            a, b = (minus(self.point[self.face[n][(k + i) % 3]], self.point[v]) for i in (1, 2))
-            total = plus(total, times(self.normal[n], math.acos(max(-1.0, min(1.0, dot(a, b) / (norm(a) * norm(b)))))))
-        return total
+    def begins_outside(self, v, x):  # contact-model CORNER-4, by turning the way about v: what does it meet first?
+        exact_v = exactly(self.point[v])
+        t = minus(exactly(x), exact_v)
+        wings = []
+        for face in self.faces_at[v]:
+            k = self.face[face].index(v)
+            wings.append([minus(exactly(self.point[self.face[face][(k + i) % 3]]), exact_v) for i in (1, 2)])
+        if any(not any(cross(a, t)) and dot(a, t) > 0 for a, _ in wings):
+            return True
+        if any(not any(cross(a, t)) for a, _ in wings):  # against an edge: no plane that holds the way is in general position
+            t = plus(t, times((3, 5, 7), max(map(abs, t)) / 2 ** 300))
+        for turn in range(1, 1000):  # almost any plane that holds the way and passes across a face
+            a, b = wings[turn % len(wings)]
+            off = tuple(Fraction(turn * k % 17 - 8, 1000) * max(map(abs, a)) for k in (3, 5, 7))
+            axis = cross(t, plus(plus(times(a, Fraction(turn % 5 + 1, 3)), b), off))
+            up, first, is_outside, is_good = cross(axis, t), None, False, any(axis)
+            for a, b in wings:
+                at_a, at_b = dot(axis, a), dot(axis, b)
+                is_good = is_good and at_a != 0 != at_b
+                if (at_a > 0) == (at_b > 0):
+                    continue
+                ray = plus(times(a, abs(at_b)), times(b, abs(at_a)))
+                along, across = dot(ray, t), dot(ray, up)
+                if across == 0 and along > 0:
+                    return True
+                if across > 0 and (first is None or along * first[1] > first[0] * across):
+                    first, is_outside = (along, across), dot(cross(a, b), t) > 0
+            if is_good and first is not None:
+                return is_outside
+        raise ValueError("no plane through the way is in general position")
 
     def rounding(self, x):
         return 8 * EPS * (norm1(x) + 2 * self.extent)  # B(x)
@@ -414,21 +436,44 @@ class Walker:
     def on_vertex(self, vertex):
         point = self.graph.point[vertex]
         t = minus(self.hip, point)
-        after = self.after_vertex(vertex, self.steepest(vertex, t), t)
+        is_open = any(self.graph.edge[e].type == BOUNDARY for e in self.graph.edges_at[vertex])
+        after = self.after_open_vertex(vertex, t) if is_open else self.after_vertex(vertex, t)
         if after == (VERTEX, vertex):
             return None
         if self.god_object != point:  # contact-model CORNER-6
             self.god_object = self.beside(after, point, t)
         return after
 
-    def steepest(self, vertex, t):  # contact-model CORNER-1, CORNER-2
+    def after_vertex(self, vertex, t):  # contact-model CORNER-3, CORNER-4
+        if self.graph.begins_outside(vertex, self.hip):
+            return NOWHERE
+        return self.steepest(vertex, t, self.holds)
+
+    def after_open_vertex(self, vertex, t):  # contact-model CORNER-5
+        found = self.steepest(vertex, t, lambda _: True)
+        if found[0] == VERTEX or not self.holds(found):
+            return NOWHERE
+        edge = self.graph.edge[found[1]] if found[0] == EDGE else None
+        return (FACE, edge.face[0]) if edge and edge.type == BOUNDARY else found
+
+    def holds(self, feature):
+        state, index = feature
+        if state == FACE:
+            return self.graph.side_of(index, self.hip) < 0
+        edge = self.graph.edge[index]
+        sides = self.sides(edge)
+        if edge.type == BOUNDARY:
+            return sides[0][0] < 0 and sides[0][1] < 0
+        return not self.is_free_of(edge, sides)
+
+    def steepest(self, vertex, t, may_be):  # contact-model CORNER-1, CORNER-2
         graph, t2 = self.graph, dot(t, t)
         best = ((VERTEX, vertex), 0.0, t2)
 
         def steeper(one, other):
-            if one[2] < t2 / 2 and other[2] < t2 / 2:
-                return other if other[2] < one[2] else one
-            return other if other[1] > one[1] else one
+            are_near = one[2] < t2 / 2 and other[2] < t2 / 2
+            is_steeper = other[2] < one[2] if are_near else other[1] > one[1]
+            return other if is_steeper and may_be(other[0]) else one
 
         for index in graph.edges_at[vertex]:
             edge = graph.edge[index]
@@ -443,37 +488,6 @@ class Walker:
                 in_plane = minus(t, times(graph.normal[face], height))
                 best = steeper(best, ((FACE, face), dot(in_plane, in_plane), height * height))
         return best[0]
-
-    def after_vertex(self, vertex, found, t):  # contact-model CORNER-3
-        graph, (state, index) = self.graph, found
-        if state == FACE:
-            return found if graph.side_of(index, self.hip) < 0 else self.groove_that_holds(vertex, index, t)
-        if state == EDGE:
-            edge = graph.edge[index]
-            sides = self.sides(edge)
-            if edge.type == BOUNDARY:
-                return (FACE, edge.face[0]) if sides[0][0] < 0 and sides[0][1] < 0 else NOWHERE
-            return NOWHERE if self.is_free_of(edge, sides) else found
-        is_open = any(graph.edge[e].type == BOUNDARY for e in graph.edges_at[vertex])  # contact-model CORNER-5
-        return found if not is_open and dot(t, graph.vertex_normal[vertex]) < 0 else NOWHERE
-
-    def groove_that_holds(self, vertex, face, t):  # contact-model CORNER-4
-        graph, rounding = self.graph, self.graph.rounding(self.hip)
-        for k in range(3):
-            index = graph.side[face][k][0]
-            edge = graph.edge[index]
-            if vertex not in edge.corner or edge.type != CONCAVE:
-                continue
-            if dot(edge.direction, t) * (1 if edge.corner[0] == vertex else -1) < -rounding:
-                continue
-            is_between = beyond(graph.voronoi(face, k), self.hip) < -rounding
-            for wall, plane in zip(edge.face, edge.voronoi):
-                if graph.side_of(wall, self.hip) < 0:
-                    if not is_between:
-                        return EDGE, index
-                    if beyond(plane, self.hip) < 0:
-                        return FACE, wall
-        return NOWHERE
 
     def beside(self, after, point, t):
         if after == NOWHERE:

@@ -49,7 +49,7 @@ class BillOfMaterials(unittest.TestCase):
             self.assertIs(package["filesAnalyzed"], False)
             for reference in package.get("externalRefs", []):
                 self.assertEqual(("PACKAGE-MANAGER", "purl"), (reference["referenceCategory"], reference["referenceType"]))
-                self.assertRegex(reference["referenceLocator"], r"^pkg:deb/debian/[a-z0-9.+-]+@[^?\s+]+\?arch=\w+$")
+                self.assertRegex(reference["referenceLocator"], r"^pkg:(deb/debian/[a-z0-9.+-]+@[^?\s+]+\?arch=\w+|npm/[a-z0-9%/._-]+@[\d.]+)$")
 
     def test_relations_name_what_is_there(self):
         ids = set(self.by_id) | {"SPDXRef-DOCUMENT"}

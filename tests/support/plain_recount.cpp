@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -248,8 +249,12 @@ class Counter {
         edges_[std::minmax(u, v)].push_back({f, u < v});
       }
     }
+    std::set<std::uint32_t> told;  // corners of faces with one that is not finite: what ends there is told by that
+    for (std::size_t f = 0; f < loops_.size(); ++f) {
+      if (valid_[f] && !is_finite(loops_[f])) told.insert(loops_[f].begin(), loops_[f].end());
+    }
     for (const auto& [edge, uses] : edges_) {
-      add("boundary-edge", uses.size() == 1);
+      add("boundary-edge", uses.size() == 1 && told.count(edge.first) == 0 && told.count(edge.second) == 0);
       add("non-manifold-edge", uses.size() > 2);
       add("winding-inconsistent", uses.size() == 2 && uses[0].forward == uses[1].forward);
       add("folded-edge", uses.size() == 2 && is_fold(edge, uses));

@@ -177,21 +177,14 @@ bool Seeder::unweld_vertex() {
 }
 
 // A vertex that faces name keeps its place among them, whatever its coordinates. Corners without a vertex (STL) are each a NaN
-// of their own, so that the faces come apart.
+// of their own, so that the faces come apart; where they end then is no finding of its own.
 bool Seeder::non_finite_vertex() {
   if (!setting_.has_non_finite) return false;
   const auto v = free_vertex(&Seeder::is_triangle_fan);
   if (!v) return false;
   std::vector<Vertex> copies = {*v};
   const std::vector<Face>& faces = faces_at_[*v];
-  if (!setting_.has_vertices) {
-    cut_apart(*v, copies);
-    for (std::size_t k = 0; k < faces.size(); ++k) {
-      for (const Vertex end : clean_loops_[faces[k]]) {
-        if (end != *v) find("boundary-edge", {faces[k]}, {copies[k], end});
-      }
-    }
-  }
+  if (!setting_.has_vertices) cut_apart(*v, copies);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double bad[] = {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity};
   for (const Vertex copy : copies) {

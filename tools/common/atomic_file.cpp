@@ -84,6 +84,7 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
 }
 
 int AtomicFile::open_target() {
+  if (!is_wanted()) return 0;
   if (path_ == "-") {
     descriptor_ = kStandardOutput;
     return 0;
@@ -133,7 +134,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view bytes) {
-  while (ok() && !bytes.empty()) {
+  while (ok() && is_wanted() && !bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return fail(written < 0 ? errno : EIO);
@@ -197,7 +198,7 @@ bool AtomicFile::commit() {
     fail(errno);
     return false;
   }
-  if (descriptor_ == kStandardOutput) return true;
+  if (descriptor_ == kStandardOutput || !is_wanted()) return true;
   const int descriptor = descriptor_;
   descriptor_ = -1;
   if (close(descriptor) != 0) {

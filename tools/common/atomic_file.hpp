@@ -14,7 +14,8 @@ namespace fdcg::tools {
 // An output named by the user. "-" is standard output, and so is any name of the same file; a device or a pipe is written
 // straight; a symbolic link stays a link and its target is replaced. Until commit() nothing is seen under the name, and what
 // was there before stays as it was: the file beside it is removed by the destructor, by a failure, and when a signal that can
-// be caught ends the program. Errors stick: after the first one write() does nothing and commit() returns false.
+// be caught ends the program. Errors stick: after the first one write() does nothing and commit() returns false. Without a name
+// there is no output: what is written is dropped, and commit() succeeds.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);  // opens now, so that an unwritable target is known before the work is done
@@ -22,6 +23,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
+  [[nodiscard]] bool is_wanted() const { return !path_.empty(); }
   [[nodiscard]] bool ok() const { return error_.empty(); }
   [[nodiscard]] const std::string& error() const { return error_; }  // one line: the path, what went wrong
   void write(std::string_view bytes);

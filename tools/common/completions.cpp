@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <string_view>
 
+#include "shared/text.hpp"
+
 namespace fdcg::tools {
 namespace {
 
 std::string command_of(const HelpPage& page) {
   return page.name.substr(page.name.find(' ') + 1);
-}
-
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : separator) + word;
-  return text;
 }
 
 // bash: the names of a function that takes '-' for '_'.
@@ -48,7 +43,7 @@ std::string bash_cases(const HelpPage& page) {
       for (const std::string& name : row.names)
         labels.push_back(command_of(page) + ":" + name);
       const std::string kind = names_a_file(row.value) ? "file" : "value";
-      text += "    " + joined(labels, " | ") + ") kind=" + kind + " words='" + joined(row.words, " ") + "' ;;\n";
+      text += "    " + listed(labels, " | ") + ") kind=" + kind + " words='" + listed(row.words, " ") + "' ;;\n";
     }
   }
   std::vector<std::string> words;
@@ -57,8 +52,8 @@ std::string bash_cases(const HelpPage& page) {
     words.insert(words.end(), row.words.begin(), row.words.end());
     takes_file = takes_file || names_a_file(row.value);
   }
-  return text + "    " + command_of(page) + ":*) kind=" + (takes_file ? "file" : "value") + " words='" + joined(words, " ") +
-         "' options='" + joined(option_names(page), " ") + "' ;;\n";
+  return text + "    " + command_of(page) + ":*) kind=" + (takes_file ? "file" : "value") + " words='" + listed(words, " ") +
+         "' options='" + listed(option_names(page), " ") + "' ;;\n";
 }
 
 // Inside '...', in the part of a specification of _arguments that stands in brackets.
@@ -73,7 +68,7 @@ std::string zsh_text(const std::string& text) {
 
 std::string zsh_value(const HelpRow& row) {
   if (row.value.empty()) return "";
-  const std::string action = !row.words.empty() ? "(" + joined(row.words, " ") + ")" : names_a_file(row.value) ? "_files" : " ";
+  const std::string action = !row.words.empty() ? "(" + listed(row.words, " ") + ")" : names_a_file(row.value) ? "_files" : " ";
   return ":" + zsh_text(row.value) + ":" + action;
 }
 
@@ -82,7 +77,7 @@ std::string zsh_option(const HelpRow& row) {
   const auto form = [&row](const std::string& name) {
     return name + (row.value.empty() || !name.starts_with("--") ? "" : "=");
   };
-  const std::string others = row.is_repeatable ? "*" : "(" + joined(row.names, " ") + ")";
+  const std::string others = row.is_repeatable ? "*" : "(" + listed(row.names, " ") + ")";
   std::string text;
   for (const std::string& name : row.names)
     text += " \\\n        '" + others + form(name) + help + "'";
@@ -120,7 +115,7 @@ std::string bash_completion(const std::vector<HelpPage>& pages) {
   [[ $previous == '=' ]] && previous=${COMP_WORDS[COMP_CWORD - 2]}
   for ((i = 1; i < COMP_CWORD; ++i)); do
     case ${COMP_WORDS[i]} in
-    )" + joined(commands, " | ") +
+    )" + listed(commands, " | ") +
          R"()
       command=${COMP_WORDS[i]}
       break
@@ -129,7 +124,7 @@ std::string bash_completion(const std::vector<HelpPage>& pages) {
   done
   case $command:$previous in
     :*) words=')" +
-         joined(commands, " ") + "' options='" + joined(option_names(program), " ") + "' ;;\n" + cases + R"(  esac
+         listed(commands, " ") + "' options='" + listed(option_names(program), " ") + "' ;;\n" + cases + R"(  esac
   [[ $word == -* ]] && words=$options
   if [[ -n $words ]]; then
     COMPREPLY=($(compgen -W "$words" -- "$word"))

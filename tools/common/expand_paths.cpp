@@ -6,6 +6,8 @@
 #include <set>
 #include <system_error>
 
+#include "shared/text.hpp"
+
 namespace fdcg::tools {
 namespace {
 
@@ -131,39 +133,35 @@ void match(const std::string& prefix, const std::vector<std::string>& components
   }
 }
 
-bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
-  std::string ending = fs::path(name).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), lower);
-  return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
+// What is looked for in folders, and what is beside it.
+struct Wanted {
+  const std::vector<std::string>& endings;
+  const std::vector<std::string>& other_endings;
+};
 
-void walk(const std::string& prefix, const std::vector<std::string>& endings, std::set<std::string>& found) {
+void walk(const std::string& prefix, const Wanted& wanted, std::set<std::string>& found, std::set<std::string>& others) {
   for (const fs::directory_entry& entry : entries_of(prefix)) {
     const std::string name = entry.path().filename().string();
     if (is_hidden(name)) continue;
     if (is_real_folder(entry)) {
-      walk(prefix + name + "/", endings, found);
-    } else if (is_file(entry) && has_ending(name, endings)) {
+      walk(prefix + name + "/", wanted, found, others);
+    } else if (is_file(entry) && has_ending(name, wanted.endings)) {
       found.insert(prefix + name);
+    } else if (is_file(entry) && has_ending(name, wanted.other_endings)) {
+      others.insert(prefix + name);
     }
   }
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words)
-    text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 // The files of one argument, sorted; or its problem.
-std::vector<NamedFile> expand(const std::string& argument, const std::vector<std::string>& endings) {
+std::vector<NamedFile> expand(const std::string& argument, const Wanted& wanted, std::set<std::string>& others) {
   std::error_code ignored;
   std::set<std::string> found;
   const bool is_there = fs::exists(argument, ignored);
   if (argument != "-" && fs::is_directory(argument, ignored)) {
-    walk(argument.ends_with('/') ? argument : argument + "/", endings, found);
-    if (found.empty()) return {{argument, "is a directory without a mesh file (" + joined(endings) + "); name a mesh file"}};
+    walk(argument.ends_with('/') ? argument : argument + "/", wanted, found, others);
+    if (found.empty())
+      return {{argument, "is a directory without a mesh file (" + listed(wanted.endings) + "); name a mesh file"}};
   } else if (argument == "-" || is_there || !is_pattern(argument)) {
     return {{argument, ""}};
   } else {
@@ -180,6 +178,18 @@ std::vector<NamedFile> expand(const std::string& argument, const std::vector<std
 }
 
 }  // namespace
+
+const std::vector<std::string>& mesh_endings() {
+  static const std::vector<std::string> kEndings{".off", ".obj", ".ply", ".stl", ".gltf", ".glb", ".drc",
+                                                 ".dae", ".zae", ".3mf", ".vtk", ".vtp",  ".x3d"};
+  return kEndings;
+}
+
+bool has_ending(const std::string& name, const std::vector<std::string>& endings) {
+  std::string ending = fs::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), lower);
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
 
 bool matches_pattern(std::string_view name, std::string_view pattern) {
   std::size_t n = 0, p = 0;
@@ -205,13 +215,21 @@ bool matches_pattern(std::string_view name, std::string_view pattern) {
 }
 
 std::vector<NamedFile> expand_paths(const std::vector<std::string>& arguments, const std::vector<std::string>& endings) {
+  return expand_paths(arguments, endings, {}, nullptr);
+}
+
+std::vector<NamedFile> expand_paths(const std::vector<std::string>& arguments, const std::vector<std::string>& endings,
+                                    const std::vector<std::string>& other_endings, std::vector<std::string>* others) {
+  const Wanted wanted{endings, other_endings};
+  std::set<std::string> beside;
   std::vector<NamedFile> files;
   std::set<std::string> seen;
   for (const std::string& argument : arguments) {
-    for (NamedFile& file : expand(argument, endings)) {
+    for (NamedFile& file : expand(argument, wanted, beside)) {
       if (seen.insert(file.path).second) files.push_back(std::move(file));
     }
   }
+  if (others != nullptr) others->assign(beside.begin(), beside.end());
   return files;
 }
 

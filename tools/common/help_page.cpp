@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "shared/text.hpp"
+
 namespace fdcg::tools {
 namespace {
 
@@ -115,9 +117,7 @@ std::string usage_line(const HelpPage& page) {
 }
 
 std::string names_and_value(const HelpRow& row) {
-  std::string text;
-  for (const std::string& name : row.names)
-    text += (text.empty() ? "" : ", ") + name;
+  std::string text = listed(row.names);
   if (!row.value.empty()) text += (text.empty() ? "" : " ") + row.value;
   return text;
 }

@@ -7,12 +7,18 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fdcg::tools {
 
 // The whole of `text` as a finite number in (low, high); nothing else counts.
 std::optional<double> parse_number_between(const std::string& text, double low, double high);
+
+// The same, or a ValidationError: "'text' is WRONG".
+double number_between(const std::string& option, const std::string& text, double low, double high, const std::string& wrong);
+
+double positive_number(const std::string& option, const std::string& text, const std::string& wrong);
 
 // `value` is one of `choices`, or a ValidationError that lists them and names the nearest.
 void require_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices);
@@ -25,18 +31,60 @@ std::string offering(const std::string& help, const std::vector<std::string>& wo
 // A whole number in these bounds.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
-// A word of `choices`.
-CLI::Option* choice_option(CLI::App& command, const std::string& name, const std::function<void(const std::string&)>& set,
-                           const std::string& help, const std::vector<std::string>& choices);
-CLI::Option* choice_option(CLI::App& command, const std::string& name, std::string& value, const std::string& help,
-                           const std::vector<std::string>& choices);
-
-// `unit` is for the message: " N/m".
+// Both included; `unit` is for the message: " N/m".
 struct NumberBounds {
   double least = 0, most = 0;
   std::string unit = {};
 };
-CLI::Option* number_option(CLI::App& command, const std::string& name, double& value, const NumberBounds& bounds,
-                           const std::string& help);
+
+using Parse = std::function<void(const std::string&)>;  // of a value's text; may throw ValidationError
+
+// A positional argument that has to be there. `value`: its name in the help, "FILE".
+template <class Target>
+void required_argument(CLI::App& command, const std::string& name, const std::string& value, Target& target,
+                       const std::string& help) {
+  command.add_option(name, target, help)->required()->type_name(value);
+}
+
+// Declares the options of one group of a command's help. `value`: the value's name, "FILE". `shown_default`: empty where there
+// is none that is worth a word.
+class OptionGroup {
+ public:
+  OptionGroup(CLI::App& command, std::string title) : command_(command), title_(std::move(title)) {}
+
+  CLI::Option* flag(const std::string& names, bool& target, const std::string& help) const;
+  CLI::Option* text(const std::string& names, const std::string& value, std::string& target, const std::string& help,
+                    const std::string& shown_default = {}) const;
+  CLI::Option* parsed(const std::string& name, const std::string& value, const Parse& parse, const std::string& help,
+                      const std::string& shown_default = {}) const;
+  // May be given more than once; `parse` gets each value.
+  CLI::Option* repeated(const std::string& name, const std::string& value, const Parse& parse, const std::string& help,
+                        const std::string& shown_default = {}) const;
+  CLI::Option* number(const std::string& name, const std::string& value, double& target, const NumberBounds& bounds,
+                      const std::string& help, const std::string& shown_default) const;
+  // --jobs N; `help`: what does not depend on it.
+  void jobs(unsigned& target, const std::string& help) const;
+
+  // A word, and what it stands for. The first is the default where `shown_default` is not given.
+  template <class Value>
+  using Words = std::vector<std::pair<std::string, Value>>;
+  template <class Value, class Target>
+  CLI::Option* choice(const std::string& name, const std::string& value, const Words<Value>& words, Target& target,
+                      const std::string& help, const std::optional<std::string>& shown_default = {}) const {
+    std::vector<std::string> names;
+    for (const auto& [word, meaning] : words)
+      names.push_back(word);
+    const auto parse = [name, words, names, &target](const std::string& text) {
+      require_choice(name, text, names);
+      for (const auto& [word, meaning] : words)
+        if (word == text) target = meaning;
+    };
+    return parsed(name, value, parse, one_of(help, names), shown_default.value_or(names.front()));
+  }
+
+ private:
+  CLI::App& command_;
+  std::string title_;
+};
 
 }  // namespace fdcg::tools

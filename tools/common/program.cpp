@@ -128,6 +128,14 @@ int fail(int exit_code, std::string_view message) {
   return exit_code;
 }
 
+int commit_all(const std::vector<AtomicFile*>& files, int exit_code) {
+  for (const AtomicFile* const file : files)
+    if (!file->ok()) return fail(kFile, file->error());
+  for (AtomicFile* const file : files)
+    if (!file->commit()) return fail(kFile, file->error());
+  return exit_code;
+}
+
 void warn(std::string_view message) {
   std::fprintf(stderr, "%s: warning: %.*s\n", invocation().program.c_str(), static_cast<int>(message.size()), message.data());
 }

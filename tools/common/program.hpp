@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "atomic_file.hpp"
+
 namespace fdcg::tools {
 
 // The promise of the command line; of several files the first in this order that occurred: internal, file, findings, clean.
@@ -33,6 +35,8 @@ int run_program(const Program& program, int argc, char** argv);
 
 // "PROGRAM: message" on standard error; returns the code. After wrong usage it names the help of the command that runs.
 int fail(int exit_code, std::string_view message);
+// Gives the outputs their names, in this order, once all of them are sound: `exit_code`, or what fail(kFile, ...) returns.
+int commit_all(const std::vector<AtomicFile*>& files, int exit_code = kClean);
 // "PROGRAM: warning: message" on standard error.
 void warn(std::string_view message);
 

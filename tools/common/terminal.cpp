@@ -38,9 +38,13 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
-std::string short_number(double value) {
+std::string counted(std::uint64_t count, const std::string& singular) {
+  return grouped(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+std::string short_number(double value, int digits) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
 }
 

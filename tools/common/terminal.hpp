@@ -16,8 +16,9 @@ bool is_terminal(Stream stream);
 // The stream is a terminal, and neither NO_COLOR (https://no-color.org) nor TERM=dumb forbids it.
 bool wants_colour(Stream stream);
 
-std::string grouped(std::uint64_t number);  // 1234567 -> "1,234,567"
-std::string short_number(double value);     // six significant digits
+std::string grouped(std::uint64_t number);                              // 1234567 -> "1,234,567"
+std::string counted(std::uint64_t count, const std::string& singular);  // "1 contact", "2,000 nodes"
+std::string short_number(double value, int digits = 6);                 // significant ones
 
 // A bar on standard error, drawn once the work has taken a second, wiped when it ends. Nothing where standard error is no
 // terminal or `enabled` is false.

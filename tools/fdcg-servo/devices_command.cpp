@@ -94,14 +94,10 @@ Command add_devices(CLI::App& app) {
   command->add_option("--profile", arguments->search.profile_files, "Match these profiles too, beside the built-in ones.")
       ->type_name("FILE...")
       ->group("Devices");
-  tools::choice_option(*command, "--hid", arguments->search.backend, "Back end of hidapi.", {"hidraw", "libusb"})
-      ->type_name("BACKEND")
-      ->default_str("hidraw, then libusb")
-      ->group("Devices");
-  CLI::Option* const json = command->add_flag("--json", arguments->json, "Print JSON.")->group("Output");
-  command->add_flag("--udev", arguments->udev, "Print udev rules that let users open the devices of the profiles.")
-      ->excludes(json)
-      ->group("Output");
+  add_hid_option(tools::OptionGroup(*command, "Devices"), arguments->search.backend, "hidraw, then libusb");
+  const tools::OptionGroup output(*command, "Output");
+  CLI::Option* const json = output.flag("--json", arguments->json, "Print JSON.");
+  output.flag("--udev", arguments->udev, "Print udev rules that let users open the devices of the profiles.")->excludes(json);
   return {command, [arguments] { return run_devices(*arguments); }};
 }
 

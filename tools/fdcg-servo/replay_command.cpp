@@ -5,9 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "../common/atomic_file.hpp"
+#include "../common/expand_paths.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "fdcg/device_tools.hpp"
@@ -16,6 +16,7 @@
 #include "path_warnings.hpp"
 #include "replay_session.hpp"
 #include "servo_commands.hpp"
+#include "status_text.hpp"
 #include "step_time_histogram.hpp"
 #include "trajectory_csv.hpp"
 
@@ -27,11 +28,10 @@ using tools::grouped;
 using tools::short_number;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kChunkTicks =
-    4096;  // stepped in one go, then logged: so that writing the log does not chill the step's caches
+// Stepped in one go, then logged: writing the log must not empty the caches between two steps.
+constexpr std::size_t kChunkTicks = 4096;
 constexpr int kClockSamples = 20001;
 constexpr int kBarWidth = 50;
-constexpr const char* kStates[] = {"free", "face", "edge", "vertex"};
 constexpr const char* kLogHeader = "t,hip_x,hip_y,hip_z,go_x,go_y,go_z,fx,fy,fz,state,feature,slip,transitions\n";
 
 struct ReplayArguments {
@@ -50,7 +50,7 @@ struct Tick {
   std::uint64_t step_ns = 0;
 };
 
-struct Summary {
+struct ReplaySummary {
   StepTimeHistogram step_ns, contact_ns, transitions;
   std::uint64_t ticks = 0, slipping = 0;
   std::uint64_t in_state[4] = {};
@@ -72,7 +72,7 @@ std::uint64_t nanoseconds(Clock::duration time) {
       std::max<std::int64_t>(0, std::chrono::duration_cast<std::chrono::nanoseconds>(time).count()));
 }
 
-// Between two readings with nothing between them: what each measured step contains of the clock itself.
+// The time between two readings of the clock: the part of each measured step that is the clock's own.
 std::uint64_t clock_cost_ns() {
   StepTimeHistogram cost;
   for (int i = 0; i < kClockSamples; ++i) {
@@ -83,7 +83,7 @@ std::uint64_t clock_cost_ns() {
 }
 
 // The force against the plane of the active face: its normal and tangential part.
-void measure_force(const fdcg_graph& graph, const fdcg_result& result, Summary& summary) {
+void measure_force(const fdcg_graph& graph, const fdcg_result& result, ReplaySummary& summary) {
   const double* const f = result.force_n;
   const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   summary.largest_force_n = std::max(summary.largest_force_n, std::sqrt(square));
@@ -115,15 +115,15 @@ void append_row(std::string& text, const TrajectoryPoint& point, const fdcg_resu
     append(text, x);
   for (const double x : result.force_n)
     append(text, x);
-  text += kStates[std::min<std::uint32_t>(result.state, FDCG_VERTEX)];
+  text += state_name(result.state);
   text += ',' + (result.feature == FDCG_NONE ? std::string("-1") : std::to_string(result.feature));
   text += ',' + std::to_string(result.slipping) + ',' + std::to_string(result.transitions) + '\n';
 }
 
 // Steps every point, logs every tick. The clock is read around the step alone.
-Summary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
-               fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile* log) {
-  Summary summary;
+ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
+                     fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log) {
+  ReplaySummary summary;
   std::vector<Tick> ticks(std::min(kChunkTicks, points.size()));
   std::string text = kLogHeader;
   for (std::size_t begin = 0; begin < points.size(); begin += kChunkTicks) {
@@ -137,9 +137,9 @@ Summary replay(const fdcg_graph& graph, const fdcg_params& params, const std::ve
     for (std::size_t i = 0; i < count; ++i) {
       summary.add(ticks[i]);
       measure_force(graph, ticks[i].result, summary);
-      if (log != nullptr) append_row(text, points[begin + i], ticks[i].result);
+      if (log.is_wanted()) append_row(text, points[begin + i], ticks[i].result);
     }
-    if (log != nullptr) log->write(text);
+    log.write(text);
     text.clear();
   }
   return summary;
@@ -178,22 +178,26 @@ std::string histogram_text(const StepTimeHistogram& histogram) {
   return text;
 }
 
-std::string summary_text(const Summary& summary, const fdcg_contact& contact, std::uint64_t clock_ns) {
+std::string replay_text(const ReplaySummary& summary, const fdcg_contact& contact, std::uint64_t clock_ns) {
   const std::uint64_t touching = summary.ticks - summary.in_state[FDCG_FREE];
-  std::string text = "ticks            " + grouped(summary.ticks) + ", " + percent(touching, summary.ticks) + " in contact, " +
-                     percent(summary.slipping, touching) + " of these slipping\n";
+  std::string text = "ticks            " + grouped(summary.ticks) + ", ";
+  text += touching == 0 ? "never in contact: the path touches nothing\n"
+                        : percent(touching, summary.ticks) + " in contact, " + percent(summary.slipping, touching) +
+                              " of these slipping\n";
   text += "states          ";
   for (int state = FDCG_FREE; state <= FDCG_VERTEX; ++state) {
-    text += std::string(state == 0 ? " " : ", ") + kStates[state] + " " + grouped(summary.in_state[state]);
+    text += std::string(state == 0 ? " " : ", ") + state_name(state) + " " + grouped(summary.in_state[state]);
   }
   text += "\ntransitions      p50 " + grouped(summary.transitions.quantile(0.5)) + ", p99.9 " +
           grouped(summary.transitions.quantile(0.999)) + ", max " + grouped(summary.transitions.largest()) + " a step\n";
   text += "step time        " + quantiles(summary.step_ns, " ns") + "\n";
-  text += "  in contact     " + quantiles(summary.contact_ns, " ns") + "\n";
+  if (touching != 0) text += "  in contact     " + quantiles(summary.contact_ns, " ns") + "\n";
   text +=
       "  (the clock's own " + grouped(clock_ns) + " ns, a median, subtracted from each)\n" + histogram_text(summary.step_ns);
-  text += "largest force    " + short_number(summary.largest_force_n) + " N\n";
-  text += "friction ratio   " + short_number(summary.largest_ratio) + " at most on faces (tangential over normal force)\n";
+  if (touching != 0) {
+    text += "largest force    " + short_number(summary.largest_force_n) + " N\n";
+    text += "friction ratio   " + short_number(summary.largest_ratio) + " at most on faces (tangential over normal force)\n";
+  }
   const auto counted = [&text](std::uint64_t ticks, const char* what) {
     if (ticks != 0) text += grouped(ticks) + (ticks == 1 ? " tick " : " ticks ") + what + "\n";
   };
@@ -229,13 +233,23 @@ int run_session(const ReplayArguments& arguments, const std::string& given) {
       {arguments.graph, arguments.graphs, arguments.log, arguments.touches, arguments.rewritten, arguments.quiet});
 }
 
-// What the command line asks for is no replay of a graph.
+// Opens the graph, or returns fail's code. `otherwise`: what the file could have been instead.
+int open_graph(const std::string& path, fdcg_graph* graph, const std::string& otherwise = {}) {
+  fdcg_error error{};
+  if (fdcg_open_file(path.c_str(), FDCG_VERIFY_SAFE, graph, &error) == FDCG_OK) return kClean;
+  if (!tools::is_stream(path) && tools::has_ending(path, tools::mesh_endings())) {
+    const std::string stem = path.substr(0, path.rfind('.'));
+    return fail(kFile, "'" + path + "' is a mesh; compile it first: fdcg compile " + path + " -o " + stem + ".fdcg");
+  }
+  return fail(kFile, otherwise + error.message);
+}
+
+// Refuses a command line that is no replay of a graph.
 int check_inputs(const ReplayArguments& arguments) {
   if (arguments.trajectory.empty() && arguments.path.empty()) {
     fdcg_graph graph{};
-    fdcg_error error{};
-    if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK)
-      return fail(kFile, std::string("neither a session's log nor a graph: ") + error.message);
+    if (const int code = open_graph(arguments.graph, &graph, "neither a session's log nor a graph: "); code != kClean)
+      return code;
     fdcg_close(&graph);
     return fail(kUsage, "--trajectory is required, or --path: '" + arguments.graph +
                             "' is no session's log, and a graph needs a path of the hand");
@@ -256,22 +270,17 @@ int get_path(const ReplayArguments& arguments, const fdcg_graph& graph, std::vec
   }
   *points = slide_path(graph, &message);
   if (points->empty()) return fail(kFile, arguments.graph + ": " + message);
-  if (arguments.written_path.empty()) return kClean;
   AtomicFile file(arguments.written_path);
   file.write(trajectory_csv(*points));
-  return file.commit() ? kClean : fail(kFile, file.error());
+  return tools::commit_all({&file});
 }
 
 int run_replay(const ReplayArguments& arguments) {
   if (const int code = check_inputs(arguments); code != kClean) return code;
-  std::optional<AtomicFile> log;
-  if (!arguments.log.empty()) log.emplace(arguments.log);
-  if (log && !log->ok()) return fail(kFile, log->error());
+  AtomicFile log(arguments.log);
+  if (!log.ok()) return fail(kFile, log.error());
   fdcg_graph graph{};
-  fdcg_error error{};
-  if (fdcg_open_file(arguments.graph.c_str(), FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK) {
-    return fail(kFile, error.message);
-  }
+  if (const int code = open_graph(arguments.graph, &graph); code != kClean) return code;
   std::vector<TrajectoryPoint> points;
   if (const int code = get_path(arguments, graph, &points); code != kClean) {
     fdcg_close(&graph);
@@ -279,52 +288,35 @@ int run_replay(const ReplayArguments& arguments) {
   }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};
-  const Summary summary = replay(graph, arguments.params, points, contact, clock_ns, log ? &*log : nullptr);
+  const ReplaySummary summary = replay(graph, arguments.params, points, contact, clock_ns, log);
   if (summary.in_state[FDCG_FREE] == summary.ticks) warn_of_nothing_touched(graph, points, arguments.trajectory);
   fdcg_close(&graph);
-  if (log && !log->commit()) return fail(kFile, log->error());
+  if (const int code = tools::commit_all({&log}); code != kClean) return code;
   if (!arguments.quiet)
-    std::fputs(summary_text(summary, contact, clock_ns).c_str(),
+    std::fputs(replay_text(summary, contact, clock_ns).c_str(),
                tools::is_stream(arguments.log) || tools::is_stream(arguments.written_path) ? stderr : stdout);
   return kClean;
 }
 
-void add_graph_options(CLI::App& command, const std::shared_ptr<ReplayArguments>& arguments) {
+void add_graph_options(CLI::App& command, ReplayArguments& arguments) {
   constexpr double kLargest = 1e9;  // fdcg_check_params
-  CLI::Option* const trajectory = command.add_option(
-      "--trajectory", arguments->trajectory, "Recorded HIP: a CSV file with columns t, x, y and z. - is standard input.");
-  trajectory->type_name("FILE")->group("Path of the hand");
-  CLI::Option* const path =
-      tools::choice_option(command, "--path", arguments->path,
-                           "Make a path for this graph: approach, press, slide there and back, lift.", {"slide"});
-  path->type_name("KIND")->excludes(trajectory)->group("Path of the hand");
-  command.add_option("--write-path", arguments->written_path, "Write the path that --path made to FILE (CSV).")
-      ->type_name("FILE")
-      ->needs(path)
-      ->group("Path of the hand");
-  fdcg_params& params = arguments->params;
-  tools::number_option(command, "--mu-s", params.mu_static, {0, kLargest}, "Coefficient of static friction, not below --mu-d.")
-      ->type_name("MU")
-      ->default_str("0.6")
-      ->group("Contact");
-  tools::number_option(command, "--mu-d", params.mu_dynamic, {0, kLargest}, "Coefficient of dynamic friction.")
-      ->type_name("MU")
-      ->default_str("0.4")
-      ->group("Contact");
-  tools::number_option(command, "--stiffness", params.stiffness_n_per_m, {0, kLargest, " N/m"}, "Stiffness of the spring, N/m.")
-      ->type_name("K")
-      ->default_str("1000")
-      ->group("Contact");
-  const auto set_edge_friction = [arguments](const std::string& name) {
-    arguments->params.edge_friction = name == "wedge" ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
-  };
-  tools::choice_option(command, "--edge-friction", set_edge_friction,
-                       "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 "
-                       "paper.",
-                       {"wedge", "paper"})
-      ->type_name("RULE")
-      ->default_str("wedge")
-      ->group("Contact");
+  const tools::OptionGroup path(command, "Path of the hand"), contact(command, "Contact");
+  CLI::Option* const trajectory = path.text("--trajectory", "FILE", arguments.trajectory,
+                                            "Recorded HIP: a CSV file with columns t, x, y and z. - is standard input.");
+  CLI::Option* const kind =
+      path.choice<std::string>("--path", "KIND", {{"slide", "slide"}}, arguments.path,
+                               "Make a path for this graph: approach, press, slide there and back, lift.", "");
+  kind->excludes(trajectory);
+  path.text("--write-path", "FILE", arguments.written_path, "Write the path that --path made to FILE (CSV).")->needs(kind);
+  fdcg_params& params = arguments.params;
+  contact.number("--mu-s", "MU", params.mu_static, {0, kLargest}, "Coefficient of static friction, not below --mu-d.", "0.6");
+  contact.number("--mu-d", "MU", params.mu_dynamic, {0, kLargest}, "Coefficient of dynamic friction.", "0.4");
+  contact.number("--stiffness", "K", params.stiffness_n_per_m, {0, kLargest, " N/m"}, "Stiffness of the spring, N/m.", "1000");
+  contact.number("--damping", "D", params.damping_n_s_per_m, {0, kLargest, " N s/m"},
+                 "Damping along the spring, N s/m, at 1,000 ticks a second.", "0");
+  contact.choice<std::uint32_t>(
+      "--edge-friction", "RULE", {{"wedge", FDCG_EDGE_WEDGE}, {"paper", FDCG_EDGE_PAPER}}, params.edge_friction,
+      "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 paper.");
 }
 
 }  // namespace
@@ -347,28 +339,20 @@ every output is compared bit for bit.
 
 )" + tools::exit_codes("success; of a log: every output is the same", "of a log: an output differs, or ticks are missing"));
   const auto arguments = std::make_shared<ReplayArguments>();
-  command->add_option("graph", arguments->graph, "FDCG file, or the log of a session.")->required()->type_name("GRAPH");
-  add_graph_options(*command, arguments);
-  command->add_option("-o,--output", arguments->log, "Write a row for each tick to FILE (CSV). - is standard output.")
-      ->type_name("FILE")
-      ->group("Output");
-  command->add_flag("-q,--quiet", arguments->quiet, "Print no summary.")->group("Output");
-  command->add_option("--graphs", arguments->graphs, "Folder of the graphs.")
-      ->type_name("FOLDER")
-      ->default_str("where they were")
-      ->group("Log of a session");
-  command->add_option("--touches", arguments->touches, "Write a row for each touch of each contact to FILE (CSV).")
-      ->type_name("FILE")
-      ->group("Log of a session");
-  command->add_option("--write", arguments->rewritten, "Write the log anew, from the replay, to FILE.")
-      ->type_name("FILE")
-      ->group("Log of a session");
+  tools::required_argument(*command, "graph", "GRAPH", arguments->graph, "FDCG file, or the log of a session.");
+  add_graph_options(*command, *arguments);
+  const tools::OptionGroup output(*command, "Output"), session(*command, "Log of a session");
+  output.text("-o,--output", "FILE", arguments->log, "Write a row for each tick to FILE (CSV). - is standard output.");
+  output.flag("-q,--quiet", arguments->quiet, "Print no summary.");
+  session.text("--graphs", "FOLDER", arguments->graphs, "Folder of the graphs.", "where they were");
+  session.text("--touches", "FILE", arguments->touches, "Write a row for each touch of each contact to FILE (CSV).");
+  session.text("--write", "FILE", arguments->rewritten, "Write the log anew, from the replay, to FILE.");
   return {command, [arguments, command] {
             arguments->has_mu_dynamic = command->count("--mu-d") != 0;
             if (!dev::is_session_log(arguments->graph)) return run_replay(*arguments);
             std::string given;
             for (const char* const name :
-                 {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness", "--edge-friction"})
+                 {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness", "--damping", "--edge-friction"})
               if (given.empty() && command->count(name) != 0) given = name;
             return run_session(*arguments, given);
           }};

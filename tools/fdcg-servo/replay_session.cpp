@@ -18,32 +18,23 @@ using tools::AtomicFile;
 using tools::grouped;
 
 constexpr std::size_t kChunkBytes = 1 << 16;
-// An output in chunks; nothing where it was not asked for.
+// An output in chunks.
 class Output {
  public:
-  explicit Output(const std::string& path) {
-    if (!path.empty()) file_.emplace(path);
-  }
-  bool ok() const { return !file_ || file_->ok(); }
-  std::string error() const { return file_ ? file_->error() : std::string(); }
-  bool is_wanted() const { return file_.has_value(); }
+  explicit Output(const std::string& path) : file(path) {}
+
   void add(std::string_view text) {
-    if (!file_) return;
     text_ += text;
     if (text_.size() >= kChunkBytes) flush();
   }
-  bool commit() {
-    if (!file_) return true;
-    flush();
-    return file_->commit();
-  }
-
- private:
   void flush() {
-    file_->write(text_);
+    file.write(text_);
     text_.clear();
   }
-  std::optional<AtomicFile> file_;
+
+  AtomicFile file;
+
+ private:
   std::string text_;
 };
 
@@ -108,7 +99,7 @@ int replay_session(const ReplaySessionArguments& arguments) {
   if (const int code = check_outputs(arguments); code != kClean) return code;
   Output csv(arguments.csv), touches(arguments.touches), rewritten(arguments.rewritten);
   for (const Output* output : {&csv, &touches, &rewritten})
-    if (!output->ok()) return fail(kFile, output->error());
+    if (!output->file.ok()) return fail(kFile, output->file.error());
   dev::LogReplay replay;
   if (const std::string problem = replay.open(arguments.session, arguments.graphs); !problem.empty())
     return fail(kFile, problem);
@@ -118,15 +109,15 @@ int replay_session(const ReplaySessionArguments& arguments) {
   touches.add(replay.touches_header());
   rewritten.add(replay.header_bytes());
   while (replay.next()) {
-    if (csv.is_wanted()) csv.add(replay.csv_row());
-    if (touches.is_wanted()) touches.add(replay.touches_rows());
-    if (rewritten.is_wanted()) rewritten.add(replay.record_bytes());
+    if (csv.file.is_wanted()) csv.add(replay.csv_row());
+    if (touches.file.is_wanted()) touches.add(replay.touches_rows());
+    if (rewritten.file.is_wanted()) rewritten.add(replay.record_bytes());
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   rewritten.add(replay.end_bytes());
-  if (!csv.commit()) return fail(kFile, csv.error());
-  if (!touches.commit()) return fail(kFile, touches.error());
-  if (!rewritten.commit()) return fail(kFile, rewritten.error());
+  for (Output* output : {&csv, &touches, &rewritten})
+    output->flush();
+  if (const int code = tools::commit_all({&csv.file, &touches.file, &rewritten.file}); code != kClean) return code;
   const bool is_to_error =
       tools::is_stream(arguments.csv) || tools::is_stream(arguments.touches) || tools::is_stream(arguments.rewritten);
   const bool is_same = replay.is_same();

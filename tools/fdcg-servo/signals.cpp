@@ -21,7 +21,7 @@ void on_stop(int number) {
   the_stop.store(number);
 }
 
-// Without SA_RESTART: what waits for a command returns and looks.
+// Without SA_RESTART: the wait for a command is interrupted.
 void handle(int number, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -45,7 +45,7 @@ Signals::Signals(dev::SceneRun* host) {
     handle(number, SIG_IGN);
   for (const int number : {SIGTSTP, SIGTTIN})
     if (!is_ignored(number)) handle(number, on_stop);
-  fdcg_device_install_crash_handlers();  // last: they take what nobody has
+  fdcg_device_install_crash_handlers();  // last: they handle the signals that are left
 }
 
 Signals::~Signals() {

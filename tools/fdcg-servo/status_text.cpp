@@ -24,9 +24,6 @@ double norm(const double* x) {
   return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-const char* state_name(std::uint32_t state) {
-  return kStates[std::min<std::uint32_t>(state, FDCG_VERTEX)];
-}
 const char* phase_name(dev::Phase phase) {
   return kPhases[static_cast<int>(phase)];
 }
@@ -42,7 +39,7 @@ Json times_json(const dev::TimeHistogram& histogram) {
   return json;
 }
 
-// Not a number in JSON: null.
+// NaN and infinities become null.
 Json vector_json(const double* x) {
   Json json = Json::array();
   for (int i = 0; i < 3; ++i)
@@ -113,7 +110,7 @@ std::string rejected_text(const dev::TickCounters& counters) {
   return total == 0 ? text : text + ")";
 }
 
-// A recording's end disarms as an unplugged device does, and is told apart.
+// The end of a recording disarms like an unplugged device, and is not counted here.
 std::string disarmed_text(const dev::TickCounters& counters, bool is_over) {
   std::string text;
   for (int i = 1; i < dev::kFaults; ++i) {
@@ -135,6 +132,10 @@ std::uint64_t rejected_in_all(const dev::TickCounters& counters) {
   for (int i = 1; i < dev::kVerdicts; ++i)
     total += counters.rejected[i];
   return total;
+}
+
+const char* state_name(std::uint32_t state) {
+  return kStates[std::min<std::uint32_t>(state, FDCG_VERTEX)];
 }
 
 std::string status_line(const DeviceLook& look, std::size_t name_width) {

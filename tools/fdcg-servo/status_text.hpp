@@ -2,6 +2,7 @@
 // What fdcg-servo run says of its devices: lines for people, JSON lines for programs (schemas/servo-status.schema.json).
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@ namespace fdcg::servo {
 
 using dev::DeviceLook;
 
+// Of an fdcg_state: "face".
+const char* state_name(std::uint32_t state);
 // "right hand   armed       1000/s  face    1.23 N  lost 0, rejected 0, late 0"; no line end. `name_width`: of the column.
 std::string status_line(const DeviceLook& look, std::size_t name_width);
 // One object; no line end. `event`: "status" or "end".

@@ -26,6 +26,7 @@ struct CompileArguments {
   std::string output;
   std::string depfile;
   std::string report;
+  std::string repair;  // a level; empty: none
   std::string unit_text = kDefaultUnit;
   std::optional<bake::Format> input_format;
   bake::CompileOptions options;
@@ -46,8 +47,10 @@ std::string escaped_for_make(const std::string& name) {
   return text;
 }
 
-std::string plural(std::uint64_t count, const std::string& singular) {
-  return grouped(count) + " " + singular + (count == 1 ? "" : "s");
+fdcg_header header_of(const bake::Compiled& compiled) {
+  fdcg_header header;
+  std::memcpy(&header, compiled.file().data(), sizeof header);
+  return header;
 }
 
 // Of the file as it stands in memory: what it weighs, or why it does not say.
@@ -63,42 +66,62 @@ std::string mass_summary(const bake::Compiled& compiled) {
   return volume + ", " + short_number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + short_number(mass.mass_kg) + " kg\n";
 }
 
+// What the repair did, and how far it moved the surface.
+std::string repair_summary(const bake::RepairAccount& account, double metres_per_unit) {
+  std::string text;
+  for (const bake::RepairAction& action : account.actions) {
+    if (action.total != 0) text += "  " + action.name + ": " + action.message + "\n";
+    if (action.left != 0) text += "  " + action.name + ": " + action.left_message + "\n";
+  }
+  if (text.empty()) return "repair: nothing blocked\n";
+  const double cube = metres_per_unit * metres_per_unit * metres_per_unit;
+  return "repair: the surface moved by at most " + short_number(account.distance * metres_per_unit) +
+         " m, its volume changed by " + short_number((account.volume_after - account.volume_before) * cube) + " m^3\n" + text;
+}
+
 // What came out, for a person: sizes, types, and everything that was changed on the way.
 std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& soup, const bake::Compiled& compiled) {
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
+  const fdcg_header header = header_of(compiled);
   const double scale = header.metres_per_unit;
   std::string size;
   for (int axis = 0; axis < 3; ++axis) {
     size += (axis == 0 ? "" : " x ") + short_number((header.bounds_max[axis] - header.bounds_min[axis]) * scale);
   }
   const std::uint32_t* const types = header.connection_type_count;
-  std::string text = soup.name + ": " + plural(soup.points.size(), "point") + ", " + plural(soup.face_count(), "face") + "\n";
+  std::string text = soup.name + ": " + counted(soup.points.size(), "point") + ", " + counted(soup.face_count(), "face") + "\n";
   text += "units: " + arguments.unit_text + ", so the object measures " + size + " m\n";
   const auto changed = [&text](std::uint64_t count, const std::string& what) {
-    if (count != 0) text += plural(count, "face") + " " + what + "\n";
+    if (count != 0) text += counted(count, "face") + " " + what + "\n";
   };
   changed(compiled.flipped_faces, "turned round by --orient");
+  if (compiled.repair) text += repair_summary(*compiled.repair, header.metres_per_unit);
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
-  text += "corners lie within " + short_number(header.max_deviation * scale) + " m of their nodes' planes\n";
+  text += header.max_deviation == 0
+              ? std::string("every corner lies on the planes of its faces\n")
+              : "corners lie up to " + short_number(header.max_deviation * scale) + " m off the planes of their faces\n";
   text += mass_summary(compiled);
-  text += arguments.output + ": " + plural(header.node_count, "node") + ", " + plural(header.connection_count, "connection") +
+  text += arguments.output + ": " + counted(header.node_count, "node") + ", " + counted(header.connection_count, "connection") +
           " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
           grouped(types[FDCG_COPLANAR]) + " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " +
-          plural(header.corner_count, "corner") + ", " + plural(header.file_bytes, "byte") + "\n";
+          counted(header.corner_count, "corner") + ", " + counted(header.file_bytes, "byte") + "\n";
   return text;
+}
+
+// Of the bounding box, in the file's unit.
+double largest_side(const fdcg_header& header) {
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  return size;
 }
 
 // A large --coplanar ANGLE flattens what is not flat. Empty where that is no more than a hand may overlook: a step of a
 // thousandth of the object, 0.1 mm on one of 0.1 m, is 0.1 N at 1 N/mm, which is felt.
 std::string deviation_warning(const bake::Compiled& compiled) {
   constexpr double kLargestShare = 1e-3;
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size = std::max(size, header.bounds_max[axis] - header.bounds_min[axis]);
+  const fdcg_header header = header_of(compiled);
+  const double size = largest_side(header);
   if (!(header.max_deviation > kLargestShare * size)) return {};
   return "planes lie up to " + short_number(header.max_deviation * header.metres_per_unit) +
          " m off the corners of their faces, " + short_number(100 * header.max_deviation / size) +
@@ -110,11 +133,8 @@ std::string deviation_warning(const bake::Compiled& compiled) {
 // is large on purpose.
 std::string size_warning(const CompileArguments& arguments, const bake::Compiled& compiled) {
   constexpr double kLargest_m = 10, kSmallest_m = 1e-3;
-  fdcg_header header;
-  std::memcpy(&header, compiled.file().data(), sizeof header);
-  double size_m = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    size_m = std::max(size_m, (header.bounds_max[axis] - header.bounds_min[axis]) * header.metres_per_unit);
+  const fdcg_header header = header_of(compiled);
+  const double size_m = largest_side(header) * header.metres_per_unit;
   const std::string measures = "the object measures " + short_number(size_m) + " m; ";
   if (size_m > kLargest_m && arguments.has_default_unit())
     return measures + "if the file is in millimetres, compile with --units mm (--units m: it is in metres, and no warning)";
@@ -130,37 +150,26 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 }
 
 // Everything is written before anything gets its name, so that a failure leaves nothing.
-int write_outputs(const CompileArguments& arguments, const bake::Report& mesh_report,
+int write_outputs(const CompileArguments& arguments, const std::string& mesh_report,
                   const std::vector<std::string>& other_files, const std::vector<std::byte>& buffer, AtomicFile& out) {
   out.write(as_text(buffer));  // empty where the file was made in place
-  std::optional<AtomicFile> depfile, report;
-  if (!arguments.depfile.empty()) {
-    depfile.emplace(arguments.depfile);
-    std::string rule = escaped_for_make(arguments.output) + ": " + escaped_for_make(arguments.mesh);
-    for (const std::string& file : other_files)
-      rule += " " + escaped_for_make(file);
-    depfile->write(rule + "\n");
-    if (!depfile->ok()) return fail(kFile, depfile->error());
-  }
-  if (!arguments.report.empty()) {
-    report.emplace(arguments.report);
-    report->write(bake::report_json({mesh_report}));
-    if (!report->ok()) return fail(kFile, report->error());
-  }
-  if (report && !report->commit()) return fail(kFile, report->error());
-  if (depfile && !depfile->commit()) return fail(kFile, depfile->error());
-  if (!out.commit()) return fail(kFile, out.error());
-  return kClean;
+  AtomicFile depfile(arguments.depfile), report(arguments.report);
+  std::string rule = escaped_for_make(arguments.output) + ": " + escaped_for_make(arguments.mesh);
+  for (const std::string& file : other_files)
+    rule += " " + escaped_for_make(file);
+  depfile.write(rule + "\n");
+  if (report.is_wanted()) report.write(mesh_report);
+  return commit_all({&report, &depfile, &out});
 }
 
 // The mesh is refused: its report on standard error, and in --report.
-int refuse(const CompileArguments& arguments, const bake::Report& report) {
-  const std::string text = bake::report_text(report, wants_colour(Stream::standard_error));
+int refuse(const CompileArguments& arguments, const bake::Compiled& compiled) {
+  const std::string text = bake::report_text(compiled.report, wants_colour(Stream::standard_error));
   std::fputs(text.c_str(), stderr);
-  if (arguments.report.empty()) return kFindings;
+  if (arguments.repair.empty()) std::fputs("--repair repairs the mesh first, and says what that does to it\n", stderr);
   AtomicFile file(arguments.report);
-  file.write(bake::report_json({report}));
-  return file.commit() ? kFindings : fail(kFile, file.error());
+  if (file.is_wanted()) file.write(bake::compile_report_json(compiled));
+  return commit_all({&file}, kFindings);
 }
 
 int check_paths(const CompileArguments& arguments) {
@@ -203,6 +212,11 @@ std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<
 
 int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
+  if (!arguments.repair.empty()) {
+    if (arguments.repair != "safe" && arguments.repair != "full")
+      return fail(kUsage, "--repair: '" + arguments.repair + "' is no level; there are safe and full");
+    arguments.options.repair = arguments.repair == "safe" ? bake::RepairLevel::safe : bake::RepairLevel::full;
+  }
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
   keep_large_arrays();
@@ -217,6 +231,10 @@ int compile_mesh(CompileArguments& arguments) {
     if (is_same_file(file, arguments.output))
       return fail(kUsage, "'" + arguments.output + "' would overwrite a part of the mesh");
   }
+  if (arguments.has_default_unit() && soup->metres_per_unit > 0) {
+    arguments.options.metres_per_unit = soup->metres_per_unit;
+    arguments.unit_text = "1 unit = " + short_number(soup->metres_per_unit) + " m (the file's own)";
+  }
   out.expect(bake::likely_file_bytes(*soup, arguments.options));
   std::vector<std::byte> buffer;
   arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };
@@ -224,12 +242,14 @@ int compile_mesh(CompileArguments& arguments) {
   bar.wipe();
   if (!out.ok()) return fail(kFile, out.error());
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
-  if (compiled->file().empty()) return refuse(arguments, compiled->report);
+  if (compiled->file().empty()) return refuse(arguments, *compiled);
   if (const int code = check_loads(*compiled); code != kClean) return code;
   const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
   const std::string warnings[] = {deviation_warning(*compiled), size_warning(arguments, *compiled)};
-  if (const int code = write_outputs(arguments, compiled->report, soup->other_files, buffer, out); code != kClean) return code;
+  if (const int code = write_outputs(arguments, bake::compile_report_json(*compiled), soup->other_files, buffer, out);
+      code != kClean)
+    return code;
   if (arguments.quiet) return kClean;
   std::FILE* const stream = is_streamed ? stderr : stdout;
   if (arguments.verbose || !compiled->report.passes(bake::Severity::warning)) {
@@ -252,86 +272,57 @@ int run_compile(CompileArguments& arguments) {
   }
 }
 
-void add_graph_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
-  add_precision_option(command, arguments->options.precision, "Precision of the numbers in the file.", "Graph");
-  const auto parse_coplanar = [arguments](const std::string& text) {
+void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
+  const OptionGroup graph(command, "Graph");
+  add_precision_option(graph, options.precision, "Precision of the numbers in the file.");
+  const auto parse_coplanar = [&options](const std::string& text) {
     if (text == "exact" || text == "quantum") {
-      arguments->options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};
+      options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};
       return;
     }
-    const auto degrees = parse_number_between(text, 0, 90);
-    if (!degrees) {
-      throw CLI::ValidationError("--coplanar",
-                                 "'" + text + "' is none of exact, quantum, or an angle between 0 and 90 degrees");
-    }
-    arguments->options.coplanar = {bake::Coplanar::Kind::angle, *degrees * std::numbers::pi / 180};
+    const double degrees =
+        number_between("--coplanar", text, 0, 90, "none of exact, quantum, or an angle between 0 and 90 degrees");
+    options.coplanar = {bake::Coplanar::Kind::angle, degrees * std::numbers::pi / 180};
   };
-  command
-      .add_option_function<std::string>(
-          "--coplanar", parse_coplanar,
-          offering("Which edges count as flat: exact, those of coplanar faces; quantum, those flat within the rounding of the "
-                   "input; a number, those within that angle in degrees.",
-                   {"exact", "quantum"}))
-      ->type_name("ANGLE")
-      ->default_str("quantum")
-      ->group("Graph");
-  CLI::Option* const merge = command.add_flag("--merge,!--no-merge", arguments->options.merge,
-                                              "Merge coplanar faces into convex polygons, or keep each face.");
-  merge->default_str("--merge")->group("Graph");
-  command
-      .add_flag("--triangles", arguments->options.triangles,
-                "Split every face into triangles and merge none: for a mesh that the program deforms (fdcg/deform.h).")
-      ->excludes("--coplanar")
-      ->group("Graph");
-  command.final_callback([arguments, merge] {
-    if (arguments->options.triangles && merge->count() > 0 && arguments->options.merge)
-      throw CLI::ExcludesError("--triangles", "--merge");
+  graph.parsed("--coplanar", "ANGLE", parse_coplanar,
+               offering("Which edges count as flat: exact, those of coplanar faces; quantum, those flat within the rounding of "
+                        "the input; a number, those within that angle in degrees.",
+                        {"exact", "quantum"}),
+               "quantum");
+  CLI::Option* const merge =
+      graph.flag("--merge,!--no-merge", options.merge, "Merge coplanar faces into convex polygons, or keep each face.");
+  merge->default_str("--merge");
+  graph
+      .flag("--triangles", options.triangles,
+            "Split every face into triangles and merge none: for a mesh that the program deforms (fdcg/deform.h).")
+      ->excludes("--coplanar");
+  command.final_callback([&options, merge] {
+    if (options.triangles && merge->count() > 0 && options.merge) throw CLI::ExcludesError("--triangles", "--merge");
   });
-  const auto parse_planes = [arguments](const std::string& text) {
-    require_choice("--planes", text, {"stored", "derived"});
-    arguments->options.store_planes = text == "stored";
+  graph.choice<bool>(
+      "--planes", "PLANES", {{"stored", true}, {"derived", false}}, options.store_planes,
+      "Edge vectors, end planes and Voronoi planes: stored in the file, or derived in the step, with a smaller file.");
+  const std::vector<std::string> sections{"hierarchy", "source-map", "info", "mass", "materials"};
+  const auto leave_out = [&options, sections](const std::string& name) {
+    require_choice("--without", name, sections);
+    options.without.insert(name);
   };
-  command
-      .add_option_function<std::string>(
-          "--planes", parse_planes,
-          one_of(
-              "Edge vectors, end planes and Voronoi planes: stored in the file, or derived in the step, with a smaller file.",
-              {"stored", "derived"}))
-      ->type_name("PLANES")
-      ->default_str("stored")
-      ->group("Graph");
-  const auto parse_without = [arguments](const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-      require_choice("--without", name, {"hierarchy", "source-map", "info", "mass", "materials"});
-      arguments->options.without.insert(name);
-    }
-  };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--without", parse_without,
-          one_of("Leave a section out of the file. May be repeated.", {"hierarchy", "source-map", "info", "mass", "materials"}))
-      ->type_name("SECTION")
-      ->group("Graph")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  graph.repeated("--without", "SECTION", leave_out, one_of("Leave a section out of the file. May be repeated.", sections));
 }
 
-void add_mass_options(CLI::App& command, const std::shared_ptr<CompileArguments>& arguments) {
-  const auto add = [&](const char* name, double& value, const char* unit, const char* help) {
-    const auto parse = [&value, name, unit](const std::string& text) {
-      const auto given = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
-      if (!given) throw CLI::ValidationError(name, "'" + text + "' is no number above 0 (" + unit + ")");
-      value = *given;
-    };
-    return command.add_option_function<std::string>(name, parse, help);
+void add_mass_options(CLI::App& command, bake::CompileOptions& options) {
+  const OptionGroup group(command, "Mass");
+  const auto positive = [](const char* name, double& value, const std::string& wrong) {
+    return [&value, name, wrong](const std::string& text) { value = positive_number(name, text, wrong); };
   };
-  CLI::Option* const density = add("--density", arguments->options.density_kg_per_m3, "kilograms for a cubic metre",
-                                   "Density of the body, in kg per cubic metre; its mesh must be closed.");
-  density->type_name("DENSITY")->default_str("unknown")->group("Mass");
-  add("--mass", arguments->options.mass_kg, "kilograms", "Mass of the body in kg, instead of --density.")
-      ->type_name("KG")
-      ->excludes(density)
-      ->group("Mass");
+  CLI::Option* const density =
+      group.parsed("--density", "DENSITY",
+                   positive("--density", options.density_kg_per_m3, "no number above 0 (kilograms for a cubic metre)"),
+                   "Density of the body, in kg per cubic metre; its mesh must be closed.", "unknown");
+  group
+      .parsed("--mass", "KG", positive("--mass", options.mass_kg, "no number above 0 (kilograms)"),
+              "Mass of the body in kg, instead of --density.")
+      ->excludes(density);
 }
 
 }  // namespace
@@ -350,38 +341,31 @@ give the same bytes.
 
 )" + exit_codes("the file is written", "the mesh has errors; no file is written"));
   const auto arguments = std::make_shared<CompileArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco. - is standard input.")
-      ->required()
-      ->type_name("MESH");
+  bake::CompileOptions& options = arguments->options;
+  add_mesh_argument(*command, arguments->mesh);
   add_input_format_option(*command, arguments->input_format);
-  add_unit_options(*command, arguments->options.metres_per_unit, arguments->unit_text);
-  command->add_option("-o,--output", arguments->output, "File to write. - is standard output.")
-      ->required()
-      ->type_name("FILE")
-      ->group("Output");
-  command->add_option("--report", arguments->report, "Write the JSON report to FILE.")->type_name("FILE")->group("Output");
-  command->add_option("--depfile", arguments->depfile, "Write the dependencies for Make and Ninja to FILE.")
-      ->type_name("FILE")
-      ->group("Output");
-  CLI::Option* const quiet = command->add_flag("-q,--quiet", arguments->quiet, "Print errors only.")->group("Output");
-  command->add_flag("-v,--verbose", arguments->verbose, "Print the whole report.")->excludes(quiet)->group("Output");
-  add_weld_option(*command, arguments->options.weld);
+  add_unit_options(*command, options.metres_per_unit, arguments->unit_text);
+  const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks");
+  output.text("-o,--output", "FILE", arguments->output, "File to write. - is standard output.")->required();
+  output.text("--report", "FILE", arguments->report, "Write the JSON report to FILE.");
+  output.text("--depfile", "FILE", arguments->depfile, "Write the dependencies for Make and Ninja to FILE.");
+  CLI::Option* const quiet = output.flag("-q,--quiet", arguments->quiet, "Print errors only.");
+  output.flag("-v,--verbose", arguments->verbose, "Print the whole report.")->excludes(quiet);
+  add_weld_option(checks, options.weld);
+  checks.flag("--orient", options.orient, "Make the winding consistent and outward, and report the faces that were turned.");
+  checks.flag("--self-intersections", options.self_intersections,
+              "Also find faces that cross or touch others, and report them as warnings.");
   command
-      ->add_flag("--orient", arguments->options.orient,
-                 "Make the winding consistent and outward, and report the faces that were turned.")
+      ->add_flag(
+          "--repair{full}", arguments->repair,
+          "Where the mesh has errors, repair it first; what was done is measured and stored in the file. --repair=safe: no "
+          "point of the surface moves; --repair or --repair=full: also unfolds slivers, triangulates polygons that cross "
+          "themselves, and drops what no graph can have.")
       ->group("Mesh checks");
-  command
-      ->add_flag("--self-intersections", arguments->options.self_intersections,
-                 "Also find faces that cross or touch others, and report them as warnings.")
-      ->group("Mesh checks");
-  add_allow_option(*command, arguments->options.allow, Allowable::errors_the_graph_stands);
-  add_graph_options(*command, arguments);
-  add_mass_options(*command, arguments);
-  command->add_option("--jobs", arguments->options.jobs, "Number of threads. The output does not depend on it.")
-      ->type_name("N")
-      ->default_str("one for each core")
-      ->check(whole_number(1, 1024))
-      ->group("General");
+  add_allow_option(checks, options.allow, Allowable::errors_the_graph_stands);
+  add_graph_options(*command, options);
+  add_mass_options(*command, options);
+  OptionGroup(*command, "General").jobs(options.jobs, "The output does not depend on it.");
   return {command, [arguments] { return run_compile(*arguments); }};
 }
 

@@ -12,16 +12,9 @@
 namespace fdcg::tools {
 namespace {
 
-std::string_view severity_name(bake::Severity severity) {
-  switch (severity) {
-    case bake::Severity::note:
-      return "note";
-    case bake::Severity::warning:
-      return "warning";
-    case bake::Severity::error:
-      break;
-  }
-  return "error";
+std::string severity_name(bake::Severity severity) {
+  constexpr const char* kNames[] = {"note", "warning", "error"};
+  return kNames[static_cast<int>(severity)];
 }
 
 std::vector<std::string> rule_names() {
@@ -36,7 +29,7 @@ std::string list_of_rules() {
   for (const bake::Rule& rule : bake::rules()) {
     std::string line(rule.name);
     line.resize(std::max<std::size_t>(line.size(), 24), ' ');
-    std::string severity(severity_name(rule.severity));
+    std::string severity = severity_name(rule.severity);
     severity.resize(9, ' ');
     text += line + severity + std::string(rule.meaning) + "\n";
   }
@@ -44,7 +37,7 @@ std::string list_of_rules() {
 }
 
 std::string explanation(const bake::Rule& rule) {
-  std::string text = std::string(rule.name) + " (" + std::string(severity_name(rule.severity)) + ")\n\n";
+  std::string text = std::string(rule.name) + " (" + severity_name(rule.severity) + ")\n\n";
   text += "What it counts\n  " + std::string(rule.meaning) + "\n\n";
   text += "Why it matters\n  " + std::string(rule.why) + "\n\n";
   text += "What to do\n  " + std::string(rule.remedy) + "\n";
@@ -63,10 +56,8 @@ Command add_explain(CLI::App& app) {
   command->footer("Examples:\n  fdcg explain\n  fdcg explain winding-inconsistent\n\n" +
                   exit_codes("success", "not used by this command"));
   const auto name = std::make_shared<std::string>();
-  command
-      ->add_option("rule", *name,
-                   offering("Name of a rule, as validate prints it. Without it: the list of all rules.", rule_names()))
-      ->type_name("RULE");
+  const std::string help = "Name of a rule, as validate prints it. Without it: the list of all rules.";
+  command->add_option("rule", *name, offering(help, rule_names()))->type_name("RULE");
   const auto run = [name]() -> int {
     const bake::Rule* const rule = bake::find_rule(*name);
     if (!name->empty() && rule == nullptr) {
@@ -75,7 +66,7 @@ Command add_explain(CLI::App& app) {
     }
     AtomicFile out("-");
     out.write(rule == nullptr ? list_of_rules() : explanation(*rule));
-    return out.commit() ? kClean : fail(kFile, out.error());
+    return commit_all({&out});
   };
   return {command, run};
 }

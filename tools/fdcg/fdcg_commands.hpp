@@ -12,5 +12,6 @@ Command add_repair(CLI::App& app);
 Command add_inspect(CLI::App& app);
 Command add_explain(CLI::App& app);
 Command add_grasp(CLI::App& app);
+Command add_view(CLI::App& app);
 
 }  // namespace fdcg::tools

@@ -13,7 +13,7 @@
 #include "grasp_object.hpp"
 #include "grasp_report.hpp"
 #include "mesh_options.hpp"
-#include "vec3.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -160,6 +160,7 @@ int run_grasp(const GraspArguments& arguments) {
   if (arguments.object == "-" && arguments.contacts == "-")
     return fail(kUsage,
                 "OBJECT and --contacts are both '-', and standard input can be only one of them; name a file for the other");
+  if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; it is empty");
   for (const std::string* input : {&arguments.object, &arguments.contacts}) {
     if (is_same_file(*input, arguments.output)) return fail(kUsage, "'" + arguments.output + "' would overwrite an input");
   }
@@ -167,7 +168,7 @@ int run_grasp(const GraspArguments& arguments) {
     return fail(kUsage, "--units and --scale are for meshes; '" + arguments.object + "' is an FDCG file, which is in metres");
   const auto contacts = read_contacts(arguments.contacts);
   if (!contacts) return fail(contacts.error().exit_code, contacts.error().message);
-  const auto object = GraspObject::load(arguments.object, arguments.compile);
+  const auto object = GraspObject::load(arguments.object, arguments.compile, !arguments.unit_text.empty());
   if (!object) {
     if (object.error().exit_code != kFindings) return fail(object.error().exit_code, object.error().message);
     std::fputs(object.error().message.c_str(), stderr);
@@ -192,15 +193,16 @@ int run_grasp(const GraspArguments& arguments) {
   }
   AtomicFile out(arguments.output);
   out.write(arguments.json ? grasp_report_json(report) : grasp_report_text(report));
-  if (!out.commit()) return fail(kFile, out.error());
+  if (const int code = commit_all({&out}); code != kClean) return code;
   for (const std::string& warning : report.warnings)
     warn(warning);
   const bool slips = report.margin && !(report.margin->load_factor >= 1);
   return report.closure.verdict == grasp::Verdict::closure && !slips && !report.has_far_contacts ? kClean : kFindings;
 }
 
-CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<double>& value, bool may_be_zero,
-                        const std::string& help, const std::string& type, double most = std::numeric_limits<double>::max()) {
+CLI::Option* add_number(const OptionGroup& group, const std::string& name, const std::string& value_name,
+                        std::optional<double>& value, bool may_be_zero, const std::string& help,
+                        const std::string& shown_default = {}, double most = std::numeric_limits<double>::max()) {
   const auto parse = [name, &value, may_be_zero, most](const std::string& text) {
     const auto parsed =
         parse_number_between(text, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
@@ -212,24 +214,24 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, std::optiona
                     (has_most ? (may_be_zero ? "to " : " and up to ") + short_number(most) : (may_be_zero ? "up" : "")));
     value = parsed;
   };
-  return command.add_option_function<std::string>(name, parse, help)->type_name(type);
+  return group.parsed(name, value_name, parse, help, shown_default);
 }
 
-CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optional<Vec3>& value, const std::string& help) {
+CLI::Option* add_vector(const OptionGroup& group, const std::string& name, std::optional<Vec3>& value, const std::string& help,
+                        const std::string& shown_default) {
   const auto parse = [name, &value](const std::string& text) {
     const auto v = parse_numbers(name, text, {3});
     value = Vec3{v[0], v[1], v[2]};
   };
-  return command.add_option_function<std::string>(name, parse, help)->type_name("X,Y,Z");
+  return group.parsed(name, "X,Y,Z", parse, help, shown_default);
 }
 
 void add_load_options(CLI::App& command, GraspArguments& arguments) {
-  add_number(command, "--grip", arguments.grip_n, false,
-             "The largest sum of the normal forces of all contacts, in newtons. Asks for the margin.", "N", grasp::kMostForce_n)
-      ->group("Load");
-  add_number(command, "--cap", arguments.cap_n, false,
-             "The largest normal force of each contact, in newtons. Asks for the margin.", "N", grasp::kMostForce_n)
-      ->group("Load");
+  const OptionGroup group(command, "Load");
+  add_number(group, "--grip", "N", arguments.grip_n, false,
+             "The largest sum of the normal forces of all contacts, in newtons. Asks for the margin.", "", grasp::kMostForce_n);
+  add_number(group, "--cap", "N", arguments.cap_n, false,
+             "The largest normal force of each contact, in newtons. Asks for the margin.", "", grasp::kMostForce_n);
   const auto parse_load = [&arguments](const std::string& text) {
     const auto v = parse_numbers("--load", text, {3, 6});
     grasp::Wrench load;
@@ -237,19 +239,13 @@ void add_load_options(CLI::App& command, GraspArguments& arguments) {
     if (v.size() == 6) load.torque_nm = {v[3], v[4], v[5]};
     arguments.load = load;
   };
-  CLI::Option* const load = command.add_option_function<std::string>(
-      "--load", parse_load, "Force (N) at the centre of mass, and torque about it (N m). The torque may be left out.");
-  load->type_name("FX,FY,FZ,TX,TY,TZ")->default_str("the object's weight")->group("Load");
-  add_number(command, "--mass", arguments.mass_kg, false, "Mass of the object in kg.", "KG")
-      ->default_str("the FDCG file's, else 1, so that the load factor is in kg")
-      ->group("Load");
-  add_vector(command, "--gravity", arguments.gravity_m_per_s2, "Acceleration of gravity, m/s^2.")
-      ->default_str("0,0,-9.80665")
-      ->group("Load");
-  add_vector(command, "--com", arguments.com_m, "Centre of mass, in metres: where the load acts.")
-      ->default_str("the centroid of the volume")
-      ->group("Load");
-  load->excludes("--mass")->excludes("--gravity");
+  CLI::Option* const load = group.parsed(
+      "--load", "FX,FY,FZ,TX,TY,TZ", parse_load,
+      "Force (N) at the centre of mass, and torque about it (N m). The torque may be left out.", "the object's weight");
+  load->excludes(add_number(group, "--mass", "KG", arguments.mass_kg, false, "Mass of the object in kg.",
+                            "the FDCG file's, else 1, so that the load factor is in kg"));
+  load->excludes(add_vector(group, "--gravity", arguments.gravity_m_per_s2, "Acceleration of gravity, m/s^2.", "0,0,-9.80665"));
+  add_vector(group, "--com", arguments.com_m, "Centre of mass, in metres: where the load acts.", "the centroid of the volume");
 }
 
 }  // namespace
@@ -268,51 +264,34 @@ frame, and are moved to the nearest point of the surface.
 )" + exit_codes("force closure, and the load holds if a grip is given",
                 "no closure, the load slips, a contact is far from the surface, or the mesh has errors"));
   const auto arguments = std::make_shared<GraspArguments>();
-  command->add_option("object", arguments->object, "FDCG file, or a mesh without errors.")->required()->type_name("OBJECT");
-  command->add_option("--contacts", arguments->contacts, "Where the object is touched: JSON or CSV. - is standard input.")
-      ->required()
-      ->type_name("FILE")
-      ->group("Contacts");
-  add_number(*command, "--mu", arguments->mu, true, "Friction coefficient of contacts that state none.", "MU", grasp::kMostMu)
-      ->group("Contacts");
-  add_number(*command, "--torsion", arguments->torsion_m, true,
-             "Soft fingers: the largest moment about the normal, in N m for each newton of normal force.", "METRES")
-      ->default_str("0, hard fingers")
-      ->group("Contacts");
-  add_number(*command, "--pad-radius", arguments->pad_radius_m, true,
-             "Soft fingers by the radius of their pads, as in scenes: the torsion is mu times it.", "METRES")
-      ->excludes("--torsion")
-      ->group("Contacts");
+  required_argument(*command, "object", "OBJECT", arguments->object, "FDCG file, or a mesh without errors.");
+  const OptionGroup contacts(*command, "Contacts");
+  contacts.text("--contacts", "FILE", arguments->contacts, "Where the object is touched: JSON or CSV. - is standard input.")
+      ->required();
+  add_number(contacts, "--mu", "MU", arguments->mu, true, "Friction coefficient of contacts that state none.", "",
+             grasp::kMostMu);
+  CLI::Option* const torsion = add_number(
+      contacts, "--torsion", "METRES", arguments->torsion_m, true,
+      "Soft fingers: the largest moment about the normal, in N m for each newton of normal force.", "0, hard fingers");
+  add_number(contacts, "--pad-radius", "METRES", arguments->pad_radius_m, true,
+             "Soft fingers by the radius of their pads, as in scenes: the torsion is mu times it.")
+      ->excludes(torsion);
   add_load_options(*command, *arguments);
-  add_vector(*command, "--centre", arguments->centre_m, "Point that torques are reckoned about, in metres; for epsilon alone.")
-      ->default_str("the centre of mass")
-      ->group("Quality");
-  add_number(*command, "--torque-scale", arguments->torque_scale_m, false, "Length by which torques are divided, in metres.",
-             "METRES")
-      ->default_str("the largest distance of a corner from the centre")
-      ->group("Quality");
-  const auto parse_epsilon = [arguments](const std::string& text) {
-    require_choice("--epsilon", text, {"together", "each"});
-    arguments->effort = text == "each" ? grasp::Effort::each : grasp::Effort::together;
-  };
-  command
-      ->add_option_function<std::string>(
-          "--epsilon", parse_epsilon,
-          one_of("Epsilon is for 1 N of normal force of all contacts together, or of each.", {"together", "each"}))
-      ->type_name("EFFORT")
-      ->default_str("together")
-      ->group("Quality");
+  const OptionGroup quality(*command, "Quality"), output(*command, "Output");
+  add_vector(quality, "--centre", arguments->centre_m, "Point that torques are reckoned about, in metres; for epsilon alone.",
+             "the centre of mass");
+  add_number(quality, "--torque-scale", "METRES", arguments->torque_scale_m, false,
+             "Length by which torques are divided, in metres.", "the largest distance of a corner from the centre");
+  quality.choice<grasp::Effort>("--epsilon", "EFFORT", {{"together", grasp::Effort::together}, {"each", grasp::Effort::each}},
+                                arguments->effort, "Epsilon is for 1 N of normal force of all contacts together, or of each.");
   command->add_option("--cones", arguments->cones, "The largest number of directions searched for epsilon.")
       ->type_name("N")
       ->default_str("200000")
       ->check(whole_number(1, 100'000'000))
       ->group("Quality");
   add_unit_options(*command, arguments->compile.metres_per_unit, arguments->unit_text);
-  command->add_flag("--json", arguments->json, "Print JSON (schemas/grasp-report.schema.json).")->group("Output");
-  command->add_option("-o,--output", arguments->output, "Write the report to FILE.")
-      ->type_name("FILE")
-      ->default_str("standard output")
-      ->group("Output");
+  output.flag("--json", arguments->json, "Print JSON (schemas/grasp-report.schema.json).");
+  output.text("-o,--output", "FILE", arguments->output, "Write the report to FILE.", "standard output");
   return {command, [arguments] { return run_grasp(*arguments); }};
 }
 

@@ -20,7 +20,7 @@ using Contacts = std::vector<NamedContact>;
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
-// What the file holds, short enough for a message that says more.
+// A value of the file, cut to fit into a message.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 40;
   return printable(text, kLongest);
@@ -43,7 +43,7 @@ void set_normal(NamedContact& contact, const bake::Vec3& normal) {
   contact.inward = bake::Vec3{normal.x / length, normal.y / length, normal.z / length};
 }
 
-// What a file can say of a contact.
+// Allowed ranges of the values in a contacts file.
 constexpr json::NumberRange kPlaces{-grasp::kFarthest_m, grasp::kFarthest_m, true, "m"};
 constexpr json::NumberRange kMus{0, grasp::kMostMu};
 constexpr json::NumberRange kTorsions{0, std::numeric_limits<double>::max(), true, "m"};
@@ -172,14 +172,14 @@ Contacts parse_csv(const std::string& text) {
   return contacts;
 }
 
-// A soft finger's friction is said once, either way.
+// A soft finger is given by its torsion or its pad radius, not both.
 void refuse_two_radii(const Contacts& contacts) {
   for (const NamedContact& contact : contacts)
     if (contact.torsion_m && contact.pad_radius_m)
       throw json::Refusal{contact.name + " has both torsion and pad_radius; torsion is mu times pad_radius: keep one of them"};
 }
 
-// The report tells contacts by their names. Those without one have a number, which another may have been given as its name.
+// Names identify contacts in the report. One without a name gets its number, which may be the name of another.
 void refuse_twins(const Contacts& contacts) {
   std::map<std::string_view, std::size_t> first;
   for (std::size_t i = 0; i < contacts.size(); ++i) {

@@ -10,7 +10,7 @@
 #include "../common/terminal.hpp"
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
-#include "vec3.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -47,7 +47,7 @@ bool is_graph_file(const std::string& path) {
   return is_graph;
 }
 
-bake::Result<GraspObject> GraspObject::load(const std::string& path, const bake::CompileOptions& options) {
+bake::Result<GraspObject> GraspObject::load(const std::string& path, const bake::CompileOptions& options, bool is_unit_given) {
   GraspObject object;
   fdcg_graph graph{};
   fdcg_error error{};
@@ -59,7 +59,9 @@ bake::Result<GraspObject> GraspObject::load(const std::string& path, const bake:
   }
   const auto soup = import_input(path, {});
   if (!soup) return soup.error();
-  const auto compiled = bake::compile(*soup, options);
+  bake::CompileOptions with_unit = options;
+  if (!is_unit_given && soup->metres_per_unit > 0) with_unit.metres_per_unit = soup->metres_per_unit;
+  const auto compiled = bake::compile(*soup, with_unit);
   if (!compiled) return compiled.error();
   if (compiled->file().empty())
     return bake::Failure{kFindings, bake::report_text(compiled->report, wants_colour(Stream::standard_error))};

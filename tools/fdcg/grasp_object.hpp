@@ -28,9 +28,9 @@ struct SurfacePoint {
 // Faces are convex polygons of the object's frame, metres.
 class GraspObject {
  public:
-  // An FDCG file, verified in full, or a mesh, compiled with these options; "-" is no name of either. The failure's exit code
-  // is 1 where the mesh has errors, 3 where it cannot be read.
-  static bake::Result<GraspObject> load(const std::string& path, const bake::CompileOptions& options);
+  // An FDCG file, verified in full, or a mesh, compiled with these options, in the unit that it states unless one was given;
+  // "-" is no name of either. The failure's exit code is 1 where the mesh has errors, 3 where it cannot be read.
+  static bake::Result<GraspObject> load(const std::string& path, const bake::CompileOptions& options, bool is_unit_given);
 
   // `point_m` finite. Work: linear in the faces.
   [[nodiscard]] SurfacePoint nearest(const bake::Vec3& point_m) const;

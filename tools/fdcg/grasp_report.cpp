@@ -28,15 +28,8 @@ Json finite(double value) {
 }
 
 const char* verdict_name(grasp::Verdict verdict) {
-  switch (verdict) {
-    case grasp::Verdict::closure:
-      return "closure";
-    case grasp::Verdict::no_closure:
-      return "no-closure";
-    case grasp::Verdict::marginal:
-      break;
-  }
-  return "marginal";
+  constexpr const char* kNames[] = {"closure", "no-closure", "marginal"};
+  return kNames[static_cast<int>(verdict)];
 }
 
 Json contact_json(const GraspReport& report, std::size_t i) {
@@ -87,11 +80,11 @@ std::string shown(double value, double size) {
   constexpr double kSmall = 1e-8;
   return short_number(std::abs(value) <= kSmall * size ? 0 : value);
 }
-std::string triple(const Vec3& v, double size) {
+std::string three_numbers(const Vec3& v, double size) {
   return "(" + shown(v.x, size) + ", " + shown(v.y, size) + ", " + shown(v.z, size) + ")";
 }
-std::string triple(const Vec3& v) {
-  return triple(v, std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
+std::string three_numbers(const Vec3& v) {
+  return three_numbers(v, std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
 }
 
 std::string padded(std::string text, std::size_t width) {
@@ -102,7 +95,7 @@ std::string padded(std::string text, std::size_t width) {
 std::string wrench_text(const grasp::Wrench& w, double torque_scale_m) {
   const auto length = [](const Vec3& v) { return std::hypot(v.x, v.y, v.z); };
   const double size = std::max(length(w.force_n), length(w.torque_nm) / torque_scale_m);
-  return "force " + triple(w.force_n, size) + " N, torque " + triple(w.torque_nm, size * torque_scale_m) + " Nm";
+  return "force " + three_numbers(w.force_n, size) + " N, torque " + three_numbers(w.torque_nm, size * torque_scale_m) + " Nm";
 }
 
 // Six digits of a value, rounded down or up.
@@ -119,11 +112,6 @@ std::string interval(double lower, double upper) {
   return "[" + rounded(lower, false) + ", " + rounded(upper, true) + "]";
 }
 
-// "1 contact", "2,000 nodes"
-std::string counted(std::size_t count, const char* what) {
-  return grouped(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 std::size_t name_width(const GraspReport& report) {
   std::size_t width = 0;
   for (const NamedContact& contact : report.asked)
@@ -136,9 +124,9 @@ std::string contacts_text(const GraspReport& report) {
   const double scale = report.grasp.torque_scale_m;
   for (std::size_t i = 0; i < report.asked.size(); ++i) {
     const grasp::Contact& contact = report.grasp.contacts[i];
-    text += "    " + padded(report.asked[i].name, name_width(report)) + "at " + triple(contact.point_m, scale) + " m, " +
+    text += "    " + padded(report.asked[i].name, name_width(report)) + "at " + three_numbers(contact.point_m, scale) + " m, " +
             shown(report.found[i].distance_m, scale) + " m from the point given, on node " +
-            std::to_string(report.found[i].node) + ", presses along " + triple(contact.inward) + ", mu " +
+            std::to_string(report.found[i].node) + ", presses along " + three_numbers(contact.inward) + ", mu " +
             short_number(contact.mu);
     if (contact.torsion_m > 0) text += ", torsion " + short_number(contact.torsion_m) + " m";
     if (std::isfinite(contact.cap_n)) text += ", at most " + short_number(contact.cap_n) + " N";
@@ -148,14 +136,8 @@ std::string contacts_text(const GraspReport& report) {
 }
 
 std::string closure_text(const grasp::Closure& closure) {
-  switch (closure.verdict) {
-    case grasp::Verdict::closure:
-      return "yes";
-    case grasp::Verdict::marginal:
-      return "marginal: neither yes nor no is proved";
-    case grasp::Verdict::no_closure:
-      break;
-  }
+  if (closure.verdict == grasp::Verdict::closure) return "yes";
+  if (closure.verdict == grasp::Verdict::marginal) return "marginal: neither yes nor no is proved";
   return closure.is_flat ? "no: nothing resists the weakest direction, nor its opposite"
                          : "no: nothing resists the weakest direction";
 }
@@ -224,9 +206,9 @@ std::string grasp_report_text(const GraspReport& report) {
   const double scale = report.grasp.torque_scale_m;
   std::string text =
       report.object + ": " + counted(report.asked.size(), "contact") + " on " + counted(report.faces, "node") + "\n";
-  text += "  centre         " + triple(report.grasp.centre_m, scale) + " m (" + report.centre_from + ")\n";
+  text += "  centre         " + three_numbers(report.grasp.centre_m, scale) + " m (" + report.centre_from + ")\n";
   if (report.com_m && report.centre_from != report.com_from)
-    text += "  centre of mass " + triple(*report.com_m, scale) + " m (" + report.com_from + ")\n";
+    text += "  centre of mass " + three_numbers(*report.com_m, scale) + " m (" + report.com_from + ")\n";
   text += "  torque scale   " + short_number(report.grasp.torque_scale_m) + " m (" + report.torque_scale_from + ")\n";
   text += contacts_text(report);
   text += "  force closure  " + closure_text(closure) + "\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What fdcg grasp found, and how it is told.
+// The result of fdcg grasp, and its report as text and as JSON.
 #pragma once
 
 #include <optional>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg inspect: what a file holds. Every file is verified in full before anything is said about it.
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "../common/atomic_file.hpp"
+#include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "dump.hpp"
 #include "fdcg/fdcg.h"
@@ -51,7 +53,7 @@ class OpenGraph {
 std::string section_name(std::uint32_t id) {
   constexpr const char* kNames[] = {"nodes",        "node-offsets", "edges",      "connections", "corners",
                                     "fans",         "hierarchy",    "source-map", "info",        "fan-boxes",
-                                    "busy-corners", "mass",         "materials",  "names"};
+                                    "busy-corners", "mass",         "materials",  "names",       "fan-runs"};
   if (id >= 1 && id <= std::size(kNames)) return kNames[id - 1];
   return "unknown-" + std::to_string(id);
 }
@@ -142,6 +144,7 @@ Json description_of(const fdcg_graph& graph) {
           {"max_deviation_m", header.max_deviation * header.metres_per_unit},
           {"mass", mass_of(graph)},
           {"no_mass", from_info("no_mass")},
+          {"repair", from_info("repair")},
           {"materials", materials_of(graph)},
           {"sections", sections_of(header)},
           {"source",
@@ -203,19 +206,13 @@ std::string description_text(const std::string& file, const Json& about) {
   return text;
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string verification_text(const fdcg_graph& graph, const std::vector<Invariant>& invariants) {
   std::string text = "  verified\n    ok    header, section table and " + std::to_string(graph.header->section_count) +
                      " sections: bounds, checksums, zero padding\n    ok    every index, loop, fan, box and number in range\n";
   for (const Invariant& invariant : invariants) {
     text += invariant.violations == 0 ? "    ok    " : "    FAIL  ";
-    text += invariant.name + ": " + grouped(invariant.checked) + " checked, worst " + short_number(invariant.worst) +
-            ", limit " + short_number(invariant.limit);
+    text += invariant.name + ": " + grouped(invariant.checked) + " checked, worst " + short_number(invariant.worst, 3) +
+            ", limit " + short_number(invariant.limit, 3);
     if (invariant.violations != 0) {
       text += ", " + grouped(invariant.violations) + " violations, the first at record " + std::to_string(invariant.first);
     }
@@ -241,11 +238,9 @@ int run_inspect(const InspectArguments& arguments) {
     if (arguments.verify) out.write(verification_text(graph, invariants));
     if (arguments.dump) dump_records(graph, out);
   }
-  if (!out.commit()) return fail(kFile, out.error());
-  for (const Invariant& invariant : invariants) {
-    if (invariant.violations != 0) return kFindings;
-  }
-  return kClean;
+  const bool is_sound =
+      std::all_of(invariants.begin(), invariants.end(), [](const Invariant& invariant) { return invariant.violations == 0; });
+  return commit_all({&out}, is_sound ? kClean : kFindings);
 }
 
 }  // namespace
@@ -262,13 +257,11 @@ A damaged file is refused. --verify also measures the geometry and compares it w
 
 )" + exit_codes("the file is sound", "--verify: the geometry and the records disagree"));
   const auto arguments = std::make_shared<InspectArguments>();
-  command->add_option("file", arguments->file, "FDCG file. - is standard input.")->required()->type_name("FILE");
-  CLI::Option* const json =
-      command->add_flag("--json", arguments->json, "Print JSON (schemas/inspect.schema.json).")->group("Output");
-  command->add_flag("--dump", arguments->dump, "Print every node, side, connection and corner, one on each line.")
-      ->excludes(json)
-      ->group("Output");
-  command->add_flag("--verify", arguments->verify, "Report what was verified, and measure the geometry.")->group("Output");
+  required_argument(*command, "file", "FILE", arguments->file, "FDCG file. - is standard input.");
+  const OptionGroup output(*command, "Output");
+  CLI::Option* const json = output.flag("--json", arguments->json, "Print JSON (schemas/inspect.schema.json).");
+  output.flag("--dump", arguments->dump, "Print every node, side, connection and corner, one on each line.")->excludes(json);
+  output.flag("--verify", arguments->verify, "Report what was verified, and measure the geometry.");
   return {command, [arguments] { return run_inspect(*arguments); }};
 }
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "triples.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {
+
+using bake::Vec3;
 
 // Units in the last place that one rounded plane or unit vector may be off by, times a few for the arithmetic of the check.
 constexpr double kRoundings = 16;
@@ -36,8 +38,8 @@ class Checker {
  private:
   [[nodiscard]] Invariant named(const char* name, double limit) const { return {name, 0, 0, 0, limit, -1}; }
 
-  [[nodiscard]] Triple point(std::uint32_t corner) const { return triple(fdcg_get_corner(&graph_, corner).point); }
-  [[nodiscard]] Triple start(std::uint32_t n, std::uint32_t k) const { return point(fdcg_get_side(&graph_, n, k).corner); }
+  [[nodiscard]] Vec3 point(std::uint32_t corner) const { return vec3(fdcg_get_corner(&graph_, corner).point); }
+  [[nodiscard]] Vec3 start(std::uint32_t n, std::uint32_t k) const { return point(fdcg_get_side(&graph_, n, k).corner); }
 
   // A node without INEXACT has its corners on its plane but for the plane's own rounding; others stay within max_deviation.
   Invariant corners_on_planes() {
@@ -45,7 +47,7 @@ class Checker {
     for (std::uint32_t n = 0; n < header_.node_count; ++n) {
       const fdcg_node_info node = fdcg_get_node(&graph_, n);
       for (std::uint32_t k = 0; k < node.side_count; ++k)
-        measure(invariant, n, std::abs(dot(triple(node.normal), start(n, k)) + node.offset));
+        measure(invariant, n, std::abs(dot(vec3(node.normal), start(n, k)) + node.offset));
     }
     return invariant;
   }
@@ -56,26 +58,26 @@ class Checker {
     for (std::uint32_t n = 0; n < header_.node_count; ++n) {
       const fdcg_node_info node = fdcg_get_node(&graph_, n);
       for (std::uint32_t k = 0; k < node.side_count; ++k) {
-        const Triple out = cross(direction(fdcg_get_side(&graph_, n, k)), triple(node.normal));
-        measure(invariant, n, std::max(0.0, dot(out, minus(start(n, (k + 2) % node.side_count), start(n, k)))));
+        const Vec3 out = cross(direction(fdcg_get_side(&graph_, n, k)), vec3(node.normal));
+        measure(invariant, n, std::max(0.0, dot(out, plus(start(n, (k + 2) % node.side_count), -1, start(n, k)))));
       }
     }
     return invariant;
   }
 
   // The connection's edge vector, along the winding of the side's node.
-  [[nodiscard]] Triple direction(const fdcg_side_info& side) const {
-    const Triple e = triple(fdcg_get_connection(&graph_, side.connection).direction);
-    return side.which == 0 ? e : Triple{-e[0], -e[1], -e[2]};
+  [[nodiscard]] Vec3 direction(const fdcg_side_info& side) const {
+    const Vec3 e = vec3(fdcg_get_connection(&graph_, side.connection).direction);
+    return side.which == 0 ? e : Vec3{-e.x, -e.y, -e.z};
   }
 
   Invariant unit_vectors() {
     Invariant invariant = named("normals and edge vectors have length 1", epsilon_);
     for (std::uint32_t n = 0; n < header_.node_count; ++n) {
-      measure(invariant, n, std::abs(length(triple(fdcg_get_node(&graph_, n).normal)) - 1));
+      measure(invariant, n, std::abs(length(vec3(fdcg_get_node(&graph_, n).normal)) - 1));
     }
     for (std::uint32_t c = 0; c < header_.connection_count; ++c) {
-      measure(invariant, c, std::abs(length(triple(fdcg_get_connection(&graph_, c).direction)) - 1));
+      measure(invariant, c, std::abs(length(vec3(fdcg_get_connection(&graph_, c).direction)) - 1));
     }
     return invariant;
   }
@@ -92,8 +94,8 @@ class Checker {
       const fdcg_node_info node = fdcg_get_node(&graph_, n);
       for (std::uint32_t k = 0; k < node.side_count; ++k) {
         const fdcg_side_info side = fdcg_get_side(&graph_, n, k);
-        const Triple m = triple(side.voronoi_normal), out = cross(direction(side), triple(node.normal));
-        const double turned = is_exact(n) ? length(minus(m, out)) * header_.extent : 0;
+        const Vec3 m = vec3(side.voronoi_normal), out = cross(direction(side), vec3(node.normal));
+        const double turned = is_exact(n) ? length(plus(m, -1, out)) * header_.extent : 0;
         const double off_edge = std::max(std::abs(dot(m, start(n, k)) + side.voronoi_offset),
                                          std::abs(dot(m, start(n, (k + 1) % node.side_count)) + side.voronoi_offset));
         measure(invariant, n, std::max(turned, off_edge));
@@ -106,9 +108,8 @@ class Checker {
     Invariant invariant = named("edges lead from corner to corner", length_);
     for (std::uint32_t c = 0; c < header_.connection_count; ++c) {
       const fdcg_connection_info connection = fdcg_get_connection(&graph_, c);
-      const Triple from = point(connection.corner[0]), to = point(connection.corner[1]), e = triple(connection.direction);
-      const Triple along{connection.length * e[0], connection.length * e[1], connection.length * e[2]};
-      measure(invariant, c, length(minus(minus(to, from), along)));
+      const Vec3 from = point(connection.corner[0]), to = point(connection.corner[1]), e = vec3(connection.direction);
+      measure(invariant, c, length(plus(plus(to, -1, from), -connection.length, e)));
     }
     return invariant;
   }
@@ -121,9 +122,9 @@ class Checker {
     for (std::uint32_t c = 0; c < header_.connection_count; ++c) {
       const fdcg_connection_info connection = fdcg_get_connection(&graph_, c);
       if (connection.type == FDCG_BOUNDARY || !is_exact(connection.node[0]) || !is_exact(connection.node[1])) continue;
-      const Triple a = triple(fdcg_get_node(&graph_, connection.node[0]).normal);
-      const Triple b = triple(fdcg_get_node(&graph_, connection.node[1]).normal);
-      const double bend = dot(cross(a, b), triple(connection.direction));
+      const Vec3 a = vec3(fdcg_get_node(&graph_, connection.node[0]).normal);
+      const Vec3 b = vec3(fdcg_get_node(&graph_, connection.node[1]).normal);
+      const double bend = dot(cross(a, b), vec3(connection.direction));
       const double against = connection.type == FDCG_CONVEX ? -bend : connection.type == FDCG_CONCAVE ? bend : std::abs(bend);
       measure(invariant, c, std::max(0.0, against));
     }

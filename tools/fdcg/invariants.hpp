@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What opening a file does not ask because no wrong answer can make the step misbehave: does the geometry say what the records
-// say? For files whose checksums match but whose writer is in doubt.
+// Does the geometry agree with the records? Opening a file does not check this, since the step stays within its bounds either
+// way. For files whose checksums match but whose writer is in doubt.
 #pragma once
 
 #include <cstdint>

@@ -4,10 +4,12 @@
 #include <limits>
 
 #include "invariants.hpp"
-#include "triples.hpp"
+#include "points.hpp"
 
 namespace fdcg::tools {
 namespace {
+
+using bake::Vec3;
 
 // A sum that keeps what each addition loses (Neumaier 1974), so that its error does not grow with the number of terms.
 class Sum {
@@ -42,26 +44,26 @@ struct Solid {
   double area = 0;
   double reach = 0;  // the farthest corner
 
-  void add(const Triple& a, const Triple& b, const Triple& c) {
+  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double determinant = dot(a, cross(b, c));
-    const Triple sum{a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]};
+    const Vec3 sum = plus(plus(a, 1, b), 1, c);
     volume.add(determinant / 6);
     for (int k = 0; k < 3; ++k)
-      first[k].add(determinant * sum[static_cast<std::size_t>(k)] / 24);
+      first[k].add(determinant * component(sum, k) / 24);
     for (int n = 0; n < 6; ++n) {
-      const auto k = static_cast<std::size_t>(kFirstOf[n]), l = static_cast<std::size_t>(kSecondOf[n]);
-      second[n].add(determinant * (sum[k] * sum[l] + a[k] * a[l] + b[k] * b[l] + c[k] * c[l]) / 120);
+      const auto product = [n](const Vec3& v) { return component(v, kFirstOf[n]) * component(v, kSecondOf[n]); };
+      second[n].add(determinant * (product(sum) + product(a) + product(b) + product(c)) / 120);
     }
-    area += length(cross(minus(b, a), minus(c, a))) / 2;
+    area += length(cross(plus(b, -1, a), plus(c, -1, a))) / 2;
     reach = std::max({reach, length(a), length(b), length(c)});
     magnitude += length(a) * length(cross(b, c)) / 6;
   }
 };
 
-Solid solid_inside(const fdcg_graph& graph, const Triple& centroid) {
+Solid solid_inside(const fdcg_graph& graph, const Vec3& centroid) {
   Solid solid;
   const auto corner = [&](std::uint32_t n, std::uint32_t k) {
-    return minus(triple(fdcg_get_corner(&graph, fdcg_get_side(&graph, n, k).corner).point), centroid);
+    return plus(vec3(fdcg_get_corner(&graph, fdcg_get_side(&graph, n, k).corner).point), -1, centroid);
   };
   for (std::uint32_t n = 0; n < graph.header->node_count; ++n) {
     const std::uint32_t sides = fdcg_get_node(&graph, n).side_count;
@@ -76,7 +78,7 @@ Solid solid_inside(const fdcg_graph& graph, const Triple& centroid) {
 std::vector<Invariant> check_mass(const fdcg_graph& graph) {
   const fdcg_mass_record* const record = record_of(*graph.header);
   if (record == nullptr) return {};
-  const Solid solid = solid_inside(graph, triple(record->centroid));
+  const Solid solid = solid_inside(graph, vec3(record->centroid));
   // Between the mesh and the nodes lies at most the area times what either may be off; a sum of products is good to some ten
   // roundings of its terms. Twice the one, three times the other, to be sure.
   const double epsilon = std::numeric_limits<double>::epsilon();

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 #include <new>
-#include <stdexcept>
+#include <string>
 
 #include "fdcg_commands.hpp"
 
@@ -11,23 +11,21 @@ namespace fdcg::tools {
 namespace {
 
 bake::Result<std::string> read_standard_input() {
-  constexpr std::size_t kChunk = std::size_t{1} << 20;
-  std::string bytes;
+  std::string chunk(std::size_t{1} << 18, '\0'), bytes;
+  const auto refused = [](const std::string& what) { return bake::Failure{kFile, "-: " + what, "unreadable"}; };
   try {
-    for (std::size_t used = 0;;) {
-      bytes.resize(used + bytes.size() / 2 + kChunk);
-      const std::size_t got = std::fread(bytes.data() + used, 1, bytes.size() - used, stdin);
-      used += got;
-      if (got != 0) continue;
-      bytes.resize(used);
-      break;
+    bytes.reserve(bake::kMostStreamBytes);  // address space alone: no copy of what is there while it grows
+    while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), stdin)) {
+      if (got > bake::kMostStreamBytes - bytes.size()) {
+        return refused("standard input has more than " + std::to_string(bake::kMostStreamBytes >> 20) +
+                       " MiB, as much as is read of it; save the mesh as a file and name that");
+      }
+      bytes.append(chunk, 0, got);
     }
   } catch (const std::bad_alloc&) {
-    return bake::Failure{kFile, "-: standard input needs more memory than there is", "unreadable"};
-  } catch (const std::length_error&) {
-    return bake::Failure{kFile, "-: standard input needs more memory than there is", "unreadable"};
+    return refused("standard input needs more memory than there is");
   }
-  if (std::ferror(stdin) != 0) return bake::Failure{kFile, "-: standard input cannot be read", "unreadable"};
+  if (std::ferror(stdin) != 0) return refused("standard input cannot be read");
   return bytes;
 }
 

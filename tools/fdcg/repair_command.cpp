@@ -2,7 +2,6 @@
 // fdcg repair: a mesh in, a mesh out, and an account of everything that was changed or left.
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 
 #include "../common/atomic_file.hpp"
 #include "../common/options.hpp"
@@ -16,15 +15,14 @@ namespace fdcg::tools {
 namespace {
 
 constexpr const char* kSteps =
-    "--weld, --drop-degenerate, --drop-duplicates, --split-non-manifold-vertices, --orient, --reverse-inside-out, --simplify, "
-    "or "
-    "--all for the first six";
+    "--all for all but --simplify, or of these: --weld, --drop-unusable, --triangulate-crossing, --drop-degenerate, "
+    "--drop-duplicates, --unfold, --cut-non-manifold, --split-non-manifold-vertices, --orient, --drop-blocking, "
+    "--reverse-inside-out, --simplify";
 
 struct RepairArguments {
   std::string mesh;
   std::string output;
-  std::string format;
-  std::optional<bake::Format> input_format;
+  std::optional<bake::Format> format, input_format;
   std::string report;
   std::optional<bake::Weld> weld;
   bake::RepairOptions options;
@@ -35,19 +33,8 @@ struct RepairArguments {
   bool quiet = false;
 };
 
-struct FormatName {
-  const char* name;
-  bake::Format format;
-};
-constexpr FormatName kFormats[] = {
+const OptionGroup::Words<bake::Format> kFormatNames{
     {"off", bake::Format::off}, {"obj", bake::Format::obj}, {"ply", bake::Format::ply}, {"stl", bake::Format::stl}};
-
-std::optional<bake::Format> format_named(const std::string& name) {
-  for (const FormatName& known : kFormats) {
-    if (name == known.name) return known.format;
-  }
-  return std::nullopt;
-}
 
 std::string ending_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
@@ -60,23 +47,24 @@ std::string ending_of(const std::string& path) {
 int check(RepairArguments& arguments) {
   bake::RepairOptions& options = arguments.options;
   if (arguments.all) {
-    options.weld = bake::Weld{};
-    options.drop_degenerate_faces = options.drop_duplicate_faces = options.split_non_manifold_vertices = true;
-    options.orient = options.reverse_inside_out = true;
+    const std::optional<double> simplify_error = options.simplify_error;
+    options = bake::repair_options(bake::RepairLevel::full);
+    options.simplify_error = simplify_error;
   }
   if (arguments.weld) options.weld = arguments.weld;
   const bool asks_for_any = options.weld || options.drop_degenerate_faces || options.drop_duplicate_faces ||
                             options.split_non_manifold_vertices || options.orient || options.reverse_inside_out ||
-                            options.simplify_error;
+                            options.simplify_error || options.cut_non_manifold || options.drop_unusable_faces ||
+                            options.triangulate_crossing_faces || options.unfold || options.drop_blocking_faces;
   if (!asks_for_any) return fail(kUsage, std::string("no repair was chosen; give ") + kSteps);
   if (arguments.dry_run) return kClean;
   if (arguments.output.empty()) return fail(kUsage, "-o needs the name of a file; --dry-run writes none");
-  if (arguments.format.empty()) {
-    arguments.format = ending_of(arguments.output);
-    if (!format_named(arguments.format)) {
-      return fail(kUsage, "'" + arguments.output + "' does not end in .off, .obj, .ply or .stl; name the format with --format");
-    }
-  }
+  const std::string ending = ending_of(arguments.output);
+  for (const auto& [name, format] : kFormatNames)
+    if (!arguments.format && name == ending) arguments.format = format;
+  if (!arguments.format)
+    return fail(kUsage, "'" + arguments.output + "' does not end in .off, .obj, .ply or .stl; name the format with --format");
+  options.part_equal_points = arguments.format == bake::Format::stl;
   const auto is_same = [](const std::string& a, const std::string& b) { return !a.empty() && (a == b || is_same_file(a, b)); };
   if (is_same(arguments.output, arguments.report)) return fail(kUsage, "-o and --report must be different files");
   for (const std::string* path : {&arguments.output, &arguments.report}) {
@@ -118,12 +106,12 @@ int export_repaired(const RepairArguments& arguments, const bake::Repaired& repa
     return fail(kFindings, arguments.mesh + ": no face is left after the repairs; nothing was written");
   if (arguments.strict && !repaired.after.passes())
     return fail(kFindings, arguments.mesh + ": errors are left after the repairs; with --strict nothing was written");
-  const bake::ExportOptions options{*format_named(arguments.format), arguments.ascii};
+  const bake::ExportOptions options{*arguments.format, arguments.ascii};
   if (options.format == bake::Format::stl && repaired.read_with == bake::Weld::Kind::none) {
     return fail(kUsage,
                 arguments.output +
                     ": the result has vertices at equal coordinates that are apart on purpose, and STL cannot keep them "
-                    "apart; write OFF, OBJ or PLY, or leave out --split-non-manifold-vertices and --weld none");
+                    "apart; write OFF, OBJ or PLY, or leave out --weld none");
   }
   auto exported = bake::export_mesh(repaired.soup, options);
   if (!exported) return fail(exported.error().exit_code, exported.error().message);
@@ -139,11 +127,9 @@ bool did_simplify(const bake::Repaired& repaired) {
 
 int run_repair(RepairArguments& arguments) {
   if (const int code = check(arguments); code != kClean) return code;
-  std::optional<AtomicFile> out, report;
-  if (!arguments.dry_run) out.emplace(arguments.output);
-  if (out && !out->ok()) return fail(kFile, out->error());
-  if (!arguments.report.empty()) report.emplace(arguments.report);
-  if (report && !report->ok()) return fail(kFile, report->error());
+  AtomicFile out(arguments.dry_run ? "" : arguments.output), report(arguments.report);
+  for (const AtomicFile* const file : {&out, &report})
+    if (!file->ok()) return fail(kFile, file->error());
 
   ProgressBar bar(!arguments.quiet);
   arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
@@ -159,14 +145,10 @@ int run_repair(RepairArguments& arguments) {
   const int export_code = export_repaired(arguments, *repaired, bytes);
   if (export_code > kFindings) return export_code;
   const bool is_written = !bytes.empty();
-  if (report) {
-    report->write(bake::repair_json(*repaired, is_written ? arguments.output : ""));
-    if (!report->commit()) return fail(kFile, report->error());
-  }
-  if (is_written) {
-    out->write(bytes);
-    if (!out->commit()) return fail(kFile, out->error());
-  }
+  if (report.is_wanted()) report.write(bake::repair_json(*repaired, is_written ? arguments.output : ""));
+  out.write(bytes);
+  const int code = is_written ? commit_all({&report, &out}) : commit_all({&report});
+  if (code != kClean) return code;
   if (!arguments.quiet) {
     const bool is_stdout_taken = arguments.output == "-" || arguments.report == "-";
     std::FILE* const stream = is_stdout_taken ? stderr : stdout;
@@ -179,41 +161,39 @@ int run_repair(RepairArguments& arguments) {
   return repaired->after.passes() && did_simplify(*repaired) ? kClean : kFindings;
 }
 
-void add_step_options(CLI::App& command, const std::shared_ptr<RepairArguments>& arguments) {
-  bake::RepairOptions& options = arguments->options;
-  const auto add_flag = [&command](const char* name, bool& value, const char* help) {
-    command.add_flag(name, value, help)->group("Repairs");
+void add_step_options(CLI::App& command, RepairArguments& arguments) {
+  bake::RepairOptions& options = arguments.options;
+  const OptionGroup repairs(command, "Repairs");
+  repairs.flag("--all", arguments.all,
+               "All repairs: --weld exact and the flags below, without --simplify. What each did to the surface is measured.");
+  add_weld_option(repairs, arguments.weld, "");
+  repairs.flag("--drop-unusable", options.drop_unusable_faces,
+               "Drop faces with a corner that is not finite or not in the file.");
+  repairs.flag(
+      "--triangulate-crossing", options.triangulate_crossing_faces,
+      "Triangulate polygons that cross themselves or come twice to a corner. Implies --weld exact, as do the next two.");
+  repairs.flag("--unfold", options.unfold,
+               "Unfold slivers, thinner than a thousandth of the object's size, that lie on a neighbour.");
+  repairs.flag("--cut-non-manifold", options.cut_non_manifold,
+               "Part edges of more than two faces into pairs of faces; cut what has no partner, folds, and one-sided patches.");
+  repairs.flag("--drop-degenerate", options.drop_degenerate_faces,
+               "Drop faces without area, and join the faces on either side.");
+  repairs.flag("--drop-duplicates", options.drop_duplicate_faces, "Drop faces that have the vertices of an earlier one.");
+  repairs.flag("--split-non-manifold-vertices", options.split_non_manifold_vertices,
+               "Give each fan of faces around a vertex a vertex of its own. Implies --weld exact; the result must be read with "
+               "--weld none.");
+  repairs.flag("--drop-blocking", options.drop_blocking_faces,
+               "Drop faces that no other step could mend and no graph can have.");
+  repairs.flag("--orient", options.orient,
+               "Make the winding of each patch consistent, and that of closed patches of mixed winding outward.");
+  repairs.flag("--reverse-inside-out", options.reverse_inside_out,
+               "Reverse closed patches that enclose negative volume, by nesting depth.");
+  const auto parse_error = [&options](const std::string& text) {
+    options.simplify_error = positive_number("--simplify", text, "no distance above 0 in the file's units");
   };
-  add_flag("--all", arguments->all,
-           "All repairs that do not move the surface: --weld exact and the flags below, without --simplify.");
-  const auto parse_weld = [arguments](const std::string& text) { arguments->weld = parse_weld_value(text); };
-  command
-      .add_option_function<std::string>("--weld", parse_weld,
-                                        offering("Join vertices: exact at equal coordinates, none not at all, a number within "
-                                                 "that distance in the file's units.",
-                                                 {"exact", "none"}))
-      ->type_name("DISTANCE")
-      ->group("Repairs");
-  add_flag("--drop-degenerate", options.drop_degenerate_faces, "Drop faces without area, and join the faces on either side.");
-  add_flag("--drop-duplicates", options.drop_duplicate_faces, "Drop faces that have the vertices of an earlier one.");
-  add_flag("--split-non-manifold-vertices", options.split_non_manifold_vertices,
-           "Give each fan of faces around a vertex a vertex of its own. Implies --weld exact; the result must be read with "
-           "--weld none.");
-  add_flag("--orient", options.orient,
-           "Make the winding of each patch consistent, and that of closed patches of mixed winding outward.");
-  add_flag("--reverse-inside-out", options.reverse_inside_out,
-           "Reverse closed patches that enclose negative volume, by nesting depth.");
-  const auto parse_error = [arguments](const std::string& text) {
-    const auto error = parse_number_between(text, 0, std::numeric_limits<double>::infinity());
-    if (!error) throw CLI::ValidationError("--simplify", "'" + text + "' is no distance above 0 in the file's units");
-    arguments->options.simplify_error = *error;
-  };
-  command
-      .add_option_function<std::string>("--simplify", parse_error,
-                                        "Reduce the number of triangles and keep the topology. No point of either surface is "
-                                        "farther than ERROR, in the file's units, from the other.")
-      ->type_name("ERROR")
-      ->group("Repairs");
+  repairs.parsed("--simplify", "ERROR", parse_error,
+                 "Reduce the number of triangles and keep the topology. No point of either surface is farther than ERROR, in "
+                 "the file's units, from the other.");
 }
 
 }  // namespace
@@ -230,33 +210,18 @@ Defects that cannot be repaired safely are left and reported.
 )" + exit_codes("the result has no errors",
                 "errors are left, or --simplify could not be done; the mesh is written unless --strict"));
   const auto arguments = std::make_shared<RepairArguments>();
-  command->add_option("mesh", arguments->mesh, "Mesh file: OFF, OBJ, PLY, STL, glTF, GLB or Draco. - is standard input.")
-      ->required()
-      ->type_name("MESH");
-  command->add_option("-o,--output", arguments->output, "File to write the repaired mesh to. - is standard output.")
-      ->type_name("FILE")
-      ->group("Output");
-  const auto choose = [](const char* option, std::string& target) {
-    return [option, &target](const std::string& value) {
-      require_choice(option, value, {"off", "obj", "ply", "stl"});
-      target = value;
-    };
-  };
-  command
-      ->add_option_function<std::string>("--format", choose("--format", arguments->format),
-                                         one_of("Format of the repaired mesh.", {"off", "obj", "ply", "stl"}))
-      ->type_name("FORMAT")
-      ->default_str("by the file's extension")
-      ->group("Output");
+  add_mesh_argument(*command, arguments->mesh);
+  const OptionGroup output(*command, "Output");
+  output.text("-o,--output", "FILE", arguments->output, "File to write the repaired mesh to. - is standard output.");
+  output.choice<bake::Format>("--format", "FORMAT", kFormatNames, arguments->format, "Format of the repaired mesh.",
+                              "by the file's extension");
   add_input_format_option(*command, arguments->input_format);
-  command->add_flag("--ascii", arguments->ascii, "Write PLY and STL as text.")->group("Output");
-  add_step_options(*command, arguments);
-  command->add_option("--report", arguments->report, "Write what was done and left as JSON to FILE.")
-      ->type_name("FILE")
-      ->group("Output");
-  command->add_flag("--dry-run", arguments->dry_run, "Write no mesh.")->group("Output");
-  command->add_flag("--strict", arguments->strict, "Write the mesh only if no error is left.")->group("Output");
-  command->add_flag("-q,--quiet", arguments->quiet, "Print errors only, and no progress bar.")->group("Output");
+  output.flag("--ascii", arguments->ascii, "Write PLY and STL as text.");
+  add_step_options(*command, *arguments);
+  output.text("--report", "FILE", arguments->report, "Write what was done and left as JSON to FILE.");
+  output.flag("--dry-run", arguments->dry_run, "Write no mesh.");
+  output.flag("--strict", arguments->strict, "Write the mesh only if no error is left.");
+  output.flag("-q,--quiet", arguments->quiet, "Print errors only, and no progress bar.");
   return {command, [arguments] { return run_repair(*arguments); }};
 }
 

@@ -8,29 +8,30 @@
 #include <set>
 
 #include "../common/atomic_file.hpp"
-#include "../common/expand_paths.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "baseline.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
+#include "mesh_list.hpp"
 #include "mesh_options.hpp"
 #include "validate_config.hpp"
 #include "validate_run.hpp"
 #include "validate_settings.hpp"
+#include "view_mesh.hpp"
 
 namespace fdcg::tools {
 namespace {
 
 struct Output {
-  bake::ReportFormat format;
+  std::optional<bake::ReportFormat> format;  // none: a page, as fdcg view writes it
   std::string path;
 };
 
 struct ValidateArguments {
   std::vector<std::string> meshes;
-  std::optional<bake::ReportFormat> format;  // of -o
-  std::vector<Output> files;                 // FORMAT=FILE
+  std::optional<Output> output_format;  // of -o: its path is not set
+  std::vector<Output> files;            // FORMAT=FILE
   std::string output = "-";
   std::string full;
   std::string config;
@@ -44,10 +45,12 @@ struct ValidateArguments {
   bool quiet = false;
 };
 
-const std::map<std::string, bake::ReportFormat> kFormats{{"text", bake::ReportFormat::text},
-                                                         {"json", bake::ReportFormat::json},
-                                                         {"sarif", bake::ReportFormat::sarif},
-                                                         {"junit", bake::ReportFormat::junit}};
+const std::vector<std::string> kReportFormatNames{"text", "json", "sarif", "junit", "html"};
+const std::map<std::string, std::optional<bake::ReportFormat>> kReportFormats{{"text", bake::ReportFormat::text},
+                                                                              {"json", bake::ReportFormat::json},
+                                                                              {"sarif", bake::ReportFormat::sarif},
+                                                                              {"junit", bake::ReportFormat::junit},
+                                                                              {"html", std::nullopt}};
 
 std::string now_utc() {
   const std::time_t now = std::time(nullptr);
@@ -61,12 +64,18 @@ std::string now_utc() {
 // ---- what is to be done
 
 std::vector<Output> outputs_of(const ValidateArguments& arguments) {
-  std::vector<Output> outputs{{arguments.format.value_or(bake::ReportFormat::text), arguments.output}};
+  std::vector<Output> outputs{arguments.output_format.value_or(Output{bake::ReportFormat::text, {}})};
+  outputs.front().path = arguments.output;
   outputs.insert(outputs.end(), arguments.files.begin(), arguments.files.end());
   return outputs;
 }
 
-int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>& meshes) {
+bool wants_page(const ValidateArguments& arguments) {
+  const std::vector<Output> outputs = outputs_of(arguments);
+  return std::any_of(outputs.begin(), outputs.end(), [](const Output& output) { return !output.format; });
+}
+
+int check_paths(const ValidateArguments& arguments, const std::vector<ListedMesh>& meshes) {
   std::vector<std::string> paths;
   for (const Output& output : outputs_of(arguments))
     paths.push_back(output.path);
@@ -78,7 +87,7 @@ int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>
         return fail(kUsage, "two reports would both be written to '" + paths[i] + "'; name another file for one of them");
     }
     if (paths[i] == "-") continue;
-    for (const NamedFile& mesh : meshes) {
+    for (const ListedMesh& mesh : meshes) {
       if (is_same_file(mesh.path, paths[i])) return fail(kUsage, "'" + paths[i] + "' would overwrite the mesh itself");
     }
   }
@@ -86,11 +95,11 @@ int check_paths(const ValidateArguments& arguments, const std::vector<NamedFile>
 }
 
 // Settings of each mesh: its configuration file's, and over them the command line's.
-bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& arguments, const std::vector<NamedFile>& meshes,
+bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& arguments, const std::vector<ListedMesh>& meshes,
                                                  std::vector<std::string>& baselines) {
   ConfigFinder finder;
   std::vector<ValidateTask> tasks;
-  for (const NamedFile& mesh : meshes) {
+  for (const ListedMesh& mesh : meshes) {
     bake::Result<ValidateConfig> config = ValidateConfig{};
     if (!arguments.config.empty()) {
       config = read_config(arguments.config);
@@ -102,6 +111,7 @@ bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& argume
     ValidateTask task;
     task.mesh = mesh.path;
     task.problem = mesh.problem;
+    task.scale = mesh.scale;
     task.config = config->path;
     task.options.weld = settings.weld.value_or(bake::Weld{});
     task.options.precision = arguments.precision;
@@ -150,8 +160,12 @@ class Outputs {
     for (const Output& output : outputs_of(arguments)) {
       options.colour = output.path == "-" && wants_colour(Stream::standard_output);
       AtomicFile& file = files_.emplace_back(output.path);
-      writers_.push_back({output.format, bake::make_report_writer(
-                                             output.format, [&file](std::string_view piece) { file.write(piece); }, options)});
+      const auto write = [&file](std::string_view piece) { file.write(piece); };
+      if (output.format) {
+        writers_.push_back({*output.format, bake::make_report_writer(*output.format, write, options)});
+      } else {
+        pages_.emplace_back(write, "fdcg validate");
+      }
     }
     if (arguments.full.empty()) return;
     AtomicFile& file = files_.emplace_back(arguments.full);
@@ -163,6 +177,13 @@ class Outputs {
       const bool is_wanted = !is_quiet_ || writer.format != bake::ReportFormat::text || !result.report.passes();
       if (is_wanted) writer.to->add(result.report);
     }
+    for (page::PageWriter& page : pages_) {
+      if (result.soup) {
+        add_judged_mesh(page_view(), *result.soup, result.report, page);
+      } else {
+        page.add_report(result.report);
+      }
+    }
     if (full_ && !full_->add(result.report, result.spool)) lost_elements_ = true;
   }
   // An error's line, or nothing.
@@ -170,6 +191,8 @@ class Outputs {
     for (Writer& writer : writers_) {
       if (!is_quiet_ || writer.format != bake::ReportFormat::text) writer.to->finish(exit_code);
     }
+    for (page::PageWriter& page : pages_)
+      page.finish();
     if (full_) full_->finish();
     if (lost_elements_) return "--full needs room for temporary files (TMPDIR), and there is none left";
     std::string first = error();
@@ -190,16 +213,30 @@ class Outputs {
     bake::ReportFormat format;
     std::unique_ptr<bake::ReportWriter> to;
   };
+  // Without a graph: a page of many meshes is large as it is.
+  static MeshView page_view() {
+    MeshView view;
+    view.touch = view.shows_progress = false;
+    return view;
+  }
+
   bool is_quiet_;
   bool lost_elements_ = false;
   std::deque<AtomicFile> files_;  // stay where they are
+  std::deque<page::PageWriter> pages_;
   std::vector<Writer> writers_;
   std::optional<bake::FullReportWriter> full_;
 };
 
 int run_validate(const ValidateArguments& arguments) {
-  const std::vector<NamedFile> meshes = expand_paths(arguments.meshes, mesh_endings());
+  const MeshList list = list_meshes(arguments.meshes);
+  const std::vector<ListedMesh>& meshes = list.meshes;
+  for (const std::string& note : list.notes) {
+    if (!arguments.quiet) std::fputs(("fdcg: " + note + "\n").c_str(), stderr);
+  }
   if (const int code = check_paths(arguments, meshes); code != kClean) return code;
+  if (const std::string reason = page::viewer_missing(); wants_page(arguments) && !reason.empty())
+    return fail(kFile, "--format html: this fdcg has no viewer: " + reason + " (docs/view.md)");
   std::vector<std::string> baselines;
   auto tasks = tasks_of(arguments, meshes, baselines);
   if (!tasks) return fail(tasks.error().exit_code, tasks.error().message);
@@ -212,10 +249,17 @@ int run_validate(const ValidateArguments& arguments) {
   run.input_format = arguments.input_format;
   run.jobs = arguments.jobs;
   run.wants_all_elements = !arguments.full.empty();
+  run.keeps_meshes = wants_page(arguments);
+  for (ValidateTask& task : run.tasks) {
+    if (run.keeps_meshes) task.options.max_elements = kPageElements;
+  }
   run.shows_progress = !arguments.quiet;
+  // The text report says it too: once is enough for a person who sees both.
+  const bool is_in_sight = is_terminal(Stream::standard_output) && is_terminal(Stream::standard_error) &&
+                           arguments.output == "-" && outputs_of(arguments).front().format == bake::ReportFormat::text;
   int code = kClean;
   validate_all(run, [&](Validated& result) {
-    if (!result.error.empty()) fail(result.exit_code, result.error);
+    if (!result.error.empty() && !is_in_sight) fail(result.exit_code, result.error);
     code = std::max(code, result.exit_code);
     outputs.add(result);
   });
@@ -225,93 +269,64 @@ int run_validate(const ValidateArguments& arguments) {
 
 // ---- options
 
-void add_report_options(CLI::App& command, const std::shared_ptr<ValidateArguments>& arguments) {
-  const auto add_format = [arguments](const std::vector<std::string>& values) {
-    for (const std::string& value : values) {
-      const std::size_t equals = value.find('=');
-      const std::string name = value.substr(0, equals);
-      require_choice("--format", name, {"text", "json", "sarif", "junit"});
-      if (equals != std::string::npos) {
-        arguments->files.push_back({kFormats.at(name), value.substr(equals + 1)});
-      } else if (arguments->format) {
-        throw CLI::ValidationError("--format", "two formats for one output; write --format " + name + "=FILE for one of them");
-      } else {
-        arguments->format = kFormats.at(name);
-      }
+void add_report_options(CLI::App& command, ValidateArguments& arguments) {
+  const OptionGroup output(command, "Output");
+  const auto add_format = [&arguments](const std::string& value) {
+    const std::size_t equals = value.find('=');
+    const std::string name = value.substr(0, equals);
+    require_choice("--format", name, kReportFormatNames);
+    if (equals != std::string::npos) {
+      arguments.files.push_back({kReportFormats.at(name), value.substr(equals + 1)});
+    } else if (arguments.output_format) {
+      throw CLI::ValidationError("--format", "two formats for one output; write --format " + name + "=FILE for one of them");
+    } else {
+      arguments.output_format = Output{kReportFormats.at(name), {}};
     }
   };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--format", add_format,
-          one_of("Format of the report. FORMAT=FILE writes one more report to FILE, and may be repeated.",
-                 {"text", "json", "sarif", "junit"}))
-      ->type_name("FORMAT")
-      ->default_str("text")
-      ->group("Output")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("-o,--output", arguments->output, "Write the report to FILE.")
-      ->type_name("FILE")
-      ->default_str("standard output")
-      ->group("Output");
-  command.add_option("--full", arguments->full, "Write all findings, without a limit, as JSON to FILE: a baseline.")
-      ->type_name("FILE")
-      ->group("Output");
-  command
-      .add_flag(
-          "--sarif-each", arguments->sarif_each,
-          "SARIF: one result for each listed finding, so that code scanning marks every line, instead of one for each rule.")
-      ->group("Output");
+  output.repeated(
+      "--format", "FORMAT", add_format,
+      one_of("Format of the report; html is the page of 'fdcg view'. FORMAT=FILE writes one more report to FILE, and "
+             "may be repeated.",
+             kReportFormatNames),
+      "text");
+  output.text("-o,--output", "FILE", arguments.output, "Write the report to FILE.", "standard output");
+  output.text("--full", "FILE", arguments.full, "Write all findings, without a limit, as JSON to FILE: a baseline.");
+  output.flag(
+      "--sarif-each", arguments.sarif_each,
+      "SARIF: one result for each listed finding, so that code scanning marks every line, instead of one for each rule.");
 }
 
-void add_verdict_options(CLI::App& command, const std::shared_ptr<ValidateArguments>& arguments) {
-  const auto set_baseline = [arguments](const std::string& path) { arguments->settings.baseline = path; };
-  command
-      .add_option_function<std::string>("--baseline", set_baseline,
-                                        "Findings that are in FILE (from --full) are known; only new ones fail.")
-      ->type_name("FILE")
-      ->group("Verdict");
-  const auto set_fail_on = [arguments](const std::string& value) {
+void add_verdict_options(CLI::App& command, ValidateArguments& arguments) {
+  const OptionGroup verdict(command, "Verdict");
+  ValidateSettings& settings = arguments.settings;
+  const auto set_baseline = [&settings](const std::string& path) { settings.baseline = path; };
+  verdict.parsed("--baseline", "FILE", set_baseline, "Findings that are in FILE (from --full) are known; only new ones fail.");
+  const auto set_fail_on = [&settings](const std::string& value) {
     const auto level = parse_fail_on(value);
     if (!level) throw CLI::ValidationError("--fail-on", level.error().message);
-    arguments->settings.fail_on = *level;
+    settings.fail_on = *level;
   };
-  command
-      .add_option_function<std::string>(
-          "--fail-on", set_fail_on,
-          one_of("Exit with code 1 for findings of this severity or a higher one.", {"error", "warning", "note", "never"}))
-      ->type_name("SEVERITY")
-      ->default_str("error")
-      ->group("Verdict");
-  const auto set_severities = [arguments](const std::vector<std::string>& values) {
-    for (const std::string& value : values) {
-      const std::size_t equals = std::min(value.find('='), value.size());
-      if (equals == value.size()) {
-        throw CLI::ValidationError("--severity", "'" + value + "' is no RULE=LEVEL; write boundary-edge=error, say");
-      }
-      const std::string rule = value.substr(0, equals);
-      const auto level = parse_severity(rule, value.substr(equals + 1));
-      if (!level) throw CLI::ValidationError("--severity", level.error().message);
-      arguments->settings.severities[rule] = *level;
-    }
+  verdict.parsed(
+      "--fail-on", "SEVERITY", set_fail_on,
+      one_of("Exit with code 1 for findings of this severity or a higher one.", {"error", "warning", "note", "never"}),
+      "error");
+  const auto set_severity = [&settings](const std::string& value) {
+    const std::size_t equals = value.find('=');
+    if (equals == std::string::npos)
+      throw CLI::ValidationError("--severity", "'" + value + "' is no RULE=LEVEL; write boundary-edge=error, say");
+    const std::string rule = value.substr(0, equals);
+    const auto level = parse_severity(rule, value.substr(equals + 1));
+    if (!level) throw CLI::ValidationError("--severity", level.error().message);
+    settings.severities[rule] = *level;
   };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--severity", set_severities, "Severity of the findings of a rule: error, warning, note or off. May be repeated.")
-      ->type_name("RULE=LEVEL")
-      ->group("Verdict")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_allow_option(command, arguments->settings.allow, Allowable::also_warnings_and_notes);
+  verdict.repeated("--severity", "RULE=LEVEL", set_severity,
+                   "Severity of the findings of a rule: error, warning, note or off. May be repeated.");
+  add_allow_option(OptionGroup(command, "Mesh checks"), settings.allow, Allowable::also_warnings_and_notes);
+  const std::string name = kConfigName;
   CLI::Option* const config =
-      command.add_option("--config", arguments->config, "Read settings from FILE instead of " + std::string(kConfigName) + ".")
-          ->type_name("FILE")
-          ->group("Verdict");
-  command
-      .add_flag("--no-config", arguments->no_config,
-                "Do not look for " + std::string(kConfigName) + " in the mesh's folder and those above.")
-      ->excludes(config)
-      ->group("Verdict");
+      verdict.text("--config", "FILE", arguments.config, "Read settings from FILE instead of " + name + ".");
+  verdict.flag("--no-config", arguments.no_config, "Do not look for " + name + " in the mesh's folder and those above.")
+      ->excludes(config);
 }
 
 }  // namespace
@@ -321,6 +336,7 @@ Command add_validate(CLI::App& app) {
   command->footer(R"(Examples:
   fdcg validate part.stl
   fdcg validate 'meshes/**/*.stl' --format junit=report.xml
+  fdcg validate scan.obj --format html=scan.html
   fdcg validate --fail-on warning --allow boundary-edge scan.obj
   fdcg validate meshes --full known.json; fdcg validate meshes --baseline known.json
   convert part.step | fdcg validate - --input-format stl
@@ -332,25 +348,19 @@ Settings may stand in a file .fdcg-validate.json in the mesh's folder or one abo
 
 )" + exit_codes("no findings at or above --fail-on", "findings at or above --fail-on"));
   const auto arguments = std::make_shared<ValidateArguments>();
-  command
-      ->add_option("mesh", arguments->meshes,
-                   "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco), patterns, or folders to search. - is standard input.")
-      ->required()
-      ->type_name("MESH...");
-  add_report_options(*command, arguments);
-  add_verdict_options(*command, arguments);
-  add_weld_option(*command, arguments->settings.weld);
-  add_precision_option(*command, arguments->precision, "Check the mesh as a graph of this precision stores it.", "Mesh checks");
-  command->add_flag("--orient", arguments->is_oriented, "Check the mesh as 'fdcg compile --orient' leaves it.")
-      ->group("Mesh checks");
+  required_argument(*command, "mesh", "MESH...", arguments->meshes,
+                    "Mesh files (OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA, 3MF, VTK, X3D), robots (URDF, SDF) for the "
+                    "meshes that they name, patterns, or folders to search. - is standard input.");
+  add_report_options(*command, *arguments);
+  add_verdict_options(*command, *arguments);
+  const OptionGroup checks(*command, "Mesh checks");
+  add_weld_option(checks, arguments->settings.weld);
+  add_precision_option(checks, arguments->precision, "Check the mesh as a graph of this precision stores it.");
+  checks.flag("--orient", arguments->is_oriented, "Check the mesh as 'fdcg compile --orient' leaves it.");
   add_input_format_option(*command, arguments->input_format);
-  command->add_option("--jobs", arguments->jobs, "Number of threads. The report does not depend on it.")
-      ->type_name("N")
-      ->default_str("one for each core")
-      ->check(whole_number(1, 1024))
-      ->group("General");
-  command->add_flag("-q,--quiet", arguments->quiet, "Text report: list only files that fail. No progress bar.")
-      ->group("Output");
+  OptionGroup(*command, "General").jobs(arguments->jobs, "The report does not depend on it.");
+  OptionGroup(*command, "Output")
+      .flag("-q,--quiet", arguments->quiet, "Text report: list only files that fail. No progress bar.");
   return {command, [arguments] { return run_validate(*arguments); }};
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "../common/terminal.hpp"
+#include "fdcg/robot.hpp"
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
 
@@ -77,6 +78,7 @@ Validated judge(const ValidateTask& task, const ValidateRun& run, unsigned jobs,
                   ? import_input(task.mesh, import_options)
                   : bake::Result<bake::PolygonSoup>(bake::Failure{kFile, task.mesh + ": " + task.problem, "unreadable"});
   if (soup) {
+    bake::scale_soup(*soup, task.scale);
     bake::ValidateOptions options = task.options;
     options.progress = progress;
     options.jobs = jobs;
@@ -90,6 +92,7 @@ Validated judge(const ValidateTask& task, const ValidateRun& run, unsigned jobs,
     result.report = bake::validate(*soup, options);
     if (task.has_baseline) result.report.resolved = known.resolved(result.report.checks);
     result.exit_code = result.report.passes() ? kClean : kFindings;
+    if (run.keeps_meshes) result.soup = std::move(*soup);
   } else {
     refuse(result, task, soup.error());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What validate can be told about a file, on the command line or in .fdcg-validate.json.
+// Settings of validate for a file, from the command line or from .fdcg-validate.json.
 #pragma once
 
 #include <map>

@@ -84,8 +84,19 @@ using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 // ---- import --------------------------------------------------------------------------------------------------------------
 
-/// A mesh file's format; gltf: both JSON (.gltf) and binary (.glb).
-enum class Format { off, obj, ply, stl, gltf, drc };
+/// A mesh file's format.
+enum class Format {
+  off,      ///< OFF and its variants
+  obj,      ///< Wavefront
+  ply,      ///< all three encodings
+  stl,      ///< text and binary
+  gltf,     ///< glTF 2.0: JSON and GLB
+  drc,      ///< Draco
+  dae,      ///< COLLADA 1.4 and 1.5
+  threemf,  ///< 3MF
+  vtk,      ///< VTK polydata: legacy and XML (.vtp)
+  x3d,      ///< X3D, XML encoding
+};
 
 /// What a file has beside faces, or what its encoding adds: left out of the soup, and counted so that nothing goes in silence.
 struct Ignored {
@@ -125,6 +136,8 @@ struct PolygonSoup {
   std::vector<std::string> materials;
   std::vector<std::uint16_t> face_material;  ///< of each face, or kNoMaterial; empty where there are no materials
   std::vector<Ignored> ignored;              ///< what was left out
+  double metres_per_unit = 0;                ///< as the file states it (COLLADA, 3MF); 0: it does not
+  char up_axis = 0;                          ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
   std::vector<std::string> other_files;      ///< further files that the mesh is from: a glTF file's buffers
 
   /// Faces of the file.
@@ -137,10 +150,13 @@ struct ImportOptions {
   Progress progress;             ///< may be empty
 };
 
+/// The most that is read of what is no regular file: a pipe, a terminal.
+inline constexpr std::size_t kMostStreamBytes = std::size_t{64} << 20;
+
 /// Reads OFF (also COFF, NOFF, comments), OBJ, PLY (ascii, both binaries), STL (ascii, binary), glTF 2.0 (JSON, GLB; buffers in
-/// files beside or beneath it) and Draco. Never allocates more than a small multiple of the file's size (glTF: of what its
-/// scene may show, see gltf_scene.hpp). Fails with exit code 3 on what cannot be read or holds no face. Draco data is decoded
-/// in a child process (guarded_child.hpp).
+/// files beside or beneath it), Draco, COLLADA and 3MF. Never allocates more than a small multiple of the file's size (formats
+/// with scenes: of what a scene may show, see docs/limits.md). Fails with exit code 3 on what cannot be read or holds no face.
+/// Draco data is decoded in a child process (guarded_child.hpp).
 Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 /// The same from memory; `name` is for messages, and no other file is read.
@@ -170,7 +186,8 @@ struct Element {
 struct Issue {
   std::string rule;                     ///< by name
   Severity severity = Severity::error;  ///< of each finding
-  std::uint64_t total = 0;              ///< exact, however few elements are listed
+  std::uint64_t total = 0;              ///< exact, however few elements are listed, unless is_at_least
+  bool is_at_least = false;             ///< the count ended there (self-intersection, at 1,000,000 pairs of triangles)
   std::string message;                  ///< what, how many, and the remedy
   std::vector<Element> elements;        ///< the first max_elements of them, in source order; known ones last
   std::uint64_t known = 0;              ///< of these, accepted by a baseline: they do not fail the verdict
@@ -335,6 +352,42 @@ struct ValidateOptions {
 /// compile() refuses a mesh exactly where this report does not pass, with the same options and fail_on error.
 Report validate(const PolygonSoup& soup, const ValidateOptions& options = {});
 
+/// What one step of a repair did, and what it found and left, since it could not be repaired safely.
+struct RepairAction {
+  std::string name;                    ///< as on the command line: weld, drop-degenerate, ...
+  std::uint64_t total = 0;             ///< done
+  std::string message;                 ///< one line
+  std::vector<Element> elements;       ///< the first kListedElements, in source order and the input's numbering
+  std::uint64_t left = 0;              ///< found and not done
+  std::string left_message;            ///< why; empty where nothing was left
+  std::vector<Element> left_elements;  ///< likewise
+  /// Measured, source units: no point of the surface before or after the step is farther than this from the other surface. An
+  /// upper bound, at most a hundredth above the largest distance, or 1e-9 of the object's size. Infinite where no surface is
+  /// left.
+  double distance = 0;
+  double volume_change = 0;  ///< of the signed volume (RepairAccount), cubed source units
+};
+
+/// How far a repair may go.
+enum class RepairLevel {
+  safe,  ///< every point of the surface stays: welds, drops faces without area and copies, turns, splits, cuts
+  full,  ///< also unfolds slivers, triangulates polygons that cross themselves, and drops faces that no graph can have
+};
+
+/// What a repair did to the surface as a whole.
+struct RepairAccount {
+  RepairLevel level = RepairLevel::full;         ///< as asked for
+  std::map<std::string, std::uint64_t> found{};  ///< by rule: what there was before, of compile() without self-intersections
+  std::vector<RepairAction> actions;  ///< one a step, also where there was nothing to do; compile(): none where nothing blocked
+  double distance = 0;                ///< as RepairAction's, between the input and the result
+  /// Of the tetrahedra between the middle of the input's bounds and each face, by the side that the face shows; what a closed
+  /// mesh encloses.
+  double volume_before = 0;
+  double volume_after = 0;         ///< likewise, with the same middle
+  std::uint64_t faces_before = 0;  ///< of the input
+  std::uint64_t faces_after = 0;   ///< of the result
+};
+
 /// Gives memory for a file of so many bytes: zeroed, starting at a multiple of 64; empty where there is none to be had.
 using Allocate = std::function<std::span<std::byte>(std::size_t bytes)>;
 
@@ -355,6 +408,7 @@ struct CompileOptions {
   double mass_kg = 0;                          ///< see density_kg_per_m3
   std::set<std::string> allow;                 ///< rules whose findings do not refuse the mesh
   bool self_intersections = false;             ///< run that rule too
+  std::optional<RepairLevel> repair;           ///< repair the mesh first, with `weld`; `orient` is then part of it
   std::size_t max_elements = kListedElements;  ///< listed of each rule
   unsigned jobs = 0;                           ///< threads; 0: as many as there are cores. The bytes do not depend on it
   Progress progress;                           ///< may be empty
@@ -363,13 +417,14 @@ struct CompileOptions {
 
 /// What compile() made.
 struct Compiled {
-  Report report;                    ///< the verdict, and what was found
-  std::uint64_t flipped_faces = 0;  ///< by orient
-  std::uint64_t split_faces = 0;    ///< not convex or not planar: cut into several nodes
-  std::uint64_t merged_faces = 0;   ///< source faces that share their node with others
-  std::string no_mass;              ///< why the file has no mass properties; empty where it has, and where they were left out
-  std::vector<std::byte> bytes;     ///< the file, unless CompileOptions::allocate placed it; empty if the report does not pass
-  std::span<std::byte> placed;      ///< the file, where CompileOptions::allocate placed it
+  Report report;                        ///< the verdict, and what was found
+  std::uint64_t flipped_faces = 0;      ///< by orient
+  std::uint64_t split_faces = 0;        ///< not convex or not planar: cut into several nodes
+  std::uint64_t merged_faces = 0;       ///< source faces that share their node with others
+  std::optional<RepairAccount> repair;  ///< where CompileOptions::repair asked for one
+  std::string no_mass;           ///< why the file has no mass properties; empty where it has, and where they were left out
+  std::vector<std::byte> bytes;  ///< the file, unless CompileOptions::allocate placed it; empty if the report does not pass
+  std::span<std::byte> placed;   ///< the file, where CompileOptions::allocate placed it
 
   /// The file, wherever it is.
   [[nodiscard]] std::span<const std::byte> file() const { return placed.empty() ? std::span<const std::byte>(bytes) : placed; }
@@ -377,6 +432,10 @@ struct Compiled {
 
 /// About how large the file will be; larger than it comes out where faces are merged.
 std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& options);
+
+/// Compiled::report as report_json() has it, of the mesh as it was repaired in the input's numbering; where the mesh was
+/// repaired, with the account under "repair".
+std::string compile_report_json(const Compiled& compiled);
 
 /// Compiles a mesh. Fails only where a mass was asked for of a mesh that encloses no solid (1), the options contradict one
 /// another (2), the mesh outgrows the format (3), or by our own fault (4).
@@ -396,28 +455,28 @@ struct RepairOptions {
   bool split_non_manifold_vertices = false;  ///< a vertex for each fan
   bool orient = false;                       ///< each orientable patch consistent, closed ones of mixed winding outward
   bool reverse_inside_out = false;           ///< closed patches at even nesting depth that enclose negative volume
+  bool cut_non_manifold = false;            ///< edges of more than two faces, folds, what makes a patch one-sided; implies weld
+  bool drop_unusable_faces = false;         ///< a corner that is not finite, or that the file does not have
+  bool triangulate_crossing_faces = false;  ///< polygons that cross themselves or come twice to a corner
+  bool unfold = false;                      ///< folded slivers thinner than 1e-3 of the object's size
+  bool drop_blocking_faces = false;         ///< what no step above could mend and no graph can have
   std::optional<double> simplify_error;  ///< source units: no point of the result or the input farther from the other surface
-  unsigned jobs = 0;                     ///< threads; 0: as many as there are cores
-  Progress progress;                     ///< may be empty
+  bool part_equal_points = false;  ///< move vertices that a repair put apart at equal coordinates apart by a float's rounding
+  bool judges = true;              ///< fills Repaired::before and after
+  unsigned jobs = 0;               ///< threads; 0: as many as there are cores
+  Progress progress;               ///< may be empty
 };
 
-/// What one step did, and what it found and left, since it could not be repaired safely.
-struct RepairAction {
-  std::string name;                    ///< as on the command line: weld, drop-degenerate, ...
-  std::uint64_t total = 0;             ///< done
-  std::string message;                 ///< one line
-  std::vector<Element> elements;       ///< the first kListedElements, in source order and the input's numbering
-  std::uint64_t left = 0;              ///< found and not done
-  std::string left_message;            ///< why; empty where nothing was left
-  std::vector<Element> left_elements;  ///< likewise
-};
+/// The steps of a level; weld is exact.
+RepairOptions repair_options(RepairLevel level);
 
 /// What repair() made.
-struct Repaired {
-  PolygonSoup soup;                   ///< the result
-  std::vector<RepairAction> actions;  ///< one a step asked for, also where there was nothing to do
-  Report before;                      ///< validate() of the input
-  Report after;                       ///< validate() of `soup`, as it is to be read
+struct Repaired : public RepairAccount {
+  PolygonSoup soup;                         ///< the result
+  std::vector<std::uint32_t> source_face;   ///< of each of its faces: that of the input it is, or is a part of
+  std::vector<std::uint32_t> source_point;  ///< of each of its points: that of the input it is; of new ones: one nearby
+  Report before;                            ///< validate() of the input
+  Report after;                             ///< validate() of `soup`, as it is to be read
   /// How `soup` is to be read: none where vertices at equal coordinates are apart on purpose.
   Weld::Kind read_with = Weld::Kind::exact;
 };

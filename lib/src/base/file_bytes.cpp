@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -36,20 +37,27 @@ std::string error_text(int code) {
   return std::generic_category().message(code);
 }
 
-// 0 or the errno of the failed call.
+// Character devices have no end, but for the null device, which is empty, and terminals, where a person ends the text.
+bool is_endless_device(const struct stat& status) {
+  struct stat null_device {};
+  if (!S_ISCHR(status.st_mode)) return S_ISBLK(status.st_mode);
+  if (::stat("/dev/null", &null_device) == 0 && null_device.st_rdev == status.st_rdev) return false;
+  constexpr unsigned kMemoryDevices = 1;  // zero, full, random, mem, ...
+  return major(status.st_rdev) == kMemoryDevices;
+}
+
+// 0 or the errno of the failed call; EFBIG beyond the limit of streams.
 int read_to_end(int fd, std::string& buffer) {
-  constexpr std::size_t kChunk = std::size_t{1} << 20;
-  std::size_t used = 0;
+  std::string chunk(std::size_t{1} << 18, '\0');
+  buffer.reserve(kMostStreamBytes);  // address space alone: no copy of what is there while it grows
   for (;;) {
-    if (buffer.size() - used < kChunk) buffer.resize(buffer.size() + buffer.size() / 2 + kChunk);
-    const ssize_t got = ::read(fd, buffer.data() + used, buffer.size() - used);
+    const ssize_t got = ::read(fd, chunk.data(), chunk.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return errno;
-    if (got == 0) break;
-    used += static_cast<std::size_t>(got);
+    if (got == 0) return 0;
+    if (static_cast<std::size_t>(got) > kMostStreamBytes - buffer.size()) return EFBIG;
+    buffer.append(chunk, 0, static_cast<std::size_t>(got));
   }
-  buffer.resize(used);
-  return 0;
 }
 
 }  // namespace
@@ -61,6 +69,7 @@ Result<FileBytes> FileBytes::open(const std::filesystem::path& path) {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) return unreadable(path, "cannot be examined: " + error_text(errno));
   if (S_ISDIR(status.st_mode)) return unreadable(path, "is a directory; name a mesh file in it");
+  if (is_endless_device(status)) return unreadable(path, "is a device, which has no end; name a mesh file");
   FileBytes result;
   // Files of /proc and /sys report size 0 but have content, so only a positive size is trusted.
   if (S_ISREG(status.st_mode) && status.st_size > 0) {
@@ -74,11 +83,21 @@ Result<FileBytes> FileBytes::open(const std::filesystem::path& path) {
       result.size_ = static_cast<std::size_t>(status.st_size);
       return result;
     }
+    if (static_cast<std::size_t>(status.st_size) > kMostStreamBytes) {
+      return unreadable(path, "needs more memory than there is (" + std::to_string(status.st_size) +
+                                  " bytes of file); cut the mesh into parts");
+    }
   }
   if (const int error = read_to_end(file.get(), result.buffer_)) {
+    if (error == EFBIG) return unreadable(path, stream_too_long());
     return unreadable(path, "cannot be read: " + error_text(error));
   }
   return result;
+}
+
+std::string stream_too_long() {
+  return "has more than " + std::to_string(kMostStreamBytes >> 20) +
+         " MiB, as much as is read of what is no regular file; save it as a file";
 }
 
 FileBytes::FileBytes(FileBytes&& other) noexcept

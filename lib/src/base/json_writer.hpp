@@ -24,6 +24,9 @@ class JsonWriter {
   void end_object() { end('}'); }
   void begin_array(Layout layout = Layout::lines) { begin('[', layout); }
   void end_array() { end(']'); }
+  // As members of an object.
+  void begin_object(std::string_view name, Layout layout = Layout::lines) { key(name), begin_object(layout); }
+  void begin_array(std::string_view name, Layout layout = Layout::lines) { key(name), begin_array(layout); }
 
   void key(std::string_view name) {
     separate();

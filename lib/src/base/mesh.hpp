@@ -39,6 +39,10 @@ struct Topology {
   [[nodiscard]] FaceId face(HalfedgeId h) const { return face_of.empty() ? FaceId{+h / 3} : face_of[+h]; }
 };
 
+[[nodiscard]] inline bool is_halfedge(HalfedgeId h) {
+  return +h < +Topology::kSkipped;
+}
+
 [[nodiscard]] inline HalfedgeId next(const Mesh& mesh, FaceId f, HalfedgeId h) {
   return HalfedgeId{+h + 1 < mesh.face_first[+f + 1] ? +h + 1 : mesh.face_first[+f]};
 }

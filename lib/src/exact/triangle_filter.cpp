@@ -3,7 +3,6 @@
 // which need not be accurate themselves: only the rounding error of the projections onto them is bounded.
 #include "exact/triangle_filter.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 

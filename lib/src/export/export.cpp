@@ -27,9 +27,13 @@ Result<std::string> export_as(const PolygonSoup& soup, const ExportOptions& opti
       return bytes;
     case Format::gltf:
     case Format::drc:
+    case Format::dae:
+    case Format::threemf:
+    case Format::vtk:
+    case Format::x3d:
       break;
   }
-  return Failure{2, soup.name + ": glTF and Draco are read, not written; choose OFF, OBJ, PLY or STL", {}};
+  return Failure{2, soup.name + ": this format is read, not written; choose OFF, OBJ, PLY or STL", {}};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 14;
+constexpr std::size_t kPointGrain = 1u << 14;
 
 // An edge v0 -> v1 of face a with a's third corner at v0 + left, b's at v0 + right.
 struct Wedge {
@@ -64,13 +64,13 @@ class Classifier {
  public:
   Classifier(const Mesh& mesh, const Quantum& quantum, const Coplanar& coplanar, unsigned jobs)
       : mesh_(mesh), quantum_(quantum), coplanar_(coplanar), cos_angle_(std::cos(coplanar.angle_rad)) {
-    const std::size_t ranges = (mesh.points.size() + kGrain - 1) / kGrain;
+    const std::size_t ranges = (mesh.points.size() + kPointGrain - 1) / kPointGrain;
     std::vector<double> largest(ranges, 0);
-    parallel_for(jobs, mesh.points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs, mesh.points.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
       double q = 0;
       for (std::size_t v = begin; v < end; ++v)
         q = std::max(q, quantum.at(mesh.points[v]));
-      largest[begin / kGrain] = q;
+      largest[begin / kPointGrain] = q;
     });
     for (double q : largest)
       largest_quantum_ = std::max(largest_quantum_, q);
@@ -124,7 +124,7 @@ std::vector<EdgeClass> classify_edges(const Mesh& mesh, const Topology& topology
                                       const Coplanar& coplanar, unsigned jobs) {
   std::vector<EdgeClass> classes(mesh.corners.size());
   const Classifier classify(mesh, quantum, coplanar, jobs);
-  parallel_for(jobs, mesh.corners.size(), 3 * kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(jobs, mesh.corners.size(), 3 * kPointGrain, [&](std::size_t begin, std::size_t end) {
     for (auto slot = static_cast<std::uint32_t>(begin); slot < end; ++slot) {
       const HalfedgeId twin = topology.twin[slot];
       if (twin == Topology::kBoundary) {

@@ -55,9 +55,9 @@ double support(const FanDirection& entry, const Vec3& next_edge, const Vec3& a) 
   return is_left_of_first && is_right_of_next ? std::max(most, length(in_plane)) : most;
 }
 
-class Builder {
+class FanTreeBuilder {
  public:
-  Builder(std::span<const FanDirection> fan, double epsilon) : fan_(fan), epsilon_(epsilon) {}
+  FanTreeBuilder(std::span<const FanDirection> fan, double epsilon) : fan_(fan), epsilon_(epsilon) {}
 
   FanBox box(std::size_t first, std::size_t last) const {
     std::vector<FanDirection> directions(fan_.begin() + static_cast<std::ptrdiff_t>(first),
@@ -107,7 +107,7 @@ std::uint32_t fan_box_count(std::uint32_t fan_entries) {
 
 std::vector<FanBox> build_fan_tree(std::span<const FanDirection> fan, double epsilon) {
   const std::vector<std::uint32_t> sizes = level_sizes(static_cast<std::uint32_t>(fan.size()));
-  const Builder builder(fan, epsilon);
+  const FanTreeBuilder builder(fan, epsilon);
   std::vector<FanBox> boxes;
   for (std::size_t level = sizes.size(); level-- > 0;) {
     const std::size_t entries_per_box = std::size_t{FDCG_LEAF_FAN} << level;

@@ -15,7 +15,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 13;
+constexpr std::size_t kRankGrain = 1u << 13;
 
 struct Ranked {
   std::uint64_t key;
@@ -58,7 +58,7 @@ std::vector<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsig
     return static_cast<std::uint32_t>(std::clamp((doubled - 2 * from) * cells_per_unit, 0.0, cells - 1));
   };
   std::vector<Ranked> ranked(mesh.face_count());
-  parallel_for(jobs, ranked.size(), kGrain, [&, from = low](std::size_t begin, std::size_t end) {
+  parallel_for(jobs, ranked.size(), kRankGrain, [&, from = low](std::size_t begin, std::size_t end) {
     for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
       const Vec3 c = doubled_centre(mesh, f);
       ranked[f] = {hilbert_position({cell(c.x, from.x), cell(c.y, from.y), cell(c.z, from.z)}, bits), f};
@@ -118,7 +118,11 @@ class Orderer {
       const unsigned bits = curve_bits(mesh_.face_count());
       std::vector<Ranked> ranked = positions_along_curve(mesh_, bits, jobs_);
       radix_sort(ranked, 3 * bits);
-      place_nodes(ranked);
+      std::vector<std::uint32_t> faces(ranked.size());
+      std::transform(ranked.begin(), ranked.end(), faces.begin(), [](const Ranked& item) { return item.face; });
+      ranked = {};
+      graph_.fan_runs = gather_fans(mesh_, topology_, faces);
+      place_nodes(faces);
     }
     copy_sides();
     parallel_for(jobs_, 2, 1, [&](std::size_t task, std::size_t) { task == 0 ? name_corners() : name_connections(); });
@@ -126,23 +130,23 @@ class Orderer {
   }
 
  private:
-  void place_nodes(const std::vector<Ranked>& ranked) {
-    graph_.first_side.resize(ranked.size() + 1);
-    graph_.node_of_face.resize(ranked.size());
+  void place_nodes(const std::vector<std::uint32_t>& faces) {
+    graph_.first_side.resize(faces.size() + 1);
+    graph_.node_of_face.resize(faces.size());
     side_of_slot_.resize(mesh_.corners.size());
     std::uint32_t sum = 0;
-    for (std::size_t n = 0; n < ranked.size(); ++n) {
+    for (std::size_t n = 0; n < faces.size(); ++n) {
       graph_.first_side[n] = sum;
-      sum += mesh_.face_first[ranked[n].face + 1] - mesh_.face_first[ranked[n].face];
+      sum += mesh_.face_first[faces[n] + 1] - mesh_.face_first[faces[n]];
     }
-    graph_.first_side[ranked.size()] = sum;
+    graph_.first_side[faces.size()] = sum;
     const bool all_triangles = topology_.face_of.empty();
     if (!all_triangles) graph_.node_of_side.resize(mesh_.corners.size());
-    if (!regions_.list.empty()) graph_.region.resize(ranked.size());
+    if (!regions_.list.empty()) graph_.region.resize(faces.size());
     graph_.regions = std::move(regions_.list);
-    parallel_for(jobs_, ranked.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs_, faces.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
       for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
-        const std::uint32_t f = ranked[n].face, first = mesh_.face_first[f], count = mesh_.face_first[f + 1] - first;
+        const std::uint32_t f = faces[n], first = mesh_.face_first[f], count = mesh_.face_first[f + 1] - first;
         graph_.node_of_face[f] = n;
         if (!graph_.region.empty()) graph_.region[n] = regions_.of_face[f];
         const std::uint32_t start = count == 3 ? 0 : best_start(mesh_, f, graph_.regions[graph_.region[n]].plane.normal);
@@ -159,7 +163,7 @@ class Orderer {
     graph_.twin.resize(mesh_.corners.size());
     graph_.corner.resize(mesh_.corners.size());
     graph_.edges.resize(mesh_.corners.size());
-    parallel_for(jobs_, mesh_.corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs_, mesh_.corners.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot) {
         const std::uint32_t side = side_of_slot_[slot];
         const HalfedgeId twin = topology_.twin[slot];
@@ -198,6 +202,8 @@ class Orderer {
         ++fan[corner];  // the boundary connection that closes an open fan is no side that leaves the corner
       }
     }
+    for (FanRun& run : graph_.fan_runs)
+      run.vertex = corner_of[run.vertex];
     fan.push_back(0);
     std::uint32_t sum = 0;
     for (std::uint32_t& entry : fan) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The finished faces put in the order of the file: nodes along a space-filling curve, everything else by first use.
+// The finished faces put in the order of the file: nodes along a space-filling curve, then those of busy corners
+// (fan_runs.hpp), everything else by first use.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 
 #include "base/mesh.hpp"
 #include "graph/classify.hpp"
+#include "graph/fan_runs.hpp"
 #include "graph/regions.hpp"
 
 namespace fdcg::bake {
@@ -26,6 +28,7 @@ struct Graph {
   std::vector<std::uint32_t> fan_start;     // of each corner: the side that its fan starts with
   std::vector<std::uint32_t> first_fan;     // corner c: fan entries first_fan[c] .. first_fan[c + 1] - 1
   std::vector<std::uint32_t> node_of_face;  // of each face of the mesh that this was made of
+  std::vector<FanRun> fan_runs;             // in ascending order; `vertex` is a corner of the graph
   std::uint32_t connection_count = 0;
   std::uint32_t largest_fan = 0;
 

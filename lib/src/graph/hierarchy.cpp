@@ -12,7 +12,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 9;
+constexpr std::size_t kBoxGrain = 1u << 9;
 constexpr int kExponentBias = 127;
 // The smallest cell of a grid: the step's rounding error, some 2^-19, stays far below 255 cells, the amount by which an unused
 // box is inverted.
@@ -80,9 +80,9 @@ Box write_record(const Boxes& boxes, std::size_t count, fdcg_box8& record) {
   return seen;
 }
 
-class Builder {
+class TreeBuilder {
  public:
-  Builder(const Graph& graph, const HierarchyScale& scale)
+  TreeBuilder(const Graph& graph, const HierarchyScale& scale)
       : graph_(graph), per_unit_(std::ldexp(1.0, -std::ilogb(scale.extent))), max_deviation_(scale.max_deviation) {}
 
   [[nodiscard]] Box leaf(std::uint32_t leaf) const {
@@ -123,7 +123,7 @@ std::vector<std::uint32_t> hierarchy_levels(std::uint32_t node_count) {
 }
 
 void build_hierarchy(const Graph& graph, const HierarchyScale& scale, std::span<fdcg_box8> records, unsigned jobs) {
-  const Builder builder(graph, scale);
+  const TreeBuilder builder(graph, scale);
   const std::vector<std::uint32_t> levels = hierarchy_levels(graph.node_count());
   std::uint32_t items = (graph.node_count() + FDCG_LEAF_NODES - 1) / FDCG_LEAF_NODES;
   std::vector<Box> below;  // around each record of the level below; none below the leaves' records
@@ -131,7 +131,7 @@ void build_hierarchy(const Graph& graph, const HierarchyScale& scale, std::span<
     const std::span<fdcg_box8> here = records.last(levels[level]);
     records = records.first(records.size() - here.size());
     std::vector<Box> around(here.size());
-    parallel_for(jobs, here.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs, here.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Boxes boxes;
         const std::size_t first = i * FDCG_TREE_WAYS, count = std::min<std::size_t>(FDCG_TREE_WAYS, items - first);

@@ -10,57 +10,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(Format format) {
-  switch (format) {
-    case Format::off:
-      return "off";
-    case Format::obj:
-      return "obj";
-    case Format::ply:
-      return "ply";
-    case Format::stl:
-      return "stl";
-    case Format::gltf:
-      return "gltf";
-    case Format::drc:
-      return "drc";
-  }
-  return "";
-}
-
-const char* name_of(Weld::Kind kind) {
-  switch (kind) {
-    case Weld::Kind::exact:
-      return "exact";
-    case Weld::Kind::none:
-      return "none";
-    case Weld::Kind::distance:
-      return "distance";
-  }
-  return "";
-}
-
-const char* name_of(Coplanar::Kind kind) {
-  switch (kind) {
-    case Coplanar::Kind::exact:
-      return "exact";
-    case Coplanar::Kind::quantum:
-      return "quantum";
-    case Coplanar::Kind::angle:
-      return "angle";
-  }
-  return "";
-}
+// By the values of Format, Weld::Kind and Coplanar::Kind.
+constexpr const char* kFormats[] = {"off", "obj", "ply", "stl", "gltf", "drc", "dae", "3mf", "vtk", "x3d"};
+constexpr const char* kWelds[] = {"exact", "none", "distance"};
+constexpr const char* kCoplanars[] = {"exact", "quantum", "angle"};
 
 Json options_json(const CompileOptions& options) {
   Json json;
   json["metres_per_unit"] = options.metres_per_unit;
   json["precision"] = options.precision == Precision::f32 ? "f32" : "f64";
-  json["coplanar"] = name_of(options.coplanar.kind);
+  json["coplanar"] = kCoplanars[static_cast<int>(options.coplanar.kind)];
   if (options.coplanar.kind == Coplanar::Kind::angle) json["coplanar_angle_rad"] = options.coplanar.angle_rad;
   json["merge"] = options.merge && !options.triangles;
   if (options.triangles) json["triangles"] = true;
-  json["weld"] = name_of(options.weld.kind);
+  json["weld"] = kWelds[static_cast<int>(options.weld.kind)];
   if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
   json["orient"] = options.orient;
   json["planes"] = options.store_planes ? "stored" : "derived";
@@ -72,13 +35,35 @@ Json options_json(const CompileOptions& options) {
   return json;
 }
 
+// Totals and measures; the lists are for reports.
+Json repair_info(const RepairAccount& account) {
+  Json json;
+  json["level"] = account.level == RepairLevel::safe ? "safe" : "full";
+  json["found"] = account.found;
+  json["actions"] = Json::array();
+  for (const RepairAction& action : account.actions) {
+    if (action.total == 0 && action.left == 0) continue;
+    json["actions"].push_back({{"name", action.name},
+                               {"total", action.total},
+                               {"left", action.left},
+                               {"distance", action.distance},
+                               {"volume_change", action.volume_change}});
+  }
+  json["distance"] = account.distance;
+  json["volume_before"] = account.volume_before;
+  json["volume_after"] = account.volume_after;
+  json["faces_before"] = account.faces_before;
+  json["faces_after"] = account.faces_after;
+  return json;
+}
+
 }  // namespace
 
 std::string info_json(const PolygonSoup& soup, const CompileOptions& options, const Compiled& compiled) {
   Json json;
   json["tool"] = "fdcg " FDCG_VERSION_STRING;
   json["source"] = {{"file_sha256", soup.sha256},
-                    {"format", name_of(soup.format)},
+                    {"format", kFormats[static_cast<int>(soup.format)]},
                     {"vertices", soup.points.size()},
                     {"faces", soup.face_count()}};
   json["options"] = options_json(options);
@@ -101,6 +86,7 @@ std::string info_json(const PolygonSoup& soup, const CompileOptions& options, co
   json["flipped_faces"] = compiled.flipped_faces;
   json["split_faces"] = compiled.split_faces;
   json["merged_faces"] = compiled.merged_faces;
+  if (compiled.repair) json["repair"] = repair_info(*compiled.repair);
   if (!compiled.no_mass.empty()) json["no_mass"] = compiled.no_mass;
   return json.dump();
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -25,7 +24,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 12;
+constexpr std::size_t kRecordGrain = 1u << 12;
 
 struct Records64 {
   using Real = double;
@@ -79,7 +78,7 @@ class Writer {
     fans_ = layout_.records<std::uint32_t>(file_, FDCG_SECTION_FANS);
     find_bounds();
     write_nodes();
-    parallel_for(input_.jobs, graph_.corner_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(input_.jobs, graph_.corner_count(), kRecordGrain, [&](std::size_t begin, std::size_t end) {
       for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
         write_corner(c);
     });
@@ -93,6 +92,7 @@ class Writer {
     std::copy(input_.info.begin(), input_.info.end(), layout_.records<char>(file_, FDCG_SECTION_INFO).begin());
     if (input_.mass) layout_.records<fdcg_mass_record>(file_, FDCG_SECTION_MASS)[0] = *input_.mass;
     write_materials();
+    write_fan_runs();
     write_header();
     return file_;
   }
@@ -125,6 +125,7 @@ class Writer {
       layout_.add(FDCG_SECTION_MATERIALS, sizeof(std::uint16_t), graph_.node_count());
       layout_.add(FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), input_.materials.size());
     }
+    if (has_fan_runs()) layout_.add(FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), graph_.fan_runs.size());
     layout_.place();
   }
 
@@ -137,6 +138,9 @@ class Writer {
       fan_boxes_ += boxes;
     }
   }
+
+  // What they spare a sweep are boxes.
+  [[nodiscard]] bool has_fan_runs() const { return input_.with_hierarchy && !graph_.fan_runs.empty(); }
 
   void find_bounds() {
     constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -174,12 +178,12 @@ class Writer {
   }
 
   void write_nodes() {
-    std::vector<NodeTally> tallies((graph_.node_count() + kGrain - 1) / kGrain);
-    parallel_for(input_.jobs, graph_.node_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<NodeTally> tallies((graph_.node_count() + kRecordGrain - 1) / kRecordGrain);
+    parallel_for(input_.jobs, graph_.node_count(), kRecordGrain, [&](std::size_t begin, std::size_t end) {
       NodeTally tally;
       for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n)
         write_node(n, tally);
-      tallies[begin / kGrain] = tally;
+      tallies[begin / kRecordGrain] = tally;
     });
     for (const NodeTally& tally : tallies) {
       for (int type = 0; type < 4; ++type)
@@ -308,6 +312,35 @@ class Writer {
         ++at;
       }
     });
+  }
+
+  void write_fan_runs() {
+    if (!has_fan_runs()) return;
+    const auto runs = layout_.records<fdcg_fan_run>(file_, FDCG_SECTION_FAN_RUNS);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const FanRun& run = graph_.fan_runs[i];
+      const auto busy = std::lower_bound(busy_corners_.begin(), busy_corners_.end(), run.vertex,
+                                         [](const fdcg_busy_corner& b, std::uint32_t corner) { return b.corner < corner; });
+      runs[i] = {run.first, run.count, static_cast<std::uint32_t>(busy - busy_corners_.begin()),
+                 is_near_inexact(*busy) ? FDCG_RUN_INEXACT : 0};
+    }
+  }
+
+  // Whether a node at a corner, or one across a concave side of such a node, is inexact: these may be entered beside the way.
+  [[nodiscard]] bool is_near_inexact(const fdcg_busy_corner& busy) const {
+    const auto is_inexact = [&](std::uint32_t n) { return (node(n).flags & FDCG_NODE_INEXACT) != 0; };
+    for (const std::uint32_t entry : fans_.subspan(busy.first_fan, busy.fan_count)) {
+      const fdcg_connection& connection = connections_[entry >> 1];
+      if ((entry & 1u) != 0 && connection.type == FDCG_BOUNDARY) continue;
+      const std::uint32_t first = graph_.first_side[connection.node] + connection.side[0];
+      const std::uint32_t n = (entry & 1u) == 0 ? connection.node : graph_.node(graph_.twin[first]);
+      if (is_inexact(n)) return true;
+      for (std::uint32_t side = graph_.first_side[n]; side < graph_.first_side[n + 1]; ++side) {
+        const bool is_concave = connections_[graph_.connection[side] >> 1].type == FDCG_CONCAVE;
+        if (is_concave && is_inexact(graph_.node(graph_.twin[side]))) return true;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] Vec3 normal_of(std::uint32_t n) const {

@@ -19,7 +19,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 1u << 12;
+constexpr std::size_t kFaceGrain = 1u << 12;
 constexpr int kMantissaBits = std::numeric_limits<double>::digits;
 
 // An mpz_t that frees itself.
@@ -176,7 +176,7 @@ class Adder {
 template <class Numbers>
 void add_up(const Mesh& mesh, int grid, unsigned jobs, Moments& total) {
   std::mutex lock;
-  parallel_for(jobs, mesh.face_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(jobs, mesh.face_count(), kFaceGrain, [&](std::size_t begin, std::size_t end) {
     Adder<Numbers> adder(grid);
     const auto corner = [&](std::size_t slot) { return mesh.points[+mesh.corners[slot]]; };
     for (std::size_t f = begin; f < end; ++f)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 
 #include "fdcg/grasp.hpp"
 #include "grasp/grasp_body.hpp"

@@ -13,6 +13,14 @@
 namespace fdcg::bake {
 namespace {
 
+// libdraco's messages end in a full stop, which ours go on from.
+std::string plain(const draco::Status& status) {
+  std::string text = status.error_msg_string();
+  while (text.ends_with('.'))
+    text.pop_back();
+  return text;
+}
+
 DracoMesh refused(std::string trouble) {
   DracoMesh mesh;
   mesh.trouble = std::move(trouble);
@@ -46,30 +54,13 @@ bool copy_values(const draco::PointAttribute& attribute, bool is_normalized, std
 }
 
 bool copy_values(const draco::PointAttribute& attribute, bool is_normalized, std::vector<Vec3>& points) {
-  switch (attribute.data_type()) {
-    case draco::DT_INT8:
-      return copy_values<std::int8_t>(attribute, is_normalized, points);
-    case draco::DT_UINT8:
-      return copy_values<std::uint8_t>(attribute, is_normalized, points);
-    case draco::DT_INT16:
-      return copy_values<std::int16_t>(attribute, is_normalized, points);
-    case draco::DT_UINT16:
-      return copy_values<std::uint16_t>(attribute, is_normalized, points);
-    case draco::DT_INT32:
-      return copy_values<std::int32_t>(attribute, is_normalized, points);
-    case draco::DT_UINT32:
-      return copy_values<std::uint32_t>(attribute, is_normalized, points);
-    case draco::DT_INT64:
-      return copy_values<std::int64_t>(attribute, is_normalized, points);
-    case draco::DT_UINT64:
-      return copy_values<std::uint64_t>(attribute, is_normalized, points);
-    case draco::DT_FLOAT32:
-      return copy_values<float>(attribute, is_normalized, points);
-    case draco::DT_FLOAT64:
-      return copy_values<double>(attribute, is_normalized, points);
-    default:
-      return false;
-  }
+  constexpr bool (*kCopy[])(const draco::PointAttribute&, bool, std::vector<Vec3>&) = {
+      copy_values<std::int8_t>,  copy_values<std::uint8_t>,  copy_values<std::int16_t>, copy_values<std::uint16_t>,
+      copy_values<std::int32_t>, copy_values<std::uint32_t>, copy_values<std::int64_t>, copy_values<std::uint64_t>,
+      copy_values<float>,        copy_values<double>};
+  static_assert(draco::DT_FLOAT64 - draco::DT_INT8 + 1 == std::size(kCopy));
+  const int type = attribute.data_type() - draco::DT_INT8;
+  return type >= 0 && type < static_cast<int>(std::size(kCopy)) && kCopy[type](attribute, is_normalized, points);
 }
 
 // The positions as libdraco gives them by default: dequantised here, because the decoder is configured to keep the quantised
@@ -166,7 +157,7 @@ DracoMesh decode_draco_here(const DracoInput& input) {
   draco::DecoderBuffer buffer;
   buffer.Init(input.bytes.data(), input.bytes.size());
   const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
-  if (!type.ok()) return refused("is not Draco data that libdraco reads: " + type.status().error_msg_string());
+  if (!type.ok()) return refused("is not Draco data that libdraco reads: " + plain(type.status()));
   if (type.value() != draco::TRIANGULAR_MESH) {
     DracoMesh cloud;
     cloud.is_point_cloud = true;
@@ -175,7 +166,7 @@ DracoMesh decode_draco_here(const DracoInput& input) {
   draco::Decoder decoder;
   decoder.SetSkipAttributeTransform(draco::GeometryAttribute::POSITION);
   const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) return refused("cannot be decoded: libdraco says '" + decoded.status().error_msg_string() + "'");
+  if (!decoded.ok()) return refused("cannot be decoded: libdraco says '" + plain(decoded.status()) + "'");
   return read_mesh(*decoded.value(), input);
 }
 

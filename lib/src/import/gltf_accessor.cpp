@@ -9,7 +9,7 @@
 namespace fdcg::bake::gltf {
 namespace {
 
-std::string place_of(Index accessor) {
+std::string accessor_place(Index accessor) {
   return "accessors[" + std::to_string(accessor) + "]";
 }
 
@@ -81,7 +81,7 @@ Replacement resolve_sparse(const Document& document, Index index, Buffers& buffe
   Replacement result;
   if (!accessor.sparse) return result;
   const Sparse& sparse = *accessor.sparse;
-  const std::string place = place_of(index) + ".sparse";
+  const std::string place = accessor_place(index) + ".sparse";
   const Strided places =
       resolve(document, sparse.indices, sparse.count, sparse.index_type, 1, place + ".indices", false, buffers);
   result.values =
@@ -103,7 +103,8 @@ Strided resolve_base(const Document& document, Index index, Buffers& buffers) {
   const Accessor& accessor = document.accessors[index];
   Strided base;
   if (accessor.run) {
-    base = resolve(document, *accessor.run, accessor.count, accessor.type, accessor.components, place_of(index), true, buffers);
+    base = resolve(document, *accessor.run, accessor.count, accessor.type, accessor.components, accessor_place(index), true,
+                   buffers);
   }
   base.count = accessor.count;
   base.type = accessor.type;

@@ -2,13 +2,14 @@
 #include "import/gltf_buffers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
+
+#include "import/meshopt_decode.hpp"
 
 namespace fdcg::bake::gltf {
 namespace {
 
-std::string place_of(Index index) {
+std::string buffer_place(Index index) {
   return "buffers[" + std::to_string(index) + "]";
 }
 
@@ -74,6 +75,16 @@ bool stays_beneath(const std::filesystem::path& path, const std::string& text) {
   return std::none_of(path.begin(), path.end(), [](const std::filesystem::path& part) { return part == ".."; });
 }
 
+// With links followed.
+bool lies_beneath(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(path, error);
+  if (error) return false;
+  const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, error);
+  if (error) return false;
+  return std::mismatch(root.begin(), root.end(), real.begin(), real.end()).first == root.end();
+}
+
 }  // namespace
 
 std::optional<std::string> decode_data_uri(std::string_view uri) {
@@ -90,13 +101,23 @@ std::optional<std::string> decode_data_uri(std::string_view uri) {
 
 std::string_view Buffers::view(Index index) {
   const View& view = document_.views[index];
-  const std::string_view bytes = buffer(view.buffer);
-  if (view.offset > bytes.size() || view.bytes > bytes.size() - view.offset) {
-    throw Refusal{"bufferViews[" + std::to_string(index) + "]: needs " + std::to_string(view.bytes) + " bytes from byte " +
-                  std::to_string(view.offset) + " on, " + place_of(view.buffer) + " has " + std::to_string(bytes.size()) +
-                  "; fetch or export the file again"};
+  const std::string place = "bufferViews[" + std::to_string(index) + "]";
+  if (!view.meshopt) return slice(view.buffer, view.offset, view.bytes, place);
+  const auto known = unpacked_.find(index);
+  if (known != unpacked_.end()) return known->second;
+  const Meshopt& packed = *view.meshopt;
+  const std::string inner = place + ".extensions.EXT_meshopt_compression";
+  std::string bytes = decode_meshopt(packed, slice(packed.buffer, packed.offset, packed.bytes, inner), inner);
+  return unpacked_.emplace(index, std::move(bytes)).first->second;
+}
+
+std::string_view Buffers::slice(Index index, std::uint64_t offset, std::uint64_t size, const std::string& place) {
+  const std::string_view bytes = buffer(index);
+  if (offset > bytes.size() || size > bytes.size() - offset) {
+    throw Refusal{place + ": needs " + std::to_string(size) + " bytes from byte " + std::to_string(offset) + " on, " +
+                  buffer_place(index) + " has " + std::to_string(bytes.size()) + "; fetch or export the file again"};
   }
-  return bytes.substr(static_cast<std::size_t>(view.offset), static_cast<std::size_t>(view.bytes));
+  return bytes.substr(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
 }
 
 std::string_view Buffers::buffer(Index index) {
@@ -104,7 +125,7 @@ std::string_view Buffers::buffer(Index index) {
     const std::string_view bytes = fetch(index);
     const std::uint64_t promised = document_.buffers[index].bytes;
     if (bytes.size() < promised) {
-      throw Refusal{"truncated: " + place_of(index) + ".byteLength promises " + std::to_string(promised) +
+      throw Refusal{"truncated: " + buffer_place(index) + ".byteLength promises " + std::to_string(promised) +
                     " bytes, there are " + std::to_string(bytes.size()) + "; fetch or export the file again"};
     }
     fetched_[index] = bytes.substr(0, static_cast<std::size_t>(promised));
@@ -116,18 +137,18 @@ std::string_view Buffers::fetch(Index index) {
   const std::optional<std::string>& uri = document_.buffers[index].uri;
   if (!uri) {
     if (index == 0 && chunk_) return *chunk_;
-    throw Refusal{place_of(index) + ": has neither a uri nor " + (index == 0 ? "a binary chunk" : "the first place") +
+    throw Refusal{buffer_place(index) + ": has neither a uri nor " + (index == 0 ? "a binary chunk" : "the first place") +
                   ", so that its bytes are nowhere; export the file again"};
   }
   if (!uri->starts_with("data:")) return fetch_file(index, *uri);
   std::optional<std::string> bytes = decode_data_uri(*uri);
-  if (!bytes) throw Refusal{place_of(index) + ".uri: its data is damaged; fetch or export the file again"};
+  if (!bytes) throw Refusal{buffer_place(index) + ".uri: its data is damaged; fetch or export the file again"};
   return decoded_[index] = std::move(*bytes);
 }
 
 std::string_view Buffers::fetch_file(Index index, const std::string& uri) {
   if (const auto known = files_.find(uri); known != files_.end()) return known->second.bytes();
-  const std::string shown = "'" + uri.substr(0, 128) + "'", place = place_of(index) + ".uri: ";
+  const std::string shown = "'" + uri.substr(0, 128) + "'", place = buffer_place(index) + ".uri: ";
   const std::optional<std::string> name = percent_decoded(uri);
   const std::filesystem::path relative = name ? std::filesystem::path(*name) : std::filesystem::path();
   if (!name || !stays_beneath(relative, *name)) {
@@ -143,6 +164,10 @@ std::string_view Buffers::fetch_file(Index index, const std::string& uri) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     throw Refusal{place + "the file " + shown + " is missing; put it into the folder of this one, or export as GLB"};
+  }
+  if (!lies_beneath(path, file_->parent_path())) {
+    throw Refusal{place + "the file " + shown +
+                  " is a link to one outside the folder of this one, and others are not read; put it there, or export as GLB"};
   }
   Result<FileBytes> file = FileBytes::open(path);
   if (!file) throw Refusal{place + file.error().message};

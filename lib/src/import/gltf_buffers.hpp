@@ -30,6 +30,7 @@ class Buffers {
   [[nodiscard]] std::size_t outside_bytes() const { return outside_bytes_; }
 
  private:
+  std::string_view slice(Index buffer, std::uint64_t offset, std::uint64_t size, const std::string& place);
   std::string_view buffer(Index index);
   std::string_view fetch(Index index);
   std::string_view fetch_file(Index index, const std::string& uri);
@@ -39,6 +40,7 @@ class Buffers {
   const std::filesystem::path* file_;
   std::vector<std::optional<std::string_view>> fetched_;
   std::map<Index, std::string> decoded_;    // data URIs
+  std::map<Index, std::string> unpacked_;   // views, by index
   std::map<std::string, FileBytes> files_;  // by URI
   std::vector<std::string> outside_files_;
   std::size_t outside_bytes_ = 0;

@@ -11,11 +11,33 @@
 namespace fdcg::bake::gltf {
 namespace {
 
-constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
+constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression";
 
 // Extensions that a file may require and that leave the triangles as they are (or that are read here).
 bool is_harmless(std::string_view extension) {
-  constexpr std::array<std::string_view, 14> kPrefixes = {kDraco,
+  constexpr std::array<std::string_view, 36> kPrefixes = {kDraco,
+                                                          kMeshopt,
+                                                          "EXT_mesh_manifold",
+                                                          "EXT_mesh_features",
+                                                          "EXT_instance_features",
+                                                          "KHR_physics_rigid_bodies",
+                                                          "KHR_implicit_shapes",
+                                                          "KHR_collision_shapes",
+                                                          "KHR_rigid_bodies",
+                                                          "KHR_interactivity",
+                                                          "KHR_node_hoverability",
+                                                          "KHR_node_selectability",
+                                                          "KHR_node_visibility",
+                                                          "FB_ngon_encoding",
+                                                          "GODOT_single_root",
+                                                          "MSFT_packing_",
+                                                          "NV_materials_",
+                                                          "OMI_",
+                                                          "VRM",
+                                                          "AGI_",
+                                                          "EXT_materials_",
+                                                          "EXT_image_",
+                                                          "ADOBE_softbox",
                                                           "KHR_mesh_quantization",
                                                           "KHR_materials_",
                                                           "KHR_texture_",
@@ -215,22 +237,11 @@ class Parser {
   }
 
   static Component read_component(const Value& item) {
-    switch (whole(item)) {
-      case 5120:
-        return Component::i8;
-      case 5121:
-        return Component::u8;
-      case 5122:
-        return Component::i16;
-      case 5123:
-        return Component::u16;
-      case 5125:
-        return Component::u32;
-      case 5126:
-        return Component::f32;
-      default:
-        item.fail("is " + std::to_string(whole(item)) + "; the types are 5120 to 5123, 5125 and 5126");
-    }
+    constexpr std::optional<Component> kComponents[] = {Component::i8, Component::u8,  Component::i16, Component::u16,
+                                                        std::nullopt,  Component::u32, Component::f32};
+    const std::uint64_t index = whole(item) - 5120;
+    if (index < std::size(kComponents) && kComponents[index]) return *kComponents[index];
+    item.fail("is " + std::to_string(whole(item)) + "; the types are 5120 to 5123, 5125 and 5126");
   }
 
   static unsigned read_type(const Value& item) {
@@ -267,11 +278,33 @@ class Parser {
     view.is_used = true;
     const Value list = root_["bufferViews"];
     const Value item = list.item(index);
-    view.buffer = use_buffer(item["buffer"]);
+    if (const Value extensions = item["extensions"]) view.meshopt = read_meshopt(extensions[kMeshopt]);
+    if (!view.meshopt) view.buffer = use_buffer(item["buffer"]);
     view.offset = offset_of(item);
     view.bytes = whole(item["byteLength"]);
     view.stride = item["byteStride"] ? whole(item["byteStride"]) : 0;
     return index;
+  }
+
+  std::optional<Meshopt> read_meshopt(const Value& item) {
+    if (!item) return std::nullopt;
+    Meshopt packed;
+    packed.buffer = use_buffer(item["buffer"]);
+    packed.offset = offset_of(item);
+    packed.bytes = whole(item["byteLength"]);
+    packed.stride = whole(item["byteStride"]);
+    packed.count = whole(item["count"]);
+    const std::size_t mode = choice(item["mode"], {"ATTRIBUTES", "TRIANGLES", "INDICES"});
+    packed.mode = static_cast<Meshopt::Mode>(mode);
+    if (const Value filter = item["filter"])
+      packed.filter = static_cast<Meshopt::Filter>(choice(filter, {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"}));
+    return packed;
+  }
+
+  static std::size_t choice(const Value& item, const std::vector<std::string_view>& names) {
+    const auto found = std::find(names.begin(), names.end(), std::string_view(item.string()));
+    if (found == names.end()) item.fail("is " + item.shown() + ", no name that the extension has");
+    return static_cast<std::size_t>(found - names.begin());
   }
 
   Index use_buffer(const Value& reference) {
@@ -422,11 +455,12 @@ class Parser {
 
 Document parse_document(std::string_view text) {
   constexpr json::Limits kLimits = {0xFFFFFFFF, 128, true};  // glTF needs some ten levels, extras may have a few more
+  constexpr std::size_t kShown = 300;  // bytes: the text that is wrong may be long
   std::optional<json::Document> document;
   try {
     document.emplace(text, kLimits);
   } catch (const Refusal& refusal) {
-    throw Refusal{(refusal.is_cut_short ? "truncated: it " : "") + refusal.message + "; fetch or export the file again"};
+    throw Refusal{(refusal.is_cut_short ? "truncated: it " : "") + printable(refusal.message, kShown) + "; fetch or export the file again"};
   }
   return Parser(*document).parse();
 }

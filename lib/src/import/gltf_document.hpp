@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "import/placing.hpp"
 #include "shared/json/reader.hpp"
 
 namespace fdcg::bake::gltf {
@@ -35,10 +36,21 @@ struct Buffer {
   std::uint64_t bytes = 0;
 };
 
+// How EXT_meshopt_compression has packed a view.
+struct Meshopt {
+  enum class Mode : std::uint8_t { attributes, triangles, indices };
+  enum class Filter : std::uint8_t { none, octahedral, quaternion, exponential };
+  Index buffer = 0;
+  std::uint64_t offset = 0, bytes = 0, stride = 0, count = 0;
+  Mode mode = Mode::attributes;
+  Filter filter = Filter::none;
+};
+
 struct View {
   bool is_used = false;
   Index buffer = 0;
   std::uint64_t offset = 0, bytes = 0, stride = 0;  // stride 0: tightly packed
+  std::optional<Meshopt> meshopt;                   // then buffer and offset are not used
 };
 
 // A run of values in a view.
@@ -78,10 +90,6 @@ struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
 };
-
-// Column by column: x' = m[0] x + m[4] y + m[8] z + m[12].
-using Matrix = std::array<double, 16>;
-inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 inline constexpr Index kNone = 0xFFFFFFFF;
 

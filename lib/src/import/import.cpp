@@ -42,12 +42,17 @@ constexpr ForeignKind kForeignKinds[] = {
      "is compressed with xz; decompress it first (unxz)"},
     {"\x28\xB5\x2F\xFD", "is compressed with zstd; decompress it first (unzstd)"},
     {"7z\xBC\xAF\x27\x1C", "is a 7z archive; unpack the mesh first"},
-    {"PK\x03\x04", "is a ZIP archive (3MF files are, too); unpack the mesh first, or export it in another format"},
-    {"Kaydara FBX Binary", "is FBX, which is not read; export it as glTF, OBJ or PLY"},
-    {"BLENDER", "is a Blender file, which is not read; export it as glTF, OBJ or PLY"},
+    {"Kaydara FBX Binary",
+     "is FBX, which is not read; in Blender import it and export glTF, or convert it with 'assimp export'"},
+    {"; FBX ", "is FBX text, which is not read; in Blender import it and export glTF, or convert it with 'assimp export'"},
+    {"BLENDER", "is a Blender file, which is not read; in Blender export glTF, OBJ or PLY"},
+    {"PXR-USDC", "is USD, which is not read; in Blender import it and export glTF, or OBJ or PLY"},
+    {"#usda ", "is USD text, which is not read; in Blender import it and export glTF, or OBJ or PLY"},
+    {"glTF\x01", "is GLB version 1; version 2 is read: convert the file"},
     {"version https://git-lfs.github.com/spec/", "is a Git LFS pointer and not the mesh itself; fetch it with 'git lfs pull'"},
-    {"ISO-10303-21;", "is a STEP file, which holds surfaces and no mesh; export it as STL or OBJ"},
-    {"<", "is XML (or HTML), in which no format that is read is written; export it as glTF, OBJ or PLY"},
+    {"ISO-10303-21;",
+     "is a STEP file, which holds exact surfaces and no mesh; in a CAD program (FreeCAD, gmsh) mesh it and export 3MF, STL or "
+     "OBJ"},
 };
 
 const ForeignKind* foreign_kind(std::string_view bytes) {
@@ -57,8 +62,29 @@ const ForeignKind* foreign_kind(std::string_view bytes) {
   return kind == std::end(kForeignKinds) ? nullptr : kind;
 }
 
+// As of a download or a copy that was cut off. A binary STL's header may be zeros.
+bool starts_with_zeros(std::string_view bytes) {
+  constexpr std::size_t kLooked = 512;
+  return bytes.substr(0, kLooked).find_first_not_of('\0') == std::string_view::npos && !has_binary_stl_size(bytes);
+}
+
+// What to do about an XML file of a kind that is not read.
+std::string xml_remedy(const std::string& root) {
+  if (root == "robot" || root == "sdf")
+    return "is a description of a robot or a world, which names meshes and is none; give it to 'fdcg validate', or name a mesh";
+  if (root == "model") return "is a 3MF model out of its package; name the .3mf file";
+  return "is XML (or HTML) with the root <" + readable_name(root) +
+         ">, no mesh format that is read; export it as COLLADA, 3MF, glTF, OBJ or PLY";
+}
+
 std::optional<Format> format_by_content(std::string_view bytes) {
   if (bytes.starts_with("DRACO")) return Format::drc;
+  if (bytes.starts_with("PK\x03\x04") && !has_binary_stl_size(bytes)) return Format::threemf;
+  if (bytes.starts_with("# vtk DataFile")) return Format::vtk;
+  const std::string root = xml_root_name(bytes);
+  if (root == "COLLADA") return Format::dae;
+  if (root == "VTKFile") return Format::vtk;
+  if (root == "X3D") return Format::x3d;
   if (is_glb(bytes) || is_gltf_json(bytes)) return Format::gltf;
   if (has_binary_stl_size(bytes)) return Format::stl;
   constexpr std::string_view kBlanks = " \t\r\n";
@@ -75,31 +101,20 @@ std::optional<Format> format_by_content(std::string_view bytes) {
 
 std::optional<Format> format_by_ending(const std::string& name) {
   const std::string ending = lower_case(std::filesystem::path(name).extension().string());
-  if (ending == ".off") return Format::off;
-  if (ending == ".obj") return Format::obj;
-  if (ending == ".ply") return Format::ply;
-  if (ending == ".stl") return Format::stl;
-  if (ending == ".gltf" || ending == ".glb") return Format::gltf;
-  if (ending == ".drc") return Format::drc;
+  constexpr std::pair<std::string_view, Format> kEndings[] = {
+      {".off", Format::off},     {".obj", Format::obj},     {".ply", Format::ply}, {".stl", Format::stl},
+      {".gltf", Format::gltf},   {".glb", Format::gltf},    {".drc", Format::drc}, {".dae", Format::dae},
+      {".zae", Format::threemf}, {".3mf", Format::threemf}, {".vtk", Format::vtk}, {".vtp", Format::vtk},
+      {".x3d", Format::x3d}};
+  for (const auto& [known, format] : kEndings)
+    if (ending == known) return format;
   return std::nullopt;
 }
 
 Result<PolygonSoup> read_as(Format format, const MeshText& input) {
-  switch (format) {
-    case Format::off:
-      return read_off(input);
-    case Format::obj:
-      return read_obj(input);
-    case Format::ply:
-      return read_ply(input);
-    case Format::stl:
-      return read_stl(input);
-    case Format::drc:
-      return read_drc(input);
-    case Format::gltf:
-      return read_gltf(input);
-  }
-  return Failure{4, "import: a format without a reader", {}};
+  constexpr Result<PolygonSoup> (*kReaders[])(const MeshText&) = {read_off, read_obj, read_ply, read_stl, read_gltf,
+                                                                  read_drc, read_dae, read_3mf, read_vtk, read_x3d};
+  return kReaders[static_cast<int>(format)](input);
 }
 
 bool is_float(double c) {
@@ -117,16 +132,26 @@ double relative_quantum(const std::vector<Vec3>& points) {
 Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options,
                                  const std::filesystem::path* file) {
   if (bytes.empty()) return refuse(name, "is empty; export the mesh again", "empty-mesh");
-  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
-    return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
-  }
+  if (starts_with_zeros(bytes)) return refuse(name, "starts with zeros alone, so that it is no mesh; fetch or export it again");
   if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
   std::optional<Format> format = options.format;
   if (!format) format = format_by_content(bytes);
+  const bool is_xml = format == Format::dae || format == Format::vtk || format == Format::x3d;
+  if (!is_xml && (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")))
+    return refuse(name, "is UTF-16 text; save it as UTF-8 or plain ASCII");
+  if (!is_xml && !has_binary_stl_size(bytes)) {
+    if (const std::string root = xml_root_name(bytes); !root.empty() || bytes.starts_with('<'))
+      return refuse(name, xml_remedy(root));
+    if (format != Format::threemf && bytes.starts_with("PK\x03\x04"))
+      return refuse(name, "is a ZIP archive (3MF files are, too); unpack the mesh first, or leave out its format");
+  }
   if (!format) format = format_by_ending(name);
-  if (!format)
-    return refuse(name,
-                  "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read: export it as one of them");
+  if (!format) {
+    return refuse(
+        name,
+        "is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA, 3MF, VTK and X3D are read: export it "
+        "as one of them");
+  }
 
   Sha256Task hash(bytes);
   Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file});

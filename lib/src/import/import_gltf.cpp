@@ -2,7 +2,6 @@
 // glTF 2.0 (Khronos), as JSON or in the binary container GLB: the container, and the sequence of stages. A reader of our own
 // keeps every number exactly, names the place of each error and trusts no count. tinygltf does none of that, and loads images
 // and files that the geometry does not need.
-#include <bit>
 #include <cstring>
 #include <string>
 
@@ -25,13 +24,6 @@ struct Container {
   std::string_view json;
   std::optional<std::string_view> binary;
 };
-
-std::uint32_t load_u32(const char* bytes) {
-  std::uint32_t value = 0;
-  for (int i = 3; i >= 0; --i)
-    value = value << 8 | static_cast<unsigned char>(bytes[i]);
-  return value;
-}
 
 Refusal truncated(const std::string& what) {
   return Refusal{"truncated: " + what + "; fetch or export the file again"};

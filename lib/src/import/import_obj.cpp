@@ -65,7 +65,7 @@ class ObjReader : TextSoupReader {
   Result<PolygonSoup> read() {
     const bool is_read = read_statements();
     if (is_read) drop_missing_vertices();
-    soup_.absolute_quantum = absolute_quantum();
+    set_quanta();
     return result(is_read);
   }
 

@@ -47,7 +47,7 @@ class OffReader : TextSoupReader {
 
   Result<PolygonSoup> read() {
     const bool is_read = read_header() && read_vertices() && read_faces() && check_end();
-    soup_.absolute_quantum = absolute_quantum();
+    set_quanta();
     return result(is_read);
   }
 

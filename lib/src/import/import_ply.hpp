@@ -54,6 +54,17 @@ struct Header {
   std::uint32_t body_line = 1;  // its line, in a text body
 };
 
+// Whether x, y and z are all declared as floats.
+[[nodiscard]] inline bool has_float_coordinates(const Header& header) {
+  for (const ElementKind& element : header.elements) {
+    if (element.kind != Kind::vertex) continue;
+    return std::all_of(element.properties.begin(), element.properties.end(), [](const Property& p) {
+      return (p.role != Role::x && p.role != Role::y && p.role != Role::z) || p.value == Scalar::f32;
+    });
+  }
+  return false;
+}
+
 // Reads and checks the header: the elements and properties that a mesh needs are there, once each, with usable types.
 Result<Header> read_header(const MeshText& input);
 

@@ -17,7 +17,7 @@ class AsciiBody : TextSoupReader {
     for (const ElementKind& element : header_.elements)
       is_read = is_read && read_element(element);
     is_read = is_read && check_end();
-    soup_.absolute_quantum = absolute_quantum();
+    set_quanta(has_float_coordinates(header_));
     return result(is_read);
   }
 

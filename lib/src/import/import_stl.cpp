@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
 
 #include "import/soup_reader.hpp"
@@ -12,16 +11,10 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84;    // 80 of anything, then the number of triangles
-constexpr std::size_t kTriangleBytes = 50;  // normal, three vertices, two bytes of anything
+constexpr std::size_t kStlHeaderBytes = 84;  // 80 of anything, then the number of triangles
+constexpr std::size_t kTriangleBytes = 50;   // normal, three vertices, two bytes of anything
 constexpr std::size_t kNormalBytes = 12;
 
-std::uint32_t load_u32(const char* bytes) {
-  std::array<unsigned char, 4> b{};
-  std::memcpy(b.data(), bytes, b.size());
-  return static_cast<std::uint32_t>(b[0]) | static_cast<std::uint32_t>(b[1]) << 8 | static_cast<std::uint32_t>(b[2]) << 16 |
-         static_cast<std::uint32_t>(b[3]) << 24;
-}
 double load_f32(const char* bytes) {
   return std::bit_cast<float>(load_u32(bytes));
 }
@@ -35,15 +28,15 @@ class BinaryStlReader : SoupReader {
  private:
   bool read_all() {
     const std::string_view bytes = input_.bytes;
-    if (bytes.size() < kHeaderBytes) {
+    if (bytes.size() < kStlHeaderBytes) {
       return fail("truncated: a binary STL starts with 84 bytes, the file has " + std::to_string(bytes.size()));
     }
-    const std::uint64_t count = load_u32(bytes.data() + 80), there = bytes.size() - kHeaderBytes;
+    const std::uint64_t count = load_u32(bytes.data() + 80), there = bytes.size() - kStlHeaderBytes;
     // Fewer extra bytes than a triangle are padding; more would be faces missing from the count.
     if (count * kTriangleBytes > there || there - count * kTriangleBytes >= kTriangleBytes) {
       return fail((count * kTriangleBytes > there ? "truncated: " : "contradicts itself: ") +
                   ("the header promises " + std::to_string(count)) + " triangles (" +
-                  std::to_string(kHeaderBytes + count * kTriangleBytes) + " bytes), the file has " +
+                  std::to_string(kStlHeaderBytes + count * kTriangleBytes) + " bytes), the file has " +
                   std::to_string(bytes.size()) + " bytes; fetch or export it again");
     }
     if (count * 3 > kMaxCorners) return fail("holds more than 4,294,967,040 face corners; cut the mesh into parts");
@@ -59,7 +52,7 @@ class BinaryStlReader : SoupReader {
     soup_.points.reserve(count * 3);
     soup_.corners.reserve(count * 3);
     soup_.face_first.reserve(count + 1);
-    const char* record = input_.bytes.data() + kHeaderBytes;
+    const char* record = input_.bytes.data() + kStlHeaderBytes;
     for (std::size_t done = 0; done < count; done += kBlock) {
       const std::size_t n = std::min(kBlock, count - done);
       for (std::size_t i = 0; i < n; ++i, record += kTriangleBytes) {
@@ -69,7 +62,7 @@ class BinaryStlReader : SoupReader {
         }
       }
       soup_.points.insert(soup_.points.end(), points.begin(), points.begin() + static_cast<std::ptrdiff_t>(3 * n));
-      advance(kHeaderBytes + done * kTriangleBytes);
+      advance(kStlHeaderBytes + done * kTriangleBytes);
     }
     for (std::uint32_t c = 0; c < count * 3; ++c)
       soup_.corners.push_back(c);
@@ -84,7 +77,7 @@ class TextStlReader : TextSoupReader {
 
   Result<PolygonSoup> read() {
     const bool is_read = read_solids();
-    soup_.absolute_quantum = absolute_quantum();
+    set_quanta();
     return result(is_read);
   }
 
@@ -166,8 +159,8 @@ bool is_text(std::string_view bytes) {
 }  // namespace
 
 bool has_binary_stl_size(std::string_view bytes) {
-  return bytes.size() >= kHeaderBytes &&
-         bytes.size() - kHeaderBytes == std::uint64_t{load_u32(bytes.data() + 80)} * kTriangleBytes;
+  return bytes.size() >= kStlHeaderBytes &&
+         bytes.size() - kStlHeaderBytes == std::uint64_t{load_u32(bytes.data() + 80)} * kTriangleBytes;
 }
 
 Result<PolygonSoup> read_stl(const MeshText& input) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fdcg/bake.hpp"
+#include "import/printed_precision.hpp"
 #include "import/text_scanner.hpp"
 
 namespace fdcg::bake {
@@ -24,18 +25,25 @@ struct MeshText {
 };
 
 // One reader per format. Each fails with exit code 3 and one line; refusing a soup without faces is left to the caller. They
-// set relative_quantum only where it is known without looking at the points, and leave sha256 empty.
+// set relative_quantum only where it is known from more than the points, and leave sha256 empty.
 Result<PolygonSoup> read_off(const MeshText& input);
 Result<PolygonSoup> read_obj(const MeshText& input);
 Result<PolygonSoup> read_ply(const MeshText& input);
 Result<PolygonSoup> read_stl(const MeshText& input);
 Result<PolygonSoup> read_gltf(const MeshText& input);
 Result<PolygonSoup> read_drc(const MeshText& input);
+Result<PolygonSoup> read_dae(const MeshText& input);
+Result<PolygonSoup> read_3mf(const MeshText& input);
+Result<PolygonSoup> read_vtk(const MeshText& input);  // also XML
+Result<PolygonSoup> read_vtp(const MeshText& input);
+Result<PolygonSoup> read_x3d(const MeshText& input);
 
 // Detection of formats by content.
 bool is_off_keyword(std::string_view word);  // OFF, COFF, STCNOFF, 4OFF, ...
 bool is_gltf_json(std::string_view bytes);   // an object that has an "asset"
 bool is_glb(std::string_view bytes);
+// The name of an XML text's first element, without prefix, in UTF-8 or UTF-16; empty: it is no XML.
+std::string xml_root_name(std::string_view bytes);
 bool has_binary_stl_size(std::string_view bytes);  // 84 + 50 n, with n where the format has it
 
 // The message "`name`: `what`", on one line whatever the name contains. A remedy follows in `what` after a semicolon; else the
@@ -44,6 +52,14 @@ Failure refuse(const std::string& name, const std::string& what, const char* rul
 
 // A name out of a file, for reports: control characters as '?', cut after some 48 bytes between two characters.
 std::string readable_name(std::string_view name);
+
+// Four bytes, the lowest first.
+inline std::uint32_t load_u32(const char* bytes) {
+  std::uint32_t value = 0;
+  for (int i = 3; i >= 0; --i)
+    value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
 
 inline constexpr std::uint32_t kMaxFaceCorners = 65'536;
 // Corner slots are numbered with 32 bits, of which the later stages keep the last few values for themselves.
@@ -140,13 +156,13 @@ class TextSoupReader : public SoupReader {
   // Reads a coordinate at the cursor, and records its number of decimals.
   bool read_coordinate(double& value) {
     if (!scan_.read_real(value)) return false;
-    finest_decimals_ = std::max(finest_decimals_, scan_.last_decimals());
+    precision_.note(value, printed(scan_));
     return true;
   }
 
-  // Half a unit of the last digit of the most precisely printed coordinate. Integers are taken as exact (0): they come from
-  // grids, voxels and manual modelling and not from rounding, and half a unit would flatten a unit cube.
-  [[nodiscard]] double absolute_quantum() const;
+  // Sets both quanta of the soup, when all points are there: as the numbers were printed, or those of floats where
+  // `are_floats`.
+  void set_quanta(bool are_floats = false);
 
   // "'x' is not a number", of the token at the cursor, with the remedy where there is one.
   [[nodiscard]] std::string not_a_number() const;
@@ -154,7 +170,7 @@ class TextSoupReader : public SoupReader {
   TextScanner scan_;
 
  private:
-  int finest_decimals_ = TextScanner::kNoDecimals;
+  PrintedPrecision precision_;
 };
 
 }  // namespace fdcg::bake

@@ -4,6 +4,7 @@
 // '+', results out of range, and the spellings of NaN and infinity that C libraries print.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <climits>
 #include <cstdint>
@@ -53,6 +54,9 @@ class TextScanner {
     line_ += found != nullptr;
   }
 
+  // Over binary data in a text: the lines in it are not counted. At most to the end.
+  void skip(std::size_t bytes) { p_ += bytes < remaining() ? bytes : remaining(); }
+
   // Each of the following starts at the cursor, which must stand on a token. On false the cursor has not moved.
 
   // A real number, up to the token's end. last_decimals() then is the number of its decimals.
@@ -92,10 +96,13 @@ class TextScanner {
     }
     value = is_negative ? -magnitude : magnitude;
     last_decimals_ = is_blank_zero ? kNoDecimals : static_cast<int>(decimals);
+    last_digits_ = digits > 19 ? static_cast<int>(std::min<std::ptrdiff_t>(digits, 1000)) : digits_of(mantissa);
     p_ = q;
     return true;
   }
   [[nodiscard]] int last_decimals() const { return last_decimals_; }
+  // Of the same number: digits from the first that is not 0 on; of a NaN or an infinity those of the number before.
+  [[nodiscard]] int last_digits() const { return last_digits_; }
 
   // An integer; stops at the first character that is not a digit. Saturates at +-2^62.
   bool read_integer_prefix(std::int64_t& value) {
@@ -168,6 +175,12 @@ class TextScanner {
   [[nodiscard]] std::string quote() const;
 
  private:
+  static int digits_of(std::uint64_t mantissa) {
+    int digits = 0;
+    for (; mantissa != 0; mantissa /= 10)
+      ++digits;
+    return digits;
+  }
   static bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
   [[nodiscard]] bool ends_token(char c) const { return static_cast<unsigned char>(c) <= ' ' || c == comment_ || c == joiner_; }
 
@@ -200,6 +213,7 @@ class TextScanner {
   const char* end_;
   std::uint32_t line_ = 1;
   int last_decimals_ = kNoDecimals;
+  int last_digits_ = 0;
   char line_end_ = '\n';
   char comment_ = ' ';  // ' ': none; every blank ends a token anyhow
   char joiner_ = ' ';

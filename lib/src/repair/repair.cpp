@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the repair steps in order; and helpers of the steps.
+// What the steps of a repair share.
 #include "repair/repair.hpp"
 
 #include <algorithm>
@@ -13,7 +13,20 @@ namespace fdcg::bake {
 
 // ---- what the steps share
 
-Workpiece::Workpiece(const PolygonSoup& given) : input(given), soup(given), source_point(given.points.size()) {
+namespace {
+
+bool is_float(double x) {
+  return !std::isfinite(x) || static_cast<double>(static_cast<float>(x)) == x;
+}
+
+}  // namespace
+
+Workpiece::Workpiece(const PolygonSoup& given)
+    : input(given),
+      soup(given),
+      source_point(given.points.size()),
+      has_floats(std::all_of(given.points.begin(), given.points.end(),
+                             [](const Vec3& p) { return is_float(p.x) && is_float(p.y) && is_float(p.z); })) {
   std::iota(source_point.begin(), source_point.end(), 0U);
   source_face.resize(given.face_count());
   std::iota(source_face.begin(), source_face.end(), 0U);
@@ -145,84 +158,6 @@ RepairAction action_of(const Workpiece& piece, std::string name, Kind kind, std:
 
 std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-// ---- the order
-
-namespace {
-
-bool asks_for_anything(const RepairOptions& options) {
-  return options.weld || options.drop_degenerate_faces || options.drop_duplicate_faces || options.split_non_manifold_vertices ||
-         options.orient || options.reverse_inside_out || options.simplify_error;
-}
-
-// Each of the two steps can enable the other: once a duplicate is gone, an edge has two faces again. Runs both until neither
-// changes the mesh.
-void drop_faces(Workpiece& piece, const RepairOptions& options, std::vector<RepairAction>& actions) {
-  DegenerateTally degenerate;
-  Tally duplicates;
-  for (bool is_first = true;; is_first = false) {
-    std::uint64_t done = 0;
-    if (options.drop_degenerate_faces) done += drop_degenerate(piece, degenerate);
-    if (options.drop_duplicate_faces && (is_first || done != 0)) done += drop_duplicates(piece, duplicates);
-    if (done == 0 || !(options.drop_degenerate_faces && options.drop_duplicate_faces)) break;
-  }
-  if (options.drop_degenerate_faces) actions.push_back(drop_degenerate_action(piece, degenerate));
-  if (options.drop_duplicate_faces) actions.push_back(drop_duplicates_action(piece, duplicates));
-}
-
-// The first remaining face of each part; an empty part begins and ends at the same face.
-void move_parts(Workpiece& piece) {
-  for (Part& part : piece.soup.parts) {
-    const auto first = std::lower_bound(piece.source_face.begin(), piece.source_face.end(), part.first_face);
-    part.first_face = static_cast<std::uint32_t>(first - piece.source_face.begin());
-    part.first_point = 0;
-  }
-}
-
-bool has_equal_points(const PolygonSoup& soup) {
-  return weld_points(soup, {}, Precision::f64).joined_vertices != 0;
-}
-
-Report judged(const PolygonSoup& soup, Weld::Kind weld, const RepairOptions& options) {
-  ValidateOptions how;
-  how.weld.kind = weld;
-  how.jobs = options.jobs;
-  how.progress = options.progress;
-  return validate(soup, how);
-}
-
-}  // namespace
-
-Result<Repaired> repair(const PolygonSoup& soup, const RepairOptions& options) {
-  if (!asks_for_anything(options)) return Failure{2, soup.name + ": no repair is asked for", {}};
-  if (options.simplify_error && !(*options.simplify_error > 0 && std::isfinite(*options.simplify_error)))
-    return Failure{2, soup.name + ": the error to simplify to is no number above 0", {}};
-  std::optional<Weld> weld = options.weld;
-  if (!weld && options.split_non_manifold_vertices) weld = Weld{};
-
-  Repaired repaired;
-  const bool keeps_vertices = weld && weld->kind == Weld::Kind::none;
-  repaired.before = judged(soup, keeps_vertices ? Weld::Kind::none : Weld::Kind::exact, options);
-  Workpiece piece(soup);
-  std::vector<RepairAction>& actions = repaired.actions;
-  if (weld) actions.push_back(weld_step(piece, *weld));
-  drop_faces(piece, options, actions);
-  if (options.split_non_manifold_vertices) actions.push_back(split_vertices_step(piece));
-  if (options.orient) actions.push_back(orient_step(piece));
-  if (options.reverse_inside_out) actions.push_back(reverse_inside_out_step(piece));
-  if (options.simplify_error) {
-    actions.push_back(simplify_step(piece, *options.simplify_error, options.jobs, options.progress));
-  }
-
-  move_parts(piece);
-  for (std::size_t f = 0; !soup.face_material.empty() && f < piece.source_face.size(); ++f)
-    piece.soup.face_material[f] = soup.face_material[piece.source_face[f]];
-  piece.soup.face_material.resize(soup.face_material.empty() ? 0 : piece.soup.face_count());
-  if (piece.identity.kind == Weld::Kind::none && has_equal_points(piece.soup)) repaired.read_with = Weld::Kind::none;
-  repaired.after = judged(piece.soup, repaired.read_with, options);
-  repaired.soup = std::move(piece.soup);
-  return repaired;
 }
 
 }  // namespace fdcg::bake

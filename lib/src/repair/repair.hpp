@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of repair(), one file each: repair_weld, repair_degenerate, repair_duplicates, repair_split, repair_winding.
-//
-// A step makes only safe repairs: except for a weld by distance, the surface as a set of points stays the same, no edge gets
-// more faces, and no hole or seam opens. Defects that cannot be repaired safely are counted as left, with the reason.
+// The steps of repair(), one file each: repair_weld, repair_degenerate, repair_duplicates, repair_split, repair_winding,
+// repair_cut make only safe repairs: except for a weld by distance, the surface as a set of points stays the same, no edge gets
+// more faces, and no hole or seam opens but where faces have nowhere to go on to. Defects that cannot be repaired safely are
+// counted as left, with the reason. repair_crossing, repair_unfold and repair_drop change the surface where no graph could have
+// it; what that does to it is measured (surface_distance.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -26,6 +28,7 @@ struct Workpiece {
   std::vector<std::uint32_t> source_point;  // of each point of `soup`: its number in the input
   std::vector<std::uint32_t> source_face;   // of each face, ascending: parts of a face that was cut share its number
   Weld identity;                            // which of its vertices are one: exact until it is welded, then none
+  bool has_floats;                          // every coordinate of the input is a float: new ones are made floats too
 };
 
 // Adjacency of the workpiece. Vertices are those of Mesh, corner slots those of the soup.
@@ -58,13 +61,57 @@ struct DegenerateTally : Tally {
 };
 std::uint64_t drop_degenerate(Workpiece& piece, DegenerateTally& tally);
 RepairAction drop_degenerate_action(const Workpiece& piece, DegenerateTally& tally);
-std::uint64_t drop_duplicates(Workpiece& piece, Tally& tally);
+// `keeps_walls`: a copy that bounds another solid than its original is kept, for cut_edges() to part the two.
+std::uint64_t drop_duplicates(Workpiece& piece, Tally& tally, bool keeps_walls = false);
 RepairAction drop_duplicates_action(const Workpiece& piece, Tally& tally);
 
 // The workpiece is welded: its identity is none.
 RepairAction split_vertices_step(Workpiece& piece);
 RepairAction orient_step(Workpiece& piece);
 RepairAction reverse_inside_out_step(Workpiece& piece);
+
+// Faces with a corner that is not finite or that the file does not have; they are dropped, since there is no surface in them.
+RepairAction drop_unusable_step(Workpiece& piece);
+
+// Polygons that cross or touch themselves, or come twice to a corner, as triangles of the same outline: of all choices without
+// a new corner the one of the least area, which for an outline that only touches itself is its inside. A flat one that crosses
+// itself is parted at the crossings into outlines that do not, each with the side that its own direction gives it (the winding
+// number's sign); the neighbours get the crossing as a corner.
+RepairAction triangulate_crossing_step(Workpiece& piece);
+
+// Folded pairs of triangles of which one is no thicker than `thickness`: the diagonal of the two together is exchanged, which
+// leaves what they do not both cover. Flaps, a triangle and its back that reach no farther from where they hang, go. Returns
+// the number of exchanges; may be called again.
+struct UnfoldTally : Tally {
+  double thickest = 0;  // of the slivers taken away
+  std::uint64_t flaps = 0;
+};
+std::uint64_t unfold(Workpiece& piece, double thickness, UnfoldTally& tally);
+RepairAction unfold_action(const Workpiece& piece, UnfoldTally& tally);
+
+// See repair_cut.cpp. The workpiece is welded. May be called again.
+enum CutKind : std::uint8_t { kPaired, kCrowded, kFold, kOneSided };
+struct CutTally {
+  struct Edge {
+    std::array<std::uint32_t, 2> ends;  // input points
+    std::uint32_t face;                 // of the input, one of those at the edge
+  };
+  std::vector<Edge> edges;
+  std::array<std::uint64_t, 4> count{};  // of each kind
+  std::uint64_t new_points = 0, middles = 0, turned = 0;
+};
+void cut_edges(Workpiece& piece, CutTally& tally);
+RepairAction cut_action(const Workpiece& piece, CutTally& tally);
+
+// Vertices at equal coordinates are apart by repair alone; a file without numbers of vertices would join them. All but one are
+// moved towards the faces around them by as few floats (of float files; else doubles) as make them differ.
+RepairAction part_equal_points_step(Workpiece& piece);
+
+// Drops what validate still finds and no graph can have, as few faces of each finding as end it. Returns the number of faces
+// dropped; may be called again.
+std::uint64_t drop_blocking(Workpiece& piece, unsigned jobs, Tally& tally);
+RepairAction drop_blocking_action(const Workpiece& piece, Tally& tally);
+
 // All or nothing: if after several tries the result still has another topology, or more intersecting pairs of faces, the mesh
 // is left unchanged.
 RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const Progress& progress);

@@ -15,10 +15,8 @@
 // Two such triangles that share their longest edge flip it to the other diagonal, which is shorter, so that this terminates.
 // All others are left.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
-#include <span>
 #include <unordered_map>
 
 #include "exact/exact.hpp"

@@ -32,10 +32,32 @@ Json to_json(const RepairAction& action) {
   json["left"]["total"] = action.left;
   json["left"]["message"] = action.left_message;
   json["left"]["elements"] = elements_json(action.left_elements);
+  json["effect"] = {{"distance", action.distance}, {"volume_change", action.volume_change}};  // an infinite distance is null
   return json;
 }
 
+void add_account(const RepairAccount& account, Json& json) {
+  json["actions"] = Json::array();
+  for (const RepairAction& action : account.actions)
+    json["actions"].push_back(to_json(action));
+  json["effect"] = {{"distance", account.distance},
+                    {"volume_before", account.volume_before},
+                    {"volume_after", account.volume_after},
+                    {"faces_before", account.faces_before},
+                    {"faces_after", account.faces_after}};
+}
+
 }  // namespace
+
+std::string compile_report_json(const Compiled& compiled) {
+  if (!compiled.repair) return report_json({compiled.report});
+  Json document = Json::parse(report_json({compiled.report}));
+  Json& entry = document["files"][0]["repair"];
+  entry["level"] = compiled.repair->level == RepairLevel::safe ? "safe" : "full";
+  entry["found"] = compiled.repair->found;
+  add_account(*compiled.repair, entry);
+  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 std::string repair_json(const Repaired& repaired, const std::string& output) {
   Json json;
@@ -43,9 +65,7 @@ std::string repair_json(const Repaired& repaired, const std::string& output) {
   json["written"] = output.empty() ? Json(nullptr) : Json(output);
   json["verdict"] = repaired.after.passes() ? "pass" : "fail";
   json["read_with_weld"] = repaired.read_with == Weld::Kind::none ? "none" : "exact";
-  json["actions"] = Json::array();
-  for (const RepairAction& action : repaired.actions)
-    json["actions"].push_back(to_json(action));
+  add_account(repaired, json);
   json["before"] = report_entry(repaired.before);
   json["after"] = report_entry(repaired.after);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The JSON report with every element. Findings are buffered per rule, since rules run concurrently and the counts, which
 // precede the elements, are known only at the end.
-#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -14,14 +13,14 @@ namespace {
 constexpr std::size_t kPileBytes = std::size_t{1} << 20;   // buffered in memory per rule; beyond it in a file
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;  // written at a time
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 }  // namespace
 
 // The elements of one rule, with their separators.
 struct ElementSpool::Pile {
+  struct CloseFile {
+    void operator()(std::FILE* opened) const { std::fclose(opened); }
+  };
+
   std::string text;  // the part not yet in the file
   std::unique_ptr<std::FILE, CloseFile> file;
   bool is_lost = false;  // the disk is full, or temporary files are impossible

@@ -14,8 +14,7 @@ using enum JsonWriter::Layout;
 
 template <class List>
 void write_list(JsonWriter& json, std::string_view key, const List& list) {
-  json.key(key);
-  json.begin_array(one_line);
+  json.begin_array(key, one_line);
   for (const auto& item : list)
     json.value(item);
   json.end_array();
@@ -26,10 +25,10 @@ void write_issue(JsonWriter& json, const Issue& issue, const std::function<void(
   json.member("rule", issue.rule);
   json.member("severity", name_of(issue.severity));
   json.member("total", issue.total);
+  if (issue.is_at_least) json.member("at_least", true);
   json.member("known", issue.known);
   json.member("message", issue.message);
-  json.key("elements");
-  json.begin_array();
+  json.begin_array("elements");
   elements(issue);
   json.end_array();
   json.end_object();
@@ -73,8 +72,7 @@ void begin_json_document(JsonWriter& json) {
   json.begin_object();
   json.member("tool", "fdcg");
   json.member("version", FDCG_VERSION_STRING);
-  json.key("files");
-  json.begin_array();
+  json.begin_array("files");
 }
 
 void end_json_document(JsonWriter& json, std::string& out) {
@@ -87,8 +85,7 @@ void write_json_element(JsonWriter& json, const Element& element) {
   json.begin_object(one_line);
   write_list(json, "faces", element.faces);
   if (element.more_faces != 0) json.member("more_faces", element.more_faces);
-  json.key("edges");
-  json.begin_array();
+  json.begin_array("edges");
   for (const auto& edge : element.edges) {
     json.begin_array();
     json.value(edge[0]);
@@ -98,8 +95,7 @@ void write_json_element(JsonWriter& json, const Element& element) {
   json.end_array();
   write_list(json, "vertices", element.vertices);
   if (element.point) {
-    json.key("point");
-    json.begin_array();
+    json.begin_array("point");
     for (const double c : {element.point->x, element.point->y, element.point->z})
       json.value(c);
     json.end_array();
@@ -119,8 +115,7 @@ void write_json_file(JsonWriter& json, const Report& report, const std::function
   json.member("faces", report.faces);
   json.member("kept_faces", report.kept_faces);
   json.member("components", report.components);
-  json.key("ignored");
-  json.begin_array();
+  json.begin_array("ignored");
   for (const Ignored& ignored : report.ignored) {
     json.begin_object(one_line);
     json.member("what", ignored.what);
@@ -128,8 +123,7 @@ void write_json_file(JsonWriter& json, const Report& report, const std::function
     json.end_object();
   }
   json.end_array();
-  json.key("issues");
-  json.begin_array();
+  json.begin_array("issues");
   for (const Issue& issue : report.issues)
     write_issue(json, issue, elements);
   json.end_array();
@@ -138,8 +132,7 @@ void write_json_file(JsonWriter& json, const Report& report, const std::function
   json.member("fail_on", report.fail_on ? name_of(*report.fail_on) : "never");
   if (!report.config.empty()) json.member("config", report.config);
   if (report.has_baseline) {
-    json.key("resolved");
-    json.begin_object(one_line);
+    json.begin_object("resolved", one_line);
     for (const auto& [rule, total] : report.resolved)
       json.member(rule, total);
     json.end_object();

@@ -22,19 +22,15 @@ void write_rule(JsonWriter& json, const Rule& rule) {
   json.member("id", rule.name);
   write_sarif_text(json, "shortDescription", "Counts " + meaning + ".");
   write_sarif_text(json, "fullDescription", "Counts " + meaning + ". " + why);
-  json.key("help");
-  json.begin_object();
+  json.begin_object("help");
   json.member("text", "Why it matters: " + why + "\nWhat to do: " + remedy);
   json.member("markdown", "**Why it matters.** " + why + "\n\n**What to do.** " + remedy);
   json.end_object();
-  json.key("defaultConfiguration");
-  json.begin_object(one_line);
+  json.begin_object("defaultConfiguration", one_line);
   json.member("level", name_of(rule.severity));
   json.end_object();
-  json.key("properties");
-  json.begin_object(one_line);
-  json.key("tags");
-  json.begin_array();
+  json.begin_object("properties", one_line);
+  json.begin_array("tags");
   json.value("mesh");
   json.end_array();
   json.member("precision", "very-high");
@@ -43,15 +39,12 @@ void write_rule(JsonWriter& json, const Rule& rule) {
 }
 
 void write_tool(JsonWriter& json) {
-  json.key("tool");
-  json.begin_object();
-  json.key("driver");
-  json.begin_object();
+  json.begin_object("tool");
+  json.begin_object("driver");
   json.member("name", "fdcg");
   json.member("version", FDCG_VERSION_STRING);
   json.member("semanticVersion", FDCG_VERSION_STRING);
-  json.key("rules");
-  json.begin_array();
+  json.begin_array("rules");
   for (const Rule& rule : rules())
     write_rule(json, rule);
   json.end_array();
@@ -65,19 +58,15 @@ class SarifWriter final : public ReportWriter {
     json_.begin_object();
     json_.member("$schema", kSchemaUri);
     json_.member("version", "2.1.0");
-    json_.key("runs");
-    json_.begin_array();
+    json_.begin_array("runs");
     json_.begin_object();
     write_tool(json_);
-    json_.key("originalUriBaseIds");
-    json_.begin_object();
-    json_.key(kSarifRoot);
-    json_.begin_object();
+    json_.begin_object("originalUriBaseIds");
+    json_.begin_object(kSarifRoot);
     write_sarif_text(json_, "description", "The folder that fdcg was run in");
     json_.end_object();
     json_.end_object();
-    json_.key("results");
-    json_.begin_array();
+    json_.begin_array("results");
   }
 
   void add(const Report& report) override {
@@ -89,13 +78,11 @@ class SarifWriter final : public ReportWriter {
 
   void finish(int exit_code) override {
     json_.end_array();
-    json_.key("artifacts");
-    json_.begin_array();
+    json_.begin_array("artifacts");
     for (const std::string& artifact : artifacts_)
       json_.splice(artifact);
     json_.end_array();
-    json_.key("invocations");
-    json_.begin_array();
+    json_.begin_array("invocations");
     json_.begin_object(one_line);
     json_.member("executionSuccessful", exit_code <= 1);
     json_.member("exitCode", exit_code);
@@ -113,17 +100,14 @@ class SarifWriter final : public ReportWriter {
     std::string out;
     JsonWriter json(out);
     json.begin_object(one_line);
-    json.key("location");
-    json.begin_object();
+    json.begin_object("location");
     json.member("uri", uri);
     if (is_relative_uri(uri)) json.member("uriBaseId", kSarifRoot);
     json.end_object();
-    json.key("roles");
-    json.begin_array();
+    json.begin_array("roles");
     json.value("analysisTarget");
     json.end_array();
-    json.key("properties");
-    json.begin_object();
+    json.begin_object("properties");
     json.member("verdict", report.passes() ? "pass" : "fail");
     json.member("vertices", report.vertices);
     json.member("faces", report.faces);

@@ -43,8 +43,7 @@ std::string escaped_for_message(std::string_view text) {
 template <class List>
 void write_indices(JsonWriter& json, std::string_view key, const List& list) {
   if (list.empty()) return;
-  json.key(key);
-  json.begin_array(one_line);
+  json.begin_array(key, one_line);
   for (const auto& item : list)
     json.value(item);
   json.end_array();
@@ -83,23 +82,20 @@ class ResultWriter {
               std::to_string(i + 1) + ")";
     if (linked != 0) text += issue.total > linked ? "; and " + std::to_string(issue.total - linked) + " more." : ".";
     write_sarif_text(json_, "message", text);
-    json_.key("locations");
-    json_.begin_array();
+    json_.begin_array("locations");
     for (std::size_t i = 0; i < count; ++i)
       write_location(issue.elements[i], {});
     if (count == 0) write_file_location();
     json_.end_array();
     if (linked != 0) {
-      json_.key("relatedLocations");
-      json_.begin_array();
+      json_.begin_array("relatedLocations");
       for (std::size_t i = 0; i < linked; ++i)
         write_location(issue.elements[i], i + 1);
       json_.end_array();
     }
     write_fingerprint(hash_of(issue.rule + "\n" + uri_), 1);
     write_states(issue, issue.known, issue.total);
-    json_.key("properties");
-    json_.begin_object(one_line);
+    json_.begin_object("properties", one_line);
     json_.member("known", issue.known);
     json_.end_object();
     json_.end_object();
@@ -115,8 +111,7 @@ class ResultWriter {
       const std::string text = place_of(element) + ". " + std::string(rule == nullptr ? issue.message : rule->remedy);
       begin_result(issue, 1);
       write_sarif_text(json_, "message", escaped_for_message(issue.rule + ": " + text));
-      json_.key("locations");
-      json_.begin_array();
+      json_.begin_array("locations");
       write_location(element, {});
       json_.end_array();
       write_fingerprint(element.fingerprint, ++seen[element.fingerprint]);
@@ -134,8 +129,7 @@ class ResultWriter {
     write_sarif_text(
         json_, "message",
         escaped_for_message(is_all ? issue.message : std::to_string(rest) + " more of " + issue.rule + ". " + issue.message));
-    json_.key("locations");
-    json_.begin_array();
+    json_.begin_array("locations");
     write_file_location();
     json_.end_array();
     write_fingerprint(hash_of(issue.rule + "\n" + uri_), 1);
@@ -152,8 +146,7 @@ class ResultWriter {
   }
 
   void write_artifact() {
-    json_.key("artifactLocation");
-    json_.begin_object();
+    json_.begin_object("artifactLocation");
     json_.member("uri", uri_);
     if (is_relative_uri(uri_)) json_.member("uriBaseId", kSarifRoot);
     json_.member("index", artifact_);
@@ -161,8 +154,7 @@ class ResultWriter {
   }
   void write_file_location() {
     json_.begin_object(one_line);
-    json_.key("physicalLocation");
-    json_.begin_object();
+    json_.begin_object("physicalLocation");
     write_artifact();
     json_.end_object();
     json_.end_object();
@@ -171,12 +163,10 @@ class ResultWriter {
   void write_location(const Element& element, std::optional<std::size_t> id) {
     json_.begin_object(one_line);
     if (id) json_.member("id", *id);
-    json_.key("physicalLocation");
-    json_.begin_object();
+    json_.begin_object("physicalLocation");
     write_artifact();
     if (element.line) {
-      json_.key("region");
-      json_.begin_object();
+      json_.begin_object("region");
       json_.member("startLine", *element.line);
       json_.end_object();
     }
@@ -206,8 +196,7 @@ class ResultWriter {
     for (const std::uint32_t vertex : element.vertices)
       add(std::to_string(vertex), "vertex");
     if (names.empty()) return;
-    json_.key("logicalLocations");
-    json_.begin_array();
+    json_.begin_array("logicalLocations");
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto& [name, kind] = names[i];
       json_.begin_object();
@@ -220,13 +209,11 @@ class ResultWriter {
   }
 
   void write_properties(const Element& element) {
-    json_.key("properties");
-    json_.begin_object();
+    json_.begin_object("properties");
     write_indices(json_, "faces", element.faces);
     if (element.more_faces != 0) json_.member("more_faces", element.more_faces);
     if (!element.edges.empty()) {
-      json_.key("edges");
-      json_.begin_array();
+      json_.begin_array("edges");
       for (const auto& edge : element.edges) {
         json_.begin_array();
         json_.value(edge[0]);
@@ -246,8 +233,7 @@ class ResultWriter {
   // files have none.
   void write_fingerprint(std::uint64_t fingerprint, unsigned number) {
     const std::string text = fingerprint_text(fingerprint) + ":" + std::to_string(number);
-    json_.key("partialFingerprints");
-    json_.begin_object(one_line);
+    json_.begin_object("partialFingerprints", one_line);
     json_.member("fdcg/v1", text);
     json_.member("primaryLocationLineHash", text);
     json_.end_object();
@@ -257,8 +243,7 @@ class ResultWriter {
     const bool is_allowed = report_.allowed.count(issue.rule) != 0;
     const bool is_known = known == total;
     if (report_.has_baseline) json_.member("baselineState", is_known ? "unchanged" : known == 0 ? "new" : "updated");
-    json_.key("suppressions");
-    json_.begin_array(one_line);
+    json_.begin_array("suppressions", one_line);
     if (is_allowed || (report_.has_baseline && is_known)) {
       json_.begin_object();
       json_.member("kind", "external");

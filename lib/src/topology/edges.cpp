@@ -13,10 +13,6 @@
 namespace fdcg::bake {
 namespace {
 
-bool is_halfedge(HalfedgeId h) {
-  return +h < +Topology::kSkipped;
-}
-
 // The number of corners of a vertex in sound faces, and the first of them.
 struct Star {
   std::uint32_t corners = 0;

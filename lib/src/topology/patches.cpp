@@ -69,10 +69,6 @@ class TurnedSets {
   std::vector<std::uint8_t> turned_;
 };
 
-bool is_halfedge(HalfedgeId h) {
-  return +h < +Topology::kSkipped;
-}
-
 FaceSets join_across_edges(const Mesh& mesh, const Topology& topology, const std::vector<OddEdge>& odd) {
   FaceSets sets(mesh.face_count());
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <future>
-#include <limits>
 #include <memory>
 
 #include "base/parallel.hpp"
@@ -13,8 +12,8 @@ namespace fdcg::bake {
 namespace {
 
 constexpr std::size_t kFacesAtOnce = 16'384;
-constexpr std::size_t kWorthThreads = 100'000;  // corners, some milliseconds; a thread costs a tenth of one
-constexpr std::size_t kMostPasses = 4;          // more threads would read more than they save
+constexpr std::size_t kWorthTwoThreads = 100'000;  // corners, some milliseconds; a thread costs a tenth of one
+constexpr std::size_t kMostPasses = 4;             // more threads would read more than they save
 
 bool all_triangles(const Mesh& mesh) {
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -102,7 +101,7 @@ std::vector<FaceState> face_states(const Mesh& mesh, unsigned jobs) {
 
 Topology pair_halfedges(const Mesh& mesh, const std::vector<FaceState>& states, unsigned jobs) {
   Topology topology;
-  const bool is_small = mesh.corners.size() < kWorthThreads;
+  const bool is_small = mesh.corners.size() < kWorthTwoThreads;
   const auto fill_twins = [&] { topology.twin.assign(mesh.corners.size(), Topology::kSkipped); };
   const auto side = is_small || jobs < 2 ? std::launch::deferred : std::launch::async;
   std::future<void> twins = std::async(side, fill_twins);  // the system's zeroing of new memory takes as long as the counting

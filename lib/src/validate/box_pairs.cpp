@@ -12,7 +12,7 @@
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kBoxGrain = 4096;
 constexpr unsigned kKeyBits = 10;  // per coordinate: fine enough for the order, and key and index fit one word
 
 std::uint32_t field(Cell cell, unsigned axis) {
@@ -93,7 +93,7 @@ Cell CellGrid::cell(const Vec3& p) const {
 
 BoxTree::BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs) {
   std::vector<std::uint64_t> keys(boxes.size());
-  parallel_for(jobs, boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(jobs, boxes.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       keys[i] = curve_key(boxes[i]) | i;
   });
@@ -105,7 +105,7 @@ BoxTree::BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint3
     std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) { return labels[i] < labels[j]; });
   }
   levels_.emplace_back(boxes.size());
-  parallel_for(jobs, boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(jobs, boxes.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       levels_[0][i] = boxes[order_[i]];
   });

@@ -70,12 +70,11 @@ class BoxTree {
   // The number of parts of the work, which can run concurrently and do not depend on the number of threads.
   [[nodiscard]] std::size_t part_count() const { return levels_[part_level_].size(); }
 
-  // Calls visit(i, j) for the pairs of one part: indices of the given boxes, in no particular order; over all parts each pair
-  // once.
+  // Calls visit(i, j) for the pairs of one part: indices of the given boxes, always in the same order; over all parts each pair
+  // once. Ends where visit returns false.
   template <class Visit>
   void for_each_pair(std::size_t part, Visit visit) const {
-    within(part_level_, part, visit);
-    with_later_parts(levels_.size() - 1, 0, part, visit);
+    if (within(part_level_, part, visit)) with_later_parts(levels_.size() - 1, 0, part, visit);
   }
 
  private:
@@ -90,22 +89,25 @@ class BoxTree {
     return {begin, begin + kArity < count ? begin + kArity : count};
   }
 
+  // Each of the three returns false where a visit did.
+
   // Pairs of boxes in one subtree.
   template <class Visit>
-  void within(std::size_t level, std::size_t node, Visit& visit) const {
-    if (level == 0 || label(level, node) != kNone) return;
+  bool within(std::size_t level, std::size_t node, Visit& visit) const {
+    if (level == 0 || label(level, node) != kNone) return true;
     const auto [begin, end] = children(level, node);
     for (std::size_t i = begin; i < end; ++i) {
-      within(level - 1, i, visit);
+      if (!within(level - 1, i, visit)) return false;
       for (std::size_t j = i + 1; j < end; ++j) {
-        if (levels_[level - 1][i].meets(levels_[level - 1][j])) between(level - 1, i, j, visit);
+        if (levels_[level - 1][i].meets(levels_[level - 1][j]) && !between(level - 1, i, j, visit)) return false;
       }
     }
+    return true;
   }
   // Pairs of a box in one subtree with a box in another one.
   template <class Visit>
-  void between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
-    if (have_same_label(level, a, b)) return;
+  bool between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
+    if (have_same_label(level, a, b)) return true;
     if (level == 0) return visit(order_[a], order_[b]);
     const CellBox* const below = levels_[level - 1].data();
     const CellBox other = levels_[level][b];
@@ -116,23 +118,23 @@ class BoxTree {
       for (std::size_t j = in_b.begin; j < in_b.end; ++j) {
         if (!box.meets(below[j])) continue;
         if (level == 1) {
-          if (!have_same_label(0, i, j)) visit(order_[i], order_[j]);
-        } else {
-          between(level - 1, i, j, visit);
+          if (!have_same_label(0, i, j) && !visit(order_[i], order_[j])) return false;
+        } else if (!between(level - 1, i, j, visit)) {
+          return false;
         }
       }
     }
+    return true;
   }
   template <class Visit>
-  void with_later_parts(std::size_t level, std::size_t node, std::size_t part, Visit& visit) const {
-    if (!levels_[level][node].meets(levels_[part_level_][part])) return;
-    if (level == part_level_) {
-      if (node > part) between(level, part, node, visit);
-      return;
-    }
+  bool with_later_parts(std::size_t level, std::size_t node, std::size_t part, Visit& visit) const {
+    if (!levels_[level][node].meets(levels_[part_level_][part])) return true;
+    if (level == part_level_) return node <= part || between(level, part, node, visit);
     const auto [begin, end] = children(level, node);
-    for (std::size_t i = begin; i < end; ++i)
-      with_later_parts(level - 1, i, part, visit);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!with_later_parts(level - 1, i, part, visit)) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] std::uint32_t label(std::size_t level, std::size_t node) const {

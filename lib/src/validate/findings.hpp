@@ -58,6 +58,11 @@ class Findings {
 
   // In place of the catalogue's phrase and remedy; the total comes first.
   void say(std::string message) { issue_.message = std::move(message); }
+  // There may be more than were counted.
+  void say_at_least(std::string message) {
+    say(std::move(message));
+    issue_.is_at_least = true;
+  }
   [[nodiscard]] std::uint64_t total() const { return issue_.total; }
   // Number of findings that need a location; others may be counted by count_more().
   [[nodiscard]] std::size_t max_elements() const { return each_ ? kAllElements : max_elements_; }

@@ -24,23 +24,23 @@ Vec3 unit(const Vec3& v) {
 }
 
 // A box around two points of the unit sphere.
-struct Patch {
+struct HubPatch {
   Vec3 low, high;
-  Patch(const Vec3& a, const Vec3& b, double slack)
+  HubPatch(const Vec3& a, const Vec3& b, double slack)
       : low{std::min(a.x, b.x) - slack, std::min(a.y, b.y) - slack, std::min(a.z, b.z) - slack},
         high{std::max(a.x, b.x) + slack, std::max(a.y, b.y) + slack, std::max(a.z, b.z) + slack} {}
 };
 
-std::vector<CellBox> cells_of(const std::vector<Patch>& patches) {
+std::vector<CellBox> cells_of(const std::vector<HubPatch>& patches) {
   std::vector<Vec3> ends;
-  for (const Patch& patch : patches) {
+  for (const HubPatch& patch : patches) {
     ends.push_back(patch.low);
     ends.push_back(patch.high);
   }
   const CellGrid grid(ends);
   std::vector<CellBox> boxes;
   boxes.reserve(patches.size());
-  for (const Patch& patch : patches) {
+  for (const HubPatch& patch : patches) {
     boxes.push_back(CellBox::around(grid.cell(patch.low)));
     boxes.back().add(CellBox::around(grid.cell(patch.high)));
   }
@@ -50,7 +50,7 @@ std::vector<CellBox> cells_of(const std::vector<Patch>& patches) {
 }  // namespace
 
 std::vector<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTriangle>& triangles) {
-  std::vector<Patch> patches;
+  std::vector<HubPatch> patches;
   for (const ContactTriangle& t : triangles) {
     const auto at = static_cast<std::size_t>(std::find(t.corner.begin(), t.corner.end(), hub) - t.corner.begin());
     const Vec3 p = unit(*t.corner[(at + 1) % 3] - *hub), q = unit(*t.corner[(at + 2) % 3] - *hub);
@@ -63,7 +63,7 @@ std::vector<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTria
 
 std::vector<CellBox> boxes_around(const Vec3* from, const Vec3* to, const std::vector<ContactTriangle>& triangles) {
   const Vec3 e = unit(*to - *from);
-  std::vector<Patch> patches;
+  std::vector<HubPatch> patches;
   for (const ContactTriangle& t : triangles) {
     const Vec3* const third = *std::find_if(t.corner.begin(), t.corner.end(), [&](auto p) { return p != from && p != to; });
     const Vec3 normal = cross(e, unit(*third - *from));

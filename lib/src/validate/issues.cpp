@@ -77,7 +77,8 @@ const std::vector<Rule>& rules() {
        "Nothing needs to be done; delete them to make the file smaller.", true},
       {"duplicate-vertex", note, "vertices that the weld joined to an earlier one",
        "None where faces are meant to hang together; with `--weld none` every such face stands alone.",
-       "Nothing needs to be done; `--weld none` keeps the vertices apart.", true},
+       "Nothing needs to be done; `--weld none` keeps the vertices apart, as it must where `fdcg repair` has split a vertex.",
+       true},
   };
   return kRules;
 }

@@ -20,9 +20,29 @@ void winding_inconsistent(const Subject& subject, Findings& out) {
   }
 }
 
+namespace {
+
+// Corners of faces that are not finite: edges end there because of that, which another rule tells. Empty: there is none.
+std::vector<bool> corners_of_faces_not_finite(const Subject& subject) {
+  std::vector<bool> is_corner;
+  for (std::uint32_t f = 0; f < subject.mesh.face_count(); ++f) {
+    if (subject.geometry.is_finite(FaceId{f}) || subject.states[f] == FaceState::invalid_corner) continue;
+    is_corner.resize(subject.mesh.points.size(), false);
+    for (std::uint32_t h = subject.mesh.face_first[f]; h < subject.mesh.face_first[f + 1]; ++h)
+      is_corner[+subject.mesh.corners[h]] = true;
+  }
+  return is_corner;
+}
+
+}  // namespace
+
 void boundary_edge(const Subject& subject, Findings& out) {
+  const std::vector<bool> is_told = corners_of_faces_not_finite(subject);
   for (std::uint32_t h = 0; h < subject.topology.twin.size(); ++h) {
-    if (subject.topology.twin[h] == Topology::kBoundary) out.at_edge(std::array{HalfedgeId{h}});
+    if (subject.topology.twin[h] != Topology::kBoundary) continue;
+    const HalfedgeId edge{h};
+    if (!is_told.empty() && (is_told[+subject.start_of(edge)] || is_told[+subject.end_of(edge)])) continue;
+    out.at_edge(std::array{edge});
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <string>
 
 #include "validate/check_rules.hpp"
@@ -9,12 +10,17 @@ namespace fdcg::bake::checks {
 void self_intersection(const Subject& subject, Findings& out) {
   const SelfIntersections found =
       find_self_intersections(subject.mesh, subject.geometry, {out.max_elements(), subject.jobs, subject.progress});
-  const std::uint64_t total = found.crossing + found.touching;
-  for (const MeetingFaces& pair : found.listed)
-    out.at_pair(pair.a, pair.b, pair.point);
-  out.count_more(total - found.listed.size());
+  // The part of the search in which the limit was reached goes beyond it.
+  const std::uint64_t counted = found.crossing + found.touching;
+  const std::uint64_t total = found.has_more ? std::min(counted, kMostMeetingPairs) : counted;
+  const std::size_t listed = std::min<std::uint64_t>(found.listed.size(), total);
+  for (std::size_t i = 0; i < listed; ++i)
+    out.at_pair(found.listed[i].a, found.listed[i].b, found.listed[i].point);
+  out.count_more(total - listed);
   const std::string remedy = ". " + std::string(find_rule("self-intersection")->remedy);
-  if (total == 1) {
+  if (found.has_more) {
+    out.say_at_least("at least " + std::to_string(total) + " pairs of faces meet, where the count ends" + remedy);
+  } else if (total == 1) {
     out.say((found.crossing == 1 ? "1 pair of faces meets: they cross" : "1 pair of faces meets: they only touch") + remedy);
   } else if (total > 1) {
     out.say(std::to_string(total) + " pairs of faces meet: " + std::to_string(found.crossing) + " cross, " +

@@ -2,9 +2,11 @@
 #include "validate/self_intersection.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -27,12 +29,17 @@ class Gathered {
   Gathered(std::size_t max_listed, bool is_plain) : max_listed_(max_listed), is_plain_(is_plain) {}
 
   void add(FaceId a, FaceId b, Contact contact) {
+    ++added_;
     found_.listed.push_back({std::min(a, b), std::max(a, b), contact, {}});
     if (!is_plain_) return;
     count(contact);
     if (max_listed_ < kAllElements / 2 && found_.listed.size() >= 2 * max_listed_ + kSlack) shorten();
   }
+  // Pairs of triangles.
+  [[nodiscard]] std::uint64_t added() const { return added_; }
+  [[nodiscard]] bool is_full() const { return added_ >= kMostMeetingPairs; }
   void add(const Gathered& other) {
+    added_ += other.added_;
     found_.crossing += other.found_.crossing;
     found_.touching += other.found_.touching;
     found_.listed.insert(found_.listed.end(), other.found_.listed.begin(), other.found_.listed.end());
@@ -48,6 +55,7 @@ class Gathered {
         count(pair.contact);
     }
     pairs.resize(std::min(pairs.size(), max_listed_));
+    found_.has_more = is_full();
     return std::move(found_);
   }
 
@@ -68,6 +76,7 @@ class Gathered {
 
   std::size_t max_listed_;
   bool is_plain_;
+  std::uint64_t added_ = 0;
   SelfIntersections found_;
 };
 
@@ -186,29 +195,44 @@ class Search {
     return triangles;
   }
 
-  // All pairs whose boxes meet; the tree's box i is that of triangles[i].
+  // All pairs whose boxes meet; the tree's box i is that of triangles[i]. The search ends with the first part at which the
+  // pairs of it and of all parts before it reach the limit; what later parts have found by then is left out.
   void search(const BoxTree& tree, const Numbers& triangles, const Progress& progress) {
     constexpr std::size_t kPartsAtOnce = 4;
+    const std::size_t batches = (tree.part_count() + kPartsAtOnce - 1) / kPartsAtOnce;
+    std::vector<std::optional<Gathered>> finished(batches);
+    std::size_t taken = 0, done = 0;
+    std::atomic<bool> is_over = all_.is_full();
     std::mutex lock;
-    std::size_t done = 0;
     parallel_for(options_.jobs, tree.part_count(), kPartsAtOnce, [&](std::size_t begin, std::size_t end) {
+      if (is_over) return;
       Gathered found(options_.max_listed, triangles_.is_plain());
-      for (std::size_t part = begin; part < end; ++part) {
-        tree.for_each_pair(part, [&](std::uint32_t i, std::uint32_t j) {
-          const std::uint32_t s = triangles[i], t = triangles[j];
-          const FaceId a = triangles_.face(s), b = triangles_.face(t);
-          if (a == b) return;
-          const Contact contact = judge(triangles_[s], triangles_[t]);
-          if (contact != Contact::none) found.add(a, b, contact);
-        });
-      }
+      for (std::size_t part = begin; part < end && !found.is_full(); ++part)
+        search_part(tree, part, triangles, is_over, found);
       const std::scoped_lock guard(lock);
-      all_.add(found);
+      finished[begin / kPartsAtOnce] = std::move(found);
+      for (; taken < batches && finished[taken] && !all_.is_full(); finished[taken++].reset())
+        all_.add(*finished[taken]);
+      is_over = all_.is_full();
       done += end - begin;
       if (progress) progress("self-intersection", static_cast<double>(done) / static_cast<double>(tree.part_count()));
     });
   }
+  void search_part(const BoxTree& tree, std::size_t part, const Numbers& triangles, const std::atomic<bool>& is_over,
+                   Gathered& found) const {
+    tree.for_each_pair(part, [&](std::uint32_t i, std::uint32_t j) {
+      if (found.is_full() || is_over.load(std::memory_order_relaxed)) return false;
+      const std::uint32_t s = triangles[i], t = triangles[j];
+      const FaceId a = triangles_.face(s), b = triangles_.face(t);
+      if (a == b) return true;
+      const Contact contact = judge(triangles_[s], triangles_[t]);
+      if (contact != Contact::none) found.add(a, b, contact);
+      return true;
+    });
+  }
   [[nodiscard]] Contact judge(const ContactTriangle& s, const ContactTriangle& t) const {
+    const auto is_corner_of_t = [&t](const Vec3* p) { return p == t.corner[0] || p == t.corner[1] || p == t.corner[2]; };
+    if (is_corner_of_t(s.corner[0]) && is_corner_of_t(s.corner[1]) && is_corner_of_t(s.corner[2])) return Contact::crossing;
     return is_filtered_ && are_surely_apart(s, t) ? Contact::none : contact_of(s, t);
   }
 

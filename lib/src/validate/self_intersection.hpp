@@ -22,7 +22,11 @@ struct SelfIntersections {
   std::uint64_t crossing = 0;        // pairs whose interiors have a common point; copies of a face are such pairs
   std::uint64_t touching = 0;        // pairs that meet only in the boundary of one of them
   std::vector<MeetingFaces> listed;  // the first of both, in ascending order
+  bool has_more = false;             // the search ended at its limit; the counts and the list are of what it had found
 };
+
+// Pairs of triangles after which the search ends: of n faces on one another n^2 / 2 pairs meet.
+inline constexpr std::uint64_t kMostMeetingPairs = 1'000'000;
 
 struct SelfIntersectionOptions {
   std::size_t max_listed = kListedElements;
@@ -35,7 +39,7 @@ struct SelfIntersectionOptions {
 // tested for further common points: with one shared vertex, any other common point counts; with a shared edge, being folded
 // onto each other in one plane; copies on the same vertices count. On triangle meshes the result equals CGAL's
 // self_intersections without its pairs of a degenerate face with itself. About 0.2 s and 60 MB a million faces on one thread,
-// plus some 100 ns a pair found.
+// plus some 100 ns a pair found. What is found before the limit does not depend on the number of threads.
 [[nodiscard]] SelfIntersections find_self_intersections(const Mesh& mesh, const FaceGeometry& geometry,
                                                         const SelfIntersectionOptions& options);
 

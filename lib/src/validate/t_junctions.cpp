@@ -2,7 +2,6 @@
 #include "validate/t_junctions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 

@@ -84,6 +84,8 @@ typedef struct fdcg_body {
   double given_n_m_s[3];           /**< the same of torque */
   double rest_force_n[3];          /**< under which it fell asleep */
   double rest_torque_n_m[3];       /**< likewise */
+  double push_n[3];                /**< of fdcg_body_set_push: a force at the centre of mass, world */
+  double push_n_m[3];              /**< likewise a torque */
   double quiet_s;                  /**< how long it has been slow enough to sleep */
   double scale;                    /**< of the pose */
   uint32_t is_asleep;              /**< 1: it is not stepped until the force on it changes */
@@ -101,6 +103,11 @@ fdcg_status fdcg_body_init(fdcg_body* body, const fdcg_body_config* config, cons
  * finite or beyond 1e6. */
 fdcg_status fdcg_body_set_motion(fdcg_body* body, const double velocity_m_per_s[3], const double angular_rad_per_s[3],
                                  fdcg_error* error);
+
+/** Lets a force at the centre of mass and a torque act on it, world, in every tick of a scene or a pile until they are set
+ * anew; beside gravity, fingers and touches. Zero to begin with. A change wakes it as any other change of force does.
+ * FDCG_E_ARGUMENT where they are not finite or beyond 1e12. fdcg_body_step alone takes no notice of them. */
+fdcg_status fdcg_body_set_push(fdcg_body* body, const double force_n[3], const double torque_n_m[3], fdcg_error* error);
 
 /** Moves it on by dt_s (1e-9 to 1) under a force and a torque about the centre of mass, world, gravity beside them. Some 0.2 us
  * where it turns by less than half a radian a step; at most 64 times that. Asleep: a comparison, unless the force has changed.
@@ -131,7 +138,8 @@ typedef struct fdcg_scene_body {
 /** A tick of the scene and its bodies: `substeps` times (1 to FDCG_BODY_MAX_SUBSTEPS) a fdcg_scene_step, the reactions to the
  * fingers' forces, each body moved on by tick_s / substeps, its pose handed to the scene. `reactions`: room for one entry by
  * object index, of at least the largest index among the bodies and one; zeroed or left half done where the call fails. No
- * object is that of two bodies. tick_s / substeps: 1e-9 to 1. A finger's result is that of the last substep. Stops with the
+ * object is that of two bodies. tick_s / substeps: 1e-9 to 1. A finger goes an equal part of its way in each
+ * substep; its result is that of the last one. Stops with the
  * scene's own status where a pose is refused: a body that flew beyond 1e12 m, or an object removed. */
 fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
                                    double tick_s, fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error);

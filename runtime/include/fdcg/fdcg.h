@@ -137,7 +137,8 @@ typedef struct fdcg_graph {
   const uint16_t* node_materials;        /**< NULL: not in the file; else header->node_count entries */
   const fdcg_material_record* materials; /**< NULL: none; else material_count entries */
   uint32_t material_count;               /**< entries of `materials` */
-  uint32_t reserved;                     /**< 0 */
+  uint32_t fan_run_count;                /**< entries of `fan_runs` */
+  const fdcg_fan_run* fan_runs;          /**< NULL: not in the file */
 } fdcg_graph;
 
 /** Views `bytes` bytes at `data` (a multiple of 8) as a graph. Nothing is copied. On failure *graph is zeroed.

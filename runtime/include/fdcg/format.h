@@ -58,7 +58,8 @@ extern "C" {
 
 /** What a section holds. A reader skips ids that it does not know; a writer never reuses one. */
 enum fdcg_section_id {
-  FDCG_SECTION_NODES = 1,        /**< node blocks, node_count of them, in Hilbert order of their centres */
+  FDCG_SECTION_NODES = 1,        /**< node blocks, node_count of them: in Hilbert order of their centres, then
+                                    FAN_RUNS */
   FDCG_SECTION_NODE_OFFSETS = 2, /**< uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
                                     are of one size, header.node_bytes */
   FDCG_SECTION_EDGES = 3, /**< fdcg_connection_geometry_f64 or _f32, one a connection. Optional: derived from the corners */
@@ -69,10 +70,11 @@ enum fdcg_section_id {
   FDCG_SECTION_SOURCE_MAP = 8,  /**< uint32_t: the node of each source face, or FDCG_NONE. Optional */
   FDCG_SECTION_INFO = 9,        /**< UTF-8 JSON: source, options, verdict. Optional */
   FDCG_SECTION_FAN_BOXES = 10,  /**< fdcg_fan_box_f64 or _f32: the busy corners' trees */
-  FDCG_SECTION_BUSY_CORNERS = 11,  /**< fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
-  FDCG_SECTION_MASS = 12,          /**< fdcg_mass_record, one. Optional: of closed meshes that enclose a solid */
-  FDCG_SECTION_MATERIALS = 13,     /**< uint16_t: the material of each node, or FDCG_NO_MATERIAL. Optional, with the next */
-  FDCG_SECTION_MATERIAL_NAMES = 14 /**< fdcg_material_record, one a material */
+  FDCG_SECTION_BUSY_CORNERS = 11, /**< fdcg_busy_corner, busy_count of them. FANS, FAN_BOXES and it are absent where none is */
+  FDCG_SECTION_MASS = 12,         /**< fdcg_mass_record, one. Optional: of closed meshes that enclose a solid */
+  FDCG_SECTION_MATERIALS = 13,    /**< uint16_t: the material of each node, or FDCG_NO_MATERIAL. Optional, with the next */
+  FDCG_SECTION_MATERIAL_NAMES = 14, /**< fdcg_material_record, one a material */
+  FDCG_SECTION_FAN_RUNS = 15        /**< fdcg_fan_run: which nodes stand together because they share a busy corner. Optional */
 };
 
 /** How the faces of a connection meet. */
@@ -247,6 +249,17 @@ typedef struct fdcg_fan_box_f32 {
   float axis[3][3]; /**< its half axes */
 } fdcg_fan_box_f32;
 
+/** Consecutive nodes that share a busy corner: a sweep asks the corner's tree which of them its way may meet, since their boxes
+ * in the hierarchy all hold the corner. */
+typedef struct fdcg_fan_run {
+  uint32_t first_node; /**< above the run before it */
+  uint32_t node_count; /**< at least 1; each of them has the corner */
+  uint32_t busy;       /**< the corner's record in section BUSY_CORNERS */
+  uint32_t flags;      /**< FDCG_RUN_INEXACT */
+} fdcg_fan_run;
+/** fdcg_fan_run.flags. Set where a node at the corner, or one across a concave side of such a node, is inexact. */
+#define FDCG_RUN_INEXACT 1u
+
 /** Eight boxes of the hierarchy, on a grid of their own: box j reaches from origin + cell * low[.][j] to origin + cell *
  * high[.][j] along each axis, with cell = 2^(exponent - 127), in tree units: the power of two at or below header.extent. Bounds
  * only ever grow outwards. The hierarchy is an implicit tree: level 0 has one record for every eight leaves, a leaf being
@@ -302,6 +315,7 @@ FDCG_STATIC_ASSERT(sizeof(fdcg_corner_f64) == 40 && sizeof(fdcg_corner_f32) == 2
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f64, first) == 24 && offsetof(fdcg_corner_f64, fan) == 35, "corner_f64");
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corner_f32, fan) == 23, "corner_f32");
 FDCG_STATIC_ASSERT(sizeof(fdcg_busy_corner) == 16, "busy corner: 16 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_fan_run) == 16, "fan run: 16 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_box8) == 64, "eight boxes: 64 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_mass_record) == 104, "mass: 104 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_material_record) == 64, "material: 64 bytes");

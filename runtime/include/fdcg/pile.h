@@ -24,15 +24,21 @@
  * not on surfaces (surface.h). A touch keeps the stiffness that it began with; where faces have materials it follows them. The
  * stiffness is that of both springs in series, k1 k2 / (k1 + k2), but no stiffer than an eighth of the bound of the step,
  * 1 / (8 h^2 w), where w says how easily the place moves (1/kg, over three directions): so no pile runs away while fewer than
- * 32 touches pull at two bodies that meet. The other parameters (edge_friction, ...) are those of the object touched;
+ * 32 touches pull at two bodies that meet. fdcg_pile_get_substeps says how many substeps spare all touches that bound; those
+ * that meet it are counted and flagged. The other parameters (edge_friction, ...) are those of the object touched;
  * damping_n_s_per_m is for fingers only.
  *
  * **Damping**: of the approach by damping_ratio of the critical value for the mass that this contact moves, of the way back out
  * by leaving_ratio of it, so that what falls does not bounce; of what sticks, sideways, by twice damping_ratio. Dampers are
  * solved implicitly, one after the other: none adds energy at any step. A contact never pulls, and what a damper adds sideways
  * stays inside the cone. Slipping is damped by friction alone: the god-object's cone is measured by the spring, whose push is
- * the load once the approach is over. Each point has its own cone. Where static friction is above dynamic, a body on several
- * points gives way when the least loaded of them does; where they are equal, all bear what they can before it slides.
+ * the load once the approach is over. Each point has its own cone, and all points between two
+ * members share their static friction: while one of them rests, the others give way at mu_static, and what they cannot bear
+ * goes to those that can; once all slip, mu_dynamic holds for each until all rest again. (Where friction flags are set, and
+ * with the ninth member that one touches and further ones, each point is judged by itself.)
+ *
+ * **Impacts.** A spring of the stiffness asked may not stop what comes fast before it is through. So the approach is also
+ * damped as far as it takes to keep a point no deeper than a quarter of the smaller of the two bodies' least widths.
  *
  * **Cost.** Two bodies far apart cost nothing until they have used up the distance last measured (then 1 to 2 ns an object);
  * near one another, some 5 ns a point that is out of the other's box; a touch 0.1 to 0.2 us with its damper. What lies still is
@@ -124,6 +130,12 @@ fdcg_status fdcg_scene_step_pile(fdcg_scene* scene, fdcg_pile* pile, fdcg_scene_
                                  uint32_t substeps, double tick_s, fdcg_reaction* reactions, uint32_t reaction_count,
                                  fdcg_error* error);
 
+/** How many substeps a tick of tick_s takes so that no touch between any two of the pile's members, or with the ground, is made
+ * softer than their parameters ask: 1 to FDCG_BODY_MAX_SUBSTEPS; 0 where more would be needed. `bodies`: those of the ticks.
+ * For set-up: the square of the members, times their points. */
+uint32_t fdcg_pile_get_substeps(const fdcg_pile* pile, const fdcg_scene* scene, const fdcg_scene_body* bodies,
+                                uint32_t body_count, double tick_s);
+
 /** One point that presses on something. */
 typedef struct fdcg_pile_touch {
   fdcg_object_id object; /**< whose point */
@@ -137,7 +149,9 @@ typedef struct fdcg_pile_touch {
   uint32_t point;           /**< its number among the object's points */
   uint32_t state;           /**< fdcg_state, on what it touches */
   uint32_t feature;         /**< on what it touches */
-  uint32_t slipping;        /**< 1: dynamic friction holds */
+  uint32_t slipping;        /**< 1: it moves at the limit of its friction */
+  uint32_t softened;        /**< 1: the step bears no more stiffness here than this (fdcg_pile_get_substeps) */
+  uint32_t reserved;        /**< 0 */
 } fdcg_pile_touch;
 
 /** Copies at most `capacity` touches, by object and point, and returns how many there are. Cost: the points. */
@@ -148,6 +162,7 @@ typedef struct fdcg_pile_counts {
   uint64_t overflowed_contacts; /**< points that met something while touch_capacity was used up, and were not felt */
   uint64_t broadphase_updates;  /**< measurements from a body to all objects */
   uint64_t steps;               /**< steps of touches */
+  uint64_t softened_steps;      /**< those of them with less stiffness than was asked for */
 } fdcg_pile_counts;
 /** Reads the counts. */
 fdcg_pile_counts fdcg_pile_get_counts(const fdcg_pile* pile);

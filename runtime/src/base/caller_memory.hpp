@@ -28,8 +28,7 @@ class MemoryLayout {
 inline fdcg_status check_room(const void* memory, uint64_t bytes, uint64_t needed, fdcg_error* error) {
   if (reinterpret_cast<uintptr_t>(memory) % MemoryLayout::kAlignment != 0)
     return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
-  if (bytes < needed)
-    return Message(error, FDCG_E_ARGUMENT).text("bytes is ").number(bytes).text(", this config needs ").number(needed);
+  if (bytes < needed) return Message(error, FDCG_E_ARGUMENT).say("bytes is ", bytes, ", this config needs ", needed);
   return FDCG_OK;
 }
 

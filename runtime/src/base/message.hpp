@@ -21,9 +21,25 @@ class Message {
   [[gnu::cold]] Message& number(uint64_t value);
   // Six decimals, with a power of ten where the number is very large or small: enough to see what is wrong with a setting.
   [[gnu::cold]] Message& real(double value);
-  operator fdcg_status() const { return status_; }  // NOLINT(google-explicit-constructor): `return Message(...).text(...)`
+  // Pieces in their order: a text, a whole number, a real number.
+  template <class... Pieces>
+  [[gnu::always_inline]] inline Message& say(Pieces... pieces) {
+    return (add(pieces), ..., *this);
+  }
+  operator fdcg_status() const { return status_; }  // NOLINT(google-explicit-constructor): `return Message(...).say(...)`
 
  private:
+  [[gnu::always_inline]] inline void add(const char* words) { text(words); }
+  [[gnu::always_inline]] inline void add(char* words) { text(words); }
+  template <class Number>
+  [[gnu::always_inline]] inline void add(Number value) {
+    constexpr bool kIsReal = static_cast<Number>(0.5) != 0;
+    if constexpr (kIsReal) {
+      real(value);
+    } else {
+      number(static_cast<uint64_t>(value));
+    }
+  }
   void put(char c);
 
   fdcg_error* error_;
@@ -45,6 +61,10 @@ class Message {
   Message& quoted(const char*, int) { return *this; }
   Message& number(uint64_t) { return *this; }
   Message& real(double) { return *this; }
+  template <class... Pieces>
+  Message& say(Pieces...) {
+    return *this;
+  }
   operator fdcg_status() const { return status_; }  // NOLINT(google-explicit-constructor): as above
 
  private:

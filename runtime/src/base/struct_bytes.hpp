@@ -39,12 +39,8 @@ inline fdcg_status check_struct_bytes(uint32_t struct_bytes, uint64_t library_by
                                       fdcg_error* error) {
   if (struct_bytes >= kSmallestStruct && struct_bytes <= library_bytes && struct_bytes % 8 == 0) return FDCG_OK;
   return Message(error, FDCG_E_ARGUMENT)
-      .text(name)
-      .text(".struct_bytes is ")
-      .number(struct_bytes)
-      .text(", allowed are multiples of 8 up to this library's ")
-      .number(library_bytes)
-      .text(struct_bytes > library_bytes ? "; the library is older than the header: update it" : remedy);
+      .say(name, ".struct_bytes is ", struct_bytes, ", allowed are multiples of 8 up to this library's ", library_bytes,
+           struct_bytes > library_bytes ? "; the library is older than the header: update it" : remedy);
 }
 
 }  // namespace fdcg

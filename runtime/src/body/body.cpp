@@ -22,9 +22,9 @@ struct FieldRange {
 fdcg_status check_range(const char* of, const FieldRange& range, fdcg_error* error, const char* remedy = "") {
   if (range.value >= range.low && range.value <= range.high) return FDCG_OK;
   Message message(error, FDCG_E_ARGUMENT);
-  message.text(of).text(range.name);
-  if (range.index >= 0) message.text("[").number(static_cast<uint64_t>(range.index)).text("]");
-  return message.text(" is ").real(range.value).text(", allowed ").real(range.low).text(" to ").real(range.high).text(remedy);
+  message.say(of, range.name);
+  if (range.index >= 0) message.say("[", static_cast<uint64_t>(range.index), "]");
+  return message.say(" is ", range.value, ", allowed ", range.low, " to ", range.high, remedy);
 }
 
 // The triangle inequality of the moments of inertia: checked on the diagonal and, in general, by leading minors.
@@ -47,9 +47,8 @@ fdcg_status check_solid(const char* of, const fdcg_body_config& config, const ch
   }
   if (status != FDCG_OK || is_solid_inertia(config.inertia_kg_m2)) return status;
   return Message(error, FDCG_E_ARGUMENT)
-      .text(of)
-      .text("inertia_kg_m2 is no solid's: it must be positive definite, and no axis may have more than the two others")
-      .text(remedy);
+      .say(of, "inertia_kg_m2 is no solid's: it must be positive definite, and no axis may have more than the two others",
+           remedy);
 }
 
 fdcg_status check_config(const fdcg_body_config& config, fdcg_error* error) {
@@ -199,6 +198,23 @@ extern "C" fdcg_status fdcg_body_set_motion(fdcg_body* body, const double veloci
   body->has_given = 0;
   body->is_asleep = 0;
   body->quiet_s = 0;
+  return FDCG_OK;
+}
+
+extern "C" fdcg_status fdcg_body_set_push(fdcg_body* body, const double force_n[3], const double torque_n_m[3],
+                                          fdcg_error* error) {
+  using namespace fdcg;
+  if (body == nullptr || force_n == nullptr || torque_n_m == nullptr)
+    return Message(error, FDCG_E_ARGUMENT).text("body, force or torque: null pointer");
+  for (int k = 0; k < 3; ++k) {
+    const FieldRange ranges[] = {{"force_n", force_n[k], -kLargestField, kLargestField, k},
+                                 {"torque_n_m", torque_n_m[k], -kLargestField, kLargestField, k}};
+    for (const FieldRange& range : ranges) {
+      if (const fdcg_status status = check_range("", range, error); status != FDCG_OK) return status;
+    }
+  }
+  memcpy(body->push_n, force_n, sizeof body->push_n);
+  memcpy(body->push_n_m, torque_n_m, sizeof body->push_n_m);
   return FDCG_OK;
 }
 

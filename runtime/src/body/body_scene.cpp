@@ -2,6 +2,7 @@
 // Bodies that a scene's fingers push.
 #include "body/body_scene.hpp"
 #include "base/message.hpp"
+#include "scene/scene_memory.hpp"
 
 namespace fdcg {
 namespace {
@@ -13,12 +14,8 @@ fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fd
   for (uint32_t i = 0; i < body_count; ++i) {
     if (bodies[i].object.index < reaction_count) continue;
     return Message(error, FDCG_E_ARGUMENT)
-        .text("body ")
-        .number(i)
-        .text(": its object has index ")
-        .number(bodies[i].object.index)
-        .text(", there is room for the reactions of ")
-        .number(reaction_count);
+        .say("body ", i, ": its object has index ", bodies[i].object.index, ", there is room for the reactions of ",
+             reaction_count);
   }
   for (uint32_t i = body_count; i-- > 0;)
     reactions[bodies[i].object.index].force_n[0] = i;
@@ -31,9 +28,9 @@ fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fd
   for (uint32_t i = 0; i < reaction_count; ++i)
     reactions[i] = {};
   Message message(error, FDCG_E_ARGUMENT);
-  message.text("body ").number(bad);
+  message.say("body ", bad);
   if (first == bad) return message.text(": has no mass; make it with fdcg_body_init");
-  return message.text(": its object is that of body ").number(first).text(" too; an object is one body's: give each its own");
+  return message.say(": its object is that of body ", first, " too; an object is one body's: give each its own");
 }
 
 }  // namespace
@@ -48,7 +45,10 @@ fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction)
 
 fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_reaction& push, double dt_s, fdcg_error* error) {
   const bool was_asleep = body->body.is_asleep != 0;
-  fdcg_body_step(&body->body, push.force_n, push.torque_n_m, dt_s);
+  fdcg_reaction all = push;
+  put(vec(push.force_n) + vec(body->body.push_n), all.force_n);
+  put(vec(push.torque_n_m) + vec(body->body.push_n_m), all.torque_n_m);
+  fdcg_body_step(&body->body, all.force_n, all.torque_n_m, dt_s);
   if (was_asleep && body->body.is_asleep != 0) return FDCG_OK;  // it has not moved
   const fdcg_pose pose = fdcg_body_get_pose(&body->body);
   return fdcg_scene_set_pose(scene, body->object, &pose, error);
@@ -60,25 +60,35 @@ fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies,
     return Message(error, FDCG_E_ARGUMENT).text("scene, bodies or reactions: null pointer");
   if (substeps == 0 || substeps > FDCG_BODY_MAX_SUBSTEPS) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("substeps is ")
-        .number(substeps)
-        .text(", allowed 1 to ")
-        .number(FDCG_BODY_MAX_SUBSTEPS)
-        .text(substeps == 0 ? "; where fdcg_body_substeps returns 0 too many would be needed: a" : "; a")
-        .text(" shorter tick, a softer contact or a heavier body needs fewer");
+        .say("substeps is ", substeps, ", allowed 1 to ", FDCG_BODY_MAX_SUBSTEPS,
+             substeps == 0 ? "; where fdcg_body_substeps returns 0 too many would be needed: a" : "; a",
+             " shorter tick, a softer contact or a heavier body needs fewer");
   }
   constexpr double kLeastStep_s = 1e-9, kLongestStep_s = 1;  // of fdcg_body_step
   if (!(tick_s / substeps >= kLeastStep_s && tick_s / substeps <= kLongestStep_s)) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("tick_s is ")
-        .real(tick_s)
-        .text(", allowed for each of the substeps ")
-        .real(kLeastStep_s)
-        .text(" to ")
-        .real(kLongestStep_s)
-        .text(" s");
+        .say("tick_s is ", tick_s, ", allowed for each of the substeps ", kLeastStep_s, " to ", kLongestStep_s, " s");
   }
   return check_objects(bodies, body_count, reactions, reaction_count, error);
+}
+
+void begin_ways(fdcg_scene* scene) {
+  for (uint32_t i = 0; i < scene->finger_end; ++i)
+    scene->fingers()[i].goal = scene->fingers()[i].hip;
+}
+
+void move_fingers(fdcg_scene* scene, uint32_t step, uint32_t substeps) {
+  const double share = 1.0 / (substeps - step);  // of the way that is left
+  for (uint32_t i = 0; i < scene->finger_end; ++i) {
+    Finger& finger = scene->fingers()[i];
+    if (finger.is_started == 0 || !is_place(finger.goal)) continue;
+    finger.hip = step + 1 < substeps ? finger.last + (finger.goal - finger.last) * share : finger.goal;
+  }
+}
+
+void end_ways(fdcg_scene* scene) {
+  for (uint32_t i = 0; i < scene->finger_end; ++i)
+    scene->fingers()[i].hip = scene->fingers()[i].goal;
 }
 
 }  // namespace fdcg
@@ -87,7 +97,10 @@ extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body
                                               uint32_t substeps, double tick_s, fdcg_reaction* reactions,
                                               uint32_t reaction_count, fdcg_error* error) {
   fdcg_status status = fdcg::check_bodies(scene, bodies, body_count, substeps, tick_s, reactions, reaction_count, error);
+  if (status != FDCG_OK) return status;
+  fdcg::begin_ways(scene);
   for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
+    fdcg::move_fingers(scene, step, substeps);
     fdcg_scene_step(scene);
     fdcg_scene_get_reactions(scene, reactions, reaction_count);
     for (uint32_t i = 0; status == FDCG_OK && i < body_count; ++i) {
@@ -95,5 +108,6 @@ extern "C" fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body
       status = fdcg::move_body(scene, bodies + i, push, tick_s / substeps, error);
     }
   }
+  fdcg::end_ways(scene);
   return status;
 }

@@ -16,4 +16,10 @@ fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction)
 // Advances the body under a force and a torque about the centre of mass, and sets its new pose in the scene.
 fdcg_status move_body(fdcg_scene* scene, fdcg_scene_body* body, const fdcg_reaction& push, double dt_s, fdcg_error* error);
 
+// Ways of the fingers in a tick of several substeps: begin_ways, move_fingers before each substep (from 0), end_ways. A finger
+// goes the same part of its way in each.
+void begin_ways(fdcg_scene* scene);
+void move_fingers(fdcg_scene* scene, uint32_t step, uint32_t substeps);
+void end_ways(fdcg_scene* scene);
+
 }  // namespace fdcg

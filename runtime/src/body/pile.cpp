@@ -49,24 +49,6 @@ uint64_t lay_out(const fdcg_pile_config& config, fdcg_pile* pile) {
   return layout.bytes();
 }
 
-// Returns the touches of a point for which `is_gone` is true to the free list.
-template <class IsGone>
-void drop_touches(fdcg_pile& pile, PileMember& member, PilePoint& point, IsGone is_gone) {
-  uint32_t* link = &point.touch;
-  while (*link != FDCG_NONE) {
-    PileTouch& touch = pile.touches()[*link];
-    if (!is_gone(touch)) {
-      link = &touch.next;
-      continue;
-    }
-    const uint32_t gone = *link;
-    *link = touch.next;
-    touch.next = pile.free_touch;
-    pile.free_touch = gone;
-    --member.touch_count;
-  }
-}
-
 template <class IsGone>
 void drop_everywhere(fdcg_pile& pile, IsGone is_gone) {
   for (uint32_t m = 0; m < pile.member_end; ++m) {
@@ -93,14 +75,7 @@ fdcg_status check_points(const double (*points_m)[3], uint32_t count, fdcg_error
   for (uint32_t p = 0; p < count; ++p) {
     for (int k = 0; k < 3; ++k) {
       if (fabs(points_m[p][k]) <= kFarthest_m) continue;
-      return Message(error, FDCG_E_ARGUMENT)
-          .text("points_m[")
-          .number(p)
-          .text("][")
-          .number(static_cast<uint64_t>(k))
-          .text("] is ")
-          .real(points_m[p][k])
-          .text(", allowed -1e12 to 1e12");
+      return Message(error, FDCG_E_ARGUMENT).say("points_m[", p, "][", k, "] is ", points_m[p][k], ", allowed -1e12 to 1e12");
     }
   }
   return FDCG_OK;
@@ -194,21 +169,15 @@ extern "C" fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, f
     return refuse(error, "object: is a deformable mesh, which bodies do not meet; leave it out of the pile");
   if (object.index >= pile->config.object_capacity) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("object.index is ")
-        .number(object.index)
-        .text(", config.object_capacity is ")
-        .number(pile->config.object_capacity)
-        .text("; make it as large as the scene's");
+        .say("object.index is ", object.index, ", config.object_capacity is ", pile->config.object_capacity,
+             "; make it as large as the scene's");
   }
   if (const fdcg_status status = check_points(points_m, point_count, error); status != FDCG_OK) return status;
   PileMember& member = pile->members()[object.index];
   const uint32_t others = pile->point_end - (member.is_used != 0 ? member.point_count : 0);
   if (point_count > pile->config.point_capacity - others) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("point_count is ")
-        .number(point_count)
-        .text(", config.point_capacity leaves ")
-        .number(pile->config.point_capacity - others);
+        .say("point_count is ", point_count, ", config.point_capacity leaves ", pile->config.point_capacity - others);
   }
   if (member.is_used != 0) leave_pile(*pile, object.index);
   member = {};
@@ -262,6 +231,7 @@ extern "C" uint32_t fdcg_pile_get_touches(const fdcg_pile* pile, fdcg_pile_touch
         to.state = touch.contact.state;
         to.feature = touch.contact.feature;
         to.slipping = touch.contact.slipping;
+        to.softened = touch.is_softened;
       }
     }
   }

@@ -55,6 +55,15 @@ double share_within(World held, World more, double limit) {
   return smaller(1, larger(0, (root(b * b - a * c) - b) / a));
 }
 
+// Share of the least width of a body that a point may get into another, and that it may still approach in one step then.
+constexpr double kMostDepth = 0.25, kLeastApproach = 1.0 / 16;
+
+double least_width(const Object& object) {
+  if (object.bounds.is_endless) return HUGE_VAL;
+  const World half = object.bounds.half;
+  return 2 * object.now.scale * smaller(half.x, smaller(half.y, half.z));
+}
+
 // The two members of a touch: `other` is null for the ground.
 struct Between {
   PileMember *owner, *other;
@@ -64,6 +73,12 @@ struct Between {
   void give_both(const Lever& own, const Lever& others, World direction, double impulse_n_s) const {
     give(owner, own, direction, impulse_n_s);
     give(other, others, direction, -impulse_n_s);
+  }
+  // How deep a point may get before the approach is stopped outright.
+  [[nodiscard]] double most_depth_m(const Meeting& meeting) const {
+    double least = least_width(meeting.object(*owner));
+    if (other != nullptr) least = smaller(least, least_width(meeting.object(*other)));
+    return kMostDepth * least;
   }
   [[nodiscard]] World velocity(const Meeting& meeting) const {
     return velocity_at(meeting, owner, at) - velocity_at(meeting, other, at);
@@ -112,7 +127,10 @@ void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch) {
   const double speed = dot(between.velocity(meeting), n);
   const double ratio = speed < 0 ? config.damping_ratio : config.leaving_ratio;
   // never adhesive: cancels at most the whole spring force
-  const double along = larger(damper_impulse(speed, ratio, touch->stiffness_n_per_m, answer, h), -touch->load_n * h);
+  double along = larger(damper_impulse(speed, ratio, touch->stiffness_n_per_m, answer, h), -touch->load_n * h);
+  const double most = between.most_depth_m(meeting), depth = touch->load_n / touch->stiffness_n_per_m;
+  const double approach = larger(most - depth, kLeastApproach * most) / h;
+  if (speed < -approach) along = larger(along, (-approach - speed) / answer);
   between.give_both(own, others, n, along);
   World impulse = n * along;
   if (touch->contact.slipping == 0) impulse = impulse + damp_sideways(meeting, between, *touch, along);

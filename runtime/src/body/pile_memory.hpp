@@ -21,11 +21,24 @@ struct PilePoint {
   uint32_t reserved;
 };
 
+// Limit for stiffness times the squared step times the inverse effective mass, summed over three directions. Stability allows 4
+// for all springs along one direction together, so 32 of them may act.
+inline constexpr double kMostPileStiffness = 0.125;
+
+// How friction holds for a touch, see pile_patch.cpp.
+enum class PatchFriction : uint32_t {
+  alone,  // as for a finger
+  holds,  // the touches of its patch hold together: mu_static in place of mu_dynamic
+  slips   // all of them slip
+};
+
 struct PileTouch {
   uint32_t next;  // of the same point, or in the list of those not in use
   uint32_t on;    // the touched member, or kGround
   uint32_t is_pressing;
   uint32_t has_normal;
+  PatchFriction patch;
+  uint32_t is_softened;      // its stiffness is the step's bound
   double stiffness_n_per_m;  // constant while it presses; where faces have materials, that of the step
   double most_stiffness;     // stability bound of its body, from the start of the contact
   double load_n;
@@ -140,9 +153,38 @@ struct PointWay {
 };
 bool step_touch(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch);
 
+// pile_patch.cpp: decides from the last step how friction holds for the member's touches in this one.
+void judge_patches(fdcg_pile& pile, PileMember* owner);
+
+template <class Act>
+void for_each_touch(fdcg_pile& pile, PileMember* member, Act act) {
+  for (uint32_t p = 0; p < member->point_count && member->touch_count > 0; ++p) {
+    for (uint32_t t = pile.points()[member->first_point + p].touch; t != FDCG_NONE; t = pile.touches()[t].next)
+      act(pile.touches() + t);
+  }
+}
+
 // pile_damp.cpp: applies the touch's damper in this step.
 void damp_touch(const Meeting& meeting, PileMember* owner, PileTouch* touch);
 // The inverse effective mass of both at `at`, summed over the x, y and z directions: an upper bound for any direction. 1/kg.
 double looseness_at(const PileMember* a, const PileMember* b, World at);
+
+// Returns the touches of a point for which `is_gone` is true to the free list.
+template <class IsGone>
+void drop_touches(fdcg_pile& pile, PileMember& member, PilePoint& point, IsGone is_gone) {
+  uint32_t* link = &point.touch;
+  while (*link != FDCG_NONE) {
+    PileTouch& touch = pile.touches()[*link];
+    if (!is_gone(touch)) {
+      link = &touch.next;
+      continue;
+    }
+    const uint32_t gone = *link;
+    *link = touch.next;
+    touch.next = pile.free_touch;
+    pile.free_touch = gone;
+    --member.touch_count;
+  }
+}
 
 }  // namespace fdcg

@@ -111,7 +111,7 @@ extern "C" fdcg_status fdcg_pick_points(const fdcg_graph* graph, double (*points
     return Message(error, FDCG_E_ARGUMENT).text("graph, points_m or count: null pointer, or not open");
   *count = 0;
   if (capacity == 0 || capacity > kMostPoints)
-    return Message(error, FDCG_E_ARGUMENT).text("capacity is ").number(capacity).text(", allowed 1 to ").number(kMostPoints);
+    return Message(error, FDCG_E_ARGUMENT).say("capacity is ", capacity, ", allowed 1 to ", kMostPoints);
   Points points = {*graph, points_m, 0, capacity};
   pick_corners(&points);
   World mean = {0, 0, 0};

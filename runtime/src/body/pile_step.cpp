@@ -120,20 +120,9 @@ void try_new_touch(const Meeting& meeting, PileMember* owner, PilePoint* point, 
 
 // Steps the point's touches where either side has moved, and drops those that have ended.
 void step_touches(const Meeting& meeting, PileMember* owner, PilePoint* point, const PointWay& way) {
-  fdcg_pile& pile = meeting.pile;
-  uint32_t* link = &point->touch;
-  while (*link != FDCG_NONE) {
-    PileTouch& touch = pile.touches()[*link];
-    if (!is_awake(pile, *owner, touch.on) || step_touch(meeting, *owner, way, false, &touch)) {
-      link = &touch.next;
-      continue;
-    }
-    const uint32_t gone = *link;
-    *link = touch.next;
-    touch.next = pile.free_touch;
-    pile.free_touch = gone;
-    --owner->touch_count;
-  }
+  drop_touches(meeting.pile, *owner, *point, [&](PileTouch& touch) {
+    return is_awake(meeting.pile, *owner, touch.on) && !step_touch(meeting, *owner, way, false, &touch);
+  });
 }
 
 PointWay way_of(const Object& object, const PilePoint& point) {
@@ -195,14 +184,6 @@ bool has_points_to_step(const PileMember& member) {
   return member.is_used != 0 && member.is_enabled != 0 && member.body != FDCG_NONE && member.point_count > 0;
 }
 
-template <class Act>
-void for_each_touch(fdcg_pile& pile, PileMember* member, Act act) {
-  for (uint32_t p = 0; p < member->point_count && member->touch_count > 0; ++p) {
-    for (uint32_t t = pile.points()[member->first_point + p].touch; t != FDCG_NONE; t = pile.touches()[t].next)
-      act(pile.touches() + t);
-  }
-}
-
 // Whether the member, a neighbour or a member that it touches is awake.
 bool has_to_step(fdcg_pile& pile, PileMember* member, bool is_near_ground) {
   if (member->near_count == 0 && !is_near_ground && member->touch_count == 0) return false;
@@ -223,6 +204,9 @@ void add_push(PileMember* to, World at, World force) {
 void meet(const Meeting& meeting) {
   fdcg_pile& pile = meeting.pile;
   begin(meeting);
+  for (uint32_t m = 0; m < pile.member_end; ++m) {
+    if (has_points_to_step(pile.members()[m])) judge_patches(pile, pile.members() + m);
+  }
   for (uint32_t m = 0; m < pile.member_end; ++m) {
     PileMember& member = pile.members()[m];
     if (!has_points_to_step(member)) continue;
@@ -279,11 +263,14 @@ extern "C" fdcg_status fdcg_scene_step_pile(fdcg_scene* scene, fdcg_pile* pile, 
   if (pile->member_end > scene->object_end) return Message(error, FDCG_E_ARGUMENT).text("pile: not this scene's");
   find_bodies(*pile, bodies, body_count);
   const Meeting meeting = {*scene, *pile, bodies, tick_s / substeps};
+  begin_ways(scene);
   for (uint32_t step = 0; status == FDCG_OK && step < substeps; ++step) {
+    move_fingers(scene, step, substeps);
     fdcg_scene_step(scene);
     fdcg_scene_get_reactions(scene, reactions, reaction_count);
     meet(meeting);
     status = move_all(meeting, body_count, reactions, error);
   }
+  end_ways(scene);
   return status;
 }

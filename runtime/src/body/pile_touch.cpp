@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // One touch of a pile: the god-object's step, and the spring between it and the point.
-#include "base/struct_bytes.hpp"
 #include "body/pile_memory.hpp"
 #include "scene/finger_tick.hpp"
 #include "step/friction.hpp"
 
 namespace fdcg {
 namespace {
-
-// Limit for stiffness times the squared step times the inverse effective mass, summed over three directions. Stability allows 4
-// for all springs along one direction together, so 32 of them may act.
-constexpr double kMostStiffness = 0.125;
 
 // The god-object, the spring, and the direction of the normal load.
 void place(PileTouch* touch, World god_object, World point, World normal, bool has_normal) {
@@ -35,10 +30,12 @@ void press(const Meeting& meeting, const PileMember& owner, World point, const P
     double looseness = looseness_at(&owner, other, touch->god_object);
     // asleep: as a cube's corner
     if (looseness == 0) looseness = 12 / meeting.bodies[owner.body].body.config.mass_kg;
-    touch->most_stiffness = kMostStiffness / (looseness * meeting.step_s * meeting.step_s);
+    touch->most_stiffness = kMostPileStiffness / (looseness * meeting.step_s * meeting.step_s);
   }
   if (!was_pressing || pair.follows_faces)
     touch->stiffness_n_per_m = smaller(pair.material.stiffness_n_per_m, touch->most_stiffness);
+  touch->is_softened = touch->stiffness_n_per_m < pair.material.stiffness_n_per_m ? 1 : 0;
+  meeting.pile.counts.softened_steps += touch->is_softened;
   touch->mu_static = pair.material.mu_static;
   touch->force_n = (touch->god_object - point) * touch->stiffness_n_per_m;
   touch->load_n = dot(touch->force_n, touch->normal);
@@ -122,7 +119,8 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
     god_object = before <= 0 ? way.from + (way.to - way.from) * (before / (before - depth)) : way.to + n * depth;
   }
   const GroundStep step = {n, god_object, way.to + n * depth, depth};
-  Friction<double> friction = {pair.mu_static, pair.mu_dynamic, true, contact.slipping != 0};
+  const bool holds = touch->patch == PatchFriction::holds && pile.ground_params.friction_flags == 0;
+  Friction<double> friction = {pair.mu_static, holds ? pair.mu_static : pair.mu_dynamic, true, contact.slipping != 0};
 #if FDCG_WITH_FRICTION_TERMS
   god_object =
       pile.ground_params.friction_flags != 0 ? slide_by_curve(meeting, own, friction, step, &contact) : slide(friction, step);
@@ -169,7 +167,8 @@ World turned(const Pose& pose, World v) {
 bool step_on_object(const Meeting& meeting, const PileMember& owner, const PointWay& way, bool is_new, PileTouch* touch) {
   const Object& on = meeting.object(meeting.pile.members()[touch->on]);
   const fdcg_material own = material_of(meeting.object(owner).params);
-  const fdcg_params params = pair_params(meeting, on, own);
+  fdcg_params params = pair_params(meeting, on, own);
+  if (touch->patch == PatchFriction::holds && params.friction_flags == 0) params.mu_dynamic = params.mu_static;
   const bool may_skip = meeting.scene.skips(FDCG_OPT_ROTATION);
   const bool was_pressing = !is_new && touch->is_pressing != 0;
   fdcg_contact& contact = touch->contact;

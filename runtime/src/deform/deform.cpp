@@ -27,27 +27,17 @@ fdcg_status check_graph(const fdcg_graph* graph, fdcg_error* error) {
   const fdcg_header& header = *graph->header;
   if (header.node_bytes == 0 || header.side_count != header.node_count * uint64_t{3}) {
     return Message(error, FDCG_E_GRAPH)
-        .text("the graph has ")
-        .number(header.node_count)
-        .text(" faces with ")
-        .number(header.side_count)
-        .text(" sides; to be deformed each must be a triangle: compile the mesh with --triangles");
+        .say("the graph has ", header.node_count, " faces with ", header.side_count,
+             " sides; to be deformed each must be a triangle: compile the mesh with --triangles");
   }
   if (header.largest_fan > FDCG_DEFORM_MOST_FAN) {
     return Message(error, FDCG_E_GRAPH)
-        .text("a corner has ")
-        .number(header.largest_fan)
-        .text(" edges; of a mesh to be deformed at most ")
-        .number(FDCG_DEFORM_MOST_FAN)
-        .text(" may meet: remesh it there");
+        .say("a corner has ", header.largest_fan, " edges; of a mesh to be deformed at most ", FDCG_DEFORM_MOST_FAN,
+             " may meet: remesh it there");
   }
   if (header.node_count > kMostNodes) {
     return Message(error, FDCG_E_GRAPH)
-        .text("the graph has ")
-        .number(header.node_count)
-        .text(" triangles; at most ")
-        .number(kMostNodes)
-        .text(" can be deformed");
+        .say("the graph has ", header.node_count, " triangles; at most ", kMostNodes, " can be deformed");
   }
   return FDCG_OK;
 }
@@ -93,14 +83,10 @@ fdcg_status checked_config(const fdcg_deform_config* given, fdcg_deform_config* 
   }
   *config = in_full(*given, config, fdcg_deform_config_init);
   constexpr double kLargest = 1e90;
-  if (config->reserved != 0)
-    return Message(error, FDCG_E_ARGUMENT).text("config.reserved is ").number(config->reserved).text(", allowed 0");
+  if (config->reserved != 0) return Message(error, FDCG_E_ARGUMENT).say("config.reserved is ", config->reserved, ", allowed 0");
   if (config->margin_m >= 0 && config->margin_m <= kLargest) return FDCG_OK;
   return Message(error, FDCG_E_ARGUMENT)
-      .text("config.margin_m is ")
-      .real(config->margin_m)
-      .text(", allowed 0 (the default: the graph's largest side) to ")
-      .real(kLargest);
+      .say("config.margin_m is ", config->margin_m, ", allowed 0 (the default: the graph's largest side) to ", kLargest);
 }
 
 // The header as it is from now on: the graph's, with room for the corners to move.
@@ -118,11 +104,8 @@ fdcg_status widen_bounds(double margin_m, fdcg_header* header, fdcg_error* error
   }
   if (!(extent <= largest)) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("config.margin_m lets vertices move to ")
-        .real(extent)
-        .text(" file units from the middle, allowed ")
-        .real(largest)
-        .text("; take a smaller one");
+        .say("config.margin_m lets vertices move to ", extent, " file units from the middle, allowed ", largest,
+             "; take a smaller one");
   }
   header->extent = extent;
   header->max_deviation = 0;
@@ -248,6 +231,8 @@ void place_parts(void* memory, const Layout& layout, const fdcg_graph& graph, fd
   own.mapping_bytes = 0;
   own.node_offsets = nullptr;
   own.edges = own.fan_boxes = nullptr;
+  own.fan_runs = nullptr;
+  own.fan_run_count = 0;
   own.nodes = deform->nodes;
   own.connections = deform->connections;
   own.corners = deform->corners;
@@ -292,11 +277,7 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
     return fdcg::refuse(error, FDCG_E_ALIGNMENT, "memory must start at a multiple of 8 bytes; align the buffer");
   const fdcg::Layout layout(*graph->header);
   if (bytes < layout.bytes) {
-    return Message(error, FDCG_E_ARGUMENT)
-        .text("memory has ")
-        .number(bytes)
-        .text(" bytes, fdcg_deform_bytes asks for ")
-        .number(layout.bytes);
+    return Message(error, FDCG_E_ARGUMENT).say("memory has ", bytes, " bytes, fdcg_deform_bytes asks for ", layout.bytes);
   }
   fdcg_header header = *graph->header;
   status = fdcg::widen_bounds(whole.margin_m, &header, error);

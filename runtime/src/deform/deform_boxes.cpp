@@ -8,9 +8,9 @@ constexpr int kCells = 255, kExponentBias = 127;
 // The smallest cell of a grid, as fdcg compile has it: a step's rounding, some 2^-19, stays far below the 255 cells by which an
 // unused box is inside out. The largest: no box is larger than two places that a vertex may have are apart.
 constexpr int kLeastExponent = kExponentBias - 24, kMostExponent = kExponentBias + 2;
-constexpr double kHeadroom = 0.5;  // of a grid's size, to either side: corners that move on seldom need a new grid
+constexpr double kHeadroom = 0.5;  // of a grid's size, to either side: corners that keep moving rarely need a new grid
 
-// So coarse that origin + cell * number is exactly a double, and so fine that it costs no box anything.
+// Coarse enough that origin + cell * number is exactly a double, and fine enough that no box grows by it.
 double origin_below(double x) {
   constexpr double kPerUnit = 1 << 20;  // |x| < 8: 24 bits
   return whole_below(x * kPerUnit) / kPerUnit;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hierarchy of a mesh that moves: its records are those of the file (fdcg_box8, box_tree.hpp), and its boxes may change.
 // Every box holds the boxes below it at all times. A corner that moves makes them larger where it must; they are made tight
-// again one record at a time, where something looks at them.
+// again one record at a time, when a step reads them.
 #pragma once
 
 #include "fdcg/fdcg.h"
@@ -9,7 +9,7 @@
 
 namespace fdcg {
 
-// The largest whole number not above x, |x| < 2^62. Not floor: a board's C library would have to bring it.
+// The largest whole number not above x, |x| < 2^62. Not floor: that would need a C library.
 inline double whole_below(double x) {
   const auto whole = static_cast<double>(static_cast<int64_t>(x));
   return whole > x ? whole - 1 : whole;

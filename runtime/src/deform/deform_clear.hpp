@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The look for a clear ball that a deformable mesh can watch over (deform_watch.hpp): by boxes alone, no triangle is brought up
-// to date for it.
+// The search for a clear ball that a deformable mesh can track (deform_watch.hpp): by boxes alone; no triangle is updated for
+// it.
 #pragma once
 
 #include "deform/deform_upkeep.hpp"
@@ -18,7 +18,7 @@ template <class Real>
   const fdcg_deform& deform = upkeep.deform();
   const Vec3<double> p = at * deform.per_tree_unit;
   const double size = norm1(p), length = way * deform.per_tree_unit;
-  if (!(size < kFar) || !(length < kFar)) return 0;  // the step knows what to do
+  if (!(size < kFar) || !(length < kFar)) return 0;  // too far away: the step handles it
   const double margin = 5 * tree_rounding<double>(2 * size, 2 * size * RealLimits<Real>::kEpsilon);
   const double reach = greater_of(kWaysAhead * length, kLeastReach), enough = kEnough * length + margin;
   const float point[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
@@ -50,7 +50,7 @@ template <class Real>
   return radius / deform.per_tree_unit;
 }
 
-// A ball around `hip` that holds the contact's god-object too: it becomes the contact's, and the mesh watches over it.
+// A ball around `hip` that holds the contact's god-object too: it becomes the contact's, and the mesh tracks it.
 template <class Real>
 bool find_quiet_ball(const Upkeep<Real>& upkeep, Vec3<double> hip, fdcg_deform_contact* contact) {
   fdcg_deform& deform = upkeep.deform();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a deformable mesh's motion of one tick does to a contact: a god-object rides on its feature, a free one that a face
-// passes over is caught.
+// What a deformable mesh's motion in one tick does to a contact: a god-object moves with its feature, and a free one that a
+// face passes over gets into contact.
 //
 // A triangle's way: its corners move one after another, in the order of their numbers, each along a straight line; so do those
 // of its neighbours, and each such move sweeps one tetrahedron of every triangle at the corner. Tetrahedra of neighbours share

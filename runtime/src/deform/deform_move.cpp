@@ -9,9 +9,9 @@
 namespace fdcg {
 namespace {
 
-// Which of several moves is refused; FDCG_NONE: there is but one.
+// The index of the move that is refused; FDCG_NONE: there is only one.
 Message& say_which(Message& message, uint64_t move) {
-  if (move != FDCG_NONE) message.text("move ").number(move).text(": ");
+  if (move != FDCG_NONE) message.say("move ", move, ": ");
   return message;
 }
 
@@ -26,19 +26,19 @@ inline bool is_finite(double x) {
   if (position_m == nullptr) return Message(error, FDCG_E_ARGUMENT).text("position: null pointer");
   Message message(error, FDCG_E_ARGUMENT);
   say_which(message, move);
-  if (corner != FDCG_NONE) message.text("corner ").number(corner).text(": ");
+  if (corner != FDCG_NONE) message.say("corner ", corner, ": ");
   message.text("position ");
   for (int k = 0; k < 3; ++k) {
     if (is_finite(position_m[k])) continue;
-    message.number(static_cast<uint64_t>(k)).text(" is ").real(position_m[k]);
+    message.say(k, " is ", position_m[k]);
     return message.text(" m; it must be finite: look at where it was computed");
   }
   for (int k = 0; k < 3; ++k) {
     const double low = (deform.low[k] + header.origin[k]) * header.metres_per_unit;
     const double high = (deform.high[k] + header.origin[k]) * header.metres_per_unit;
     if (position_m[k] >= low && position_m[k] <= high) continue;
-    message.number(static_cast<uint64_t>(k)).text(" is ").real(position_m[k]).text(" m, allowed ").real(low).text(" to ");
-    return message.real(high).text("; create the deformable mesh with a larger margin_m");
+    message.say(k, " is ", position_m[k], " m, allowed ", low, " to ");
+    return message.say(high, "; create the deformable mesh with a larger margin_m");
   }
   return message.text("is at the very end of what the margin_m allows");
 }
@@ -47,11 +47,7 @@ inline bool is_finite(double x) {
                                                        fdcg_error* error) {
   Message message(error, FDCG_E_ARGUMENT);
   return say_which(message, move)
-      .text("corner is ")
-      .number(corner)
-      .text(", the mesh has ")
-      .number(deform.header.corner_count)
-      .text("; fdcg_deform_find gives a vertex's corner");
+      .say("corner is ", corner, ", the mesh has ", deform.header.corner_count, "; fdcg_deform_find gives a vertex's corner");
 }
 
 // In the graph's frame; what the step takes for zero is zero here too. False for what is no number or outside.
@@ -69,7 +65,7 @@ inline bool is_finite(double x) {
   return is_inside != 0;
 }
 
-// A corner's place where the graph has it, or where it was rounded to: no further out than it was asked for.
+// A corner's place in the graph's numbers, rounded so that it is no further out than the one given.
 template <class Real>
 inline Vec3<Real> rounded_to(Vec3<double> p) {
   return {static_cast<Real>(p.x), static_cast<Real>(p.y), static_cast<Real>(p.z)};
@@ -179,7 +175,7 @@ extern "C" fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint3
     return fdcg::Message(error, FDCG_E_ARGUMENT).text("deform, corners or positions: null pointer");
   return fdcg::with_real_of(deform->header, [&](auto real) {
     using Place = fdcg::Place<decltype(real)>;
-    constexpr uint64_t kAhead = 8;  // so that scattered corners are in the cache when their turn comes
+    constexpr uint64_t kAhead = 8;  // prefetch distance: scattered corners are in the cache when they are moved
     fdcg_status status = FDCG_OK;
     for (uint64_t i = 0; i < count && status == FDCG_OK; ++i) {
       if (i + kAhead < count && corners[i + kAhead] < deform->header.corner_count)
@@ -220,13 +216,7 @@ extern "C" fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double 
     *corner = fdcg::with_real_of(deform->header, [&](auto real) { return fdcg::find<decltype(real)>(*deform, local, reach); });
   if (*corner != FDCG_NONE) return FDCG_OK;
   return fdcg::Message(error, FDCG_E_ABSENT)
-      .text("no corner within ")
-      .real(reach * deform->header.metres_per_unit)
-      .text(" m of ")
-      .real(position_object_m[0])
-      .text(", ")
-      .real(position_object_m[1])
-      .text(", ")
-      .real(position_object_m[2])
-      .text("; positions are metres in the object's frame: the file's coordinates times the unit scale");
+      .say("no corner within ", reach * deform->header.metres_per_unit, " m of ", position_object_m[0], ", ",
+           position_object_m[1], ", ", position_object_m[2],
+           "; positions are metres in the object's frame: the file's coordinates times the unit scale");
 }

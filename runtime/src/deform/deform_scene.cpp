@@ -14,7 +14,7 @@ void step_deform(const Object& object, const fdcg_params* params, fdcg_contact* 
 }
 
 // A finger's first step: the meshes that it is within get their contacts at once. One made in the next tick, as on other
-// objects, would only know where the HIP was, and not how vertices have moved since.
+// objects, would have the HIP's last place, but not how vertices have moved since.
 void start_on_deforms(fdcg_scene& scene, Finger& finger) {
   const auto index = static_cast<uint32_t>(&finger - scene.fingers());
   const Tick tick = {scene, finger, scene.slots(index), finger.hip, true};

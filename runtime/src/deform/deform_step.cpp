@@ -45,7 +45,7 @@ inline bool is_end(const Upkeep<Real>& upkeep, uint32_t connection, uint32_t cor
   return sides[record.side[0]].corner == corner || sides[(record.side[0] + 1) % 3].corner == corner;
 }
 
-// `saw_before`: the contact was stepped on the mesh as it was before the tick; else all that is known is where it is now.
+// `saw_before`: the contact was stepped on the mesh as it was before the tick; otherwise only its present place is known.
 template <class Real>
 void ride_on_edge(const Upkeep<Real>& upkeep, uint32_t connection, bool saw_before, fdcg_contact* contact) {
   Vec3<double> old_end[2], end[2];
@@ -135,8 +135,8 @@ inline bool keep_ball(double travel, fdcg_contact* contact) {
   return ball.radius2 > 0;
 }
 
-// How far a contact's clear ball, if it still has one, says that no face has come since its last step: to nowhere, to the
-// god-object, or to all of the way from it to the HIP; `hip` null: that is not asked.
+// What a contact's clear ball, if it still has one, excludes since its last step: nothing, that a face has reached the
+// god-object, or that one has reached the way from it to the HIP (not tested where `hip` is null).
 enum class Clear { no, at_god_object, all_the_way };
 template <class Real>
 Clear clear_of_faces(const Upkeep<Real>& upkeep, double travel, const Vec3<double>* hip, fdcg_deform_contact* contact) {
@@ -155,9 +155,9 @@ inline void seat_on(uint32_t n, fdcg_contact* contact) {
   contact->sweep.stalled_sweeps = 0;
 }
 
-// A sweep that ran out of work begins anew, on the mesh as it is, and goes half as far (shorten): from the feature that let the
-// god-object go, where it still stands. From free space it would meet that first, and all that lies around be looked at twice.
-// Returns whether it went back to one.
+// A sweep that ran out of work restarts, on the present mesh, and goes half as far (shorten): from the feature that the
+// god-object left, if it is still there. From free space it would meet that feature first and search its surroundings twice.
+// Returns whether it went back to a feature.
 inline bool begin_sweep_anew(fdcg_deform_contact* contact) {
   constexpr uint32_t kMostHalvings = 24;
   fdcg_carried_sweep& sweep = contact->contact.sweep;
@@ -173,7 +173,7 @@ inline bool begin_sweep_anew(fdcg_deform_contact* contact) {
   return true;
 }
 
-// A contact in free space. Returns whether a face caught it.
+// A contact in free space. Returns whether a face has passed over it.
 template <class Real>
 bool wait_for_faces(const Upkeep<Real>& upkeep, double travel, bool saw_before, const Vec3<double>* hip,
                     fdcg_deform_contact* waiting) {
@@ -249,7 +249,7 @@ template <class Real>
   memcpy(before, contact->contact.hip, sizeof before);
   step<DeformableGeometry<Real>>(deform.graph, params, &contact->contact, to, result);
   Vec3<double> hip;
-  if (contact->contact.state != FDCG_FREE) {  // the hand's step is yet to come
+  if (contact->contact.state != FDCG_FREE) {  // the step to the hand's HIP follows
     memcpy(contact->contact.hip, before, sizeof before);
   } else if (to_local(deform.header, hip_object_m, RealLimits<Real>::kFar, &hip)) {
     store(hip, contact->contact.hip);

@@ -100,7 +100,7 @@ uint32_t Upkeep<Real>::apex(uint32_t n, uint32_t k) const {
 }
 
 // Two faces that lie on one another exactly keep the type that the edge had: a knife or a slit, which their corners do not
-// tell.
+// distinguish.
 template <class Real>
 uint8_t Upkeep<Real>::type(uint32_t connection) const {
   fdcg_connection& record = d_->connections[connection];
@@ -243,7 +243,7 @@ void Upkeep<Real>::mark(uint32_t c, Vec3<double> way) const {
   own.is_marked = 1;
 }
 
-// Up to the first box that holds what is new and is loose already: so are and do those around it.
+// Up to the first box that is loose already and holds the new part: the boxes around it are and do too.
 template <class Real>
 void Upkeep<Real>::hold(int first_level, uint32_t first_index, const TreeBox& added) const {
   const BoxTree& tree = d_->tree;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a deformable mesh's memory holds, and how what depends on its corners' places is brought up to date:
+// The memory of a deformable mesh, and the update of all that depends on its corners' places:
 //
 //   fdcg_deform | node blocks | corners | Place[corners] | log of one tick[corners] | of the next | connections | busy corners
 //   | hierarchy | stale[leaves] | loose[records] | leaf_first[corners + 1] | leaves of corners
@@ -17,7 +17,7 @@
 #include "shared/face_plane.hpp"
 
 struct fdcg_deform {
-  fdcg_graph graph;  // first: the step is handed a graph, and finds its way back from it (deform_of)
+  fdcg_graph graph;  // first member: the step gets a pointer to the graph, which deform_of casts back
   fdcg_header header;
   unsigned char* nodes;
   void* corners;
@@ -31,8 +31,8 @@ struct fdcg_deform {
   uint32_t* leaf_first;  // corner c is in the leaves leaf_first[c] .. leaf_first[c + 1] - 1
   uint32_t* leaves;      // leaf << FDCG_LEAF_NODES | a bit for each of its nodes that the corner belongs to
   fdcg::BoxTree tree;
-  uint64_t tick;       // counts the motions that steps have seen begin; comes to no end
-  uint32_t has_moved;  // how many corners, since the last step. They bear the number of the tick to come
+  uint64_t tick;       // counts the motions that steps have begun; cannot overflow in practice
+  uint32_t has_moved;  // how many corners, since the last step. They have the number of the next tick
   uint32_t node_bytes;
   uint32_t upkeep_left;  // of a step's upkeep, in units of work.hpp
   uint32_t reserved;
@@ -85,13 +85,14 @@ inline Edge<Real> derive_edge_or_point(Vec3<Real> corner0, Vec3<Real> corner1) {
   return is_point ? Edge<Real>{corner0, {1, 0, 0}, 0} : derive_edge(corner0, corner1);
 }
 
-// Whether a side has no Voronoi plane: it is a point, or stands on the plane that a triangle without area was lent.
+// Whether a side has no Voronoi plane: it is a point, or stands on the plane that a triangle without area has taken from a
+// neighbour.
 template <class Real>
 inline bool bounds_nothing(Vec3<Real> direction, Vec3<Real> normal, Real length) {
   return length == 0 || norm1(cross(direction, normal)) == 0;
 }
 
-// Whether a triangle's corners are in one line, up to rounding error: its normal means nothing, and may be turned over.
+// Whether a triangle's corners are in one line, up to rounding error: its normal has no meaning, and may be reversed.
 template <class Real>
 FDCG_HOT bool is_line(Vec3<double> a, Vec3<double> b, Vec3<double> c, double extent) {
   constexpr double kRounding = 8 * double{RealLimits<Real>::kEpsilon};
@@ -179,10 +180,10 @@ class Upkeep {
   void compute_sliver(uint32_t n) const;
   [[nodiscard]] Lender plane_lender(uint32_t n) const;
   static constexpr uint32_t kAllSides = 7;  // a bit each
-  // Of some; FDCG_NONE of none.
+  // Of a set of sides; FDCG_NONE where it is empty.
   [[nodiscard]] uint32_t longest_side(uint32_t n, uint32_t sides) const;
   [[nodiscard]] bool is_line(uint32_t n) const;
-  // A corner of the node, or of its lender, that is off side k's line.
+  // A corner of the node, or of the neighbour whose plane it uses, that is off side k's line.
   [[nodiscard]] uint32_t apex(uint32_t n, uint32_t k) const;
   [[nodiscard]] uint32_t side_across(uint32_t n, uint32_t k) const {
     const fdcg_side& side = node(n).sides[k];

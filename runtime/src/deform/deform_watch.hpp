@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clear balls that a deformable mesh watches over: no box reaches into one. Whatever moves inside of its boxes does not come
-// nearer, so that such a ball lasts however often and far the surface moves, until a corner that leaves its boxes makes one of
-// them reach into it.
+// Clear balls that a deformable mesh tracks: no box reaches into one. A motion inside the boxes brings no face nearer, so that
+// such a ball stays valid however often the surface moves, until a corner leaves its boxes and makes one of them reach into
+// it.
 #pragma once
 
 #include "deform/deform_boxes.hpp"
 
 namespace fdcg {
 
-// Of a mesh at once; more contacts take them from one another, and look for new ones. 640 bytes.
+// Of a mesh at once; further contacts replace the balls of others, which then search for new ones. 640 bytes.
 inline constexpr uint32_t kWatchedBalls = 16;
 
 struct WatchedBall {
@@ -27,7 +27,7 @@ struct WatchedBalls {
            here.centre[1] == of_contact.centre[1] && here.centre[2] == of_contact.centre[2];
   }
 
-  // In a free place, or one of another's. Returns which.
+  // In a free place, or in place of another. Returns the index.
   uint32_t add(const WatchedBall& added) {
     uint32_t place = 0;
     while (place < used && ball[place].radius2 > 0)
@@ -39,7 +39,7 @@ struct WatchedBalls {
   }
   void remove(uint32_t place) { ball[place % kWatchedBalls].radius2 = ball[place % kWatchedBalls].reach2 = 0; }
 
-  // A box has changed: balls that it reaches into are watched no more.
+  // A box has changed: balls that it reaches into are dropped.
   void give_up(const TreeBox& box, double per_tree_unit) {
     for (uint32_t i = 0; i < used; ++i) {
       double gap2 = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The geometry of a mesh whose corners move: the step on it is the step on any graph (graph/rigid_geometry.hpp says what each
-// member is for), with its numbers brought up to date as it asks for them (deform_upkeep.hpp).
+// member is for), with its numbers updated when they are read (deform_upkeep.hpp).
 #pragma once
 
 #include "deform/deform_upkeep.hpp"
@@ -14,6 +14,8 @@ struct DeformableGeometry : GraphRecords<RealType> {
   using Real = RealType;
   using Corner = typename GraphRecords<Real>::Corner;
   using NodeKey = uint32_t;  // its index
+
+  static constexpr bool kKeepsDirections = false;
 
   Upkeep<Real> upkeep;
 

@@ -22,7 +22,7 @@ BoxTree::BoxTree(uint32_t nodes)
 TreeWay tree_way(Vec3<float> from, Vec3<float> along, float pad) {
   TreeWay way = {{from.x, from.y, from.z}, {along.x, along.y, along.z}, {}};
   for (int k = 0; k < 3; ++k) {
-    // Less way than the pad along an axis is taken for as much: the boxes are grown by that too.
+    // A way shorter than the pad along an axis counts as that long: the boxes are grown by the pad too.
     const bool is_backwards = way.per_way[k] < 0;
     const float length = absolute(way.per_way[k]) < pad ? pad : absolute(way.per_way[k]), per_length = 1 / length;
     way.per_way[k] = is_backwards ? -per_length : per_length;

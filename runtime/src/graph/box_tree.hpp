@@ -24,7 +24,7 @@ struct BoxTree {
 
   explicit BoxTree(uint32_t nodes);
 
-  // What lies below a level's records: leaves, or the records of the level below.
+  // How many children a level's records have: leaves, or the records of the level below.
   [[nodiscard]] uint32_t items_below(int level) const { return level == 0 ? leaves : size[level - 1]; }
   // A bit for each box that record i of a level has.
   [[nodiscard]] uint32_t lanes(int level, uint32_t i) const {
@@ -89,7 +89,7 @@ class WaitingBoxes {
   void push(const Item& parent, uint32_t lanes, const float (&keys)[FDCG_TREE_WAYS]);
 
  private:
-  Item items_[(FDCG_TREE_WAYS - 1) * kMostTreeLevels + 1];  // each level adds seven to what waits
+  Item items_[(FDCG_TREE_WAYS - 1) * kMostTreeLevels + 1];  // each level adds at most seven
   int count_ = 0;
 };
 

@@ -2,8 +2,8 @@
 // The format's checksum: blocks of 4,096 bytes, each sixteen 64-bit lanes wide, each lane a chain of steps that can be undone
 // (xor with a word; the lower half times an odd number, the halves exchanged, the upper half mixed in), folded by the same
 // steps. A block's sum goes through steps that can be undone too before the sums are added up. So two inputs of one length that
-// differ inside a single word always differ in the result; elsewhere they agree by chance once in 2^64. It guards against
-// damage, not against malice.
+// differ inside a single word always differ in the result; elsewhere they agree by chance once in 2^64. It detects damage,
+// not deliberate changes.
 //
 // Blocks are apart so that threads can share a section; one product of 32 bits a word is what SSE2 has, two words at once.
 #include "graph/checksum.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A graph with its records typed (contact-model GRAPH-1): what the step reads, and the few expressions that every rule shares.
-// Rules see nodes, connections, edges and corners; where their numbers lie in the file, and which of them are derived, is known
-// here alone.
+// Rules see nodes, connections, edges and corners; where their numbers lie in the file, and which of them are derived, only
+// this file decides.
 //
 // A view is a template over the geometry (rigid_geometry.hpp), and all that looks at a graph is one over the same: NodeRef,
 // Walk and the rules of the step.
@@ -67,8 +67,8 @@ class NodeRef {
     return derived;
   }
 
-  // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it hold it surely, which
-  // is told sooner than by the plane, where planes are derived for a mesh that moves.
+  // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it surely hold it, which
+  // is cheaper to test than the plane itself where planes are derived for a mesh that moves.
   [[nodiscard]] uint32_t first_doubtful(Vec3<Real> x, Real bound) const { return graph_->first_doubtful(*this, x, bound); }
 
   [[nodiscard]] const unsigned char* block() const { return block_; }
@@ -76,8 +76,8 @@ class NodeRef {
   [[nodiscard]] Key key() const { return key_; }
 
  private:
-  // Out of line: every rule asks for planes, and each would hold a copy. Not as a return value: four floats come back two to a
-  // register, by way of memory, and wait there for one another.
+  // Out of line: every rule reads planes, and each would inline a copy. Not as a return value: four floats are returned two to
+  // a register, through memory, which stalls.
   [[gnu::noinline]] void derive_plane(uint32_t k, Plane<Real>* plane) const {
     const Edge<Real> edge = graph_->edge(*this, k);
     if (!graph_->has_voronoi_plane(edge, normal())) {
@@ -136,7 +136,7 @@ class CornerRef {
   [[nodiscard]] Vec3<Real> point() const { return graph_->point_of(*record_); }
   [[nodiscard]] bool is_open() const { return (record_->fan & FDCG_CORNER_OPEN) != 0; }
   [[nodiscard]] uint32_t fan_count() const { return is_busy() ? busy().fan_count : walked_count(); }
-  // About of unit length: the side on which a point is, not how far, may be asked of it.
+  // Of about unit length: good for the side on which a point is, not for its distance.
   [[nodiscard]] Vec3<Real> normal() const {
     constexpr Real kUnit = Real(1) / FDCG_NORMAL_SCALE;
     graph_->bring_normal_up_to_date(*record_);
@@ -188,9 +188,9 @@ struct GraphView : Geometry {
     return edge;
   }
 
-  // Calls what lies at and beyond side k into the cache: all that a god-object that crosses it will ask for. The addresses
-  // stand in this node's block, so that the misses of one crossing overlap; nothing waits for them. Inlined by force: GCC 12
-  // takes a function that does nothing else for one without effect, and drops its calls.
+  // Prefetches what lies at and beyond side k: all that the step reads when the god-object crosses it. The addresses are in
+  // this node's block, so that the cache misses of one crossing overlap. Inlined by force: GCC 12 treats a function that only
+  // prefetches as one without effect, and drops its calls.
   FDCG_HOT void prefetch_crossing(NodeRef<Geometry> here, uint32_t k) const {
     __builtin_prefetch(&this->connections[here.connection(k)]);
     __builtin_prefetch(&this->corners[here.corner(k)]);
@@ -201,7 +201,7 @@ struct GraphView : Geometry {
     for (uint32_t at = 0; at < bytes; at += kLineBytes)
       __builtin_prefetch(block + at);
   }
-  // The same for every side of a triangle; of a larger face it is anyone's guess by which side it will be left.
+  // The same for every side of a triangle; for a larger face the side of the crossing cannot be predicted.
   FDCG_HOT void prefetch_around(NodeRef<Geometry> here) const {
     for (uint32_t k = 0; k < kPrefetchedSides; ++k)
       prefetch_crossing(here, k);

@@ -14,7 +14,7 @@
 namespace fdcg {
 namespace {
 
-// Without a hierarchy the free-space sweep looks at every node, which must stay a bounded piece of work.
+// Without a hierarchy the free-space sweep tests every node, and its work must stay bounded.
 constexpr uint32_t kMaxNodesWithoutHierarchy = 4096;
 
 // With more, connection << 1 would not fit into 32 bits.
@@ -41,9 +41,7 @@ double largest_extent(const fdcg_header& header) {
 fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
   if (bytes < sizeof(fdcg_header)) {
     return Message(error, FDCG_E_TRUNCATED, bytes)
-        .text("the file has ")
-        .number(bytes)
-        .text(" bytes, an FDCG header alone has 256; it is truncated or not an FDCG file");
+        .say("the file has ", bytes, " bytes, an FDCG header alone has 256; it is truncated or not an FDCG file");
   }
   const auto& header = *static_cast<const fdcg_header*>(data);
   if (memcmp(header.magic, FDCG_MAGIC, sizeof header.magic) != 0) {
@@ -52,11 +50,8 @@ fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
   }
   if (header.format_version != FDCG_FORMAT_VERSION) {
     return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, format_version))
-        .text("format version ")
-        .number(header.format_version)
-        .text(", this library reads version ")
-        .number(FDCG_FORMAT_VERSION)
-        .text("; compile the mesh again or update the library");
+        .say("format version ", header.format_version, ", this library reads version ", FDCG_FORMAT_VERSION,
+             "; compile the mesh again or update the library");
   }
   if (header.header_checksum != fdcg_checksum(&header, offsetof(fdcg_header, header_checksum))) {
     return Message(error, FDCG_E_CHECKSUM, offsetof(fdcg_header, header_checksum))
@@ -64,11 +59,7 @@ fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
   }
   if (header.file_bytes != bytes) {
     return Message(error, FDCG_E_TRUNCATED, bytes)
-        .text("the header promises ")
-        .number(header.file_bytes)
-        .text(" bytes, there are ")
-        .number(bytes)
-        .text("; copy the file again");
+        .say("the header promises ", header.file_bytes, " bytes, there are ", bytes, "; copy the file again");
   }
   return FDCG_OK;
 }
@@ -87,12 +78,7 @@ bool is_node_size(const fdcg_header& header) {
 
 fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   const auto refuse = [&](const char* field, uint64_t value) -> fdcg_status {
-    return Message(error, FDCG_E_LAYOUT)
-        .text("header.")
-        .text(field)
-        .text(" is ")
-        .number(value)
-        .text(", which no writer produces");
+    return Message(error, FDCG_E_LAYOUT).say("header.", field, " is ", value, ", which no writer produces");
   };
   if (header.header_bytes != sizeof(fdcg_header)) return refuse("header_bytes", header.header_bytes);
   if (header.real_bytes != 4 && header.real_bytes != 8) return refuse("real_bytes", header.real_bytes);
@@ -112,13 +98,8 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   const double largest = largest_extent(header);
   if (!in_range(header.extent, 1 / largest, largest)) {
     return Message(error, FDCG_E_LAYOUT, offsetof(fdcg_header, extent))
-        .text("header.extent is ")
-        .real(header.extent)
-        .text(", allowed ")
-        .real(1 / largest)
-        .text(" to ")
-        .real(largest)
-        .text(header.real_bytes == 8 ? "; scale the mesh" : "; scale the mesh or compile it as f64");
+        .say("header.extent is ", header.extent, ", allowed ", 1 / largest, " to ", largest,
+             header.real_bytes == 8 ? "; scale the mesh" : "; scale the mesh or compile it as f64");
   }
   for (int k = 0; k < 3; ++k) {
     if (!in_range(header.bounds_min[k], -largest, largest) || !in_range(header.bounds_max[k], header.bounds_min[k], largest) ||
@@ -139,22 +120,28 @@ struct SectionRule {
   uint32_t id;
   uint32_t record_f64, record_f32;  // bytes; 0: see record_bytes
   Presence presence;
+  uint32_t fdcg_header::*count;  // of records; null: see expected_records
 };
 constexpr SectionRule kSectionRules[] = {
-    {FDCG_SECTION_NODES, 0, 0, Presence::required},
-    {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes},
-    {FDCG_SECTION_EDGES, sizeof(fdcg_connection_geometry_f64), sizeof(fdcg_connection_geometry_f32), Presence::optional},
-    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required},
-    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required},
-    {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners},
-    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), Presence::optional},
-    {FDCG_SECTION_SOURCE_MAP, 4, 4, Presence::optional},
-    {FDCG_SECTION_INFO, 1, 1, Presence::optional},
-    {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners},
-    {FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), sizeof(fdcg_busy_corner), Presence::of_busy_corners},
-    {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional},
-    {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional},
-    {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional},
+    {FDCG_SECTION_NODES, 0, 0, Presence::required, nullptr},
+    {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes, &fdcg_header::node_count},
+    {FDCG_SECTION_EDGES, sizeof(fdcg_connection_geometry_f64), sizeof(fdcg_connection_geometry_f32), Presence::optional,
+     &fdcg_header::connection_count},
+    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required,
+     &fdcg_header::connection_count},
+    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required, &fdcg_header::corner_count},
+    {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners, &fdcg_header::fan_count},
+    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), Presence::optional, nullptr},
+    {FDCG_SECTION_SOURCE_MAP, 4, 4, Presence::optional, &fdcg_header::source_face_count},
+    {FDCG_SECTION_INFO, 1, 1, Presence::optional, nullptr},
+    {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners,
+     &fdcg_header::fan_box_count},
+    {FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), sizeof(fdcg_busy_corner), Presence::of_busy_corners,
+     &fdcg_header::busy_count},
+    {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional, nullptr},
+    {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional, &fdcg_header::node_count},
+    {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional, nullptr},
+    {FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), sizeof(fdcg_fan_run), Presence::optional, nullptr},
 };
 
 uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
@@ -162,36 +149,13 @@ uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
   return header.real_bytes == 8 ? rule.record_f64 : rule.record_f32;
 }
 
-uint64_t expected_records(uint32_t id, const fdcg_header& header, uint64_t found) {
-  switch (id) {
-    case FDCG_SECTION_NODES:
-      return header.node_bytes != 0 ? header.node_count : found;
-    case FDCG_SECTION_NODE_OFFSETS:
-      return header.node_count;
-    case FDCG_SECTION_EDGES:
-    case FDCG_SECTION_CONNECTIONS:
-      return header.connection_count;
-    case FDCG_SECTION_CORNERS:
-      return header.corner_count;
-    case FDCG_SECTION_FANS:
-      return header.fan_count;
-    case FDCG_SECTION_HIERARCHY:
-      return BoxTree(header.node_count).records;
-    case FDCG_SECTION_SOURCE_MAP:
-      return header.source_face_count;
-    case FDCG_SECTION_FAN_BOXES:
-      return header.fan_box_count;
-    case FDCG_SECTION_BUSY_CORNERS:
-      return header.busy_count;
-    case FDCG_SECTION_MASS:
-      return 1;
-    case FDCG_SECTION_MATERIALS:
-      return header.node_count;
-    case FDCG_SECTION_MATERIAL_NAMES:
-      return found <= FDCG_NO_MATERIAL ? found : FDCG_NO_MATERIAL;
-    default:
-      return found;
-  }
+uint64_t expected_records(const SectionRule& rule, const fdcg_header& header, uint64_t found) {
+  if (rule.count != nullptr) return header.*rule.count;
+  if (rule.id == FDCG_SECTION_HIERARCHY) return BoxTree(header.node_count).records;
+  if (rule.id == FDCG_SECTION_MASS) return 1;
+  if (rule.id == FDCG_SECTION_MATERIAL_NAMES && found > FDCG_NO_MATERIAL) return FDCG_NO_MATERIAL;
+  if (rule.id == FDCG_SECTION_FAN_RUNS && found > header.busy_count) return header.busy_count;
+  return rule.id == FDCG_SECTION_NODES && header.node_bytes != 0 ? header.node_count : found;
 }
 
 // The sections follow one another without gaps, each padded to 64 bytes, up to the end of the file.
@@ -201,10 +165,7 @@ fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& head
     const fdcg_section& section = sections[i];
     const auto refuse = [&](const char* what) -> fdcg_status {
       return Message(error, FDCG_E_LAYOUT, sizeof(fdcg_header) + i * sizeof(fdcg_section))
-          .text("section ")
-          .number(section.id)
-          .text(": ")
-          .text(what);
+          .say("section ", section.id, ": ", what);
     };
     if (i > 0 && section.id <= sections[i - 1].id) return refuse("ids do not ascend");
     if (section.offset != at) return refuse("does not start where the one before it ends");
@@ -218,16 +179,12 @@ fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& head
       if (rule.id != section.id) continue;
       if (section.record_bytes != record_bytes(rule, header))
         return refuse("has records of a wrong size, as early drafts of the format had; compile the mesh again");
-      if (section.record_count != expected_records(section.id, header, section.record_count))
+      if (section.record_count != expected_records(rule, header, section.record_count))
         return refuse("has a wrong number of records");
     }
   }
   if (at != header.file_bytes) {
-    return Message(error, FDCG_E_LAYOUT, at)
-        .text("the last section ends at ")
-        .number(at)
-        .text(", the file at ")
-        .number(header.file_bytes);
+    return Message(error, FDCG_E_LAYOUT, at).say("the last section ends at ", at, ", the file at ", header.file_bytes);
   }
   return FDCG_OK;
 }
@@ -266,6 +223,9 @@ fdcg_graph view(const void* data, const fdcg_header& header) {
   graph.materials = static_cast<const fdcg_material_record*>(section(FDCG_SECTION_MATERIAL_NAMES));
   if (graph.materials != nullptr)
     graph.material_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_MATERIAL_NAMES)->record_count);
+  graph.fan_runs = static_cast<const fdcg_fan_run*>(section(FDCG_SECTION_FAN_RUNS));
+  if (graph.fan_runs != nullptr)
+    graph.fan_run_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_FAN_RUNS)->record_count);
   if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;
   return graph;
 }
@@ -279,13 +239,10 @@ fdcg_status check_presence(const fdcg_header& header, fdcg_error* error) {
   for (const SectionRule& rule : kSectionRules) {
     const bool is_present = find_section(header, rule.id) != nullptr;
     if (!is_present && is_needed(rule.presence, header)) {
-      return Message(error, FDCG_E_LAYOUT).text("section ").number(rule.id).text(" is missing, and this graph needs it");
+      return Message(error, FDCG_E_LAYOUT).say("section ", rule.id, " is missing, and this graph needs it");
     }
     if (is_present && rule.presence != Presence::optional && !is_needed(rule.presence, header)) {
-      return Message(error, FDCG_E_LAYOUT)
-          .text("section ")
-          .number(rule.id)
-          .text(" contradicts the header, which has no use for it");
+      return Message(error, FDCG_E_LAYOUT).say("section ", rule.id, " contradicts the header, which has no use for it");
     }
   }
   if ((find_section(header, FDCG_SECTION_MATERIALS) == nullptr) !=
@@ -294,11 +251,8 @@ fdcg_status check_presence(const fdcg_header& header, fdcg_error* error) {
   }
   if (header.node_count > kMaxNodesWithoutHierarchy && find_section(header, FDCG_SECTION_HIERARCHY) == nullptr) {
     return Message(error, FDCG_E_LAYOUT)
-        .text("no hierarchy: only graphs of up to ")
-        .number(kMaxNodesWithoutHierarchy)
-        .text(" nodes may leave it out, this one has ")
-        .number(header.node_count)
-        .text("; compile the mesh without --without hierarchy");
+        .say("no hierarchy: only graphs of up to ", kMaxNodesWithoutHierarchy, " nodes may leave it out, this one has ",
+             header.node_count, "; compile the mesh without --without hierarchy");
   }
   return FDCG_OK;
 }
@@ -327,7 +281,7 @@ fdcg_status told(fdcg_status status, const fdcg_graph& graph, const fdcg_error& 
     return status;
   }
   fdcg_error line;
-  Message(&line, FDCG_OK).text("opened a graph of ").number(graph.header->node_count).text(" nodes");
+  Message(&line, FDCG_OK).say("opened a graph of ", graph.header->node_count, " nodes");
   log(FDCG_LOG_INFO, line.message);
   return status;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one call to the platform that loading needs. map_file_posix.cpp implements it; other systems are a file away.
+// The one call to the platform that loading needs. map_file_posix.cpp implements it; another system needs another such file.
 #pragma once
 
 #include "fdcg/fdcg.h"

@@ -30,7 +30,7 @@ fdcg_status refuse_errno(fdcg_error* error) {
     case ENOMEM:
       return refuse(error, FDCG_E_IO, "Cannot allocate memory");
     default:
-      return Message(error, FDCG_E_IO).text("the system refuses it with error number ").number(static_cast<uint64_t>(errno));
+      return Message(error, FDCG_E_IO).say("the system refuses it with error number ", errno);
   }
 }
 

@@ -21,7 +21,7 @@ fdcg_status read_mass(const fdcg_header& header, const fdcg_mass_record& record,
     fault = "the deviation is out of range";
   if (fault == nullptr) return FDCG_OK;
   *mass = {};
-  return Message(error, FDCG_E_GRAPH).text("mass properties: ").text(fault).text("; compile the mesh again");
+  return Message(error, FDCG_E_GRAPH).say("mass properties: ", fault, "; compile the mesh again");
 }
 
 }  // namespace

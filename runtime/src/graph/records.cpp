@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A graph's records for those who look at it, widened to double, derived where the file leaves them out.
+// The functions that read a graph's records: widened to double, derived where the file leaves them out.
 #include "base/config.hpp"
 #include "graph/graph_view.hpp"
 

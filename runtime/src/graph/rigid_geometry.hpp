@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a graph's view (graph_view.hpp) and with it the whole step are templates over: a geometry, which holds the graph's
-// records and answers for every number that depends on where corners are. This one has them from the file. That of a mesh whose
-// corners move (deform/deformable_geometry.hpp) brings a number up to date before it hands it out, so that no rule can see an
-// old one; it has the members below, and what is said of them here holds for it too.
+// A geometry, the template parameter of a graph's view (graph_view.hpp) and of the whole step: it holds the graph's records and
+// returns every number that depends on where corners are. This one reads them from the file. That of a mesh whose corners move
+// (deform/deformable_geometry.hpp) updates a number before it returns it, so that no rule can read an old one; it has the
+// members below, with the same contracts.
 #pragma once
 
 #include "fdcg/fdcg.h"
@@ -32,6 +32,8 @@ struct GraphRecords {
   const uint32_t* fans;
   const FanBox* fan_boxes;
   const fdcg_box8* hierarchy;
+  const fdcg_fan_run* fan_runs;
+  uint32_t fan_run_count;
 
   explicit GraphRecords(const fdcg_graph& graph)
       : header(graph.header),
@@ -45,7 +47,9 @@ struct GraphRecords {
         busy_corners(graph.busy_corners),
         fans(graph.fans),
         fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
-        hierarchy(graph.hierarchy) {}
+        hierarchy(graph.hierarchy),
+        fan_runs(graph.fan_runs),
+        fan_run_count(graph.fan_run_count) {}
 };
 
 template <class RealType>
@@ -53,7 +57,9 @@ struct RigidGeometry : GraphRecords<RealType> {
   using Real = RealType;
   using Corner = typename GraphRecords<Real>::Corner;
 
-  // What a NodeRef knows of its node besides where its block is.
+  static constexpr bool kKeepsDirections = true;  // those in a busy corner's tree hold: its faces do not move
+
+  // What a NodeRef holds of its node besides the address of its block.
   struct NodeKey {
     explicit NodeKey(uint32_t) {}
   };
@@ -69,8 +75,8 @@ struct RigidGeometry : GraphRecords<RealType> {
   // fdcg_connection_type
   [[nodiscard]] uint8_t type_of(const fdcg_connection& connection) const { return connection.type; }
 
-  // A connection's edge between two corners. Written number by number where it is to be: a copy would wait for the numbers to
-  // be stored.
+  // A connection's edge between two corners. Written number by number where it is to be: a copy would have to store
+  // and reload the numbers.
   void read_edge_between(uint32_t connection, uint32_t corner0, uint32_t corner1, Edge<Real>* edge) const {
     const Corner& from = this->corners[corner0];
     if (this->edges == nullptr) {
@@ -90,18 +96,18 @@ struct RigidGeometry : GraphRecords<RealType> {
   [[nodiscard]] uint32_t spanning_corner(const Node& node, uint32_t k) const {
     return node.corner(k);
   }
-  // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it hold it surely, which
-  // is told sooner than by the plane, where planes are derived for a mesh that moves.
+  // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it surely hold it, which
+  // is cheaper to test than the plane itself where planes are derived for a mesh that moves.
   template <class Node>
   [[nodiscard]] uint32_t first_doubtful(const Node&, Vec3<Real>, Real) const {
     return 0;
   }
 
-  // A HIP's way in a tick, and the surface's in it: what a clear ball is worth looking for.
+  // How far the HIP and the surface move in a tick: the radius from which a clear ball is worth a search.
   [[nodiscard]] Real with_way_of_surface(Real way) const { return way; }
   // Whether boxes of a record of the hierarchy, a bit in `lanes` each, have become tighter than they were: worth a second look.
   [[nodiscard]] bool has_tightened(int /*level*/, uint32_t /*record*/, uint32_t /*lanes*/) const { return false; }
-  // Leaves a sweep no work where the step has brought up to date as much as it may.
+  // Takes all work from a sweep where the step has used up its updates.
   void bound_upkeep(uint32_t* /*work_left*/) const {}
 };
 

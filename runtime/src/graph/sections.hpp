@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a section of an opened file stands in its table.
+// Look-up of a section in the table of an opened file.
 #pragma once
 
 #include "fdcg/format.h"

@@ -4,6 +4,7 @@
 
 #include "base/message.hpp"
 #include "graph/checksum.hpp"
+#include "graph/fan_run_section.hpp"
 #include "graph/sections.hpp"
 #include "shared/mass_record.hpp"
 
@@ -85,7 +86,8 @@ fdcg_status check_safe_sums(const fdcg_graph& graph, const fdcg_verification& su
     return refuse_count(error, "header.busy_count", header.busy_count, "not the number of busy corners");
   if (header.busy_count == 0 && (header.fan_count != 0 || header.fan_box_count != 0))
     return refuse_count(error, "header.fan_count", header.fan_count, "not the sum of the corners'");
-  return verify_mass(header, error);
+  const fdcg_status mass = verify_mass(header, error);
+  return mass == FDCG_OK ? verify_fan_runs(graph, error) : mass;
 }
 
 fdcg_status check_chunk(const fdcg_graph& graph, fdcg_verify level, Chunk chunk, fdcg_verification* part, fdcg_error* error) {

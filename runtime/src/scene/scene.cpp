@@ -98,7 +98,7 @@ Record* unused(Record* records, uint32_t* first_free, uint32_t capacity, const c
   for (; *first_free < capacity; ++*first_free) {
     if (records[*first_free].is_used == 0) return records + *first_free;
   }
-  Message(error, FDCG_E_ARGUMENT).text(full).text(" is ").number(capacity).text(", and as many are in the scene");
+  Message(error, FDCG_E_ARGUMENT).say(full, " is ", capacity, ", and as many are in the scene");
   return nullptr;
 }
 

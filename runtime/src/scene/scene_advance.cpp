@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The objects of a scene from tick to tick: where they are, and how far they move.
-#include "scene/reach.hpp"
 #include "scene/scene_memory.hpp"
 
 namespace fdcg {

@@ -71,6 +71,7 @@ struct Finger {
   uint64_t non_finite_steps, overflowed_steps, missed_ticks, broadphase_updates;
   fdcg_material material;
   uint32_t has_material, reserved;
+  World goal;  // in a tick of several steps: where it is to be at the end
 };
 
 }  // namespace fdcg

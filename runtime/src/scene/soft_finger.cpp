@@ -172,7 +172,7 @@ extern "C" fdcg_status fdcg_scene_set_finger_radius(fdcg_scene* scene, fdcg_fing
   if (find_finger(scene, id, error) == nullptr) return FDCG_E_ARGUMENT;
   if (scene->config.has_soft_fingers == 0) return no_room(error);
   if (radius_m != 0 && !(radius_m >= kLeastRadius_m && radius_m <= kMostRadius_m))
-    return Message(error, FDCG_E_ARGUMENT).text("radius_m is ").real(radius_m).text(", allowed 0 and 1e-9 to 1e3");
+    return Message(error, FDCG_E_ARGUMENT).say("radius_m is ", radius_m, ", allowed 0 and 1e-9 to 1e3");
   scene->soft_fingers()[id.index].radius_m = radius_m;
   for (uint32_t s = 0; s < scene->config.touches_per_finger; ++s)
     scene->soft_touches(id.index)[s] = {};
@@ -189,12 +189,7 @@ extern "C" fdcg_status fdcg_scene_set_finger_rotation(fdcg_scene* scene, fdcg_fi
   const double length = root(dot(turn.v, turn.v) + turn.w * turn.w);
   if (!(length >= 1 - kUnitTolerance && length <= 1 + kUnitTolerance)) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("rotation_xyzw's length is ")
-        .real(length)
-        .text(", allowed ")
-        .real(1 - kUnitTolerance)
-        .text(" to ")
-        .real(1 + kUnitTolerance);
+        .say("rotation_xyzw's length is ", length, ", allowed ", 1 - kUnitTolerance, " to ", 1 + kUnitTolerance);
   }
   scene->soft_fingers()[id.index].rotation = unit(turn);
   return FDCG_OK;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "graph/implicit_tree.hpp"
+#include "step/corner_cone.hpp"
 #include "step/edge.hpp"
 #include "step/walk.hpp"
 
@@ -18,47 +19,66 @@ struct Steepest {
 
   // contact-model CORNER-2: of the two squares the smaller tells best: near a groove all reaches are one number, far from it
   // all distances are.
-  void take_steeper(const Steepest& other, Real half_t2) {
+  [[nodiscard]] bool is_less_steep_than(const Steepest& other, Real half_t2) const {
+    if (FDCG_MUTANT("steepest-at-vertex")) return feature == kFree;
     const bool are_near = distance2 < half_t2 && other.distance2 < half_t2;
-    if (FDCG_MUTANT("steepest-at-vertex") ? feature == kFree : are_near ? other.distance2 < distance2 : other.reach2 > reach2)
-      *this = other;
+    return are_near ? other.distance2 < distance2 : other.reach2 > reach2;
   }
 };
 
-// One entry of the fan: its edge, and the face to the left of it.
+// Whether the HIP is behind a face, or behind an edge as that rules, so that it holds the god-object (contact-model EDGE-1).
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] void consider_fan_entry(const GraphView<Geometry>& graph, const FanEntry& entry, Vec3<Real> t, Real half_t2,
-                                          Steepest<Real>& best) {
-  const Vec3<Real> direction = graph.edge(entry.connection).direction;
-  const Real forward = dot(t, direction);
-  if (entry.end == 0 ? forward > 0 : forward < 0) {
-    const Vec3<Real> off = t - direction * forward;
-    best.take_steeper({{FDCG_EDGE, entry.connection}, square(forward), dot(off, off)}, half_t2);
-  }
-  if (entry.node == FDCG_NONE) return;
-  const NodeRef<Geometry> node = graph.node(entry.node);
-  if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return;
-  if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return;
-  const Vec3<Real> normal = node.normal();
-  const Real height = dot(normal, t);
-  const Vec3<Real> in_plane = t - normal * height;
-  best.take_steeper({{FDCG_FACE, entry.node}, dot(in_plane, in_plane), square(height)}, half_t2);
+[[gnu::noinline]] bool holds(Walk<Geometry>& walk, Feature feature) {
+  if (feature.state == FDCG_FACE) return walk.side(walk.graph.node(feature.index)) < 0;
+  const ConnectionRef<Geometry> connection = walk.graph.connection(feature.index);
+  EdgeSides<Real> s;
+  look_at_sides(walk, connection, &s);
+  if (connection.type() == FDCG_BOUNDARY) return s.side[0] < 0 && s.voronoi[0] < 0;
+  return !is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0);
 }
+
+// The search around a corner. Where the HIP is known to be inside only what holds the god-object counts.
+template <class Geometry>
+struct FanSearch {
+  using Real = typename Geometry::Real;
+
+  Walk<Geometry>& walk;
+  Vec3<Real> t;
+  Real half_t2;
+  bool must_hold;
+  Steepest<Real> best;
+
+  FanSearch(Walk<Geometry>& a_walk, Vec3<Real> a_t, bool a_must_hold)
+      : walk(a_walk), t(a_t), half_t2(dot(t, t) / 2), must_hold(a_must_hold), best{kFree, 0, 2 * half_t2} {}
+
+  void offer(const Steepest<Real>& found) {
+    if (best.is_less_steep_than(found, half_t2) && (!must_hold || holds(walk, found.feature))) best = found;
+  }
+  // One entry of the fan: its edge, and the face to the left of it.
+  [[gnu::noinline]] void look_at(const FanEntry& entry) {
+    const Vec3<Real> direction = walk.graph.edge(entry.connection).direction;
+    const Real forward = dot(t, direction);
+    if (entry.end == 0 ? forward > 0 : forward < 0) {
+      const Vec3<Real> off = t - direction * forward;
+      offer({{FDCG_EDGE, entry.connection}, square(forward), dot(off, off)});
+    }
+    if (entry.node == FDCG_NONE) return;
+    const NodeRef<Geometry> node = walk.graph.node(entry.node);
+    if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return;
+    if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return;
+    const Vec3<Real> normal = node.normal();
+    const Real height = dot(normal, t);
+    const Vec3<Real> in_plane = t - normal * height;
+    offer({{FDCG_FACE, entry.node}, dot(in_plane, in_plane), square(height)});
+  }
+};
 
 // Looks at every edge of the corner.
-template <class Geometry, class Real = typename Geometry::Real>
-inline Steepest<Real> steepest_of_all(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
-  const GraphView<Geometry>& graph = walk.graph;
-  walk.spend(kFanWork * corner.fan_count());
-  const Real t2 = dot(t, t);
-  Steepest<Real> best = {kFree, 0, t2};
-  graph.for_each_in_fan(corner, [&](const FanEntry& entry) { consider_fan_entry(graph, entry, t, t2 / 2, best); });
-  return best;
+template <class Geometry>
+inline void search_all(FanSearch<Geometry>& search, CornerRef<Geometry> corner) {
+  search.walk.spend(kFanWork * corner.fan_count());
+  search.walk.graph.for_each_in_fan(corner, [&](const FanEntry& entry) { search.look_at(entry); });
 }
-
-// What one search of a busy corner's tree may spend; what it has found by then is taken. Cones, crowns and needles of 10,000
-// sides take 100 to 300.
-inline constexpr uint32_t kFanSearchWork = 600;
 
 // The most that t.u can be for a unit vector u of the box, or more: the lesser of what the box alone allows, and, since u is no
 // longer than 1, of sup over the box of t.u - (|t|/2) (|u|^2 - 1), which is tight where u can point along t but for a little.
@@ -82,8 +102,9 @@ inline Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
 // is found, but for rounding, is left out. So one of several directions that tie is taken: at the apex of a regular fan they
 // all do.
 template <class Geometry, class Real = typename Geometry::Real>
-inline Steepest<Real> steepest_by_tree(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
-  const GraphView<Geometry>& graph = walk.graph;
+inline void search_by_tree(FanSearch<Geometry>& search, CornerRef<Geometry> corner) {
+  const GraphView<Geometry>& graph = search.walk.graph;
+  const Vec3<Real> t = search.t;
   struct Waiting {
     Real bound;
     uint32_t box;  // within its level
@@ -94,14 +115,12 @@ inline Steepest<Real> steepest_by_tree(Walk<Geometry>& walk, CornerRef<Geometry>
   const Real tie = 64 * RealLimits<Real>::kEpsilon * norm1(t);  // the rounding of boxes and directions is under half of it
   const Real length = norm(t);
   const auto bound_of = [&](int level, uint32_t i) { return most_along(boxes[layout.first[level] + i], t, length) - tie; };
-  const Real t2 = dot(t, t);
-  Steepest<Real> best = {kFree, 0, t2};
   Real reach = 0;
   uint32_t best_entry = 0;
   const auto consider = [&](uint32_t i) {
-    const Feature before = best.feature;
-    consider_fan_entry(graph, graph.fan_entry(corner, i), t, t2 / 2, best);
-    if (best.feature == before) return false;
+    const Feature before = search.best.feature;
+    search.look_at(graph.fan_entry(corner, i));
+    if (search.best.feature == before) return false;
     best_entry = i;
     return true;
   };
@@ -117,7 +136,7 @@ inline Steepest<Real> steepest_by_tree(Walk<Geometry>& walk, CornerRef<Geometry>
       const uint32_t count = corner.fan_count() - first < FDCG_LEAF_FAN ? corner.fan_count() - first : FDCG_LEAF_FAN;
       for (uint32_t i = first; i < first + count; ++i)
         consider(i);
-      reach = root(best.reach2);
+      reach = root(search.best.reach2);
       work += kFanWork * count;
       continue;
     }
@@ -133,61 +152,35 @@ inline Steepest<Real> steepest_by_tree(Walk<Geometry>& walk, CornerRef<Geometry>
   }
   // Boxes cannot tell apart what reaches as far up to rounding error; the neighbours of the one found may yet be nearer.
   const uint32_t entries = corner.fan_count();
-  for (bool goes_on = best.feature.state != FDCG_FREE; goes_on && work < kFanSearchWork; work += 2 * kFanWork) {
+  for (bool goes_on = search.best.feature.state != FDCG_FREE; goes_on && work < kFanSearchWork; work += 2 * kFanWork) {
     const uint32_t here = best_entry;
     const bool is_before = consider(here > 0 ? here - 1 : entries - 1);
     goes_on = consider(here + 1 < entries ? here + 1 : 0) || is_before;
   }
-  walk.spend(work);
-  return best;
+  search.walk.spend(work);
 }
 
-// contact-model CORNER-4: HIP is in front of the face that is nearest: free, up to rounding error. Where it stands on a concave
-// edge of that face at the corner and behind the face across, edge and faces are as near as one another, and any of them may
-// have been found: then it is the edge's to say, unless it stands before the edge's end: the edge would hand the god-object
-// back to the corner. So are the two walls of a narrow slit that it stands between: one of them may hold it.
-template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Feature edge_that_holds(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t corner, Vec3<Real> t) {
-  for (uint32_t k = 0; k < node.side_count(); ++k) {
-    const bool starts_here = node.corner(k) == corner;
-    if (!starts_here && node.corner(node.next(k)) != corner) continue;
-    const ConnectionRef<Geometry> connection = walk.graph.connection(node.connection(k));
-    if (connection.type() != FDCG_CONCAVE) continue;
-    walk.spend(kEdgeWork);
-    const Real along = dot(walk.graph.edge(node, k).direction, t);
-    if ((starts_here == (node.which(k) == 0) ? along : -along) < -walk.hip_bound) continue;
-    const bool is_between_walls = node.voronoi_plane(k).distance(walk.hip) < -walk.hip_bound;
-    for (uint32_t end = 0; end < 2; ++end) {
-      const Feature face = {FDCG_FACE, connection.node(end)};
-      const NodeRef<Geometry> wall = walk.graph.node(face.index);
-      if (walk.side(wall) >= 0) continue;
-      if (!is_between_walls) return {FDCG_EDGE, node.connection(k)};
-      if (wall.voronoi_plane(connection.side(end)).distance(walk.hip) < 0) return face;
-    }
-  }
-  return kFree;
-}
-
-// What the steepest descent comes to: where to go on, or the corner itself (contact-model CORNER-3, CORNER-5).
+// Where to go on from a corner, or the corner itself (contact-model CORNER-3, CORNER-5).
 template <class Geometry, class Real = typename Geometry::Real>
 inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
-  const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
-  const Steepest<Real> best = has_tree ? steepest_by_tree(walk, corner, t) : steepest_of_all(walk, corner, t);
-  if (best.feature.state == FDCG_FACE) {
-    const NodeRef<Geometry> node = walk.graph.node(best.feature.index);
-    return walk.side(node) < 0 ? best.feature : edge_that_holds(walk, node, walk.active.index, t);
+  const Beginning way = beginning_of_way(walk, corner);
+  if (way == Beginning::outside && !FDCG_MUTANT("free-at-vertex")) return kFree;
+  const bool is_inside = way != Beginning::not_told;
+  FanSearch<Geometry> search(walk, t, is_inside);
+  if (corner.is_busy() && corner.busy().first_box != FDCG_NONE) {
+    search_by_tree(search, corner);
+  } else {
+    search_all(search, corner);
   }
-  if (best.feature.state == FDCG_EDGE) {
-    const ConnectionRef<Geometry> connection = walk.graph.connection(best.feature.index);
-    EdgeSides<Real> s;
-    look_at_sides(walk, connection, &s);
-    if (connection.type() == FDCG_BOUNDARY) {
-      return s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree;
-    }
-    return is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0) ? kFree : best.feature;
+  const Feature found = search.best.feature;
+  if (is_inside) return found == kFree ? walk.active : found;
+  if (found == kFree) {
+    const bool may_hold = !corner.is_open() || FDCG_MUTANT("open-corner");
+    return may_hold && dot(t, corner.normal()) < 0 ? walk.active : kFree;
   }
-  if (corner.is_open() && !FDCG_MUTANT("open-corner")) return kFree;
-  return dot(t, corner.normal()) < 0 ? walk.active : kFree;
+  if (!holds(walk, found)) return kFree;
+  const bool is_rim = found.state == FDCG_EDGE && walk.graph.connection(found.index).type() == FDCG_BOUNDARY;
+  return is_rim ? Feature{FDCG_FACE, walk.graph.connection(found.index).node(0)} : found;
 }
 
 // contact-model CORNER-6: a god-object beside the corner `point`, where an edge's rule left it (walk.hpp,

@@ -106,15 +106,21 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 }
 
 // contact-model FACE-6: seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have
-// one plane but for rounding: beyond the end of one the point is on the next.
+// one plane but for rounding: beyond the end of one the point is on the next. Where the next one turns away, however little, it
+// is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side, Vec3<Real> point) {
+  const Real in_line =
+      4 * RealLimits<Real>::kEpsilon * (norm1(point) + node.extent()) + Real(2 * walk.graph.header->max_deviation);
+  const Plane<Real> plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
   for (uint32_t i = 0; i < node.side_count() && (u < 0 || u > line.length); ++i) {
     walk.spend(kSideWork);
     const bool is_ahead = (u > 0) == (node.which(side) == 0);  // in winding order
     const uint32_t neighbour = is_ahead ? node.next(side) : node.previous(side);
+    const uint32_t far_end = node.corner(is_ahead ? node.next(neighbour) : neighbour);
+    if (absolute(plane.distance(walk.graph.corner_point(far_end))) > in_line) break;
     const EdgeLine<Real> next(walk.graph, node, neighbour);
     const Real v = next.parameter(point);
     const bool begins_here = is_ahead == (node.which(neighbour) == 0);

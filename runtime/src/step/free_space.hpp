@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-7, LEAVE-1, BOUND-2): whether a sweep is
+// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-8, LEAVE-1, BOUND-2): whether a sweep is
 // needed, the contact with what it met, and the work carried over to later ticks. docs/internals/sweep.md has the sequence.
 #pragma once
 
@@ -26,7 +26,9 @@ inline void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real
   Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
   if (is_on_face) point = onto_slab(walk, point, first.feature.index);
   walk.active = first.feature;
-  if (first.feature.state == FDCG_EDGE) {
+  if (first.feature.state == FDCG_VERTEX) {
+    walk.place(walk.graph.corner_point(first.feature.index), first.feature);
+  } else if (first.feature.state == FDCG_EDGE) {
     const EdgeLine<Real> line(walk.graph, first.feature.index);
     walk.active = place_on_edge(walk, first.feature.index, line, line.parameter(point));
   } else {

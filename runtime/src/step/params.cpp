@@ -27,7 +27,7 @@ struct Owner {
 
 Message& say(Message& message, const Owner& owner) {
   message.text(owner.name);
-  if (owner.index != FDCG_NONE) message.text("[").number(owner.index).text("]");
+  if (owner.index != FDCG_NONE) message.say("[", owner.index, "]");
   return message;
 }
 
@@ -36,15 +36,8 @@ fdcg_status check_ranges(const Owner& owner, const ParamRange* ranges, uint32_t 
     if (range->value >= range->low && range->value <= range->high) continue;
     Message message(error, FDCG_E_ARGUMENT);
     return say(message, owner)
-        .text(".")
-        .text(range->name)
-        .text(" is ")
-        .real(range->value)
-        .text(", allowed ")
-        .real(range->low)
-        .text(" to ")
-        .real(range->high)
-        .text(range->low == mu_dynamic && range->low > 0 ? " (at least mu_dynamic)" : "");
+        .say(".", range->name, " is ", range->value, ", allowed ", range->low, " to ", range->high,
+             range->low == mu_dynamic && range->low > 0 ? " (at least mu_dynamic)" : "");
   }
   return FDCG_OK;
 }
@@ -65,13 +58,9 @@ fdcg_status check_steepness(const fdcg_params& params, const Owner& owner, const
   Message message(error, FDCG_E_ARGUMENT);
   message.text("the friction curve of ");
   return say(message, owner)
-      .text(" falls by ")
-      .real(steep.fall)
-      .text(" s/m, allowed ")
-      .real(steep.limit)
-      .text(
-          " s/m to hold down to unique_solution_depth_m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower "
-          "unique_solution_depth_m");
+      .say(" falls by ", steep.fall, " s/m, allowed ", steep.limit,
+           " s/m to hold down to unique_solution_depth_m; raise stribeck_m_per_s or friction_lag_s (with its term), or lower "
+           "unique_solution_depth_m");
 }
 
 fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
@@ -79,10 +68,8 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
   const Owner owner = {"params", FDCG_NONE}, finger = {"params.finger", FDCG_NONE};
   if (params.friction_flags > FDCG_FRICTION_ALL) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("params.friction_flags is ")
-        .number(params.friction_flags)
-        .text(", allowed are sums of fdcg_friction_flag: 0 to ")
-        .number(FDCG_FRICTION_ALL);
+        .say("params.friction_flags is ", params.friction_flags, ", allowed are sums of fdcg_friction_flag: 0 to ",
+             FDCG_FRICTION_ALL);
   }
   const ParamRange ranges[] = {
       {"stribeck_m_per_s", has(FDCG_FRICTION_STRIBECK) ? params.stribeck_m_per_s : 1, kLeastParam, kLargestParam},
@@ -109,9 +96,8 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
 fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
   if (params.friction_flags == 0) return FDCG_OK;
   return Message(error, FDCG_E_ARGUMENT)
-      .text("params.friction_flags is ")
-      .number(params.friction_flags)
-      .text(", but this library was built without them; build it with FDCG_WITH_FRICTION_TERMS");
+      .say("params.friction_flags is ", params.friction_flags,
+           ", but this library was built without them; build it with FDCG_WITH_FRICTION_TERMS");
 }
 #endif
 
@@ -160,23 +146,16 @@ extern "C" fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* 
   if (status != FDCG_OK) return status;
   if (params->disabled_optimizations > FDCG_STEP_OPT_ALL) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("params.disabled_optimizations is ")
-        .number(params->disabled_optimizations)
-        .text(", allowed are sums of fdcg_step_optimization: 0 to ")
-        .number(FDCG_STEP_OPT_ALL);
+        .say("params.disabled_optimizations is ", params->disabled_optimizations,
+             ", allowed are sums of fdcg_step_optimization: 0 to ", FDCG_STEP_OPT_ALL);
   }
   if (params->edge_friction > FDCG_EDGE_PAPER) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("params.edge_friction is ")
-        .number(params->edge_friction)
-        .text(", allowed 0 (wedge) and 1 (paper)");
+        .say("params.edge_friction is ", params->edge_friction, ", allowed 0 (wedge) and 1 (paper)");
   }
   for (const uint32_t reserved : params->reserved) {
     if (reserved == 0) continue;
-    return Message(error, FDCG_E_ARGUMENT)
-        .text("params.reserved is ")
-        .number(reserved)
-        .text(", allowed 0; start from fdcg_make_params()");
+    return Message(error, FDCG_E_ARGUMENT).say("params.reserved is ", reserved, ", allowed 0; start from fdcg_make_params()");
   }
   return check_terms(*params, error);
 }

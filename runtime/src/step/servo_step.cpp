@@ -9,7 +9,8 @@ extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fd
                           const double hip_object_m[3], fdcg_result* result) {
   if (FDCG_MUTANT("slow")) {
     volatile int idle = 400;
-    while (idle > 0) idle = idle - 1;
+    while (idle > 0)
+      idle = idle - 1;
   }
   fdcg_params room;
   const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_params_init);

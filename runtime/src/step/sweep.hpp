@@ -1,49 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// The free-space sweep (contact-model FREE-3, FREE-4; docs/internals/sweep.md): what a straight move from one point to another
-// meets first.
+// The free-space sweep (contact-model FREE-3, FREE-4, FREE-8; docs/internals/sweep.md): what a straight move from one point to
+// another meets first.
 //
 // A sweep looks at the nearest boxes first. Where its work runs out (work.hpp, free_space.hpp) it is carried over to later
 // ticks, which look at the leaves in index order instead: one number then says how far they have come, and each tick gets on by
 // at least one box. A carried sweep takes at most 1 + (boxes and nodes that the way touches) / (work of a tick) ticks.
-//
-// Over 400 lines: one class, whose questions to a node all share the way and its rounding.
 #pragma once
 
-#include "base/mutation.hpp"
-#include "base/work.hpp"
 #include "graph/box_tree.hpp"
-#include "step/walk.hpp"
+#include "step/fan_sweep.hpp"
 
 namespace fdcg {
-// What a way met first. The result does not depend on the order in which nodes are looked at: of two met at one fraction the
-// lower one counts.
-template <class Real>
-struct FirstHit {
-  Real fraction = Real(1.5);  // of the way; after its end: nothing met
-  uint32_t node = FDCG_NONE;
-  Feature feature = kFree;  // the node, or the connection that the way meets exactly
-};
 
-// Sweeps from -> to, leaving out the faces that meet at `left`, on which the way starts; `stood`: where the god-object was
-// before it stepped clear of them. Watertight: a node is entered where the line passes its edges on the inner side, by exact
-// signs that two neighbours share.
+// Looks for the nodes that the way may enter, and asks them.
 template <class Geometry>
-class Sweep {
+class Sweep : public FanSweep<Geometry> {
   using Real = typename Geometry::Real;
+  using Fans = FanSweep<Geometry>;
+  using Fans::best_, Fans::from_, Fans::glance_at_node, Fans::graph_, Fans::to_, Fans::work_left_;
 
  public:
-  Sweep(const GraphView<Geometry>& graph, Vec3<Real> stood, Vec3<Real> from, Vec3<Real> to, Feature left, uint32_t* work_left)
-      : graph_(graph),
-        stood_(stood),
-        from_(from),
-        to_(to),
-        way_(to_ - from_),
-        from_bound_(plane_rounding_bound(graph_, from_)),
-        to_bound_(plane_rounding_bound(graph_, to_)),
-        left_(left),
-        work_left_(work_left) {
-    slab_ = Real(graph_.header->max_deviation) * (1 + 4 * RealLimits<Real>::kEpsilon) + from_bound_;
-  }
+  using Fans::Fans;
 
   // Nearest boxes first. False: the work ran out; what was met so far stands.
   bool run(FirstHit<Real>* first) {
@@ -62,45 +39,7 @@ class Sweep {
     return is_done;
   }
 
-  [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
-
-  static constexpr Real kNever = 2;  // a fraction after the end
-  // Where a way that passes inside a node's loop, and comes in at `fraction` up to rounding error, surely is over the face: of
-  // one that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
-  // kNever where it is nowhere over the face: a loop that is not flat is passed, seen edge-on, by ways that end before it, and
-  // by ways that pass it by.
-  [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
-    const NodeRef<Geometry> node = graph_.node(n);
-    const Real rounding = (from_bound_ + to_bound_) / 4;
-    Real begin = least, end = 1, widest_begin = least, widest_end = 1;
-    if (!clip_to(node, rounding, &begin, &end) &&
-        !clip_to(node, 5 * rounding + (slab_ - from_bound_), &widest_begin, &widest_end))
-      return kNever;
-    if (fraction > end) fraction = end;
-    return fraction < begin ? begin : fraction;
-  }
-
  private:
-  static constexpr uint32_t kLastBit = 63;
-  static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
-
-  // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
-  [[nodiscard, gnu::noinline]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end) const {
-    spend(work_left_, kSideWork * node.side_count());
-    bool is_beside = false;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Plane<Real> plane = node.voronoi_plane(k);
-      const Real s0 = plane.distance(from_) - outwards, s1 = plane.distance(to_) - outwards;
-      const bool begins_inside = s0 <= 0, ends_inside = s1 <= 0;
-      is_beside = is_beside || !(begins_inside || ends_inside);
-      if (begins_inside == ends_inside) continue;
-      const Real at = s0 / (s0 - s1);
-      if (begins_inside && at < *end) *end = at;
-      if (ends_inside && at > *begin) *begin = at;
-    }
-    return !is_beside && *begin <= *end;
-  }
-
   bool try_all_nodes(uint32_t* next_node) {
     for (; *next_node < graph_.header->node_count; ++*next_node) {
       if (*work_left_ == 0) return false;
@@ -117,6 +56,9 @@ class Sweep {
       if (*work_left_ == 0) return false;
       const WaitingBoxes::Item next = waiting.pop();
       if (next.key > tree_fraction(best_.fraction)) continue;
+      if constexpr (Geometry::kKeepsDirections) {
+        if (Fans::has_runs() && Fans::looked_at_fans(next.level, next.index)) continue;
+      }
       if (next.level < 0) {
         try_leaf(next.index);
         continue;
@@ -125,7 +67,7 @@ class Sweep {
       const uint32_t touched = touch(tree, next.level, next.index, entry);
       waiting.push(next, touched, entry);
     }
-    return true;
+    return !Fans::is_cut_short();
   }
 
   // Box by box: into one that the way touches, past one that it does not; up again after the last below a record. A record that
@@ -208,262 +150,8 @@ class Sweep {
     graph_.bound_upkeep(work_left_);
   }
 
-  // Of most nodes the way ends in front, or begins behind, by more than rounding could change: those need no call.
-  void glance_at_node(uint32_t n) {
-    const Plane<Real> plane = graph_.node(n).plane();
-    const Real end = plane.distance(to_);
-    if (end > to_bound_ || (end < -to_bound_ && plane.distance(from_) < -slab_)) {
-      spend(work_left_, kNodeWork);
-    } else {
-      try_node(n);
-    }
-  }
-
-  // Entered from its front: begins in front of the plane, ends behind it, and passes inside the loop. A node whose corners lie
-  // off its plane is a slab: a way that begins within it still begins in front. So is every node of a graph that has such ones:
-  // where one of them lets a way go, its neighbours' exact planes may lie in front of where that begins.
-  [[gnu::noinline]] void try_node(uint32_t n) {
-    spend(work_left_, kNodeWork);
-    const NodeRef<Geometry> node = graph_.node(n);
-    if (node.plane().distance(to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
-      return;  // before any exact sign is asked for
-    const Real end_side = side(node, to_, to_bound_);
-    if (!(end_side < 0)) return;
-    const Real start_side = side(node, from_, from_bound_);
-    const bool is_slab = graph_.header->max_deviation > 0;
-    if (start_side < (is_slab ? -slab_ : Real(0))) {
-      if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
-      return;
-    }
-    if (start_side < 0 && left_lies_behind(node)) return;
-    const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
-    const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
-    const bool is_grazing = noise > kGrazing * fall;
-    const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
-    if (!is_before_best(least, n)) return;
-    uint64_t met_exactly = 0;
-    if (!passes_inside(node, rounded, &met_exactly)) {
-      // Along an inexact node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
-      if (!is_grazing || !node.is_inexact()) return;
-      const Real thick = (slab_ - from_bound_) + (from_bound_ + to_bound_) / 8;
-      Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
-      const bool is_below = start_side + thick < fall;  // at the way's end, or, along the node, all the way
-      Real end = !is_below ? Real(1) : fall != 0 ? (start_side + thick) / fall : Real(-1);
-      if (!clip_to(node, 0, &begin, &end)) return;
-      met_exactly = 0;
-    }
-    const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
-    if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return;
-    if (!is_before_best(fraction, n)) return;
-    best_.fraction = fraction;
-    best_.node = n;
-    best_.feature =
-        met_exactly && !FDCG_MUTANT("exact-feature") ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
-  }
-
-  [[nodiscard]] bool is_before_best(Real fraction, uint32_t n) const {
-    return fraction < best_.fraction || (fraction == best_.fraction && n < best_.node);
-  }
-
-  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) const {
-    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kNearPlaneWork);
-    return side_of(graph_, node, x, bound, work_left_);
-  }
-
-  // contact-model LEAVE-1
-  [[nodiscard]] bool is_left_out(uint32_t n, NodeRef<Geometry> node) const {
-    if (left_.state == FDCG_FACE) return left_.index == n;
-    if (left_.state == FDCG_EDGE) {
-      const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
-      return connection.node(0) == n || connection.node(1) == n;
-    }
-    if (left_.state != FDCG_VERTEX) return false;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (node.corner(k) == left_.index) return true;
-    }
-    return false;
-  }
-
-  // contact-model LEAVE-3: a slit may be narrower than the rounding of the god-object's place, which then is behind the other
-  // wall; and that must hold. Where the way crossed the wall is lost to the same rounding: it counts where the way begins over
-  // it.
-  [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
-    if (left_ == kFree || !is_before_best(0, n)) return;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over would let it, wherever the HIP is
-      if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
-    }
-    if (!was_before_clearing(node) && !faces_what_was_left(node)) return;
-    best_.fraction = 0;
-    best_.node = n;
-    best_.feature = {FDCG_FACE, n};
-  }
-
-  // Whether it was the step clear of the face that is left which took the way's beginning behind the node.
-  [[nodiscard]] bool was_before_clearing(NodeRef<Geometry> node) const {
-    if (left_.state != FDCG_FACE || !(dot(graph_.node(left_.index).normal(), node.normal()) < 0)) return false;
-    return side(node, stood_, from_bound_) >= 0;
-  }
-
-  // Whether the face or edge that the way leaves and the node look at each other, corner by corner: if the former lies in front
-  // of the node, then so did the god-object, whatever rounding made of its place; and to be met, the node must reach in front
-  // of those faces that the way does not enter.
-  [[nodiscard]] bool faces_what_was_left(NodeRef<Geometry> node) const {
-    if (left_.state == FDCG_FACE) {
-      const NodeRef<Geometry> face = graph_.node(left_.index);
-      const bool is_opposite = dot(face.normal(), node.normal()) < 0;  // then rounding of a wall's plane does not matter
-      return reaches_before(face, node) && !reaches_behind(node, face, is_opposite ? from_bound_ : Real(0));
-    }
-    if (left_.state != FDCG_EDGE) return false;  // a corner is where it is
-    const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
-    for (uint32_t end = 0; end < 2; ++end) {
-      if (side_of_corner(node, connection.corner(end)) < 0) return false;
-    }
-    const uint32_t count = connection.type() == FDCG_BOUNDARY ? 1 : 2;
-    for (uint32_t k = 0; k < count; ++k) {
-      const NodeRef<Geometry> face = graph_.node(connection.node(k));
-      if (side(face, to_, to_bound_) >= 0 && !reaches_before(face, node)) return false;
-    }
-    return true;
-  }
-  // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it,
-  // though it may begin in its slab.
-  [[nodiscard, gnu::noinline]] bool left_lies_behind(NodeRef<Geometry> node) const {
-    if (left_.state != FDCG_FACE && left_.state != FDCG_EDGE) return false;
-    const bool is_edge = left_.state == FDCG_EDGE;
-    const NodeRef<Geometry> face = is_edge ? node : graph_.node(left_.index);
-    const uint32_t count = is_edge ? 2 : face.side_count();
-    bool is_behind = false;
-    for (uint32_t k = 0; k < count; ++k) {
-      const Real side = side_of_corner(node, is_edge ? graph_.connection(left_.index).corner(k) : face.corner(k));
-      if (side > slab_) return false;
-      is_behind = is_behind || side < -slab_;
-    }
-    return is_behind;
-  }
-  [[nodiscard]] bool reaches_before(NodeRef<Geometry> plane, NodeRef<Geometry> node) const {
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (side_of_corner(plane, node.corner(k)) > 0) return true;
-    }
-    return false;
-  }
-  [[nodiscard]] bool reaches_behind(NodeRef<Geometry> plane, NodeRef<Geometry> node, Real but_for) const {
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (side_of_corner(plane, node.corner(k)) < -but_for) return true;
-    }
-    return false;
-  }
-  [[nodiscard, gnu::noinline]] Real side_of_corner(NodeRef<Geometry> plane, uint32_t corner) const {
-    const Vec3<Real> point = graph_.corner_point(corner);
-    spend(work_left_, kNodeWork);
-    return side(plane, point, plane_rounding_bound(graph_, point));
-  }
-
-  // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
-  // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
-  [[nodiscard, gnu::noinline]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
-    const int sign = sure_orientation(start, end);
-    return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
-  }
-  // The same where rounding cannot matter; else 0.
-  [[nodiscard]] int sure_orientation(Vec3<Real> start, Vec3<Real> end) const {
-    spend(work_left_, kOrientationWork);
-    const Vec3<Real> v = start - from_, w = end - from_;
-    const Real det = dot(cross(v, w), way_);
-    // Of each of the six products of three differences: three differences, two products and the sums, half an epsilon each.
-    const Real bound = 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way_)) + RealLimits<Real>::kTiny;
-    return det > bound ? 1 : det < -bound ? -1 : 0;
-  }
-
-  // A bit for a side; the last one for all beyond.
-  static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
-
-  [[gnu::noinline]] bool passes_inside(NodeRef<Geometry> node, Real fraction, uint64_t* met_exactly) const {
-    bool must_wind = false;
-    uint64_t sure = 0;  // the sides that the line surely passes on their inner side
-    Vec3<Real> start = graph_.corner_point(node.corner(0));
-    for (uint32_t k = 0; k < node.side_count(); ++k) {  // surely outside of one: no exact sign of another
-      const Vec3<Real> end = graph_.corner_point(node.corner(node.next(k)));
-      const int sign = sure_orientation(start, end);
-      if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
-      if (sign < 0 && k < kLastBit) sure |= bit_of(k);
-      start = end;
-    }
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if ((sure & bit_of(k)) != 0) continue;
-      const int sign = orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k))));
-      if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
-      if (sign == 0) *met_exactly |= bit_of(k);
-    }
-    return !must_wind || is_wound_by(node);
-  }
-
-  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, may pass inside
-  // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
-  // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
-  // inwards up to rounding error included, winds about the way: that is still to be asked, once for all sides.
-  [[nodiscard, gnu::noinline]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction, bool* must_wind) const {
-    if (!(graph_.header->max_deviation > 0)) return false;
-    spend(work_left_, kNodeWork);
-    const bool is_near = node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
-    if (is_near && graph_.connection(node.connection(k)).type() == FDCG_CONCAVE) {
-      const NodeRef<Geometry> wall = graph_.node(node.across(k));
-      if (wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0) return true;
-    }
-    *must_wind = true;
-    return is_near && node.is_inexact();
-  }
-
-  // Whether the line passes through the loop, convex or not, from its front: through one more of the fan's triangles from the
-  // front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
-  [[nodiscard, gnu::noinline]] bool is_wound_by(NodeRef<Geometry> node) const {
-    const Vec3<Real> apex = graph_.corner_point(node.corner(0));
-    Vec3<Real> start = graph_.corner_point(node.corner(1));
-    int times = 0, first = orientation(apex, start);
-    for (uint32_t k = 1; k + 1 < node.side_count(); ++k) {
-      const Vec3<Real> end = graph_.corner_point(node.corner(k + 1));
-      const bool is_last = k + 2 == node.side_count();
-      const int sign = orientation(apex, end);
-      const int diagonal = sign != 0 || is_last ? sign : -1;  // a line through a diagonal is on one side of it for both
-      const int side = orientation(start, end);
-      times += first <= 0 && side <= 0 && diagonal >= 0;
-      times -= first > 0 && side > 0 && diagonal < 0;
-      first = diagonal;
-      start = end;
-    }
-    return times > 0;
-  }
-
-  // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
-  // the face's own plane meets all sides, and the point may be beside most of them.
-  Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly, Vec3<Real> point) const {
-    Feature nearest = kFree;
-    Real nearest2 = 0;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if ((met_exactly & bit_of(k)) == 0) continue;
-      if (k >= kLastBit &&
-          orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0)
-        continue;
-      const EdgeLine<Real> line(graph_, node, k);
-      const Real u = line.parameter(point);
-      const Vec3<Real> off = point - (line.start + line.direction * (u < 0 ? Real(0) : u > line.length ? line.length : u));
-      const Real off2 = dot(off, off);
-      if (nearest == kFree || off2 < nearest2) {
-        nearest = {FDCG_EDGE, node.connection(k)};
-        nearest2 = off2;
-      }
-    }
-    return nearest;
-  }
-
-  const GraphView<Geometry>& graph_;
-  Vec3<Real> stood_, from_, to_, way_;
-  Real from_bound_, to_bound_;
-  Feature left_;
-  uint32_t* work_left_;
-  Real slab_;
   TreeWay in_tree_;
   Real part_begin_ = 0, per_part_ = 1;  // of the way: what in_tree_ covers
-  FirstHit<Real> best_;
 };
 
 }  // namespace fdcg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface may be. surface_step.cpp steps on it.
+// Checks of a surface's fields. surface_step.cpp steps on it.
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "surface/surface_kinds.hpp"
@@ -24,17 +24,17 @@ struct Size {
 };
 
 Message& say(Message& message, const Size& size, double low) {
-  message.text("surface.").text(size.name).text(" is ").real(size.value);
-  return message.text(size.may_be_0 ? ", allowed 0 and " : ", allowed ").real(low).text(" to ").real(size.high);
+  message.say("surface.", size.name, " is ", size.value);
+  return message.say(size.may_be_0 ? ", allowed 0 and " : ", allowed ", low, " to ", size.high);
 }
 
 fdcg_status refuse_field(const char* field, uint32_t value, const char* allowed, fdcg_error* error) {
-  return Message(error, FDCG_E_ARGUMENT).text(field).text(" is ").number(value).text(allowed);
+  return Message(error, FDCG_E_ARGUMENT).say(field, " is ", value, allowed);
 }
 
 constexpr uint32_t kSizes = 7;
 
-// Each by itself first: what is compared then is finite.
+// Each size by itself first, so that all are finite when they are compared.
 fdcg_status check_sizes(const fdcg_surface& s, fdcg_error* error) {
   const bool is_cone = s.kind == FDCG_SURFACE_CONE;  // one end may be an apex
   const Size sizes[kSizes] = {{"radius_m", s.radius_m, kLargest_m, is_cone && s.top_radius_m != 0},
@@ -56,14 +56,14 @@ fdcg_status check_sizes(const fdcg_surface& s, fdcg_error* error) {
     if (has)
       return say(message, size, kLeast_m)
           .text(is_cone && i < 2 && size.value == 0 ? " (one end may be a point, not both)" : "");
-    message.text("surface.").text(size.name).text(" is ").real(size.value);
+    message.say("surface.", size.name, " is ", size.value);
     return message.text(", allowed 0; a surface of this kind has none");
   }
   for (const Size& size : sizes) {
     if (size.value == 0 || size.value >= kLeastSizeShare * largest->value) continue;
     Message message(error, FDCG_E_ARGUMENT);
-    say(message, size, kLeastSizeShare * largest->value).text(" (at least 1e-4 of the largest, ").text(largest->name);
-    return message.text(", ").real(largest->value).text(")");
+    say(message, size, kLeastSizeShare * largest->value).say(" (at least 1e-4 of the largest, ", largest->name);
+    return message.say(", ", largest->value, ")");
   }
   return FDCG_OK;
 }

@@ -131,8 +131,8 @@ struct Way {
   Point from, to;
 };
 
-// A way that begins or ends far off, cut to what is near: out there numbers are coarser than the surface. Nothing is cut off
-// that lies within four extents of the origin.
+// A way that begins or ends far off, cut to the part near the surface: far away the spacing of numbers exceeds the surface's
+// size. Nothing within four extents of the origin is cut off.
 [[gnu::noinline]] inline Way near_part(Point from, Point to, double extent) {
   constexpr double kFar = 16, kKept = 4;  // extents
   const double from1 = norm1(from), to1 = norm1(to);
@@ -151,7 +151,8 @@ struct Way {
 }
 
 // What a way meets first of a convex solid, or of the wall of a convex cavity. Where the signs at both ends say that it must
-// have met something, it does, whatever rounding makes of the way between. Shape: span(from, way), land(piece, point).
+// have met something, a place is returned, whatever the rounding of the way between. Shape: span(from, way), land(piece,
+// point).
 template <class Shape>
 [[gnu::noinline]] Entry enter_convex(const Shape& shape, Point from, Point to, bool begins_outside) {
   const bool ends_outside = shape.is_outside(to);
@@ -215,7 +216,7 @@ inline constexpr double kPlaced = 0x1p-41;
 // Of pull_rounding(): a slide that has moved it ends with this much pull too many, or too few.
 inline constexpr double kRestShare = 0.0625;
 
-// What rounding, of the god-object's place and of the normal there, makes of a pull. Less is no reason to place it anew.
+// The rounding error of a pull, from the god-object's place and the normal there. A smaller pull does not move it.
 inline double pull_rounding(const Touch& touch) {
   return 4 * kEps * (norm1(touch.god_object) + norm1(touch.hip));
 }

@@ -2,16 +2,4 @@
 #include "surface/surface_box.hpp"
 #include "surface/surface_drive.hpp"
 
-extern "C" const uint32_t fdcg_linked_box = FDCG_SURFACE_BOX;
-
-namespace fdcg {
-
-void step_box(const fdcg_surface& surface, const fdcg_params& params, fdcg_contact* contact, const double hip_m[3],
-              fdcg_result* result) {
-  surface_drive::step_on<BoxSurface, BoxSurface>(surface, params, contact, hip_m, result);
-}
-void normal_of_box(const fdcg_surface& surface, const fdcg_result& result, double normal[3]) {
-  surface_drive::normal_on<BoxSurface>(surface, result, normal);
-}
-
-}  // namespace fdcg
+FDCG_SURFACE_KIND(box, FDCG_SURFACE_BOX, BoxSurface, BoxSurface)

@@ -2,16 +2,4 @@
 #include "surface/surface_drive.hpp"
 #include "surface/surface_round.hpp"
 
-extern "C" const uint32_t fdcg_linked_capsule = FDCG_SURFACE_CAPSULE;
-
-namespace fdcg {
-
-void step_capsule(const fdcg_surface& surface, const fdcg_params& params, fdcg_contact* contact, const double hip_m[3],
-                  fdcg_result* result) {
-  surface_drive::step_on<Capsule, Capsule>(surface, params, contact, hip_m, result);
-}
-void normal_of_capsule(const fdcg_surface& surface, const fdcg_result& result, double normal[3]) {
-  surface_drive::normal_on<Capsule>(surface, result, normal);
-}
-
-}  // namespace fdcg
+FDCG_SURFACE_KIND(capsule, FDCG_SURFACE_CAPSULE, Capsule, Capsule)

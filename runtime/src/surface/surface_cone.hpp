@@ -268,7 +268,7 @@ struct ConeSurface {
   }
 };
 
-// What most ticks on a cone need of it: its side's normal as soon as may be.
+// What most ticks on a cone need: its side's normal, with few operations.
 struct QuickCone {
   double sign, half, extent;
   LineProfile side;

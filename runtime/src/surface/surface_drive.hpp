@@ -41,7 +41,7 @@ Progress move_god_object(const Shape& shape, SurfaceWalk& walk) {
       continue;
     }
     const bool is_convex_solid = Shape::kIsConvex && shape.sign > 0;  // what leaves it cannot meet it
-    // In front of a tangent plane and yet in the solid: by rounding alone. Free, it would fall through.
+    // In front of a tangent plane and yet in the solid: by rounding alone. As a free contact it would pass through.
     if (is_convex_solid && !shape.is_outside(walk.hip)) return progress;
     ++progress.transitions;
     if (is_convex_solid) {
@@ -66,7 +66,7 @@ inline Point place_of(const double p[3], double extent) {
   return {zero_below(least, p[0]), zero_below(least, p[1]), zero_below(least, p[2])};
 }
 
-// Whether place_of() leaves a place as it is: nothing but a jump waits for that.
+// Whether place_of() would not change a place; only a branch depends on the result.
 FDCG_HOT bool is_plain_place(Point p, double extent) {
   const double least = kLeastShare * extent;
   return !((absolute(p.x) < least && p.x != 0) || (absolute(p.y) < least && p.y != 0) || (absolute(p.z) < least && p.z != 0));
@@ -159,8 +159,8 @@ FDCG_HOT double way_bound(Point way, double extent) {
   return norm1(way) * (1 + 0x1p-20) + 16 * kEps * extent;
 }
 
-// What most ticks are, before the rules. All of it stays in registers: nothing here is handed to another function. Quick: what
-// of the shape that needs, with is_clear(), slide_quickly() and extent.
+// The usual ticks, handled before the rules and in registers: nothing here is passed to another function by reference. Quick:
+// the part of the shape for that, with is_clear(), slide_quickly() and extent.
 template <class Shape, class Quick>
 FDCG_HOT void step_on(const fdcg_surface& surface, const fdcg_params& params, fdcg_contact* at, const double* hip_m,
                       fdcg_result* result) {
@@ -190,3 +190,14 @@ void normal_on(const fdcg_surface& surface, const fdcg_result& result, double no
 }
 
 }  // namespace fdcg::surface_drive
+
+// What surface_kinds.hpp declares of a kind, once in the kind's own source. Quick: what most ticks need of the shape.
+#define FDCG_SURFACE_KIND(name, kind, Shape, Quick)                                                                            \
+  extern "C" const uint32_t fdcg_linked_##name = kind;                                                                         \
+  void fdcg::step_##name(const fdcg_surface& surface, const fdcg_params& params, fdcg_contact* contact, const double hip_m[3], \
+                         fdcg_result* result) {                                                                                \
+    surface_drive::step_on<Shape, Quick>(surface, params, contact, hip_m, result);                                             \
+  }                                                                                                                            \
+  void fdcg::normal_of_##name(const fdcg_surface& surface, const fdcg_result& result, double normal[3]) {                      \
+    surface_drive::normal_on<Shape>(surface, result, normal);                                                                  \
+  }

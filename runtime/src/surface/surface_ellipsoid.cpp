@@ -2,16 +2,4 @@
 #include "surface/surface_drive.hpp"
 #include "surface/surface_round.hpp"
 
-extern "C" const uint32_t fdcg_linked_ellipsoid = FDCG_SURFACE_ELLIPSOID;
-
-namespace fdcg {
-
-void step_ellipsoid(const fdcg_surface& surface, const fdcg_params& params, fdcg_contact* contact, const double hip_m[3],
-                    fdcg_result* result) {
-  surface_drive::step_on<Ellipsoid, Ellipsoid>(surface, params, contact, hip_m, result);
-}
-void normal_of_ellipsoid(const fdcg_surface& surface, const fdcg_result& result, double normal[3]) {
-  surface_drive::normal_on<Ellipsoid>(surface, result, normal);
-}
-
-}  // namespace fdcg
+FDCG_SURFACE_KIND(ellipsoid, FDCG_SURFACE_ELLIPSOID, Ellipsoid, Ellipsoid)

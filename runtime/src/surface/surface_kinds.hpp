@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done with a surface of each kind. Each kind is a source, and an object of the library, by itself, which a program
-// links when it makes such a surface: fdcg_make_sphere() reads fdcg_linked_sphere. The dispatch in surface_step.cpp asks for
+// The functions of each kind of surface. Each kind is a source, and an object of the library, by itself, which a program
+// links when it makes such a surface: fdcg_make_sphere() reads fdcg_linked_sphere. The dispatch in surface_step.cpp links
 // none of them: its references are weak, and null for a kind that the program does not link.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface's solid weighs.
+// Mass properties of a surface's solid.
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "surface/surface_kinds.hpp"

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A tick's slide round a surface of revolution whose section is a line or an arc, where it is as short as a hand's are: numbers
-// of the half plane through the axis in place of vectors, one move and one correction. What it cannot do, slide_on_piece() in
-// surface_slide.hpp does. The order of operations follows what is known first: each root and division waits for little, and the
-// next tick for nothing but the god-object.
+// of the half plane through the axis in place of vectors, one move and one correction. Other slides are
+// left to slide_on_piece() in surface_slide.hpp. The order of operations keeps chains of roots and divisions short; between two
+// ticks only the god-object depends on the one before.
 #pragma once
 
 #include "surface/surface_slide.hpp"
 
 namespace fdcg {
 
-// A number that is 0 whatever the numbers are, so that nothing is left of it in the code: of a cylinder, of a straight section.
+// A constant 0, which the compiler removes: for a cylinder, for a straight section.
 struct Nought {};
 inline Nought operator-(Nought) {
   return {};
@@ -161,7 +161,7 @@ struct RoundMove {
 };
 
 // To where the course of the excess says that friction stops it, as next_move() has it; `held` is mu * load. On a plane that is
-// at 1 - held / pull; `later` is what the surface's bend adds, to second order. What waits for the pull's root comes last.
+// at 1 - held / pull; `later` is what the surface's bend adds, to second order. What depends on the pull's root comes last.
 template <class Profile, class From>
 FDCG_HOT RoundMove next_round_move(const Profile& profile, const Tug& tug, const From& from, double per_off, double held,
                                    double mu2) {
@@ -235,7 +235,7 @@ FDCG_HOT bool go_round(const Profile& profile, const From& from, const Outward& 
   const double more = 1 + move.second * excess;
   const double set = (excess * (0.5 * off)) * more * (1 / fall), size = absolute(set);
   const double pressed = both * last.load * bends;
-  // What `more` does not know: the third order, how the bend changes, how the load did.
+  // What `more` leaves out: the third order, how the bend changes, how the load did.
   const double old2 = tug.load * tug.load, unknown = 4 * size + pressed * (pressed + move.length * move.length);
   if (!(last.load > 0 && fall > 0 && size * size * (unknown * old2 + absolute(load2 - old2)) <= kPlaced / 2 * old2))
     return false;

@@ -2,7 +2,6 @@
 // Surfaces as objects of a scene.
 #include "fdcg/surface.h"
 
-#include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "scene/scene_memory.hpp"
 #include "surface/surface_kinds.hpp"

@@ -61,8 +61,8 @@ inline Move straight_move(Point step) {
   return {step, {0, 0, 0}, false, false, false};
 }
 
-// Where the surface bends sharply, the rounding of a place is one of the normal that the load makes much of. `bent`: how the
-// normal turns along the pull.
+// Where the surface bends sharply, the rounding of a place turns the normal, and the load multiplies that error. `bent`: how
+// the normal turns along the pull.
 FDCG_HOT double pull_doubt(Point at, double load, double pull, double bent, double rounding, bool has_moved) {
   return has_moved ? rounding * kRestShare : 2 * rounding + 8 * kEps * norm1(at) * bent * (load + pull) + kPlaced * pull;
 }
@@ -80,7 +80,7 @@ FDCG_HOT Move next_move(const Piece& piece, const Spot& spot, const Press& press
   const double curvature = bend.along * per_pull2;
   const Course course = course_of(press, bend, mu, 2 * bend.turn2 - curvature * bend.along, per_pull2);
   const double left = course.fall * course.fall - course.bow * course.excess;
-  // The descent's direction changes, since the load turns the pull: a move knows how to second order, if that is not much.
+  // The descent's direction changes, since the load turns the pull: a move follows it to second order where it is small.
   const Point aside = bend.turned - press.across * curvature;
   const double most = larger(turn1 * (1 / kLargestTurn), load * norm1(aside) * per_pull * (1 / kLargestSwing));
   const double stop = course.excess / (course.fall + (left > 0 ? root(left) : 0));
@@ -194,7 +194,7 @@ template <class Piece, class Spot>
 // order; no move turns the normal by more than a quarter of a radian. A move that ends inside the cone has passed the place,
 // which is then looked for on its way: a slide never ends where friction holds more than it must. Piece:
 //
-//   Spot spot(x, hip)            a place on it: `at`, `normal`, and what the others want to know
+//   Spot spot(x, hip)            a place on it: `at`, `normal`, and what the other functions need
 //   Spot project(p, spot)        the place near p, which is near the spot
 //   Point turn(spot, v)          how the normal changes along the tangent v; linear in it
 //   double turn_rate(spot, v, along)   how `along` = dot(v, turn(v)) changes on a geodesic along v

@@ -2,16 +2,4 @@
 #include "surface/surface_drive.hpp"
 #include "surface/surface_round.hpp"
 
-extern "C" const uint32_t fdcg_linked_sphere = FDCG_SURFACE_SPHERE;
-
-namespace fdcg {
-
-void step_sphere(const fdcg_surface& surface, const fdcg_params& params, fdcg_contact* contact, const double hip_m[3],
-                 fdcg_result* result) {
-  surface_drive::step_on<Sphere, Sphere>(surface, params, contact, hip_m, result);
-}
-void normal_of_sphere(const fdcg_surface& surface, const fdcg_result& result, double normal[3]) {
-  surface_drive::normal_on<Sphere>(surface, result, normal);
-}
-
-}  // namespace fdcg
+FDCG_SURFACE_KIND(sphere, FDCG_SURFACE_SPHERE, Sphere, Sphere)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The torus: the one surface here that is convex from neither side, so that what leaves it may meet it again.
+// The torus: the one surface here that is convex from neither side, so that a god-object that leaves it may meet it again.
 #pragma once
 
 #include "surface/surface_revolved.hpp"

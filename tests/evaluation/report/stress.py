@@ -11,7 +11,7 @@ off the surface, a force that pulls inward, a held hand whose god-object moves. 
 its own; the hash over all results is the same on every repetition.</p>"""
 
 # the judges' columns: all must be 0
-COUNTS = ["nan", "cycles", "growths", "push_through", "thin_air", "off_surface", "pulls", "restless"]
+COUNTS = ["nan", "cycles", "growths", "push_through", "no_force", "thin_air", "off_surface", "pulls", "restless"]
 
 
 def content(run):

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pointed_bodies.hpp"
+
 namespace fdcg::test {
 namespace {
 
@@ -23,10 +25,10 @@ Hip unit(const Hip& a) {
 }
 
 // Ticks of each motion.
-constexpr std::uint32_t kTicks[] = {1000, 600, 500, 400, 400, 240, 5, 8, 800, 1000, 300, 400};
+constexpr std::uint32_t kTicks[] = {1000, 600, 500, 400, 400, 240, 5, 8, 800, 1000, 300, 400, 110};
 static_assert(std::size(kTicks) == static_cast<std::size_t>(Motion::count));
-constexpr std::string_view kNames[] = {"wander", "slide", "tremor",  "dive",   "on-planes", "creep",
-                                       "aim",    "jump",  "encoder", "object", "inside",    "not-finite"};
+constexpr std::string_view kNames[] = {"wander", "slide",   "tremor", "dive",   "on-planes",  "creep",   "aim",
+                                       "jump",   "encoder", "object", "inside", "not-finite", "approach"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(Motion::count));
 
 }  // namespace
@@ -62,6 +64,7 @@ std::uint32_t Hand::begin(Motion motion) {
   if (motion == Motion::encoder)
     amount_ = random_.chance(0.5) ? std::exp2(std::floor(std::log2(size_)) - 5 - random_.below(7))
                                   : size_ * random_.uniform(1e-4, 1e-2);
+  if (motion == Motion::approach) begin_approach();
   if (motion == Motion::object) anchor_ = around(surface_point(), share(-4, -0.5));
   return kTicks[static_cast<std::size_t>(motion)];
 }
@@ -115,9 +118,19 @@ Hip Hand::local_next(const Hip& god_object, bool is_free) {
       return encoder(is_free);
     case Motion::object:
       return object();
+    case Motion::approach:
+      return way_[std::min<std::size_t>(tick_, way_.size() - 1)];
     default:
       return inside_point();
   }
+}
+
+void Hand::begin_approach() {
+  constexpr double kSpeeds[] = {0.1, 0.3, 1};
+  const auto& focus = specimen_.focus_corners;
+  const CornerShape& tip = specimen_.corners[focus[random_.below(static_cast<std::uint32_t>(focus.size()))]];
+  const Approach approach = kApproaches[random_.below(std::size(kApproaches))];
+  way_ = hand_way({tip.point, unit(tip.normal)}, approach, kSpeeds[random_.below(3)], random_);
 }
 
 // ---- what motions share ----------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "hip_walk.hpp"
 #include "random.hpp"
@@ -26,6 +27,7 @@ enum class Motion : std::uint8_t {
   object,      // a still hand, and an object that swings, turns and rises
   inside,      // starts inside, leaves, comes back
   not_finite,  // wanders, and now and then is NaN, infinite, far away, or of denormal size
+  approach,    // at 0.1, 0.3 or 1 m/s and 1 kHz at a corner of the focus, some millimetres on, and back (pointed_bodies.hpp)
   count
 };
 std::string_view name_of(Motion motion);
@@ -53,6 +55,7 @@ class Hand {
   Hip encoder(bool is_free);
   Hip object();
   Hip not_finite();
+  void begin_approach();
 
   void pick_side();
   Hip wander(const Hip& god_object);
@@ -79,6 +82,7 @@ class Hand {
   Hip anchor_{}, heading_{}, normal_{}, place_{};
   double depth_ = 0, amount_ = 0, phase_ = 0;
   std::uint32_t node_ = 0, side_ = 0, corner_ = 0, stay_ = 0;
+  std::vector<Hip> way_;
 };
 
 }  // namespace fdcg::test

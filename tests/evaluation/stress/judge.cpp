@@ -31,13 +31,17 @@ double square_distance(const Hip& a, const Hip& b) {
   const Hip d = difference(a, b);
   return dot(d, d);
 }
+Hip cross_product(const Hip& a, const Hip& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;
 
 }  // namespace
 
 std::string_view name_of(Fault fault) {
-  constexpr std::string_view kNames[] = {"nan",    "cycle",    "rule-bound",  "sweep-bound", "growth",  "push-through",
-                                         "unseen", "thin-air", "off-surface", "pull",        "restless"};
+  constexpr std::string_view kNames[] = {"nan",          "cycle",   "rule-bound", "sweep-bound", "growth",
+                                         "push-through", "unseen",  "thin-air",   "off-surface", "pull",
+                                         "restless",     "descent", "free-air",   "no-force"};
   static_assert(std::size(kNames) == kFaults);
   return kNames[static_cast<std::size_t>(fault)];
 }
@@ -60,10 +64,12 @@ void Verdicts::add(const Verdicts& other) {
   worst_restless_eps = std::max(worst_restless_eps, other.worst_restless_eps);
   worst_pull_eps = std::max(worst_pull_eps, other.worst_pull_eps);
   worst_inside_eps = std::max(worst_inside_eps, other.worst_inside_eps);
+  worst_descent_eps = std::max(worst_descent_eps, other.worst_descent_eps);
 }
 
-Judge::Judge(const Specimen& specimen)
+Judge::Judge(const Specimen& specimen, bool owes_force)
     : specimen_(specimen),
+      owes_force_(owes_force),
       epsilon_(specimen.epsilon()),
       deviation_(kPerDeviation * specimen.header().max_deviation),
       is_exact_(specimen.header().max_deviation == 0 &&
@@ -86,8 +92,12 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after
     if (after.state != FDCG_FREE) {
       look_at_feature(tick, v);
       if ((result.flags & kCarried) == 0) look_at_pull(tick, v);
+      if ((result.flags & kCarried) == 0 && !has_friction_) look_at_descent(tick, v);
     }
-    if (specimen_.inside != nullptr) look_inside(tick, v);
+    if (specimen_.inside != nullptr) {
+      if (owes_force_) look_at_owed_force(tick);
+      look_inside(tick, v);
+    }
   }
   if ((result.flags & FDCG_RESULT_NON_FINITE) == 0) {
     last_flags_ = result.flags;
@@ -192,6 +202,8 @@ double Judge::in_front_of_edge(const EdgeShape& edge, const Hip& x) const {
 // together.
 double Judge::in_front_of_corner(std::uint32_t corner, const Hip& x, double rounding) const {
   const Hip from_corner = difference(x, specimen_.corners[corner].point);
+  if (specimen_.descent != nullptr && is_exact_)
+    return specimen_.descent->begins_outside(specimen_.corners[corner].point, x) ? norm(from_corner) : 0;
   double front = dot(from_corner, specimen_.corners[corner].normal);
   if (front <= kMostPull_eps * rounding) return front;
   const fdcg_graph& graph = specimen_.graph();
@@ -218,6 +230,39 @@ void Judge::look_at_pull(Tick& tick, Verdicts& v) const {
   if (front > kMostPull_eps * tick.rounding) tick.faults |= bit(Fault::pull);
 }
 
+// How far a face or an edge at the god-object leads towards the HIP; at a corner all the way where the way itself is free.
+double Judge::descent_from(const Tick& tick) const {
+  const Hip gap = difference(tick.hip, tick.god_object);
+  if (tick.after.state == FDCG_FACE) {
+    const Hip& n = specimen_.nodes[tick.after.feature].normal;
+    const double height = dot(gap, n);
+    return norm({gap[0] - height * n[0], gap[1] - height * n[1], gap[2] - height * n[2]});
+  }
+  if (tick.after.state == FDCG_EDGE) {
+    const EdgeShape& edge = specimen_.edges[tick.after.feature];
+    double most = std::abs(dot(gap, edge.direction));
+    for (const std::uint32_t n : edge.node) {  // square to the edge, into the face
+      const Hip& normal = specimen_.nodes[n].normal;
+      const Hip across = n == edge.node[0] ? cross_product(normal, edge.direction) : cross_product(edge.direction, normal);
+      most = std::max(most, dot(gap, across));
+    }
+    return most;
+  }
+  const Hip& corner = specimen_.corners[tick.after.feature].point;
+  const double reach = specimen_.descent->reach(corner, tick.hip);
+  if (reach > kMostDescent_eps * tick.rounding || !specimen_.descent->begins_outside(corner, tick.hip)) return reach;
+  return distance(corner, tick.hip);
+}
+
+void Judge::look_at_descent(Tick& tick, Verdicts& v) const {
+  if (specimen_.descent == nullptr || !is_exact_) return;
+  const double reach = descent_from(tick);
+  v.worst_descent_eps = std::max(v.worst_descent_eps, reach / tick.rounding);
+  if (!(reach > kMostDescent_eps * tick.rounding)) return;
+  tick.faults |= bit(Fault::descent);
+  if (specimen_.inside->where(tick.hip) == InsideGrid::Where::outside) tick.faults |= bit(Fault::free_air);
+}
+
 // A contact that was free: what its way met.
 void Judge::look_at_way(Tick& tick) {
   if (specimen_.inside == nullptr || !is_exact_ || !is_known_outside_) return;
@@ -228,7 +273,8 @@ void Judge::look_at_way(Tick& tick) {
   const InsideGrid::Crossing way = specimen_.inside->crossing(hip_of(tick.before.hip), tick.hip);
   tick.is_way_clear = !way.is_through && !way.touches;
   if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
-  if (tick.is_way_clear && is_stopped) tick.faults |= bit(Fault::thin_air);
+  // A corner that is met within rounding, and let go in the same tick, has held nothing (contact-model FREE-8, CORNER-4).
+  if (tick.is_way_clear && tick.after.state != FDCG_FREE) tick.faults |= bit(Fault::thin_air);
 }
 
 // Around an apex of 10^4 faces the grid's cells hold them all: there one tick in some dozens is asked for.
@@ -238,6 +284,15 @@ bool Judge::is_let_off(const Hip& point) {
   if (crowd <= kCrowd) return false;
   asked_ += 1;
   return asked_ % (crowd / kCrowd + 1) != 0;
+}
+
+// Where work is carried over: the god-object stays where its way began, the HIP may be inside.
+void Judge::look_at_owed_force(Tick& tick) {
+  const double* force = tick.result.force_n;
+  if (force[0] != 0 || force[1] != 0 || force[2] != 0 || !is_known_outside_ || tick.after.sweep.is_carried == 0) return;
+  if (specimen_.inside->where(tick.hip) != InsideGrid::Where::inside) return;
+  const double depth = specimen_.inside->distance_to_surface(tick.hip) - deviation_;
+  if (depth > kShallow_eps * epsilon_ * specimen_.inside->size()) tick.faults |= bit(Fault::no_force);
 }
 
 void Judge::look_inside(Tick& tick, Verdicts& v) {

@@ -27,6 +27,9 @@ enum class Fault : std::uint8_t {
   pull,          // the HIP is in front of what is said to hold it: the force pulls inwards
   restless,      // the same HIP again: GO came nearer by more than 16 eps of the scale, or moved by more than such a change of
                  // its distance allows, or contact was lost or found
+  descent,       // without friction: at rest though a face or an edge there, or the free way itself, leads nearer to the HIP
+  free_air,      // ... and the HIP is outside of the solid
+  no_force,      // inside by more than 4 eps of the size, after having been outside or held, and no force
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
@@ -38,26 +41,32 @@ inline constexpr double kMostGrowth_eps = 16;
 inline constexpr double kSlab_eps = 8;  // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostOffSurface_eps = 64;
 inline constexpr double kMostRestless_eps = 16;
-inline constexpr double kMostPull_eps = 32;  // of a plane's distance, as the step bounds its own rounding
-inline constexpr double kShallow_eps = 4;    // of the size: a HIP so near to the surface may be taken for outside
-inline constexpr double kPerDeviation = 4;   // where merging moved faces: so many times the largest deviation as well
+inline constexpr double kMostPull_eps = 32;     // of a plane's distance, as the step bounds its own rounding
+inline constexpr double kMostDescent_eps = 64;  // how far the way down may lead, as GO may be off its feature
+inline constexpr double kShallow_eps = 4;       // of the size: a HIP so near to the surface may be taken for outside
+inline constexpr double kPerDeviation = 4;      // where merging moved faces: so many times the largest deviation as well
 
 struct Verdicts {
   std::array<std::uint64_t, kFaults> count{};
   std::uint64_t shallow = 0;       // Free, and inside by less than kShallow_eps
   std::uint64_t met_again = 0;     // rests where a feature was met again, as contact-model TICK-5 has it
   std::uint64_t most_carried = 0;  // ticks in a row
-  double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0;
+  double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0,
+         worst_descent_eps = 0;
 
   void add(const Verdicts& other);
 };
 
 class Judge {
  public:
-  explicit Judge(const Specimen& specimen);
+  // `owes_force`: of a hand's speed, so that no tick inside may be without force.
+  explicit Judge(const Specimen& specimen, bool owes_force = false);
 
   // A new contact: nothing is known of where its HIP is.
-  void begin() { is_known_outside_ = is_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0; }
+  void begin(const fdcg_params& params) {
+    is_known_outside_ = is_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0;
+    has_friction_ = params.mu_static > 0 || params.mu_dynamic > 0;
+  }
 
   // One tick, which began with `before`. Returns a bit for each fault, 1 << fault, and counts them.
   std::uint32_t judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result, const StepWatch& seen,
@@ -82,13 +91,18 @@ class Judge {
   [[nodiscard]] double in_front_of_corner(std::uint32_t corner, const Hip& x, double rounding) const;
   void look_at_pull(Tick& tick, Verdicts& v) const;
   void look_at_rest(Tick& tick, Verdicts& v) const;
+  [[nodiscard]] double descent_from(const Tick& tick) const;
+  void look_at_descent(Tick& tick, Verdicts& v) const;
   void look_at_way(Tick& tick);
   bool is_let_off(const Hip& point);
   void look_inside(Tick& tick, Verdicts& v);
+  void look_at_owed_force(Tick& tick);
 
   const Specimen& specimen_;
+  bool owes_force_;
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
   bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
+  bool has_friction_ = true;
   bool is_known_outside_ = false;
   bool is_outside_ = false;       // ... and of the last tick's HIP: exactly, in no face's plane
   std::size_t asked_ = 0;         // in crowded cells

@@ -241,10 +241,11 @@ void write_row(Table& table, const Row& row, const BlockResult& r, double second
   table.row(row.stress_case->name, row.stress_case->target, name_of(row.precision), r.ticks, r.contact_ticks, r.transitions,
             count_of(r, Fault::cycle), v.met_again, count_of(r, Fault::rule_bound) + count_of(r, Fault::sweep_bound),
             r.bounds_allowed, v.most_carried, v.worst_growth_eps, count_of(r, Fault::growth), count_of(r, Fault::push_through),
-            count_of(r, Fault::unseen), count_of(r, Fault::thin_air), v.shallow, count_of(r, Fault::not_a_number),
-            v.worst_off_surface_eps, count_of(r, Fault::off_surface), count_of(r, Fault::pull), v.worst_pull_eps,
-            count_of(r, Fault::restless), v.worst_restless_eps, v.worst_inside_eps, r.disagreements, hexadecimal(r.hash),
-            seconds);
+            count_of(r, Fault::unseen), count_of(r, Fault::no_force), count_of(r, Fault::thin_air), v.shallow,
+            count_of(r, Fault::not_a_number), v.worst_off_surface_eps, count_of(r, Fault::off_surface),
+            count_of(r, Fault::pull), v.worst_pull_eps, count_of(r, Fault::restless), v.worst_restless_eps, v.worst_inside_eps,
+            count_of(r, Fault::descent), v.worst_descent_eps, count_of(r, Fault::free_air), r.disagreements,
+            hexadecimal(r.hash), seconds);
 }
 
 int judge_whole(const BlockResult& r, const std::string& folder) {
@@ -259,11 +260,14 @@ int judge_whole(const BlockResult& r, const std::string& folder) {
   none("push-through: free while inside", count_of(r, Fault::push_through),
        std::to_string(r.verdicts.shallow) + " more by less than " + std::to_string(static_cast<int>(kShallow_eps)) + " eps");
   none("ways through the surface unseen", count_of(r, Fault::unseen));
+  none("inside without force at a hand's speed", count_of(r, Fault::no_force));
   none("contacts from thin air", count_of(r, Fault::thin_air));
   none("NaN or infinite results", count_of(r, Fault::not_a_number));
   bars.at_most("god-object off its feature", r.verdicts.worst_off_surface_eps, kMostOffSurface_eps, "eps of the scale");
   none("forces that pull", count_of(r, Fault::pull));
   none("held HIPs that move the god-object", count_of(r, Fault::restless));
+  none("rests without friction from which a face or an edge leads nearer", count_of(r, Fault::descent),
+       std::to_string(count_of(r, Fault::free_air)) + " of them with the HIP outside");
   none("ticks in which the step as it ships differs", r.disagreements, "compared in block 0 of each case");
   return bars.failures();
 }
@@ -294,6 +298,7 @@ int run(const Options& options, const std::string& program) {
                "growths",
                "push_through",
                "unseen",
+               "no_force",
                "thin_air",
                "shallow",
                "nan",
@@ -304,6 +309,9 @@ int run(const Options& options, const std::string& program) {
                "restless",
                "restless_worst_eps",
                "inside_worst_eps",
+               "descents",
+               "descent_worst_eps",
+               "free_air",
                "disagreements",
                "hash",
                "seconds"});

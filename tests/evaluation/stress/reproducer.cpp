@@ -134,8 +134,8 @@ Reproducer read_reproducer(const std::string& path) {
 }
 
 std::int64_t first_fault(const Specimen& specimen, const Reproducer& r, std::vector<std::string>* log) {
-  Judge judge(specimen);
-  judge.begin();
+  Judge judge(specimen, r.fault == Fault::no_force);
+  judge.begin(r.params);
   Verdicts verdicts;
   fdcg_contact contact{};
   for (std::size_t i = 0; i < r.path_m.size(); ++i) {

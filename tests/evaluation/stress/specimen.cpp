@@ -20,7 +20,9 @@ Specimen::Specimen(Body b) : body(std::move(b)), mesh(body.soup, body.options) {
   read_shapes();
   find_focus();
   if (!body.is_closed) return;
-  inside = std::make_unique<InsideGrid>(ExactSolid(triangulated(body.soup), header()).triangles());
+  const ExactSolid solid(triangulated(body.soup), header());
+  inside = std::make_unique<InsideGrid>(solid.triangles());
+  descent = std::make_unique<Descent>(solid.triangles());
 }
 
 void Specimen::read_shapes() {

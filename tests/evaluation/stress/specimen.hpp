@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact_rig.hpp"
+#include "descent.hpp"
 #include "inside_grid.hpp"
 
 namespace fdcg::test {
@@ -55,6 +56,7 @@ class Specimen {
   std::vector<CornerShape> corners;
   std::vector<std::uint32_t> focus_corners;  // corners of the graph nearest to body.focus
   std::unique_ptr<InsideGrid> inside;        // of closed bodies
+  std::unique_ptr<Descent> descent;          // of closed bodies
 
   [[nodiscard]] const fdcg_graph& graph() const { return mesh.view(); }
   [[nodiscard]] const fdcg_header& header() const { return *mesh.view().header; }

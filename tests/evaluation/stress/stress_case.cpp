@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "meshes.hpp"
+#include "squashed.hpp"
+#include "stress_points.hpp"
 
 namespace fdcg::test {
 namespace {
@@ -253,11 +255,28 @@ Body large_meshes(Random& random, Precision precision) {
   }
 }
 
+// Any of them flat or long by 10 to 10^6 along an axis, or along two.
+template <int kTens>
+Body squashed(Random& random, Precision precision) {
+  constexpr Body (*kMakers[])(Random&, Precision) = {small_bodies, saddles, concave_corners, knives, slits, flat_dihedrals};
+  const std::uint32_t pick = random.below(2 * std::size(kMakers));
+  Body body = pick < std::size(kMakers)
+                  ? kMakers[pick](random, precision)
+                  : placed(double_fan(3 + static_cast<int>(random.below(10)), random.bits()), random, precision);
+  const double factor = std::pow(10, random.chance(0.7) ? -kTens : kTens);
+  const int axis = static_cast<int>(random.below(3));
+  body.soup = stretched(body.soup, axis, factor);
+  if (random.chance(0.2)) body.soup = stretched(body.soup, (axis + 1) % 3, random.chance(0.5) ? factor : std::sqrt(factor));
+  body.description += ", axis " + std::to_string(axis) + " times " + std::to_string(factor);
+  return body;
+}
+
 }  // namespace
 
 const std::vector<StressCase>& stress_cases() {
   using enum Motion;
   constexpr const char* kHeld = "held as any face is";
+  constexpr const char* kSquashed = "no rest at a corner that is no least place";
   constexpr bool kMayCarry = true;
   static const std::vector<StressCase> cases = {
       {"needle-faces", kHeld, needles, {wander, slide, dive, on_planes, aim}, kMayCarry},
@@ -293,6 +312,10 @@ const std::vector<StressCase>& stress_cases() {
       {"starts-inside", "free until it has left, then met", small_bodies, {inside}, kMayCarry},
       {"aimed", "no way slips through a seam", small_bodies, {aim}, kMayCarry},
       {"merged-faces", "flat within the quantum: one node", merged_faces, {wander, slide, on_planes, jump}, kMayCarry},
+      {"squashed-10", kSquashed, squashed<1>, {wander, slide, dive, on_planes, aim, jump}, kMayCarry},
+      {"squashed-100", kSquashed, squashed<2>, {wander, slide, dive, on_planes, aim, jump}, kMayCarry},
+      {"squashed-1000", kSquashed, squashed<3>, {wander, slide, dive, on_planes, aim, jump}, kMayCarry},
+      {"squashed-1000000", kSquashed, squashed<6>, {wander, slide, dive, on_planes, aim, jump}, kMayCarry},
       {"large-meshes",
        "as small ones; work carried over",
        large_meshes,
@@ -300,6 +323,7 @@ const std::vector<StressCase>& stress_cases() {
        kMayCarry,
        50,
        0.5},
+      {"points", "a force in the tick that gets inside", pointed_bodies, {approach}, kMayCarry, 5, 0.2, true},
   };
   return cases;
 }

@@ -22,7 +22,8 @@ struct StressCase {
   // exact signs are a tick's work by the dozen; and where hundreds of faces may be crossed in one tick.
   bool may_carry = false;
   std::uint32_t blocks_per_body = 1;
-  double share = 1;  // of the ticks; dear ones get less
+  double share = 1;         // of the ticks; dear ones get less
+  bool owes_force = false;  // the hand has a hand's speed: no sweep is carried over, no tick inside is without force
 };
 
 const std::vector<StressCase>& stress_cases();

@@ -38,7 +38,7 @@ class Block {
         found_(found),
         random_(seed_of(name, name.block)),
         hand_(specimen, random_.bits()),
-        judge_(specimen) {
+        judge_(specimen, name.stress_case->owes_force) {
     path_.reserve(2 * Hand::kMostTicks);
   }
 
@@ -56,7 +56,7 @@ class Block {
     params_ = contact_params(mu[0], mu[1], random_.chance(0.8) ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER);
     contact_ = {};
     path_.clear();
-    judge_.begin();
+    judge_.begin(params_);
     for (std::uint32_t i = 0; i < ticks && result_.ticks < kBlockTicks; ++i) {
       const Hip hip =
           hand_.next({contact_.god_object[0], contact_.god_object[1], contact_.god_object[2]}, contact_.state == FDCG_FREE);
@@ -89,7 +89,8 @@ class Block {
   void report(std::uint32_t faults) {
     constexpr std::uint32_t kRules = 1u << static_cast<unsigned>(Fault::rule_bound);
     constexpr std::uint32_t kSweeps = 1u << static_cast<unsigned>(Fault::sweep_bound);
-    const std::uint32_t allowed = name_.stress_case->may_carry ? kRules | kSweeps : 0;
+    const StressCase& c = *name_.stress_case;
+    const std::uint32_t allowed = !c.may_carry ? 0 : c.owes_force ? kRules : kRules | kSweeps;
     result_.bounds_allowed += static_cast<std::uint64_t>(std::popcount(faults & allowed));
     faults &= ~allowed;
     for (std::size_t i = 0; i < kFaults; ++i) {

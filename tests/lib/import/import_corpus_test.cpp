@@ -10,7 +10,8 @@ using namespace fdcg::bake::test;
 
 namespace {
 
-constexpr Format kFormats[] = {Format::off, Format::obj, Format::ply, Format::stl, Format::gltf, Format::drc};
+constexpr Format kFormats[] = {Format::off, Format::obj, Format::ply,     Format::stl, Format::gltf,
+                               Format::drc, Format::dae, Format::threemf, Format::vtk, Format::x3d};
 
 // Either a valid soup or a refusal with its message.
 void check_any(std::string_view bytes, std::optional<Format> format) {
@@ -106,8 +107,9 @@ TEST_CASE("a truncated mesh is refused or sound, at every byte") {
 }
 
 TEST_CASE("every truncation of a file with counts is refused, but for its last blanks") {
-  for (const char* name : {"cube_quads.off", "cube_ascii.ply", "cube_little.ply", "cube_big.ply", "cube_double_extra.ply",
-                           "cube_solid_binary.stl", "cube_binary.glb", "cube_draco.glb", "cube_sequential.drc"}) {
+  for (const char* name :
+       {"cube_quads.off", "cube_ascii.ply", "cube_little.ply", "cube_big.ply", "cube_double_extra.ply", "cube_solid_binary.stl",
+        "cube_binary.glb", "cube_package.3mf", "cube_legacy.vtk", "cube_binary.vtk", "cube_draco.glb", "cube_sequential.drc"}) {
     INFO(name);
     const std::string bytes = read_bytes(testdata() / "meshes" / "good" / name);
     const Format format = import_text(bytes).format;

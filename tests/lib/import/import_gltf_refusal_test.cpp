@@ -54,8 +54,8 @@ TEST_CASE("what is wrong in the JSON is refused by its path") {
   CHECK(with("/asset/version", 1) == "is glTF 1; version 2.0 is read: convert the file");
   CHECK(with("/asset/minVersion", "2.1") == "is glTF for readers of version 2.1; version 2.0 is read: convert the file");
   CHECK(
-      with("/extensionsRequired", {"KHR_texture_transform", "EXT_meshopt_compression"}) ==
-      "extensionsRequired[1]: the file needs the extension EXT_meshopt_compression, which may change the triangles and is not "
+      with("/extensionsRequired", {"KHR_texture_transform", "EXT_mesh_gpu_instancing"}) ==
+      "extensionsRequired[1]: the file needs the extension EXT_mesh_gpu_instancing, which may change the triangles and is not "
       "read; export it without");
   CHECK(with("/scene", 1) == "scene is 1, but the file has 1 scenes");
   CHECK(with("/scene", -1) == "scene is -1; it must be an integer from 0 to 9007199254740991");

@@ -54,8 +54,9 @@ TEST_CASE("the extension determines the format where the content does not") {
   CHECK(import_mesh(folder.write("a.Obj", "end\n" + kObj))->format == Format::obj);
   const Result<PolygonSoup> unknown = import_mesh(folder.write("a.dat", "end\n" + kObj));
   REQUIRE_FALSE(unknown);
-  CHECK(unknown.error().message.ends_with(
-      "a.dat: is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB and Draco are read: export it as one of them"));
+  CHECK(
+      unknown.error().message.ends_with("a.dat: is of no known mesh format; OFF, OBJ, PLY, STL, glTF, GLB, Draco, COLLADA, "
+                                        "3MF, VTK and X3D are read: export it as one of them"));
 }
 
 TEST_CASE("a format given by the caller is not questioned") {
@@ -119,10 +120,10 @@ TEST_CASE("compressed, packed and unsupported formats are refused by name, with 
   says("BZh91AY rest", "compressed with bzip2");
   says(std::string("\xFD") + "7zXZ rest", "compressed with xz");
   says("\x28\xB5\x2F\xFD rest", "compressed with zstd");
-  says("PK\x03\x04 rest", "is a ZIP archive (3MF files are, too); unpack the mesh first");
+  says("PK\x03\x04 rest", "is a ZIP archive");
   says("7z\xBC\xAF\x27\x1C", "is a 7z archive");
   says("Kaydara FBX Binary  ", "is FBX, which is not read");
-  says("<?xml version=\"1.0\"?><COLLADA/>", "is XML (or HTML)");
+  says("<?xml version=\"1.0\"?><svg/>", "is XML (or HTML)");
   says("<!DOCTYPE html>", "is XML (or HTML)");
   says("ISO-10303-21;\nHEADER;", "is a STEP file");
   // a binary STL may start with anything

@@ -537,7 +537,7 @@ TEST_CASE("behind both faces of a convex edge the steeper descent is taken", "[s
   }
 }
 
-// ---- corners: contact-model CORNER-1, CORNER-5 -----------------------------------------------------------------------------
+// ---- corners: contact-model CORNER-1, CORNER-4, CORNER-5 -------------------------------------------------------------------
 
 TEST_CASE("open corners: free beyond the border, in contact beneath the patch", "[open-corner]") {
   const PlainGraph graph(plane_quad(), Precision::f64);
@@ -559,6 +559,31 @@ TEST_CASE("open corners: free beyond the border, in contact beneath the patch", 
       contact.step(c.hip);
       INFO("mu " << mu << ": " << contact.describe());
       CHECK(contact.result.state == c.state);
+    }
+  }
+}
+
+// The pit is the cube's inside turned out: what is free of the one corner is behind the other.
+TEST_CASE("at a corner the way to the HIP is free or not, whatever is nearest", "[free-at-vertex]") {
+  struct Body {
+    PolygonSoup soup;
+    Hip corner;
+    bool is_pit;
+  };
+  const Body bodies[] = {{moved(cube(), {-0.5, -0.5, -0.5}), {0, 0, 0}, false}, {corner_pit(), {0, 0, 0}, true}};
+  Random random(4);
+  for (const Body& body : bodies) {
+    const PlainGraph graph(body.soup, Precision::f64);
+    const std::uint32_t corner = corner_at(graph, body.corner);
+    for (int i = 0; i < 500; ++i) {
+      const Hip d = point_of(random.direction());
+      const Hip hip = {0.05 * d[0], 0.05 * d[1], 0.05 * d[2]};
+      const bool is_inside = winding_number(body.soup, hip) > 0.5;
+      Contact contact(graph.view(), contact_params(0, 0));
+      contact.state = placed(FDCG_VERTEX, corner, body.corner, {0, 0, 0});
+      contact.step(hip);
+      INFO((body.is_pit ? "pit" : "cube") << ": " << contact.describe());
+      REQUIRE((contact.result.state != FDCG_FREE) == is_inside);
     }
   }
 }

@@ -40,6 +40,7 @@ MUTANTS = [
     ("lands-on-vertex", "lands-on-vertex", "a god-object that lands on an edge's end is on the vertex"),
     ("steeper-face", "steeper-face", "behind both faces: the nearer plane"),
     ("open-corner", "open-corner", "an apex with a boundary edge is free"),
+    ("free-at-vertex", "free-at-vertex", "a corner that the way to the HIP leaves outside lets go"),
     ("steepest-at-vertex", "steepest-at-vertex", "the longest way at a corner wins"),
 ]
 

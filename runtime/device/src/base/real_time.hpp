@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What makes threads punctual, as far as the system allows. Each returns an empty string, or what was not granted and what to
-// do about it: the host runs without, later at worst.
+// Real-time settings of threads, as far as the system allows. Each returns an empty string, or what was not granted and what to
+// do about it: the host then runs without it, with worse timing.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace fdcg::dev {
 std::string set_real_time_priority(const Thread& thread, const std::string& name, int priority);
 // On one cpu. -1: left as it is.
 std::string set_cpu(const Thread& thread, const std::string& name, int cpu);
-// All pages of the process stay in memory: those there are, and where the limit is no hindrance those to come.
+// Locks all pages of the process in memory: present ones, and where there is no limit future ones too.
 std::string lock_memory();
 
 // While it lives, the calling thread has that SCHED_FIFO priority, and so have the threads that it starts. 0, or not granted:
@@ -30,7 +30,7 @@ class OwnPriority {
   int policy_before_ = 0, priority_before_ = 0;
 };
 
-// For the calling thread, at its start: touches the stack that it will use, asks for timers without slack.
+// For the calling thread, at its start: touches the stack that it will use, requests timers without slack.
 void prepare_servo_thread();
 
 }  // namespace fdcg::dev

@@ -57,7 +57,7 @@ std::string set_cpu(const Thread& thread, const std::string& name, int cpu) {
 std::string lock_memory() {
   rlimit limit{};
   const bool is_unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
-  // Pages to come count against the limit too: where there is one, a later allocation would fail for it.
+  // Future pages would count against the limit too: where there is one, a later allocation could fail.
   const bool may_lock_future = is_unlimited || geteuid() == 0;
   if (mlockall(may_lock_future ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) == 0) return {};
   return std::string("memory is not locked: ") + std::strerror(errno) + "; the limit memlock is " + limit_text(RLIMIT_MEMLOCK) +

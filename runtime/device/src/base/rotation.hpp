@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rotations by unit quaternions, real part last.
+// Scalar products, and rotations by unit quaternions, real part last.
 #pragma once
 
 namespace fdcg::dev {
+
+inline double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 // The rotation matrix, row-major.
 inline void rows_of(const double q[4], double rows[9]) {

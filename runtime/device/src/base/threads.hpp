@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the host needs of the system's threads: a clock, an event that one thread waits for, a thread whose end can be waited
-// for with a limit. threads_posix.cpp is the only file that knows how.
+// What the host needs of the system's threads: a clock, an event that one thread waits for, and a thread that can be joined
+// with a time limit. threads_posix.cpp implements it.
 #pragma once
 
 #include <atomic>
@@ -31,9 +31,9 @@ class Thread {
  public:
   // Empty: it runs. `name`: at most 15 characters. The body must not throw; what it captures lives until it returns.
   std::string start(const char* name, std::function<void()> body);
-  // False: it runs on. A thread that was not started has ended.
+  // False: it still runs. A thread that was not started counts as ended.
   bool join_within(std::uint64_t timeout_ns);
-  // Lets it run on by itself, to the end of the process if need be.
+  // Detaches it: it may run until the process ends.
   void abandon();
   bool is_started() const { return state_ != nullptr; }
   std::uintptr_t handle() const;  // the system's

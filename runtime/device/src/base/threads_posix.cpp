@@ -41,7 +41,7 @@ void Event::signal() noexcept {
 bool Event::wait(std::uint64_t timeout_ns) noexcept {
   std::uint32_t was = kIdle;
   if (!word_.compare_exchange_strong(was, kWaiting, std::memory_order_acq_rel)) {
-    word_.exchange(kIdle, std::memory_order_acq_rel);  // only this thread takes a signal away
+    word_.exchange(kIdle, std::memory_order_acq_rel);  // only this thread clears a signal
     return true;
   }
   const std::uint64_t until_ns = monotonic_ns() + timeout_ns;

@@ -8,6 +8,7 @@
 
 #include "base/threads.hpp"
 #include "host/make_transport.hpp"
+#include "host/servo_loop.hpp"
 #include "profile/report_codec.hpp"
 #include "recording/session_log.hpp"
 #include "scene/scene_build.hpp"
@@ -15,16 +16,15 @@
 namespace fdcg::dev {
 namespace {
 
-constexpr std::uint32_t kLogRingBytes = 1u << 22;
 constexpr std::uint64_t kOriginNs = 1'000'000'000;  // of the host's clock: a time of 0 says "never" in places
 constexpr std::uint64_t kArmAgainNs = 200'000'000;
 constexpr std::uint64_t kRoomWaitNs = 1'000'000;
 constexpr int kMostOpenings = 100'000;  // attempts in a row: 1,000 s of a simulated device's time; a file is there or not
 constexpr int kLookTicks = 1000;
-constexpr int kReadTimeoutMs = 1;
-constexpr std::uint64_t kAwayTickNs = 1'000'000;  // of devices that share a scene, while none of them is there
 
-struct Unit {
+}  // namespace
+
+struct FastUnit {
   std::unique_ptr<Transport> transport;
   DeviceState device;
   TickInput input;
@@ -38,20 +38,18 @@ struct Unit {
 };
 
 // A scene and the devices that feel it, ticked as one.
-struct Group {
+struct FastGroup {
   DeviceRange devices;
   DeviceScene scene;
   std::uint64_t clock_ns = 0;
   int clock = 0;  // the device whose reports drive the ticks
 };
 
-}  // namespace
-
 struct FastRun::Impl {
   HostConfig config;
   SceneGraphs graphs;
-  std::vector<std::unique_ptr<Unit>> units;
-  std::vector<std::unique_ptr<Group>> groups;
+  std::vector<std::unique_ptr<FastUnit>> units;
+  std::vector<std::unique_ptr<FastGroup>> groups;
   std::unique_ptr<LogRing> ring;  // of all devices: the order of the log is that of the ticks
   SessionLog log;
   bool has_run = false, has_failed_file = false;
@@ -60,15 +58,15 @@ struct FastRun::Impl {
   std::string build_unit(std::size_t index, const DeviceSetup& setup);
   std::string start_log();
   std::string open_device(std::size_t index, bool is_alone);
-  std::string tick(Group& group);
-  std::string choose_clock(Group& group);
-  void read_reports(Unit& unit, int timeout_ms) const;
-  void catch_up(Unit& unit, std::uint64_t until_ns) const;
-  void finish_input(Unit& unit) const;
-  void send(Unit& unit, const GatedForce& force, std::uint32_t echo);
+  std::string tick(FastGroup& group);
+  std::string choose_clock(FastGroup& group);
+  void read_reports(FastUnit& unit, int timeout_ms) const;
+  void catch_up(FastUnit& unit, std::uint64_t until_ns) const;
+  void finish_input(FastUnit& unit) const;
+  void send(FastUnit& unit, const GatedForce& force, std::uint32_t echo);
   void note_tick(std::size_t index);
-  bool has_ended(const Group& group) const;
-  Group* earliest(std::uint64_t until_ns) const;
+  bool has_ended(const FastGroup& group) const;
+  FastGroup* earliest(std::uint64_t until_ns) const;
 };
 
 FastRun::FastRun() : impl_(std::make_unique<Impl>()) {}
@@ -90,7 +88,7 @@ std::string FastRun::open(HostConfig config) {
 }
 
 std::string FastRun::Impl::build_group(const DeviceRange& devices) {
-  auto group = std::make_unique<Group>();
+  auto group = std::make_unique<FastGroup>();
   group->devices = devices;
   std::string problem = build_device_scene(config, devices, graphs, &group->scene);
   for (std::size_t i = 0; i < devices.count && problem.empty(); ++i)
@@ -101,7 +99,7 @@ std::string FastRun::Impl::build_group(const DeviceRange& devices) {
 
 std::string FastRun::Impl::build_unit(std::size_t index, const DeviceSetup& setup) {
   const DeviceConfig& from = config.devices[index];
-  auto unit = std::make_unique<Unit>();
+  auto unit = std::make_unique<FastUnit>();
   unit->transport = make_transport(from, config.loop);
   fdcg_error error{};
   if (!begin_device(setup, &unit->device, &error)) return "device '" + from.name + "': " + error.message;
@@ -115,22 +113,22 @@ std::string FastRun::Impl::build_unit(std::size_t index, const DeviceSetup& setu
 std::string FastRun::Impl::start_log() {
   if (config.log_file.empty()) return {};
   const auto count = static_cast<std::uint32_t>(units.size());
-  ring = std::make_unique<LogRing>(kLogRingBytes * std::bit_ceil(count), static_cast<int>(count));
+  ring = std::make_unique<LogRing>(LogRing::kUsualBytes * std::bit_ceil(count), static_cast<int>(count));
   LogRing* const rings[] = {ring.get()};
   std::string problem = log.start(config, rings, 1);
   has_failed_file = !problem.empty();
   return problem;
 }
 
-bool FastRun::Impl::has_ended(const Group& group) const {
+bool FastRun::Impl::has_ended(const FastGroup& group) const {
   for (std::size_t i = 0; i < group.devices.count; ++i)
     if (!units[group.devices.first + i]->has_ended) return false;
   return true;
 }
 
 // The device whose clock is furthest behind and before the end; null: all have finished.
-Group* FastRun::Impl::earliest(std::uint64_t until_ns) const {
-  Group* first = nullptr;
+FastGroup* FastRun::Impl::earliest(std::uint64_t until_ns) const {
+  FastGroup* first = nullptr;
   for (const auto& group : groups) {
     if (has_ended(*group) || (until_ns != 0 && group->clock_ns >= until_ns)) continue;
     if (first == nullptr || group->clock_ns < first->clock_ns) first = group.get();
@@ -153,7 +151,7 @@ std::string FastRun::run(double seconds, bool arm, const std::function<bool()>& 
   const auto until_ns = static_cast<std::uint64_t>(std::max(seconds, 0.0) * 1e9);
   std::string problem;
   for (std::uint64_t ticks = 1; problem.empty(); ++ticks) {
-    Group* const group = impl.earliest(until_ns);
+    FastGroup* const group = impl.earliest(until_ns);
     if (group == nullptr) break;
     problem = impl.tick(*group);
     if (ticks % kLookTicks == 0 && is_stopping && is_stopping()) break;
@@ -170,7 +168,7 @@ std::string FastRun::run(double seconds, bool arm, const std::function<bool()>& 
 
 // A single device is opened with repeated attempts; one of several is tried once, and the others continue without it.
 std::string FastRun::Impl::open_device(std::size_t index, bool is_alone) {
-  Unit& unit = *units[index];
+  FastUnit& unit = *units[index];
   std::string problem = "it could not be opened";
   const bool is_simulated = config.devices[index].source == DeviceSource::kSimulated;
   const int most = is_simulated && is_alone ? kMostOpenings : 1;
@@ -190,7 +188,7 @@ std::string FastRun::Impl::open_device(std::size_t index, bool is_alone) {
 }
 
 // All that have come, the first with a wait.
-void FastRun::Impl::read_reports(Unit& unit, int timeout_ms) const {
+void FastRun::Impl::read_reports(FastUnit& unit, int timeout_ms) const {
   TickInput& input = unit.input;
   std::uint8_t data[kMaxReportBytes + 1];
   for (bool is_first = true; input.report_count < kMaxDrain; is_first = false) {
@@ -208,7 +206,7 @@ void FastRun::Impl::read_reports(Unit& unit, int timeout_ms) const {
 }
 
 // Reads the other devices' reports up to that time. Each device has its own clock, advanced only by its reads.
-void FastRun::Impl::catch_up(Unit& unit, std::uint64_t until_ns) const {
+void FastRun::Impl::catch_up(FastUnit& unit, std::uint64_t until_ns) const {
   bool is_behind = true;
   while (is_behind && unit.is_open && unit.input.read != ReadStatus::kLost && unit.input.report_count < kMaxDrain) {
     is_behind = unit.transport->clock_ns() < until_ns;
@@ -217,7 +215,7 @@ void FastRun::Impl::catch_up(Unit& unit, std::uint64_t until_ns) const {
 }
 
 // Clock, poses and commands, as ServoLoop::gather has them.
-void FastRun::Impl::finish_input(Unit& unit) const {
+void FastRun::Impl::finish_input(FastUnit& unit) const {
   TickInput& input = unit.input;
   const std::uint64_t clock_ns = unit.transport->clock_ns();
   input.now_ns = kOriginNs + clock_ns;
@@ -230,7 +228,7 @@ void FastRun::Impl::finish_input(Unit& unit) const {
   unit.begins = false;
 }
 
-void FastRun::Impl::send(Unit& unit, const GatedForce& force, std::uint32_t echo) {
+void FastRun::Impl::send(FastUnit& unit, const GatedForce& force, std::uint32_t echo) {
   const Profile& profile = unit.device.setup.profile;
   if (!profile.has_output) return;
   Command command;
@@ -246,12 +244,12 @@ void FastRun::Impl::send(Unit& unit, const GatedForce& force, std::uint32_t echo
 }
 
 // Opens the devices that can be opened, reads the report of the device that is next, and sets the group's clock by it.
-std::string FastRun::Impl::choose_clock(Group& group) {
+std::string FastRun::Impl::choose_clock(FastGroup& group) {
   const DeviceRange& devices = group.devices;
-  Unit* waiting = nullptr;
+  FastUnit* waiting = nullptr;
   for (std::size_t i = 0; i < devices.count; ++i) {
     const std::size_t index = devices.first + (static_cast<std::size_t>(group.clock) + i) % devices.count;
-    Unit& unit = *units[index];
+    FastUnit& unit = *units[index];
     unit.input.report_count = 0;
     unit.input.read = unit.is_open ? ReadStatus::kTimeout : ReadStatus::kLost;
     if (unit.has_ended) continue;
@@ -270,20 +268,20 @@ std::string FastRun::Impl::choose_clock(Group& group) {
   return {};
 }
 
-std::string FastRun::Impl::tick(Group& group) {
+std::string FastRun::Impl::tick(FastGroup& group) {
   if (std::string problem = choose_clock(group); !problem.empty()) return problem;
   const std::size_t first = group.devices.first;
   const int count = static_cast<int>(group.devices.count);
   Member members[kMaxDevices];
   for (int i = 0; i < count; ++i) {
-    Unit& unit = *units[first + static_cast<std::size_t>(i)];
+    FastUnit& unit = *units[first + static_cast<std::size_t>(i)];
     catch_up(unit, group.clock_ns);
     finish_input(unit);
     members[i] = {&unit.device, &unit.input, &unit.output};
   }
   group.clock = group_tick(members, count);
   for (int i = 0; i < count; ++i) {
-    Unit& unit = *units[first + static_cast<std::size_t>(i)];
+    FastUnit& unit = *units[first + static_cast<std::size_t>(i)];
     if (unit.is_open) send(unit, unit.output.force, unit.output.echo);
     if (unit.output.phase != Phase::kDisarmed) unit.wants_arming = false;  // after a fault the user must arm again
   }
@@ -299,7 +297,7 @@ std::string FastRun::Impl::tick(Group& group) {
 }
 
 void FastRun::Impl::note_tick(std::size_t index) {
-  Unit& unit = *units[index];
+  FastUnit& unit = *units[index];
   if (unit.output.has_sample) {
     if (unit.last_good_ns != 0) unit.status.interval.add(unit.input.now_ns - unit.last_good_ns);
     unit.last_good_ns = unit.input.now_ns;

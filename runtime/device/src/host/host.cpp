@@ -19,9 +19,10 @@ namespace fdcg::dev {
 
 namespace {
 
-constexpr std::uint32_t kLogRingBytes = 1u << 22;  // some 1.5 s of ticks at 8 kHz while the disk is busy
 constexpr std::uint64_t kStopNs = static_cast<std::uint64_t>(Host::kStopS * 1e9);
 constexpr std::uint64_t kStopMarginNs = 100'000'000;  // of kStopS, for what follows the threads
+
+}  // namespace
 
 // A device and all that its two threads touch.
 struct Unit {
@@ -56,8 +57,6 @@ struct Shared {
   SessionLog log;
   std::uint64_t start_ns = monotonic_ns();  // the same for all: motions of one object agree
 };
-
-}  // namespace
 
 struct Host::Impl {
   TransportMaker maker;
@@ -123,7 +122,7 @@ std::string Host::Impl::build_group(const DeviceRange& devices) {
   if (!problem.empty()) return problem;
   if (!shared->config.log_file.empty()) {
     const auto count = static_cast<std::uint32_t>(devices.count);
-    group->log = std::make_unique<LogRing>(kLogRingBytes * std::bit_ceil(count), static_cast<int>(count));
+    group->log = std::make_unique<LogRing>(LogRing::kUsualBytes * std::bit_ceil(count), static_cast<int>(count));
   }
   for (std::size_t i = devices.first; problem.empty() && i < devices.first + devices.count; ++i)
     problem = build_unit(i, *group);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <new>
 
 #include "fdcg/device.h"
 #include "host/emergency.hpp"

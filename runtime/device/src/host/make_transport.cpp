@@ -11,15 +11,9 @@ std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const 
 }
 
 std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop) {
-  switch (config.source) {
-    case DeviceSource::kHid:
-      return make_hid_transport(config, loop);
-    case DeviceSource::kSimulated:
-      return make_simulated_transport(config.simulation);
-    case DeviceSource::kRecorded:
-      return make_recorded_transport(config);
-  }
-  return nullptr;  // no other source
+  if (config.source == DeviceSource::kHid) return make_hid_transport(config, loop);
+  if (config.source == DeviceSource::kSimulated) return make_simulated_transport(config.simulation);
+  return make_recorded_transport(config);
 }
 
 }  // namespace fdcg::dev

@@ -9,14 +9,6 @@
 
 namespace fdcg::dev {
 
-namespace {
-
-constexpr int kReadTimeoutMs = 1;
-constexpr std::uint64_t kAwayTickNs = 1'000'000;
-constexpr std::uint64_t kPublishNs = 20'000'000;
-
-}  // namespace
-
 bool ServoLoop::begin(const DeviceSetup& setup, const ServoParts& parts, fdcg_error* error) {
   parts_ = parts;
   for (std::size_t i = 0; i < parts_.moving.size(); ++i)

@@ -24,6 +24,9 @@
 
 namespace fdcg::dev {
 
+inline constexpr int kReadTimeoutMs = 1;
+inline constexpr std::uint64_t kAwayTickNs = 1'000'000;  // of devices that share a scene, while none of them is there
+
 struct ServoParts {
   Transport* transport = nullptr;
   Link* link = nullptr;

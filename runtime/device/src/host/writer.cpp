@@ -8,7 +8,6 @@ namespace fdcg::dev {
 namespace {
 
 constexpr std::uint64_t kSilenceNs = static_cast<std::uint64_t>(kSilenceS * 1e9);
-constexpr std::uint64_t kPublishNs = 20'000'000;
 constexpr std::uint64_t kAwakeNs = 100'000'000;  // with nothing to do: often enough to see a stop, even if its wake were lost
 // A write may block the thread for 5.1 s, and a host must stop within 6 s: after a failed write there is no other attempt.
 constexpr std::uint64_t kGoodbyeNs = 800'000'000;

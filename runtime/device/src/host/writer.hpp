@@ -16,6 +16,8 @@
 
 namespace fdcg::dev {
 
+inline constexpr std::uint64_t kPublishNs = 20'000'000;  // between two publications of a thread's status
+
 struct WriterStatus {
   std::uint64_t writes = 0, failures = 0;
   TimeHistogram write;  // of a write call

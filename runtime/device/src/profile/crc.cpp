@@ -50,20 +50,8 @@ Word reflected(const Table<Word>& table, Word rest, const std::uint8_t* data, in
 }  // namespace
 
 int bytes_of(CrcKind kind) {
-  switch (kind) {
-    case CrcKind::kNone:
-      return 0;
-    case CrcKind::kCrc16CcittFalse:
-    case CrcKind::kCrc16Modbus:
-      return 2;
-    case CrcKind::kCrc32:
-      return 4;
-    case CrcKind::kCrc8:
-    case CrcKind::kSum8:
-    case CrcKind::kXor8:
-      return 1;
-  }
-  return 0;
+  constexpr int kBytes[] = {0, 2, 2, 4, 1, 1, 1};
+  return kBytes[static_cast<int>(kind)];
 }
 
 std::uint32_t crc_of(CrcKind kind, const std::uint8_t* data, int bytes) {

@@ -68,8 +68,8 @@ bool serial_arm(const KinematicsParams& k, const double* axis, TipPose* tip) {
   return true;
 }
 
-// Where three spheres of radius `radius` meet, on the side of their centres' plane to which z points. False: nowhere, or on a
-// line's worth of places.
+// Where three spheres of radius `radius` meet, on the side of their centres' plane to which z points. False: nowhere, or along
+// a curve.
 bool meeting_point(const V3 centre[3], double radius, V3* point) {
   const V3 u = centre[1] - centre[0], v = centre[2] - centre[0];
   V3 normal = cross(u, v);

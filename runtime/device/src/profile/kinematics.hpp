@@ -2,8 +2,8 @@
 // Axes to the tip's position, in the device's frame, and the Jacobian that takes forces back to efforts. Pure; no heap, no
 // lock.
 //
-// Parameters, in the order of KinematicsParams. What a parameter is not named for is ignored. An axis' zero and direction are
-// the bias and scale of its field in the profile.
+// Parameters, in the order of KinematicsParams. Parameters that a kind does not name are ignored. An axis' zero and direction
+// are the bias and scale of its field in the profile.
 //
 // kCartesian: 1 to 3 axes in metres, x, y, z; one that is not there is 0. No parameters.
 //

@@ -73,7 +73,7 @@ struct KinematicsParams {
   double angles_rad[6] = {};
 };
 
-// What the device and the hand can stand, in the device's frame. A limit that is not known (0, not finite) means no force.
+// Limits of the device and the hand, in the device's frame. A limit that is not known (0, not finite) means no force.
 struct DeviceLimits {
   double force_n = 0;
   double effort[kMaxAxes] = {};  // of each axis: N (cartesian) or N m

@@ -12,7 +12,7 @@
 namespace fdcg::dev {
 namespace {
 
-// Bounds that no device for a hand comes near: what is beyond them is a slip of the unit.
+// Bounds far beyond any device for a hand: a value outside them has a wrong unit.
 constexpr json::NumberRange kForce{0, 1000, false, "N"};
 constexpr json::NumberRange kEffort{0, 1000, false, "N or N m"};
 constexpr json::NumberRange kSlew{0, 1e8, false, "N/s"};
@@ -65,7 +65,7 @@ void read_limits(const json::Value& json, int axis_count, DeviceLimits* limits) 
   limits->device_watchdog_s = json["device_watchdog_s"].number_or(0, kWatchdog);
 }
 
-// What is not known, for a device that could push, and what it is too slow for.
+// Warnings: limits that are not known, for a device that could push, and a rate that is too low.
 void warn(const json::Value& limits, double rate_hz, const std::string& file_name, std::vector<std::string>* warnings) {
   if (const std::string warning = rate_warning(rate_hz); !warning.empty())
     warnings->push_back(one_line(file_name + ": " + warning));

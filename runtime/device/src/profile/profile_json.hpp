@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device profiles as people write them: JSON, by schemas/device-profile.schema.json. Load time only; allocates.
+// Device profiles as JSON, by schemas/device-profile.schema.json. Load time only; allocates.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace fdcg::dev {
 std::string parse_profile(std::string_view text, const std::string& file_name, Profile* profile,
                           std::vector<std::string>* warnings = nullptr);
 
-// What follows for a device that reports so seldom that the gate takes it for silent; empty: it does not.
+// A warning for a device that reports so seldom that the gate counts it as silent; empty: none.
 std::string rate_warning(double rate_hz);
 
 // The profiles of runtime/device/profiles, by their files' names without ".json", in alphabetical order.

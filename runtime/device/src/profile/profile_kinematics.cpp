@@ -12,7 +12,7 @@ namespace {
 // Of a device for a hand.
 constexpr json::NumberRange kLength{0, 10, false, "m"};
 constexpr json::NumberRange kLengthOrNone{0, 10, true, "m"};
-constexpr json::NumberRange kPlace{-10, 10, true, "m"};
+constexpr json::NumberRange kOffset{-10, 10, true, "m"};
 constexpr json::NumberRange kAngle{-7, 7, true, "rad"};  // a turn and a bit
 constexpr json::NumberRange kCoupling{-1, 1, true, ""};
 
@@ -23,7 +23,7 @@ void read_arm(const json::Value& json, KinematicsParams* kinematics) {
   lengths_m[0] = json["shoulder_height_m"].number(kLengthOrNone);
   lengths_m[1] = json["upper_m"].number(kLength);
   lengths_m[2] = json["forearm_m"].number(kLength);
-  if (json["origin_m"]) json["origin_m"].numbers(lengths_m + 3, 3, kPlace);
+  if (json["origin_m"]) json["origin_m"].numbers(lengths_m + 3, 3, kOffset);
   kinematics->angles_rad[0] = json["elbow_coupling"].number_or(0, kCoupling);
 }
 
@@ -35,7 +35,7 @@ void read_delta(const json::Value& json, KinematicsParams* kinematics) {
   lengths_m[1] = json["upper_m"].number(kLength);
   lengths_m[2] = json["lower_m"].number(kLength);
   lengths_m[3] = json["platform_radius_m"].number(kLengthOrNone);
-  lengths_m[4] = json["origin_z_m"].number_or(0, kPlace);
+  lengths_m[4] = json["origin_z_m"].number_or(0, kOffset);
   if (!json["azimuths_rad"]) return;
   double* azimuths_rad = kinematics->angles_rad;
   json["azimuths_rad"].numbers(azimuths_rad, 3, kAngle);

@@ -11,7 +11,7 @@
 namespace fdcg::dev {
 namespace {
 
-// A clock that steps more coarsely makes fresh reports look old; one that goes round faster cannot show age at all.
+// A clock with coarser steps makes fresh reports look old; one that wraps sooner cannot show a report's age.
 constexpr double kMostTimeStepS = kMaxAgeS / 2;
 constexpr double kLeastTimeRoundS = 10 * kMaxAgeS;
 
@@ -72,7 +72,7 @@ class Report {
   static constexpr json::Keys kFieldKeys{"role",  "axis", "offset", "type",       "endian",
                                          "scale", "bias", "unit",   "fault_mask", "value"};
 
-  // The bytes are within the report, and nobody else's.
+  // The bytes are within the report, and no other field uses them.
   void claim(const json::Value& json, const char* key, int offset, int bytes) {
     const int last = layout_->bytes - bytes;
     if (offset > last) {

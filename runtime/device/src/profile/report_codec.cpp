@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "profile/report_codec.hpp"
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -34,62 +35,36 @@ void store(const Field& field, std::uint32_t raw, std::uint8_t* report) {
 
 // ---- Raw bits and numbers
 
-double number_of(NumberType type, std::uint32_t raw) {
-  switch (type) {
-    case NumberType::kU8:
-    case NumberType::kU16:
-    case NumberType::kU32:
-      return raw;
-    case NumberType::kI8:
-      return static_cast<std::int8_t>(raw);
-    case NumberType::kI16:
-      return static_cast<std::int16_t>(raw);
-    case NumberType::kI32:
-      return static_cast<std::int32_t>(raw);
-    case NumberType::kF32: {
-      float number = 0;
-      std::memcpy(&number, &raw, sizeof number);
-      return static_cast<double>(number);
-    }
-  }
-  return 0;
-}
-
-struct TypeRange {
+// By NumberType.
+struct TypeInfo {
+  int bytes;
   double least, most;
 };
+template <class Number>
+constexpr TypeInfo info_of() {
+  return {sizeof(Number), std::numeric_limits<Number>::lowest(), std::numeric_limits<Number>::max()};
+}
+constexpr TypeInfo kTypeInfos[] = {info_of<std::uint8_t>(), info_of<std::int8_t>(),   info_of<std::uint16_t>(),
+                               info_of<std::int16_t>(), info_of<std::uint32_t>(), info_of<std::int32_t>(),
+                               info_of<float>()};
 
-TypeRange range_of(NumberType type) {
-  switch (type) {
-    case NumberType::kU8:
-      return {0, std::numeric_limits<std::uint8_t>::max()};
-    case NumberType::kI8:
-      return {std::numeric_limits<std::int8_t>::min(), std::numeric_limits<std::int8_t>::max()};
-    case NumberType::kU16:
-      return {0, std::numeric_limits<std::uint16_t>::max()};
-    case NumberType::kI16:
-      return {std::numeric_limits<std::int16_t>::min(), std::numeric_limits<std::int16_t>::max()};
-    case NumberType::kU32:
-      return {0, std::numeric_limits<std::uint32_t>::max()};
-    case NumberType::kI32:
-      return {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max()};
-    case NumberType::kF32:
-      return {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max()};
-  }
-  return {0, 0};
+const TypeInfo& info_of(NumberType type) {
+  return kTypeInfos[static_cast<int>(type)];
 }
 
-// Held in the type's range. Never NaN: that is 0.
+// `raw` has no bits beyond the type's own.
+double number_of(NumberType type, std::uint32_t raw) {
+  if (type == NumberType::kF32) return static_cast<double>(std::bit_cast<float>(raw));
+  const TypeInfo& info = info_of(type);
+  return raw > info.most ? raw - std::ldexp(1.0, 8 * info.bytes) : raw;
+}
+
+// Clamped to the type's range. Never NaN: that is 0.
 std::uint32_t raw_of(NumberType type, double number) {
-  const TypeRange range = range_of(type);
+  const TypeInfo& range = info_of(type);
   if (std::isnan(number)) number = 0;
   number = number < range.least ? range.least : number > range.most ? range.most : number;
-  if (type == NumberType::kF32) {
-    const float narrow = static_cast<float>(number);
-    std::uint32_t raw = 0;
-    std::memcpy(&raw, &narrow, sizeof raw);
-    return raw;
-  }
+  if (type == NumberType::kF32) return std::bit_cast<std::uint32_t>(static_cast<float>(number));
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::nearbyint(number)));
 }
 
@@ -102,7 +77,7 @@ std::uint32_t raw_of_value(const Field& field, double value) {
   return raw_of(field.type, ((std::isnan(value) ? 0 : value) - field.bias) / field.scale);
 }
 
-// The device's clock goes round.
+// The device's clock wraps.
 std::uint32_t raw_of_time(const Field& field, double time_s) {
   const double round = std::ldexp(1.0, 8 * bytes_of(field.type));
   const double ticks = std::fmod(std::nearbyint(time_s / field.scale), round);
@@ -140,33 +115,19 @@ void write_frame(const ReportLayout& layout, std::uint8_t* data, RawOf raw_of_fi
 }
 
 void read_into(const Field& field, std::uint32_t raw, Sample* sample) {
-  switch (field.role) {
-    case Role::kAxis:
-      sample->axis[field.axis] = value_of(field, raw);
-      break;
-    case Role::kSequence:
-      sample->sequence = raw;
-      break;
-    case Role::kEcho:
-      sample->echo = raw;
-      break;
-    case Role::kTime:
-      sample->time_s = number_of(field.type, raw) * field.scale;
-      break;
-    case Role::kButtons:
-      sample->buttons = raw;
-      break;
-    case Role::kStatus:
-      sample->has_fault = sample->has_fault || (raw & field.constant) != 0;
-      break;
-    case Role::kEffort:
-    case Role::kEnable:
-    case Role::kConstant:
-      break;
-  }
+  if (field.role == Role::kAxis) sample->axis[field.axis] = value_of(field, raw);
+  if (field.role == Role::kSequence) sample->sequence = raw;
+  if (field.role == Role::kEcho) sample->echo = raw;
+  if (field.role == Role::kTime) sample->time_s = number_of(field.type, raw) * field.scale;
+  if (field.role == Role::kButtons) sample->buttons = raw;
+  if (field.role == Role::kStatus) sample->has_fault = sample->has_fault || (raw & field.constant) != 0;
 }
 
 }  // namespace
+
+int bytes_of(NumberType type) {
+  return info_of(type).bytes;
+}
 
 Verdict decode_input(const Profile& profile, const std::uint8_t* data, int bytes, Sample* sample) {
   const ReportLayout& layout = profile.input;
@@ -183,39 +144,21 @@ Verdict decode_input(const Profile& profile, const std::uint8_t* data, int bytes
 
 void encode_output(const Profile& profile, const Command& command, std::uint8_t* data) {
   write_frame(profile.output, data, [&command](const Field& field) -> std::uint32_t {
-    switch (field.role) {
-      case Role::kEffort:
-        return raw_of_value(field, command.effort[field.axis]);
-      case Role::kSequence:
-        return command.sequence;
-      case Role::kEcho:
-        return command.echo;
-      case Role::kEnable:
-        return command.is_enabled ? field.constant : 0;
-      default:
-        return 0;
-    }
+    if (field.role == Role::kEffort) return raw_of_value(field, command.effort[field.axis]);
+    if (field.role == Role::kSequence) return command.sequence;
+    if (field.role == Role::kEcho) return command.echo;
+    return field.role == Role::kEnable && command.is_enabled ? field.constant : 0;
   });
 }
 
 void encode_input(const Profile& profile, const Sample& sample, std::uint8_t* data) {
   write_frame(profile.input, data, [&sample](const Field& field) -> std::uint32_t {
-    switch (field.role) {
-      case Role::kAxis:
-        return raw_of_value(field, sample.axis[field.axis]);
-      case Role::kSequence:
-        return sample.sequence;
-      case Role::kEcho:
-        return sample.echo;
-      case Role::kTime:
-        return raw_of_time(field, sample.time_s);
-      case Role::kButtons:
-        return sample.buttons;
-      case Role::kStatus:
-        return sample.has_fault ? field.constant : 0;
-      default:
-        return 0;
-    }
+    if (field.role == Role::kAxis) return raw_of_value(field, sample.axis[field.axis]);
+    if (field.role == Role::kSequence) return sample.sequence;
+    if (field.role == Role::kEcho) return sample.echo;
+    if (field.role == Role::kTime) return raw_of_time(field, sample.time_s);
+    if (field.role == Role::kButtons) return sample.buttons;
+    return field.role == Role::kStatus && sample.has_fault ? field.constant : 0;
   });
 }
 

@@ -9,7 +9,7 @@
 
 namespace fdcg::dev {
 
-// What an input report says.
+// The content of an input report.
 struct Sample {
   double axis[kMaxAxes] = {};  // m or rad
   std::uint32_t sequence = 0;  // as wide as its field
@@ -42,8 +42,8 @@ struct ReportJudge {
 // sequence, a report whose time is that of the one before is repeated; without a time, none is stale; with neither, all is
 // good.
 //
-// Age is measured against the quickest report: clocks may differ by kMostDrift. After a silence of half the round of the
-// device's clock it has to settle for kSettleS. A restart of the device (its clock or sequence begins again), or a leap of the
+// Age is measured against the quickest report: clocks may differ by kMostDrift. After a silence of half the period of the
+// device's clock, ages are unknown for kSettleS. A restart of the device (its clock or sequence begins again), or a leap of the
 // sequence or of the clock ahead that nothing explains, shows as kOutOfOrder for kRestartReports reports, then is taken as new.
 inline constexpr int kRestartReports = 20;
 inline constexpr double kMaxAgeS = 0.005;
@@ -51,7 +51,7 @@ inline constexpr double kMostDrift = 200e-6;
 inline constexpr double kSettleS = 0.1;
 Verdict judge_report(const Profile& profile, const Sample& sample, double host_s, ReportJudge* judge);
 
-// What an output report says. Effort beyond a field's range is held at the range's end.
+// The content of an output report. Effort beyond a field's range is clamped.
 struct Command {
   double effort[kMaxAxes] = {};
   std::uint32_t sequence = 0, echo = 0;

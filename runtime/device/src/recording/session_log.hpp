@@ -23,6 +23,8 @@ class LogRing {
   LogRing(const LogRing&) = delete;
   LogRing& operator=(const LogRing&) = delete;
   static constexpr std::uint32_t kLeastBytes = 1 << 15;  // more than two ticks with all that a tick can hold
+  static constexpr std::uint32_t kUsualBytes = 1u
+                                               << 22;  // for each device: some 1.5 s of ticks at 8 kHz while the disk is busy
   // For the servo thread. False: the ring is full, and the tick is counted as dropped. No lock, no heap. device: index among
   // the ring's devices.
   bool put(const TickInput& input, const TickOutput& output, int device = 0);

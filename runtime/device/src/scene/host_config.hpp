@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a host is asked to run: a scene file's content (scene_json.hpp fills it), checked and with every file named in full.
+// The content of a scene file (scene_json.hpp fills it), checked, with the full path of every file.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@
 
 namespace fdcg::dev {
 
-// kDriven: by the caller, fdcg_host_set_pose. kBody: by what acts on it (fdcg/body.h).
-// kSoft: it stays, and gives way (soft.hpp).
+// kDriven: by the caller, fdcg_host_set_pose. kBody: by forces (fdcg/body.h).
+// kSoft: fixed and deformable (soft.hpp).
 enum class MotionKind { kFixed, kSpin, kSwing, kDriven, kBody, kSoft };
 
 // Of kBody. Weighed by the first of mass and density that is above 0, or by the graph's file.
@@ -47,7 +47,7 @@ struct ObjectConfig {
   Motion motion;
 };
 
-// What bodies fall onto: solid where normal . x < offset_m, world.
+// The ground: solid where normal . x < offset_m, world.
 struct GroundConfig {
   bool is_there = false;
   double normal[3] = {0, 0, 1};  // unit

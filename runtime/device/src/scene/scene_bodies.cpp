@@ -46,8 +46,8 @@ void farthest(const fdcg_surface& surface, const double d[3], double p[3]) {
   }
 }
 
-// Both ends of the axis, and rings of 4, 8, ... 8, 4 points between them: at most `most`, even about the axis, so that a ball
-// stands where it is put.
+// Both ends of the axis, and rings of 4, 8, ... 8, 4 points between them: at most `most`, symmetric about the axis, so that a
+// ball does not roll by itself.
 std::vector<double> points_of(const fdcg_surface& surface, int most) {
   std::vector<double> points_m;
   const auto add = [&](double polar, double azimuth) {
@@ -105,7 +105,7 @@ class Builder {
     if (points == 0) return {};
     if (!make_pile(static_cast<std::uint32_t>(points))) return config_.scene_file + ": its bodies: " + error_.message;
     for (std::size_t i = 0; i < config_.objects.size(); ++i) {
-      if (config_.objects[i].motion.kind == MotionKind::kSoft) continue;  // bodies go through it
+      if (config_.objects[i].motion.kind == MotionKind::kSoft) continue;  // bodies do not collide with it
       const std::string problem = is_body(config_.objects[i]) ? add_body(i) : add_fixed(i);
       if (!problem.empty()) return place_of(config_, i) + problem;
     }

@@ -14,11 +14,11 @@ constexpr double kTurn = 6.283185307179586;
 
 constexpr double kMostRateRatio = 8;  // between devices that share a scene: a slow clock's tick is that many fast ones
 
-// Empty, or why it cannot be.
+// Empty, or the error.
 std::string make_soft(const ObjectConfig& object, const SceneLoad& load, const fdcg_graph& graph, const fdcg_params& params,
                       DeviceScene* scene) {
   const SoftConfig& soft = object.motion.soft;
-  // All contacts may press on one corner: it must not come back farther in a tick than it went.
+  // All contacts may press on one corner: its spring must not overshoot within a tick.
   const double most = soft.damping_n_s_per_m * load.slowest_hz + soft.stiffness_n_per_m;
   const double pressed = params.stiffness_n_per_m * load.contact_count;
   if (!(pressed <= most)) {

@@ -39,7 +39,7 @@ struct DeviceRange {
 // All of them where they share it (HostConfig::is_shared), otherwise each by itself.
 std::vector<DeviceRange> device_ranges(const HostConfig& config);
 
-// What a scene has to stand from its devices.
+// The load of a scene by its devices.
 struct SceneLoad {
   int contact_count = 0;  // of all devices: they may press on one thing at once
   double pad_m = 0;       // the largest pad

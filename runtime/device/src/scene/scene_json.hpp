@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes as people write them: JSON, by schemas/servo-scene.schema.json. Load time only; allocates.
+// Scenes as JSON, by schemas/servo-scene.schema.json. Load time only; allocates.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct SceneOptions {
 
 // Empty: *config is the whole of it. Otherwise one line that names file_name, the field, what was found and what is expected;
 // *config is then not to be used. Files are named from file_name's folder and are given in full. `warnings` (may be null) gets
-// a line for each thing that works, but not as one might think: a device without force.
+// a line for each setting that works but may surprise, such as a device without force.
 std::string parse_scene(std::string_view text, const std::string& file_name, HostConfig* config,
                         std::vector<std::string>* warnings = nullptr, const SceneOptions& options = {});
 // The same for a file.

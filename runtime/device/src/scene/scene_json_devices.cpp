@@ -88,7 +88,7 @@ void SceneParser::read_contacts(const json::Value& from, DeviceConfig* device) {
   if (from["turn"]) {
     const json::Value turn = from["turn"].object(kTurnKeys);
     read_button(turn, &grip.turn);
-    // up to half a turn: of the two ways round the shorter, so that the way there is told by its end
+    // up to half a turn, the shorter way round: the end then defines the way
     read_unit(turn["rotation_xyzw"], grip.turn_xyzw, 4);
     const double sign = grip.turn_xyzw[3] < 0 ? -1 : 1;
     for (double& x : grip.turn_xyzw)
@@ -123,7 +123,7 @@ void SceneParser::parse_profile_of(const json::Value& from, const std::string& t
     warnings_->push_back("device " + in_quotes(device->name) + ": " + warning);
 }
 
-// Of a device whose profile nobody has read: a profile that is read has warned of its own rate.
+// For a device without a profile file: parse_profile() warns of the rate of a file.
 void SceneParser::warn_of_rate(const DeviceConfig& device) {
   const std::string warning = rate_warning(device.profile.rate_hz);
   if (warnings_ != nullptr && !warning.empty()) warnings_->push_back("device " + in_quotes(device.name) + ": " + warning);

@@ -14,7 +14,7 @@ namespace fdcg::dev {
 
 inline constexpr std::size_t kLongestName = 60, kLongestPath = 4000;
 inline constexpr double kUnitTolerance = 1e-3;  // of a quaternion, as fdcg_pose has it
-inline constexpr double kMostForce = 1000;      // N; no hand goes beyond
+inline constexpr double kMostForce = 1000;      // N; more than a hand can press
 
 constexpr json::NumberRange metres(double most) {
   return {-most, most, true, "m"};

@@ -109,7 +109,7 @@ Json device_json(const DeviceConfig& device) {
   Json json;
   json["name"] = device.name;
   json["source"] = kSources[static_cast<int>(device.source)];
-  if (device.profile_text.empty()) {  // its simulation says the profile
+  if (device.profile_text.empty()) {  // the simulation names the profile
     json["simulation"] = simulation_json(device.simulation);
   } else {
     json["profile"] = nlohmann::json::parse(device.profile_text, nullptr, false);  // its keys sorted: always the same text

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rotation.hpp"
+
 namespace fdcg::dev {
 namespace {
 
@@ -31,10 +33,6 @@ bool are_known(const DeviceLimits& limits, int axis_count, double rate_hz) {
 
 bool is_finite(const double v[3]) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
-double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 // Also for numbers whose squares are none.

@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kStill = 1e-9;  // of the depth: so near its place, a corner that nothing pushes is put there
 
-double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 void less(const double a[3], const double b[3], double difference[3]) {
   for (int i = 0; i < 3; ++i)
     difference[i] = a[i] - b[i];

@@ -17,10 +17,10 @@ using Bits = std::conditional_t<
     bytes == 1, std::uint8_t,
     std::conditional_t<bytes == 2, std::uint16_t, std::conditional_t<bytes == 4, std::uint32_t, std::uint64_t>>>;
 
-class Writer {
+class TickWriter {
  public:
   static constexpr bool kReads = false;
-  explicit Writer(std::uint8_t* to) : begin_(to), at_(to) {}
+  explicit TickWriter(std::uint8_t* to) : begin_(to), at_(to) {}
   template <class T>
   void operator()(const char*, const T& value) {
     const auto bits = std::bit_cast<Bits<sizeof(T)>>(value);
@@ -217,7 +217,7 @@ LoggedOutput logged(const TickOutput& output) {
 }
 
 std::size_t encode_tick_input(const TickInput& input, std::uint8_t* to) {
-  Writer writer(to);
+  TickWriter writer(to);
   const int flags = (input.arm ? kArm : 0) | (input.disarm ? kDisarm : 0) | (input.begins ? kBegins : 0) |
                     (input.write_failed ? kWriteFailed : 0);
   writer("", input.now_ns);
@@ -261,13 +261,13 @@ std::size_t decode_tick_input(const std::uint8_t* from, std::size_t bytes, TickI
 }
 
 std::size_t encode_tick_output(const LoggedOutput& output, std::uint8_t* to) {
-  Writer writer(to);
+  TickWriter writer(to);
   writer("", std::uint8_t{0});
   visit_state(writer, output);
   std::uint8_t present = 0;
   for (const Part part : kParts) {
     std::uint8_t text[sizeof(LoggedOutput)];
-    Writer trial(text);
+    TickWriter trial(text);
     visit_part(trial, output, part);
     if (std::all_of(text, text + trial.bytes(), [](std::uint8_t byte) { return byte == 0; })) continue;
     present = static_cast<std::uint8_t>(present | part);

@@ -16,7 +16,7 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// What the run would refuse of devices that feel one scene before it starts.
+// What a run would refuse at its start, for devices that share one scene.
 std::string problem_of(const HostConfig& config, const DeviceRange& devices, const SceneGraphs& graphs) {
   DeviceScene scene;
   if (std::string problem = build_device_scene(config, devices, graphs, &scene); !problem.empty()) return problem;
@@ -32,7 +32,7 @@ std::string problem_of(const HostConfig& config, const DeviceRange& devices, con
   return {};
 }
 
-// Names, values and files, and that the runtime takes the whole.
+// Names, values, files, and whether the runtime accepts the whole.
 FileCheck check_scene(const std::string& file, const std::string& text) {
   FileCheck check;
   HostConfig config;
@@ -59,7 +59,7 @@ FileCheck check_profile(const std::string& file, const std::string& text) {
 
 }  // namespace
 
-// What has neither key is no JSON at all (its scene says where), or is told of both.
+// A file that is not JSON is parsed as a scene, for the position of the error.
 FileCheck check_file(const std::string& path) {
   FileCheck check;
   std::string text;

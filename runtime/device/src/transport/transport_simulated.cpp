@@ -8,7 +8,6 @@
 #include <ctime>
 
 #include "base/threads.hpp"
-#include "shared/text.hpp"
 #include "transport/simulated_body.hpp"
 #include "transport/simulated_faults.hpp"
 #include "transport/transports.hpp"

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sweep past a busy corner (contact-model FREE-8; docs/internals/sweep.md). The boxes of the faces there all hold the corner,
+// so a way past it touches them all. The file puts these faces next to one another (format.h, fdcg_fan_run), and the sweep asks
+// the corner's tree of directions instead: seen from the corner a way is an arc of a great circle, and a face is met only where
+// that arc passes its directions. Cost: a few boxes a level for each face of the fan that the arc passes.
+#pragma once
+
+#include "graph/implicit_tree.hpp"
+#include "step/node_entry.hpp"
+
+namespace fdcg {
+
+// Looks at whole fans in place of the boxes around their nodes.
+template <class Geometry>
+class FanSweep : public NodeEntry<Geometry> {
+  using Real = typename Geometry::Real;
+  using Entry = NodeEntry<Geometry>;
+
+ public:
+  using Entry::Entry;
+
+ protected:
+  using Entry::best_, Entry::from_, Entry::from_bound_, Entry::glance_at_node, Entry::graph_, Entry::is_before_best;
+  using Entry::left_, Entry::slab_, Entry::to_, Entry::to_bound_, Entry::way_, Entry::work_left_;
+
+  [[nodiscard]] bool has_runs() const { return graph_.fan_run_count != 0; }
+  // Whether the work ran out before all of a fan was looked at.
+  [[nodiscard]] bool is_cut_short() const { return is_cut_short_; }
+
+  // Whether all nodes below an item of the hierarchy (level -1: a leaf) have been looked at: by their corners' trees, a leaf's
+  // others one by one. A fan is looked at once, for the first item in it.
+  [[gnu::noinline]] bool looked_at_fans(int level, uint32_t index) {
+    const uint64_t first = uint64_t{index} * FDCG_LEAF_NODES << 3 * (level + 1), nodes = graph_.header->node_count;
+    const uint64_t beyond = first + (uint64_t{FDCG_LEAF_NODES} << 3 * (level + 1)), end = beyond < nodes ? beyond : nodes;
+    if (end <= graph_.fan_runs[0].first_node) return false;
+    if (level >= 0) {
+      uint32_t run = run_of(static_cast<uint32_t>(first));
+      const uint32_t last = last_run(run, end);
+      if (last == FDCG_NONE || (level > 0 && last > run)) return false;
+      for (; run <= last; ++run)
+        look_at_fan(run);
+      return true;
+    }
+    spend(work_left_, kLeafWork);
+    for (auto n = static_cast<uint32_t>(first); n < end; ++n) {
+      const uint32_t run = run_of(n);
+      if (run == FDCG_NONE) {
+        glance_at_node(n);
+      } else {
+        look_at_fan(run);
+      }
+    }
+    return true;
+  }
+
+ private:
+  // The way as seen from a corner: from direction `start` to `end`, along a great circle. A face in a box is passed only where
+  // the box meets the circle's plane within `slack`, reaches beyond the start and before the end, and, along each of its own
+  // axes, comes within `padding` of what the arc spans.
+  struct Arc {
+    Vec3<Real> start, end;
+    Vec3<Real> normal, after_start, before_end;  // of the circle's plane, and of those across it at the arc's ends
+    Real slack, padding;
+    Real start_share, end_share;  // of the distances of the way's start and end from the corner
+  };
+
+  static constexpr uint32_t kFewFans = 3;
+  static constexpr uint32_t kRemembered = 8;  // fans; one that is forgotten is looked at again
+  static constexpr Real kAnywhere = 4;        // a slack that every direction is within
+  // Of the way. By so much at least is a face entered later that is left out for being entered after another.
+  static constexpr Real kLater = Real(1) / 256;
+
+  // The run that a node is in, or FDCG_NONE.
+  [[nodiscard]] uint32_t run_of(uint32_t n) const {
+    uint32_t low = 0, high = graph_.fan_run_count;
+    while (low < high) {
+      const uint32_t middle = low + (high - low) / 2;
+      if (graph_.fan_runs[middle].first_node <= n) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    if (low == 0) return FDCG_NONE;
+    const fdcg_fan_run& run = graph_.fan_runs[low - 1];
+    return n - run.first_node < run.node_count ? low - 1 : FDCG_NONE;
+  }
+
+  [[nodiscard]] uint64_t end_of(uint32_t run) const {
+    return uint64_t{graph_.fan_runs[run].first_node} + graph_.fan_runs[run].node_count;
+  }
+
+  // The run that node end - 1 is in, where `run` and few others without gaps reach there; else FDCG_NONE. A record of the
+  // lowest level that holds a few fans and nothing else costs as much to test as its fans.
+  [[nodiscard]] uint32_t last_run(uint32_t run, uint64_t end) const {
+    if (run == FDCG_NONE) return FDCG_NONE;
+    for (uint32_t last = run; last < run + kFewFans; ++last) {
+      if (end <= end_of(last)) return last;
+      const uint32_t next = last + 1;
+      if (next >= graph_.fan_run_count || graph_.fan_runs[next].first_node != end_of(last)) return FDCG_NONE;
+    }
+    return FDCG_NONE;
+  }
+
+  void look_at_fan(uint32_t run) {
+    for (uint32_t i = 0; i < kRemembered && i < looked_at_; ++i) {
+      if (fans_[i] == run) return;
+    }
+    fans_[looked_at_++ % kRemembered] = run;
+    const fdcg_fan_run& fan = graph_.fan_runs[run];
+    const fdcg_busy_corner& busy = graph_.busy_corners[fan.busy];
+    if (left_ == Feature{FDCG_VERTEX, busy.corner}) return;  // contact-model LEAVE-1: all of its faces are left out
+    Arc arc;
+    if (spans_arc(fan, busy.corner, &arc)) search_fan(busy, arc);
+  }
+
+  // False: no face of the fan is to be asked.
+  // In double: a difference of floats has no rounding there, and the plane of a fine needle's tip and a way is felt in the last
+  // digits of their places.
+  [[gnu::noinline]] bool spans_arc(const fdcg_fan_run& fan, uint32_t corner, Arc* arc) {
+    spend(work_left_, kArcWork);
+    const Vec3<double> point = widen(graph_.corner_point(corner)), a = widen(from_) - point, b = widen(to_) - point;
+    const Vec3<double> way = widen(to_) - widen(from_);
+    const double length_a = norm(a), length_b = norm(b), length = norm(way);
+    if (!(length_b > 0) || !(length > 0)) return false;  // it ends on the planes of all
+    const Vec3<double> start = length_a > 0 ? a * (1 / length_a) : Vec3<double>{0, 0, 0}, end = b * (1 / length_b);
+    const Vec3<double> along = way * (1 / length), across = cross(start, end);
+    // Of the three products of two that have one direction that of the two shorter ones is the most accurate.
+    const bool is_a_longest = length_a >= length_b && length_a >= length, is_b_longest = !is_a_longest && length_b >= length;
+    const Vec3<double> normal = is_a_longest ? cross(end, along) : is_b_longest ? cross(start, along) : across;
+    const double sine = norm(normal);
+    const double off = is_a_longest ? sine * length_b : is_b_longest ? sine * length_a : sine * (length_a / length) * length_b;
+    const double at = -dot(a, along);  // where it is nearest to the corner
+    if (left_ == kFree && is_met(fan, corner, at / length, off)) return false;
+    const double nearest = at > 0 && at < length ? off : length_a < length_b ? length_a : length_b;
+    const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;  // and may be entered beside the way
+    Real beside = is_inexact ? seen(slab_ + from_bound_ + to_bound_, static_cast<Real>(nearest)) : Real(0);
+    // contact-model LEAVE-3: a wall beside the way's start
+    if (!(left_ == kFree)) beside += seen(2 * from_bound_, static_cast<Real>(length_a));
+    const double rounding = 8 * RealLimits<double>::kEpsilon;
+    const double bulge = dot(across, across) * 0.3;  // of an arc below a right angle over its chord, or more
+    const Vec3<double> unit = sine > 0 ? normal * (1 / sine) : normal;
+    arc->start = narrowed(start);
+    arc->end = narrowed(end);
+    arc->normal = narrowed(unit);
+    arc->after_start = narrowed(cross(unit, start));
+    arc->before_end = narrowed(cross(end, unit));
+    beside += 8 * RealLimits<Real>::kEpsilon;
+    arc->slack = sine > rounding ? beside + static_cast<Real>(rounding / sine) : kAnywhere;
+    arc->padding = dot(start, end) > 0 ? beside + static_cast<Real>(bulge) : kAnywhere;
+    arc->start_share = static_cast<Real>(length_a / (length_a + length_b));
+    arc->end_share = static_cast<Real>(length_b / (length_a + length_b));
+    return true;
+  }
+  static Vec3<Real> narrowed(Vec3<double> v) {
+    return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
+  }
+
+  // The angle under which something is seen from a distance, or more.
+  static Real seen(Real size, Real distance) {
+    return distance > 2 * size ? 2 * size / distance : size > 0 ? kAnywhere : Real(0);
+  }
+
+  // contact-model FREE-8: a way that passes the corner within rounding meets it, and not one of thousands of faces there whose
+  // sides it passes by as little. `at`: the fraction of the way; `off`: how far from the corner.
+  bool is_met(const fdcg_fan_run& fan, uint32_t corner, double at, double off) {
+    const double extent = graph_.header->extent, deviation = graph_.header->max_deviation;
+    const double rounding = 4.0 * RealLimits<Real>::kEpsilon * (norm1(widen(graph_.corner_point(corner))) + extent);
+    if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : 0) && at >= 0 && at < 1)) return false;
+    const auto fraction = static_cast<Real>(at);
+    if (!is_before_best(fraction, fan.first_node)) return true;
+    best_.fraction = fraction;
+    best_.node = fan.first_node;
+    best_.feature = {FDCG_VERTEX, corner};
+    return true;
+  }
+
+  static constexpr Real kPassedBy = 3;
+  // The fraction of the way at which it may enter a face in the box, or less; kPassedBy: none.
+  template <class FanBox>
+  [[nodiscard]] Real entry_of(const FanBox& box, const Arc& arc) const {
+    spend(work_left_, kArcBoxWork);
+    const Vec3<Real> centre = vec(box.centre), start = arc.start - centre, end = arc.end - centre;
+    Real off = absolute(dot(arc.normal, centre)) - arc.slack;
+    Real after = dot(arc.after_start, centre) - arc.slack, most_after = after + 2 * arc.slack;
+    Real before = dot(arc.before_end, centre) + arc.slack;
+    for (const auto& stored : box.axis) {
+      const Vec3<Real> axis = vec(stored);
+      const Real from = dot(axis, start), to = dot(axis, end), half = dot(axis, axis) + arc.padding * norm1(axis);
+      if ((from < to ? from : to) > half || (from < to ? to : from) < -half) return kPassedBy;
+      const Real spread = absolute(dot(arc.after_start, axis));
+      off -= absolute(dot(arc.normal, axis));
+      after -= spread;
+      most_after += spread;
+      before += absolute(dot(arc.before_end, axis));
+    }
+    if (off > 0 || most_after < 0 || before < 0) return kPassedBy;
+    if (!(after > 0)) return 0;
+    // Where the way has the direction p start + q end it is at q / (p + q).
+    const Real q = arc.start_share * after, p = arc.end_share * before;
+    return q > 0 ? q / (p + q) : Real(0);
+  }
+
+  void search_fan(const fdcg_busy_corner& busy, const Arc& arc) {
+    struct Waiting {
+      Real entry;
+      uint32_t box;  // within its level
+      int level;
+    };
+    const ImplicitTree layout(busy.fan_count, FDCG_LEAF_FAN);
+    const auto* const boxes = graph_.fan_boxes + busy.first_box;
+    const CornerRef<Geometry> corner = graph_.corner(busy.corner);
+    Waiting stack[kMaxLevels + 2];
+    int waiting = 0;
+    stack[waiting++] = {entry_of(boxes[0], arc), 0, layout.levels - 1};
+    while (waiting > 0) {
+      const Waiting next = stack[--waiting];
+      if (*work_left_ == 0) is_cut_short_ = true;
+      if (is_cut_short_) return;
+      if (next.entry > best_.fraction + kLater) continue;  // kPassedBy is
+      if (next.level == 0) {
+        look_at_entries(corner, busy, next.box * FDCG_LEAF_FAN);
+        continue;
+      }
+      const int level = next.level - 1;
+      const uint32_t child = next.box * 2;
+      Waiting found[2];
+      int count = 0;
+      for (uint32_t i = child; i < child + 2 && i < layout.size[level]; ++i) {
+        const Real entry = entry_of(boxes[layout.first[level] + i], arc);
+        if (entry < kPassedBy) found[count++] = {entry, i, level};
+      }
+      const bool is_first_later = count == 2 && found[0].entry > found[1].entry;
+      if (count == 2) stack[waiting++] = found[is_first_later ? 0 : 1];
+      if (count > 0) stack[waiting++] = found[is_first_later ? 1 : 0];
+    }
+  }
+
+  void look_at_entries(CornerRef<Geometry> corner, const fdcg_busy_corner& busy, uint32_t first) {
+    const uint32_t left = busy.fan_count - first, count = left < FDCG_LEAF_FAN ? left : FDCG_LEAF_FAN;
+    for (uint32_t i = first; i < first + count; ++i) {
+      const FanEntry entry = graph_.fan_entry(corner, i);
+      spend(work_left_, kFanEntryWork);
+      if (entry.node != FDCG_NONE) glance_at_node(entry.node);
+    }
+  }
+
+  uint32_t fans_[kRemembered];
+  uint32_t looked_at_ = 0;
+  bool is_cut_short_ = false;
+};
+
+}  // namespace fdcg

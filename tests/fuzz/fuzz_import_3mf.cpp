@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// A package as it is, or XML, which becomes the model of one, and what follows a zero byte in it a second part: so that the
+// mutations need not keep the archive right.
+#include <string>
+
+#include "fuzz_import.hpp"
+#include "zip_writer.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
+  // What unpacks to more than it is may take as much as the limit on it allows.
+  constexpr std::size_t kUnpacked = std::size_t{1} << 18, kEachByte = 100, kLibrary = std::size_t{1} << 18;
+  constexpr std::size_t kMultiple = fdcg::bake::kSceneMultiple;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  if (text.starts_with("PK")) {
+    return fdcg::bake::fuzz_import(fdcg::bake::Format::threemf, data, size, kEachByte * kMultiple,
+                                   kLibrary + kUnpacked * kMultiple);
+  }
+  const std::size_t cut = std::min(text.find('\0'), text.size());
+  const std::string package =
+      fdcg::test::stored_zip({{"3D/3dmodel.model", std::string(text.substr(0, cut))},
+                              {"3D/a.model", cut < text.size() ? std::string(text.substr(cut + 1)) : std::string()}});
+  return fdcg::bake::fuzz_import(fdcg::bake::Format::threemf, reinterpret_cast<const unsigned char*>(package.data()),
+                                 package.size(), kMultiple, kLibrary);
+}

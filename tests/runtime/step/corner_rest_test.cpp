@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Without friction the god-object may rest at a corner only if no way out of the corner leads nearer to the HIP. Bodies that
+// are flat or long have corners where rules of thumb fail: a wall that is far from the HIP may face it all the same.
+#include <algorithm>
+#include <cmath>
+
+#include "catch.hpp"
+#include "contact_rig.hpp"
+#include "descent.hpp"
+#include "exact_solid.hpp"
+#include "random.hpp"
+#include "squashed.hpp"
+
+using namespace fdcg::test;
+using fdcg::bake::Precision;
+
+namespace {
+
+struct Counts {
+  int in_contact = 0, at_vertices = 0, too_far = 0, in_free_air = 0;
+};
+
+// A hand that jumps about in the body's bounds and a little beyond.
+void step_about(const PolygonSoup& soup, Precision precision, std::uint64_t seed, Counts& counts) {
+  constexpr double kMost_eps = 64;
+  fdcg::bake::CompileOptions options;
+  options.precision = precision;
+  options.coplanar.kind = fdcg::bake::Coplanar::Kind::exact;
+  const CompiledMesh mesh(soup, options);
+  const ExactSolid solid(soup, *mesh.view().header);
+  const Descent descent(solid.triangles());
+  const fdcg_header& header = *mesh.view().header;
+  Contact contact(mesh.view(), contact_params(0, 0));
+  Random random(seed);
+  for (int i = 0; i < 400; ++i) {
+    Hip hip;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double middle = (solid.low()[k] + solid.high()[k]) / 2, half = (solid.high()[k] - solid.low()[k]) / 2;
+      hip[k] = middle + 1.3 * half * random.uniform(-1, 1) + header.origin[k];
+    }
+    contact.step(hip);
+    counts.in_contact += contact.result.state != FDCG_FREE;
+    if (contact.result.state != FDCG_VERTEX || contact.result.flags != 0) continue;
+    ++counts.at_vertices;
+    const fdcg_corner_info corner = fdcg_get_corner(&mesh.view(), contact.result.feature);
+    const Hip point = {corner.point[0], corner.point[1], corner.point[2]};
+    const Hip local = {contact.state.hip[0], contact.state.hip[1], contact.state.hip[2]};
+    const double epsilon = precision == Precision::f64 ? 0x1p-52 : 0x1p-23;
+    counts.too_far += descent.reach(point, local) > kMost_eps * epsilon * header.extent;
+    counts.in_free_air += descent.begins_outside(point, local);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("no rest at a corner of a flat or long body that is no least place") {
+  Counts counts;
+  std::uint64_t seed = 0;
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    for (const double factor : {1e-1, 1e-2, 1e-3, 1e-6, 1e1, 1e2, 1e3, 1e6}) {
+      if (precision == Precision::f32 && (factor < 1e-3 || factor > 1e3)) continue;  // as thin as its numbers are coarse
+      for (int i = 0; i < 100; ++i, ++seed) {
+        const PolygonSoup body = double_fan(3 + static_cast<int>(seed % 11), seed);
+        step_about(stretched(body, static_cast<int>(seed % 3), factor), precision, seed, counts);
+      }
+    }
+  }
+  CHECK(counts.in_contact > 10'000);
+  CHECK(counts.too_far == 0);
+  CHECK(counts.in_free_air == 0);
+}
+
+// Fans whose walls alternate: pits, in which a god-object may rest, and saddles, on which it may not.
+TEST_CASE("no rest at a corner of many walls that is no least place") {
+  Counts counts;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const int sides = 4 + 2 * static_cast<int>(seed % 30);
+    const PolygonSoup fan = triangulated(fan_block(sides, 0, 0.9, seed % 2 == 0 ? 0.2 : -0.5), seed);
+    step_about(stretched(transformed(fan, random_rotation(seed)), static_cast<int>(seed % 3), 0.1), Precision::f64, seed,
+               counts);
+  }
+  CHECK(counts.in_contact > 1000);
+  CHECK(counts.at_vertices > 20);
+  CHECK(counts.too_far == 0);
+  CHECK(counts.in_free_air == 0);
+}

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// The runtime in the page: one instance of the module, with one graph and one contact (runtime/bindings/web/fdcg_web.c).
+import { shortest } from './numbers';
+
+interface Exports {
+  memory: WebAssembly.Memory;
+  fdcg_web_allocate(bytes: number): number;
+  fdcg_web_release(room: number): void;
+  fdcg_web_open(data: number, bytes: number): number;
+  fdcg_web_message(): number;
+  fdcg_web_source_map(): number;
+  fdcg_web_hip(): number;
+  fdcg_web_result(): number;
+  fdcg_web_set_params(muStatic: number, muDynamic: number, stiffness: number, damping: number, edgeFriction: number, flags: number): number;
+  fdcg_web_reset(): void;
+  fdcg_web_step(): void;
+  fdcg_web_run(hips: number, results: number, count: number): void;
+  fdcg_web_cast(fx: number, fy: number, fz: number, tx: number, ty: number, tz: number): number;
+  fdcg_web_node(node: number): number;
+  fdcg_web_side(node: number, side: number): number;
+  fdcg_web_connection(connection: number): number;
+  fdcg_web_corner(corner: number): number;
+  fdcg_web_fan(corner: number): number;
+  fdcg_web_node_material(node: number): number;
+}
+
+export const NONE = 0xffffffff;
+export const STATES = ['free', 'face', 'edge', 'vertex'] as const;
+export const TYPES = ['convex', 'concave', 'coplanar', 'boundary'] as const;
+const FLATNESS = ['exact', 'quantum', 'angle'] as const;
+
+export interface TouchParams {
+  muStatic: number;
+  muDynamic: number;
+  stiffness: number;
+  damping: number;
+}
+
+export interface Result {
+  force: [number, number, number];
+  godObject: [number, number, number];
+  state: number;
+  feature: number;
+  slipping: number;
+  transitions: number;
+}
+
+export interface GraphHeader {
+  real: number;
+  nodes: number;
+  connections: number;
+  corners: number;
+  largestFan: number;
+  origin: [number, number, number];
+  metresPerUnit: number;
+  low: [number, number, number];
+  high: [number, number, number];
+  extent: number;
+  types: [number, number, number, number];
+  sourceFaces: number;
+}
+
+type Triple = [number, number, number];
+
+export class Runtime {
+  private readonly x: Exports;
+  private base = 0;
+  private size = 0;
+  constructor(instance: WebAssembly.Instance) {
+    this.x = instance.exports as unknown as Exports;
+  }
+  static async make(wasm: Uint8Array<ArrayBuffer>): Promise<Runtime> {
+    return new Runtime((await WebAssembly.instantiate(wasm)).instance);
+  }
+
+  private view(at: number): DataView {
+    return new DataView(this.x.memory.buffer, at);
+  }
+  private triple(view: DataView, at: number): Triple {
+    return [view.getFloat64(at, true), view.getFloat64(at + 8, true), view.getFloat64(at + 16, true)];
+  }
+  private text(at: number): string {
+    const bytes = new Uint8Array(this.x.memory.buffer, at);
+    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+  }
+
+  /** Throws with the runtime's own message where it refuses the file. */
+  open(file: Uint8Array): void {
+    this.base = this.x.fdcg_web_allocate(file.length);
+    if (this.base === 0) throw new Error('there is not enough memory for the graph');
+    this.size = file.length;
+    new Uint8Array(this.x.memory.buffer, this.base, file.length).set(file);
+    if (this.x.fdcg_web_open(this.base, file.length) !== 0) throw new Error(this.text(this.x.fdcg_web_message()));
+  }
+  /** The open file's bytes, where they lie; until memory grows. */
+  bytes(): Uint8Array {
+    return new Uint8Array(this.x.memory.buffer, this.base, this.size);
+  }
+  header(): GraphHeader {
+    const v = this.view(this.base);
+    const word = (at: number): number => v.getUint32(at, true);
+    return {
+      real: word(24),
+      nodes: word(32),
+      connections: word(40),
+      corners: word(44),
+      largestFan: word(52),
+      origin: this.triple(v, 56),
+      metresPerUnit: v.getFloat64(80, true),
+      low: this.triple(v, 88),
+      high: this.triple(v, 112),
+      extent: v.getFloat64(136, true),
+      types: [word(160), word(164), word(168), word(172)],
+      sourceFaces: word(180),
+    };
+  }
+
+  setParams(p: TouchParams): boolean {
+    return this.x.fdcg_web_set_params(p.muStatic, p.muDynamic, p.stiffness, p.damping, 0, 0) === 0;
+  }
+  reset(): void {
+    this.x.fdcg_web_reset();
+  }
+  step(hip: ArrayLike<number>): Result {
+    new Float64Array(this.x.memory.buffer, this.x.fdcg_web_hip(), 3).set([hip[0]!, hip[1]!, hip[2]!]);
+    this.x.fdcg_web_step();
+    return this.resultAt(this.x.fdcg_web_result());
+  }
+  private resultAt(at: number): Result {
+    const v = this.view(at);
+    return {
+      force: this.triple(v, 0),
+      godObject: this.triple(v, 24),
+      state: v.getUint32(48, true),
+      feature: v.getUint32(52, true),
+      slipping: v.getUint32(56, true),
+      transitions: v.getUint32(60, true),
+    };
+  }
+  /** Nanoseconds a step, over this path, by a contact that begins anew. */
+  timeSteps(hips: Float64Array, params: TouchParams): number {
+    this.setParams(params);
+    this.reset();
+    const count = hips.length / 3;
+    const input = this.x.fdcg_web_allocate(hips.byteLength);
+    const output = this.x.fdcg_web_allocate(72 * count);
+    let spent = Number.NaN;
+    if (input !== 0 && output !== 0) {
+      new Float64Array(this.x.memory.buffer, input, hips.length).set(hips);
+      const before = performance.now();
+      this.x.fdcg_web_run(input, output, count);
+      spent = ((performance.now() - before) * 1e6) / count;
+    }
+    this.x.fdcg_web_release(input);
+    this.x.fdcg_web_release(output);
+    return spent;
+  }
+  /** Where the way from a to b (metres) meets the surface first. */
+  cast(a: Triple, b: Triple): Result | undefined {
+    const met = this.resultAt(this.x.fdcg_web_cast(a[0], a[1], a[2], b[0], b[1], b[2]));
+    return met.state === 0 ? undefined : met;
+  }
+
+  node(node: number): { normal: Triple; offset: number; sides: number; inexact: boolean } {
+    const v = this.view(this.x.fdcg_web_node(node));
+    return { normal: this.triple(v, 0), offset: v.getFloat64(24, true), sides: v.getUint32(32, true), inexact: (v.getUint32(36, true) & 1) !== 0 };
+  }
+  side(node: number, side: number): { normal: Triple; offset: number; connection: number; corner: number; across: number } {
+    const v = this.view(this.x.fdcg_web_side(node, side));
+    return { normal: this.triple(v, 0), offset: v.getFloat64(24, true), connection: v.getUint32(32, true), corner: v.getUint32(40, true), across: v.getUint32(44, true) };
+  }
+  connection(connection: number): { direction: Triple; length: number; corners: [number, number]; nodes: [number, number]; type: number; flatness: number } {
+    const v = this.view(this.x.fdcg_web_connection(connection));
+    return {
+      direction: this.triple(v, 0),
+      length: v.getFloat64(24, true),
+      corners: [v.getUint32(32, true), v.getUint32(36, true)],
+      nodes: [v.getUint32(40, true), v.getUint32(44, true)],
+      type: v.getUint32(56, true),
+      flatness: v.getUint32(60, true),
+    };
+  }
+  corner(corner: number): { point: Triple; normal: Triple; fan: number; open: boolean } {
+    const v = this.view(this.x.fdcg_web_corner(corner));
+    return { point: this.triple(v, 0), normal: this.triple(v, 24), fan: v.getUint32(48, true), open: v.getUint32(52, true) !== 0 };
+  }
+  fan(corner: number): number[] {
+    const count = Math.min(this.corner(corner).fan, 4096);
+    return [...new Uint32Array(this.x.memory.buffer, this.x.fdcg_web_fan(corner), count)].map((entry) => entry >>> 1);
+  }
+  material(node: number): string | undefined {
+    const at = this.x.fdcg_web_node_material(node);
+    return at === 0 ? undefined : this.text(at);
+  }
+  /** Of each source face its node, or NONE; undefined where the file does not have it. */
+  sourceMap(): Uint32Array | undefined {
+    const at = this.x.fdcg_web_source_map();
+    return at === 0 ? undefined : new Uint32Array(this.x.memory.buffer, at, this.header().sourceFaces).slice();
+  }
+
+  // ---- records as fdcg inspect --dump prints them
+
+  dumpNode(n: number): string[] {
+    const node = this.node(n);
+    const lines = [`node ${n}: normal ${vector(node.normal)} offset ${shortest(node.offset)}, ${node.sides} sides${node.inexact ? ', inexact' : ''}`];
+    for (let k = 0; k < node.sides; ++k) {
+      const side = this.side(n, k);
+      const across = side.across === NONE ? 'none' : String(side.across);
+      lines.push(
+        `  side ${k}: connection ${side.connection} from corner ${side.corner} to node ${across}, Voronoi plane ${vector(side.normal)} ${shortest(side.offset)}`,
+      );
+    }
+    return lines;
+  }
+  dumpConnection(c: number): string[] {
+    const edge = this.connection(c);
+    const second = edge.nodes[1] === NONE ? 'none' : String(edge.nodes[1]);
+    return [
+      `connection ${c}: ${TYPES[edge.type]} (${FLATNESS[edge.flatness]}), corners ${edge.corners[0]} ${edge.corners[1]}, nodes ${edge.nodes[0]} ${second}, ` +
+        `edge ${vector(edge.direction)} length ${shortest(edge.length)}`,
+    ];
+  }
+  dumpCorner(v: number): string[] {
+    const corner = this.corner(v);
+    const fan = this.fan(v).map((entry) => ` ${entry}`);
+    return [
+      `corner ${v}: ${vector(corner.point)}, normal ${vector(corner.normal)}${corner.open ? ', open' : ''}, fan${corner.fan > 32 ? ' with a tree:' : ''}${fan.join('')}`,
+    ];
+  }
+}
+
+function vector(v: Triple): string {
+  return `(${v.map(shortest).join(' ')})`;
+}

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// The three-dimensional view: renderer, camera and its flights. Draws when something has changed, and rests else.
+import { Box3, Group, MathUtils, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { prefersReducedMotion } from './dom';
+import { themeColor } from './theme';
+
+const FLIGHT_MS = 600;
+
+interface Flight {
+  from: Vector3;
+  to: Vector3;
+  targetFrom: Vector3;
+  targetTo: Vector3;
+  start: number;
+}
+
+/** Undefined where the browser cannot draw: lists, records and forces are there all the same. Without a graphics processor smooth
+ * edges cost more than all the rest. */
+function makeRenderer(): WebGLRenderer | undefined {
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (context === null) return undefined;
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const name = names === null ? '' : String(context.getParameter(names.UNMASKED_RENDERER_WEBGL));
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  const isSlow = /swiftshader|llvmpipe|software|basic render/i.test(name);
+  const renderer = new WebGLRenderer({ antialias: !isSlow, powerPreference: 'high-performance' });
+  renderer.setPixelRatio(isSlow ? 1 : Math.min(devicePixelRatio, 2));
+  return renderer;
+}
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly content = new Group(); // what there is to look at: fit() shows all of it
+  readonly marks = new Group(); // what moves over it
+  readonly camera = new PerspectiveCamera(40, 1, 1e-4, 50);
+  readonly controls: OrbitControls;
+  readonly canvas: HTMLCanvasElement;
+  readonly resolution = new Vector2(1, 1); // of fat lines, CSS pixels
+  frames = 0;
+  /** Called before each frame with the time; true: draw again after it. */
+  readonly animations = new Set<(now: number) => boolean>();
+  private readonly renderer: WebGLRenderer | undefined;
+  private flight: Flight | undefined;
+  private pending = false;
+
+  constructor(private readonly holder: HTMLElement) {
+    this.renderer = makeRenderer();
+    this.canvas = this.renderer?.domElement ?? document.createElement('canvas');
+    if (this.renderer === undefined) this.canvas.className = 'blank';
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute('role', 'img');
+    this.canvas.setAttribute('aria-label', 'The model. Arrow keys turn it, plus and minus come nearer or go away, F shows all of it.');
+    holder.append(this.canvas);
+    this.scene.add(this.content, this.marks);
+    this.camera.position.set(1.1, 0.7, 1.7);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.enableDamping = false;
+    this.controls.minDistance = 1e-4;
+    this.controls.maxDistance = 20;
+    this.controls.zoomToCursor = true;
+    this.controls.addEventListener('change', () => this.invalidate());
+    this.controls.addEventListener('start', () => (this.flight = undefined));
+    this.canvas.addEventListener('keydown', (event) => this.onKey(event));
+    new ResizeObserver(() => this.resize()).observe(holder);
+    this.resize();
+    this.applyTheme();
+  }
+
+  applyTheme(): void {
+    this.scene.background = themeColor('stage');
+    this.invalidate();
+  }
+
+  invalidate(): void {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame((now) => this.draw(now));
+  }
+
+  /** One frame, now: for a picture, and to measure. */
+  drawNow(): void {
+    this.renderer?.render(this.scene, this.camera);
+  }
+
+  private draw(now: number): void {
+    this.pending = false;
+    let again = this.fly(now);
+    for (const animation of this.animations) again = animation(now) || again;
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = Math.max(distance * 0.01, 1e-5);
+    this.camera.far = distance + 10;
+    this.camera.updateProjectionMatrix();
+    this.renderer?.render(this.scene, this.camera);
+    ++this.frames;
+    if (again) this.invalidate();
+  }
+
+  private fly(now: number): boolean {
+    const flight = this.flight;
+    if (flight === undefined) return false;
+    const share = prefersReducedMotion() ? 1 : MathUtils.clamp((now - flight.start) / FLIGHT_MS, 0, 1);
+    const eased = share * share * (3 - 2 * share);
+    this.controls.target.lerpVectors(flight.targetFrom, flight.targetTo, eased);
+    this.camera.position.lerpVectors(flight.from, flight.to, eased);
+    this.camera.lookAt(this.controls.target);
+    this.controls.update();
+    if (share < 1) return true;
+    this.flight = undefined;
+    return false;
+  }
+
+  /** From how far a ball fills the picture. */
+  distanceFor(radius: number): number {
+    return (radius * 1.15) / Math.sin(MathUtils.degToRad(this.camera.fov / 2)) / Math.min(1, this.camera.aspect);
+  }
+  /** Where to look from: along the normal, but not straight, since a glance from the side shows the shape; from where the camera
+   * is now where there is no normal. */
+  approach(normal?: Vector3): Vector3 {
+    const back = this.camera.position.clone().sub(this.controls.target).normalize();
+    if (normal === undefined || normal.lengthSq() === 0) return back;
+    const direction = normal.clone().normalize().multiplyScalar(1.4).add(back).normalize();
+    return direction.lengthSq() > 0.5 ? direction : back;
+  }
+  /** Flies to where a ball fills the picture, seen from `direction`. */
+  flyTo(centre: Vector3, radius: number, direction = this.approach()): void {
+    const distance = this.distanceFor(radius);
+    this.flight = {
+      from: this.camera.position.clone(),
+      to: centre.clone().addScaledVector(direction, distance),
+      targetFrom: this.controls.target.clone(),
+      targetTo: centre.clone(),
+      start: performance.now(),
+    };
+    this.invalidate();
+  }
+
+  get isBlank(): boolean {
+    return this.renderer === undefined;
+  }
+  get isFlying(): boolean {
+    return this.flight !== undefined;
+  }
+
+  fit(): void {
+    const box = new Box3();
+    for (const child of this.content.children) if (child.visible) box.expandByObject(child);
+    const centre = box.isEmpty() ? new Vector3() : box.getCenter(new Vector3());
+    this.flyTo(centre, box.isEmpty() ? 1 : box.getSize(new Vector3()).length() * 0.42);
+  }
+
+  /** The ray through a place of the canvas, in pixels of the page. */
+  rayAt(clientX: number, clientY: number): Raycaster {
+    const rectangle = this.canvas.getBoundingClientRect();
+    const place = new Vector2(((clientX - rectangle.left) / rectangle.width) * 2 - 1, 1 - ((clientY - rectangle.top) / rectangle.height) * 2);
+    const ray = new Raycaster();
+    ray.setFromCamera(place, this.camera);
+    return ray;
+  }
+
+  /** Where a point of the stage is seen, in pixels of the page. */
+  seenAt(point: Vector3): { x: number; y: number } {
+    const rectangle = this.canvas.getBoundingClientRect();
+    const p = point.clone().project(this.camera);
+    return { x: rectangle.left + ((p.x + 1) / 2) * rectangle.width, y: rectangle.top + ((1 - p.y) / 2) * rectangle.height };
+  }
+
+  turn(right: number, up: number): void {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const distance = offset.length();
+    const pitch = MathUtils.clamp(Math.asin(offset.y / distance) + up, -1.55, 1.55);
+    const yaw = Math.atan2(offset.x, offset.z) + right;
+    offset.set(Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw) * Math.cos(pitch)).multiplyScalar(distance);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.invalidate();
+  }
+
+  zoom(factor: number): void {
+    const offset = this.camera.position.clone().sub(this.controls.target).multiplyScalar(factor);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.invalidate();
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    const step = 0.12;
+    const moves: Record<string, () => void> = {
+      ArrowLeft: () => this.turn(-step, 0),
+      ArrowRight: () => this.turn(step, 0),
+      ArrowUp: () => this.turn(0, step),
+      ArrowDown: () => this.turn(0, -step),
+      '+': () => this.zoom(0.85),
+      '=': () => this.zoom(0.85),
+      '-': () => this.zoom(1 / 0.85),
+    };
+    const move = moves[event.key];
+    if (move === undefined || event.ctrlKey || event.metaKey) return;
+    event.preventDefault();
+    move();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.holder;
+    if (width === 0 || height === 0) return;
+    this.renderer?.setSize(width, height);
+    this.resolution.set(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.renderer?.render(this.scene, this.camera);
+  }
+}
