@@ -124,6 +124,18 @@ void look_at_records(const fdcg_graph& graph) {
   (void)fdcg_get_mass(&graph, &mass, &error);
 }
 
+struct Running {
+  std::uint64_t seed;
+  bool is_full;
+};
+
+void tell(void* context, const char* condition, const char* file, std::uint32_t line) {
+  const auto& running = *static_cast<const Running*>(context);
+  std::fprintf(stderr, "seed %llu (%s): %s:%u: %s\n", (unsigned long long)running.seed, running.is_full ? "FULL" : "SAFE", file,
+               line, condition);
+  std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -139,6 +151,8 @@ int main(int argc, char** argv) {
   if (files.empty()) return std::fprintf(stderr, "no files in %s\n", argv[1]), 2;
   std::uint64_t opened = 0, full = 0;
   double longest_s = 0;
+  Running running = {};
+  fdcg_set_assert_handler(tell, &running);
   for (std::uint64_t i = 0; i < executions; ++i) {
     Random random{(seed + i) * 0x2545F4914F6CDD1D};
     AlignedBytes file = files[random.below(static_cast<std::uint32_t>(files.size()))];
@@ -150,6 +164,7 @@ int main(int argc, char** argv) {
     const bool is_safe = fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_SAFE, &graph, nullptr) == FDCG_OK;
     if (is_full && !is_safe) return std::fprintf(stderr, "seed %llu: FULL, but not SAFE\n", (unsigned long long)(seed + i)), 1;
     full += is_full;
+    running = {seed + i, is_full};
     if (!is_safe) continue;
     ++opened;
     touch_everywhere(graph, 24);
