@@ -31,7 +31,7 @@ int main(void) {
   uint32_t count;
   pose.translation_m[2] = 0.01;
 
-  check(fdcg_open_file("cube.fdcg", FDCG_VERIFY_FULL, &cube, &error), &error);
+  check(fdcg_open_file("cube.fdcg", FDCG_VERIFY_SAFE, &cube, &error), &error);
   check(fdcg_scene_create(scene_memory, sizeof scene_memory, &scene_config, &scene, &error), &error);
   check(fdcg_scene_add_object(scene, &cube, &params, &pose, &bodies[0].object, &error), &error);
   check(fdcg_scene_add_finger(scene, hip_m, &finger, &error), &error);

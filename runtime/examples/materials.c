@@ -7,7 +7,7 @@
 int main(void) {
   fdcg_graph graph;
   fdcg_error error;
-  if (fdcg_open_file("steel_and_rubber.fdcg", FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
+  if (fdcg_open_file("steel_and_rubber.fdcg", FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK) {
     fprintf(stderr, "%s\n", error.message);
     return 1;
   }

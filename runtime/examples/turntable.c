@@ -27,7 +27,7 @@ int main(void) {
   table_pose.translation_m[2] = -0.002; /* it is a centimetre high: its top begins 1 mm below the finger */
   block_pose.translation_m[0] = 0.020;
 
-  check(fdcg_open_file("cube.fdcg", FDCG_VERIFY_FULL, &cube, &error), &error);
+  check(fdcg_open_file("cube.fdcg", FDCG_VERIFY_SAFE, &cube, &error), &error);
   check(fdcg_scene_create(memory, sizeof memory, &config, &scene, &error), &error);
   check(fdcg_scene_add_object(scene, &cube, &params, &table_pose, &table, &error), &error);
   check(fdcg_scene_add_object(scene, &cube, &params, &block_pose, &block, &error), &error);

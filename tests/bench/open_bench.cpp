@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opening a file of about 1 GB from the page cache: trusted, which touches the header alone, and with full verification, beside
+// Opening a file of about 1 GB from the page cache: trusted, which touches the header alone, and as SAFE, beside
 // what this machine's memory gives when one thread sums the same bytes, in turns in the same run. Arguments: gigabytes (default
 // 1). Exit code 1 where a bar does not hold: 1 ms trusted, half of memory's rate verified.
 #include <fcntl.h>
@@ -16,6 +16,7 @@
 #include <string>
 
 #include "bench_graph.hpp"
+#include "stopwatch.hpp"
 
 using namespace fdcg::test;
 
@@ -34,7 +35,7 @@ class File {
  public:
   explicit File(double gigabytes) {
     path_ = (std::filesystem::temp_directory_path() / ("fdcg_open_bench_" + std::to_string(getpid()) + ".fdcg")).string();
-    const int parts = static_cast<int>(std::lround(std::sqrt(gigabytes * 1e9 / kBytesPerFace / 20)));
+    parts_ = static_cast<int>(std::lround(std::sqrt(gigabytes * 1e9 / kBytesPerFace / 20)));
     const int descriptor = open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC, 0600);
     fdcg::bake::CompileOptions options;
     options.without = {"source-map"};
@@ -44,7 +45,7 @@ class File {
       if (memory == MAP_FAILED) return {};
       return {static_cast<std::byte*>(memory), bytes};
     };
-    const auto compiled = fdcg::bake::compile(make_body(Body::sphere, parts), options);
+    const auto compiled = fdcg::bake::compile(make_body(Body::sphere, parts_), options);
     if (compiled && !compiled->placed.empty()) {
       bytes_ = compiled->placed.size();
       munmap(compiled->placed.data(), bytes_);
@@ -57,10 +58,12 @@ class File {
   File& operator=(const File&) = delete;
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  [[nodiscard]] int parts() const { return parts_; }
 
  private:
   std::string path_;
   std::uint64_t bytes_ = 0;
+  int parts_ = 0;
 };
 
 // Milliseconds; negative where it fails.
@@ -116,8 +119,72 @@ double verify_mapped(const void* memory, std::uint64_t bytes) {
   fdcg_graph graph;
   fdcg_error error;
   const auto begin = std::chrono::steady_clock::now();
-  if (fdcg_open_memory(memory, bytes, FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) return -1;
+  if (fdcg_open_memory(memory, bytes, FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK) return -1;
   return milliseconds_since(begin);
+}
+
+// One opening and two passes of a hand over the same way; the 99th percentiles of a tick in us.
+struct Passes {
+  double first, second;
+};
+enum class How { as_it_is, populated, huge_pages, warmed };
+
+bool pass(const std::string& path, How how, const Path& way, const Stopwatch& watch, Passes* passes) {
+  fdcg_open_options options = fdcg_make_open_options();
+  options.verify = FDCG_VERIFY_TRUSTED;
+  options.populate = how == How::populated;
+  options.huge_pages = how == How::huge_pages;
+  fdcg_graph graph;
+  fdcg_error error;
+  if (fdcg_open_file_with(path.c_str(), &options, &graph, &error) != FDCG_OK) return false;
+  if (how == How::warmed) fdcg_warm(&graph);
+  const fdcg_params params = fdcg_make_params();
+  for (double* const p99 : {&passes->first, &passes->second}) {
+    fdcg_contact contact = {};
+    fdcg_result result;
+    std::vector<float> times;
+    times.reserve(way.size());
+    for (const Point& hip : way) {
+      const std::uint64_t begin = Stopwatch::now();
+      fdcg_step(&graph, &params, &contact, hip.data(), &result);
+      times.push_back(static_cast<float>(watch.nanoseconds(begin, Stopwatch::now())) / 1000);
+    }
+    *p99 = Percentiles(std::move(times)).at(0.99);
+  }
+  fdcg_close(&graph);
+  return true;
+}
+
+// Whether the first pass after `populate` is as good as the second: the least ratio of some openings, each of which starts with
+// nothing mapped.
+bool judge_passes(const std::string& path, int parts) {
+  constexpr int kTicks = 40000, kOpenings = 3;
+  constexpr double kBar = 1.3;
+  const Surface surface(Body::sphere, parts);
+  const Path way = slide(surface, 2 * surface.face_way_m(), 0.001, kTicks);
+  const Stopwatch watch;
+  bool holds = false;
+  constexpr struct {
+    How how;
+    const char* name;
+  } kHow[] = {
+      {How::as_it_is, "as it is"}, {How::populated, "populate"}, {How::huge_pages, "huge pages"}, {How::warmed, "warmed"}};
+  for (const auto& [how, name] : kHow) {
+    Passes best = {1e18, 1};
+    for (int i = 0; i < kOpenings; ++i) {
+      Passes passes = {0, 0};
+      if (!pass(path, how, way, watch, &passes)) return false;
+      if (passes.first / passes.second < best.first / best.second) best = passes;
+    }
+    const bool is_judged = how == How::populated, is_within = best.first <= kBar * best.second;
+    holds = holds || (is_judged && is_within);
+    std::printf("trusted, %-10s p99 of a tick at two faces a tick: first pass %6.2f us, second %6.2f us: %.2f%s\n", name,
+                best.first, best.second, best.first / best.second,
+                !is_judged  ? ""
+                : is_within ? " (bar 1.3): ok"
+                            : " (bar 1.3): FAIL");
+  }
+  return holds;
 }
 
 }  // namespace
@@ -134,7 +201,7 @@ int main(int argc, char** argv) {
   for (int round = 0; round < kRounds; ++round) {
     trusted = std::min(trusted, open_once(file.path(), FDCG_VERIFY_TRUSTED));
     read = std::min(read, read_once(file.path(), file.bytes(), &sum));
-    opened = std::min(opened, open_once(file.path(), FDCG_VERIFY_FULL));
+    opened = std::min(opened, open_once(file.path(), FDCG_VERIFY_SAFE));
     summed = std::min(summed, read_mapped(memory, file.bytes(), &sum));
     verified = std::min(verified, verify_mapped(memory, file.bytes()));
   }
@@ -145,10 +212,11 @@ int main(int argc, char** argv) {
   std::printf("%.2f GB, least of %d rounds in turns (sum %016llx)\n", gigabytes, kRounds, static_cast<unsigned long long>(sum));
   std::printf("trusted                 %8.3f ms (bar %.0f): %s\n", trusted, kTrustedBar_ms,
               trusted < kTrustedBar_ms ? "ok" : "FAIL");
-  std::printf("verified, mapped        %8.1f ms, %5.1f GB/s\n", verified, gigabytes / verified * 1000);
-  std::printf("memory read, mapped     %8.1f ms, %5.1f GB/s: verified at %.2f of it (bar %.2f): %s\n", summed,
+  std::printf("SAFE, mapped            %8.1f ms, %5.1f GB/s\n", verified, gigabytes / verified * 1000);
+  std::printf("memory read, mapped     %8.1f ms, %5.1f GB/s: SAFE at %.2f of it (bar %.2f): %s\n", summed,
               gigabytes / summed * 1000, summed / verified, kVerifiedBar, summed / verified >= kVerifiedBar ? "ok" : "FAIL");
-  std::printf("opened with full verification, mapping and page faults in it %8.1f ms; the same file read %8.1f ms: %.2f\n",
-              opened, read, read / opened);
-  return holds ? 0 : 1;
+  std::printf("opened as SAFE, mapping and page faults in it %8.1f ms; the same file read %8.1f ms: %.2f\n", opened, read,
+              read / opened);
+  const bool is_mapped_first = judge_passes(file.path(), file.parts());
+  return holds && is_mapped_first ? 0 : 1;
 }

@@ -16,7 +16,7 @@ C_FLAGS = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I", str(ROO
 
 # What a C compiler may call on its own account; anything else that the library does not define itself stands out.
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp", "_GLOBAL_OFFSET_TABLE_"}
-PLATFORM_CALLS = {"open", "open64", "close", "fstat", "fstat64", "mmap", "mmap64", "munmap", "__errno_location"}
+PLATFORM_CALLS = {"madvise", "mprotect", "read", "sysconf", "open", "open64", "close", "fstat", "fstat64", "mmap", "mmap64", "munmap", "__errno_location"}
 
 
 def symbols():

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <span>
 #include <vector>
@@ -70,16 +71,19 @@ inline void touch_everywhere(const fdcg_graph& graph, std::uint32_t steps) {
 }
 
 // Any bytes through open and step: first as they are, then with magic, version, size and checksums made to fit, so that the
-// checks behind them are reached. Whatever opens with full verification is walked on. How often of the two times it opened.
+// checks behind them are reached. Whatever is SAFE is walked on; what is FULL is SAFE. How often of the two times it opened.
 inline int open_and_touch(std::span<const std::byte> bytes, std::uint32_t steps) {
   AlignedBytes file(bytes);
   int opened = 0;
   for (int pass = 0; pass < 2; ++pass) {
     fdcg_graph graph;
     fdcg_error error;
-    if (fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_OK) {
+    const bool is_full = fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_OK;
+    if (fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_SAFE, &graph, &error) == FDCG_OK) {
       ++opened;
       touch_everywhere(graph, steps);
+    } else if (is_full) {
+      std::abort();
     }
     if (file.size() >= sizeof(fdcg_header)) {
       std::memcpy(file.header().magic, FDCG_MAGIC, 8);

@@ -236,7 +236,7 @@ int run_session(const ReplayArguments& arguments, const std::string& given) {
 // Opens the graph, or returns fail's code. `otherwise`: what the file could have been instead.
 int open_graph(const std::string& path, fdcg_graph* graph, const std::string& otherwise = {}) {
   fdcg_error error{};
-  if (fdcg_open_file(path.c_str(), FDCG_VERIFY_FULL, graph, &error) == FDCG_OK) return kClean;
+  if (fdcg_open_file(path.c_str(), FDCG_VERIFY_SAFE, graph, &error) == FDCG_OK) return kClean;
   if (!tools::is_stream(path) && tools::has_ending(path, tools::mesh_endings())) {
     const std::string stem = path.substr(0, path.rfind('.'));
     return fail(kFile, "'" + path + "' is a mesh; compile it first: fdcg compile " + path + " -o " + stem + ".fdcg");

@@ -21,7 +21,7 @@ static void print_number(const char* name, int32_t value) {
 int main(void) {
   fdcg_graph graph;
   fdcg_error error;
-  if (fdcg_open_memory(cube, cube_bytes, FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
+  if (fdcg_open_trusted(cube, cube_bytes, &graph, &error) != FDCG_OK) {
     board_print(error.message);
     return 1;
   }

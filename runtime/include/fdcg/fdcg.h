@@ -5,7 +5,7 @@
  * fdcg: feel a 3D model through a force-feedback device. The runtime on one screen.
  *
  *     fdcg_graph graph;                              a view, in your memory, of a file in yours or mapped
- *     fdcg_open_file("bunny.fdcg", FDCG_VERIFY_FULL, &graph, &error);
+ *     fdcg_open_file("bunny.fdcg", FDCG_VERIFY_SAFE, &graph, &error);
  *     fdcg_params params = fdcg_make_params();       friction, stiffness, damping
  *     fdcg_contact contact = {0};                    one contact point; zero is its start
  *     each tick:
@@ -105,10 +105,16 @@ void fdcg_set_assert_handler(fdcg_assert_handler handler, void* context);
 
 /* ---- graph ------------------------------------------------------------------------------------------------------------- */
 
-/** How thoroughly a file is checked when it is opened. */
+/** How thoroughly a file is checked when it is opened.
+ *
+ * A host that loads files that it has not written wants SAFE: a damaged or forged file can then feel wrong, but neither crash
+ * the program nor hold a tick up. FULL asks besides whether the graph is one surface, as fdcg compile writes it: for tools, and
+ * where a wrong file is dearer than the time. TRUSTED is for files that are part of the program. */
 typedef enum fdcg_verify {
-  FDCG_VERIFY_FULL = 0,   /**< checksums, every index, offset and number: after it no file leads to undefined behaviour */
-  FDCG_VERIFY_TRUSTED = 1 /**< header and section bounds only: for files that your own build wrote */
+  FDCG_VERIFY_FULL = 0,    /**< SAFE; and loops, twins, fans and boxes agree: the graph is one surface. Reads the file twice */
+  FDCG_VERIFY_TRUSTED = 1, /**< header and section bounds only */
+  FDCG_VERIFY_SAFE = 2     /**< checksums, and every index, count and number: after it no file whatever leads to undefined
+                              behaviour or an unbounded step. Reads the file once */
 } fdcg_verify;
 
 /** A read-only view; the bytes that it points into must outlive it. Read its fields, do not write them. */
@@ -136,15 +142,78 @@ typedef struct fdcg_graph {
 } fdcg_graph;
 
 /** Views `bytes` bytes at `data` (a multiple of 8) as a graph. Nothing is copied. On failure *graph is zeroed.
- * Cost: FULL reads every byte once or twice; TRUSTED touches the header and the section table only. `error` may be NULL. */
+ * Cost: SAFE reads every byte once, FULL twice; TRUSTED touches the header and the section table only. `error` may be NULL. */
 fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
+
+/** fdcg_open_memory with FDCG_VERIFY_TRUSTED, for small programs: one that opens graphs by this function alone links nothing
+ * of verification. */
+fdcg_status fdcg_open_trusted(const void* data, uint64_t bytes, fdcg_graph* graph, fdcg_error* error);
 
 /** The same for a file, mapped read-only. Undo with fdcg_close. FDCG_E_IO in a library built without files (FDCG_WITH_FILES).
  */
 fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
 
+/** How fdcg_open_file_with opens a file. Make it by fdcg_make_open_options, then change fields.
+ *
+ * A page of a file that is only mapped is brought in where a tick first touches it, which takes microseconds, and from a disk
+ * milliseconds. Verification touches all pages; a trusted opening does not. */
+typedef struct fdcg_open_options {
+  uint32_t struct_bytes; /**< the caller's sizeof(fdcg_open_options); fdcg_make_open_options sets it */
+  uint32_t verify;       /**< fdcg_verify; FDCG_VERIFY_SAFE */
+  uint32_t populate;     /**< 1: every page is mapped before the call returns (Linux: MAP_POPULATE). 0 */
+  uint32_t huge_pages; /**< 1: not mapped but read into memory of the program's own, in huge pages (Linux: MADV_HUGEPAGE) where
+                          the system has them; fewer misses of the processor's page table, for large graphs. Takes the file's
+                          size in memory for each program that opens it, and populates. 0 */
+} fdcg_open_options;
+
+/** Sets the first `struct_bytes` bytes of *options: FDCG_VERIFY_SAFE, not populated, no huge pages. */
+void fdcg_open_options_init(fdcg_open_options* options, uint32_t struct_bytes);
+/** The default options of fdcg_open_options_init. */
+static inline fdcg_open_options fdcg_make_open_options(void) {
+  fdcg_open_options options;
+  fdcg_open_options_init(&options, (uint32_t)sizeof options);
+  return options;
+}
+
+/** fdcg_open_file with options. */
+fdcg_status fdcg_open_file_with(const char* path, const fdcg_open_options* options, fdcg_graph* graph, fdcg_error* error);
+
 /** Unmaps what fdcg_open_file mapped and zeroes the view. Harmless on a zeroed or memory graph. */
 void fdcg_close(fdcg_graph* graph);
+
+/** Touches every page of an open graph, so that no tick waits for one that is not mapped yet: for graphs in the caller's memory
+ * (a mapping of its own, or memory just filled by another process), and for files that were opened without `populate`. Cost:
+ * linear in the file; not for the servo thread. */
+void fdcg_warm(const fdcg_graph* graph);
+
+/* ---- verification in chunks -------------------------------------------------------------------------------------------- */
+
+/** What some chunks of one level have come to, in the caller's memory: zero to begin with, one for each thread. Not for the
+ * caller to read. */
+typedef struct fdcg_verification {
+  uint64_t chunks;                   /**< how many */
+  uint64_t sides;                    /**< of their nodes */
+  uint64_t first_sides;              /**< along which a connection runs */
+  uint64_t faces;                    /**< around their corners */
+  uint64_t busy_corners;             /**< of their corners */
+  uint64_t types[4];                 /**< of their connections, by fdcg_connection_type */
+  uint64_t sums[FDCG_MOST_SECTIONS]; /**< checksums of their blocks, by the section's place in the table */
+} fdcg_verification;
+
+/** How many chunks an open graph is verified in: at least 1, some 64 kB of the file each. */
+uint32_t fdcg_verify_chunk_count(const fdcg_graph* graph);
+
+/** Verifies one chunk of a graph that was opened as trusted, and adds what it comes to to *part. Chunks of one level may be
+ * done in any order, by several threads, each with a part of its own. SAFE is all chunks at FDCG_VERIFY_SAFE and then
+ * fdcg_verify_sum of the parts; FULL is, once that has passed, the same again at FDCG_VERIFY_FULL. The graph must not be used
+ * before. */
+fdcg_status fdcg_verify_chunk(const fdcg_graph* graph, fdcg_verify level, uint32_t chunk, fdcg_verification* part,
+                              fdcg_error* error);
+
+/** Whether the parts of all chunks, `count` of them, together are a graph's: checksums, sums of counts. FDCG_E_ARGUMENT where
+ * they are not of as many chunks as the graph has. */
+fdcg_status fdcg_verify_sum(const fdcg_graph* graph, fdcg_verify level, const fdcg_verification* parts, uint32_t count,
+                            fdcg_error* error);
 
 /* ---- records of a graph ------------------------------------------------------------------------------------------------ */
 

@@ -40,12 +40,12 @@ class Graph {
   ~Graph() { fdcg_close(&graph_); }
 
   /// Replaces what was open; on failure nothing is. `why` may be null.
-  [[nodiscard]] bool open_file(const char* path, fdcg_error* why, fdcg_verify verify = FDCG_VERIFY_FULL) {
+  [[nodiscard]] bool open_file(const char* path, fdcg_error* why, fdcg_verify verify = FDCG_VERIFY_SAFE) {
     fdcg_close(&graph_);
     return fdcg_open_file(path, verify, &graph_, why) == FDCG_OK;
   }
   /// The bytes must outlive the graph and start at a multiple of 8.
-  [[nodiscard]] bool open_memory(std::span<const std::byte> bytes, fdcg_error* why, fdcg_verify verify = FDCG_VERIFY_FULL) {
+  [[nodiscard]] bool open_memory(std::span<const std::byte> bytes, fdcg_error* why, fdcg_verify verify = FDCG_VERIFY_SAFE) {
     fdcg_close(&graph_);
     return fdcg_open_memory(bytes.data(), bytes.size(), verify, &graph_, why) == FDCG_OK;
   }

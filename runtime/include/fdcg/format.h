@@ -45,6 +45,7 @@
 #define FDCG_MATERIAL_NAME_BYTES 64u /**< room for a material's name */
 #define FDCG_LEAF_NODES 4u           /**< nodes in one leaf of the hierarchy */
 #define FDCG_TREE_WAYS 8u            /**< boxes in one record of the hierarchy */
+#define FDCG_MOST_SECTIONS 64u       /**< entries of the section table */
 #define FDCG_MAX_SIDES 255u          /**< sides of one node; fdcg compile cuts larger faces into nodes of at most 16 */
 #define FDCG_LEAF_FAN 8u             /**< fan entries in one leaf of a corner's tree */
 #define FDCG_BUSY_FAN 32u            /**< a corner with more fan entries is busy: it has its fan stored, and a tree */

@@ -126,9 +126,10 @@ void copy_nodes(const fdcg_graph& graph, fdcg_deform* deform) {
     memcpy(upkeep.place(c).point, upkeep.corner(c).point, sizeof upkeep.place(c).point);
 }
 
-// Which leaves hold a corner's nodes, and which of their nodes those are: counted, summed up, filled in.
+// Which leaves hold a corner's nodes, and which of their nodes those are: counted, summed up, filled in. A corner of a graph
+// that is no surface may be in any number of leaves; what a move costs is bounded by them. False where that is too much.
 template <class Real>
-void list_leaves(fdcg_deform* deform) {
+bool list_leaves(fdcg_deform* deform) {
   const Upkeep<Real> upkeep(*deform);
   const uint32_t corners = deform->header.corner_count;
   uint32_t* const first = deform->leaf_first;
@@ -150,12 +151,15 @@ void list_leaves(fdcg_deform* deform) {
   };
   memset(first, 0, (corners + size_t{1}) * sizeof *first);
   for_each([&](uint32_t corner, uint32_t) { ++first[corner + 1]; });
-  for (uint32_t c = 0; c < corners; ++c)
+  for (uint32_t c = 0; c < corners; ++c) {
+    if (first[c + 1] > FDCG_DEFORM_MOST_FAN) return false;
     first[c + 1] += first[c];
+  }
   for_each([&](uint32_t corner, uint32_t entry) { deform->leaves[first[corner]++] = entry; });
   for (uint32_t c = corners; c > 0; --c)  // each now stands where the next one begins
     first[c] = first[c - 1];
   first[0] = 0;
+  return true;
 }
 
 template <class Real>
@@ -237,14 +241,15 @@ void place_parts(void* memory, const Layout& layout, const fdcg_graph& graph, fd
 }
 
 template <class Real>
-void fill_in(const fdcg_graph& graph, fdcg_deform* deform) {
+bool fill_in(const fdcg_graph& graph, fdcg_deform* deform) {
   copy_nodes<Real>(graph, deform);
-  list_leaves<Real>(deform);
+  if (!list_leaves<Real>(deform)) return false;
   fill_boxes<Real>(deform);
   memset(deform->loose, 0, deform->tree.records);
   memset(deform->tight_tick, 0, deform->tree.records * sizeof *deform->tight_tick);
   memset(deform->stale, (1 << FDCG_LEAF_NODES) - 1, deform->tree.leaves);
   bring_all_up_to_date<Real>(deform);
+  return true;
 }
 
 }  // namespace
@@ -290,7 +295,9 @@ extern "C" fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fd
   memcpy(made->low, header.bounds_min, sizeof made->low);
   memcpy(made->high, header.bounds_max, sizeof made->high);
   fdcg::place_parts(aligned, layout, *graph, made);
-  fdcg::with_real_of(header, [&](auto real) { fdcg::fill_in<decltype(real)>(*graph, made); });
+  const bool is_made = fdcg::with_real_of(header, [&](auto real) { return fdcg::fill_in<decltype(real)>(*graph, made); });
+  if (!is_made)
+    return fdcg::refuse(error, FDCG_E_GRAPH, "a corner has more faces than its edges allow; compile the mesh again");
   *deform = made;
   return FDCG_OK;
 }

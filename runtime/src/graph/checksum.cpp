@@ -50,7 +50,9 @@ struct BlockLanes {
       pair[i] = _mm_xor_si128(product, _mm_srli_epi64(mixed, 32));
     }
   }
-  void store(uint64_t (&lanes)[kLaneCount]) const { memcpy(lanes, pair, sizeof lanes); }
+  void store(uint64_t (&lanes)[kLaneCount]) const {
+    memcpy(lanes, pair, sizeof lanes);
+  }
 };
 
 #else
@@ -77,13 +79,17 @@ struct BlockLanes {
 
 uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
   BlockLanes lanes;
-  const unsigned char* const end = data + bytes / kStripe * kStripe;
-  for (; data < end; data += kStripe)
-    lanes.absorb(data);
-  if (const uint64_t rest = bytes % kStripe) {
-    unsigned char stripe[kStripe] = {};
-    memcpy(stripe, data, rest);
+  unsigned char rest[kStripe];
+  for (uint64_t left = bytes; left != 0;) {
+    const unsigned char* stripe = data;
+    if (left < kStripe) {
+      memset(rest, 0, sizeof rest);
+      memcpy(rest, data, left);
+      stripe = rest;
+    }
     lanes.absorb(stripe);
+    data += kStripe;
+    left = left < kStripe ? 0 : left - kStripe;
   }
   uint64_t lane[kLaneCount], sum = kSeed ^ bytes;
   lanes.store(lane);

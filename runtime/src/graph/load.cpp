@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opening: header and section table are checked always, the rest by verify.cpp where the caller does not trust the file.
+// Opening a trusted file: its header and section table. A program that opens no other links nothing of verification.
 #include <string.h>
 
 #include "base/config.hpp"
@@ -7,17 +7,12 @@
 #include "base/message.hpp"
 #include "fdcg/fdcg.h"
 #include "graph/box_tree.hpp"
-#include "graph/graph_view.hpp"
-#include "graph/map_file.hpp"
-#include "graph/material_section.hpp"
+#include "graph/load.hpp"
+#include "graph/record_types.hpp"
 #include "graph/sections.hpp"
-#include "graph/verify.hpp"
-#include "shared/mass_record.hpp"
 
 namespace fdcg {
 namespace {
-
-constexpr uint32_t kMaxSections = 64;
 
 // Without a hierarchy the free-space sweep tests every node, and its work must stay bounded.
 constexpr uint32_t kMaxNodesWithoutHierarchy = 4096;
@@ -87,7 +82,7 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   };
   if (header.header_bytes != sizeof(fdcg_header)) return refuse("header_bytes", header.header_bytes);
   if (header.real_bytes != 4 && header.real_bytes != 8) return refuse("real_bytes", header.real_bytes);
-  if (header.section_count > kMaxSections) return refuse("section_count", header.section_count);
+  if (header.section_count > FDCG_MOST_SECTIONS) return refuse("section_count", header.section_count);
   if (header.node_count == 0) return refuse("node_count", header.node_count);
   if ((header.flags & ~FDCG_STORED_PLANES) != 0) return refuse("flags", header.flags);
   if (!is_node_size(header)) return refuse("node_bytes", header.node_bytes);
@@ -262,12 +257,10 @@ fdcg_status check_presence(const fdcg_header& header, fdcg_error* error) {
   return FDCG_OK;
 }
 
-fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
+}  // namespace
+
+fdcg_status open_trusted(const void* data, uint64_t bytes, fdcg_graph* graph, fdcg_error* error) {
   if (data == nullptr) return Message(error, FDCG_E_ARGUMENT).text("data: null pointer");
-  if (verify != FDCG_VERIFY_FULL && verify != FDCG_VERIFY_TRUSTED) {
-    return Message(error, FDCG_E_ARGUMENT)
-        .say("verify is ", static_cast<uint32_t>(verify), ", allowed FDCG_VERIFY_FULL (0) and FDCG_VERIFY_TRUSTED (1)");
-  }
   if (reinterpret_cast<uintptr_t>(data) % alignof(fdcg_header) != 0) {
     return Message(error, FDCG_E_ALIGNMENT)
         .text("the memory must start at a multiple of 8 bytes; align the buffer (64 is best)");
@@ -278,17 +271,10 @@ fdcg_status open_checked(const void* data, uint64_t bytes, fdcg_verify verify, f
   status = check_header_values(header, error);
   if (status == FDCG_OK) status = check_table(data, header, error);
   if (status == FDCG_OK) status = check_presence(header, error);
-  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_checksums(data, header, error);
-  if (status != FDCG_OK) return status;
-  const fdcg_graph candidate = view(data, header);
-  if (verify == FDCG_VERIFY_FULL) status = verify_graph(candidate, error);
-  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_mass(header, error);
-  if (status == FDCG_OK && verify == FDCG_VERIFY_FULL) status = verify_materials(candidate, error);
-  if (status == FDCG_OK) *graph = candidate;
+  if (status == FDCG_OK) *graph = view(data, header);
   return status;
 }
 
-// Logs the result of an opening, and returns the status.
 fdcg_status told(fdcg_status status, const fdcg_graph& graph, const fdcg_error& error) {
   if (status != FDCG_OK) {
     log(FDCG_LOG_ERROR, error.message);
@@ -300,42 +286,12 @@ fdcg_status told(fdcg_status status, const fdcg_graph& graph, const fdcg_error& 
   return status;
 }
 
-}  // namespace
 }  // namespace fdcg
 
-extern "C" fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph,
-                                        fdcg_error* error) {
-  if (graph == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("graph: null pointer");
+extern "C" fdcg_status fdcg_open_trusted(const void* data, uint64_t bytes, fdcg_graph* graph, fdcg_error* error) {
+  if (graph == nullptr) return fdcg::refuse(error, "graph: null pointer");
   *graph = {};
   fdcg_error why = {};
   if (error == nullptr) error = &why;
-  return fdcg::told(fdcg::open_checked(data, bytes, verify, graph, error), *graph, *error);
-}
-
-extern "C" fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error) {
-  if (graph == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("graph: null pointer");
-  *graph = {};
-  if (path == nullptr) return fdcg::Message(error, FDCG_E_ARGUMENT).text("path: null pointer");
-  fdcg::MappedFile file;
-  fdcg_error why = {}, with_path = {};
-  if (error == nullptr) error = &with_path;
-  fdcg_status status = fdcg::map_file(path, &file, &why);
-  if (status == FDCG_OK) {
-    status = fdcg::open_checked(file.data, file.bytes, verify, graph, &why);
-    if (status != FDCG_OK) fdcg::unmap_file(file);
-  }
-  if (status != FDCG_OK) {
-    constexpr int kPathShown = 100;
-    fdcg::Message(error, status, why.offset).quoted(path, kPathShown).say(": ", why.message);
-  } else {
-    graph->mapping = file.data;
-    graph->mapping_bytes = file.bytes;
-  }
-  return fdcg::told(status, *graph, *error);
-}
-
-extern "C" void fdcg_close(fdcg_graph* graph) {
-  if (graph == nullptr) return;
-  if (graph->mapping != nullptr) fdcg::unmap_file({graph->mapping, graph->mapping_bytes});
-  *graph = {};
+  return fdcg::told(fdcg::open_trusted(data, bytes, graph, error), *graph, *error);
 }

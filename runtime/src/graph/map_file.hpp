@@ -11,8 +11,9 @@ struct MappedFile {
   uint64_t bytes = 0;
 };
 
-// Maps a regular, non-empty file read-only. Undo with unmap_file. The message says why, not which file.
-fdcg_status map_file(const char* path, MappedFile* file, fdcg_error* error);
+// Maps a regular, non-empty file read-only, its pages as the options say. Undo with unmap_file. The message says why, not which
+// file.
+fdcg_status map_file(const char* path, const fdcg_open_options& options, MappedFile* file, fdcg_error* error);
 void unmap_file(const MappedFile& file);
 
 }  // namespace fdcg

@@ -7,7 +7,7 @@
 
 namespace fdcg {
 
-fdcg_status map_file(const char* /*path*/, MappedFile* /*file*/, fdcg_error* error) {
+fdcg_status map_file(const char* /*path*/, const fdcg_open_options& /*options*/, MappedFile* /*file*/, fdcg_error* error) {
   return Message(error, FDCG_E_IO).text("this library was built without files (FDCG_WITH_FILES); use fdcg_open_memory");
 }
 

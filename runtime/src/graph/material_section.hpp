@@ -5,9 +5,6 @@
 
 namespace fdcg {
 
-// Every name ends, every node's material is there; FDCG_OK where the file has none. Cost: linear in nodes and materials.
-fdcg_status verify_materials(const fdcg_graph& graph, fdcg_error* error);
-
 // params.cpp: FDCG_E_ARGUMENT, with the reason, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0.
 fdcg_status check_finger_material(const fdcg_material& material, fdcg_error* error);
 

@@ -19,4 +19,11 @@ inline const fdcg_section* find_section(const fdcg_header& header, uint32_t id) 
   return nullptr;
 }
 
+// Of a table's entry, its padding included.
+inline uint64_t section_bytes(const fdcg_header& header, uint32_t entry) {
+  const fdcg_section* const sections = section_table(header);
+  const bool is_last = entry + 1 == header.section_count;
+  return (is_last ? header.file_bytes : sections[entry + 1].offset) - sections[entry].offset;
+}
+
 }  // namespace fdcg

@@ -112,7 +112,7 @@ std::string SceneGraphs::open(const HostConfig& config) {
     }
     fdcg_graph graph{};
     fdcg_error error{};
-    if (fdcg_open_file(config.objects[i].file.c_str(), FDCG_VERIFY_FULL, &graph, &error) != FDCG_OK) {
+    if (fdcg_open_file(config.objects[i].file.c_str(), FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK) {
       close();
       return place_of(config, i) + error.message;
     }

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+// The level SAFE: one pass over the file, records of a chunk while its bytes are in the cache. A record is judged without a
+// branch, and by lookups that mostly stay near it: a side's connection, from which all follows that the step takes from one
+// record to another:
+//
+//  - a side that its connection runs along is the one that the connection names, and there are as many such sides as
+//    connections: so each connection has a first side, and node 1 across it exactly where it is no boundary;
+//  - a side that its connection runs against has the connection's first node across;
+//  - what is across is a node, and the side there that the connection names is one of its sides.
+#include <string.h>
+
+#include "base/config.hpp"
+#include "graph/box_tree.hpp"
+#include "graph/checksum.hpp"
+#include "graph/implicit_tree.hpp"
+#include "graph/rigid_geometry.hpp"
+#include "graph/sections.hpp"
+#include "graph/unit_check.hpp"
+#include "graph/verify.hpp"
+
+namespace fdcg {
+namespace {
+
+// An edge and its face's normal give a Voronoi plane where they are far enough from parallel: the compiler joins no face to
+// an edge that leaves its plane by more than 45 degrees.
+template <class Real>
+[[gnu::always_inline]] inline bool is_across(Vec3<Real> along, Vec3<Real> normal) {
+  constexpr Real kLeastSquaredSine = Real(1) / 64;
+  const Vec3<Real> out = cross(along, normal);
+  const Real squared = dot(along, along);
+  return (squared >= TinyEdge<Real>::kSquare) & (dot(out, out) >= kLeastSquaredSine * squared);
+}
+
+// Of a box record. The sweep's rounding is bounded for boxes this near to the object; cells no smaller keep the box of a lane
+// that is not used inside out.
+constexpr float kFarthestBox = 8;
+constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
+
+// A connection's record as one word: node 0, side of node 0, side of node 1, type, flatness.
+constexpr int kSide0At = 32, kSide1At = 40, kTypeAt = 48, kFlatnessAt = 56;
+constexpr uint64_t kNode = 0xFFFFFFFFu, kByte = 0xFF;
+
+uint64_t word_of(const fdcg_connection& connection) {
+  static_assert(sizeof(fdcg_connection) == 8 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
+  uint64_t word;
+  memcpy(&word, &connection, sizeof word);
+  return word;
+}
+
+// Its passes are functions of their own: inlined into one, they would take longer for want of registers.
+template <class Real>
+class SafeChunk {
+ public:
+  SafeChunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error)
+      : records_(graph), header_(*graph.header), raw_(graph), chunk_(chunk), part_(part), error_(error) {
+    const fdcg_section& section = *find_section(header_, FDCG_SECTION_NODES);
+    node_section_bytes_ = section.record_bytes * section.record_count;
+    uniform_sides_ = header_.node_bytes != 0 ? header_.side_count / header_.node_count : 0;
+    largest_offset_ = static_cast<Real>(4 * header_.extent);
+  }
+
+  fdcg_status run() {
+    if (header_.connection_count == 0 || header_.corner_count == 0)
+      return refuse_record(error_, "header.connection_count", header_.connection_count, "no writer leaves all of them out");
+    checksums();
+    const bool are_sound =
+        uniform_sides_ == 3 && (records_.has_planes ? are_sound_triangles<true>() : are_sound_triangles<false>());
+    fdcg_status status = are_sound ? FDCG_OK : nodes();
+    if (status == FDCG_OK) status = connections();
+    if (status == FDCG_OK && records_.edges != nullptr) status = edges();
+    if (status == FDCG_OK) status = corners();
+    if (status == FDCG_OK && header_.busy_count != 0) status = busy_corners();
+    if (status == FDCG_OK && raw_.hierarchy != nullptr) status = hierarchy();
+    if (status == FDCG_OK && raw_.source_map != nullptr) status = source_map();
+    if (status == FDCG_OK && raw_.node_materials != nullptr) status = materials();
+    return status;
+  }
+
+ private:
+  using Node = typename Records<Real>::Node;
+
+  [[gnu::noinline]] void checksums() {
+    const fdcg_section* const sections = section_table(header_);
+    const auto* const file = reinterpret_cast<const unsigned char*>(&header_);
+    for (uint32_t i = 0; i < header_.section_count; ++i) {
+      const uint64_t bytes = section_bytes(header_, i), blocks = checksum_blocks(bytes);
+      part_->sums[i] += checksum_of_blocks(file + sections[i].offset, bytes, chunk_.first_of(blocks), chunk_.end_of(blocks));
+    }
+  }
+
+  template <class Look>
+  fdcg_status for_mine(uint64_t things, const char* noun, Look look) {
+    return for_all(chunk_.first_of(things), chunk_.end_of(things), noun, error_, look);
+  }
+
+  // Where blocks differ: whether node n's follows the one before it, within the section; else null. Safe to ask of any node.
+  const unsigned char* checked_block(uint32_t n) const {
+    const uint64_t at = records_.node_offsets[n] * uint64_t{sizeof(Real)};
+    if (at > node_section_bytes_ || node_section_bytes_ - at < sizeof(Node)) return nullptr;
+    return records_.nodes + at;
+  }
+  [[nodiscard]] uint32_t side_count_of(uint32_t n) const {
+    if (uniform_sides_ != 0) return uniform_sides_;
+    const unsigned char* const block = checked_block(n);
+    return block == nullptr ? 0 : reinterpret_cast<const Node*>(block)->side_count;
+  }
+
+  // The same questions as nodes() asks, of triangles of one size, without a branch: a difference below zero has its upper half
+  // set. False: something is wrong, and nodes() is to say what.
+  template <bool kHasPlanes>
+  [[gnu::noinline]] bool are_sound_triangles() const {
+    constexpr uint32_t kSides = 3, kBlock = node_bytes<Real>(kSides, kHasPlanes);
+    const uint64_t last_connection = header_.connection_count - 1, last_corner = header_.corner_count - 1;
+    const uint64_t nodes = header_.node_count, end = chunk_.end_of(nodes);
+    const fdcg_connection* const connections = records_.connections;
+    uint64_t n = chunk_.first_of(nodes), over = 0, wrong = 0, seconds = 0;
+    const unsigned char* block = records_.nodes + n * kBlock;
+    UnitCheck<Real> check(-largest_offset_, largest_offset_);
+    for (; n < end; ++n, block += kBlock) {
+      const auto& node = *reinterpret_cast<const Node*>(block);
+      wrong |= (node.side_count ^ kSides) | (node.flags & ~uint32_t{FDCG_NODE_INEXACT});
+#pragma GCC unroll 3
+      for (uint64_t k = 0; k < kSides; ++k) {
+        const fdcg_side side = node.sides[k];
+        const uint64_t link = side.link >> 1, which = side.link & 1;
+        const uint64_t word = word_of(connections[link <= last_connection ? link : 0]);
+        over |= (last_connection - link) | (last_corner - side.corner) | (nodes - (side.across + 1));
+        const uint64_t as_first = (word ^ (k << kSide0At | n)) & (kByte << kSide0At | kNode);
+        const uint64_t as_second = (word ^ (k << kSide1At | side.across)) & (kByte << kSide1At | kNode);
+        wrong |= which == 0 ? as_first : as_second;
+        wrong |= uint64_t{(word >> kTypeAt & kByte) == FDCG_BOUNDARY} ^ uint64_t { side.across == FDCG_NONE };
+        seconds += which;
+      }
+      const Real* const face = node.plane.normal;
+      if constexpr (kHasPlanes) {
+        const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(kSides));
+        check.look_at(face, planes);
+        check.look_at(planes + 4, planes + 8);
+      } else {
+        check.look_at(face, face);
+        wrong |= uint64_t{!has_derived_planes(node)};
+      }
+    }
+    const uint64_t count = end - chunk_.first_of(nodes);
+    part_->sides += kSides * count;
+    part_->first_sides += kSides * count - seconds;
+    return (over >> 32 | wrong) == 0 && check.holds();
+  }
+
+  // The planes that the step will derive. Corners of damaged files may be anything.
+  bool has_derived_planes(const Node& node) const {
+    bool has_all = true;
+    for (uint32_t k = 0; k < 3; ++k) {
+      const uint32_t c = node.sides[k].link >> 1;
+      const Vec3<Real> along = along_of(node.sides[k], node.sides[k < 2 ? k + 1 : 0], c < header_.connection_count ? c : 0);
+      has_all &= is_across(along, vec(node.plane.normal));
+    }
+    return has_all;
+  }
+
+  [[gnu::noinline]] fdcg_status nodes() {
+    return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
+      const unsigned char* const block = uniform_sides_ != 0 ? records_.nodes + n * records_.block_bytes : checked_block(n);
+      if (block == nullptr) return faults->note(true, "its block is out of range");
+      const uint32_t count = reinterpret_cast<const Node*>(block)->side_count;
+      if (uniform_sides_ != 0 ? count != uniform_sides_ : count < 3 || count > FDCG_MAX_SIDES)
+        return faults->note(true, "has too few sides or too many");
+      const uint64_t at = static_cast<uint64_t>(block - records_.nodes),
+                     end = at + node_bytes<Real>(count, records_.has_planes);
+      const bool is_last = n + 1 == header_.node_count;
+      if (uniform_sides_ == 0) {
+        const uint64_t next = is_last ? node_section_bytes_ : records_.node_offsets[n + 1] * uint64_t{sizeof(Real)};
+        if (end > node_section_bytes_ || next != end || (n == 0 && at != 0))
+          return faults->note(true, "its block does not end where the next one starts");
+      }
+      part_->sides += count;
+      look_at_node(n, block, count, &part_->first_sides, faults);
+    });
+  }
+
+  // `block` holds a node of so many sides.
+  template <class Faults>
+  [[gnu::always_inline]] void look_at_node(uint32_t n, const unsigned char* block, uint32_t count, uint64_t* first_sides,
+                                           Faults* faults) const {
+    const auto& node = *reinterpret_cast<const Node*>(block);
+    faults->note((node.flags & ~FDCG_NODE_INEXACT) != 0, "unknown flags");
+    look_at_planes(block, count, faults);
+    const auto* const sides = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
+    for (uint32_t k = 0; k < count; ++k) {
+      const fdcg_side& side = sides[k];
+      const bool is_known = side.link >> 1 < header_.connection_count;
+      const uint32_t c = is_known ? side.link >> 1 : 0;
+      const uint64_t word = word_of(records_.connections[c]), which = side.link & 1;
+      faults->note(!is_known, "connection out of range");
+      faults->note(side.corner >= header_.corner_count, "corner out of range");
+      faults->note(side.across + 1 > header_.node_count, "neighbour out of range");  // FDCG_NONE + 1 is 0
+      const uint64_t as_first = (word ^ (uint64_t{k} << kSide0At | n)) & (kByte << kSide0At | kNode);
+      const uint64_t as_second = (word ^ (uint64_t{k} << kSide1At | side.across)) & (kByte << kSide1At | kNode);
+      faults->note((which == 0 ? as_first : as_second) != 0, "its connection does not own it");
+      const bool is_boundary = (word >> kTypeAt & kByte) == FDCG_BOUNDARY;
+      faults->note(is_boundary != (side.across == FDCG_NONE), "a connection's type does not fit its nodes");
+      *first_sides += 1 - which;
+      const bool has_neighbour = side.across < header_.node_count && which == 0;
+      faults->note(has_neighbour && (word >> kSide1At & kByte) >= side_count_of(side.across), "its neighbour has no such side");
+      if (!records_.has_planes) look_at_derived(node, side, sides[k + 1 < count ? k + 1 : 0], c, faults);
+    }
+  }
+
+  template <class Faults>
+  [[gnu::always_inline]] void look_at_planes(const unsigned char* block, uint32_t count, Faults* faults) const {
+    const Real* const face = reinterpret_cast<const Node*>(block)->plane.normal;
+    const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(count));
+    UnitCheck<Real> check(-largest_offset_, largest_offset_);
+    if (Faults::kHasNames || !records_.has_planes) {
+      check.look_at(face, face);
+      faults->note(!check.holds(), "its normal is not of unit length, or its plane lies outside the object");
+    }
+    if (!records_.has_planes) return;
+    check.look_at(face, planes);
+    for (uint32_t k = 1; k < count; k += 2)
+      check.look_at(planes + 4 * k, planes + 4 * (k + 1 < count ? k + 1 : k));
+    faults->note(!check.holds(), "Voronoi plane out of range");
+  }
+
+  template <class Faults>
+  void look_at_derived(const Node& node, const fdcg_side& side, const fdcg_side& next, uint32_t c, Faults* faults) const {
+    faults->note(!is_across(along_of(side, next, c), vec(node.plane.normal)), "Voronoi plane out of range");
+  }
+  // The edge vector of a side, of whatever length; `c`: its connection, in range.
+  Vec3<Real> along_of(const fdcg_side& side, const fdcg_side& next, uint32_t c) const {
+    if (records_.edges != nullptr) return vec(records_.edges[c].direction);
+    const auto point = [&](uint32_t v) { return vec(records_.corners[v < header_.corner_count ? v : 0].point); };
+    const Vec3<Real> along = point(next.corner) - point(side.corner);
+    return dot(along, along) < TinyEdge<Real>::kSquare ? along * TinyEdge<Real>::kScale : along;
+  }
+
+  [[gnu::noinline]] fdcg_status connections() {
+    constexpr uint64_t kTypes = FDCG_BOUNDARY, kFlatnesses = FDCG_FLAT_ANGLE, kPerCount = 16;
+    const uint64_t end = chunk_.end_of(header_.connection_count), most_sides = uniform_sides_ == 3 ? 3 : kByte + 1;
+    for (uint64_t c = chunk_.first_of(header_.connection_count); c < end;) {
+      uint64_t types = 0;  // four counts of 16 bits
+      const uint64_t first = c;
+      c = end - first < kNode >> kPerCount ? end : first + (kNode >> kPerCount);
+      const fdcg_status status = for_all(first, c, "connection", error_, [&](uint32_t i, auto* faults) {
+        const uint64_t word = word_of(records_.connections[i]), type = word >> kTypeAt & kByte;
+        faults->note((type > kTypes) | (word >> kFlatnessAt > kFlatnesses), "unknown type or flatness");
+        faults->note((word >> kSide1At & kByte) >= most_sides, "its second node has no such side");
+        types += uint64_t{1} << (type & kTypes) * kPerCount;
+      });
+      if (status != FDCG_OK) return status;
+      for (uint64_t type = 0; type < 4; ++type)
+        part_->types[type] += types >> type * kPerCount & (kNode >> kPerCount);
+    }
+    return FDCG_OK;
+  }
+
+  [[gnu::noinline]] fdcg_status edges() {
+    const uint64_t first = chunk_.first_of(header_.connection_count), end = chunk_.end_of(header_.connection_count);
+    const auto numbers = [this](uint64_t c) { return static_cast<const Real*>(records_.edges[c].direction); };
+    UnitCheck<Real> check(0, largest_offset_);
+    for (uint64_t c = first; c < end; c += 2)
+      check.look_at(numbers(c), numbers(c + 1 < end ? c + 1 : c));
+    if (check.holds()) return FDCG_OK;
+    return for_all(first, end, "edge", error_, [&](uint32_t c, auto* faults) {
+      UnitCheck<Real> one(0, largest_offset_);
+      one.look_at(numbers(c), numbers(c));
+      faults->note(!one.holds(), "its direction is not of unit length, or it is longer than the object, or not at all");
+    });
+  }
+
+  [[gnu::noinline]] fdcg_status corners() {
+    double low[3], high[3];
+    for (int k = 0; k < 3; ++k) {
+      low[k] = header_.bounds_min[k] > -header_.extent ? header_.bounds_min[k] : -header_.extent;
+      high[k] = header_.bounds_max[k] < header_.extent ? header_.bounds_max[k] : header_.extent;
+    }
+    uint64_t busy_corners = 0;
+    const fdcg_status status = for_mine(header_.corner_count, "corner", [&](uint32_t v, auto* faults) {
+      const auto& corner = records_.corners[v];
+      bool is_inside = true;
+      for (int k = 0; k < 3; ++k)
+        is_inside &= (double{corner.point[k]} >= low[k]) & (double{corner.point[k]} <= high[k]);
+      faults->note(!is_inside, "outside the bounds");
+      const uint32_t count = corner.fan & ~FDCG_CORNER_OPEN;
+      if (__builtin_expect(count == 0, false)) {
+        ++busy_corners;
+        const bool is_busy = corner.first < header_.busy_count && raw_.busy_corners[corner.first].corner == v;
+        return faults->note(!is_busy || corner.side != 0, "no busy corner of this number");
+      }
+      faults->note((count < 2) | (count > FDCG_BUSY_FAN) | (count > header_.largest_fan), "fan out of range");
+      const bool is_node = corner.first < header_.node_count;
+      faults->note(!is_node || corner.side >= side_count_of(corner.first), "fan does not start here");
+    });
+    part_->busy_corners += busy_corners;
+    return status;
+  }
+
+  // Their fans and trees follow one another and fill their sections.
+  [[gnu::noinline]] fdcg_status busy_corners() {
+    fdcg_status status = for_mine(header_.busy_count, "busy corner", [&](uint32_t i, auto* faults) {
+      const fdcg_busy_corner none = {};
+      const fdcg_busy_corner &busy = raw_.busy_corners[i], &before = i > 0 ? raw_.busy_corners[i - 1] : none;
+      faults->note(busy.fan_count <= FDCG_BUSY_FAN || busy.fan_count > header_.largest_fan ||
+                       busy.first_fan != before.first_fan + uint64_t{before.fan_count} ||
+                       busy.first_box != before.first_box + ImplicitTree(before.fan_count, FDCG_LEAF_FAN).boxes,
+                   "its fan is out of range, or it has no tree in range");
+      if (i + 1 < header_.busy_count) return;
+      faults->note(busy.first_fan + uint64_t{busy.fan_count} != header_.fan_count, "the last fan is not in range");
+      const uint64_t boxes = ImplicitTree(busy.fan_count, FDCG_LEAF_FAN).boxes;
+      faults->note(busy.first_box + boxes != header_.fan_box_count, "it has no tree in range");
+    });
+    if (status != FDCG_OK) return status;
+    status = for_mine(header_.fan_count, "fan entry", [&](uint32_t i, auto* faults) {
+      faults->note(records_.fans[i] >> 1 >= header_.connection_count, "connection out of range");
+    });
+    if (status != FDCG_OK) return status;
+    return for_mine(header_.fan_box_count, "fan box", [&](uint32_t i, auto* faults) {
+      const auto& box = records_.fan_boxes[i];
+      bool is_in_range = norm1(vec(box.centre)) <= 4;
+      for (const auto& axis : box.axis)
+        is_in_range = is_in_range && norm1(vec(axis)) <= 8;
+      faults->note(!is_in_range, "out of range");
+    });
+  }
+
+  [[gnu::noinline]] fdcg_status hierarchy() {
+    return for_mine(BoxTree(header_.node_count).records, "box record", [&](uint32_t i, auto* faults) {
+      const fdcg_box8& boxes = raw_.hierarchy[i];
+      bool is_in_range = boxes.reserved == 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        is_in_range = is_in_range && absolute(boxes.origin[axis]) <= kFarthestBox &&
+                      boxes.exponent[axis] >= kLeastCellExponent && boxes.exponent[axis] <= kLargestCellExponent;
+      }
+      faults->note(!is_in_range, "origin, exponent or reserved byte out of range");
+    });
+  }
+
+  [[gnu::noinline]] fdcg_status source_map() {
+    return for_mine(header_.source_face_count, "source face", [&](uint32_t f, auto* faults) {
+      faults->note(raw_.source_map[f] + 1 > header_.node_count, "node out of range");  // FDCG_NONE + 1 is 0
+    });
+  }
+
+  [[gnu::noinline]] fdcg_status materials() {
+    const fdcg_status status = for_mine(raw_.material_count, "material", [&](uint32_t i, auto* faults) {
+      const char(&name)[FDCG_MATERIAL_NAME_BYTES] = raw_.materials[i].name;
+      bool is_over = false, is_name = name[0] != '\0' && name[FDCG_MATERIAL_NAME_BYTES - 1] == '\0';
+      for (const char c : name) {
+        is_over = is_over || c == '\0';
+        is_name = is_name && (!is_over || c == '\0');
+      }
+      faults->note(!is_name, "its name does not end in its record, or is empty");
+    });
+    if (status != FDCG_OK) return status;
+    return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
+      const uint16_t material = raw_.node_materials[n];
+      faults->note((material >= raw_.material_count) & (material != FDCG_NO_MATERIAL), "material out of range");
+    });
+  }
+
+  const GraphRecords<Real> records_;
+  const fdcg_header& header_;
+  const fdcg_graph& raw_;
+  const Chunk chunk_;
+  fdcg_verification* part_;
+  fdcg_error* error_;
+  uint64_t node_section_bytes_;
+  uint32_t uniform_sides_;  // of every node; 0: they differ
+  Real largest_offset_;
+};
+
+}  // namespace
+
+fdcg_status verify_safe_chunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error) {
+  return with_real_of(*graph.header, [&](auto real) { return SafeChunk<decltype(real)>(graph, chunk, part, error).run(); });
+}
+
+}  // namespace fdcg
