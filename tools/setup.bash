@@ -27,7 +27,11 @@ one_of() {
   printf '%s\n' "${1%%|*}"
 }
 
-is_installed() { [ "$(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null)" = 'ii ' ]; }
+is_installed() {
+  # A Node.js from elsewhere brings npm along, and refuses Debian's.
+  [ "$1" = npm ] && command -v npm >/dev/null && return
+  [ "$(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null)" = 'ii ' ]
+}
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then
