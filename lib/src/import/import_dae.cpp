@@ -184,23 +184,7 @@ class SceneReader {
       c = quarters == 0 ? 1 : quarters == 2 ? -1 : 0;
       s = quarters == 1 ? 1 : quarters == 3 ? -1 : 0;
     }
-    const double k = 1 - c;
-    return {c + k * x * x,
-            k * x * y + s * z,
-            k * x * z - s * y,
-            0,
-            k * x * y - s * z,
-            c + k * y * y,
-            k * y * z + s * x,
-            0,
-            k * x * z + s * y,
-            k * y * z - s * x,
-            c + k * z * z,
-            0,
-            0,
-            0,
-            0,
-            1};
+    return turned_about({x, y, z}, c, s);
   }
 
   // ---- meshes

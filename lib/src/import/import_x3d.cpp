@@ -154,24 +154,7 @@ class X3dReader {
     const double length = std::hypot(turn[0], turn[1], turn[2]);
     if (!(length > 0 && std::isfinite(length) && std::isfinite(turn[3])))
       file_.fail(node, "turns about an axis without direction, or by no finite angle; export the scene again");
-    const double x = turn[0] / length, y = turn[1] / length, z = turn[2] / length;
-    const double c = std::cos(turn[3]), s = sign * std::sin(turn[3]), k = 1 - c;
-    return {c + k * x * x,
-            k * x * y + s * z,
-            k * x * z - s * y,
-            0,
-            k * x * y - s * z,
-            c + k * y * y,
-            k * y * z + s * x,
-            0,
-            k * x * z + s * y,
-            k * y * z - s * x,
-            c + k * z * z,
-            0,
-            0,
-            0,
-            0,
-            1};
+    return turned_about({turn[0] / length, turn[1] / length, turn[2] / length}, std::cos(turn[3]), sign * std::sin(turn[3]));
   }
 
   // ---- shapes

@@ -24,6 +24,27 @@ Vec3 applied(const Matrix& m, const Vec3& p) {
           m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
 }
 
+Matrix turned_about(const Vec3& axis, double cosine, double sine) {
+  const auto [x, y, z] = axis;
+  const double c = cosine, s = sine, k = 1 - c;
+  return {c + k * x * x,
+          k * x * y + s * z,
+          k * x * z - s * y,
+          0,
+          k * x * y - s * z,
+          c + k * y * y,
+          k * y * z + s * x,
+          0,
+          k * x * z + s * y,
+          k * y * z - s * x,
+          c + k * z * z,
+          0,
+          0,
+          0,
+          0,
+          1};
+}
+
 bool is_mirrored(const Matrix& m) {
   return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]) < 0;
 }

@@ -13,6 +13,8 @@ using Matrix = std::array<double, 16>;
 inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 Matrix product(const Matrix& a, const Matrix& b);
+// The turn about a unit axis by the angle of this cosine and sine.
+Matrix turned_about(const Vec3& axis, double cosine, double sine);
 Vec3 applied(const Matrix& m, const Vec3& p);
 bool is_mirrored(const Matrix& m);
 bool is_finite(const Matrix& m);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg_stress: runs the step on every case of stress_case.hpp, judges every tick, and says how to repeat what fails.
+// Over 400 lines: the table's columns and the bars are lists.
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 

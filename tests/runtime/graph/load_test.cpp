@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Opening and verifying files, whole and damaged. Over 400 lines: each damage has its own case.
 #include <unistd.h>
 
 #include <algorithm>
