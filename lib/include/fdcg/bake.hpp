@@ -31,6 +31,8 @@
 #include <variant>
 #include <vector>
 
+#include "fdcg/physics.hpp"
+
 namespace fdcg::bake {
 
 // ---- results -------------------------------------------------------------------------------------------------------------
@@ -138,6 +140,7 @@ struct PolygonSoup {
   std::vector<Ignored> ignored;              ///< what was left out
   double metres_per_unit = 0;                ///< as the file states it (COLLADA, 3MF); 0: it does not
   char up_axis = 0;                          ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
+  StatedPhysics physics;                     ///< glTF: friction, masses and shapes by formula
   std::vector<std::string> other_files;      ///< further files that the mesh is from: a glTF file's buffers
 
   /// Faces of the file.

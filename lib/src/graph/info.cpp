@@ -57,6 +57,45 @@ Json repair_info(const RepairAccount& account) {
   return json;
 }
 
+Json or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+// A shape with all that an object of a scene needs, but for its name and stiffness.
+Json shape_info(const StatedShape& shape) {
+  Json json{{"node", shape.node}};
+  if (shape.kind.empty()) {
+    json["problem"] = shape.problem;
+    return json;
+  }
+  json["surface"] = Json::parse(surface_json(shape));
+  json["pose"] = {{"rotation_xyzw", shape.rotation_xyzw}, {"translation_m", shape.translation_m}};
+  json["material"] = or_null(shape.material);
+  json["in_mesh"] = shape.has_faces;
+  return json;
+}
+
+Json physics_info(const StatedPhysics& physics) {
+  Json json{{"materials", Json::array()}, {"bodies", Json::array()}, {"shapes", Json::array()}};
+  for (const PhysicsMaterial& m : physics.materials) {
+    json["materials"].push_back({{"name", m.name},
+                                 {"static_friction", m.static_friction},
+                                 {"dynamic_friction", m.dynamic_friction},
+                                 {"restitution", m.restitution},
+                                 {"friction_combine", or_null(m.friction_combine)},
+                                 {"restitution_combine", or_null(m.restitution_combine)}});
+  }
+  for (const PhysicsBody& b : physics.bodies) {
+    json["bodies"].push_back({{"node", b.node},
+                              {"mass_kg", b.mass_kg > 0 ? Json(b.mass_kg) : Json(nullptr)},
+                              {"kinematic", b.is_kinematic},
+                              {"centre_of_mass_m", b.centre_of_mass_m ? Json(*b.centre_of_mass_m) : Json(nullptr)}});
+  }
+  for (const StatedShape& shape : physics.shapes)
+    json["shapes"].push_back(shape_info(shape));
+  return json;
+}
+
 }  // namespace
 
 std::string info_json(const PolygonSoup& soup, const CompileOptions& options, const Compiled& compiled) {
@@ -87,6 +126,7 @@ std::string info_json(const PolygonSoup& soup, const CompileOptions& options, co
   json["split_faces"] = compiled.split_faces;
   json["merged_faces"] = compiled.merged_faces;
   if (compiled.repair) json["repair"] = repair_info(*compiled.repair);
+  if (!soup.physics.is_empty()) json["physics"] = physics_info(soup.physics);
   if (!compiled.no_mass.empty()) json["no_mass"] = compiled.no_mass;
   return json.dump();
 }

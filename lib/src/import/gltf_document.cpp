@@ -43,7 +43,7 @@ bool is_harmless(std::string_view extension) {
                                                           "KHR_texture_",
                                                           "KHR_lights_",
                                                           "KHR_xmp",
-                                                          "KHR_techniques_webgl",
+                                                          "KHR_technique",  // _webgl, and KHR_techniques_webgl
                                                           "KHR_animation_",
                                                           "KHR_audio",
                                                           "EXT_texture_",
@@ -92,6 +92,7 @@ class Parser {
     read_materials();
     read_meshes();
     read_nodes();
+    document_.physics = read_physics(root_);
     check_trees();
     read_scene();
     return std::move(document_);

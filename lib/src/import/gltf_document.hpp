@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "import/gltf_physics.hpp"
 #include "import/placing.hpp"
 #include "shared/json/reader.hpp"
 
@@ -111,6 +112,7 @@ struct Document {
   std::vector<std::string> materials;  // names, of those that have one
   std::vector<Node> nodes;
   std::vector<Matrix> matrices;
+  Physics physics;
   std::vector<Index> roots;  // of the scene that is shown: the default one, else the first; without scenes, all roots
 };
 

@@ -14,6 +14,7 @@
 #include "import/draco_decode.hpp"
 #include "import/gltf_accessor.hpp"
 #include "import/gltf_placing.hpp"
+#include "import/gltf_scene_physics.hpp"
 
 namespace fdcg::bake::gltf {
 namespace {
@@ -36,7 +37,7 @@ std::string name_or(const std::string& name, const char* list, Index index) {
 class SceneBuilder {
  public:
   SceneBuilder(const Document& document, Buffers& buffers, const MeshText& input, PolygonSoup& soup)
-      : document_(document), buffers_(buffers), input_(input), soup_(soup) {}
+      : document_(document), buffers_(buffers), input_(input), soup_(soup), physics_(document) {}
 
   void build() {
     find_shown_nodes();
@@ -48,6 +49,7 @@ class SceneBuilder {
         input_.progress("import", static_cast<double>(i) / static_cast<double>(shown_.size()));
       }
     }
+    show_physics();
     rounding_.finish(soup_);
     materials_.finish(soup_);
     for (const auto& [what, count] : ignored_) {
@@ -70,8 +72,10 @@ class SceneBuilder {
       is_shown[n] = true;
       shown_.push_back(n);
       place(n);
+      physics_.add(n, world_of(n), name_or(node.name, "nodes", n));
       open.insert(open.end(), node.children.rbegin(), node.children.rend());
     }
+    physics_.finish();
     for (Index n = 0; n < document_.nodes.size(); ++n) {
       if (!is_shown[n] && document_.nodes[n].mesh != kNone) ++count("nodes with a mesh outside the scene");
     }
@@ -82,6 +86,9 @@ class SceneBuilder {
     for (const bool has : has_node)
       count("meshes of no node") += has ? 0 : 1;
   }
+
+  // Null: the identity. Of a node that was placed, until the next one is.
+  [[nodiscard]] const Matrix* world_of(Index n) const { return world_of_[n] == kNone ? nullptr : &worlds_[world_of_[n]]; }
 
   // Identity times identity is stored as no matrix, so that untransformed points keep their bits.
   void place(Index n) {
@@ -143,11 +150,11 @@ class SceneBuilder {
     if (node.mesh == kNone) return;
     if (node.has_skin) ++count("skins (shown at rest)");
     const Mesh& mesh = document_.meshes[node.mesh];
-    const Matrix* world = world_of_[n] == kNone ? nullptr : &worlds_[world_of_[n]];
+    const Matrix* const world = world_of(n);
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const std::size_t faces = soup_.face_count();
       charge(primitives_, 1);
-      begin_material(mesh.primitives[p].material);
+      begin_material(n, mesh.primitives[p].material);
       const std::uint32_t first_point = show(mesh.primitives[p], world);
       if (soup_.face_count() == faces) continue;
       soup_.parts.push_back(
@@ -156,10 +163,11 @@ class SceneBuilder {
     }
   }
 
-  // A part without a name is named by its index.
-  void begin_material(Index material) {
+  // What the hand feels: the physics material of the node, else the one that is seen. One without a name is named by its index.
+  void begin_material(Index node, Index material) {
     std::string name = material == kNone ? std::string() : document_.materials[material];
     if (material != kNone && name.empty()) name = name_or(name, "materials", material);
+    if (const std::string* const physical = physics_.material_of(node)) name = *physical;
     if (!materials_.begin(soup_, name)) ++count("materials beyond the 65,535th");
   }
 
@@ -201,6 +209,45 @@ class SceneBuilder {
         primitive.indices && primitive.mode == Mode::triangles ? document_.accessors[*primitive.indices].count / 3 : 0;
     if (promised > mesh.corners.size() / 3) count("faces promised beyond the Draco data") += promised - mesh.corners.size() / 3;
     return first_point;
+  }
+
+  // ---- physics: boxes are faces where the scene shows no mesh
+
+  void show_physics() {
+    std::vector<StatedShape>& shapes = physics_.stated().shapes;
+    const bool has_mesh = soup_.face_count() > 0;
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+      shapes[s].has_faces = !has_mesh && physics_.shape(s).kind == ImplicitShape::Kind::box;
+      if (shapes[s].has_faces) {
+        show_box(s);
+      } else {
+        ++count(has_mesh ? "shapes of colliders beside the meshes" : "shapes of colliders that have no faces");
+      }
+    }
+    count("triggers") += physics_.triggers();
+    if (!document_.physics.trouble.empty()) ++count("physics extensions left out, since " + document_.physics.trouble);
+    soup_.physics = std::move(physics_.stated());
+  }
+
+  void show_box(std::size_t s) {
+    const Matrix* const world = world_of(physics_.node(s));
+    const std::array<Vec3, 8> corners = corners_of_box(physics_.shape(s));
+    charge(primitives_, 1);
+    begin_material(physics_.node(s), kNone);
+    const auto first_face = static_cast<std::uint32_t>(soup_.face_count());
+    const std::uint32_t first = place_points({false, kNone, static_cast<std::uint32_t>(s)}, corners.size(), {}, world,
+                                             [&corners](const auto& use) {
+                                               for (const Vec3& p : corners)
+                                                 use(p);
+                                             });
+    charge(corners_, 4 * kBoxFaces.size());
+    for (std::array<std::uint32_t, 4> face : kBoxFaces) {
+      if (world != nullptr && is_mirrored(*world)) std::swap(face[1], face[3]);
+      for (const std::uint32_t corner : face)
+        soup_.corners.push_back(first + corner);
+      soup_.face_first.push_back(static_cast<std::uint32_t>(soup_.corners.size()));
+    }
+    soup_.parts.push_back({physics_.stated().shapes[s].node + "/box", first_face, first});
   }
 
   // Points and lines are only counted.
@@ -335,6 +382,7 @@ class SceneBuilder {
   std::map<std::string, std::uint64_t> ignored_;
   Rounding rounding_;
   MaterialList materials_;
+  ScenePhysics physics_;
 };
 
 }  // namespace

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // COLLADA (Khronos, 1.4 and 1.5): the scene that the file shows, flattened. Coordinates stay in the file's unit and axes.
-#include <array>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "import/dae_document.hpp"
+#include "import/dae_transform.hpp"
 #include "import/scene_soup.hpp"
 #include "import/soup_reader.hpp"
 
@@ -64,18 +62,17 @@ class SceneReader {
                            " deep, perhaps itself; export the scene again");
     }
     Matrix world = above != nullptr ? *above : kIdentity;
-    Node unread;
-    for (Node child = xml::first_element(node); child; child = xml::next_element(child))
-      apply(child, world, unread);
+    for (Node child = xml::first_element(node); child; child = xml::next_element(child)) {
+      const Matrix own = transform_of(file_, child);
+      if (own != kIdentity) world = world == kIdentity ? own : product(world, own);
+    }
     if (!is_finite(world)) file_.fail(node, "has a transform that with those above it gives more than a double holds");
     const Matrix* const place = world == kIdentity ? nullptr : &world;  // so that untransformed points keep their bits
     for (Node child = xml::first_element(node); child; child = xml::next_element(child)) {
       const std::string_view kind = xml::name_of(child);
       const bool is_shown =
           kind == "instance_geometry" || kind == "instance_controller" || kind == "instance_node" || kind == "node";
-      if (!is_shown) continue;
-      if (unread) file_.fail(unread, "places a mesh, and is not read; export the scene with matrices");
-      show_child(node, child, place, depth);
+      if (is_shown) show_child(node, child, place, depth);
     }
   }
 
@@ -121,70 +118,6 @@ class SceneReader {
       names.emplace(xml::attribute(bound, "symbol"), name);
     }
     return names;
-  }
-
-  template <std::size_t kCount>
-  std::array<double, kCount> numbers_of(const Node& node) const {
-    std::array<double, kCount> values{};
-    std::size_t at = 0;
-    const std::uint64_t there = file_.for_each_real(node, [&](double value, const Printed&) {
-      if (at < kCount) values[at++] = value;
-    });
-    if (there != kCount) file_.fail(node, "has " + std::to_string(there) + " numbers, not " + std::to_string(kCount));
-    return values;
-  }
-
-  // A transform, after those before it; `unread` becomes one of a kind that is not read.
-  void apply(const Node& node, Matrix& world, Node& unread) const {
-    const std::string_view kind = xml::name_of(node);
-    Matrix own = kIdentity;
-    if (kind == "translate") {
-      const auto t = numbers_of<3>(node);
-      own[12] = t[0], own[13] = t[1], own[14] = t[2];
-    } else if (kind == "scale") {
-      const auto s = numbers_of<3>(node);
-      own[0] = s[0], own[5] = s[1], own[10] = s[2];
-    } else if (kind == "matrix") {
-      own = matrix_of(node);
-    } else if (kind == "rotate") {
-      own = rotation_of(node);
-    } else if (kind == "lookat" || kind == "skew") {
-      unread = node;
-    }
-    if (own == kIdentity) return;
-    world = world == kIdentity ? own : product(world, own);
-  }
-
-  // Row by row in the file.
-  [[nodiscard]] Matrix matrix_of(const Node& node) const {
-    const auto rows = numbers_of<16>(node);
-    if (rows[12] != 0 || rows[13] != 0 || rows[14] != 0 || rows[15] != 1)
-      file_.fail(node, "has a last row that is not 0 0 0 1; export the scene again");
-    Matrix matrix{};
-    for (std::size_t row = 0; row < 4; ++row) {
-      for (std::size_t column = 0; column < 4; ++column)
-        matrix[4 * column + row] = rows[4 * row + column];
-    }
-    return matrix;
-  }
-
-  // An axis and degrees; quarter turns are exact.
-  [[nodiscard]] Matrix rotation_of(const Node& node) const {
-    auto [x, y, z, degrees] = numbers_of<4>(node);
-    if (!std::isfinite(degrees)) file_.fail(node, "turns by no finite angle; export the scene again");
-    const double turn = std::fmod(degrees, 360.0);
-    if (turn == 0) return kIdentity;
-    const double length = std::hypot(x, y, z);
-    if (!(length > 0 && std::isfinite(length)))
-      file_.fail(node, "turns about an axis without direction; export the scene again");
-    x /= length, y /= length, z /= length;
-    double c = std::cos(turn * (std::numbers::pi / 180)), s = std::sin(turn * (std::numbers::pi / 180));
-    if (std::fmod(turn, 90.0) == 0) {
-      const int quarters = (static_cast<int>(turn / 90) + 4) % 4;
-      c = quarters == 0 ? 1 : quarters == 2 ? -1 : 0;
-      s = quarters == 1 ? 1 : quarters == 3 ? -1 : 0;
-    }
-    return turned_about({x, y, z}, c, s);
   }
 
   // ---- meshes

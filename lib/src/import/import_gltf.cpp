@@ -61,6 +61,17 @@ Container open_glb(std::string_view bytes) {
   return container;
 }
 
+// Shapes that have no faces, and no mesh beside them.
+Failure refuse_shapes(const std::string& name, const std::vector<StatedShape>& shapes) {
+  const StatedShape& first = shapes.front();
+  const std::string count = shapes.size() == 1 ? "a shape" : std::to_string(shapes.size()) + " shapes, the first";
+  return refuse(name,
+                "holds no mesh but " + count + " of node '" + first.node + "', which " +
+                    (first.kind.empty() ? first.problem + "; export it as a mesh"
+                                        : "has no faces; a scene of fdcg-servo has it as \"surface\": " + surface_json(first)),
+                "empty-mesh");
+}
+
 }  // namespace
 
 bool is_gltf_json(std::string_view bytes) {
@@ -85,6 +96,7 @@ Result<PolygonSoup> read_gltf(const MeshText& input) {
     gltf::Buffers buffers(document, container.binary, input.file);
     gltf::build_scene(document, buffers, input, soup);
     soup.other_files = buffers.outside_files();
+    if (soup.face_count() == 0 && !soup.physics.shapes.empty()) return refuse_shapes(input.name, soup.physics.shapes);
   } catch (const Refusal& refusal) {
     return refuse(input.name, refusal.message, "unreadable");
   }

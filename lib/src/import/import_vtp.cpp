@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK polydata in XML (.vtp), with its numbers as text. Binary blocks are refused with how to write text.
+// VTK polydata in XML (.vtp).
 #include <array>
 #include <string>
 #include <vector>
 
 #include "import/scene_soup.hpp"
 #include "import/soup_reader.hpp"
+#include "import/vtp_arrays.hpp"
 #include "import/xml_file.hpp"
 
 namespace fdcg::bake {
@@ -13,12 +14,10 @@ namespace {
 
 using xml::Node;
 
-constexpr const char* kAsText =
-    "; write it with text (ParaView: Save Data, Data Mode Ascii; VTK: SetDataModeToAscii), as PLY, or legacy VTK";
-
 class VtpReader {
  public:
-  VtpReader(const MeshText& input, PolygonSoup& soup) : file_(input.bytes), scene_(soup, input.bytes.size()) {}
+  VtpReader(const MeshText& input, PolygonSoup& soup)
+      : arrays_(input.bytes), file_(arrays_.file()), scene_(soup, input.bytes.size()) {}
 
   void read() {
     const Node root = file_.root();
@@ -34,6 +33,7 @@ class VtpReader {
   void read_piece(const Node& piece) {
     scene_.charge_node();
     const PrintedPoints points = read_points(piece);
+    count_unpacked();
     first_ = scene_.add_points(points, nullptr);
     points_ = points.points.size();
     read_cells(piece, "Polys", false);
@@ -42,25 +42,28 @@ class VtpReader {
     scene_.ignore("vertex elements", file_.count(piece, "NumberOfVerts", 0));
   }
 
+  // What was unpacked may be shown.
+  void count_unpacked() {
+    scene_.grow_bytes(arrays_.unpacked_bytes() - unpacked_);
+    unpacked_ = arrays_.unpacked_bytes();
+  }
+
   // The array of this name, or the first where none is asked for. Empty: there is none.
-  [[nodiscard]] Node array_of(const Node& parent, std::string_view name) const {
+  static Node array_of(const Node& parent, std::string_view name) {
     Node array = xml::child(parent, "DataArray");
     while (array && !name.empty() && xml::attribute(array, "Name") != name)
       array = xml::next(array);
-    if (array && xml::attribute(array, "format") != "ascii")
-      file_.fail(array,
-                 "has the format '" + readable_name(xml::attribute(array, "format")) + "', and only 'ascii' is read" + kAsText);
     return array;
   }
 
-  [[nodiscard]] PrintedPoints read_points(const Node& piece) const {
+  PrintedPoints read_points(const Node& piece) {
     PrintedPoints result;
     const Node array = array_of(xml::child(piece, "Points"), "");
     const std::uint64_t promised = file_.count(piece, "NumberOfPoints", 0);
     if (!array && promised == 0) return result;
     std::array<double, 3> xyz{};
     std::size_t at = 0;
-    const std::uint64_t there = file_.for_each_real(array, [&](double value, const Printed& number) {
+    const std::uint64_t there = arrays_.for_each_real(array, [&](double value, const Printed& number) {
       result.precision.note(value, number);
       xyz[at++] = value;
       if (at < 3) return;
@@ -80,12 +83,13 @@ class VtpReader {
     if (!cells || (!corner_array && !end_array)) return;
     if (!corner_array || !end_array) file_.fail(cells, "needs the arrays 'connectivity' and 'offsets'; export the file again");
     std::vector<std::uint32_t> corners;
-    file_.for_each_whole(corner_array, [&](std::int64_t value) {
+    arrays_.for_each_whole(corner_array, [&](std::int64_t value) {
       const bool is_known = value >= 0 && value < static_cast<std::int64_t>(kMaxPoints);
       corners.push_back(is_known ? static_cast<std::uint32_t>(value) : PolygonSoup::kInvalidVertex);
     });
+    count_unpacked();
     std::uint64_t begin = 0, cell = 0;
-    file_.for_each_whole(end_array, [&](std::int64_t value) {
+    arrays_.for_each_whole(end_array, [&](std::int64_t value) {
       const auto end = static_cast<std::uint64_t>(value);
       if (value < 0 || end < begin || end > corners.size() || end - begin > kMaxFaceCorners) {
         file_.fail(end_array, "ends cell " + std::to_string(cell) + " at " + std::to_string(value) + "; it must be from " +
@@ -120,8 +124,10 @@ class VtpReader {
     }
   }
 
-  xml::File file_;
+  vtp::Arrays arrays_;
+  const xml::File& file_;
   SceneSoup scene_;
+  std::size_t unpacked_ = 0;  // bytes of arrays_ that scene_ knows of
   std::uint32_t first_ = 0;  // point of the piece
   std::size_t points_ = 0;   // of the piece
 };
@@ -134,8 +140,6 @@ Result<PolygonSoup> read_vtp(const MeshText& input) {
   soup.format = Format::vtk;
   soup.face_first.push_back(0);
   try {
-    if (input.bytes.find("<AppendedData") != std::string_view::npos)
-      throw xml::Refusal{std::string("holds its numbers as appended binary blocks, which are not read") + kAsText};
     VtpReader(input, soup).read();
   } catch (const xml::Refusal& refusal) {
     return refuse(input.name, refusal.message, "unreadable");

@@ -84,6 +84,29 @@ TEST_CASE("COLLADA: transforms apply in their order, quarter turns exactly") {
   CHECK(turned.y == Approx(0.5).epsilon(1e-15));
 }
 
+TEST_CASE("COLLADA: a skew leans its axis by its angle towards the shift") {
+  const auto near = [](const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) < 1e-15; };
+  const std::vector<Vec3> along_x = placed("<skew>45 0 2 0 3 0 0</skew>");  // y leans towards x
+  CHECK(near(along_x[1], {1, 0, 0}));
+  CHECK(near(along_x[2], {2, 1, 0}));
+  CHECK(near(along_x[3], {1, 1, 0.5}));
+  // an axis that is not at right angles to the shift: x + y goes to the direction 30 degrees nearer to y
+  const Vec3 leaning = placed("<skew>30 1 1 0 0 1 0</skew>")[2];
+  CHECK(leaning.x == Approx(1).epsilon(1e-15));
+  CHECK(leaning.y == Approx(std::tan(75 * 3.14159265358979323846 / 180)).epsilon(1e-14));
+  CHECK(placed("<skew>0 0 1 0 1 0 0</skew>")[2] == Vec3{1, 1, 0});
+}
+
+TEST_CASE("COLLADA: what looks at a point has its -z there, and up above") {
+  const std::vector<Vec3> points = placed("<lookat>5 0 0 5 0 -9 0 2 0</lookat>");  // as a camera stands without a turn
+  CHECK(points[1] == Vec3{6, 0, 0});
+  CHECK(points[3] == Vec3{5, 1, 0.5});
+  const std::vector<Vec3> turned = placed("<lookat>0 0 0 7 0 0 1 0 3</lookat>");  // 'up' leans towards the point
+  CHECK(turned[1] == Vec3{0, -1, 0});
+  CHECK(turned[2] == Vec3{0, -1, 1});
+  CHECK(turned[3] == Vec3{-0.5, 0, 1});
+}
+
 TEST_CASE("COLLADA: what a transform adds to the rounding is in the quantum") {
   const std::string digits = kSquare.substr(0, kSquare.find(".5")) + "0.125" + kSquare.substr(kSquare.find(".5") + 2);
   const PolygonSoup still = import_text(dae(digits + kTriangle));
@@ -173,8 +196,14 @@ TEST_CASE("COLLADA: refusals name line, element, value and remedy") {
        "has 65537 corners; the limit is 65536");
   says(dae(kSquare + kTriangle, "<node id='n'><instance_node url='#n'/></node>"), "perhaps itself");
   says(dae(kSquare + kTriangle, "<node><instance_geometry url='#h'/></node>"), "the file has none of this id");
-  says(dae(kSquare + kTriangle, "<node><lookat>0</lookat><instance_geometry url='#g'/></node>"),
-       "export the scene with matrices");
+  const auto refuses = [&says](const std::string& transform, const std::string& words) {
+    says(dae(kSquare + kTriangle, "<node>" + transform + "<instance_geometry url='#g'/></node>"), words);
+  };
+  refuses("<lookat>0</lookat>", "has 1 numbers, not 9");
+  refuses("<lookat>1 2 3 1 2 3 0 1 0</lookat>", "looks at its own place");
+  refuses("<lookat>0 0 0 0 5 0 0 1 0</lookat>", "looks straight up");
+  refuses("<skew>30 0 1 0 0 2 0</skew>", "skews an axis along itself");
+  refuses("<skew>90 1 0 0 0 1 0</skew>", "reaches the axis of the shift");
   says(dae(kSquare + kTriangle, "<node><matrix>1 2</matrix></node>"), "has 2 numbers, not 16");
   says("<COLLADA version='1.3.0'/>", "version '1.3.0'");
   says("<COLLADA><asset></COLLADA>", "no well-formed XML");
