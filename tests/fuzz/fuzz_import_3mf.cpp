@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A package as it is, or XML, which becomes the model of one, and what follows a zero byte in it a second part: so that the
-// mutations need not keep the archive right.
+// mutations need not keep the archive right. COLLADA becomes the scene of a .zae.
 #include <string>
 
 #include "fuzz_import.hpp"
@@ -14,6 +14,11 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   if (text.starts_with("PK")) {
     return fdcg::bake::fuzz_import(fdcg::bake::Format::threemf, data, size, kEachByte * kMultiple,
                                    kLibrary + kUnpacked * kMultiple);
+  }
+  if (text.find("<COLLADA") != std::string_view::npos) {
+    const std::string archive = fdcg::test::stored_zip({{"scene.dae", std::string(text)}});
+    return fdcg::bake::fuzz_import(fdcg::bake::Format::threemf, reinterpret_cast<const unsigned char*>(archive.data()),
+                                   archive.size(), kMultiple, kLibrary);
   }
   const std::size_t cut = std::min(text.find('\0'), text.size());
   const std::string package =
