@@ -53,6 +53,26 @@ class Pages(PageCase):
         self.assertEqual((self.folder / "cube.fdcg").read_bytes(), page.array(item["graph"]))
         self.assertEqual((self.folder / "log.csv").read_bytes(), page.array(item["log"]))
 
+    def test_a_robot_is_the_meshes_that_it_names_at_their_scale(self):
+        self.write("cube.off", CUBE)
+        robot = self.write("robot.urdf", "<robot name='r'><link name='a'>" + "".join(
+            f"<visual><geometry><mesh filename='{name}'/></geometry></visual>"
+            for name in ("cube.off", "cube.off' scale='-2 2 2", "gone.stl")) + "</link></robot>")
+        done = self.fdcg("view", robot, "-o", self.path("robot.html"), code=3)
+        self.assertIn(b"names 3 meshes, 1 of them with a scale", done.stderr)
+        self.assertIn(b"gone.stl", done.stderr)
+        page = Page(self.path("robot.html"))
+        self.assertIn("<title>robot.urdf - fdcg</title>", page.text)
+        self.assertEqual(["pass", "pass", "fail"], [item["report"]["verdict"] for item in page.items])
+        self.assertEqual([-1, 1, 1], page.items[1]["geometry"]["centre"])
+        self.assertIn("graph", page.items[1])
+
+    def test_the_unit_that_a_mesh_states_is_that_of_its_graph(self):
+        item, = self.page(str(ROOT / "testdata" / "meshes" / "good" / "cube_quads.dae")).items
+        self.assertIn("--scale 0.001", item["compile_options"])
+        item, = self.page(str(ROOT / "testdata" / "meshes" / "good" / "cube_quads.dae"), "--units", "m").items
+        self.assertNotIn("--scale", item["compile_options"])
+
     def test_the_same_inputs_give_the_same_bytes(self):
         mesh = self.write("cube.off", CUBE)
         first = self.view(mesh, "--jobs", "1", name="a.html")

@@ -53,7 +53,7 @@ class Lister {
       if (file.problem.empty() && is_robot_file(file.path)) {
         add_robot(file.path);
       } else {
-        add(file, {1, 1, 1});
+        add(file, {1, 1, 1}, {});
       }
     }
     if (!skipped.empty()) {
@@ -64,8 +64,8 @@ class Lister {
   }
 
  private:
-  void add(const NamedFile& file, const bake::Vec3& scale) {
-    if (known_.emplace(file.path, scale.x, scale.y, scale.z).second) list_.meshes.push_back({file, scale});
+  void add(const NamedFile& file, const bake::Vec3& scale, const std::string& robot) {
+    if (known_.emplace(file.path, scale.x, scale.y, scale.z).second) list_.meshes.push_back({file, scale, robot});
   }
 
   void add_robot(const std::string& path) {
@@ -73,18 +73,18 @@ class Lister {
     if (!meshes) {
       const std::string& message = meshes.error().message;
       const std::string start = path + ": ";
-      return add({path, message.starts_with(start) ? message.substr(start.size()) : message}, {1, 1, 1});
+      return add({path, message.starts_with(start) ? message.substr(start.size()) : message}, {1, 1, 1}, path);
     }
-    if (meshes->empty()) return add({path, "is a robot's description and names no mesh; name a mesh file"}, {1, 1, 1});
+    if (meshes->empty()) return add({path, "is a robot's description and names no mesh; name a mesh file"}, {1, 1, 1}, path);
     std::size_t scaled = 0;
     for (const bake::NamedMesh& mesh : *meshes) {
       const bool is_scaled = mesh.scale != bake::Vec3{1, 1, 1};
       scaled += is_scaled ? 1 : 0;
       add({mesh.file.string(), mesh.problem.empty() ? "" : mesh.problem + " (" + path + ", link '" + mesh.link + "')"},
-          mesh.scale);
+          mesh.scale, path);
     }
     list_.notes.push_back(path + ": names " + grouped(meshes->size()) + (meshes->size() == 1 ? " mesh" : " meshes") +
-                          (scaled == 0 ? "" : ", " + grouped(scaled) + " of them with a scale, at which they are checked"));
+                          (scaled == 0 ? "" : ", " + grouped(scaled) + " of them with a scale, which is applied"));
   }
 
   MeshList list_;

@@ -12,6 +12,7 @@ namespace fdcg::tools {
 
 struct ListedMesh : NamedFile {
   bake::Vec3 scale{1, 1, 1};  // of a robot's description
+  std::string robot;          // the description that names it; empty: none
 };
 
 struct MeshList {

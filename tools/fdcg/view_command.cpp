@@ -8,13 +8,13 @@
 #include <filesystem>
 
 #include "../common/atomic_file.hpp"
-#include "../common/expand_paths.hpp"
 #include "../common/heap.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
+#include "mesh_list.hpp"
 #include "mesh_options.hpp"
 #include "page/page_writer.hpp"
 #include "view_input.hpp"
@@ -32,16 +32,22 @@ struct ViewArguments {
   bool quiet = false;
 };
 
+// A robot's meshes are named by its description.
+const std::string& named_first(const std::vector<ListedMesh>& inputs) {
+  return inputs.front().robot.empty() ? inputs.front().path : inputs.front().robot;
+}
+
 // Beside where the command runs: the first input's name with .html.
-std::string output_of(const ViewArguments& arguments, const std::vector<NamedFile>& inputs) {
+std::string output_of(const ViewArguments& arguments, const std::vector<ListedMesh>& inputs) {
   if (!arguments.output.empty()) return arguments.output;
-  const std::string& first = inputs.front().path;
+  const std::string& first = named_first(inputs);
   return first == "-" ? "view.html" : std::filesystem::path(first).filename().string() + ".html";
 }
 
-std::string title_of(const std::vector<NamedFile>& inputs) {
-  std::string title = std::filesystem::path(inputs.front().path).filename().string();
-  if (inputs.size() > 1) title += " and " + std::to_string(inputs.size() - 1) + " more";
+std::string title_of(const std::vector<ListedMesh>& inputs) {
+  std::string title = std::filesystem::path(named_first(inputs)).filename().string();
+  const bool is_one_robot = !inputs.front().robot.empty() && inputs.front().robot == inputs.back().robot;
+  if (inputs.size() > 1 && !is_one_robot) title += " and " + std::to_string(inputs.size() - 1) + " more";
   return title + " - fdcg";
 }
 
@@ -70,7 +76,7 @@ int add_inputs(const ViewArguments& arguments, std::vector<ViewInput>& inputs, p
     if (!input.error.empty()) {
       failed(kFile, input.error);
     } else if (input.kind == ViewKind::mesh) {
-      const std::string error = add_mesh_view(arguments.mesh, input.path, page);
+      const std::string error = add_mesh_view(arguments.mesh, input.file, page);
       if (!error.empty()) failed(kFile, error);
     } else {
       const auto as_text = [](const ViewInput& from) {
@@ -79,12 +85,12 @@ int add_inputs(const ViewArguments& arguments, std::vector<ViewInput>& inputs, p
       const bool has_log = input.kind == ViewKind::graph && i + 1 < inputs.size() && inputs[i + 1].kind == ViewKind::log &&
                            inputs[i + 1].error.empty();
       if (has_log) {
-        page.add_graph(input.path, input.bytes, inputs[i + 1].path, as_text(inputs[i + 1]));
+        page.add_graph(input.file.path, input.bytes, inputs[i + 1].file.path, as_text(inputs[i + 1]));
         ++i;
       } else if (input.kind == ViewKind::graph) {
-        page.add_graph(input.path, input.bytes);
+        page.add_graph(input.file.path, input.bytes);
       } else {
-        page.add_log(input.path, as_text(input));
+        page.add_log(input.file.path, as_text(input));
       }
     }
   }
@@ -96,22 +102,27 @@ int run_view(const ViewArguments& arguments) {
     return fail(kFile, "this fdcg has no viewer: " + reason +
                            "; install what the group viewer of tools/packages names and build fdcg again (docs/view.md)");
   }
-  const std::vector<NamedFile> named = expand_paths(arguments.inputs, mesh_endings());
-  for (const NamedFile& file : named) {
-    if (!file.problem.empty()) return fail(kFile, file.path + ": " + file.problem);
+  const MeshList list = list_meshes(arguments.inputs);
+  const std::vector<ListedMesh>& named = list.meshes;
+  for (const ListedMesh& file : named) {
+    if (!file.problem.empty() && (file.robot.empty() || named.size() == 1)) return fail(kFile, file.path + ": " + file.problem);
   }
   if (named.empty()) return fail(kFile, "there is no mesh in what was named");
+  for (const std::string& note : list.notes) {
+    if (!arguments.quiet) std::fputs(("fdcg: " + note + "\n").c_str(), stderr);
+  }
   const std::string output = output_of(arguments, named);
   if (arguments.open && is_stream(output)) return fail(kUsage, "--open needs a file after -o, not " + output);
-  for (const NamedFile& file : named) {
-    if (is_same_file(file.path, output)) return fail(kUsage, "'" + output + "' would overwrite an input");
+  for (const ListedMesh& file : named) {
+    if (is_same_file(file.path, output) || is_same_file(file.robot, output))
+      return fail(kUsage, "'" + output + "' would overwrite an input");
   }
   AtomicFile out(output);
   if (!out.ok()) return fail(kFile, out.error());
   keep_large_arrays();
   std::vector<ViewInput> inputs;
-  for (const NamedFile& file : named)
-    inputs.push_back(read_view_input(file.path));
+  for (const ListedMesh& file : named)
+    inputs.push_back(read_view_input(file));
   page::PageWriter page([&out](std::string_view piece) { out.write(piece); }, title_of(named));
   const int code = add_inputs(arguments, inputs, page);
   if (code != kClean && named.size() == 1) return code;  // a page of nothing helps nobody
@@ -128,6 +139,7 @@ Command add_view(CLI::App& app) {
   command->footer(R"(Examples:
   fdcg view bunny.off --open
   fdcg view scan.stl --units mm --repair -o scan.html
+  fdcg view robot.urdf
   fdcg view bunny.fdcg
   fdcg view bunny.fdcg log.csv -o session.html
 
@@ -139,8 +151,8 @@ compiled, so that the mouse feels it. A replay's log goes with the graph before 
   MeshView& mesh = arguments->mesh;
   required_argument(
       *command, "input", "INPUT...", arguments->inputs,
-      "Mesh files, FDCG files, logs of 'fdcg-servo replay', patterns, or folders to search for meshes. - is a mesh "
-      "on standard input.");
+      "Mesh files, FDCG files, logs of 'fdcg-servo replay', robots (URDF, SDF: the meshes that they name), patterns, or "
+      "folders to search for meshes. - is a mesh on standard input.");
   const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks"), touch(*command, "Touch");
   output.text("-o,--output", "FILE", arguments->output, "Page to write. - is standard output.",
               "the first input's name with .html");
@@ -156,6 +168,7 @@ compiled, so that the mouse feels it. A replay's log goes with the graph before 
   OptionGroup(*command, "General").jobs(mesh.jobs, "The page does not depend on it.");
   return {command, [arguments] {
             arguments->mesh.shows_progress = !arguments->quiet;
+            arguments->mesh.has_unit = !arguments->unit_text.empty();
             return run_view(*arguments);
           }};
 }

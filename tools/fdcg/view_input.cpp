@@ -23,9 +23,11 @@ std::vector<std::byte> read_all(std::ifstream& file) {
 
 }  // namespace
 
-ViewInput read_view_input(const std::string& path) {
+ViewInput read_view_input(const ListedMesh& named) {
   ViewInput input;
-  input.path = path;
+  input.file = named;
+  const std::string& path = named.path;
+  if (!named.problem.empty()) return input;
   if (path == "-") return input;
   std::ifstream file(path, std::ios::binary);
   char start[kLogStart.size()] = {};

@@ -7,18 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "mesh_list.hpp"
+
 namespace fdcg::tools {
 
 enum class ViewKind { mesh, graph, log };
 
 struct ViewInput {
   ViewKind kind = ViewKind::mesh;
-  std::string path;
+  ListedMesh file;
   std::vector<std::byte> bytes{};  // of a graph or a log; a mesh is read by import_input
-  std::string error{};             // one line: why it cannot be read
+  std::string error{};             // one line: why a graph or a log cannot be read
 };
 
 // A graph is verified in full. What is neither a graph nor a replay's log is a mesh, which is not read here.
-ViewInput read_view_input(const std::string& path);
+ViewInput read_view_input(const ListedMesh& named);
 
 }  // namespace fdcg::tools

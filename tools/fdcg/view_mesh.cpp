@@ -2,6 +2,8 @@
 #include "view_mesh.hpp"
 
 #include "../common/terminal.hpp"
+#include "fdcg/robot.hpp"
+#include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
 
 namespace fdcg::tools {
@@ -56,7 +58,9 @@ std::string compile_for_touch(const MeshView& view, const bake::PolygonSoup& sou
 
 }  // namespace
 
-void add_judged_mesh(const MeshView& view, const bake::PolygonSoup& soup, const bake::Report& report, page::PageWriter& page) {
+void add_judged_mesh(const MeshView& asked, const bake::PolygonSoup& soup, const bake::Report& report, page::PageWriter& page) {
+  MeshView view = asked;
+  if (!view.has_unit && soup.metres_per_unit > 0) view.metres_per_unit = soup.metres_per_unit;
   ProgressBar bar(view.shows_progress);
   const bake::Progress progress = [&bar](std::string_view stage, double fraction) { bar.update(stage, fraction); };
   page::MeshDetails details;
@@ -76,14 +80,16 @@ void add_judged_mesh(const MeshView& view, const bake::PolygonSoup& soup, const 
   page.add_mesh(soup, details);
 }
 
-std::string add_mesh_view(const MeshView& view, const std::string& path, page::PageWriter& page) {
+std::string add_mesh_view(const MeshView& view, const ListedMesh& mesh, page::PageWriter& page) {
   ProgressBar bar(view.shows_progress);
   const bake::Progress progress = [&bar](std::string_view stage, double fraction) { bar.update(stage, fraction); };
-  const auto soup = import_input(path, {view.input_format, progress});
+  auto soup = mesh.problem.empty()
+                  ? import_input(mesh.path, {view.input_format, progress})
+                  : bake::Result<bake::PolygonSoup>(bake::Failure{kFile, mesh.path + ": " + mesh.problem, "unreadable"});
   if (!soup) {
     bar.wipe();
     bake::Report report;
-    report.file = path;
+    report.file = mesh.path;
     bake::Issue issue;
     issue.rule = soup.error().rule.empty() ? "unreadable" : soup.error().rule;
     issue.total = 1;
@@ -92,6 +98,7 @@ std::string add_mesh_view(const MeshView& view, const std::string& path, page::P
     page.add_report(report);
     return soup.error().message;
   }
+  bake::scale_soup(*soup, mesh.scale);
   bake::ValidateOptions options;
   options.weld = view.weld;
   options.max_elements = kPageElements;

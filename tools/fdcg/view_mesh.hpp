@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fdcg/bake.hpp"
+#include "mesh_list.hpp"
 #include "page/page_writer.hpp"
 
 namespace fdcg::tools {
@@ -13,6 +14,7 @@ namespace fdcg::tools {
 struct MeshView {
   std::optional<bake::Format> input_format;
   double metres_per_unit = 1;
+  bool has_unit = false;  // it was given; else the mesh file's own counts, where it states one
   bake::Weld weld;
   bake::Precision precision = bake::Precision::f32;
   bool repair = false;
@@ -23,8 +25,8 @@ struct MeshView {
 
 inline constexpr std::size_t kPageElements = 10000;  // findings of each rule in a page; totals are exact all the same
 
-// Why the mesh could not be read; empty: it is in the page.
-std::string add_mesh_view(const MeshView& view, const std::string& path, page::PageWriter& page);
+// Why the mesh could not be read; empty: it is in the page, scaled.
+std::string add_mesh_view(const MeshView& view, const ListedMesh& mesh, page::PageWriter& page);
 
 // The same of a mesh that has been read and judged with these options.
 void add_judged_mesh(const MeshView& view, const bake::PolygonSoup& soup, const bake::Report& report, page::PageWriter& page);
