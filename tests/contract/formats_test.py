@@ -82,6 +82,39 @@ class Commands(Case):
         done = self.fdcg("compile", self.GOOD / "cube_quads.dae", "-o", self.path("a.fdcg"))
         self.assertIn(b"1 unit = 0.001 m (the file's own)", done.stdout)
 
+    def test_repair_says_that_a_unit_is_dropped(self):
+        done = self.fdcg("repair", self.GOOD / "cube_quads.dae", "-o", self.path("a.obj"), "--all", "--report", self.path("r.json"))
+        self.assertIn(b"states 1 unit = 0.001 m, which the written formats cannot hold; compile the result with --scale 0.001",
+                      done.stdout)
+        self.assertEqual(0.001, json.loads((self.folder / "r.json").read_text())["metres_per_unit"])
+        done = self.fdcg("repair", self.GOOD / "cube_quads.off", "-o", self.path("b.obj"), "--all", "--report", self.path("r.json"))
+        self.assertNotIn(b"unit", done.stdout)
+        self.assertIsNone(json.loads((self.folder / "r.json").read_text())["metres_per_unit"])
+
+    def test_physics_of_gltf_is_in_the_file_and_listed(self):
+        node = {"name": "crate", "extensions": {"KHR_physics_rigid_bodies": {
+            "motion": {"mass": 2.5}, "collider": {"geometry": {"shape": 0}, "physicsMaterial": 0}}}}
+        ball = {"name": "ball", "extensions": {"KHR_physics_rigid_bodies": {"collider": {"geometry": {"shape": 1}}}}}
+        scene = {"asset": {"version": "2.0"}, "nodes": [node, ball], "extensions": {
+            "KHR_implicit_shapes": {"shapes": [{"type": "box", "box": {"size": [0.1, 0.2, 0.3]}}, {"type": "sphere", "sphere": {"radius": 0.05}}]},
+            "KHR_physics_rigid_bodies": {"physicsMaterials": [{"name": "wood", "staticFriction": 0.5, "dynamicFriction": 0.4, "frictionCombine": "multiply"}]}}}
+        mesh = self.write("crate.gltf", json.dumps(scene))
+        done = self.fdcg("compile", mesh, "-o", self.path("a.fdcg"))
+        self.assertIn(b"the file states 2.5 kg for 'crate'; --mass 2.5 takes it", done.stdout)
+        about = json.loads(self.fdcg("inspect", self.path("a.fdcg"), "--json").stdout)
+        self.assertEqual([{"name": "wood", "nodes": 6}], about["materials"]["list"])
+        self.assertEqual([{"name": "wood", "static_friction": 0.5, "dynamic_friction": 0.4, "restitution": 0.0, "friction_combine": "multiply",
+                           "restitution_combine": None}], about["physics"]["materials"])
+        self.assertEqual([("crate", 2.5, False)], [(b["node"], b["mass_kg"], b["kinematic"]) for b in about["physics"]["bodies"]])
+        self.assertEqual([({"kind": "box", "half_m": [0.05, 0.1, 0.15]}, True), ({"kind": "sphere", "radius_m": 0.05}, False)],
+                         [(s["surface"], s["in_mesh"]) for s in about["physics"]["shapes"]])
+        text = self.fdcg("inspect", self.path("a.fdcg")).stdout.decode()
+        self.assertIn('  physics      material "wood": friction 0.5 static, 0.4 dynamic (combined: multiply), restitution 0.0\n', text)
+        self.assertIn('               body "crate": 2.5 kg\n', text)
+        self.assertIn('               shape "ball": {"kind":"sphere","radius_m":0.05}\n', text)
+        self.fdcg("compile", self.GOOD / "cube_quads.off", "-o", self.path("b.fdcg"), "-q")
+        self.assertIsNone(json.loads(self.fdcg("inspect", self.path("b.fdcg"), "--json").stdout)["physics"])
+
     def test_a_robot_stands_for_its_meshes(self):
         self.write("cube.off", CUBE)
         self.write("open.off", TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 3 2\n", ""))

@@ -15,6 +15,7 @@
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
 #include "mesh_options.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -66,6 +67,18 @@ std::string mass_summary(const bake::Compiled& compiled) {
   return volume + ", " + short_number(mass.density_kg_per_m3) + " kg/m^3, so it weighs " + short_number(mass.mass_kg) + " kg\n";
 }
 
+// A mass that the mesh file states is not taken unasked: with one, a mesh that encloses no solid is refused.
+std::string stated_mass(const CompileArguments& arguments, const bake::PolygonSoup& soup) {
+  if (arguments.options.mass_kg != 0 || arguments.options.density_kg_per_m3 != 0) return {};
+  const auto has_mass = [](const bake::PhysicsBody& body) { return body.mass_kg > 0; };
+  const std::vector<bake::PhysicsBody>& bodies = soup.physics.bodies;
+  const auto first = std::find_if(bodies.begin(), bodies.end(), has_mass);
+  if (first == bodies.end()) return {};
+  const std::string mass = shown_number(first->mass_kg);
+  return "the file states " + mass + " kg for '" + first->node + "'" +
+         (std::count_if(bodies.begin(), bodies.end(), has_mass) == 1 ? "; --mass " + mass + " takes it\n" : " and others\n");
+}
+
 // What the repair did, and how far it moved the surface.
 std::string repair_summary(const bake::RepairAccount& account, double metres_per_unit) {
   std::string text;
@@ -100,7 +113,7 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   text += header.max_deviation == 0
               ? std::string("every corner lies on the planes of its faces\n")
               : "corners lie up to " + short_number(header.max_deviation * scale) + " m off the planes of their faces\n";
-  text += mass_summary(compiled);
+  text += mass_summary(compiled) + stated_mass(arguments, soup);
   text += arguments.output + ": " + counted(header.node_count, "node") + ", " + counted(header.connection_count, "connection") +
           " (" + grouped(types[FDCG_CONVEX]) + " convex, " + grouped(types[FDCG_CONCAVE]) + " concave, " +
           grouped(types[FDCG_COPLANAR]) + " coplanar, " + grouped(types[FDCG_BOUNDARY]) + " boundary), " +

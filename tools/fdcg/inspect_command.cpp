@@ -145,6 +145,7 @@ Json description_of(const fdcg_graph& graph) {
           {"mass", mass_of(graph)},
           {"no_mass", from_info("no_mass")},
           {"repair", from_info("repair")},
+          {"physics", from_info("physics")},
           {"materials", materials_of(graph)},
           {"sections", sections_of(header)},
           {"source",
@@ -164,6 +165,28 @@ std::string materials_text(const Json& materials) {
   for (const Json& material : materials["list"])
     text += as_words(material["name"]) + " (" + material["nodes"].dump() + " nodes), ";
   return text + "none (" + materials["nodes_without"].dump() + ")\n";
+}
+
+// What the mesh file states, which the program that steps is to follow: a line each.
+std::string physics_text(const Json& physics) {
+  std::string text;
+  const auto add = [&text](const std::string& line) { text += (text.empty() ? "  physics      " : "               ") + line + "\n"; };
+  const auto rule = [](const Json& combine) { return combine.is_null() ? std::string() : " (combined: " + as_words(combine) + ")"; };
+  for (const Json& m : physics.value("materials", Json::array())) {
+    add("material " + m["name"].dump() + ": friction " + m["static_friction"].dump() + " static, " +
+        m["dynamic_friction"].dump() + " dynamic" + rule(m["friction_combine"]) + ", restitution " + m["restitution"].dump() +
+        rule(m["restitution_combine"]));
+  }
+  for (const Json& b : physics.value("bodies", Json::array())) {
+    add("body " + b["node"].dump() + ": " + (b["mass_kg"].is_null() ? "mass not stated" : b["mass_kg"].dump() + " kg") +
+        (b["kinematic"] == true ? ", moved by others" : ""));
+  }
+  for (const Json& s : physics.value("shapes", Json::array())) {
+    add("shape " + s["node"].dump() + (s.contains("problem") ? " " + as_words(s["problem"])
+                                                              : ": " + s["surface"].dump() +
+                                                                    (s["in_mesh"] == true ? ", faces of the mesh" : "")));
+  }
+  return text;
 }
 
 std::string mass_text(const Json& about) {
@@ -192,6 +215,7 @@ std::string description_text(const std::string& file, const Json& about) {
   text += "  deviation    " + about["max_deviation_m"].dump() + " m at most between a corner and its node's plane\n";
   text += mass_text(about);
   if (!about["materials"].is_null()) text += materials_text(about["materials"]);
+  if (about["physics"].is_object()) text += physics_text(about["physics"]);
   const Json& source = about["source"];
   text += "  source       " + count(source["vertices"]) + " vertices, " + count(source["faces"]) + " faces, SHA-256 " +
           (source["file_sha256"].is_null() ? "not recorded" : as_words(source["file_sha256"])) + "\n";

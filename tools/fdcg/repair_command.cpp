@@ -10,6 +10,7 @@
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
 #include "mesh_options.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -86,6 +87,14 @@ void append_elements(std::string& text, const std::vector<bake::Element>& elemen
   if (shown > 0) text += (total > shown ? " and " + grouped(total - shown) + " more" : std::string()) + "\n";
 }
 
+// OFF, OBJ, PLY and STL hold none. Empty where the input states none either.
+std::string unit_note(const bake::PolygonSoup& input) {
+  if (input.metres_per_unit <= 0) return {};
+  const std::string metres = shown_number(input.metres_per_unit);
+  return "  unit: the input states 1 unit = " + metres +
+         " m, which the written formats cannot hold; compile the result with --scale " + metres + "\n";
+}
+
 std::string account(const bake::Repaired& repaired, const bake::PolygonSoup& input) {
   std::string text =
       input.name + ": " + grouped(input.points.size()) + " vertices, " + grouped(input.face_count()) + " faces\n";
@@ -96,6 +105,7 @@ std::string account(const bake::Repaired& repaired, const bake::PolygonSoup& inp
     text += "  " + action.name + ": " + action.left_message + "\n";
     append_elements(text, action.left_elements, action.left);
   }
+  text += unit_note(input);
   return text;
 }
 

@@ -64,6 +64,8 @@ std::string repair_json(const Repaired& repaired, const std::string& output) {
   json["tool"] = "fdcg";
   json["written"] = output.empty() ? Json(nullptr) : Json(output);
   json["verdict"] = repaired.after.passes() ? "pass" : "fail";
+  const double metres = repaired.soup.metres_per_unit;
+  json["metres_per_unit"] = metres > 0 ? Json(metres) : Json(nullptr);
   json["read_with_weld"] = repaired.read_with == Weld::Kind::none ? "none" : "exact";
   add_account(repaired, json);
   json["before"] = report_entry(repaired.before);
