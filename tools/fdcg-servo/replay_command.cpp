@@ -122,7 +122,7 @@ void append_row(std::string& text, const TrajectoryPoint& point, const fdcg_resu
 
 // Steps every point, logs every tick. The clock is read around the step alone.
 ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
-                     fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log) {
+                     fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log, tools::ProgressBar& bar) {
   ReplaySummary summary;
   std::vector<Tick> ticks(std::min(kChunkTicks, points.size()));
   std::string text = kLogHeader;
@@ -134,6 +134,7 @@ ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, const s
       const std::uint64_t measured = nanoseconds(Clock::now() - before);
       ticks[i].step_ns = measured - std::min(measured, clock_ns);
     }
+    bar.update("replay", static_cast<double>(begin) / static_cast<double>(points.size()));
     for (std::size_t i = 0; i < count; ++i) {
       summary.add(ticks[i]);
       measure_force(graph, ticks[i].result, summary);
@@ -142,6 +143,7 @@ ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, const s
     log.write(text);
     text.clear();
   }
+  bar.wipe();
   return summary;
 }
 
@@ -281,6 +283,7 @@ int run_replay(const ReplayArguments& arguments) {
   if (!log.ok()) return fail(kFile, log.error());
   fdcg_graph graph{};
   if (const int code = open_graph(arguments.graph, &graph); code != kClean) return code;
+  tools::ProgressBar bar(!arguments.quiet);
   std::vector<TrajectoryPoint> points;
   if (const int code = get_path(arguments, graph, &points); code != kClean) {
     fdcg_close(&graph);
@@ -288,7 +291,7 @@ int run_replay(const ReplayArguments& arguments) {
   }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};
-  const ReplaySummary summary = replay(graph, arguments.params, points, contact, clock_ns, log);
+  const ReplaySummary summary = replay(graph, arguments.params, points, contact, clock_ns, log, bar);
   if (summary.in_state[FDCG_FREE] == summary.ticks) warn_of_nothing_touched(graph, points, arguments.trajectory);
   fdcg_close(&graph);
   if (const int code = tools::commit_all({&log}); code != kClean) return code;

@@ -18,6 +18,7 @@ using tools::AtomicFile;
 using tools::grouped;
 
 constexpr std::size_t kChunkBytes = 1 << 16;
+constexpr std::uint64_t kReportEvery = 1024;  // ticks
 // An output in chunks.
 class Output {
  public:
@@ -108,11 +109,14 @@ int replay_session(const ReplaySessionArguments& arguments) {
   csv.add(replay.csv_header());
   touches.add(replay.touches_header());
   rewritten.add(replay.header_bytes());
-  while (replay.next()) {
+  tools::ProgressBar bar(!arguments.quiet);
+  for (std::uint64_t tick = 0; replay.next(); ++tick) {
+    if (tick % kReportEvery == 0) bar.update("replay", replay.fraction());
     if (csv.file.is_wanted()) csv.add(replay.csv_row());
     if (touches.file.is_wanted()) touches.add(replay.touches_rows());
     if (rewritten.file.is_wanted()) rewritten.add(replay.record_bytes());
   }
+  bar.wipe();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   rewritten.add(replay.end_bytes());
   for (Output* output : {&csv, &touches, &rewritten})

@@ -185,7 +185,10 @@ int run_grasp(const GraspArguments& arguments) {
   if (const int code = set_load(arguments, *object, report); code != kClean) return code;
   report.closure = grasp::force_closure(report.grasp);
   report.effort = arguments.effort;
-  report.epsilon = grasp::ferrari_canny(report.grasp, arguments.effort, arguments.cones);
+  ProgressBar bar(true);
+  report.epsilon = grasp::ferrari_canny(report.grasp, arguments.effort, arguments.cones,
+                                        [&bar](std::string_view stage, double done) { bar.update(stage, done); });
+  bar.wipe();
   report.grip_n = arguments.grip_n;
   if (has_grip(arguments, report.grasp)) {
     report.margin =

@@ -11,6 +11,7 @@
 #include "fdcg/fdcg.h"
 #include "fdcg_commands.hpp"
 #include "invariants.hpp"
+#include "open_graph.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -22,32 +23,6 @@ struct InspectArguments {
   bool json = false;
   bool dump = false;
   bool verify = false;
-};
-
-// A graph and the memory that it views.
-class OpenGraph {
- public:
-  OpenGraph() = default;
-  ~OpenGraph() { fdcg_close(&graph_); }
-  OpenGraph(const OpenGraph&) = delete;
-  OpenGraph& operator=(const OpenGraph&) = delete;
-
-  fdcg_status open(const std::string& path, fdcg_error& error) {
-    if (path != "-") return fdcg_open_file(path.c_str(), FDCG_VERIFY_FULL, &graph_, &error);
-    constexpr std::size_t kChunkBytes = 1 << 20;
-    std::size_t bytes = 0, got = 0;
-    do {
-      words_.resize((bytes + kChunkBytes) / sizeof(std::uint64_t) + 1);
-      got = std::fread(reinterpret_cast<char*>(words_.data()) + bytes, 1, kChunkBytes, stdin);
-      bytes += got;
-    } while (got != 0);
-    return fdcg_open_memory(words_.data(), bytes, FDCG_VERIFY_FULL, &graph_, &error);
-  }
-  [[nodiscard]] const fdcg_graph& graph() const { return graph_; }
-
- private:
-  fdcg_graph graph_{};
-  std::vector<std::uint64_t> words_;
 };
 
 std::string section_name(std::uint32_t id) {
@@ -248,10 +223,15 @@ std::string verification_text(const fdcg_graph& graph, const std::vector<Invaria
 int run_inspect(const InspectArguments& arguments) {
   OpenGraph opened;
   fdcg_error error{};
-  if (opened.open(arguments.file, error) != FDCG_OK)
+  ProgressBar bar(true);
+  const bake::Progress progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
+  if (opened.open(arguments.file, progress, error) != FDCG_OK) {
+    bar.wipe();
     return fail(kFile, arguments.file == "-" ? std::string("standard input: ") + error.message : error.message);
+  }
   const fdcg_graph& graph = opened.graph();
-  const std::vector<Invariant> invariants = arguments.verify ? check_invariants(graph) : std::vector<Invariant>{};
+  const std::vector<Invariant> invariants = arguments.verify ? check_invariants(graph, progress) : std::vector<Invariant>{};
+  bar.wipe();
   Json about = description_of(graph);
   AtomicFile out("-");
   if (arguments.json) {

@@ -13,29 +13,34 @@ using bake::Vec3;
 
 // Units in the last place that one rounded plane or unit vector may be off by, times a few for the arithmetic of the check.
 constexpr double kRoundings = 16;
-
-void measure(Invariant& invariant, std::uint64_t record, double deviation) {
-  ++invariant.checked;
-  if (!(deviation <= invariant.worst)) invariant.worst = deviation;
-  if (deviation <= invariant.limit) return;  // NaN is a violation
-  ++invariant.violations;
-  if (invariant.first < 0) invariant.first = static_cast<std::int64_t>(record);
-}
+constexpr std::uint64_t kReportEvery = 1 << 14;      // measures
+constexpr double kMeasuresOfAConnection = 3 * 2 + 3;  // of its two sides, and its own
 
 class Checker {
  public:
-  explicit Checker(const fdcg_graph& graph)
+  Checker(const fdcg_graph& graph, const bake::Progress& progress)
       : graph_(graph),
         header_(*graph.header),
         epsilon_(kRoundings * (header_.real_bytes == 8 ? std::numeric_limits<double>::epsilon()
                                                        : static_cast<double>(std::numeric_limits<float>::epsilon()))),
-        length_(epsilon_ * header_.extent) {}
+        length_(epsilon_ * header_.extent),
+        progress_(progress),
+        all_(kMeasuresOfAConnection * header_.connection_count + header_.node_count) {}
 
   std::vector<Invariant> run() {
     return {corners_on_planes(), nodes_convex(), unit_vectors(), voronoi_planes(), edges(), types()};
   }
 
  private:
+  void measure(Invariant& invariant, std::uint64_t record, double deviation) {
+    if (++measured_ % kReportEvery == 0 && progress_) progress_("measure the geometry", static_cast<double>(measured_) / all_);
+    ++invariant.checked;
+    if (!(deviation <= invariant.worst)) invariant.worst = deviation;
+    if (deviation <= invariant.limit) return;  // NaN is a violation
+    ++invariant.violations;
+    if (invariant.first < 0) invariant.first = static_cast<std::int64_t>(record);
+  }
+
   [[nodiscard]] Invariant named(const char* name, double limit) const { return {name, 0, 0, 0, limit, -1}; }
 
   [[nodiscard]] Vec3 point(std::uint32_t corner) const { return vec3(fdcg_get_corner(&graph_, corner).point); }
@@ -135,12 +140,15 @@ class Checker {
   const fdcg_header& header_;
   double epsilon_;  // of a direction
   double length_;   // of a position, local units
+  const bake::Progress& progress_;
+  std::uint64_t measured_ = 0;
+  double all_;  // measures, about
 };
 
 }  // namespace
 
-std::vector<Invariant> check_invariants(const fdcg_graph& graph) {
-  std::vector<Invariant> invariants = Checker(graph).run();
+std::vector<Invariant> check_invariants(const fdcg_graph& graph, const bake::Progress& progress) {
+  std::vector<Invariant> invariants = Checker(graph, progress).run();
   const std::vector<Invariant> mass = check_mass(graph);
   invariants.insert(invariants.end(), mass.begin(), mass.end());
   return invariants;

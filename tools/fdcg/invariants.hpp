@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
 
 namespace fdcg::tools {
@@ -21,7 +22,7 @@ struct Invariant {
 };
 
 // Every invariant over every record of a graph that FDCG_VERIFY_FULL has passed. Cost: linear in the file.
-std::vector<Invariant> check_invariants(const fdcg_graph& graph);
+std::vector<Invariant> check_invariants(const fdcg_graph& graph, const bake::Progress& progress = {});
 
 // The one about mass properties; none where the file has no such section. A part of check_invariants.
 std::vector<Invariant> check_mass(const fdcg_graph& graph);

@@ -101,8 +101,10 @@ struct Epsilon {
   std::uint64_t cells = 0;  ///< cones of directions looked at
 };
 /// Computes epsilon. Work: some 10 us a cone, a thousand to a hundred thousand of them, more where the grasp is symmetric;
-/// after max_cells the bounds are given as they are.
-Epsilon ferrari_canny(const Grasp& grasp, Effort effort = Effort::together, std::uint64_t max_cells = 200'000);
+/// after max_cells the bounds are given as they are. `progress` is told which part of them was looked at: the search may end
+/// before.
+Epsilon ferrari_canny(const Grasp& grasp, Effort effort = Effort::together, std::uint64_t max_cells = 200'000,
+                      const bake::Progress& progress = {});
 
 // ---- margin --------------------------------------------------------------------------------------------------------------
 

@@ -100,7 +100,7 @@ Closure force_closure(const Grasp& grasp) {
   return judge(grasp, unit_body(grasp)).closure;
 }
 
-Epsilon ferrari_canny(const Grasp& grasp, Effort effort, std::uint64_t max_cells) {
+Epsilon ferrari_canny(const Grasp& grasp, Effort effort, std::uint64_t max_cells, const bake::Progress& progress) {
   Body body = unit_body(grasp);
   const Judged judged = judge(grasp, body);
   Epsilon epsilon;
@@ -122,7 +122,7 @@ Epsilon ferrari_canny(const Grasp& grasp, Effort effort, std::uint64_t max_cells
     const LocalMinimum found = descend(body, axis);
     if (found.value < start.value) start = found;
   }
-  const LeastSupport least = least_support(body, start, max_cells);
+  const LeastSupport least = least_support(body, start, max_cells, progress);
   epsilon.value = least.best.value;
   epsilon.lower = least.lower;
   epsilon.is_tight = epsilon.value - epsilon.lower <= kTolerance;

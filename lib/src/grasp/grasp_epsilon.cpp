@@ -23,10 +23,12 @@ struct HigherFirst {
   bool operator()(const Cell& a, const Cell& b) const { return a.lower > b.lower; }
 };
 
+constexpr std::uint64_t kReportEvery = 1024;  // cells, of which a split adds two
+
 class Search {
  public:
   Search(const Body& body, const LocalMinimum& start) : body_(body), n_(body.dimensions), best_(start) {}
-  LeastSupport run(std::uint64_t max_cells);
+  LeastSupport run(std::uint64_t max_cells, const bake::Progress& progress);
 
  private:
   void begin();  // the orthants
@@ -102,12 +104,13 @@ void Search::begin() {
   }
 }
 
-LeastSupport Search::run(std::uint64_t max_cells) {
+LeastSupport Search::run(std::uint64_t max_cells, const bake::Progress& progress) {
   begin();
   while (!open_.empty() && open_.top().lower < enough() && cells_ < max_cells && best_.value > kTolerance) {
     const Cell cell = open_.top();
     open_.pop();
     split(cell);
+    if (progress && cells_ % kReportEvery < 2) progress("search for epsilon", static_cast<double>(cells_) / static_cast<double>(max_cells));
   }
   // Pruned cones have at least enough() of a best value that has only decreased since.
   return {best_, open_.empty() ? enough() : std::min(enough(), open_.top().lower), cells_};
@@ -115,8 +118,9 @@ LeastSupport Search::run(std::uint64_t max_cells) {
 
 }  // namespace
 
-LeastSupport least_support(const Body& body, const LocalMinimum& start, std::uint64_t max_cells) {
-  return Search(body, start).run(max_cells);
+LeastSupport least_support(const Body& body, const LocalMinimum& start, std::uint64_t max_cells,
+                           const bake::Progress& progress) {
+  return Search(body, start).run(max_cells, progress);
 }
 
 }  // namespace fdcg::grasp

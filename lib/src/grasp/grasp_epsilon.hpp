@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "fdcg/bake.hpp"
 #include "grasp/grasp_body.hpp"
 #include "grasp/grasp_minimum.hpp"
 
@@ -17,6 +18,7 @@ struct LeastSupport {
 
 // start: a direction known to have low support. Stops when the bounds are within kTolerance / 2, when the least support is at
 // most kTolerance, and after max_cells cones.
-LeastSupport least_support(const Body& body, const LocalMinimum& start, std::uint64_t max_cells);
+LeastSupport least_support(const Body& body, const LocalMinimum& start, std::uint64_t max_cells,
+                           const bake::Progress& progress = {});
 
 }  // namespace fdcg::grasp

@@ -151,6 +151,7 @@ class LogReplay {
   // graph_folder: where the graphs are now; empty: where they were, or beside the log.
   std::string open(const std::string& path, const std::string& graph_folder);
   bool next();  // the next tick; false: the log has ended
+  [[nodiscard]] double fraction() const;  // of the log's bytes that was read, 0 to 1
 
   // The tick as rows of CSV (schemas/session-log.md), with line ends; "" where it has no good report.
   [[nodiscard]] std::string csv_header() const;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+
 #include "fdcg/device_tools.hpp"
 #include "recording/session_csv.hpp"
 #include "recording/session_replay.hpp"
@@ -9,12 +12,21 @@ struct LogReplay::Impl {
   SessionReplay replay;
   ReplayedTick tick;
   std::uint64_t first_ns = 0;  // of the first tick
+  std::uintmax_t bytes = 0;    // of the log; 0: not known, as of a pipe
 };
 LogReplay::LogReplay() : impl_(std::make_unique<Impl>()) {}
 LogReplay::~LogReplay() = default;
 
 std::string LogReplay::open(const std::string& path, const std::string& graph_folder) {
+  std::error_code unknown;
+  impl_->bytes = std::filesystem::file_size(path, unknown);
+  if (unknown) impl_->bytes = 0;
   return impl_->replay.open(path, graph_folder);
+}
+
+double LogReplay::fraction() const {
+  if (impl_->bytes == 0) return 0;
+  return std::min(1.0, static_cast<double>(impl_->replay.reader().offset()) / static_cast<double>(impl_->bytes));
 }
 
 bool LogReplay::next() {
