@@ -72,10 +72,9 @@ SurfaceCover::SurfaceCover(double distance, double largest)
     : reach_(distance * (1 - 1e-6)), slack_(distance * 5e-7), is_usable_(distance > largest * kLeastShare) {}
 
 bool SurfaceCover::covers(const std::array<Vec3, 3>& triangle, std::span<const NamedTriangle> candidates,
-                          std::vector<std::uint32_t>& used) {
-  constexpr int kParts = 85;  // 1 + 4 + 16 + 64: three levels, where all need them
+                          std::vector<std::uint32_t>& used, int parts) {
   used.clear();
-  parts_left_ = kParts;
+  parts_left_ = parts;
   candidates_ = candidates;
   if (!is_usable_ || !is_covered(triangle, used)) return false;
   std::sort(used.begin(), used.end());

@@ -34,14 +34,18 @@ class SurfaceCover {
  public:
   static constexpr double kLeastShare = 0x1p-28;  // rounding of coordinates is then below a millionth of the distance
 
+  static constexpr int kParts = 85;  // 1 + 4 + 16 + 64: three levels, where all need them
+
   // `largest`: of all coordinates, in magnitude.
   SurfaceCover(double distance, double largest);
 
   [[nodiscard]] bool is_near(const Vec3& p, const std::array<Vec3, 3>& triangle) const {
     return distance_bound(p, triangle) <= reach_;
   }
-  // `used` receives the candidates that the proof uses, in no order. Work: candidates times parts.
-  bool covers(const std::array<Vec3, 3>& triangle, std::span<const NamedTriangle> candidates, std::vector<std::uint32_t>& used);
+  // `used` receives the candidates that the proof uses, in no order. Work: candidates times parts, of which there are at most
+  // `parts`.
+  bool covers(const std::array<Vec3, 3>& triangle, std::span<const NamedTriangle> candidates, std::vector<std::uint32_t>& used,
+              int parts = kParts);
 
  private:
   bool is_covered(const std::array<Vec3, 3>& triangle, std::vector<std::uint32_t>& used);

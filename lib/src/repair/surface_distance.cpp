@@ -91,10 +91,12 @@ class OneSided {
   // An upper bound; `least` is a lower bound that is known already.
   double bound(const TriangleSet& parts, double least) {
     lower_ = least;
+    const std::uint64_t few = kFewParts + kPartsEach * parts.size();
     for (const Triangle& part : parts)
       open(part);
     for (std::uint64_t looked_at = 0; !open_.empty() && open_.top().upper > reach(); ++looked_at) {
-      if (looked_at > kMostParts) return open_.top().upper;
+      const double upper = open_.top().upper;
+      if (looked_at > kMostParts || (looked_at > few && upper <= kRounding * largest_)) return upper;
       const Triangle part = open_.top().triangle;
       open_.pop();
       if (!lies_along(part)) divide(part);
@@ -106,6 +108,10 @@ class OneSided {
  private:
   static constexpr double kAllowance = 0x1p-26;
   static constexpr std::uint64_t kMostParts = 50'000;  // about a second
+  // Within the rounding of floats a few parts are enough, in proportion to what changed: beside a crack that is as wide no number
+  // of parts would be.
+  static constexpr std::uint64_t kFewParts = 1'000, kPartsEach = 100;
+  static constexpr double kRounding = 0x1p-24;
 
   struct Part {
     double upper;
@@ -132,7 +138,26 @@ class OneSided {
     tree_.in_box(low, high, reach(), candidates_);
     constexpr std::size_t kMostCandidates = 64;  // else a smaller part is cheaper
     if (candidates_.size() > kMostCandidates) return false;
-    return SurfaceCover(reach(), largest_).covers(part, candidates_, used_);
+    SurfaceCover cover(reach(), largest_);
+    return cover.covers(part, candidates_, used_) || lies_along_one_side(part, cover);
+  }
+  // Sheets that lie on one another, as of plates without a thickness, share edges of more than two triangles, which look like
+  // borders: so each side by itself, without copies. Where these are whole, a part need not be divided along all of such an edge.
+  bool lies_along_one_side(const Triangle& part, SurfaceCover& cover) {
+    const auto side_of = [](const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); };
+    const auto has_same_corners = [](const NamedTriangle& s, const NamedTriangle& t) {
+      return std::is_permutation(s.name.begin(), s.name.end(), t.name.begin());
+    };
+    for (const double sign : {1.0, -1.0}) {
+      facing_.clear();
+      for (const NamedTriangle& t : candidates_) {
+        const bool is_copy =
+            std::any_of(facing_.begin(), facing_.end(), [&](const NamedTriangle& s) { return has_same_corners(s, t); });
+        if (sign * dot(side_of(part), side_of(t.point)) > 0 && !is_copy) facing_.push_back(t);
+      }
+      if (facing_.size() < candidates_.size() && cover.covers(part, facing_, used_, 1)) return true;
+    }
+    return false;
   }
   void divide(const Triangle& part) {
     const auto& [a, b, c] = part;
@@ -146,7 +171,7 @@ class OneSided {
   double largest_, allowance_;
   double lower_ = 0;
   std::priority_queue<Part> open_;
-  std::vector<NamedTriangle> candidates_;
+  std::vector<NamedTriangle> candidates_, facing_;
   std::vector<std::uint32_t> used_;
 };
 
