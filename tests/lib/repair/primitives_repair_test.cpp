@@ -15,6 +15,7 @@ using namespace fdcg::test;
 namespace {
 
 constexpr std::uint32_t kFewest = 3, kMost = 200;
+constexpr double kAllowance = 0x1p-24;  // of measuring, step by step, where a cap that was turned is cut into other triangles
 
 using Corner = std::array<double, 3>;
 using Loop = std::vector<Corner>;
@@ -82,7 +83,7 @@ void check_repairs(const std::function<RingBody(std::uint32_t sides)>& family, i
     REQUIRE(mended.has_value());
     CHECK(left_of(mended->after) == "");
     CHECK(loops_of(mended->soup) == loops_of(clean));
-    CHECK(mended->distance == 0);
+    CHECK(mended->distance <= kAllowance);
     const WalkedGraph graph = compile_sound(mended->soup);
     CHECK(graph.euler_characteristic() == euler_characteristic);
   }
