@@ -27,7 +27,8 @@ bool is_line(const std::string& text) {
 const std::string& file_of(const unsigned char* data, std::size_t size) {
   static const int file = memfd_create("robot", 0);
   static const std::string path = "/proc/self/fd/" + std::to_string(file);
-  require(file >= 0 && ftruncate(file, 0) == 0 && pwrite(file, data, size, 0) == static_cast<ssize_t>(size), "a file in memory");
+  require(file >= 0 && ftruncate(file, 0) == 0 && pwrite(file, data, size, 0) == static_cast<ssize_t>(size),
+          "a file in memory");
   return path;
 }
 

@@ -81,7 +81,8 @@ class BuildReader {
  private:
   void add_item(NMR::PLib3MFBase* items) {
     const Owned item = made_by([&](NMR::PLib3MFBase** out) { return NMR::lib3mf_builditemiterator_getcurrent(items, out); });
-    const Owned object = made_by([&](NMR::PLib3MFBase** out) { return NMR::lib3mf_builditem_getobjectresource(raw(item), out); });
+    const Owned object =
+        made_by([&](NMR::PLib3MFBase** out) { return NMR::lib3mf_builditem_getobjectresource(raw(item), out); });
     NMR::MODELTRANSFORM transform{};
     BOOL has_transform = 0;
     NMR::lib3mf_builditem_hasobjecttransform(raw(item), &has_transform);

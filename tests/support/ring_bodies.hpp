@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders, cones, discs, tubes and gears as modelling programs write them: any number of sides, caps as one polygon or as a fan
-// around a centre, along each of the three axes.
+// Cylinders, cones, discs, tubes and gears as modelling programs write them: any number of sides, caps as one polygon or as a
+// fan around a centre, along each of the three axes.
 #pragma once
 
 #include <algorithm>

@@ -145,8 +145,12 @@ std::string materials_text(const Json& materials) {
 // What the mesh file states, which the program that steps is to follow: a line each.
 std::string physics_text(const Json& physics) {
   std::string text;
-  const auto add = [&text](const std::string& line) { text += (text.empty() ? "  physics      " : "               ") + line + "\n"; };
-  const auto rule = [](const Json& combine) { return combine.is_null() ? std::string() : " (combined: " + as_words(combine) + ")"; };
+  const auto add = [&text](const std::string& line) {
+    text += (text.empty() ? "  physics      " : "               ") + line + "\n";
+  };
+  const auto rule = [](const Json& combine) {
+    return combine.is_null() ? std::string() : " (combined: " + as_words(combine) + ")";
+  };
   for (const Json& m : physics.value("materials", Json::array())) {
     add("material " + m["name"].dump() + ": friction " + m["static_friction"].dump() + " static, " +
         m["dynamic_friction"].dump() + " dynamic" + rule(m["friction_combine"]) + ", restitution " + m["restitution"].dump() +
@@ -157,9 +161,9 @@ std::string physics_text(const Json& physics) {
         (b["kinematic"] == true ? ", moved by others" : ""));
   }
   for (const Json& s : physics.value("shapes", Json::array())) {
-    add("shape " + s["node"].dump() + (s.contains("problem") ? " " + as_words(s["problem"])
-                                                              : ": " + s["surface"].dump() +
-                                                                    (s["in_mesh"] == true ? ", faces of the mesh" : "")));
+    add("shape " + s["node"].dump() +
+        (s.contains("problem") ? " " + as_words(s["problem"])
+                               : ": " + s["surface"].dump() + (s["in_mesh"] == true ? ", faces of the mesh" : "")));
   }
   return text;
 }

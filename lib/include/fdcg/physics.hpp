@@ -24,20 +24,20 @@ struct PhysicsMaterial {
 
 /// A thing that moves as one.
 struct PhysicsBody {
-  std::string node;          ///< of the file
-  double mass_kg = 0;        ///< 0: not stated
+  std::string node;           ///< of the file
+  double mass_kg = 0;         ///< 0: not stated
   bool is_kinematic = false;  ///< its motion is given, whatever its mass
   std::optional<std::array<double, 3>> centre_of_mass_m;
 };
 
 /// A shape by formula, as an object of a scene of fdcg-servo has it (docs/surfaces.md).
 struct StatedShape {
-  std::string node;        ///< of the file
-  std::string kind;        ///< plane, sphere, cylinder, capsule, box, cone, ellipsoid; empty: none of them, see `problem`
-  std::string problem;     ///< why not, one line
-  double radius_m = 0;     ///< as the kind says; others are 0, here and below
+  std::string node;         ///< of the file
+  std::string kind;         ///< plane, sphere, cylinder, capsule, box, cone, ellipsoid; empty: none of them, see `problem`
+  std::string problem;      ///< why not, one line
+  double radius_m = 0;      ///< as the kind says; others are 0, here and below
   double top_radius_m = 0;  ///< cone
-  double length_m = 0;     ///< cylinder, capsule, cone
+  double length_m = 0;      ///< cylinder, capsule, cone
   std::array<double, 3> half_m{};                      ///< box, ellipsoid
   std::array<double, 4> rotation_xyzw = {0, 0, 0, 1};  ///< of its pose
   std::array<double, 3> translation_m{};
@@ -54,7 +54,8 @@ struct StatedPhysics {
   [[nodiscard]] bool is_empty() const { return materials.empty() && bodies.empty() && shapes.empty(); }
 };
 
-/// A shape as the value of "surface" in a scene file, JSON on one line: {"kind":"sphere","radius_m":0.05}. Its kind is not empty.
+/// A shape as the value of "surface" in a scene file, JSON on one line: {"kind":"sphere","radius_m":0.05}. Its kind is not
+/// empty.
 std::string surface_json(const StatedShape& shape);
 
 }  // namespace fdcg::bake

@@ -67,8 +67,8 @@ Matrix rotation_of(const xml::File& file, const Node& node) {
   return turned_about(axis, c, s);
 }
 
-// Degrees, an axis, and the direction along which points are shifted: as far as they lie along the axis, so that the axis itself
-// leans by the angle towards that direction (the Skew of RenderMan).
+// Degrees, an axis, and the direction along which points are shifted: as far as they lie along the axis, so that the axis
+// itself leans by the angle towards that direction (the Skew of RenderMan).
 Matrix skew_of(const xml::File& file, const Node& node) {
   const auto n = numbers_of<7>(file, node);
   const Vec3 axis = direction_of(file, node, {n[1], n[2], n[3]}, "skews an axis without direction");

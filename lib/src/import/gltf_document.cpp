@@ -456,12 +456,13 @@ class Parser {
 
 Document parse_document(std::string_view text) {
   constexpr json::Limits kLimits = {0xFFFFFFFF, 128, true};  // glTF needs some ten levels, extras may have a few more
-  constexpr std::size_t kShown = 300;  // bytes: the text that is wrong may be long
+  constexpr std::size_t kShown = 300;                        // bytes: the text that is wrong may be long
   std::optional<json::Document> document;
   try {
     document.emplace(text, kLimits);
   } catch (const Refusal& refusal) {
-    throw Refusal{(refusal.is_cut_short ? "truncated: it " : "") + printable(refusal.message, kShown) + "; fetch or export the file again"};
+    throw Refusal{(refusal.is_cut_short ? "truncated: it " : "") + printable(refusal.message, kShown) +
+                  "; fetch or export the file again"};
   }
   return Parser(*document).parse();
 }

@@ -139,9 +139,7 @@ class PhysicsReader {
 
 }  // namespace
 
-Physics read_physics(const Value& root) try {
-  return PhysicsReader(root).read();
-} catch (const Refusal& refusal) {
+Physics read_physics(const Value& root) try { return PhysicsReader(root).read(); } catch (const Refusal& refusal) {
   Physics none;
   constexpr std::size_t kShown = 120;
   none.trouble = printable(refusal.message, kShown);

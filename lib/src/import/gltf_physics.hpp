@@ -17,8 +17,8 @@ namespace fdcg::bake::gltf {
 // In the frame of its node; along y where it has an axis.
 struct ImplicitShape {
   enum class Kind { box, sphere, capsule, cylinder, plane, other } kind = Kind::other;
-  std::string name;                             // of the kind, as in the file
-  std::array<double, 3> size{};                 // box; plane: 0 where it has no end
+  std::string name;                               // of the kind, as in the file
+  std::array<double, 3> size{};                   // box; plane: 0 where it has no end
   double radius = 0, top_radius = 0, height = 0;  // radius: at the bottom, -y
 };
 

@@ -235,11 +235,11 @@ class SceneBuilder {
     charge(primitives_, 1);
     begin_material(physics_.node(s), kNone);
     const auto first_face = static_cast<std::uint32_t>(soup_.face_count());
-    const std::uint32_t first = place_points({false, kNone, static_cast<std::uint32_t>(s)}, corners.size(), {}, world,
-                                             [&corners](const auto& use) {
-                                               for (const Vec3& p : corners)
-                                                 use(p);
-                                             });
+    const std::uint32_t first =
+        place_points({false, kNone, static_cast<std::uint32_t>(s)}, corners.size(), {}, world, [&corners](const auto& use) {
+          for (const Vec3& p : corners)
+            use(p);
+        });
     charge(corners_, 4 * kBoxFaces.size());
     for (std::array<std::uint32_t, 4> face : kBoxFaces) {
       if (world != nullptr && is_mirrored(*world)) std::swap(face[1], face[3]);

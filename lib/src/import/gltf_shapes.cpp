@@ -161,7 +161,8 @@ std::string surface_json(const StatedShape& shape) {
   if (shape.kind == "cone") text += R"(,"top_radius_m":)" + shortest(shape.top_radius_m);
   if (shape.length_m > 0) text += R"(,"length_m":)" + shortest(shape.length_m);
   if (shape.kind == "box" || shape.kind == "ellipsoid")
-    text += R"(,"half_m":[)" + shortest(shape.half_m[0]) + ',' + shortest(shape.half_m[1]) + ',' + shortest(shape.half_m[2]) + ']';
+    text +=
+        R"(,"half_m":[)" + shortest(shape.half_m[0]) + ',' + shortest(shape.half_m[1]) + ',' + shortest(shape.half_m[2]) + ']';
   return text + '}';
 }
 

@@ -128,8 +128,8 @@ class VtpReader {
   const xml::File& file_;
   SceneSoup scene_;
   std::size_t unpacked_ = 0;  // bytes of arrays_ that scene_ knows of
-  std::uint32_t first_ = 0;  // point of the piece
-  std::size_t points_ = 0;   // of the piece
+  std::uint32_t first_ = 0;   // point of the piece
+  std::size_t points_ = 0;    // of the piece
 };
 
 }  // namespace

@@ -23,11 +23,11 @@ struct Type {
   Block::Kind kind;
   std::size_t width;
 };
-constexpr std::array kTypes = {
-    Type{"Float32", Block::Kind::real, 4},  Type{"Float64", Block::Kind::real, 8},  Type{"Int8", Block::Kind::whole, 1},
-    Type{"UInt8", Block::Kind::natural, 1}, Type{"Int16", Block::Kind::whole, 2},   Type{"UInt16", Block::Kind::natural, 2},
-    Type{"Int32", Block::Kind::whole, 4},   Type{"UInt32", Block::Kind::natural, 4}, Type{"Int64", Block::Kind::whole, 8},
-    Type{"UInt64", Block::Kind::natural, 8}};
+constexpr std::array kTypes = {Type{"Float32", Block::Kind::real, 4}, Type{"Float64", Block::Kind::real, 8},
+                               Type{"Int8", Block::Kind::whole, 1},   Type{"UInt8", Block::Kind::natural, 1},
+                               Type{"Int16", Block::Kind::whole, 2},  Type{"UInt16", Block::Kind::natural, 2},
+                               Type{"Int32", Block::Kind::whole, 4},  Type{"UInt32", Block::Kind::natural, 4},
+                               Type{"Int64", Block::Kind::whole, 8},  Type{"UInt64", Block::Kind::natural, 8}};
 
 std::uint64_t load_bits(std::string_view bytes, bool is_big_endian) {
   std::uint64_t value = 0;

@@ -108,8 +108,8 @@ class OneSided {
  private:
   static constexpr double kAllowance = 0x1p-26;
   static constexpr std::uint64_t kMostParts = 50'000;  // about a second
-  // Within the rounding of floats a few parts are enough, in proportion to what changed: beside a crack that is as wide no number
-  // of parts would be.
+  // Within the rounding of floats a few parts are enough, in proportion to what changed: beside a crack that is as wide no
+  // number of parts would be.
   static constexpr std::uint64_t kFewParts = 1'000, kPartsEach = 100;
   static constexpr double kRounding = 0x1p-24;
 
@@ -142,7 +142,8 @@ class OneSided {
     return cover.covers(part, candidates_, used_) || lies_along_one_side(part, cover);
   }
   // Sheets that lie on one another, as of plates without a thickness, share edges of more than two triangles, which look like
-  // borders: so each side by itself, without copies. Where these are whole, a part need not be divided along all of such an edge.
+  // borders: so each side by itself, without copies. Where these are whole, a part need not be divided along all of such an
+  // edge.
   bool lies_along_one_side(const Triangle& part, SurfaceCover& cover) {
     const auto side_of = [](const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); };
     const auto has_same_corners = [](const NamedTriangle& s, const NamedTriangle& t) {

@@ -44,7 +44,8 @@ StatedShape placed(const Json& shape, const Json& node) {
 Vec3 moved_by(const StatedShape& shape, const Vec3& p) {
   const auto [x, y, z, w] = shape.rotation_xyzw;
   const Vec3 t{2 * (y * p.z - z * p.y), 2 * (z * p.x - x * p.z), 2 * (x * p.y - y * p.x)};
-  return {p.x + w * t.x + y * t.z - z * t.y + shape.translation_m[0], p.y + w * t.y + z * t.x - x * t.z + shape.translation_m[1],
+  return {p.x + w * t.x + y * t.z - z * t.y + shape.translation_m[0],
+          p.y + w * t.y + z * t.x - x * t.z + shape.translation_m[1],
           p.z + w * t.z + x * t.y - y * t.x + shape.translation_m[2]};
 }
 
@@ -56,9 +57,12 @@ bool is_near(const Vec3& a, const Vec3& b) {
 
 TEST_CASE("glTF physics: materials have the format's defaults where the file says nothing") {
   GltfScene scene = fdcg::test::square();
-  scene.json["extensions"][kBodies]["physicsMaterials"] = {
-      {{"name", "rubber"}, {"staticFriction", 0.9}, {"dynamicFriction", 0.8}, {"restitution", 0.25}, {"frictionCombine", "multiply"}},
-      Json::object()};
+  scene.json["extensions"][kBodies]["physicsMaterials"] = {{{"name", "rubber"},
+                                                            {"staticFriction", 0.9},
+                                                            {"dynamicFriction", 0.8},
+                                                            {"restitution", 0.25},
+                                                            {"frictionCombine", "multiply"}},
+                                                           Json::object()};
   const StatedPhysics physics = import_text(scene.text()).physics;
   REQUIRE(physics.materials.size() == 2);
   CHECK(physics.materials[0].name == "rubber");
@@ -151,7 +155,8 @@ TEST_CASE("glTF shapes: without a mesh a box is its six faces, where its node is
 }
 
 TEST_CASE("glTF shapes: beside a mesh they are surfaces of a scene, with their pose") {
-  const StatedShape ball = placed({{"type", "sphere"}, {"sphere", {{"radius", 0.5}}}}, {{"scale", {2, 2, 2}}, {"translation", {1, 2, 3}}});
+  const StatedShape ball =
+      placed({{"type", "sphere"}, {"sphere", {{"radius", 0.5}}}}, {{"scale", {2, 2, 2}}, {"translation", {1, 2, 3}}});
   CHECK(surface_json(ball) == R"({"kind":"sphere","radius_m":1})");
   CHECK(ball.translation_m == std::array<double, 3>{1, 2, 3});
   CHECK(surface_json(placed({{"type", "sphere"}}, {{"scale", {1, 2, 3}}})) == R"({"kind":"ellipsoid","half_m":[0.5,1,1.5]})");
@@ -169,7 +174,8 @@ TEST_CASE("glTF shapes: beside a mesh they are surfaces of a scene, with their p
 
 TEST_CASE("glTF shapes: the pose is the node's, turned, mirrored or not") {
   const Json pillar = {{"type", "cylinder"}, {"cylinder", {{"height", 2}, {"radiusBottom", 1}, {"radiusTop", 0.5}}}};
-  for (const std::array<double, 4>& q : {std::array<double, 4>{0.5, 0.5, 0.5, 0.5}, {0.6, 0, 0, 0.8}, {0, 1, 0, 0}, {0, 0, 0.8, -0.6}}) {
+  for (const std::array<double, 4>& q :
+       {std::array<double, 4>{0.5, 0.5, 0.5, 0.5}, {0.6, 0, 0, 0.8}, {0, 1, 0, 0}, {0, 0, 0.8, -0.6}}) {
     for (const double mirror : {1.0, -1.0}) {
       const StatedShape shape = placed(pillar, {{"rotation", q}, {"scale", {mirror, 1, 1}}, {"translation", {1, 2, 3}}});
       CAPTURE(q[0], q[1], q[2], q[3], mirror);
@@ -193,8 +199,9 @@ TEST_CASE("glTF shapes: what no surface has is said") {
   CHECK(problem({{"type", "box"}}, {{"matrix", {1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}}).starts_with("is sheared"));
   GltfScene scene = scene_of({{{"type", "sphere"}}});
   scene.node(with_physics({{"name", "ball"}}, collider(0)));
-  CHECK(refusal(scene.text()) == "mesh: holds no mesh but a shape of node 'ball', which has no faces; a scene of fdcg-servo has it as "
-                                 "\"surface\": {\"kind\":\"sphere\",\"radius_m\":0.5}");
+  CHECK(refusal(scene.text()) ==
+        "mesh: holds no mesh but a shape of node 'ball', which has no faces; a scene of fdcg-servo has it as "
+        "\"surface\": {\"kind\":\"sphere\",\"radius_m\":0.5}");
 }
 
 TEST_CASE("glTF physics: what is wrong in it is left out with a word, and the mesh is read") {
@@ -206,17 +213,18 @@ TEST_CASE("glTF physics: what is wrong in it is left out with a word, and the me
     REQUIRE(soup.ignored.size() == 1);
     return soup.ignored[0].what;
   };
-  CHECK(ignored({{kBodies, {{"physicsMaterials", {{{"staticFriction", -1}}}}}}}).find("physicsMaterials[0].staticFriction is -1") !=
-        std::string::npos);
+  CHECK(ignored({{kBodies, {{"physicsMaterials", {{{"staticFriction", -1}}}}}}})
+            .find("physicsMaterials[0].staticFriction is -1") != std::string::npos);
   CHECK(ignored({{kShapes, {{"shapes", {{{"type", "sphere"}, {"sphere", {{"radius", 0}}}}}}}}}).find("radius is 0") !=
         std::string::npos);
   CHECK(ignored({{kBodies, 7}}).starts_with("physics extensions left out, since"));
 }
 
 TEST_CASE("glTF: required extensions that leave the triangles alone are no reason to refuse") {
-  for (const char* const name : {"KHR_physics_rigid_bodies", "KHR_implicit_shapes", "EXT_mesh_manifold", "KHR_materials_unlit",
-                                 "KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_xmp_json_ld",
-                                 "EXT_texture_webp", "KHR_technique_webgl", "KHR_animation_pointer", "KHR_node_visibility", "EXT_structural_metadata"}) {
+  for (const char* const name :
+       {"KHR_physics_rigid_bodies", "KHR_implicit_shapes", "EXT_mesh_manifold", "KHR_materials_unlit", "KHR_texture_transform",
+        "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_xmp_json_ld", "EXT_texture_webp", "KHR_technique_webgl",
+        "KHR_animation_pointer", "KHR_node_visibility", "EXT_structural_metadata"}) {
     CAPTURE(name);
     GltfScene scene = fdcg::test::square();
     scene.json["extensionsRequired"] = {name};

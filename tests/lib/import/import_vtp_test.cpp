@@ -38,11 +38,11 @@ class Writer {
   }
 
   [[nodiscard]] std::string file(const std::string& piece) const {
-    const std::string appended =
-        encoding_.where == Encoding::Where::array
-            ? ""
-            : std::string("<AppendedData encoding='") + (encoding_.where == Encoding::Where::raw ? "raw" : "base64") +
-                  "'>\n _" + appended_ + "\n</AppendedData>";
+    const std::string appended = encoding_.where == Encoding::Where::array
+                                     ? ""
+                                     : std::string("<AppendedData encoding='") +
+                                           (encoding_.where == Encoding::Where::raw ? "raw" : "base64") + "'>\n _" + appended_ +
+                                           "\n</AppendedData>";
     return std::string("<?xml version='1.0'?><VTKFile type='PolyData' version='1.0' byte_order='") +
            (encoding_.is_big_endian ? "BigEndian'" : "LittleEndian'") +
            (encoding_.has_wide_counts ? " header_type='UInt64'" : "") +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files of other people, as assimp and lib3mf read them: the same faces in the same places, and the same unit. Where a judge
-// differs, it stands in kDifferences, with how many faces it is about and why.
+// Mesh files of other people, as assimp and lib3mf read them: the same faces in the same places, and the same unit. Where a
+// judge differs, it stands in kDifferences, with how many faces it is about and why.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -16,7 +16,8 @@ using namespace fdcg::test;
 
 namespace {
 
-// A judge's own way with a file (and the folder that it is in). Faces without a partner, and partners of opposite winding; exact.
+// A judge's own way with a file (and the folder that it is in). Faces without a partner, and partners of opposite winding;
+// exact.
 struct Difference {
   std::string_view file;
   std::size_t ours, theirs, turned;
@@ -27,7 +28,8 @@ constexpr Difference kDifferences[] = {
     {"real/Mors1_CM_line.obj", 1, 0, 0, "assimp takes a face of two corners for a line"},
     {"real/Mors2_CM_line.obj", 1, 0, 0, "likewise"},
     {"invalid/malformed2.obj", 1, 0, 0, "assimp drops a face without corners; here it is reported"},
-    {"IndexOutOfRange/IndexOutOfRange.gltf", 1, 0, 0, "assimp drops a face with a corner that is not there; here it is reported"},
+    {"IndexOutOfRange/IndexOutOfRange.gltf", 1, 0, 0,
+     "assimp drops a face with a corner that is not there; here it is reported"},
 };
 
 // Files that one of us refuses and the other reads, with a word of the reason.
@@ -94,7 +96,8 @@ Verdict judge(const std::filesystem::path& path) {
   const JudgeScene theirs = is_3mf ? read_with_lib3mf(path) : read_with_assimp(path);
   if (theirs.trouble == kNoJudge) return {};
   const Result<PolygonSoup> soup = import_mesh(path);
-  const auto* const refused = std::find_if(std::begin(kRefused), std::end(kRefused), [&](const Refused& r) { return r.file == name; });
+  const auto* const refused =
+      std::find_if(std::begin(kRefused), std::end(kRefused), [&](const Refused& r) { return r.file == name; });
   const std::string our_trouble = soup ? std::string() : soup.error().message;
   if (refused != std::end(kRefused)) {
     const auto is_said = [](const char* word, const std::string& trouble) {

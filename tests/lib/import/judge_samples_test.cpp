@@ -124,10 +124,12 @@ TEST_CASE("COLLADA: transforms and units are assimp's") {
 
 TEST_CASE("3MF: components, build transforms and every unit are lib3mf's") {
   const std::string build =
-      "<item objectid='2'/><item objectid='1' transform='2 0 0 0 2 0 0 0 2 -20 5 0.25'/><item objectid='2' transform='0 0 1 1 0 "
+      "<item objectid='2'/><item objectid='1' transform='2 0 0 0 2 0 0 0 2 -20 5 0.25'/><item objectid='2' transform='0 0 1 1 "
+      "0 "
       "0 0 1 0 0 0 -9'/>";
-  const std::pair<const char*, double> kUnits[] = {{"", 1e-3},     {"micron", 1e-6},   {"millimeter", 1e-3}, {"centimeter", 1e-2},
-                                                   {"inch", 0.0254}, {"foot", 0.3048}, {"meter", 1}};
+  const std::pair<const char*, double> kUnits[] = {{"", 1e-3},           {"micron", 1e-6}, {"millimeter", 1e-3},
+                                                   {"centimeter", 1e-2}, {"inch", 0.0254}, {"foot", 0.3048},
+                                                   {"meter", 1}};
   for (const auto& [unit, metres] : kUnits) {
     CAPTURE(unit);
     const Scratch file("package.3mf", package(unit, build));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders, prisms, cones, discs, tubes and gears of 3 to 200 sides through repair: whole ones stay as they are, and damaged ones
-// become whole again, face for face, and compile.
+// Cylinders, prisms, cones, discs, tubes and gears of 3 to 200 sides through repair: whole ones stay as they are, and damaged
+// ones become whole again, face for face, and compile.
 #include <algorithm>
 #include <array>
 #include <functional>
