@@ -125,7 +125,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] bool pass_by_tree(Walk<Geometry>& walk, CornerRef<Geometry> corner, const FanEntry& edge,
                                     WayToEdge<Geometry>& way) {
   const Vec3<Real> t = walk.hip - corner.point(), normal = cross(t, walk.graph.edge(edge.connection).direction);
-  const Real rounding = 64 * RealLimits<Real>::kEpsilon * norm1(t);
+  const Real rounding = fan_rounding(t);
   if (norm1(normal) <= rounding) return true;  // the HIP is beside the edge: nothing lies between
   const ImplicitTree layout(corner.fan_count(), FDCG_LEAF_FAN);
   const auto* boxes = walk.graph.fan_boxes + corner.busy().first_box;

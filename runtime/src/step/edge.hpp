@@ -6,10 +6,6 @@
 
 namespace fdcg {
 
-// In a groove the two faces together press harder than the distance from the edge says, by 1 / sin(opening / 2). At most this
-// factor is allowed: an opening of 0.11 degrees.
-inline constexpr int kMaxWedgeFactor = 1024;
-
 // How a HIP lies to a connection's two faces.
 template <class Real>
 struct EdgeSides {

@@ -143,10 +143,6 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
   }
 }
 
-// A HIP further away than this is nowhere near any graph (load.cpp limits scale and origin), and its arithmetic might
-// overflow before it is found out (contact-model TICK-2).
-constexpr double kFarthestHip_m = 1e110;
-
 // A double rounded to a float, in a way that no compiler sees through: GCC 12's basic-block vectoriser (-O2) drops the rounding
 // of a double to float and back where it sees both. In a register where that can be said, since a call or a way through memory
 // costs a tenth of a step.
