@@ -268,7 +268,13 @@ template <class Geometry, class Real = typename Geometry::Real>
   FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
                      kSweepWork};
   const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &space);
-  FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
+  // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
+  // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).
+  if (!(walk.active == kFree) && !is_usable(walk.god_object)) {
+    walk.god_object = walk.hip;
+    walk.active = walk.seat = kFree;
+  }
+  FDCG_ASSERT(is_of_graph(walk.active, *walk.graph.header));
   contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
   contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
   result->flags = progress.flags;
