@@ -21,11 +21,25 @@ inline Real plane_rounding_bound(const Graph& graph, Vec3<Real> x) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header->extent));
 }
 
-// FACE-5, FACE-6, FACE-8, FREE-8: a place so near to a plane is on it, where both were computed: the plane's offset may have
-// cancelled to 0, and then is good to a unit of the extent's last place, not of its own.
-template <class Real, class Wide>
-inline Wide on_plane_rounding(Vec3<Wide> x, Wide extent) {
-  return Wide(4 * RealLimits<Real>::kEpsilon) * (norm1(x) + extent);
+// LEAVE-3: the same for one plane, where it matters that it is no more than that: each component of a stored normal is good to
+// two units in its own last place, so that the bound is by the products and not by the object.
+template <class Real, class Plane>
+inline Real own_plane_rounding(const Plane& plane, Vec3<Real> x) {
+  const Vec3<Real> terms = {plane.normal.x * x.x, plane.normal.y * x.y, plane.normal.z * x.z};
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(terms) + absolute(plane.offset));
+}
+
+// FACE-5, FACE-6, FACE-8: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
+// to 0, and then is good to a unit of the extent's last place, not of its own.
+template <class Real>
+inline Real on_plane_rounding(Vec3<Real> x, Real extent) {
+  return 4 * RealLimits<Real>::kEpsilon * (norm1(x) + extent);
+}
+
+// FREE-8: a way so near to a busy corner passes it.
+template <class Real>
+inline double at_corner_rounding(Vec3<double> corner, double extent) {
+  return 4.0 * RealLimits<Real>::kEpsilon * (norm1(corner) + extent);
 }
 
 // FACE-1: a god-object so near to a Voronoi plane sits on it: the rounding of its own place and of that plane's distance.
@@ -99,10 +113,16 @@ inline Real least_step_clear(double extent) {
 
 // ---- A busy corner
 
-// CORNER-7: directions that reach so nearly as far tie: the rounding of boxes and directions is under half of it.
-template <class Real>
-inline Real fan_rounding(Vec3<Real> reach) {
-  return 64 * RealLimits<Real>::kEpsilon * norm1(reach);
+// CORNER-4, CORNER-7: directions that reach so nearly as far tie: the rounding of boxes and directions, of the file's numbers,
+// is under half of it. `reach`: what the directions are multiplied by.
+template <class Real, class Wide>
+inline Wide fan_rounding(Vec3<Wide> reach) {
+  return Wide(64 * RealLimits<Real>::kEpsilon) * norm1(reach);
+}
+
+// CORNER-4: of the normal of a plane through a corner, a HIP and an edge's other end, in double: of differences and products.
+inline double plane_of_way_rounding(Vec3<double> to_hip, Vec3<double> along) {
+  return 64 * RealLimits<double>::kEpsilon * norm1(to_hip) * norm1(along);
 }
 
 // FREE-8: of a way as an arc, seen from a busy corner. A stored direction is good to kDirectionRounding; the arc's plane to

@@ -22,13 +22,21 @@ struct Crossing {
 // the side before.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] bool is_past_corner(NodeRef<Geometry> node, uint32_t k, Vec3<Real> to) {
-  const Real rounding = on_plane_rounding<Real>(to, node.extent());
+  const Real rounding = on_plane_rounding(to, node.extent());
   const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
   const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
     const Real along = dot(from_corner, node.graph().edge(node, side).direction);
     return sign * (node.which(side) == 0 ? along : -along) > rounding;
   };
   return is_ahead(k, -1) && is_ahead(node.previous(k), 1);
+}
+
+// Whether a place is between the ends of a side, up to rounding.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, Vec3<Real> x) {
+  const EdgeLine<Real> line(node.graph(), node, k);
+  const Real u = line.parameter(x);
+  return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
 }
 
 // Looks at the sides from the first on beyond whose plane the move ends. Or near it, by `bound` of rounding: towards the tip of
@@ -49,9 +57,14 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (FDCG_MUTANT("crossing-sign") ? !(s1 * s0 < 0) : FDCG_MUTANT("crossing-onto") ? !(s0 <= 0 && s1 > 0) : !(s1 > s0)) {
       continue;
     }
-    const bool ends_on_plane = s1 <= on_plane_rounding<Real>(to, node.extent());
+    const bool ends_on_plane = s1 <= on_plane_rounding(to, node.extent());
     const Real fraction = ends_on_plane && !FDCG_MUTANT("along-side") ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
-    if (first.local_side == FDCG_NONE || (FDCG_MUTANT("last-crossing") ? fraction > first.fraction : fraction < first.fraction))
+    // A face like a needle may be narrower than rounding: of two sides that the move ends on, the one that reaches there
+    // counts.
+    const bool is_tie = fraction == 1 && first.fraction == 1 && first.local_side != FDCG_NONE;
+    if (first.local_side == FDCG_NONE ||
+        (FDCG_MUTANT("last-crossing") ? fraction > first.fraction : fraction < first.fraction) ||
+        (is_tie && !is_between_ends(node, first.local_side, to) && is_between_ends(node, k, to)))
       first = {k, fraction};
   }
   return first;
@@ -109,7 +122,7 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 // is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side, Vec3<Real> point) {
-  const Real in_line = on_plane_rounding<Real>(point, node.extent()) + Real(2 * walk.graph.header->max_deviation);
+  const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.header->max_deviation);
   const Plane<Real> plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
@@ -130,12 +143,13 @@ template <class Geometry, class Real = typename Geometry::Real>
   return place_on_edge(walk, node.connection(side), line, u);
 }
 
-// The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
+// The side on which the god-object sits within the rounding of its own place, or FDCG_NONE. Near its plane, and not past its
+// ends: a face like a needle may be narrower than that rounding, and near the planes of all its sides.
 template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
   const Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header->extent));
   for (uint32_t k = 0; k < node.side_count(); ++k) {
-    if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding) return k;
+    if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding && is_between_ends(node, k, walk.god_object)) return k;
   }
   return FDCG_NONE;
 }

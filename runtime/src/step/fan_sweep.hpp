@@ -162,7 +162,7 @@ class FanSweep : public NodeEntry<Geometry> {
   // sides it passes by as little. `at`: the fraction of the way; `off`: how far from the corner.
   bool is_met(const fdcg_fan_run& fan, uint32_t corner, double at, double off) {
     const double extent = graph_.header->extent, deviation = graph_.header->max_deviation;
-    const double rounding = on_plane_rounding<Real>(widen(graph_.corner_point(corner)), extent);
+    const double rounding = at_corner_rounding<Real>(widen(graph_.corner_point(corner)), extent);
     if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : 0) && at >= 0 && at < 1)) return false;
     const auto fraction = static_cast<Real>(at);
     if (!is_before_best(fraction, fan.first_node)) return true;

@@ -126,8 +126,8 @@ class NodeEntry {
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
     if (!passes_inside(node, rounded, &met_exactly)) {
-      // Along an inexact node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
-      if (!is_grazing || !node.is_inexact()) return;
+      // Along a node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
+      if (!is_grazing || !is_slab || !is_near_inexact(node)) return;
       const Real thick = (slab_ - from_bound_) + side_rounding(from_bound_, to_bound_) / 2;
       Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
       const bool is_below = start_side + thick < fall;  // at the way's end, or, along the node, all the way
@@ -142,6 +142,15 @@ class NodeEntry {
     best_.node = n;
     best_.feature =
         met_exactly && !FDCG_MUTANT("exact-feature") ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
+  }
+
+  // Whether a node's corners lie off its plane, or off a neighbour's: over that one a way in its slab may come below this one's
+  // rim.
+  [[nodiscard]] bool is_near_inexact(NodeRef<Geometry> node) const {
+    bool is_near = node.is_inexact();
+    for (uint32_t k = 0; k < node.side_count(); ++k)
+      is_near = is_near || (node.across(k) != FDCG_NONE && graph_.node(node.across(k)).is_inexact());
+    return is_near;
   }
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) const {
@@ -168,6 +177,8 @@ class NodeEntry {
   // begins over it.
   [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
+    const Plane<Real> plane = node.plane();
+    if (plane.distance(from_) < -own_plane_rounding(plane, from_)) return;  // of a flat or a long body much less than the bound
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, wherever the HIP is
       if (node.voronoi_plane(k).distance(from_) > side_rounding(from_bound_, Real(0))) return;
     }
