@@ -55,6 +55,8 @@ class Specimen {
   std::vector<EdgeShape> edges;
   std::vector<CornerShape> corners;
   std::vector<std::uint32_t> focus_corners;  // corners of the graph nearest to body.focus
+  std::vector<Hip> busy_points;              // corners of more than FDCG_BUSY_FAN connections
+  double stated_deviation = 0;               // how far, by its file, the graph's faces lie from the mesh's
   std::unique_ptr<InsideGrid> inside;        // of closed bodies
   std::unique_ptr<Descent> descent;          // of closed bodies
 
@@ -64,6 +66,7 @@ class Specimen {
 
  private:
   void read_shapes();
+  void read_deviation();
   void find_focus();
 };
 
