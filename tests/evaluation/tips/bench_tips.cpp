@@ -2,7 +2,6 @@
 // fdcg_bench_tips: hands of 0.1, 0.3 and 1 m/s at 1 kHz on pointed bodies; how long they are inside without force, how large
 // the first force is, what the worst tick costs. Compiled with faces joined where they are exactly flat, and as by default,
 // within the numbers' quantum.
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <string>
@@ -11,6 +10,7 @@
 #include "contact_rig.hpp"
 #include "hand_probe.hpp"
 #include "pointed_bodies.hpp"
+#include "program_options.hpp"
 
 using namespace fdcg::test;
 using fdcg::bake::CompileOptions;
@@ -80,11 +80,11 @@ int run(const Choices& choices) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Hands on pointed bodies: ticks inside without force"};
+  ProgramOptions program("Hands on pointed bodies: ticks inside without force");
   Choices choices;
-  app.add_option("--sides", choices.sides, "of each body");
-  app.add_option("--ways", choices.ways, "of each approach and speed");
-  app.add_option("--seed", choices.seed, "of turns and ways");
-  CLI11_PARSE(app, argc, argv);
+  program.option("--sides", choices.sides, "of each body");
+  program.option("--ways", choices.ways, "of each approach and speed");
+  program.option("--seed", choices.seed, "of turns and ways");
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   return run(choices);
 }
