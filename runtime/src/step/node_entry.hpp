@@ -49,10 +49,10 @@ class NodeEntry {
   // by ways that pass it by.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Geometry> node = graph_.node(n);
-    const Real rounding = side_rounding(from_bound_, to_bound_);
+    const Real rounding = side_rounding(from_bound_, to_bound_), off = slab_ - from_bound_;  // corners off their planes
     Real begin = least, end = 1, widest_begin = least, widest_end = 1;
-    if (!clip_to(node, rounding, &begin, &end) &&
-        !clip_to(node, kSharpSides * rounding + (slab_ - from_bound_), &widest_begin, &widest_end))
+    if (!clip_to(node, rounding + off, &begin, &end) &&
+        !clip_to(node, kSharpSides * rounding + off, &widest_begin, &widest_end))
       return kNever;
     if (fraction > end) fraction = end;
     return fraction < begin ? begin : fraction;

@@ -31,6 +31,7 @@ double square_distance(const Hip& a, const Hip& b) {
 Hip cross_product(const Hip& a, const Hip& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
+constexpr double kPlaces = 5;  // extents, in a sum of coordinates and two extents: contact-model, B(x)
 constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;
 
 }  // namespace
@@ -69,7 +70,7 @@ Judge::Judge(const Specimen& specimen, bool owes_force)
       owes_force_(owes_force),
       epsilon_(specimen.epsilon()),
       deviation_(kPerDeviation * specimen.header().max_deviation),
-      moved_(specimen.stated_deviation + 3 * kSlab_eps * epsilon_ * specimen.header().extent),
+      moved_(specimen.stated_deviation + kPlaces * kSlab_eps * epsilon_ * specimen.header().extent),
       is_exact_(specimen.stated_deviation == 0 && specimen.body.soup.corners.size() == 3 * specimen.body.soup.face_count()) {}
 
 std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result,

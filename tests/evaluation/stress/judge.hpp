@@ -95,6 +95,7 @@ class Judge {
   [[nodiscard]] double descent_from(const Tick& tick) const;
   void look_at_descent(Tick& tick, Verdicts& v) const;
   [[nodiscard]] double merged_descent_from(const Tick& tick) const;
+  [[nodiscard]] Hip outwards(const Tick& tick) const;
   [[nodiscard]] bool is_in_merged_air(const Tick& tick) const;
   [[nodiscard]] bool passes_busy_corner(const Hip& from, const Hip& to) const;
   void look_at_way(Tick& tick);

@@ -69,14 +69,28 @@ double Judge::merged_descent_from(const Tick& tick) const {
   return most;
 }
 
-// Whether a hand that is let go would be in free air all the way: from somewhat before the god-object, farther from the mesh
-// than the graph's surface may be.
+// Outwards of a feature, not of unit length.
+Hip Judge::outwards(const Tick& tick) const {
+  if (tick.after.state == FDCG_VERTEX) return specimen_.corners[tick.after.feature].normal;
+  if (tick.after.state == FDCG_FACE) return specimen_.nodes[tick.after.feature].normal;
+  const EdgeShape& edge = specimen_.edges[tick.after.feature];
+  const Hip &a = specimen_.nodes[edge.node[0]].normal, &b = specimen_.nodes[edge.node[1]].normal;
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+// Whether a hand that is let go would be in free air all the way: from in front of the god-object to a place somewhat before
+// it, and on, farther from the mesh than the graph's surface may be.
 bool Judge::is_in_merged_air(const Tick& tick) const {
   const InsideGrid& solid = *specimen_.inside;
   const double before = kAirPerDeviation * moved_, length = distance(tick.god_object, tick.hip);
   if (!(length > before)) return false;
-  const Hip start = between(tick.god_object, tick.hip, before / length);
-  return solid.where(start) == InsideGrid::Where::outside && !solid.comes_near(start, tick.hip, moved_);
+  const Hip start = between(tick.god_object, tick.hip, before / length), out = outwards(tick);
+  if (solid.where(start) != InsideGrid::Where::outside || solid.comes_near(start, tick.hip, moved_)) return false;
+  Hip front = tick.god_object;
+  for (std::size_t i = 0; i < 3; ++i)
+    front[i] += before * out[i];
+  const InsideGrid::Crossing way = solid.crossing(front, start);  // the solid may be as thin as that
+  return solid.where(front) == InsideGrid::Where::outside && !way.is_through && !way.touches;
 }
 
 }  // namespace fdcg::test
