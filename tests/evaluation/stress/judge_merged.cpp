@@ -69,18 +69,19 @@ double Judge::merged_descent_from(const Tick& tick) const {
   return most;
 }
 
-// Outwards of a feature, not of unit length.
+// Outwards of an edge or a vertex, not of unit length.
 Hip Judge::outwards(const Tick& tick) const {
   if (tick.after.state == FDCG_VERTEX) return specimen_.corners[tick.after.feature].normal;
-  if (tick.after.state == FDCG_FACE) return specimen_.nodes[tick.after.feature].normal;
   const EdgeShape& edge = specimen_.edges[tick.after.feature];
   const Hip &a = specimen_.nodes[edge.node[0]].normal, &b = specimen_.nodes[edge.node[1]].normal;
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
-// Whether a hand that is let go would be in free air all the way: from in front of the god-object to a place somewhat before
-// it, and on, farther from the mesh than the graph's surface may be.
+// Whether a hand that an edge or a vertex lets go would be in free air all the way: from in front of the god-object to a place
+// somewhat before it, and on, farther from the mesh than the graph's surface may be. A face holds what is behind it and over
+// it.
 bool Judge::is_in_merged_air(const Tick& tick) const {
+  if (tick.after.state == FDCG_FACE) return false;
   const InsideGrid& solid = *specimen_.inside;
   const double before = kAirPerDeviation * moved_, length = distance(tick.god_object, tick.hip);
   if (!(length > before)) return false;
