@@ -9,9 +9,6 @@
 namespace fdcg::test {
 namespace {
 
-constexpr std::uint32_t bit(Fault fault) {
-  return 1u << static_cast<unsigned>(fault);
-}
 bool is_same(const double (&a)[3], const double (&b)[3]) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
@@ -27,9 +24,6 @@ long double long_length(const Hip& a, const Hip& b) {
 double square_distance(const Hip& a, const Hip& b) {
   const Hip d = difference(a, b);
   return dot(d, d);
-}
-Hip cross_product(const Hip& a, const Hip& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 constexpr double kPlaces = 5;  // extents, in a sum of coordinates and two extents: contact-model, B(x)
 constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;

@@ -33,6 +33,9 @@ enum class Fault : std::uint8_t {
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
+constexpr std::uint32_t bit(Fault fault) {
+  return 1u << static_cast<unsigned>(fault);
+}
 std::string_view name_of(Fault fault);
 std::optional<Fault> fault_named(std::string_view name);
 

@@ -11,17 +11,11 @@
 namespace fdcg::test {
 namespace {
 
-constexpr std::uint32_t bit(Fault fault) {
-  return 1u << static_cast<unsigned>(fault);
-}
-Hip between(const Hip& from, const Hip& to, double share) {
+Hip place_between(const Hip& from, const Hip& to, double share) {
   Hip x;
   for (std::size_t i = 0; i < 3; ++i)
     x[i] = from[i] + (to[i] - from[i]) * share;
   return x;
-}
-Hip cross_product(const Hip& a, const Hip& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 }  // namespace
@@ -37,7 +31,7 @@ void Judge::look_at_merged_way(Tick& tick) const {
   if (tick.is_way_clear && is_stopped) tick.faults |= bit(Fault::thin_air);
   if (!way.is_through || is_stopped) return;
   for (int i = 1; i <= kPlaces; ++i) {
-    const Hip x = between(from, tick.hip, static_cast<double>(i) / kPlaces);
+    const Hip x = place_between(from, tick.hip, static_cast<double>(i) / kPlaces);
     if (solid.where(x) == InsideGrid::Where::inside && !solid.comes_near(x, x, moved_)) tick.faults |= bit(Fault::unseen);
   }
 }
@@ -85,7 +79,7 @@ bool Judge::is_in_merged_air(const Tick& tick) const {
   const InsideGrid& solid = *specimen_.inside;
   const double before = kAirPerDeviation * moved_, length = distance(tick.god_object, tick.hip);
   if (!(length > before)) return false;
-  const Hip start = between(tick.god_object, tick.hip, before / length), out = outwards(tick);
+  const Hip start = place_between(tick.god_object, tick.hip, before / length), out = outwards(tick);
   if (solid.where(start) != InsideGrid::Where::outside || solid.comes_near(start, tick.hip, moved_)) return false;
   Hip front = tick.god_object;
   for (std::size_t i = 0; i < 3; ++i)

@@ -78,4 +78,8 @@ inline double signed_distance(const Hip& normal, double offset, const Hip& x) {
   return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2] + offset;
 }
 
+inline Hip cross_product(const Hip& a, const Hip& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 }  // namespace fdcg::test
