@@ -25,7 +25,7 @@ double square_distance(const Hip& a, const Hip& b) {
   const Hip d = difference(a, b);
   return dot(d, d);
 }
-constexpr double kPlaces = 5;  // extents, in a sum of coordinates and two extents: contact-model, B(x)
+constexpr double kPlaces = 5;  // extents, in a sum of coordinates and two extents: contact-model SIDE-1
 constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;
 
 }  // namespace
