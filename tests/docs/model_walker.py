@@ -335,9 +335,14 @@ class Walker:
             return self.seat
         rounding = 8 * EPS * (norm1(self.god_object) + self.graph.extent)
         for k in range(3):
-            if beyond(self.graph.voronoi(face, k), self.god_object) >= -rounding:
+            is_near = beyond(self.graph.voronoi(face, k), self.god_object) >= -rounding
+            if is_near and self.is_between_ends(face, k, self.god_object):
                 return self.place_on_rim(face, k, self.god_object)
         return NOWHERE
+
+    def is_between_ends(self, face, k, x):
+        edge = self.graph.edge[self.graph.side[face][k][0]]
+        return -edge.end_tolerance <= edge.parameter(x) <= edge.length + edge.end_tolerance
 
     def is_crossed(self, s0, s1):
         return s1 >= 0 and s1 > s0
@@ -352,7 +357,9 @@ class Walker:
                     best = (1.0, k)
             elif self.is_crossed(s0, s1):
                 fraction = 1.0 if s1 <= rounding else 0.0 if s0 >= 0 else -s0 / (s1 - s0)
-                if best is None or fraction < best[0]:
+                is_tie = best is not None and fraction == best[0] == 1.0
+                is_better = is_tie and not self.is_between_ends(face, best[1], target) and self.is_between_ends(face, k, target)
+                if best is None or fraction < best[0] or is_better:
                     best = (fraction, k)
         return best
 

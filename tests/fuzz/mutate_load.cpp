@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mutations of small graphs, sealed again with right checksums: none that is SAFE leads to undefined behaviour or a tick
 // without end, stepped or deformed. Run, of a build with sanitizers: fdcg_mutate_load testdata/fuzz/load [EXECUTIONS [SEED]]
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -142,9 +143,13 @@ int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: %s FOLDER [EXECUTIONS [SEED]]\n", argv[0]), 2;
   const std::uint64_t executions = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 100000;
   const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(argv[1]))
+    paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());  // whatever the file system: a seed is to mean the same everywhere
   std::vector<AlignedBytes> files;
-  for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
-    std::ifstream in(entry.path(), std::ios::binary);
+  for (const std::filesystem::path& path : paths) {
+    std::ifstream in(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     files.emplace_back(std::as_bytes(std::span(bytes)));
   }

@@ -9,6 +9,8 @@
 #include "base/vec3.hpp"
 #include "exact/plane_fit.hpp"
 #include "exact/projection.hpp"
+#include "fdcg/format.h"
+#include "graph/tips.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -55,11 +57,14 @@ Atoms find_atoms(const Mesh& mesh, const Topology& topology, const std::vector<E
 
 class Grower {
  public:
-  Grower(const Mesh& mesh, const Topology& topology, const std::vector<EdgeClass>& edges, const RegionOptions& options)
+  // `is_tip`, of each vertex: faces there stay in their atoms. Empty: there is none.
+  Grower(const Mesh& mesh, const Topology& topology, const std::vector<EdgeClass>& edges, const RegionOptions& options,
+         const std::vector<bool>& is_tip)
       : mesh_(mesh),
         topology_(topology),
         edges_(edges),
         options_(options),
+        is_tip_(is_tip),
         cos_angle_(std::cos(options.coplanar.angle_rad)),
         atoms_(find_atoms(mesh, topology, edges)) {}
 
@@ -91,6 +96,15 @@ class Grower {
   }
   [[nodiscard]] Vec3 area_vector(std::uint32_t face) const {
     return cross(corner(face, 1) - corner(face, 0), corner(face, 2) - corner(face, 0));
+  }
+
+  [[nodiscard]] bool is_at_tip(std::uint32_t atom) const {
+    if (is_tip_.empty()) return false;
+    const auto faces = atoms_.of(atom);
+    return std::any_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
+      return is_tip_[+mesh_.corners[3 * face]] || is_tip_[+mesh_.corners[3 * face + 1]] ||
+             is_tip_[+mesh_.corners[3 * face + 2]];
+    });
   }
 
   void measure_atoms() {
@@ -171,7 +185,7 @@ class Grower {
     face_count_ = 0;
     reach_ = 0;
     take(seed, fit);
-    if (options_.coplanar.kind != Coplanar::Kind::exact) {
+    if (options_.coplanar.kind != Coplanar::Kind::exact && !is_at_tip(seed)) {
       // Members are always within tolerance of `plane`. It is fitted again when the region has doubled and when growth stops.
       constexpr int kMostRounds = 64;
       for (int round = 0; round < kMostRounds && spread(fit, plane); ++round) {
@@ -196,6 +210,7 @@ class Grower {
           const std::uint32_t atom = atoms_.of_face[+topology_.twin[slot] / 3];
           if (taken_[atom] != 0 || tried_[atom] == round_) continue;
           tried_[atom] = round_;
+          if (is_at_tip(atom)) continue;
           if (fits(atom, plane)) {
             take(atom, fit);
           } else if (face_count_ + atoms_.of(atom).size() <= kFewFaces) {
@@ -261,6 +276,7 @@ class Grower {
   const Topology& topology_;
   const std::vector<EdgeClass>& edges_;
   const RegionOptions& options_;
+  const std::vector<bool>& is_tip_;
   double cos_angle_;
   Atoms atoms_;
   std::vector<double> area_;
@@ -279,7 +295,15 @@ class Grower {
 
 Regions find_regions(const Mesh& mesh, const Topology& topology, const std::vector<EdgeClass>& edges,
                      const RegionOptions& options) {
-  return Grower(mesh, topology, edges, options).run();
+  std::vector<bool> is_tip;
+  Regions regions = Grower(mesh, topology, edges, options, is_tip).run();
+  if (options.coplanar.kind != Coplanar::Kind::quantum || regions.list.empty()) return regions;
+  // Without those at tips other faces meet in other planes, and there may be more tips; in the end any busy vertex is one.
+  constexpr int kMostRounds = 8;
+  is_tip.assign(mesh.points.size(), false);
+  for (int round = 0; mark_tips(mesh, topology, regions, round < kMostRounds ? FDCG_BUSY_FAN : 0, is_tip); ++round)
+    regions = Grower(mesh, topology, edges, options, is_tip).run();
+  return regions;
 }
 
 }  // namespace fdcg::bake

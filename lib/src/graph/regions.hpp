@@ -41,10 +41,12 @@ struct RegionOptions {
 //   exact     every corner is exactly coplanar with every other. Exactly flat edges never lie between two regions.
 //   quantum   every corner is within kQuantumReach of the region's largest quantum of the plane, and every normal agrees
 //   angle     as quantum, or every normal is within the angle of the plane's normal
-// so that small angles cannot accumulate along a chain. Every edge runs along the plane (planes.hpp) and every triangle has,
-// exactly, positive orientation in the projection along the plane's axis. Regions grow from the largest atoms first; growth
-// stops where the fitted plane would leave a member out of tolerance. Near linear; without flat edges, one pass over the edges.
-// Triangles only.
+// so that small angles cannot accumulate along a chain. By the quantum no face is joined to others at a tip, a vertex where
+// even so more than FDCG_BUSY_FAN planes would meet: towards it faces become narrower than the quantum, and a plane that is off
+// by as much would be none of theirs (contact-model GRAPH-5). Every edge runs along the plane (planes.hpp) and every triangle
+// has, exactly, positive orientation in the projection along the plane's axis. Regions grow from the largest atoms first;
+// growth stops where the fitted plane would leave a member out of tolerance. Near linear; without flat edges, one pass over the
+// edges. Triangles only.
 [[nodiscard]] Regions find_regions(const Mesh& mesh, const Topology& topology, const std::vector<EdgeClass>& edges,
                                    const RegionOptions& options);
 

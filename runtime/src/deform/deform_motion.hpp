@@ -9,7 +9,7 @@
 #pragma once
 
 #include "deform/deform_upkeep.hpp"
-#include "graph/tree_rounding.hpp"
+#include "graph/tolerances.hpp"
 
 namespace fdcg {
 

@@ -2,7 +2,7 @@
 #include "graph/box_tree.hpp"
 
 #include "base/lanes.hpp"
-#include "graph/tree_rounding.hpp"
+#include "graph/tolerances.hpp"
 
 namespace fdcg {
 

@@ -11,6 +11,7 @@
 #include "fdcg/fdcg.h"
 #include "graph/box_tree.hpp"
 #include "graph/rigid_geometry.hpp"
+#include "graph/tolerances.hpp"
 #include "shared/derive.hpp"
 #include "shared/vec.hpp"
 
@@ -240,13 +241,6 @@ struct GraphView : Geometry {
 // Of a graph as it is.
 template <class Real>
 using RigidView = GraphView<RigidGeometry<Real>>;
-
-// Beyond this distance from a face's plane, rounding cannot have changed the sign of Plane::distance at x: the stored normal is
-// good to two units in the last place, the offset to one, the sum to three.
-template <class Geometry, class Real = typename Geometry::Real>
-inline Real plane_rounding_bound(const GraphView<Geometry>& graph, Vec3<Real> x) {
-  return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header->extent));
-}
 
 // The sign of x against the plane through the first three corners of an exactly planar node.
 template <class Geometry, class Real = typename Geometry::Real>

@@ -6,7 +6,7 @@
 
 #include "graph/box_tree.hpp"
 #include "graph/graph_view.hpp"
-#include "graph/tree_rounding.hpp"
+#include "graph/tolerances.hpp"
 
 namespace fdcg {
 
@@ -64,15 +64,14 @@ inline uint32_t nearer_boxes(const fdcg_box8& boxes, const float (&point)[3], fl
 // near.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way) {
-  constexpr Real kWaysAhead = 12;                        // what a look is to pay for, in ways of this tick
-  constexpr Real kLeastReach = Real(1) / 256;            // ... and tree units
-  constexpr Real kKept = Real(1) - Real(1) / Real(512);  // of the radius: more than the rounding of a distance
-  constexpr Real kFar = 64, kTreeReach = 16;             // tree units: no box reaches further than 8
+  constexpr Real kWaysAhead = 12;              // what a look is to pay for, in ways of this tick
+  constexpr Real kLeastReach = Real(1) / 256;  // ... and tree units
+  constexpr Real kFar = 64, kTreeReach = 16;   // tree units: no box reaches further than 8
   const Real unit = static_cast<Real>(tree_unit(graph.header->extent)), per_unit = 1 / unit;
   const Vec3<Real> p = at * per_unit;
   const Real size = norm1(p);
-  if (size > kFar) return (size / 3 - kTreeReach) * kKept * unit;
-  const Real margin = 5 * tree_rounding<Real>(2 * size, 2 * size * RealLimits<Real>::kEpsilon);
+  if (size > kFar) return (size / 3 - kTreeReach) * kClearShare<Real> * unit;
+  const Real margin = kClearMargins * tree_rounding<Real>(2 * size, 2 * size * RealLimits<Real>::kEpsilon);
   const Real length = way * per_unit;
   if (length > kFar) return 0;  // a jump
   const Real reach = kWaysAhead * length > kLeastReach ? kWaysAhead * length : kLeastReach;
@@ -104,7 +103,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (graph.has_tightened(next.level, next.index, near)) near = nearer_boxes(boxes, point, clear2, distance2) & lanes;
     waiting.push(next, near, distance2);
   }
-  const Real radius = static_cast<Real>(root(clear2)) * kKept - margin;
+  const Real radius = static_cast<Real>(root(clear2)) * kClearShare<Real> - margin;
   return radius > length ? radius * unit : Real(0);
 }
 

@@ -112,7 +112,7 @@ inline void search_by_tree(FanSearch<Geometry>& search, CornerRef<Geometry> corn
   };
   const ImplicitTree layout(corner.fan_count(), FDCG_LEAF_FAN);
   const auto* boxes = graph.fan_boxes + corner.busy().first_box;
-  const Real tie = 64 * RealLimits<Real>::kEpsilon * norm1(t);  // the rounding of boxes and directions is under half of it
+  const Real tie = fan_rounding<Real>(t);
   const Real length = norm(t);
   const auto bound_of = [&](int level, uint32_t i) { return most_along(boxes[layout.first[level] + i], t, length) - tie; };
   Real reach = 0;

@@ -46,6 +46,7 @@ class WayToEdge {
 
   // A face of the fan. Call for each, or for all that the plane of the way can meet.
   [[gnu::noinline]] void pass(const FanEntry& entry) {
+    if (entry.node == FDCG_NONE) return;
     const NodeRef<Geometry> node = walk_.graph.node(entry.node);
     const bool is_beside = entry.node == beside_[0] || entry.node == beside_[1];
     const uint32_t left = node.corner(node.next(entry.outgoing)), right = node.corner(node.previous(entry.outgoing));
@@ -63,6 +64,7 @@ class WayToEdge {
 
   [[nodiscard]] bool is_outside() const { return is_outside_ || is_on_surface_; }
   [[nodiscard]] uint32_t work() const { return kMuch - work_left_; }
+  [[nodiscard]] Vec3<Real> target() const { return target_; }  // the edge's other end
 
  private:
   static Vec3<Real> far_end(const GraphView<Geometry>& graph, const FanEntry& edge) {
@@ -122,21 +124,23 @@ class WayToEdge {
 // The faces of a busy corner that the plane of the way can meet: those in boxes of its tree on both sides of the plane. False:
 // they are too many.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool pass_by_tree(Walk<Geometry>& walk, CornerRef<Geometry> corner, const FanEntry& edge,
-                                    WayToEdge<Geometry>& way) {
-  const Vec3<Real> t = walk.hip - corner.point(), normal = cross(t, walk.graph.edge(edge.connection).direction);
-  const Real rounding = 64 * RealLimits<Real>::kEpsilon * norm1(t);
-  if (norm1(normal) <= rounding) return true;  // the HIP is beside the edge: nothing lies between
+[[gnu::noinline]] bool pass_by_tree(Walk<Geometry>& walk, CornerRef<Geometry> corner, WayToEdge<Geometry>& way) {
+  // In double and from the points themselves: of a long body's tip all directions are one but for their last digits.
+  const Vec3<double> point = widen(corner.point()), t = widen(walk.hip) - point, along = widen(way.target()) - point;
+  const Vec3<double> normal = cross(t, along);
+  const double own_rounding = plane_of_way_rounding(t, along);
+  if (norm1(normal) <= own_rounding) return true;  // the HIP is beside the edge: nothing lies between
+  const double rounding = fan_rounding<Real>(normal) + own_rounding;
   const ImplicitTree layout(corner.fan_count(), FDCG_LEAF_FAN);
   const auto* boxes = walk.graph.fan_boxes + corner.busy().first_box;
   uint32_t stack[2 * kMaxLevels];  // box * 32 + level
   int waiting = 0;
   const auto push = [&](uint32_t level, uint32_t i) {
     const auto& box = boxes[layout.first[level] + i];
-    Real radius = rounding;
+    double radius = rounding;
     for (const auto& axis : box.axis)
-      radius += absolute(dot(normal, vec(axis)));
-    if (absolute(dot(normal, vec(box.centre))) <= radius) stack[waiting++] = i << 5 | level;
+      radius += absolute(dot(normal, widen(vec(axis))));
+    if (absolute(dot(normal, widen(vec(box.centre)))) <= radius) stack[waiting++] = i << 5 | level;
   };
   push(static_cast<uint32_t>(layout.levels - 1), 0);
   for (uint32_t work = 0; waiting > 0 && work + way.work() < kFanSearchWork;) {
@@ -179,10 +183,12 @@ template <class Geometry, class Real = typename Geometry::Real>
   } else {
     graph.for_each_in_fan(corner, choose);
   }
+  // A file that is SAFE, and not FULL, may have a border at a corner that does not say so.
+  if (edge.node == FDCG_NONE || graph.connection(edge.connection).type() == FDCG_BOUNDARY) return Beginning::not_told;
   WayToEdge<Geometry> way(walk, corner, edge);
   bool is_told = true;
   if (has_tree) {
-    is_told = pass_by_tree(walk, corner, edge, way);
+    is_told = pass_by_tree(walk, corner, way);
   } else {
     graph.for_each_in_fan(corner, [&](const FanEntry& entry) { way.pass(entry); });
   }

@@ -6,10 +6,6 @@
 
 namespace fdcg {
 
-// In a groove the two faces together press harder than the distance from the edge says, by 1 / sin(opening / 2). At most this
-// factor is allowed: an opening of 0.11 degrees.
-inline constexpr int kMaxWedgeFactor = 1024;
-
 // How a HIP lies to a connection's two faces.
 template <class Real>
 struct EdgeSides {
@@ -60,15 +56,19 @@ template <class Geometry, class Real = typename Geometry::Real>
   walk.friction.terms->select_material_of_edge(a, b, share);
 }
 
-// contact-model EDGE-7: behind one face of a convex edge, over it and not over the other, and yet in front of the other's
-// plane: that is no place, but for corners off a small face's plane, which far from it is anywhere. The face below decides.
+// contact-model EDGE-7: over one face of an edge and not over the other, and on another side of the two planes: that is no
+// place, but for corners off a small face's plane, which far from it is anywhere. The face below decides. Of a convex edge:
+// whether it holds a HIP that the other face is said to let go; of a concave one, whether it lets go one that the other is said
+// to hold.
 template <class Geometry, class Real = typename Geometry::Real>
-inline Feature face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
-  if (!(walk.graph.header->max_deviation > 0) || connection.type() == FDCG_CONCAVE) return kFree;
+inline uint32_t face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
+  if (!(walk.graph.header->max_deviation > 0)) return FDCG_NONE;
+  const bool is_concave = connection.type() == FDCG_CONCAVE;
   for (uint32_t k = 0; k < 2; ++k) {
-    if (s.side[k] < 0 && s.voronoi[k] < 0 && s.voronoi[1 - k] > 0) return {FDCG_FACE, connection.node(k)};
+    const bool is_over = s.voronoi[k] < 0 && s.voronoi[1 - k] > 0, is_behind = s.side[k] < 0;
+    if (is_over && is_behind != is_concave) return connection.node(k);
   }
-  return kFree;
+  return FDCG_NONE;
 }
 
 // Cost: two face planes, two Voronoi planes.
@@ -80,7 +80,11 @@ inline Decision edge_rule(Walk<Geometry>& walk) {
   look_at_sides(walk, connection, &s);
   const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
   if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
-  if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0)) return go_to(face_despite_noise(walk, connection, s));
+  const uint32_t over = face_despite_noise(walk, connection, s);
+  const bool is_concave = connection.type() == FDCG_CONCAVE;
+  if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0))
+    return go_to(over == FDCG_NONE || is_concave ? kFree : Feature{FDCG_FACE, over});
+  if (over != FDCG_NONE && is_concave) return go_to(kFree);
   const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
   if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0] && !FDCG_MUTANT("steeper-face")))
     return go_to({FDCG_FACE, connection.node(0)});

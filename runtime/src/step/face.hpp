@@ -22,13 +22,21 @@ struct Crossing {
 // the side before.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] bool is_past_corner(NodeRef<Geometry> node, uint32_t k, Vec3<Real> to) {
-  const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());
+  const Real rounding = on_plane_rounding(to, node.extent());
   const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
   const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
     const Real along = dot(from_corner, node.graph().edge(node, side).direction);
     return sign * (node.which(side) == 0 ? along : -along) > rounding;
   };
   return is_ahead(k, -1) && is_ahead(node.previous(k), 1);
+}
+
+// Whether a place is between the ends of a side, up to rounding.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, Vec3<Real> x) {
+  const EdgeLine<Real> line(node.graph(), node, k);
+  const Real u = line.parameter(x);
+  return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
 }
 
 // Looks at the sides from the first on beyond whose plane the move ends. Or near it, by `bound` of rounding: towards the tip of
@@ -49,9 +57,14 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (FDCG_MUTANT("crossing-sign") ? !(s1 * s0 < 0) : FDCG_MUTANT("crossing-onto") ? !(s0 <= 0 && s1 > 0) : !(s1 > s0)) {
       continue;
     }
-    const Real rounding = 4 * RealLimits<Real>::kEpsilon * (norm1(to) + node.extent());  // an offset may have cancelled to 0
-    const Real fraction = s1 <= rounding && !FDCG_MUTANT("along-side") ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
-    if (first.local_side == FDCG_NONE || (FDCG_MUTANT("last-crossing") ? fraction > first.fraction : fraction < first.fraction))
+    const bool ends_on_plane = s1 <= on_plane_rounding(to, node.extent());
+    const Real fraction = ends_on_plane && !FDCG_MUTANT("along-side") ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
+    // A face like a needle may be narrower than rounding: of two sides that the move ends on, the one that reaches there
+    // counts.
+    const bool is_tie = fraction == 1 && first.fraction == 1 && first.local_side != FDCG_NONE;
+    if (first.local_side == FDCG_NONE ||
+        (FDCG_MUTANT("last-crossing") ? fraction > first.fraction : fraction < first.fraction) ||
+        (is_tie && !is_between_ends(node, first.local_side, to) && is_between_ends(node, k, to)))
       first = {k, fraction};
   }
   return first;
@@ -101,8 +114,7 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Friction<Real>& fri
 // A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.
 template <class Geometry, class Real = typename Geometry::Real>
 inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
-  constexpr Real kNear = 16;  // extents
-  return norm1(hip) > kNear * Real(graph.header->extent);
+  return norm1(hip) > kNearExtents * Real(graph.header->extent);
 }
 
 // contact-model FACE-6: seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have
@@ -110,8 +122,7 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 // is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side, Vec3<Real> point) {
-  const Real in_line =
-      4 * RealLimits<Real>::kEpsilon * (norm1(point) + node.extent()) + Real(2 * walk.graph.header->max_deviation);
+  const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.header->max_deviation);
   const Plane<Real> plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
@@ -132,12 +143,13 @@ template <class Geometry, class Real = typename Geometry::Real>
   return place_on_edge(walk, node.connection(side), line, u);
 }
 
-// The side on which the god-object sits within the rounding of its own place, or FDCG_NONE.
+// The side on which the god-object sits within the rounding of its own place, or FDCG_NONE. Near its plane, and not past its
+// ends: a face like a needle may be narrower than that rounding, and near the planes of all its sides.
 template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
-  const Real rounding = 8 * RealLimits<Real>::kEpsilon * (norm1(walk.god_object) + Real(walk.graph.header->extent));
+  const Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header->extent));
   for (uint32_t k = 0; k < node.side_count(); ++k) {
-    if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding) return k;
+    if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding && is_between_ends(node, k, walk.god_object)) return k;
   }
   return FDCG_NONE;
 }
@@ -159,9 +171,8 @@ inline Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   if (move.kind == Kind::leaves) return go_to(FDCG_MUTANT("seat") ? kFree : leave_face(walk, node));
   if (move.kind == Kind::slides) {
-    constexpr Real kMostOff = Real(1) / 1024;  // extents; beyond, the numbers cannot tell where the target is: no move
     const Real off = is_far(walk.graph, walk.hip) ? node.plane().distance(move.target) : Real(0);
-    if (absolute(off) <= kMostOff * node.extent()) walk.place(move.target - node.normal() * off, kFree);
+    if (absolute(off) <= kMostOffPlane<Real> * node.extent()) walk.place(move.target - node.normal() * off, kFree);
   }
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;

@@ -67,8 +67,6 @@ class FanSweep : public NodeEntry<Geometry> {
   static constexpr uint32_t kFewFans = 3;
   static constexpr uint32_t kRemembered = 8;  // fans; one that is forgotten is looked at again
   static constexpr Real kAnywhere = 4;        // a slack that every direction is within
-  // Of the way. By so much at least is a face entered later that is left out for being entered after another.
-  static constexpr Real kLater = Real(1) / 256;
 
   // The run that a node is in, or FDCG_NONE.
   [[nodiscard]] uint32_t run_of(uint32_t n) const {
@@ -137,7 +135,6 @@ class FanSweep : public NodeEntry<Geometry> {
     Real beside = is_inexact ? seen(slab_ + from_bound_ + to_bound_, static_cast<Real>(nearest)) : Real(0);
     // contact-model LEAVE-3: a wall beside the way's start
     if (!(left_ == kFree)) beside += seen(2 * from_bound_, static_cast<Real>(length_a));
-    const double rounding = 8 * RealLimits<double>::kEpsilon;
     const double bulge = dot(across, across) * 0.3;  // of an arc below a right angle over its chord, or more
     const Vec3<double> unit = sine > 0 ? normal * (1 / sine) : normal;
     arc->start = narrowed(start);
@@ -145,8 +142,8 @@ class FanSweep : public NodeEntry<Geometry> {
     arc->normal = narrowed(unit);
     arc->after_start = narrowed(cross(unit, start));
     arc->before_end = narrowed(cross(end, unit));
-    beside += 8 * RealLimits<Real>::kEpsilon;
-    arc->slack = sine > rounding ? beside + static_cast<Real>(rounding / sine) : kAnywhere;
+    beside += kDirectionRounding<Real>;
+    arc->slack = sine > kArcRounding ? beside + static_cast<Real>(kArcRounding / sine) : kAnywhere;
     arc->padding = dot(start, end) > 0 ? beside + static_cast<Real>(bulge) : kAnywhere;
     arc->start_share = static_cast<Real>(length_a / (length_a + length_b));
     arc->end_share = static_cast<Real>(length_b / (length_a + length_b));
@@ -165,7 +162,7 @@ class FanSweep : public NodeEntry<Geometry> {
   // sides it passes by as little. `at`: the fraction of the way; `off`: how far from the corner.
   bool is_met(const fdcg_fan_run& fan, uint32_t corner, double at, double off) {
     const double extent = graph_.header->extent, deviation = graph_.header->max_deviation;
-    const double rounding = 4.0 * RealLimits<Real>::kEpsilon * (norm1(widen(graph_.corner_point(corner))) + extent);
+    const double rounding = at_corner_rounding<Real>(widen(graph_.corner_point(corner)), extent);
     if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : 0) && at >= 0 && at < 1)) return false;
     const auto fraction = static_cast<Real>(at);
     if (!is_before_best(fraction, fan.first_node)) return true;
@@ -217,7 +214,7 @@ class FanSweep : public NodeEntry<Geometry> {
       const Waiting next = stack[--waiting];
       if (*work_left_ == 0) is_cut_short_ = true;
       if (is_cut_short_) return;
-      if (next.entry > best_.fraction + kLater) continue;  // kPassedBy is
+      if (next.entry > best_.fraction + kLaterEntry<Real>) continue;  // kPassedBy is
       if (next.level == 0) {
         look_at_entries(corner, busy, next.box * FDCG_LEAF_FAN);
         continue;

@@ -91,14 +91,14 @@ inline bool is_in_new_ball(const GraphView<Geometry>& graph, Vec3<Real> from, Ve
 // anywhere.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Vec3<Real> near_start(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to) {
-  constexpr Real kFar = 16, kBefore = 4;  // extents; the graph lies within less than two of the origin
+  constexpr Real kFar = kNearExtents, kBefore = 4;  // extents; the graph lies within less than two of the origin
   const Real extent = static_cast<Real>(graph.header->extent);
   if (!(norm1(from) > kFar * extent)) return from;
   const Vec3<Real> way = to - from;
   const Real length = norm(way);
   if (!(length > 0)) return from;
   const Real nearer = norm1(to) < norm1(from) ? norm1(to) : norm1(from);  // all places on the way are as coarse, or coarser
-  if (8 * RealLimits<Real>::kEpsilon * nearer > extent) return to;
+  if (are_coarse(nearer, extent)) return to;
   const Vec3<Real> along = way * (1 / length);
   const bool is_from_end = norm1(to) < norm1(from);                          // from the nearer end, where numbers are finer
   const Real past = dot(is_from_end ? to : from, along) + kBefore * extent;  // how far that end is past the cut

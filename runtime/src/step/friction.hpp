@@ -41,16 +41,14 @@ struct Friction {
     constexpr Real kStickAgain = Real(kStickAgainShare);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {
-      if (gap2 <= square(FDCG_MUTANT("stick-factor") ? gap + RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap)
-                                                     : kStickAgain * gap))
+      if (gap2 <= square(FDCG_MUTANT("stick-factor") ? gap + circle_rounding(god_object, gap) : kStickAgain * gap))
         is_slipping = false;
     } else if (gap2 > square(mu_static * load)) {
       is_slipping = true;
       if (FDCG_MUTANT("slip-later")) return {false, mu_static * load};
     }
-    const Real rounding = RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
     if (FDCG_MUTANT("rest-untouched")) return {false, is_slipping ? gap : root(gap2)};
-    return {!is_slipping || gap2 <= square(gap + rounding), gap};
+    return {!is_slipping || gap2 <= square(gap + circle_rounding(god_object, gap)), gap};
   }
 
   [[gnu::noinline, gnu::cold]] Slip<Real> slip_with_terms(Vec3<Real> god_object, Real gap2, Real load) {

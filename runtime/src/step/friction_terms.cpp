@@ -47,8 +47,8 @@ FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph* graph, const
 
 fdcg_material FrictionTerms::material_of(uint32_t node) const {
   fdcg_material found = own_material(*params);
-  if (graph->node_materials != nullptr && graph->node_materials[node] < params->material_count)
-    found = params->materials[graph->node_materials[node]];
+  const bool has_own = graph->node_materials != nullptr && node != FDCG_NONE;
+  if (has_own && graph->node_materials[node] < params->material_count) found = params->materials[graph->node_materials[node]];
   return has(FDCG_FRICTION_FINGER) ? fdcg_combine_materials(&found, &params->finger) : found;
 }
 

@@ -5,13 +5,10 @@
 #pragma once
 
 #include "fdcg/fdcg.h"
+#include "graph/tolerances.hpp"
 #include "shared/vec.hpp"
 
 namespace fdcg {
-
-// A contact that slips sticks again within this share of the circle in which it would have stuck: rounding must not toss a coin
-// every tick.
-inline constexpr double kStickAgainShare = 1 - 0x1p-20;
 
 // A god-object that slides until its gap is `gap`, or rests.
 struct TermSlip {

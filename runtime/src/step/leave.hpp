@@ -16,7 +16,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Vec3<Real> in_front_of(Walk<Geometry>& walk, NodeRef<Geometry> node, Vec3<Real> point, Vec3<Real> outward) {
   constexpr int kMostMoves = 16;  // each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, point);
-  const Real least = RealLimits<Real>::kEpsilon * Real(walk.graph.header->extent) / 4096;
+  const Real least = least_step_clear<Real>(walk.graph.header->extent);
   const Real behind = absolute(node.plane().distance(point));
   Real step = behind > least ? behind : least;
   for (int i = 0; i < kMostMoves; ++i, step = 2 * step) {

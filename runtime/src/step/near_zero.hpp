@@ -2,13 +2,10 @@
 // Which coordinates count as zero, in a HIP and in a corner that is moved alike.
 #pragma once
 
+#include "graph/tolerances.hpp"
 #include "shared/vec.hpp"
 
 namespace fdcg {
-
-// A coordinate smaller than this share of the extent is zero: no hand can tell, and exact signs need not look at bits that
-// stand further apart than a few machine words hold (contact-model TICK-4).
-inline constexpr double kLeastShare = 0x1p-70;
 
 inline double zero_below(double least, double x) {
   return absolute(x) < least ? 0 : x;

@@ -37,7 +37,7 @@ class NodeEntry {
         to_bound_(plane_rounding_bound(graph_, to_)),
         left_(left),
         work_left_(work_left) {
-    slab_ = Real(graph_.header->max_deviation) * (1 + 4 * RealLimits<Real>::kEpsilon) + from_bound_;
+    slab_ = slab_depth(graph_.header->max_deviation, from_bound_);
   }
 
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
@@ -49,10 +49,10 @@ class NodeEntry {
   // by ways that pass it by.
   [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Geometry> node = graph_.node(n);
-    const Real rounding = (from_bound_ + to_bound_) / 4;
+    const Real rounding = side_rounding(from_bound_, to_bound_), off = slab_ - from_bound_;  // corners off their planes
     Real begin = least, end = 1, widest_begin = least, widest_end = 1;
-    if (!clip_to(node, rounding, &begin, &end) &&
-        !clip_to(node, 5 * rounding + (slab_ - from_bound_), &widest_begin, &widest_end))
+    if (!clip_to(node, rounding + off, &begin, &end) &&
+        !clip_to(node, kSharpSides * rounding + off, &widest_begin, &widest_end))
       return kNever;
     if (fraction > end) fraction = end;
     return fraction < begin ? begin : fraction;
@@ -84,7 +84,6 @@ class NodeEntry {
 
  private:
   static constexpr uint32_t kLastBit = 63;
-  static constexpr Real kGrazing = Real(1) / 1024;  // of the way: so much may rounding move a point of entry
 
   // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
   [[nodiscard, gnu::noinline]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end) const {
@@ -122,14 +121,14 @@ class NodeEntry {
     if (start_side < 0 && left_lies_behind(node)) return;
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
     const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
-    const bool is_grazing = noise > kGrazing * fall;
+    const bool is_grazing = noise > kGrazing<Real> * fall;
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
     uint64_t met_exactly = 0;
     if (!passes_inside(node, rounded, &met_exactly)) {
-      // Along an inexact node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
-      if (!is_grazing || !node.is_inexact()) return;
-      const Real thick = (slab_ - from_bound_) + (from_bound_ + to_bound_) / 8;
+      // Along a node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
+      if (!is_grazing || !is_slab || !is_near_inexact(node)) return;
+      const Real thick = (slab_ - from_bound_) + side_rounding(from_bound_, to_bound_) / 2;
       Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
       const bool is_below = start_side + thick < fall;  // at the way's end, or, along the node, all the way
       Real end = !is_below ? Real(1) : fall != 0 ? (start_side + thick) / fall : Real(-1);
@@ -143,6 +142,15 @@ class NodeEntry {
     best_.node = n;
     best_.feature =
         met_exactly && !FDCG_MUTANT("exact-feature") ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
+  }
+
+  // Whether a node's corners lie off its plane, or off a neighbour's: over that one a way in its slab may come below this one's
+  // rim.
+  [[nodiscard]] bool is_near_inexact(NodeRef<Geometry> node) const {
+    bool is_near = node.is_inexact();
+    for (uint32_t k = 0; k < node.side_count(); ++k)
+      is_near = is_near || (node.across(k) != FDCG_NONE && graph_.node(node.across(k)).is_inexact());
+    return is_near;
   }
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) const {
@@ -169,8 +177,10 @@ class NodeEntry {
   // begins over it.
   [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
+    const Plane<Real> plane = node.plane();
+    if (plane.distance(from_) < -own_plane_rounding(plane, from_)) return;  // of a flat or a long body much less than the bound
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, wherever the HIP is
-      if (node.voronoi_plane(k).distance(from_) > from_bound_ / 4) return;
+      if (node.voronoi_plane(k).distance(from_) > side_rounding(from_bound_, Real(0))) return;
     }
     if (!was_before_clearing(node) && !faces_what_was_left(node)) return;
     best_.fraction = 0;
@@ -249,8 +259,7 @@ class NodeEntry {
     spend(work_left_, kOrientationWork);
     const Vec3<Real> v = start - from_, w = end - from_;
     const Real det = dot(cross(v, w), way_);
-    // Of each of the six products of three differences: three differences, two products and the sums, half an epsilon each.
-    const Real bound = 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way_)) + RealLimits<Real>::kTiny;
+    const Real bound = orientation_rounding(v, w, way_);
     return det > bound ? 1 : det < -bound ? -1 : 0;
   }
 

@@ -34,7 +34,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (!(first.beyond > 0)) return x;
   const Vec3<double> on_first = x - first.normal * first.beyond;
   const Wall second = farthest(on_first);
-  const double rounding = 8 * RealLimits<Real>::kEpsilon * node.extent();
+  const double rounding = wall_rounding<Real>(node.extent());
   if (!(second.beyond > rounding)) return on_first;
   // Where the two meet: x - a n_1 - b n_2, both distances 0.
   const double c = dot(first.normal, second.normal), squared_sine = 1 - c * c;

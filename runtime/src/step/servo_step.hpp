@@ -143,10 +143,6 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
   }
 }
 
-// A HIP further away than this is nowhere near any graph (load.cpp limits scale and origin), and its arithmetic might
-// overflow before it is found out (contact-model TICK-2).
-constexpr double kFarthestHip_m = 1e110;
-
 // A double rounded to a float, in a way that no compiler sees through: GCC 12's basic-block vectoriser (-O2) drops the rounding
 // of a double to float and back where it sees both. In a register where that can be said, since a call or a way through memory
 // costs a tenth of a step.
@@ -272,7 +268,13 @@ template <class Geometry, class Real = typename Geometry::Real>
   FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
                      kSweepWork};
   const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &space);
-  FDCG_ASSERT(is_usable(walk.god_object) && is_of_graph(walk.active, *walk.graph.header));
+  // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
+  // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).
+  if (!(walk.active == kFree) && !is_usable(walk.god_object)) {
+    walk.god_object = walk.hip;
+    walk.active = walk.seat = kFree;
+  }
+  FDCG_ASSERT(is_of_graph(walk.active, *walk.graph.header));
   contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
   contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
   result->flags = progress.flags;

@@ -86,7 +86,7 @@ struct EdgeLine : Edge<Real> {
   template <class Geometry, class... Where>
   explicit EdgeLine(const GraphView<Geometry>& graph, Where... where) {
     graph.read_edge(where..., this);
-    end_tolerance = 8 * RealLimits<Real>::kEpsilon * (norm1(this->start) + this->length);
+    end_tolerance = end_rounding(this->start, this->length);
   }
 
   [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
@@ -98,7 +98,7 @@ struct EdgeLine : Edge<Real> {
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line, uint32_t end,
                                                    Real from_end) {
-  if (from_end <= 8 * RealLimits<Real>::kEpsilon * static_cast<Real>(walk.graph.header->extent)) return false;
+  if (from_end <= snap_growth(static_cast<Real>(walk.graph.header->extent))) return false;
   const Real foot = line.parameter(walk.hip);
   return 2 * (end == 0 ? foot : line.length - foot) > from_end;
 }

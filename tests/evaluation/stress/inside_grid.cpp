@@ -37,6 +37,52 @@ Meeting meeting(const Triangle& t, const Hip& from, const Hip& to) {
   return at_end == 0 && at_start != 0 ? Meeting::ends_on : Meeting::touching;
 }
 
+using Wide = long double;  // the plane of a sliver turns by a rounding over its width
+Vector<Wide> wide(const Hip& a) {
+  return {a[0], a[1], a[2]};
+}
+
+Wide distance_to_triangle(const Vector<Wide>& x, const Vector<Wide> (&corners)[3]) {
+  constexpr Wide kWider = 1e-6L;  // of a triangle
+  const Vector<Wide> u = corners[1] - corners[0], v = corners[2] - corners[0], w = x - corners[0];
+  const Vector<Wide> n = cross(u, v);
+  const Wide nn = dot(n, n), p = dot(cross(w, v), n), q = dot(cross(u, w), n);
+  const bool is_above = p >= -kWider * nn && q >= -kWider * nn && p + q <= (1 + kWider) * nn;
+  Wide nearest = is_above ? std::abs(dot(n, w)) / length(n) : std::numeric_limits<Wide>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector<Wide>& a = corners[k];
+    const Vector<Wide> e = corners[(k + 1) % 3] - a;
+    const Wide along = std::clamp<Wide>(dot(x - a, e) / dot(e, e), 0, 1);
+    nearest = std::min(nearest, length(x - (a + e * along)));
+  }
+  return nearest;
+}
+
+// Of two segments, neither of which is a point.
+Wide distance_between(const Vector<Wide>& a, const Vector<Wide>& b, const Vector<Wide>& c, const Vector<Wide>& d) {
+  const Vector<Wide> u = b - a, v = d - c, w = c - a;
+  const Wide uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), det = uu * vv - uv * uv;
+  Wide s = det > 0 ? std::clamp<Wide>((dot(u, w) * vv - dot(v, w) * uv) / det, 0, 1) : 0;
+  const Wide t = std::clamp<Wide>((s * uv - dot(v, w)) / vv, 0, 1);
+  s = std::clamp<Wide>((t * uv + dot(u, w)) / uu, 0, 1);
+  return length((a + u * s) - (c + v * t));
+}
+
+bool is_near(const Triangle& t, const Hip& from, const Hip& to, double near) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto [low, high] = std::minmax({t[0][i], t[1][i], t[2][i]});
+    if (std::max(from[i], to[i]) < low - near || std::min(from[i], to[i]) > high + near) return false;
+  }
+  const Vector<Wide> corners[3] = {wide(t[0]), wide(t[1]), wide(t[2])}, a = wide(from), b = wide(to);
+  if (distance_to_triangle(a, corners) <= near || distance_to_triangle(b, corners) <= near) return true;
+  if (from == to) return false;
+  if (meeting(t, from, to) != Meeting::apart) return true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (distance_between(a, b, corners[k], corners[(k + 1) % 3]) <= near) return true;
+  }
+  return false;
+}
+
 // Cells along each axis: the surface meets about the square of it.
 int resolution(std::size_t triangles) {
   return std::clamp(static_cast<int>(4 * std::sqrt(std::sqrt(static_cast<double>(triangles) + 16) * 2)), 12, 48);
@@ -223,14 +269,14 @@ void InsideGrid::cross_cell(std::size_t cell, const Hip& from, const Hip& to, Cr
 }
 
 // Slab by slab of cells along the way's longest axis: in each, the cells between where the way comes in and goes out.
-InsideGrid::Crossing InsideGrid::crossing(const Hip& from, const Hip& to) const {
-  Crossing result;
+template <class Visit>
+bool InsideGrid::any_cell_along(const Hip& from, const Hip& to, double near, const Visit& visit) const {
   std::size_t axis = 0;
   Hip slack;  // a way from far away is known only to the rounding of its ends
   for (std::size_t i = 0; i < 3; ++i) {
-    slack[i] = kSlack * cell_[i] + 0x1p-48 * (std::abs(from[i]) + std::abs(to[i]));
-    const double low = std::min(from[i], to[i]), high = std::max(from[i], to[i]);
-    if (high < low_[i] || low > low_[i] + count_[i] * cell_[i]) return result;
+    slack[i] = near + kSlack * cell_[i] + 0x1p-48 * (std::abs(from[i]) + std::abs(to[i]));
+    const double low = std::min(from[i], to[i]) - near, high = std::max(from[i], to[i]) + near;
+    if (high < low_[i] || low > low_[i] + count_[i] * cell_[i]) return false;
     if (std::abs(to[i] - from[i]) * per_cell_[i] > std::abs(to[axis] - from[axis]) * per_cell_[axis]) axis = i;
   }
   const std::size_t second = (axis + 1) % 3, third = (axis + 2) % 3;
@@ -255,34 +301,33 @@ InsideGrid::Crossing InsideGrid::crossing(const Hip& from, const Hip& to) const 
     for (p[second] = low[second]; p[second] <= high[second]; ++p[second]) {
       for (p[third] = low[third]; p[third] <= high[third]; ++p[third]) {
         const std::size_t cell = index(p);
-        if (has_triangles(cell)) cross_cell(cell, from, to, result);
-        if (result.is_through) return result;
+        if (has_triangles(cell) && visit(cell)) return true;
       }
     }
   }
+  return false;
+}
+
+InsideGrid::Crossing InsideGrid::crossing(const Hip& from, const Hip& to) const {
+  Crossing result;
+  any_cell_along(from, to, 0, [&](std::size_t cell) {
+    cross_cell(cell, from, to, result);
+    return result.is_through;
+  });
   return result;
 }
 
+bool InsideGrid::comes_near(const Hip& from, const Hip& to, double near) const {
+  return any_cell_along(from, to, near, [&](std::size_t cell) {
+    return std::any_of(member_.begin() + first_[cell], member_.begin() + first_[cell + 1],
+                       [&](std::uint32_t f) { return is_near(triangles_[f], from, to, near); });
+  });
+}
+
 double InsideGrid::distance_to_surface(const Hip& point) const {
-  using Wide = long double;       // the plane of a sliver turns by a rounding over its width
-  constexpr Wide kWider = 1e-6L;  // of a triangle
-  const auto wide = [](const Hip& a) { return Vector<Wide>{a[0], a[1], a[2]}; };
-  const Vector<Wide> x = wide(point);
   Wide nearest = std::numeric_limits<Wide>::infinity();
-  for (const Triangle& t : triangles_) {
-    const Vector<Wide> corners[3] = {wide(t[0]), wide(t[1]), wide(t[2])};
-    const Vector<Wide> u = corners[1] - corners[0], v = corners[2] - corners[0], w = x - corners[0];
-    const Vector<Wide> n = cross(u, v);
-    const Wide nn = dot(n, n), p = dot(cross(w, v), n), q = dot(cross(u, w), n);
-    const bool is_above = p >= -kWider * nn && q >= -kWider * nn && p + q <= (1 + kWider) * nn;
-    if (is_above) nearest = std::min(nearest, std::abs(dot(n, w)) / length(n));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector<Wide>& a = corners[k];
-      const Vector<Wide> e = corners[(k + 1) % 3] - a;
-      const Wide along = std::clamp<Wide>(dot(x - a, e) / dot(e, e), 0, 1);
-      nearest = std::min(nearest, length(x - (a + e * along)));
-    }
-  }
+  for (const Triangle& t : triangles_)
+    nearest = std::min(nearest, distance_to_triangle(wide(point), {wide(t[0]), wide(t[1]), wide(t[2])}));
   return static_cast<double>(nearest);
 }
 

@@ -31,6 +31,9 @@ class InsideGrid {
   // Of a straight way, from anywhere to anywhere.
   [[nodiscard]] Crossing crossing(const Hip& from, const Hip& to) const;
 
+  // Whether the surface comes as near to a straight way as that, both ends of the way included. In long double.
+  [[nodiscard]] bool comes_near(const Hip& from, const Hip& to, double near) const;
+
   // From a point to the nearest of the surface, in floating point, or less where the nearest is a sliver: its rim is taken a
   // little wider, so that no rounding lets a point fall between two. Looks at every triangle.
   [[nodiscard]] double distance_to_surface(const Hip& point) const;
@@ -60,6 +63,9 @@ class InsideGrid {
   [[nodiscard]] int clamped(std::size_t axis, double x) const;
   [[nodiscard]] bool has_triangles(std::size_t cell) const { return first_[cell + 1] > first_[cell]; }
   [[nodiscard]] Parity parity_between(std::size_t a, std::size_t b, const Hip& from, const Hip& to) const;
+  // Calls visit(cell) for each cell with triangles that the way comes nearer to than `near`, some twice; until it says true.
+  template <class Visit>
+  bool any_cell_along(const Hip& from, const Hip& to, double near, const Visit& visit) const;
   void cross_cell(std::size_t cell, const Hip& from, const Hip& to, Crossing& result) const;
 
   std::vector<Triangle> triangles_;

@@ -9,9 +9,6 @@
 namespace fdcg::test {
 namespace {
 
-constexpr std::uint32_t bit(Fault fault) {
-  return 1u << static_cast<unsigned>(fault);
-}
 bool is_same(const double (&a)[3], const double (&b)[3]) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
@@ -28,9 +25,7 @@ double square_distance(const Hip& a, const Hip& b) {
   const Hip d = difference(a, b);
   return dot(d, d);
 }
-Hip cross_product(const Hip& a, const Hip& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+constexpr double kPlaces = 5;  // extents, in a sum of coordinates and two extents: contact-model SIDE-1
 constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND;
 
 }  // namespace
@@ -69,8 +64,8 @@ Judge::Judge(const Specimen& specimen, bool owes_force)
       owes_force_(owes_force),
       epsilon_(specimen.epsilon()),
       deviation_(kPerDeviation * specimen.header().max_deviation),
-      is_exact_(specimen.header().max_deviation == 0 &&
-                specimen.body.soup.corners.size() == 3 * specimen.body.soup.face_count()) {}
+      moved_(specimen.stated_deviation + kPlaces * kSlab_eps * epsilon_ * specimen.header().extent),
+      is_exact_(specimen.stated_deviation == 0 && specimen.body.soup.corners.size() == 3 * specimen.body.soup.face_count()) {}
 
 std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result,
                            const StepWatch& seen, Verdicts& v) {
@@ -252,9 +247,10 @@ double Judge::descent_from(const Tick& tick) const {
 }
 
 void Judge::look_at_descent(Tick& tick, Verdicts& v) const {
-  if (specimen_.descent == nullptr || !is_exact_) return;
-  const double reach = descent_from(tick);
+  if (specimen_.descent == nullptr) return;
+  const double reach = is_exact_ ? descent_from(tick) : merged_descent_from(tick) - deviation_;
   v.worst_descent_eps = std::max(v.worst_descent_eps, reach / tick.rounding);
+  if (!is_exact_ && is_in_merged_air(tick)) tick.faults |= bit(Fault::descent) | bit(Fault::free_air);
   if (!(reach > kMostDescent_eps * tick.rounding)) return;
   tick.faults |= bit(Fault::descent);
   if (specimen_.inside->where(tick.hip) == InsideGrid::Where::outside) tick.faults |= bit(Fault::free_air);
@@ -262,16 +258,32 @@ void Judge::look_at_descent(Tick& tick, Verdicts& v) const {
 
 // A contact that was free: what its way met.
 void Judge::look_at_way(Tick& tick) {
-  if (specimen_.inside == nullptr || !is_exact_ || !is_known_outside_) return;
+  if (specimen_.inside == nullptr || !is_known_outside_) return;
   if ((tick.result.flags & kCarried) != 0 || is_let_off(tick.hip)) return;
-  const double* from = tick.before.hip;  // from far away the step cuts the way, where rounding may move it
+  const Hip from = hip_of(tick.before.hip);  // from far away the step cuts the way, where rounding may move it
   if (std::abs(from[0]) + std::abs(from[1]) + std::abs(from[2]) > 8 * specimen_.header().extent) return;
+  if (!is_exact_) return look_at_merged_way(tick);
   const bool is_stopped = tick.result.transitions > 0;
-  const InsideGrid::Crossing way = specimen_.inside->crossing(hip_of(tick.before.hip), tick.hip);
+  const InsideGrid::Crossing way = specimen_.inside->crossing(from, tick.hip);
   tick.is_way_clear = !way.is_through && !way.touches;
   if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
-  // A corner that is met within rounding, and let go in the same tick, has held nothing (contact-model FREE-8, CORNER-4).
-  if (tick.is_way_clear && tick.after.state != FDCG_FREE) tick.faults |= bit(Fault::thin_air);
+  if (!tick.is_way_clear || !is_stopped) return;
+  if (tick.after.state != FDCG_FREE || !passes_busy_corner(from, tick.hip)) tick.faults |= bit(Fault::thin_air);
+}
+
+// A busy corner that a way passes within rounding may be met, to be let go in the same tick (contact-model FREE-8, CORNER-4).
+// Nothing else may be met by a way that is clear. The rounding is that of the rule, and of the doubles that it is asked in.
+bool Judge::passes_busy_corner(const Hip& from, const Hip& to) const {
+  constexpr double kRule_eps = 4, kDouble = 0x1p-50;
+  const Hip way = difference(to, from);
+  for (const Hip& corner : specimen_.busy_points) {
+    const Hip reach = difference(corner, from);
+    const double share = std::clamp(dot(reach, way) / dot(way, way), 0.0, 1.0);
+    const Hip nearest = {from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
+    const double sum = std::abs(corner[0]) + std::abs(corner[1]) + std::abs(corner[2]) + specimen_.header().extent;
+    if (long_length(nearest, corner) <= kRule_eps * epsilon_ * sum + kDouble * (sum + norm(way))) return true;
+  }
+  return false;
 }
 
 // Around an apex of 10^4 faces the grid's cells hold them all: there one tick in some dozens is asked for.

@@ -22,7 +22,7 @@ enum class Fault : std::uint8_t {
   growth,        // |GO - HIP| grew by more than 16 eps of the scale; where a merged face is met, that beyond its slab
   push_through,  // Free and, after having been outside or held, inside by more than 4 eps of the size
   unseen,        // a way through the surface that met nothing
-  thin_air,      // a contact though the way met nothing
+  thin_air,      // a contact though the way met nothing; or one that was let go again, but at a busy corner (FREE-8)
   off_surface,   // GO off the planes of its feature, or beyond its rim, by more than 64 eps of the scale
   pull,          // the HIP is in front of what is said to hold it: the force pulls inwards
   restless,      // the same HIP again: GO came nearer by more than 16 eps of the scale, or moved by more than such a change of
@@ -33,6 +33,9 @@ enum class Fault : std::uint8_t {
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
+constexpr std::uint32_t bit(Fault fault) {
+  return 1u << static_cast<unsigned>(fault);
+}
 std::string_view name_of(Fault fault);
 std::optional<Fault> fault_named(std::string_view name);
 
@@ -45,6 +48,7 @@ inline constexpr double kMostPull_eps = 32;     // of a plane's distance, as the
 inline constexpr double kMostDescent_eps = 64;  // how far the way down may lead, as GO may be off its feature
 inline constexpr double kShallow_eps = 4;       // of the size: a HIP so near to the surface may be taken for outside
 inline constexpr double kPerDeviation = 4;      // where merging moved faces: so many times the largest deviation as well
+inline constexpr double kAirPerDeviation = 16;  // ... and how far from its feature a hand that is let go would be in free air
 
 struct Verdicts {
   std::array<std::uint64_t, kFaults> count{};
@@ -93,7 +97,12 @@ class Judge {
   void look_at_rest(Tick& tick, Verdicts& v) const;
   [[nodiscard]] double descent_from(const Tick& tick) const;
   void look_at_descent(Tick& tick, Verdicts& v) const;
+  [[nodiscard]] double merged_descent_from(const Tick& tick) const;
+  [[nodiscard]] Hip outwards(const Tick& tick) const;
+  [[nodiscard]] bool is_in_merged_air(const Tick& tick) const;
+  [[nodiscard]] bool passes_busy_corner(const Hip& from, const Hip& to) const;
   void look_at_way(Tick& tick);
+  void look_at_merged_way(Tick& tick) const;
   bool is_let_off(const Hip& point);
   void look_inside(Tick& tick, Verdicts& v);
   void look_at_owed_force(Tick& tick);
@@ -101,6 +110,7 @@ class Judge {
   const Specimen& specimen_;
   bool owes_force_;
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
+  double moved_;                // how far the graph's surface may be from the mesh's: the file's stated deviation and rounding
   bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
   bool has_friction_ = true;
   bool is_known_outside_ = false;

@@ -20,6 +20,7 @@
 #include "minimise.hpp"
 #include "program_options.hpp"
 #include "reproducer.hpp"
+#include "stress_mesh.hpp"
 #include "stress_run.hpp"
 #include "table.hpp"
 
@@ -39,7 +40,7 @@ struct Options {
   std::uint64_t seed = 1;
   double steps = 0;
   unsigned threads = 1;
-  std::string only;
+  std::string only, mesh;
   std::string precision;
   std::int64_t block = -1;
   std::string minimise, replay;
@@ -66,7 +67,8 @@ double seconds_since(Clock::time_point begin) {
 // Writes what is found, at most a few of each kind, and says how to repeat it.
 class Findings {
  public:
-  Findings(const std::string& folder, std::string program) : folder_(folder), program_(std::move(program)) {}
+  Findings(const Options& options, std::string program)
+      : folder_(options.output), mesh_(options.mesh), program_(std::move(program)) {}
 
   void add(const Finding& f) {
     const std::lock_guard lock(mutex_);
@@ -76,9 +78,9 @@ class Findings {
     if (count == kMostReproducers) return;
     ++count;
     const std::string file = folder_ + "/" + kind + "-" + std::to_string(count) + ".obj";
-    const std::string command = program_ + " --seed " + std::to_string(f.name.seed) + " --case " +
-                                std::string(f.name.stress_case->name) + " --precision " + name_of(f.name.precision) +
-                                " --block " + std::to_string(f.name.block);
+    const std::string what = mesh_.empty() ? " --case " + std::string(f.name.stress_case->name) : " --mesh " + mesh_;
+    const std::string command = program_ + " --seed " + std::to_string(f.name.seed) + what + " --precision " +
+                                name_of(f.name.precision) + " --block " + std::to_string(f.name.block);
     std::printf("FOUND %s at tick %llu of %s, extent %g\n      repeat: %s\n      file: %s\n", kind.c_str(), n(f.tick),
                 f.specimen->body.description.c_str(), f.specimen->header().extent, command.c_str(), file.c_str());
     std::fflush(stdout);
@@ -87,7 +89,7 @@ class Findings {
 
  private:
   std::mutex mutex_;
-  std::string folder_, program_;
+  std::string folder_, mesh_, program_;
   std::map<std::string, int> written_;
 };
 
@@ -180,10 +182,16 @@ class Workers {
 
 std::vector<Row> rows_of(const Options& options) {
   std::vector<Row> rows;
-  for (const StressCase& c : stress_cases()) {
-    if (!options.only.empty() && options.only != c.name) continue;
+  const auto add = [&](const StressCase& c) {
     for (const Precision precision : {Precision::f64, Precision::f32}) {
       if (options.precision.empty() || options.precision == name_of(precision)) rows.push_back({&c, precision});
+    }
+  };
+  if (!options.mesh.empty()) {
+    add(mesh_case(options.mesh));
+  } else {
+    for (const StressCase& c : stress_cases()) {
+      if (options.only.empty() || options.only == c.name) add(c);
     }
   }
   const double steps = options.steps > 0 ? options.steps : options.is_quick ? kQuickSteps : kFullSteps;
@@ -282,7 +290,7 @@ void show_progress(std::size_t done, std::size_t rows, const BlockResult& whole,
 
 int run(const Options& options, const std::string& program) {
   std::filesystem::create_directories(options.output);
-  Findings findings(options.output, program);
+  Findings findings(options, program);
   Table table(options.output, "stress_cases",
               {"case",
                "target",
@@ -386,6 +394,7 @@ int main(int argc, char** argv) {
   program.option("--steps", options.steps, "how many ticks in all, shared among the cases");
   program.option("--threads", options.threads, "results do not depend on it", 1, 64);
   program.option("--case", options.only, "this one alone");
+  program.option("--mesh", options.mesh, "this mesh file, compiled as by default, in place of the cases");
   program.choice("--precision", options.precision, "f64 or f32 alone", {"f64", "f32"});
   program.option("--block", options.block, "this block of each case alone");
   program.option("--minimise", options.minimise, "cut this reproducer down; writes FILE.small.obj and FILE.test.cpp");

@@ -42,6 +42,7 @@ void read_remark(std::istringstream& line, Reproducer& r) {
   if (key == "planes") r.body.options.store_planes = value == "stored";
   if (key == "closed") r.body.is_closed = value == "1";
   if (key == "quantum") r.body.soup.relative_quantum = number(value);
+  if (key == "absolute_quantum") r.body.soup.absolute_quantum = number(value);
   if (key == "metres_per_unit") r.body.options.metres_per_unit = number(value);
   if (key == "mu_static") r.params.mu_static = number(value);
   if (key == "mu_dynamic") r.params.mu_dynamic = number(value);
@@ -81,9 +82,9 @@ void write_reproducer(const std::string& path, const Reproducer& r) {
        << (o.precision == bake::Precision::f32 ? "f32" : "f64") << "\n# flat "
        << (o.coplanar.kind == bake::Coplanar::Kind::quantum ? "quantum" : "exact") << "\n# merge " << o.merge << "\n# planes "
        << (o.store_planes ? "stored" : "derived") << "\n# closed " << r.body.is_closed << "\n# quantum "
-       << exact(r.body.soup.relative_quantum) << "\n# metres_per_unit " << exact(o.metres_per_unit) << "\n# mu_static "
-       << exact(r.params.mu_static) << "\n# mu_dynamic " << exact(r.params.mu_dynamic) << "\n# edge_friction "
-       << r.params.edge_friction << '\n';
+       << exact(r.body.soup.relative_quantum) << "\n# absolute_quantum " << exact(r.body.soup.absolute_quantum)
+       << "\n# metres_per_unit " << exact(o.metres_per_unit) << "\n# mu_static " << exact(r.params.mu_static)
+       << "\n# mu_dynamic " << exact(r.params.mu_dynamic) << "\n# edge_friction " << r.params.edge_friction << '\n';
   for (const bake::Vec3& p : r.body.soup.points)
     file << "v " << exact(p.x) << ' ' << exact(p.y) << ' ' << exact(p.z) << '\n';
   for (std::size_t f = 0; f < r.body.soup.face_count(); ++f) {
@@ -125,9 +126,10 @@ Reproducer read_reproducer(const std::string& path) {
   if (faces.empty() || r.path_m.empty() || r.fault == Fault::count) {
     throw std::runtime_error(path + ": no reproducer; it needs faces, lines `# hip_m x,y,z` and a line `# fault NAME`");
   }
-  const double quantum = r.body.soup.relative_quantum;
+  const double quantum = r.body.soup.relative_quantum, absolute_quantum = r.body.soup.absolute_quantum;
   r.body.soup = make_soup("reproducer", std::move(points), faces);
   if (quantum > 0) r.body.soup.relative_quantum = quantum;
+  r.body.soup.absolute_quantum = absolute_quantum;
   r.body.options.jobs = 1;
   r.body.options.without = {"source-map", "info"};
   return r;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "specimen.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -11,6 +13,7 @@ namespace fdcg::test {
 
 Specimen::Specimen(Body b) : body(std::move(b)), mesh(body.soup, body.options) {
   read_shapes();
+  read_deviation();
   find_focus();
   if (!body.is_closed) return;
   const ExactSolid solid(triangulated(body.soup), header());
@@ -31,10 +34,24 @@ void Specimen::read_shapes() {
   for (std::uint32_t c = 0; c < header().corner_count; ++c) {
     const fdcg_corner_info corner = fdcg_get_corner(&g, c);
     corners.push_back({hip_of(corner.point), hip_of(corner.normal)});
+    if (corner.fan_count > FDCG_BUSY_FAN) busy_points.push_back(corners.back().point);
   }
   for (std::uint32_t e = 0; e < header().connection_count; ++e) {
     const fdcg_connection_info c = fdcg_get_connection(&g, e);
     edges.push_back({corners[c.corner[0]].point, hip_of(c.direction), c.length, c.type, {c.node[0], c.node[1]}});
+  }
+}
+
+// The header has that of the corners that are left, the mass properties that of all.
+void Specimen::read_deviation() {
+  stated_deviation = header().max_deviation;
+  const auto* const file = reinterpret_cast<const unsigned char*>(&header());
+  const auto* const sections = reinterpret_cast<const fdcg_section*>(file + sizeof(fdcg_header));
+  for (std::uint32_t i = 0; i < header().section_count; ++i) {
+    if (sections[i].id != FDCG_SECTION_MASS) continue;
+    fdcg_mass_record mass;
+    std::memcpy(&mass, file + sections[i].offset, sizeof mass);
+    stated_deviation = std::max(stated_deviation, mass.deviation);
   }
 }
 

@@ -59,6 +59,8 @@ class Specimen {
   std::vector<EdgeShape> edges;
   std::vector<CornerShape> corners;
   std::vector<std::uint32_t> focus_corners;  // corners of the graph nearest to body.focus
+  std::vector<Hip> busy_points;              // corners of more than FDCG_BUSY_FAN connections
+  double stated_deviation = 0;               // how far, by its file, the graph's faces lie from the mesh's
   std::unique_ptr<InsideGrid> inside;        // of closed bodies
   std::unique_ptr<Descent> descent;          // of closed bodies
 
@@ -68,11 +70,16 @@ class Specimen {
 
  private:
   void read_shapes();
+  void read_deviation();
   void find_focus();
 };
 
 inline double signed_distance(const Hip& normal, double offset, const Hip& x) {
   return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2] + offset;
+}
+
+inline Hip cross_product(const Hip& a, const Hip& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 }  // namespace fdcg::test

@@ -148,3 +148,20 @@ TEST_CASE("exactly flat edges never lie between two regions") {
     }
   }
 }
+
+TEST_CASE("by the quantum no faces are joined where more than 32 planes meet in a tip") {
+  PolygonSoup soup = triangulated(cone(5000));
+  soup.relative_quantum = 0x1p-24;
+  const Found found = regions_of(soup);
+  const Mesh& mesh = found.cut.mesh;
+  const auto is_tip = [&](std::uint32_t slot) { return mesh.points[+mesh.corners[slot]].z == 1; };
+  int at_tip = 0, joined = 0;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    const bool touches = is_tip(3 * f) || is_tip(3 * f + 1) || is_tip(3 * f + 2);
+    const std::uint32_t r = found.regions.of(FaceId{f});
+    at_tip += touches;
+    joined += touches && r != kNone && !found.regions.list[r].is_exact;
+  }
+  CHECK(at_tip == 5000);
+  CHECK(joined == 0);
+}

@@ -41,8 +41,16 @@ void check(const HandReport& report, Precision precision) {
   CHECK(report.worst_first_force <= (precision == Precision::f64 ? 1 + 1e-9 : 1.02));
 }
 
-void approach_all(const PointedBody& body, Precision precision, int ways, std::uint64_t seed) {
-  const CompiledMesh mesh(body.soup, exact_options(precision));
+// As a user compiles: faces merged within the numbers' quantum.
+CompileOptions default_options(Precision precision) {
+  CompileOptions options;
+  options.precision = precision;
+  return options;
+}
+
+void approach_all(const PointedBody& body, const CompileOptions& options, int ways, std::uint64_t seed) {
+  const Precision precision = options.precision;
+  const CompiledMesh mesh(body.soup, options);
   const ExactSolid solid(body.soup, *mesh.view().header);
   Random random(seed);
   for (const Approach approach : kApproaches) {
@@ -72,7 +80,19 @@ TEST_CASE("a hand inside a point has a force in the same tick, whatever the fan"
       const PointedBody body = pointed_body(kind, sides, random_rotation(static_cast<std::uint64_t>(sides)));
       for (const Precision precision : {Precision::f64, Precision::f32}) {
         INFO(name_of(kind) << ", " << sides << " sides, " << (precision == Precision::f64 ? "f64" : "f32"));
-        approach_all(body, precision, 2, 7);
+        approach_all(body, exact_options(precision), 2, 7);
+      }
+    }
+  }
+}
+
+TEST_CASE("the same of files compiled by default settings") {
+  for (const PointedKind kind : kPointedKinds) {
+    for (const int sides : {100, 2000, 5000}) {
+      const PointedBody body = pointed_body(kind, sides, random_rotation(static_cast<std::uint64_t>(sides)));
+      for (const Precision precision : {Precision::f64, Precision::f32}) {
+        INFO(name_of(kind) << ", " << sides << " sides, " << (precision == Precision::f64 ? "f64" : "f32"));
+        approach_all(body, default_options(precision), 1, 9);
       }
     }
   }
@@ -101,7 +121,7 @@ TEST_CASE("needles along each axis, hit tip first and sideways") {
   for (const Rotation& turn : turns) {
     for (const PointedKind kind : {PointedKind::wall, PointedKind::needle, PointedKind::cone}) {
       INFO(name_of(kind) << " up " << rotated(turn, {0, 0, 1}).x << ' ' << rotated(turn, {0, 0, 1}).y);
-      approach_all(pointed_body(kind, 200, turn), Precision::f64, 1, 5);
+      approach_all(pointed_body(kind, 200, turn), exact_options(Precision::f64), 1, 5);
     }
   }
 }

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every allowance that the step makes for rounding, each with its reason; docs/internals/contact-model.md has them as a table.
+// All scale with the object or with the numbers that are rounded; none is a length in metres. What is exact needs none:
+// docs/internals/exactness.md.
+//
+// eps: the spacing of the file's numbers at 1. |x|: the sum of a place's coordinates, each without its sign. E: the extent.
+// delta: header.max_deviation, how far corners of merged faces lie off their planes.
+#pragma once
+
+#include "fdcg/fdcg.h"
+#include "shared/vec.hpp"
+
+namespace fdcg {
+
+// ---- A place and a plane
+
+// B(x), SIDE-1: beyond this distance from a face's plane, rounding cannot have changed the sign of Plane::distance at x: the
+// stored normal is good to two units in the last place, the offset to one, the sum to three.
+template <class Graph, class Real = typename Graph::Real>
+inline Real plane_rounding_bound(const Graph& graph, Vec3<Real> x) {
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header->extent));
+}
+
+// LEAVE-3: the same for one plane, where it matters that it is no more than that: each component of a stored normal is good to
+// two units in its own last place, so that the bound is by the products and not by the object.
+template <class Real, class Plane>
+inline Real own_plane_rounding(const Plane& plane, Vec3<Real> x) {
+  const Vec3<Real> terms = {plane.normal.x * x.x, plane.normal.y * x.y, plane.normal.z * x.z};
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(terms) + absolute(plane.offset));
+}
+
+// FACE-5, FACE-6, FACE-8: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
+// to 0, and then is good to a unit of the extent's last place, not of its own.
+template <class Real>
+inline Real on_plane_rounding(Vec3<Real> x, Real extent) {
+  return 4 * RealLimits<Real>::kEpsilon * (norm1(x) + extent);
+}
+
+// FREE-8: a way so near to a busy corner passes it.
+template <class Real>
+inline double at_corner_rounding(Vec3<double> corner, double extent) {
+  return 4.0 * RealLimits<Real>::kEpsilon * (norm1(corner) + extent);
+}
+
+// FACE-1: a god-object so near to a Voronoi plane sits on it: the rounding of its own place and of that plane's distance.
+template <class Real>
+inline Real rim_rounding(Vec3<Real> god_object, Real extent) {
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(god_object) + extent);
+}
+
+// FREE-3, GRAPH-4: how far behind a plane a way may begin that still enters the node: its corners lie off it by delta, and the
+// distance is rounded. `bound`: plane_rounding_bound of the way's beginning.
+template <class Real>
+inline Real slab_depth(double deviation, Real bound) {
+  return Real(deviation) * (1 + 4 * RealLimits<Real>::kEpsilon) + bound;
+}
+
+// ---- A place on an edge, or at its end
+
+// FACE-6, EDGE-6: a place so near to an end of an edge is meant to be the vertex: the rounding of a place on the edge's line.
+template <class Real>
+inline Real end_rounding(Vec3<Real> start, Real length) {
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(start) + length);
+}
+
+// FACE-6: a vertex no farther than this may be snapped to, though it be farther from the HIP: half of what a tick's distance
+// may grow by, which tests/evaluation/stress/judge.hpp bounds by 16 eps.
+template <class Real>
+inline Real snap_growth(Real extent) {
+  return 8 * RealLimits<Real>::kEpsilon * extent;
+}
+
+// ---- A way
+
+// FREE-3: where rounding may move a way's point of entry by more than this share of its fall, the point is clipped to the part
+// of the way that is over the face.
+template <class Real>
+inline constexpr Real kGrazing = Real(1) / 1024;
+
+// FREE-3: the actual rounding of a distance is at most a quarter of plane_rounding_bound at each of a way's ends, so much may
+// a Voronoi plane be off; and at a corner of a sharp face five times as much along the way.
+template <class Real>
+inline Real side_rounding(Real from_bound, Real to_bound) {
+  return (from_bound + to_bound) / 4;
+}
+inline constexpr int kSharpSides = 5;
+
+// The sweep's orientations, before they are asked exactly: of each of the six products of three differences, three differences,
+// two products and the sums, half an epsilon each.
+template <class Real>
+inline Real orientation_rounding(Vec3<Real> v, Vec3<Real> w, Vec3<Real> way) {
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(v) * norm1(w) * norm1(way)) + RealLimits<Real>::kTiny;
+}
+
+// FREE-4, FREE-5, TICK-2: beyond so many extents the rounding of the HIP itself nears the object's size.
+inline constexpr int kNearExtents = 16;
+
+// FREE-5: whether a place this far out has numbers coarser than the object.
+template <class Real>
+inline bool are_coarse(Real size, Real extent) {
+  return 8 * RealLimits<Real>::kEpsilon * size > extent;
+}
+
+// FACE-4: a target that the rounding of a far HIP takes off its plane by more than this share of the extent is no place to go.
+template <class Real>
+inline constexpr Real kMostOffPlane = Real(1) / 1024;
+
+// LEAVE-2: the least step clear of a face, as a share of eps E: less than a rounding, since a slit may be narrower than one.
+template <class Real>
+inline Real least_step_clear(double extent) {
+  return RealLimits<Real>::kEpsilon * Real(extent) / 4096;
+}
+
+// ---- A busy corner
+
+// CORNER-4, CORNER-7: directions that reach so nearly as far tie: the rounding of boxes and directions, of the file's numbers,
+// is under half of it. `reach`: what the directions are multiplied by.
+template <class Real, class Wide>
+inline Wide fan_rounding(Vec3<Wide> reach) {
+  return Wide(64 * RealLimits<Real>::kEpsilon) * norm1(reach);
+}
+
+// CORNER-4: of the normal of a plane through a corner, a HIP and an edge's other end, in double: of differences and products.
+inline double plane_of_way_rounding(Vec3<double> to_hip, Vec3<double> along) {
+  return 64 * RealLimits<double>::kEpsilon * norm1(to_hip) * norm1(along);
+}
+
+// FREE-8: of a way as an arc, seen from a busy corner. A stored direction is good to kDirectionRounding; the arc's plane to
+// kArcRounding over the sine of the angle between its ends, in double.
+template <class Real>
+inline constexpr Real kDirectionRounding = 8 * RealLimits<Real>::kEpsilon;
+inline constexpr double kArcRounding = 8 * RealLimits<double>::kEpsilon;
+// Of the way: a face entered later than another by no more is looked at all the same.
+template <class Real>
+inline constexpr Real kLaterEntry = Real(1) / 256;
+
+// ---- Friction
+
+// FRIC-3: a contact that slips sticks again within this share of the circle in which it would have stuck: rounding must not
+// toss a coin every tick. Far above rounding, far below what a hand can tell.
+inline constexpr double kStickAgainShare = 1 - 0x1p-20;
+
+// FRIC-4: a slipping god-object so near to its circle stays: half a unit of its place, and the circle's own rounding.
+template <class Real>
+inline Real circle_rounding(Vec3<Real> god_object, Real gap) {
+  return RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
+}
+
+// EDGE-4: in a groove the two faces together press harder than the distance from the edge says, by 1 / sin(opening / 2). At
+// most this factor is allowed: an opening of 0.11 degrees.
+inline constexpr int kMaxWedgeFactor = 1024;
+
+// CURVE-5: how far behind a face's second concave edge an offset may end: that edge's plane, in double.
+template <class Real>
+inline double wall_rounding(double extent) {
+  return 8 * RealLimits<Real>::kEpsilon * extent;
+}
+
+// ---- Numbers that arrive
+
+// TICK-4: a coordinate smaller than this share of the extent is zero: no hand can tell, and exact signs need not look at bits
+// that stand further apart than a few machine words hold.
+inline constexpr double kLeastShare = 0x1p-70;
+
+// TICK-2: a HIP farther away than this is nowhere near any graph (load.cpp limits scale and origin), and its arithmetic might
+// overflow before it is found out.
+inline constexpr double kFarthestHip_m = 1e110;
+
+// ---- Boxes
+
+// By how much a box test may be off, in tree units. `near_size`: |x| + |y| + |z| of the ends of the way as floats have it,
+// added up; the rounding of the ends to float and of the sums and products in touched_boxes come to 5/8 of this part at most.
+// `rounding`: the same of the whole way times the spacing at 1 of the numbers that it was given in.
+template <class Real>
+constexpr Real tree_rounding(Real near_size, Real rounding) {
+  return Real(1) / Real(1 << 21) * (4 + near_size) + 8 * rounding;
+}
+
+// FREE-7: what a clear ball keeps of the distance found, more than its rounding; and it is smaller by so many tree roundings
+// than the nearest box, more than a sweep inside the ball could err by.
+template <class Real>
+inline constexpr Real kClearShare = Real(1) - Real(1) / Real(512);
+inline constexpr int kClearMargins = 5;
+
+}  // namespace fdcg

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judgements of a graph whose faces were merged within the numbers' quantum, by the mesh that it was made from and the
+// deviation that its file states: the graph's surface lies no farther than that from the mesh's, so what is farther away, on
+// either side, must be as the mesh says.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "judge.hpp"
+
+namespace fdcg::test {
+namespace {
+
+Hip place_between(const Hip& from, const Hip& to, double share) {
+  Hip x;
+  for (std::size_t i = 0; i < 3; ++i)
+    x[i] = from[i] + (to[i] - from[i]) * share;
+  return x;
+}
+
+}  // namespace
+
+// A contact that was free: what its way met, and what it should have.
+void Judge::look_at_merged_way(Tick& tick) const {
+  constexpr int kPlaces = 9;  // looked at on a way through the surface
+  const Hip from = {tick.before.hip[0], tick.before.hip[1], tick.before.hip[2]};
+  const InsideGrid& solid = *specimen_.inside;
+  const InsideGrid::Crossing way = solid.crossing(from, tick.hip);
+  const bool is_stopped = tick.result.transitions > 0;
+  tick.is_way_clear = !way.is_through && !way.touches && !solid.comes_near(from, tick.hip, moved_);
+  if (tick.is_way_clear && is_stopped) tick.faults |= bit(Fault::thin_air);
+  if (!way.is_through || is_stopped) return;
+  for (int i = 1; i <= kPlaces; ++i) {
+    const Hip x = place_between(from, tick.hip, static_cast<double>(i) / kPlaces);
+    if (solid.where(x) == InsideGrid::Where::inside && !solid.comes_near(x, x, moved_)) tick.faults |= bit(Fault::unseen);
+  }
+}
+
+// How far a face or an edge of the graph at the god-object, of those that hold it, leads towards the HIP.
+double Judge::merged_descent_from(const Tick& tick) const {
+  if (tick.after.state != FDCG_VERTEX) return descent_from(tick);
+  const Hip t = difference(tick.hip, specimen_.corners[tick.after.feature].point);
+  const fdcg_graph& graph = specimen_.graph();
+  std::vector<std::uint32_t> fan(fdcg_get_fan(&graph, tick.after.feature, nullptr, 0));
+  fdcg_get_fan(&graph, tick.after.feature, fan.data(), static_cast<std::uint32_t>(fan.size()));
+  const auto direction_of = [&](std::uint32_t entry) {
+    const Hip& d = specimen_.edges[entry >> 1].direction;
+    return (entry & 1) == 0 ? d : Hip{-d[0], -d[1], -d[2]};
+  };
+  double most = 0;
+  for (std::size_t i = 0; i < fan.size(); ++i) {
+    const EdgeShape& edge = specimen_.edges[fan[i] >> 1];
+    const Hip along = direction_of(fan[i]), next = direction_of(fan[i + 1 < fan.size() ? i + 1 : 0]);
+    if (in_front_of_edge(edge, tick.hip) < 0) most = std::max(most, dot(t, along));
+    const std::uint32_t n = edge.node[fan[i] & 1];
+    if (!(in_front_of_node(n, tick.hip) < 0)) continue;
+    const Hip& normal = specimen_.nodes[n].normal;
+    const double height = dot(t, normal);
+    const Hip flat = {t[0] - height * normal[0], t[1] - height * normal[1], t[2] - height * normal[2]};
+    const bool is_over = dot(cross_product(along, flat), normal) > 0 && dot(cross_product(flat, next), normal) > 0;
+    if (is_over) most = std::max(most, norm(flat));
+  }
+  return most;
+}
+
+// Outwards of an edge or a vertex, not of unit length.
+Hip Judge::outwards(const Tick& tick) const {
+  if (tick.after.state == FDCG_VERTEX) return specimen_.corners[tick.after.feature].normal;
+  const EdgeShape& edge = specimen_.edges[tick.after.feature];
+  const Hip &a = specimen_.nodes[edge.node[0]].normal, &b = specimen_.nodes[edge.node[1]].normal;
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+// Whether a hand that an edge or a vertex lets go would be in free air all the way: from in front of the god-object to a place
+// somewhat before it, and on, farther from the mesh than the graph's surface may be. A face holds what is behind it and over
+// it.
+bool Judge::is_in_merged_air(const Tick& tick) const {
+  if (tick.after.state == FDCG_FACE) return false;
+  const InsideGrid& solid = *specimen_.inside;
+  const double before = kAirPerDeviation * moved_, length = distance(tick.god_object, tick.hip);
+  if (!(length > before)) return false;
+  const Hip start = place_between(tick.god_object, tick.hip, before / length), out = outwards(tick);
+  if (solid.where(start) != InsideGrid::Where::outside || solid.comes_near(start, tick.hip, moved_)) return false;
+  Hip front = tick.god_object;
+  for (std::size_t i = 0; i < 3; ++i)
+    front[i] += before * out[i];
+  const InsideGrid::Crossing way = solid.crossing(front, start);  // the solid may be as thin as that
+  return solid.where(front) == InsideGrid::Where::outside && !way.is_through && !way.touches;
+}
+
+}  // namespace fdcg::test
