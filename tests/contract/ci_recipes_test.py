@@ -55,6 +55,20 @@ class Recipes(Case):
         self.write("meshes/fan.off", THREE_ON_AN_EDGE)
         self.assertIn(b"2 files: 1 pass, 1 fail", self.shell(script, code=1).stdout)
 
+    def has_viewer(self):
+        return b"no viewer" not in self.shell("fdcg view absent.off", code=3).stderr
+
+    def test_gitlab(self):
+        recipe = blocks("GitLab", "yaml")[0]
+        script = "\n".join(re.findall(r"^    - (.*)$", recipe, flags=re.M))
+        if not self.has_viewer():
+            self.skipTest("this fdcg has no viewer")
+        self.write("meshes/fan.off", THREE_ON_AN_EDGE)
+        self.shell(script, code=1)
+        kept = [re.search(r"paths: \[(.*)\]", recipe)[1], re.search(r"junit: (.*)", recipe.split("reports:")[1])[1]]
+        for name in kept:
+            self.assertGreater((self.folder / name).stat().st_size, 0)
+
     def test_baseline(self):
         self.write("meshes/open.off", MISSING_FACE)
         accept, compare = blocks("Meshes that have findings already", "sh")[0].splitlines()
@@ -84,7 +98,10 @@ class Recipes(Case):
         output = self.write("output", "")
         variables = {"RUNNER_TEMP": str(self.folder), "GITHUB_OUTPUT": output}
         self.shell(script, code=1, MESHES="meshes\n\n", ARGUMENTS="", **variables)
-        self.assertEqual(f"report={self.folder}/fdcg.sarif\n", pathlib.Path(output).read_text())
+        page = f"page={self.folder}/meshes.html\n" if self.has_viewer() else ""
+        self.assertEqual(f"{page}report={self.folder}/fdcg.sarif\n", pathlib.Path(output).read_text())
+        self.assertEqual(self.has_viewer(), (self.folder / "meshes.html").is_file())
+        self.assertIn("path: ${{ steps.validate.outputs.page }}", action)
         run = json.loads((self.folder / "fdcg.sarif").read_text())["runs"][0]
         self.assertEqual(["meshes/fan%20with%20blank.off", "meshes/part.off"], [artifact["location"]["uri"] for artifact in run["artifacts"]])
         # code scanning shows each result at its first line

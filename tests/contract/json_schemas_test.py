@@ -78,7 +78,7 @@ class Agreement(Case):
             item["file"] = "cube.fdcg"
         whole["log"]["file"] = "a.fdcglog"
         self.agree(schema("servo-scene.schema.json"), whole, self.judged)
-        for name in ("lift_cube.json", "hold_sphere.json"):
+        for name in ("lift_cube.json", "hold_sphere.json", "surfaces.json"):
             self.agree(schema("servo-scene.schema.json"), json.loads((ROOT / "testdata/scenes" / name).read_text()), self.judged)
 
     def test_profiles(self):

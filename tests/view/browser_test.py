@@ -2,38 +2,18 @@
 """Pages in Chromium, from a file: every view by clicks and keys, judged by state and by pixels, and no request leaves."""
 import math
 import pathlib
-import time
 import unittest
 
 from browser import BrowserCase
-from pages import CUBE, NON_MANIFOLD, SERVO
+from pages import CUBE, NON_MANIFOLD, ROOT, sphere
 
 try:
-    from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
 except ImportError:
     pass
 
 GLOW = (217, 130, 0)  # light theme
-
-
-def sphere(rings=24):
-    """A closed mesh of triangles about the origin, radius 1."""
-    points, faces = [(0, 0, 1)], []
-    for i in range(1, rings):
-        for j in range(2 * rings):
-            a, b = math.pi * i / rings, math.pi * j / rings
-            points.append((math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a)))
-    points.append((0, 0, -1))
-    at = lambda i, j: 1 + (i - 1) * 2 * rings + j % (2 * rings)  # noqa: E731
-    for j in range(2 * rings):
-        faces.append((0, at(1, j), at(1, j + 1)))
-        faces.append((len(points) - 1, at(rings - 1, j + 1), at(rings - 1, j)))
-        for i in range(1, rings - 1):
-            faces += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
-    lines = [f"OFF\n{len(points)} {len(faces)} 0"] + ["%.9f %.9f %.9f" % p for p in points] + ["3 %d %d %d" % f for f in faces]
-    return "\n".join(lines) + "\n"
 
 
 class Short(BrowserCase):
@@ -46,6 +26,9 @@ class Short(BrowserCase):
         self.assertEqual([[0, 1]], [sorted(edge) for edge in state["element"]["edges"]])
         self.assertNotEqual(before["camera"], state["camera"])
         self.assertGreater(self.share_of(GLOW), 0.002)
+        self.assertTrue(state["ghost"])  # what is around it is translucent
+        self.press(Keys.ESCAPE)
+        self.assertFalse(self.state()["ghost"])
         self.assert_quiet()
 
 
@@ -111,6 +94,47 @@ class Findings(BrowserCase):
         self.wait_for(lambda s: s["camera"] != before)
 
 
+class Repair(BrowserCase):
+    def test_before_after_and_both(self):
+        self.open(self.view(self.write("bad.off", NON_MANIFOLD.replace("3 3 5 4", "3 3 4 5")), "--repair"))
+        self.assertIn("repair", self.browser.find_element(By.CSS_SELECTOR, ".repair").text)
+        self.assertEqual({"before": True, "after": False, "apart": 0}, self.state()["meshes"])
+        self.find("version-after").click()
+        self.wait_for(lambda s: s["meshes"]["after"] and not s["meshes"]["before"])
+        self.find("version-both").click()
+        state = self.wait_for(lambda s: s["meshes"]["after"] and s["meshes"]["before"])
+        self.assertGreater(state["meshes"]["apart"], 1)  # beside it: the object's size is 1
+        self.assert_quiet()
+
+
+class Patches(BrowserCase):
+    def test_each_patch_has_a_color(self):
+        self.open(self.view(self.write("two.off", NON_MANIFOLD)))  # two tetrahedra, joined by an edge of four faces
+        self.press("c")
+        self.assertEqual({"by": "patches", "count": 2}, self.state()["colors"])
+        self.assertIn("2 patches", self.browser.find_element(By.CSS_SELECTOR, ".hint").text)
+        self.press("c")
+        self.assertIsNone(self.state().get("colors"))
+
+    def test_materials_have_colors_at_once(self):
+        self.open(self.view(str(ROOT / "runtime" / "examples" / "steel_and_rubber.obj")))
+        self.assertEqual({"by": "materials", "count": 2}, self.state()["colors"])
+        self.find("show-patches").click()
+        self.assertEqual({"by": "patches", "count": 1}, self.state()["colors"])
+        self.assertFalse(self.find("show-materials").is_selected())
+
+    def test_faces_of_a_soup_are_joined_where_their_coordinates_are_equal(self):
+        triangles = ["0 0 0 0 1 0 1 0 0", "0 0 0 1 0 0 0 0 1", "1 0 0 0 1 0 0 0 1", "0 0 0 0 0 1 0 1 0", "5 0 0 6 0 0 5 1 0"]
+        facets = []
+        for triangle in triangles:
+            numbers = triangle.split()
+            corners = "\n".join("vertex " + " ".join(numbers[k:k + 3]) for k in (0, 3, 6))
+            facets.append(f"facet normal 0 0 0\nouter loop\n{corners}\nendloop\nendfacet")
+        self.open(self.view(self.write("soup.stl", "solid s\n" + "\n".join(facets) + "\nendsolid s\n")))
+        self.find("show-patches").click()
+        self.assertEqual({"by": "patches", "count": 2}, self.state()["colors"])
+
+
 class Sight(BrowserCase):
     def test_a_face_that_is_turned_round_is_looked_at_from_outside(self):
         lines = sphere(12).splitlines()
@@ -144,6 +168,16 @@ class Graph(BrowserCase):
             self.assertEqual([dump[start], *sides], state["records"].splitlines())
         self.assert_quiet()
 
+    def test_planes_of_what_is_picked_and_regions_in_colours(self):
+        for kind, planes in (("node", 4), ("connection", 2), ("corner", 0)):
+            self.find("record-kind").send_keys(kind)
+            self.find("record-show").click()
+            self.assertEqual(planes, self.wait_for(lambda s, kind=kind: s["picked"] and s["picked"]["kind"] == kind)["planes"])
+        before = self.picture()
+        self.find("node-colour").send_keys("by node")
+        self.wait_for(lambda s: s["colours"] == "number")
+        self.assertNotEqual(before, self.picture())
+
     def test_a_click_picks_and_layers_go_on_and_off(self):
         self.canvas().click()
         self.assertEqual("node", self.wait_for(lambda s: s["picked"])["picked"]["kind"])
@@ -153,67 +187,6 @@ class Graph(BrowserCase):
         self.wait_for(lambda s: s["boxes"] == 1)
         self.press(Keys.ESCAPE)
         self.assertIsNone(self.state()["picked"])
-
-
-class Touch(BrowserCase):
-    seconds = 20
-
-    def test_what_is_felt_in_the_page_replays_natively_to_the_same_bytes(self):
-        self.open(self.view(self.write("ball.off", sphere()), "--units", "cm"))
-        self.find("tab-touch").click()
-        self.wait_for(lambda s: s["ready"])
-        self.find("record").click()
-        hand = ActionChains(self.browser, duration=30)
-        hand.move_to_element_with_offset(self.canvas(), 20, 20).perform()
-        self.wait_for(lambda s: s["recording"] == "on")
-        end = time.monotonic() + self.seconds
-        hand.move_to_element_with_offset(self.canvas(), -60, 0).click_and_hold().perform()
-        states, slipped, turn = set(), False, 0.0
-        while time.monotonic() < end:
-            turn += 0.35
-            hand.move_to_element_with_offset(self.canvas(), int(90 * math.cos(turn)), int(70 * math.sin(turn))).perform()
-            state = self.state()
-            states.add(state["contact"])
-            slipped = slipped or state["slips"]
-        hand.release().perform()
-        self.find("record").click()
-        state = self.wait_for(lambda s: s["recorded"] > 0)
-        self.assertGreater(state["recorded"], 0.8 * 1000 * self.seconds)
-        self.assertTrue(slipped and "face" in states, (slipped, states))
-        for button in ("save-path", "save-log", "save-graph"):
-            self.find(button).click()
-        for name in ("hip.csv", "page-log.csv", "ball.fdcg"):
-            self.saved(name)
-        command = self.find("replay-command").text.split()
-        self.assertEqual("fdcg-servo", command[0])
-        self.run_program(SERVO, *command[1:], cwd=self.path("saved"))
-        native, page = (pathlib.Path(self.saved(name)).read_text() for name in ("log.csv", "page-log.csv"))
-        self.assertTrue(native == page, first_difference(native, page))
-        self.assert_quiet()
-        print(f"step {state['recordedStepNs']:.0f} ns, p99 of the period {state['timing']['periodP99Ms']:.2f} ms, {state['recorded']} ticks")
-
-    def test_keys_press_and_move_and_sliders_change_what_is_felt(self):
-        self.open(self.view(self.write("ball.off", sphere(12))))
-        self.find("tab-touch").click()
-        self.wait_for(lambda s: s["ready"])
-        self.press(" ")
-        soft = self.wait_for(lambda s: s["contact"] == "face" and s["force"] > 1)
-        for _ in range(8):
-            self.press(Keys.ARROW_RIGHT)
-        self.wait_for(lambda s: s["ticks"] > soft["ticks"] + 100)
-        self.find("stiffness").send_keys(Keys.END)
-        self.wait_for(lambda s: s["force"] > 3 * soft["force"])
-        self.find("mu-s").send_keys(Keys.HOME)
-        state = self.wait_for(lambda s: s["params"]["muStatic"] == 0)
-        self.assertEqual(0, state["params"]["muDynamic"])
-        self.press(Keys.ESCAPE)
-        self.wait_for(lambda s: s["contact"] == "free")
-        self.assert_quiet()
-
-
-def first_difference(a, b):
-    pairs = enumerate(zip(a.splitlines(), b.splitlines()))
-    return next((f"row {i}\n{x}\n{y}" for i, (x, y) in pairs if x != y), f"{len(a)} and {len(b)} bytes")
 
 
 class Log(BrowserCase):

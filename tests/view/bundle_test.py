@@ -8,6 +8,7 @@ import re
 import shutil
 import struct
 import subprocess
+import time
 import unittest
 
 from pages import ROOT, PageCase
@@ -51,6 +52,20 @@ class Bundle(PageCase):
         (folder / "node_modules").symlink_to(BUILT / "bundle" / "node_modules")
         subprocess.run(("node", "bundle.mjs", BUILT / "wasm" / "fdcg.wasm", self.path("again.html")), cwd=folder, check=True, timeout=120)
         self.assertEqual((BUILT / "viewer.html").read_bytes(), pathlib.Path(self.path("again.html")).read_bytes())
+
+    def test_from_bare_it_takes_under_three_minutes_and_has_the_same_bytes(self):
+        """Packages fetched anew into an empty folder, types checked, bundled."""
+        before = time.monotonic()
+        made = subprocess.run(("cmake", f"-DSOURCE={SOURCE}", f"-DFOLDER={self.path('bare')}", f"-DWASM={BUILT / 'wasm' / 'fdcg.wasm'}",
+                               f"-DOUTPUT={self.path('bare.html')}", f"-DNPM={shutil.which('npm')}", f"-DNODE={shutil.which('node')}", "-DREQUIRED=ON",
+                               "-P", SOURCE / "make_page.cmake"), capture_output=True, text=True, timeout=500, check=False)
+        spent = time.monotonic() - before
+        if "npm could not fetch" in made.stderr:
+            self.skipTest("npm cannot reach its registry")
+        self.assertEqual(0, made.returncode, made.stderr)
+        self.assertEqual((BUILT / "viewer.html").read_bytes(), pathlib.Path(self.path("bare.html")).read_bytes())
+        print(f"from bare: {spent:.0f} s")
+        self.assertLess(spent, 180)
 
     def test_versions_are_exact_and_no_address_stands_in_the_lock(self):
         package = json.loads((SOURCE / "package.json").read_text())

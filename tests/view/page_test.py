@@ -138,7 +138,13 @@ class Gallery(PageCase):
         items = {name: Page(site / name).items[0] for name in names}
         self.assertEqual("fail", items["broken.html"]["report"]["verdict"])
         self.assertEqual("pass", items["broken.html"]["repaired"]["report"]["verdict"])
-        self.assertIn("log", items["slide.html"])
+        for name in ("slide.html", "friction.html"):
+            self.assertIn("log", items[name])
+        for name in ("lift_cube.html", "press_sheet.html", "surfaces.html"):
+            self.assertTrue(items[name]["session"]["same"], name)
+        self.assertEqual(["steel", "rubber"], items["materials.html"]["materials"])
+        for text in re.findall(r"<p>(.*?)</p>", index)[1:]:
+            self.assertGreaterEqual(len(re.findall(r"[.]( |$)", text)), 3, text)  # three sentences, or a little more
         self.assertLess((site / "bunny.html").stat().st_size, 6_000_000)
 
 

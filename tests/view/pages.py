@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads a page of fdcg view without a browser: the arrays and items in it, unpacked by code of its own."""
 import base64
+import csv
 import json
+import math
 import os
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -31,6 +34,24 @@ NON_MANIFOLD = """OFF
 3 1 4 5
 3 0 5 4
 """
+
+
+def sphere(rings=24):
+    """A closed mesh of triangles about the origin, radius 1."""
+    points, faces = [(0, 0, 1)], []
+    for i in range(1, rings):
+        for j in range(2 * rings):
+            a, b = math.pi * i / rings, math.pi * j / rings
+            points.append((math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a)))
+    points.append((0, 0, -1))
+    at = lambda i, j: 1 + (i - 1) * 2 * rings + j % (2 * rings)  # noqa: E731
+    for j in range(2 * rings):
+        faces.append((0, at(1, j), at(1, j + 1)))
+        faces.append((len(points) - 1, at(rings - 1, j + 1), at(rings - 1, j)))
+        for i in range(1, rings - 1):
+            faces += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
+    lines = [f"OFF\n{len(points)} {len(faces)} 0"] + ["%.9f %.9f %.9f" % p for p in points] + ["3 %d %d %d" % f for f in faces]
+    return "\n".join(lines) + "\n"
 
 
 def inflated(text):
@@ -86,6 +107,26 @@ class PageCase(Case):
 
     def page(self, *arguments, **options):
         return Page(self.view(*arguments, **options))
+
+
+class SessionCase(PageCase):
+    """Scenes of testdata/scenes, run without waiting."""
+
+    def session(self, scene, seconds, log=None):
+        for path in (ROOT / "testdata" / "scenes").iterdir():
+            if path.suffix in (".json", ".fdcg") and not (self.folder / path.name).exists():
+                shutil.copy(path, self.folder)
+        if scene == "press_sheet":
+            self.fdcg("compile", str(ROOT / "testdata/scenes/sheet.off"), "--triangles", "-o", self.path("sheet.fdcg"), "-q")
+        log = self.path(log or f"{scene}.fdcglog")
+        self.servo("run", self.path(f"{scene}.json"), "--arm", "--for", str(seconds), "--fast", "-q", "--log", log)
+        return log
+
+    def replayed(self, log):
+        """The rows of the replay, and those of its touches."""
+        csv_path, touches = self.path("session.csv"), self.path("touches.csv")
+        self.servo("replay", log, "-o", csv_path, "--touches", touches, "-q")
+        return [list(csv.DictReader(pathlib.Path(path).read_text().splitlines())) for path in (csv_path, touches)]
 
 
 def real_mesh(*path):

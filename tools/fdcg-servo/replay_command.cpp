@@ -12,6 +12,7 @@
 #include "../common/terminal.hpp"
 #include "fdcg/device_tools.hpp"
 #include "fdcg/fdcg.h"
+#include "friction_options.hpp"
 #include "hand_path.hpp"
 #include "path_warnings.hpp"
 #include "replay_session.hpp"
@@ -39,6 +40,7 @@ struct ReplayArguments {
   std::string trajectory;
   std::string log;
   fdcg_params params = fdcg_make_params();
+  FrictionOptions friction;
   std::string path, written_path;
   bool has_mu_dynamic = false;
   bool quiet = false;
@@ -277,7 +279,14 @@ int get_path(const ReplayArguments& arguments, const fdcg_graph& graph, std::vec
   return tools::commit_all({&file});
 }
 
-int run_replay(const ReplayArguments& arguments) {
+int take_materials(ReplayArguments& arguments, const fdcg_graph& graph) {
+  fdcg_error error{};
+  if (const std::string problem = arguments.friction.apply(graph, arguments.params); !problem.empty())
+    return fail(kUsage, arguments.graph + ": " + problem);
+  return fdcg_check_params(&arguments.params, &error) == FDCG_OK ? kClean : fail(kUsage, error.message);
+}
+
+int run_replay(ReplayArguments& arguments) {
   if (const int code = check_inputs(arguments); code != kClean) return code;
   AtomicFile log(arguments.log);
   if (!log.ok()) return fail(kFile, log.error());
@@ -285,6 +294,10 @@ int run_replay(const ReplayArguments& arguments) {
   if (const int code = open_graph(arguments.graph, &graph); code != kClean) return code;
   tools::ProgressBar bar(!arguments.quiet);
   std::vector<TrajectoryPoint> points;
+  if (const int code = take_materials(arguments, graph); code != kClean) {
+    fdcg_close(&graph);
+    return code;
+  }
   if (const int code = get_path(arguments, graph, &points); code != kClean) {
     fdcg_close(&graph);
     return code;
@@ -320,6 +333,7 @@ void add_graph_options(CLI::App& command, ReplayArguments& arguments) {
   contact.choice<std::uint32_t>(
       "--edge-friction", "RULE", {{"wedge", FDCG_EDGE_WEDGE}, {"paper", FDCG_EDGE_PAPER}}, params.edge_friction,
       "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 paper.");
+  arguments.friction.declare(contact, params);
 }
 
 }  // namespace
@@ -356,6 +370,8 @@ every output is compared bit for bit.
             std::string given;
             for (const char* const name :
                  {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness", "--damping", "--edge-friction"})
+              if (given.empty() && command->count(name) != 0) given = name;
+            for (const char* const name : kFrictionOptions)
               if (given.empty() && command->count(name) != 0) given = name;
             return run_session(*arguments, given);
           }};

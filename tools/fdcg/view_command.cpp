@@ -27,6 +27,7 @@ struct ViewArguments {
   std::vector<std::string> inputs;
   std::string output;
   std::string unit_text;
+  std::string graphs;
   MeshView mesh;
   bool open = false;
   bool quiet = false;
@@ -77,6 +78,9 @@ int add_inputs(const ViewArguments& arguments, std::vector<ViewInput>& inputs, p
       failed(kFile, input.error);
     } else if (input.kind == ViewKind::mesh) {
       const std::string error = add_mesh_view(arguments.mesh, input.file, page);
+      if (!error.empty()) failed(kFile, error);
+    } else if (input.kind == ViewKind::session) {
+      const std::string error = page.add_session(input.file.path, arguments.graphs);
       if (!error.empty()) failed(kFile, error);
     } else {
       const auto as_text = [](const ViewInput& from) {
@@ -141,19 +145,22 @@ Command add_view(CLI::App& app) {
   fdcg view scan.stl --units mm --repair -o scan.html
   fdcg view robot.urdf
   fdcg view bunny.fdcg
-  fdcg view bunny.fdcg log.csv -o session.html
+  fdcg view bunny.fdcg log.csv -o slide.html
+  fdcg view session.fdcglog
 
 The page is one file that needs no network: geometry, findings, the runtime and the viewer. A mesh without errors is also
-compiled, so that the mouse feels it. A replay's log goes with the graph before it.
+compiled, so that the mouse feels it. A replay's log goes with the graph before it. The log of a session has its scene with it,
+but for the graphs.
 
 )" + exit_codes("the page is written, whatever was found", "not used"));
   const auto arguments = std::make_shared<ViewArguments>();
   MeshView& mesh = arguments->mesh;
   required_argument(
       *command, "input", "INPUT...", arguments->inputs,
-      "Mesh files, FDCG files, logs of 'fdcg-servo replay', robots (URDF, SDF: the meshes that they name), patterns, or "
-      "folders to search for meshes. - is a mesh on standard input.");
-  const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks"), touch(*command, "Touch");
+      "Mesh files, FDCG files, logs of 'fdcg-servo replay' and 'fdcg-servo run', robots (URDF, SDF: the meshes that they "
+      "name), patterns, or folders to search for meshes. - is a mesh on standard input.");
+  const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks"), touch(*command, "Touch"),
+      session(*command, "Log of a session");
   output.text("-o,--output", "FILE", arguments->output, "Page to write. - is standard output.",
               "the first input's name with .html");
   output.flag("--open", arguments->open, "Open the page in the browser.");
@@ -165,6 +172,7 @@ compiled, so that the mouse feels it. A replay's log goes with the graph before 
   touch.choice<bake::Precision>("--precision", "PRECISION", {{"f32", bake::Precision::f32}, {"f64", bake::Precision::f64}},
                                 mesh.precision, "Precision of the graph that is touched.");
   touch.flag("!--no-touch", mesh.touch, "Leave the graph of a mesh out: a smaller page, without touch.");
+  session.text("--graphs", "FOLDER", arguments->graphs, "Folder of the graphs.", "where they were");
   OptionGroup(*command, "General").jobs(mesh.jobs, "The page does not depend on it.");
   return {command, [arguments] {
             arguments->mesh.shows_progress = !arguments->quiet;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "fdcg/fdcg.h"
+#include "page/page_writer.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -34,7 +35,8 @@ ViewInput read_view_input(const ListedMesh& named) {
   if (!file.read(start, sizeof start)) return input;  // import_input says what is wrong with it
   if (std::memcmp(start, FDCG_MAGIC, 8) == 0) input.kind = ViewKind::graph;
   if (std::string_view(start, sizeof start) == kLogStart) input.kind = ViewKind::log;
-  if (input.kind == ViewKind::mesh) return input;
+  if (page::is_session_log(path)) input.kind = ViewKind::session;
+  if (input.kind == ViewKind::mesh || input.kind == ViewKind::session) return input;
   input.bytes = read_all(file);
   if (!file) {
     input.error = path + ": cannot be read to its end";

@@ -13,10 +13,19 @@
 #include "fdcg/bake.hpp"
 #include "mesh_arrays.hpp"
 
+namespace fdcg::dev {
+struct ViewedScene;
+}
+
 namespace fdcg::page {
+
+class WorldFrames;
 
 // Why this program has no viewer to write pages with; empty: it has one.
 std::string viewer_missing();
+
+// By its first bytes; false where it cannot be read.
+bool is_session_log(const std::string& path);
 
 // What of a mesh is shown beside its faces.
 struct MeshDetails {
@@ -41,6 +50,9 @@ class PageWriter {
                  std::string_view log = {});
   // A replay's log whose graph is not at hand.
   void add_log(std::string_view name, std::string_view log);
+  // The log of a session (fdcg-servo run), replayed; graph_folder: where its graphs are now; empty: where they were, or beside
+  // the log. Empty, or why it cannot be shown: then nothing has been written.
+  std::string add_session(const std::string& path, const std::string& graph_folder);
   void finish();
 
  private:
@@ -48,6 +60,9 @@ class PageWriter {
   nlohmann::ordered_json add_array(const PackedArray& array);
   nlohmann::ordered_json add_geometry(const bake::PolygonSoup& soup);
   nlohmann::ordered_json add_log_text(std::string_view name, std::string_view log);
+  nlohmann::ordered_json add_graph_file(const std::string& path);
+  nlohmann::ordered_json session_objects(const dev::ViewedScene& scene, nlohmann::ordered_json* graphs);
+  nlohmann::ordered_json add_world(const dev::ViewedScene& scene, const WorldFrames& frames);
   void add_item(const nlohmann::ordered_json& item);
 
   Write write_;

@@ -17,11 +17,12 @@ _Static_assert(offsetof(fdcg_side_info, connection) == 32 && sizeof(fdcg_side_in
 _Static_assert(offsetof(fdcg_connection_info, corner) == 32 && sizeof(fdcg_connection_info) == 64, "edge: 4 doubles, 8 words");
 _Static_assert(offsetof(fdcg_corner_info, fan_count) == 48 && sizeof(fdcg_corner_info) == 56, "corner: 6 doubles, 2 words");
 
-enum { kMostFan = 4096, kMostSweeps = 100000 };
+enum { kMostFan = 4096, kMostSweeps = 100000, kMostMaterials = 64 };
 
 static fdcg_graph graph;
 static fdcg_contact contact;
 static fdcg_params params;
+static fdcg_material materials[kMostMaterials], wanted_materials[kMostMaterials];
 static fdcg_result result;
 static fdcg_error error;
 static double hip[3];
@@ -47,10 +48,19 @@ void EXPORT(fdcg_web_release)(void* room) {
 
 /* ---- graph -------------------------------------------------------------------------------------------------------------- */
 
+static uint32_t material_count(void) {
+  return graph.material_count < kMostMaterials ? graph.material_count : kMostMaterials;
+}
+
 /* Verifies the file in full and makes it the graph; the contact starts anew. An fdcg_status. */
 uint32_t EXPORT(fdcg_web_open)(const void* data, uint32_t bytes) {
   const fdcg_status status = fdcg_open_memory(data, bytes, FDCG_VERIFY_FULL, &graph, &error);
   params = fdcg_make_params();
+  params.materials = materials;
+  params.material_count = material_count();
+  for (int i = 0; i < kMostMaterials; ++i)
+    materials[i] = (fdcg_material){params.mu_static, params.mu_dynamic, params.stiffness_n_per_m};
+  memcpy(wanted_materials, materials, sizeof materials);
   memset(&contact, 0, sizeof contact);
   memset(&result, 0, sizeof result);
   return (uint32_t)status;
@@ -81,18 +91,35 @@ const fdcg_result* EXPORT(fdcg_web_result)(void) {
   return &result;
 }
 
-/* FDCG_OK, or what fdcg_check_params has against them: then the old ones stay. */
+/* What a material feels like, from the next fdcg_web_set_params on; numbers beyond the first kMostMaterials are passed by. */
+void EXPORT(fdcg_web_set_material)(uint32_t material, double mu_static, double mu_dynamic, double stiffness_n_per_m) {
+  if (material < kMostMaterials) wanted_materials[material] = (fdcg_material){mu_static, mu_dynamic, stiffness_n_per_m};
+}
+
+/* FDCG_OK, or what fdcg_check_params has against them: then the old ones stay, and fdcg_web_message says why. Of the last four
+ * those count whose flag is among friction_flags. */
 uint32_t EXPORT(fdcg_web_set_params)(double mu_static, double mu_dynamic, double stiffness_n_per_m, double damping_n_s_per_m,
-                                     uint32_t edge_friction, uint32_t friction_flags) {
+                                     uint32_t friction_flags, double stribeck_m_per_s, double viscous_s_per_m,
+                                     double presliding_n_per_m, double friction_lag_s) {
   fdcg_params wanted = params;
   wanted.mu_static = mu_static;
   wanted.mu_dynamic = mu_dynamic;
   wanted.stiffness_n_per_m = stiffness_n_per_m;
   wanted.damping_n_s_per_m = damping_n_s_per_m;
-  wanted.edge_friction = edge_friction;
   wanted.friction_flags = friction_flags;
+  if (friction_flags & FDCG_FRICTION_STRIBECK) wanted.stribeck_m_per_s = stribeck_m_per_s;
+  if (friction_flags & FDCG_FRICTION_VISCOUS) wanted.viscous_s_per_m = viscous_s_per_m;
+  if (friction_flags & FDCG_FRICTION_PRESLIDING) wanted.presliding_n_per_m = presliding_n_per_m;
+  if (friction_flags & FDCG_FRICTION_LAG) wanted.friction_lag_s = friction_lag_s;
+  wanted.materials = wanted_materials;
   const fdcg_status status = fdcg_check_params(&wanted, &error);
-  if (status == FDCG_OK) params = wanted;
+  if (status != FDCG_OK) {
+    memcpy(wanted_materials, materials, sizeof materials);
+    return (uint32_t)status;
+  }
+  memcpy(materials, wanted_materials, sizeof materials);
+  params = wanted;
+  params.materials = materials;
   return (uint32_t)status;
 }
 
@@ -162,6 +189,14 @@ const uint32_t* EXPORT(fdcg_web_fan)(uint32_t corner) {
   if (graph.header == NULL || corner >= graph.header->corner_count) return NULL;
   fdcg_get_fan(&graph, corner, record.fan, kMostFan);
   return record.fan;
+}
+
+/* How many materials the graph has, of which the first kMostMaterials can be set; and the name of one. */
+uint32_t EXPORT(fdcg_web_material_count)(void) {
+  return graph.header == NULL ? 0 : material_count();
+}
+const char* EXPORT(fdcg_web_material_name)(uint32_t material) {
+  return fdcg_get_material_name(&graph, material);
 }
 
 /* NULL: it has none. */

@@ -17,6 +17,7 @@ import { Runtime } from './runtime';
 import { Stage } from './stage';
 import { toggleMode } from './theme';
 import { LogTab } from './log_tab';
+import { SessionTab } from './session_tab';
 import { parseLog } from './touch_csv';
 import { GOD, TICK } from './touch_messages';
 import { TouchTab } from './touch_tab';
@@ -75,14 +76,31 @@ class App {
   private buildTools(): void {
     const edges = checkbox('Edges', false, (shown) => this.mesh?.setEdges(shown), 'show-edges');
     const winding = checkbox('Winding', true, (shown) => this.mesh?.setWinding(shown), 'show-winding');
+    const patches = checkbox('Patches', false, (shown) => this.showColors('patches', shown), 'show-patches');
+    patches.title = 'Faces joined across edges, a colour each (C)';
+    const hasMaterials = (this.item?.materials?.length ?? 0) > 1;
+    const materials = checkbox('Materials', hasMaterials, (shown) => this.showColors('materials', shown), 'show-materials');
+    if (hasMaterials) this.mesh?.setColors('materials');
     replaceChildren(
       this.view,
       this.mesh !== undefined && winding,
       this.mesh !== undefined && edges,
+      this.mesh !== undefined && patches,
+      this.mesh !== undefined && hasMaterials && materials,
       button('Fit', () => this.stage.fit(), { id: 'fit', title: 'Show all of it (F)' }),
       button('Theme', () => this.toggleTheme(), { id: 'theme', title: 'Dark or light (T)' }),
       button('Help', () => this.help.showModal(), { id: 'help', title: 'Keys and licences (?)' }),
     );
+  }
+
+  private showColors(by: 'patches' | 'materials', shown: boolean): void {
+    const other = document.querySelector<HTMLInputElement>(`#show-${by === 'patches' ? 'materials' : 'patches'}`);
+    if (other !== null) other.checked = false;
+    this.mesh?.setColors(shown ? by : undefined);
+    const count = this.mesh?.colorsShown?.count;
+    const text = count === undefined ? '' : by === 'patches' ? `${grouped(count)} patch${count === 1 ? '' : 'es'}: faces joined across edges of two faces.` : `${grouped(count)} materials.`;
+    this.context.hint(text);
+    this.context.announce(text);
   }
 
   // ---- items
@@ -95,16 +113,18 @@ class App {
     this.tabs = [];
     this.active = undefined;
     this.mesh = undefined;
+    this.stage.onMoving = undefined;
     clearGroup(this.stage.content);
     const item = await readItem(index);
     this.item = item;
     await this.addMesh(item);
     if (item.report !== undefined) this.tabs.push(new FindingsTab(this.context, item, this.mesh));
     await this.addGraph(item);
+    await this.addSession(item);
     this.showFacts(item, index);
     this.buildTools();
     this.buildTabs();
-    const first = this.tabs[0];
+    const first = this.tabs.find((tab) => `#${tab.id}` === location.hash) ?? this.tabs[0];
     if (first !== undefined) this.activate(first);
     this.stage.fit();
   }
@@ -145,6 +165,13 @@ class App {
     if (item.log === undefined) return;
     const ticks = parseLog(new TextDecoder().decode(await readArray(item.log)));
     this.tabs.push(new LogTab(this.context, ticks, model?.frame ?? frameOfLog(ticks), model?.runtime, item.log.name));
+  }
+
+  private async addSession(item: Item): Promise<void> {
+    if (item.session === undefined) return;
+    const tab = new SessionTab(this.context, item.session, item.name);
+    await tab.showWorld(0);
+    this.tabs.push(tab);
   }
 
   private showFacts(item: Item, index: number): void {
@@ -219,7 +246,7 @@ class App {
     const target = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || this.help.open) return;
     if (target.closest('input:not([type=checkbox]):not([type=range]), select, textarea') !== null && event.key !== 'Escape') return;
-    if (event.key === ' ' && target.closest('button, summary, input') !== null) return;
+    if (event.key === ' ' && target.closest('button:not([role=tab][aria-selected=true]), summary, input') !== null) return;
     if (this.active?.key(event) === true || this.commonKey(event)) event.preventDefault();
   }
 
@@ -230,6 +257,7 @@ class App {
     else if (event.key === 'f') this.stage.fit();
     else if (event.key === 't') this.toggleTheme();
     else if (event.key === 'e') document.getElementById('show-edges')?.click();
+    else if (event.key === 'c') document.getElementById('show-patches')?.click();
     else if (event.key === 'w') document.getElementById('show-winding')?.click();
     else if (event.key === '?') this.help.showModal();
     else return false;
@@ -251,6 +279,10 @@ class App {
   draw(): void {
     this.stage.drawNow();
   }
+  /** For tools/clip: the moments of the log that is shown. */
+  times(): Float64Array {
+    return this.active?.times?.() ?? new Float64Array();
+  }
   /** For tests and scripts: what the page shows now. */
   state(): Record<string, unknown> {
     return {
@@ -262,6 +294,10 @@ class App {
       target: this.stage.controls.target.toArray(),
       frames: this.stage.frames,
       edges: this.mesh?.edgesShown,
+      drawn: this.mesh?.drawn,
+      triangles: this.mesh?.model.triangleFace.length,
+      colors: this.mesh?.colorsShown,
+      slow: this.stage.isSlow,
       ...this.active?.state(),
     };
   }
@@ -285,7 +321,8 @@ export async function start(): Promise<void> {
   const page = await readPage();
   document.title = page.title;
   const app = new App(page, await readWasm());
-  Object.defineProperty(window, 'fdcgView', { value: { state: () => app.state(), draw: () => app.draw() } });
+  Object.defineProperty(window, 'fdcgView', { value: { state: () => app.state(), draw: () => app.draw(), times: () => app.times() } });
   if (itemCount() === 0) throw new Error('it holds no file');
   await app.show(0);
+  performance.mark('shown'); // for measurements
 }

@@ -62,6 +62,12 @@ export class ContactMarks {
     return god;
   }
 
+  /** What is drawn now. */
+  state(): Record<string, boolean> {
+    const isShown = this.group.visible;
+    return { hip: isShown, godObject: isShown, spring: isShown && !this.hip.position.equals(this.god.position), force: isShown && this.shaft.visible, cone: isShown && this.cone.visible };
+  }
+
   private drawForce(at: Vector3, force: Vector3): void {
     const size = force.length();
     const length = (ARROW * Math.min(size, this.largestForce)) / this.largestForce;

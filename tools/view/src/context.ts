@@ -25,6 +25,8 @@ export interface Tab {
   /** True: the key was for this tab. */
   key(event: KeyboardEvent): boolean;
   applyTheme(): void;
+  /** Of a log: the moments of its time line, seconds. */
+  times?(): Float64Array;
   /** What the tests look at. */
   state(): Record<string, unknown>;
 }

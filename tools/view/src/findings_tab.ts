@@ -204,6 +204,6 @@ export class FindingsTab implements Tab {
   }
   state(): Record<string, unknown> {
     const entry = this.entries[this.current];
-    return { version: this.repair?.version, entries: this.entries.length, current: this.current, rule: entry?.issue.rule, element: entry?.element };
+    return { version: this.repair?.version, meshes: this.repair?.shown, ghost: this.view?.isGhost, entries: this.entries.length, current: this.current, rule: entry?.issue.rule, element: entry?.element };
   }
 }

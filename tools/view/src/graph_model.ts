@@ -90,6 +90,17 @@ export class GraphModel {
     return owners;
   }
 
+  /** Of each point of the geometry its corner, in the order of makeTriangles(). */
+  triangleCorners(): Uint32Array {
+    const corners = new Uint32Array(3 * this.triangleNode.length);
+    let at = 0;
+    for (let n = 0; n + 1 < this.loopStart.length; ++n) {
+      const first = this.loopStart[n]!;
+      for (let k = first + 1; k + 1 < this.loopStart[n + 1]!; ++k) for (const corner of [first, k, k + 1]) corners[at++] = this.loops[corner]!;
+    }
+    return corners;
+  }
+
   private readLines(): void {
     const { types, connections } = this.runtime.header();
     const filled = [0, 0, 0, 0];

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A graph: nodes, edges by type, corners with busy fans, the hierarchy's boxes, and the records of what is picked.
-import { BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Mesh, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, Vector3 } from 'three';
 import type { Context, Tab } from './context';
 import { checkbox, h, replaceChildren } from './dom';
 import type { BoxLevel, GraphModel } from './graph_model';
 import { clearGroup, dots, fatLines, filled, marked } from './highlight';
+import { colorOfNumber } from './number_colors';
 import { grouped } from './numbers';
 import { TYPES } from './runtime';
 import { SurfaceMaterial } from './surface_material';
@@ -12,12 +13,6 @@ import { themeColor } from './theme';
 
 export type Feature = { kind: 'node' | 'connection' | 'corner'; number: number };
 const KINDS = ['node', 'connection', 'corner'] as const;
-
-/** Neighbouring numbers get colours that differ: the hue goes round by the golden section. */
-function colorOfNumber(n: number): [number, number, number] {
-  const color = new Color().setHSL((n * 0.618034) % 1, 0.45, 0.62);
-  return [color.r, color.g, color.b];
-}
 
 export class GraphTab implements Tab {
   readonly id = 'graph';
@@ -33,6 +28,8 @@ export class GraphTab implements Tab {
   private readonly boxes = new Group();
   private levels: BoxLevel[] | undefined;
   private picked: Feature | undefined;
+  private colours = 'plain';
+  private planes = 0; // Voronoi planes of a node, end planes of an edge that are drawn
 
   constructor(
     private readonly context: Context,
@@ -110,6 +107,7 @@ export class GraphTab implements Tab {
   }
 
   private colour(by: string): void {
+    this.colours = by;
     const plain = themeColor('face-front');
     const { runtime } = this.model;
     const names = new Map<string, number>();
@@ -148,6 +146,7 @@ export class GraphTab implements Tab {
 
   pickFeature(feature: Feature | undefined, fly: boolean): void {
     clearGroup(this.selection);
+    this.planes = 0;
     this.material.setFocus(undefined);
     this.picked = feature !== undefined && this.exists(feature) ? feature : undefined;
     if (feature !== undefined && this.picked === undefined) this.records.textContent = `There is no ${feature.kind} ${feature.number}.`;
@@ -191,6 +190,7 @@ export class GraphTab implements Tab {
       return [p, q, q.clone().addScaledVector(normal, height), p.clone().addScaledVector(normal, height)];
     });
     this.selection.add(marked({ polygons: [outline] }, { color: themeColor('glow'), opacity: 0.8 }));
+    this.planes = strips.length;
     this.selection.add(filled(strips, { color: themeColor('note'), opacity: 0.28 }));
     this.selection.add(fatLines(strips.flatMap((s) => [s[0]!, s[1]!, s[1]!, s[2]!, s[2]!, s[3]!]), { color: themeColor('note'), width: 1.5 }));
     return outline;
@@ -205,6 +205,7 @@ export class GraphTab implements Tab {
     const across = direction.clone().cross(normal).normalize();
     const size = ends[0]!.distanceTo(ends[1]!) * 0.3;
     const planes = ends.map((p) => [[-1, -0.5], [1, -0.5], [1, 1.5], [-1, 1.5]].map(([a, b]) => p.clone().addScaledVector(across, a! * size).addScaledVector(normal, b! * size)));
+    this.planes = planes.length;
     const nodes = edge.nodes.filter((n) => n < this.model.runtime.header().nodes).map((n) => this.model.outline(n));
     this.selection.add(filled(nodes, { color: themeColor('glow'), opacity: 0.25 }), filled(planes, { color: themeColor('note'), opacity: 0.3 }));
     this.selection.add(fatLines(ends, { color: themeColor('glow'), width: 5, onTop: true }));
@@ -261,7 +262,7 @@ export class GraphTab implements Tab {
     this.edges.forEach((lines, type) => ((lines.material as LineBasicMaterial).color = themeColor(TYPES[type]!)));
   }
   state(): Record<string, unknown> {
-    return { picked: this.picked, records: this.records.textContent, edges: this.edges.map((lines) => lines.visible), boxes: this.boxes.children.length };
+    return { picked: this.picked, planes: this.planes, busy: this.model.busyCorners.length, colours: this.colours, records: this.records.textContent, edges: this.edges.map((lines) => lines.visible), boxes: this.boxes.children.length };
   }
 }
 

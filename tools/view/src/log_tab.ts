@@ -3,11 +3,13 @@
 import { BufferGeometry, Line, LineBasicMaterial, Vector3 } from 'three';
 import { ContactMarks } from './contact_marks';
 import type { Context, Tab } from './context';
-import { button, checkbox, h } from './dom';
+import { h } from './dom';
 import type { Frame } from './frame';
+import { Lanes } from './lanes';
 import { grouped, short } from './numbers';
 import { type Runtime, STATES } from './runtime';
-import { cssColor, themeColor } from './theme';
+import { themeColor } from './theme';
+import { Timeline } from './timeline';
 import { FEATURE, FORCE, GOD, HIP, SLIP, STATE, T, TICK } from './touch_messages';
 import { Chart } from './traces';
 
@@ -20,18 +22,11 @@ export class LogTab implements Tab {
   private readonly marks: ContactMarks;
   private readonly path: Line;
   private readonly count: number;
-  private readonly dockElement = h('div.timeline');
-  private readonly lane = h('canvas.lane', { height: 26, 'aria-hidden': 'true' });
-  private readonly scrubber: HTMLInputElement;
-  private readonly playButton = button('Play', () => this.setPlaying(!this.isPlaying), { id: 'play', title: 'Play or pause (Space)' });
+  private readonly time: Float64Array;
+  private readonly lanes: Lanes;
+  private readonly timeline: Timeline;
   private readonly readout = h('p.readout', { id: 'readout' });
   private chart: Chart | undefined;
-  private at = 0;
-  private speed = 1;
-  private loops = false;
-  private isPlaying = false;
-  private lastMs = 0;
-  private exact = 0; // seconds
 
   constructor(
     private readonly context: Context,
@@ -48,10 +43,9 @@ export class LogTab implements Tab {
     this.marks.group.add(this.path);
     this.marks.group.visible = false;
     context.stage.marks.add(this.marks.group);
-    this.scrubber = h('input', { type: 'range', id: 'scrub', min: '0', max: String(Math.max(0, this.count - 1)), step: '1', value: '0', 'aria-label': 'Time', oninput: () => this.seek(Number(this.scrubber.value)) });
-    const speed = h('select', { id: 'speed', 'aria-label': 'Speed', onchange: () => (this.speed = Number(speed.value)) });
-    for (const value of [0.01, 0.1, 0.25, 1, 4]) speed.append(h('option', { value: String(value), selected: value === 1 }, `${value} x`));
-    this.dockElement.append(h('div.row', {}, this.playButton, speed, checkbox('Loop', false, (on) => (this.loops = on)), this.scrubber), h('div.chart', { id: 'chart-log' }), this.lane);
+    const time = (this.time = Float64Array.from({ length: this.count }, (_, i) => this.value(i, T)));
+    this.lanes = new Lanes(time, [{ height: 14, level: (i) => this.value(i, STATE), colors: STATES }, { height: 9, level: (i) => this.value(i, SLIP) - 1, colors: ['force'] }], '', (t) => this.timeline.seekTime(t));
+    this.timeline = new Timeline({ time, show: (at) => this.show(at), invalidate: () => context.stage.invalidate() }, h('div.chart', { id: 'chart-log' }, h('p.chart-title', {}, h('span.key.force', {}, 'Force'), this.runtime !== undefined && h('span.key.edge', {}, 'along the face'), ', newtons')), this.lanes.element);
     this.element.append(this.summary(name), this.readout);
     this.applyTheme();
   }
@@ -64,6 +58,18 @@ export class LogTab implements Tab {
   }
   private force(i: number): number {
     return Math.hypot(...this.three(i, FORCE));
+  }
+  private normal(i: number): readonly [number, number, number] {
+    const feature = this.value(i, FEATURE);
+    const isOnFace = this.value(i, STATE) === 1 && this.runtime !== undefined && feature < this.runtime.header().nodes;
+    return isOnFace ? this.runtime.node(feature).normal : [0, 0, 0];
+  }
+  /** Along the face; NaN where the contact is on none. */
+  private tangential(i: number): number {
+    const force = this.three(i, FORCE);
+    const normal = this.normal(i);
+    const along = force.reduce((sum, f, k) => sum + f * normal[k]!, 0);
+    return normal.every((x) => x === 0) ? Number.NaN : Math.sqrt(Math.max(0, this.force(i) ** 2 - along ** 2));
   }
   private largestForce(): number {
     let most = 0;
@@ -92,108 +98,52 @@ export class LogTab implements Tab {
     return new BufferGeometry().setFromPoints(points);
   }
 
-  // ---- time
-
-  private setPlaying(on: boolean): void {
-    this.isPlaying = on;
-    this.playButton.textContent = on ? 'Pause' : 'Play';
-    this.lastMs = performance.now();
-    if (on && this.at >= this.count - 1) this.seek(0);
-    this.exact = this.value(this.at, T);
-    this.context.stage.invalidate();
-  }
-
-  private readonly animate = (now: number): boolean => {
-    if (!this.isPlaying) return false;
-    this.exact += ((now - this.lastMs) / 1000) * this.speed;
-    this.lastMs = now;
-    let i = this.at;
-    while (i + 1 < this.count && this.value(i + 1, T) <= this.exact) ++i;
-    if (i >= this.count - 1) {
-      if (this.loops) {
-        i = 0;
-        this.exact = this.value(0, T);
-      } else this.setPlaying(false);
-    }
-    this.seek(i, true);
-    return this.isPlaying;
-  };
-
-  seek(i: number, fromPlay = false): void {
-    this.at = Math.min(this.count - 1, Math.max(0, i));
-    if (!fromPlay) this.exact = this.value(this.at, T);
-    this.scrubber.value = String(this.at);
-    const state = this.value(this.at, STATE);
-    const feature = this.value(this.at, FEATURE);
-    const slips = this.value(this.at, SLIP) === 1;
-    const normal = state === 1 && this.runtime !== undefined && feature < this.runtime.header().nodes ? this.runtime.node(feature).normal : ([0, 0, 0] as const);
-    this.marks.update({ hip: this.three(this.at, HIP), god: this.three(this.at, GOD), force: this.three(this.at, FORCE), normal, mu: 0, state, slips });
-    const t = this.value(this.at, T);
-    this.readout.textContent = `${t.toFixed(3)} s: ${STATES[state]}${state === 0 ? '' : ` ${feature}, ${slips ? 'slips' : 'sticks'}, ${short(this.force(this.at))} N`}.`;
-    this.scrubber.setAttribute('aria-valuetext', this.readout.textContent);
+  private show(at: number): string {
+    const state = this.value(at, STATE);
+    const feature = this.value(at, FEATURE);
+    const slips = this.value(at, SLIP) === 1;
+    this.marks.update({ hip: this.three(at, HIP), god: this.three(at, GOD), force: this.three(at, FORCE), normal: this.normal(at), mu: 0, state, slips });
+    const t = this.value(at, T);
+    const text = `${t.toFixed(3)} s: ${STATES[state]}${state === 0 ? '' : ` ${feature}, ${slips ? 'slips' : 'sticks'}, ${short(this.force(at))} N`}.`;
+    this.readout.textContent = text;
     this.chart?.mark(t);
     this.context.stage.invalidate();
+    return text;
   }
 
   private drawChart(): void {
-    this.chart ??= new Chart(this.dockElement.querySelector('#chart-log')!, [{ label: 'force', color: 'force', unit: 'N' }], 110, (t) => this.seekTime(t));
+    const series = [{ label: 'force', color: 'force', unit: 'N' }, { label: 'tangential', color: 'edge', unit: 'N' }];
+    this.chart ??= new Chart(this.timeline.element.querySelector('#chart-log')!, this.runtime === undefined ? series.slice(0, 1) : series, 110, (t) => this.timeline.seekTime(t));
     const shown = Array.from({ length: Math.ceil(this.count / this.stride) }, (_, k) => k * this.stride);
-    this.chart.set(Float64Array.from(shown, (i) => this.value(i, T)), Float64Array.from(shown, (i) => this.force(i)));
-    this.drawLane();
-  }
-  private seekTime(t: number): void {
-    let low = 0;
-    let high = this.count - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.value(middle, T) < t) low = middle + 1;
-      else high = middle;
-    }
-    this.seek(low);
-  }
-
-  /** State above, slip below, a column a pixel; over the chart's own width. */
-  private drawLane(): void {
-    const width = Math.max(1, this.lane.clientWidth);
-    this.lane.width = width;
-    const context = this.lane.getContext('2d')!;
-    for (let x = 0; x < width; ++x) {
-      const i = Math.floor((x / width) * this.count);
-      context.fillStyle = cssColor(STATES[this.value(i, STATE)]!);
-      context.fillRect(x, 0, 1, 14);
-      if (this.value(i, SLIP) === 1) {
-        context.fillStyle = cssColor('force');
-        context.fillRect(x, 17, 1, 9);
-      }
-    }
+    this.chart.set(Float64Array.from(shown, (i) => this.value(i, T)), Float64Array.from(shown, (i) => this.force(i)), Float64Array.from(shown, (i) => this.tangential(i)));
+    this.lanes.draw();
   }
 
   activate(): void {
     this.marks.group.visible = true;
-    this.context.stage.animations.add(this.animate);
-    this.context.dock(this.dockElement);
+    this.context.stage.animations.add(this.timeline.animate);
+    this.context.dock(this.timeline.element);
     requestAnimationFrame(() => this.drawChart());
-    this.seek(this.at);
+    this.timeline.seek(this.timeline.at);
   }
   deactivate(): void {
-    this.setPlaying(false);
+    this.timeline.setPlaying(false);
     this.marks.group.visible = false;
-    this.context.stage.animations.delete(this.animate);
+    this.context.stage.animations.delete(this.timeline.animate);
     this.context.dock(null);
   }
   key(event: KeyboardEvent): boolean {
-    if (event.key === ' ') this.setPlaying(!this.isPlaying);
-    else if (event.key === ',') this.seek(this.at - 1);
-    else if (event.key === '.') this.seek(this.at + 1);
-    else return false;
-    return true;
+    return this.timeline.key(event);
   }
   applyTheme(): void {
     this.marks.applyTheme();
     (this.path.material as LineBasicMaterial).color = themeColor('god');
     if (this.chart !== undefined) this.drawChart();
   }
+  times(): Float64Array {
+    return this.time;
+  }
   state(): Record<string, unknown> {
-    return { ticks: this.count, at: this.at, playing: this.isPlaying, contact: STATES[this.value(this.at, STATE)] };
+    return { ticks: this.count, at: this.timeline.at, playing: this.timeline.isPlaying, contact: STATES[this.value(this.timeline.at, STATE)] };
   }
 }

@@ -57,6 +57,13 @@ export class MeshModel {
     const v = new Vector3(this.points[3 * p], this.points[3 * p + 1], this.points[3 * p + 2]);
     return Number.isFinite(v.x + v.y + v.z) ? v : undefined;
   }
+  /** The other corners of the faces at a point. */
+  neighbours(p: number): number[] {
+    const found = new Set<number>();
+    for (let f = 0; f < this.faceCount; ++f) if (this.face(f).includes(p)) for (const corner of this.face(f)) found.add(corner);
+    found.delete(p);
+    return [...found];
+  }
   /** A face's outline; empty where it has no place. */
   outline(f: number): Vector3[] {
     const way: Vector3[] = [];
@@ -74,9 +81,13 @@ export class MeshModel {
 
   private triangulate(): { index: Uint32Array; faces: Uint32Array } {
     let most = 0;
-    for (let f = 0; f < this.faceCount; ++f) most += Math.max(0, this.face(f).length - 2);
-    const index = new Uint32Array(3 * most);
+    for (let f = 0; f < this.faceCount; ++f) most += Math.max(0, this.faceStart[f + 1]! - this.faceStart[f]! - 2);
     const faces = new Uint32Array(most);
+    if (this.allTriangles() && this.pointsAreFinite() && this.cornersAreThere()) {
+      for (let f = 0; f < most; ++f) faces[f] = f;
+      return { index: this.corners.slice(), faces };
+    }
+    const index = new Uint32Array(3 * most);
     let count = 0;
     const put = (f: number, a: number, b: number, c: number): void => {
       index.set([a, b, c], 3 * count);
@@ -93,6 +104,16 @@ export class MeshModel {
       for (const [a, b, c] of polygonTriangles(outline)) put(f, way[a]!, way[b]!, way[c]!);
     }
     return { index: index.slice(0, 3 * count), faces: faces.slice(0, count) };
+  }
+  private pointsAreFinite(): boolean {
+    return this.points.every((x) => Number.isFinite(x));
+  }
+  private cornersAreThere(): boolean {
+    return this.corners.every((p) => p < this.pointCount);
+  }
+  private allTriangles(): boolean {
+    for (let f = 0; f < this.faceCount; ++f) if (this.faceStart[f + 1]! - this.faceStart[f]! !== 3) return false;
+    return true;
   }
   private isDrawable(p: number): boolean {
     return Number.isFinite(this.points[3 * p]! + this.points[3 * p + 1]! + this.points[3 * p + 2]!);

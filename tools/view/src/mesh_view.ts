@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh on the stage: its surface, its edges, the findings of each rule as a layer, and what is selected.
 import { Box3, BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, Raycaster, Sphere, Vector3 } from 'three';
+import { coarseIndex } from './coarse';
 import type { Element3, Issue } from './data';
 import { clearGroup, FILLED, type Marks, marked } from './highlight';
-import type { MeshModel } from './mesh_model';
+import { type MeshModel, newell } from './mesh_model';
+import { colorOfNumber } from './number_colors';
+import { patchesOf } from './patches';
 import type { Stage } from './stage';
 import { SurfaceMaterial } from './surface_material';
 import { themeColor } from './theme';
 
+const FLAT = 1e-6; // twice the area of a face that cannot be seen, of the object's size squared
 const LEAST_RADIUS = 0.004; // of the object's size
 const AROUND = 5; // a finding is shown with this many times its own radius about it
+const COARSE_FROM = { slow: 150_000, fast: 2_000_000 }; // triangles from which a coarse version is drawn while the view moves
 const LAYERED = 20000; // elements of a rule that are drawn at once
+
+const COARSE = 'coarse';
 
 export interface Picked {
   face: number;
@@ -24,6 +31,8 @@ export class MeshView {
   private readonly layers = new Map<string, Group>();
   private readonly selection = new Group();
   private edges: LineSegments | undefined;
+  private readonly painted = new Map<'patches' | 'materials', { mesh: Mesh; count: number }>();
+  private colors: 'patches' | 'materials' | undefined;
   private showsWinding = true;
 
   constructor(
@@ -32,6 +41,27 @@ export class MeshView {
   ) {
     this.surface = new Mesh(model.geometry, this.material);
     this.group.add(this.surface, this.selection);
+    if (model.triangleFace.length >= (stage.isSlow ? COARSE_FROM.slow : COARSE_FROM.fast)) this.addCoarse();
+  }
+
+  private addCoarse(): void {
+    const position = this.model.geometry.getAttribute('position') as BufferAttribute;
+    const geometry = new BufferGeometry().setAttribute('position', position);
+    geometry.setIndex(new BufferAttribute(coarseIndex(position.array, this.model.geometry.getIndex()!.array as Uint32Array), 1));
+    const coarse = new Mesh(geometry, this.material);
+    coarse.visible = false;
+    coarse.name = COARSE;
+    this.group.add(coarse);
+    this.stage.onMoving = (moving) => {
+      coarse.visible = moving;
+      this.surface.visible = !moving && this.colors === undefined;
+      if (this.colors !== undefined) coarse.visible = false;
+    };
+  }
+  /** Triangles that are drawn now. */
+  get drawn(): number {
+    const coarse = this.group.getObjectByName(COARSE) as Mesh | undefined;
+    return coarse?.visible ? coarse.geometry.getIndex()!.count / 3 : this.model.triangleFace.length;
   }
 
   applyTheme(): void {
@@ -61,6 +91,32 @@ export class MeshView {
     return this.edges?.visible === true;
   }
 
+  /** Each patch, or each material, in a colour of its own; undefined: all faces alike. */
+  setColors(by: 'patches' | 'materials' | undefined): void {
+    if (by !== undefined && !this.painted.has(by)) this.painted.set(by, this.paint(by));
+    for (const [what, { mesh }] of this.painted) mesh.visible = what === by;
+    this.surface.visible = by === undefined;
+    this.colors = by;
+    this.stage.invalidate();
+  }
+  get colorsShown(): { by: string; count: number } | undefined {
+    return this.colors === undefined ? undefined : { by: this.colors, count: this.painted.get(this.colors)!.count };
+  }
+  private paint(by: 'patches' | 'materials'): { mesh: Mesh; count: number } {
+    const materials = this.model.faceMaterials;
+    const { ofFace, count } = by === 'patches' ? patchesOf(this.model) : { ofFace: materials!, count: new Set(materials).size };
+    const geometry = this.model.geometry.toNonIndexed();
+    const colors = new Float32Array(9 * this.model.triangleFace.length);
+    this.model.triangleFace.forEach((face, t) => {
+      const color = colorOfNumber(ofFace[face]!);
+      for (let k = 0; k < 3; ++k) colors.set(color, 9 * t + 3 * k);
+    });
+    geometry.setAttribute('faceColor', new BufferAttribute(colors, 3));
+    const mesh = new Mesh(geometry, new SurfaceMaterial(true));
+    this.group.add(mesh);
+    return { mesh, count };
+  }
+
   /** What an element of a finding is on the stage. */
   marksOf(element: Element3): Required<Marks> {
     const place = (p: number): Vector3 | undefined => this.model.point(p);
@@ -69,7 +125,10 @@ export class MeshView {
       const ends = [place(a), place(b)];
       if (ends[0] !== undefined && ends[1] !== undefined) lines.push(ends[0], ends[1]);
     }
-    const points = (element.vertices ?? []).map(place).filter((p): p is Vector3 => p !== undefined);
+    const isPlace = (p: Vector3 | undefined): p is Vector3 => p !== undefined;
+    const points = (element.vertices ?? []).map(place).filter(isPlace);
+    // a vertex that is nowhere: the others of its faces say where it is missed
+    if (points.length === 0 && lines.length === 0) for (const p of element.vertices ?? []) points.push(...this.model.neighbours(p).map(place).filter(isPlace));
     if (element.point && (points.length === 0 || (element.faces ?? []).length > 1) && lines.length === 0) points.push(this.model.frame.fromSource(element.point));
     const polygons = (element.faces ?? []).map((f) => this.model.outline(f)).filter((outline) => outline.length >= 3);
     return { polygons, lines, points };
@@ -117,7 +176,9 @@ export class MeshView {
     this.selection.add(marked({ polygons: marks.polygons }, { color: themeColor('glow'), opacity: isOfEdges ? 0.3 : 0.75, onTop: true }));
     this.selection.add(marked({ lines: marks.lines, points: marks.points }, { color: themeColor('glow'), width: 5, onTop: true }));
     const outlines = marks.polygons.flatMap((outline) => outline.flatMap((p, k) => [p, outline[(k + 1) % outline.length]!]));
-    if (outlines.length > 0) this.selection.add(marked({ lines: outlines }, { color: themeColor('glow'), width: 1.5, onTop: true }));
+    // a face without area is seen by its outline alone
+    const isFlat = !isOfEdges && marks.polygons.every((outline) => newell(outline).lengthSq() < FLAT ** 2);
+    if (outlines.length > 0) this.selection.add(marked({ lines: outlines }, { color: themeColor('glow'), width: isFlat ? 5 : 1.5, onTop: true }));
     const ball = this.ballOf(marks);
     if (ball === undefined) return;
     const normal = (element.faces ?? []).reduce((sum, f) => sum.add(this.model.faceNormal(f)), new Vector3());
@@ -136,6 +197,11 @@ export class MeshView {
       if (free > farthest * 1.01) [best, farthest] = [direction, free];
     }
     return best;
+  }
+
+  /** The surface about a finding is translucent. */
+  get isGhost(): boolean {
+    return this.material.isGhost;
   }
 
   private ballOf(marks: Required<Marks>): Sphere | undefined {

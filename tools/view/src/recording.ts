@@ -20,10 +20,18 @@ export function quoted(name: string): string {
   return /^[\w.+-]+$/.test(name) && !name.startsWith('-') ? name : `'./${name.replaceAll("'", "'\\''")}'`;
 }
 
+function quotedText(text: string): string {
+  return /^[\w.+,=-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
+}
+
 /** What replays the recording natively, to the same bytes. */
 function replayCommand(source: TouchSource, p: TouchParams): string {
-  const options = `--mu-s ${p.muStatic} --mu-d ${p.muDynamic} --stiffness ${p.stiffness}${p.damping > 0 ? ` --damping ${p.damping}` : ''}`;
-  return `fdcg-servo replay ${quoted(source.graphName)} --trajectory hip.csv -o log.csv ${options}`;
+  const options = [`--mu-s ${p.muStatic} --mu-d ${p.muDynamic} --stiffness ${p.stiffness}`];
+  if (p.damping > 0) options.push(`--damping ${p.damping}`);
+  for (const [term, value] of Object.entries(p.curve)) options.push(`--${term} ${value}`);
+  const names = source.runtime.materials();
+  p.materials?.forEach((m, i) => options.push(`--material ${quotedText(`${names[i]}=${m.muStatic},${m.muDynamic},${m.stiffness}`)}`));
+  return `fdcg-servo replay ${quoted(source.graphName)} --trajectory hip.csv -o log.csv ${options.join(' ')}`;
 }
 
 /** Nanoseconds a step, over the recorded path. */

@@ -50,6 +50,11 @@ export class RepairPanel {
     this.context.stage.fit();
   }
 
+  /** Which of both meshes are on the stage. */
+  get shown(): { before: boolean; after: boolean; apart: number } {
+    return { before: this.original.group.visible, after: this.repaired?.group.visible === true, apart: this.repaired?.group.position.x ?? 0 };
+  }
+
   applyTheme(): void {
     this.repaired?.applyTheme();
   }

@@ -11,7 +11,8 @@ interface Exports {
   fdcg_web_source_map(): number;
   fdcg_web_hip(): number;
   fdcg_web_result(): number;
-  fdcg_web_set_params(muStatic: number, muDynamic: number, stiffness: number, damping: number, edgeFriction: number, flags: number): number;
+  fdcg_web_set_material(material: number, muStatic: number, muDynamic: number, stiffness: number): void;
+  fdcg_web_set_params(muStatic: number, muDynamic: number, stiffness: number, damping: number, flags: number, stribeck: number, viscous: number, presliding: number, lag: number): number;
   fdcg_web_reset(): void;
   fdcg_web_step(): void;
   fdcg_web_run(hips: number, results: number, count: number): void;
@@ -21,6 +22,8 @@ interface Exports {
   fdcg_web_connection(connection: number): number;
   fdcg_web_corner(corner: number): number;
   fdcg_web_fan(corner: number): number;
+  fdcg_web_material_count(): number;
+  fdcg_web_material_name(material: number): number;
   fdcg_web_node_material(node: number): number;
 }
 
@@ -29,11 +32,23 @@ export const STATES = ['free', 'face', 'edge', 'vertex'] as const;
 export const TYPES = ['convex', 'concave', 'coplanar', 'boundary'] as const;
 const FLATNESS = ['exact', 'quantum', 'angle'] as const;
 
-export interface TouchParams {
+/** fdcg_friction_flag. */
+export const FRICTION = { stribeck: 1, viscous: 2, presliding: 4, lag: 8 } as const;
+const FRICTION_MATERIALS = 16;
+export type CurveTerm = keyof typeof FRICTION;
+
+export interface Material {
   muStatic: number;
   muDynamic: number;
   stiffness: number;
+}
+
+export interface TouchParams extends Material {
   damping: number;
+  /** What is there is on. */
+  curve: Partial<Record<CurveTerm, number>>;
+  /** By number; undefined: all faces feel alike. */
+  materials?: Material[];
 }
 
 export interface Result {
@@ -58,6 +73,21 @@ export interface GraphHeader {
   extent: number;
   types: [number, number, number, number];
   sourceFaces: number;
+}
+
+const TIMED_PASSES = 25;
+const TIMED_GRAINS = 20; // a pass is at least so many steps of the clock, which differ between browsers
+
+/** The smallest step of the clock, milliseconds. */
+function clockGrain(): number {
+  let grain = Infinity;
+  for (let k = 0; k < 3; ++k) {
+    const before = performance.now();
+    let now = before;
+    while (now === before) now = performance.now();
+    grain = Math.min(grain, now - before);
+  }
+  return grain;
 }
 
 type Triple = [number, number, number];
@@ -115,8 +145,17 @@ export class Runtime {
     };
   }
 
-  setParams(p: TouchParams): boolean {
-    return this.x.fdcg_web_set_params(p.muStatic, p.muDynamic, p.stiffness, p.damping, 0, 0) === 0;
+  /** Empty, or what the runtime has against them: then the old ones stay. */
+  setParams(p: TouchParams): string {
+    let flags = p.materials === undefined ? 0 : FRICTION_MATERIALS;
+    for (const term of Object.keys(p.curve) as CurveTerm[]) flags |= FRICTION[term];
+    p.materials?.forEach((m, i) => this.x.fdcg_web_set_material(i, m.muStatic, m.muDynamic, m.stiffness));
+    const { stribeck = 0, viscous = 0, presliding = 0, lag = 0 } = p.curve;
+    const status = this.x.fdcg_web_set_params(p.muStatic, p.muDynamic, p.stiffness, p.damping, flags, stribeck, viscous, presliding, lag);
+    return status === 0 ? '' : this.text(this.x.fdcg_web_message());
+  }
+  materials(): string[] {
+    return Array.from({ length: this.x.fdcg_web_material_count() }, (_, i) => this.text(this.x.fdcg_web_material_name(i)));
   }
   reset(): void {
     this.x.fdcg_web_reset();
@@ -137,23 +176,34 @@ export class Runtime {
       transitions: v.getUint32(60, true),
     };
   }
-  /** Nanoseconds a step, over this path, by a contact that begins anew. */
+  /** Nanoseconds a step, over this path, by a contact that begins anew: the fastest of some passes, since the first ones run while
+   * the browser still compiles, and others may be held up. */
   timeSteps(hips: Float64Array, params: TouchParams): number {
     this.setParams(params);
-    this.reset();
     const count = hips.length / 3;
     const input = this.x.fdcg_web_allocate(hips.byteLength);
     const output = this.x.fdcg_web_allocate(72 * count);
-    let spent = Number.NaN;
+    let best = Number.NaN;
+    const least = TIMED_GRAINS * clockGrain();
     if (input !== 0 && output !== 0) {
       new Float64Array(this.x.memory.buffer, input, hips.length).set(hips);
-      const before = performance.now();
-      this.x.fdcg_web_run(input, output, count);
-      spent = ((performance.now() - before) * 1e6) / count;
+      for (let pass = 0; pass < TIMED_PASSES; ++pass) {
+        const before = performance.now();
+        let elapsed = 0;
+        let steps = 0;
+        do {
+          this.reset();
+          this.x.fdcg_web_run(input, output, count);
+          steps += count;
+          elapsed = performance.now() - before;
+        } while (elapsed < least);
+        const spent = (elapsed * 1e6) / steps;
+        if (!(spent >= best)) best = spent;
+      }
     }
     this.x.fdcg_web_release(input);
     this.x.fdcg_web_release(output);
-    return spent;
+    return best;
   }
   /** Where the way from a to b (metres) meets the surface first. */
   cast(a: Triple, b: Triple): Result | undefined {

@@ -22,6 +22,11 @@ export class SlipSound {
     this.context = context;
   }
 
+  /** What is heard now, 0 to 1; undefined: it is off. */
+  get loudness(): number | undefined {
+    return this.gain?.gain.value;
+  }
+
   /** `share`: of the loudest, 0 to 1. */
   play(share: number): void {
     if (this.context === undefined) return;

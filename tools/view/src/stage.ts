@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The three-dimensional view: renderer, camera and its flights. Draws when something has changed, and rests else.
-import { Box3, Group, MathUtils, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { Box3, Group, MathUtils, Matrix4, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { prefersReducedMotion } from './dom';
 import { themeColor } from './theme';
 
 const FLIGHT_MS = 600;
+const REST_MS = 250; // without motion: the camera is at rest
 
 interface Flight {
   from: Vector3;
@@ -17,7 +18,7 @@ interface Flight {
 
 /** Undefined where the browser cannot draw: lists, records and forces are there all the same. Without a graphics processor smooth
  * edges cost more than all the rest. */
-function makeRenderer(): WebGLRenderer | undefined {
+function makeRenderer(): { renderer: WebGLRenderer; isSlow: boolean } | undefined {
   const context = document.createElement('canvas').getContext('webgl2');
   if (context === null) return undefined;
   const names = context.getExtension('WEBGL_debug_renderer_info');
@@ -26,7 +27,7 @@ function makeRenderer(): WebGLRenderer | undefined {
   const isSlow = /swiftshader|llvmpipe|software|basic render/i.test(name);
   const renderer = new WebGLRenderer({ antialias: !isSlow, powerPreference: 'high-performance' });
   renderer.setPixelRatio(isSlow ? 1 : Math.min(devicePixelRatio, 2));
-  return renderer;
+  return { renderer, isSlow };
 }
 
 export class Stage {
@@ -40,12 +41,20 @@ export class Stage {
   frames = 0;
   /** Called before each frame with the time; true: draw again after it. */
   readonly animations = new Set<(now: number) => boolean>();
+  /** Called when the camera begins to move, and when it has come to rest: what is large may be drawn coarsely meanwhile. */
+  onMoving: ((moving: boolean) => void) | undefined;
+  /** Drawn by the processor. */
+  readonly isSlow: boolean;
   private readonly renderer: WebGLRenderer | undefined;
+  private readonly drawnFrom = new Matrix4(); // the camera's place in the last frame
+  private restTimer: ReturnType<typeof setTimeout> | undefined;
   private flight: Flight | undefined;
   private pending = false;
 
   constructor(private readonly holder: HTMLElement) {
-    this.renderer = makeRenderer();
+    const made = makeRenderer();
+    this.renderer = made?.renderer;
+    this.isSlow = made?.isSlow ?? false;
     this.canvas = this.renderer?.domElement ?? document.createElement('canvas');
     if (this.renderer === undefined) this.canvas.className = 'blank';
     this.canvas.tabIndex = 0;
@@ -91,9 +100,23 @@ export class Stage {
     this.camera.near = Math.max(distance * 0.01, 1e-5);
     this.camera.far = distance + 10;
     this.camera.updateProjectionMatrix();
+    this.noteMotion();
     this.renderer?.render(this.scene, this.camera);
     ++this.frames;
     if (again) this.invalidate();
+  }
+
+  private noteMotion(): void {
+    this.camera.updateMatrixWorld();
+    const moved = !this.drawnFrom.equals(this.camera.matrixWorld);
+    this.drawnFrom.copy(this.camera.matrixWorld);
+    if (!moved || this.onMoving === undefined) return;
+    this.onMoving(true);
+    clearTimeout(this.restTimer);
+    this.restTimer = setTimeout(() => {
+      this.onMoving?.(false);
+      this.invalidate();
+    }, REST_MS);
   }
 
   private fly(now: number): boolean {

@@ -75,6 +75,15 @@ export class SurfaceMaterial extends ShaderMaterial {
     this.uniforms['front']!.value = themeColor('face-front');
     this.uniforms['back']!.value = themeColor(showsWinding ? 'face-back' : 'face-front');
   }
+  /** Both sides in a colour that the theme's own is mixed with. */
+  tint(color: Color): void {
+    const mixed = themeColor('face-front').lerp(color, 0.7);
+    this.uniforms['front']!.value = mixed;
+    this.uniforms['back']!.value = mixed;
+  }
+  get isGhost(): boolean {
+    return (this.uniforms['ghost']!.value as number) > 0;
+  }
   /** The surface within the radius of the point is drawn by this share less. 0: whole. */
   setFocus(point: Vector3 | undefined, radius = 0, ghost = 0.75): void {
     if (point !== undefined) (this.uniforms['focus']!.value as Vector3).copy(point);

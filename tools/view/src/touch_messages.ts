@@ -19,6 +19,7 @@ export type ToWorker =
   | { kind: 'run'; on: boolean }
   | { kind: 'target'; hip: [number, number, number]; jump: boolean }
   | { kind: 'params'; params: TouchParams }
+  | { kind: 'hand'; metresPerS: number } // its largest speed; 0: none
   | { kind: 'record'; on: boolean };
 
 export type FromWorker =

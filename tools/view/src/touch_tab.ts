@@ -4,23 +4,20 @@ import { Vector3 } from 'three';
 import workerSource from 'worker:./src/touch_worker.ts';
 import { ContactMarks } from './contact_marks';
 import type { Context, Tab } from './context';
-import { button, checkbox, h, slider } from './dom';
+import { button, checkbox, h } from './dom';
+import { GamepadReader } from './gamepad';
 import { short } from './numbers';
 import { recordingPanel, timeRecording, type TouchSource } from './recording';
-import { STATES, type TouchParams } from './runtime';
+import { NONE, STATES } from './runtime';
 import { SlipSound } from './slip_sound';
-import { Chart } from './traces';
-import { FORCE, type FromWorker, GOD, HIP, SLIP, STATE, T, TICK, TICK_S, type Timing, type ToWorker } from './touch_messages';
+import { FEATURE, FORCE, type FromWorker, GOD, HIP, SLIP, STATE, TICK, type Timing, type ToWorker } from './touch_messages';
+import { TouchSettings } from './touch_settings';
+import { TouchTraces } from './touch_traces';
 
 const HOVER = 0.02; // of the object's size: how far before the surface the hand is while nothing is pressed
-const SHOWN_TICKS = 2000;
 const CHART_MS = 60;
-
-/** A stiffness at which pressing by a hundredth of the object gives some newtons. */
-function usualStiffness(metres: number): number {
-  const wanted = 5 / (0.01 * metres);
-  return metres >= 0.02 && metres <= 2 ? 1000 : Number(wanted.toPrecision(1));
-}
+const PAD_PIXELS_PER_S = 420; // of the hand at full tilt
+const PAD_TURN_PER_S = 1.8; // radians of the view
 
 export class TouchTab implements Tab {
   readonly id = 'touch';
@@ -29,8 +26,7 @@ export class TouchTab implements Tab {
   private readonly worker: Worker;
   private readonly marks: ContactMarks;
   private readonly sound = new SlipSound();
-  private readonly params: TouchParams;
-  private depth = 0.015; // of the object's size
+  private readonly settings: TouchSettings;
   private isReady = false;
   private isActive = false;
   private isPressed = false;
@@ -39,26 +35,34 @@ export class TouchTab implements Tab {
   private recorded: Float64Array | undefined;
   private cursor = { x: 0, y: 0 };
   private plane = new Vector3();
-  private readonly ring = { t: new Float64Array(SHOWN_TICKS), normal: new Float64Array(SHOWN_TICKS), tangential: new Float64Array(SHOWN_TICKS), ratio: new Float64Array(SHOWN_TICKS), count: 0 };
   private lastTick: Float64Array | undefined;
   private lastNormal: Float64Array | undefined;
   private timing: Timing = { stepNs: 0, periodP99Ms: 0 };
   private stepNs = 0; // of the recorded path
   private nextChart = 0;
-  private inputs: HTMLInputElement[] = [];
+  private readonly traces = new TouchTraces();
+  private readonly gamepad = new GamepadReader();
+  private padPresses = false;
+  private lastMs = 0;
+  private staysInPlane = false;
   private readonly readout = h('p.readout', { id: 'readout' });
   private readonly timingLine = h('p.note', { id: 'timing' });
   private readonly recordButton = button('Record', () => this.toggleRecord(), { id: 'record', 'aria-pressed': 'false', title: 'Record (R)' });
   private readonly saved = h('div.saved', { hidden: true });
-  private readonly dockElement = h('div.charts');
-  private charts: { force: Chart; ratio: Chart } | undefined;
   private readonly listeners: [string, (event: never) => void, AddEventListenerOptions?][];
 
   constructor(
     private readonly context: Context,
     private readonly source: TouchSource,
   ) {
-    this.params = { muStatic: 0.6, muDynamic: 0.4, stiffness: usualStiffness(source.frame.metres), damping: 0 };
+    this.settings = new TouchSettings(source.runtime, source.frame.metres, {
+      params: (params) => {
+        this.send({ kind: 'params', params });
+        this.marks.setScale(params.stiffness * this.settings.depth * 2 * source.frame.metres);
+      },
+      depth: () => this.aim(false),
+      hand: (metresPerS) => this.send({ kind: 'hand', metresPerS }),
+    });
     this.marks = new ContactMarks(source.frame);
     this.marks.group.visible = false;
     context.stage.marks.add(this.marks.group);
@@ -67,7 +71,7 @@ export class TouchTab implements Tab {
     URL.revokeObjectURL(url);
     this.worker.onmessage = (event: MessageEvent<FromWorker>) => this.onMessage(event.data);
     this.worker.onerror = (event) => this.context.hint(`The loop has stopped: ${event.message}`);
-    this.send({ kind: 'open', wasm: context.wasm, graph: source.graph, params: this.params });
+    this.send({ kind: 'open', wasm: context.wasm, graph: source.graph, params: this.settings.params });
     this.listeners = [
       ['pointermove', ((event: PointerEvent) => this.onMove(event)) as (event: never) => void],
       ['pointerdown', ((event: PointerEvent) => this.onDown(event)) as (event: never) => void, { capture: true }],
@@ -85,51 +89,26 @@ export class TouchTab implements Tab {
   // ---- panel
 
   private build(): void {
-    const decade = this.params.stiffness;
-    const sliders = [
-      slider({ label: 'Stiffness', id: 'stiffness', min: decade / 50, max: decade * 20, value: this.params.stiffness, logarithmic: true, unit: 'N/m', text: short, onchange: (value) => this.setParams({ stiffness: Number(value.toPrecision(3)) }) }),
-      slider({ label: 'Static friction', id: 'mu-s', min: 0, max: 2, value: this.params.muStatic, text: (v) => v.toFixed(2), onchange: (value) => this.setFriction('muStatic', Number(value.toFixed(2))) }),
-      slider({ label: 'Dynamic friction', id: 'mu-d', min: 0, max: 2, value: this.params.muDynamic, text: (v) => v.toFixed(2), onchange: (value) => this.setFriction('muDynamic', Number(value.toFixed(2))) }),
-      slider({ label: 'Damping', id: 'damping', min: 0, max: decade / 100, value: 0, unit: 'N s/m', text: short, onchange: (value) => this.setParams({ damping: Number(value.toPrecision(3)) }) }),
-      slider({ label: 'Press depth', id: 'depth', min: 0.001, max: 0.08, value: this.depth, logarithmic: true, unit: 'mm', text: (v) => short(v * this.source.frame.metres * 1000), onchange: (value) => this.setDepth(value) }),
-    ];
-    this.inputs = sliders.slice(0, 4).map((one) => one.input);
-    this.muSliders = { muStatic: sliders[1]!.set, muDynamic: sliders[2]!.set };
-    this.depthSlider = sliders[4]!.set;
     this.element.append(
-      h('p', {}, 'Press on the surface with the left button and drag. Beside it, or with the right button, you turn the model. The wheel presses deeper.'),
+      h('p', {}, 'Press on the surface with the left button and drag. Beside it, or with the right button, you turn the model. The wheel presses deeper. A pen presses by its pressure, a gamepad by its right trigger.'),
       this.readout,
-      ...sliders.map((one) => one.element),
-      checkbox('Sound of slip', false, (on) => this.sound.set(on)),
+      this.ways(),
+      this.settings.element,
+      checkbox('Sound of slip', false, (on) => this.sound.set(on), 'sound'),
       h('h2', {}, 'Recording'),
       h('div.row', {}, this.recordButton),
       this.saved,
       this.timingLine,
     );
-    this.dockElement.append(h('div.chart', { id: 'chart-force' }, h('p.chart-title', {}, 'Force in newtons: ', h('span.key.force', {}, 'normal'), ' and ', h('span.key.edge', {}, 'tangential'))), h('div.chart', { id: 'chart-ratio' }, h('p.chart-title', {}, h('span.key.vertex', {}, 'Tangential over normal force'))));
   }
-  private muSliders: { muStatic: (v: number) => void; muDynamic: (v: number) => void } | undefined;
-  private depthSlider: ((v: number) => void) | undefined;
 
-  private setParams(change: Partial<TouchParams>): void {
-    Object.assign(this.params, change);
-    this.send({ kind: 'params', params: this.params });
-    this.marks.setScale(this.params.stiffness * this.depth * 2 * this.source.frame.metres);
-  }
-  /** Static friction is at least dynamic friction: the other one follows. */
-  private setFriction(which: 'muStatic' | 'muDynamic', value: number): void {
-    this.params[which] = value;
-    if (this.params.muStatic < this.params.muDynamic) {
-      const other = which === 'muStatic' ? 'muDynamic' : 'muStatic';
-      this.params[other] = value;
-      this.muSliders?.[other](value);
-    }
-    this.setParams({});
-  }
-  private setDepth(value: number): void {
-    this.depth = Math.min(0.08, Math.max(0.001, value));
-    this.aim(false);
-    this.setParams({});
+  // Where the hand goes while it is dragged.
+  private ways(): HTMLElement {
+    const choices = ([['surface', 'along the surface'], ['plane', 'in a plane before the eye']] as const).map(([value, text]) => {
+      const radio = h('input', { type: 'radio', name: 'way', value, id: `way-${value}`, checked: value === 'surface', onchange: () => (this.staysInPlane = value === 'plane') });
+      return h('label.check', {}, radio, text);
+    });
+    return h('div.row', { role: 'radiogroup', 'aria-label': 'Where the hand is dragged' }, 'Drag ', ...choices);
   }
 
   // ---- the hand
@@ -153,18 +132,21 @@ export class TouchTab implements Tab {
   /** Sends the hand to where the pointer is. `jump`: it was away, and must not cut through the object. */
   private aim(jump: boolean): boolean {
     if (!this.isActive || !this.isReady) return false;
-    const surface = this.surfaceUnder();
+    const isHeld = this.isPressed && this.staysInPlane && this.hasPlane;
+    const surface = isHeld ? undefined : this.surfaceUnder();
     if (surface === undefined && !this.hasHand) return false;
     const place = surface ?? this.onPlane();
-    this.plane.copy(place);
+    if (!isHeld) this.plane.copy(place);
+    this.hasPlane = this.isPressed;
     const { direction } = this.ray();
-    const along = this.isPressed ? this.depth * this.pressure : -HOVER;
+    const along = this.isPressed ? this.settings.depth * this.pressure : -HOVER;
     this.send({ kind: 'target', hip: this.source.frame.toMetres(place.addScaledVector(direction, along)), jump: jump || !this.hasHand });
     this.hasHand = true;
     this.marks.group.visible = true;
     this.context.stage.canvas.classList.add('touching');
-    return surface !== undefined;
+    return surface !== undefined || isHeld;
   }
+  private hasPlane = false; // that in which the hand is dragged
   private pressure = 1;
 
   private follow(event: PointerEvent): void {
@@ -206,8 +188,7 @@ export class TouchTab implements Tab {
     if (!this.isPressed) return;
     event.preventDefault();
     event.stopImmediatePropagation();
-    this.setDepth(this.depth * Math.exp(-event.deltaY * 0.002));
-    this.depthSlider?.(this.depth);
+    this.settings.scaleDepth(Math.exp(-event.deltaY * 0.002));
   }
 
   // ---- what comes back
@@ -215,10 +196,11 @@ export class TouchTab implements Tab {
   private onMessage(message: FromWorker): void {
     if (message.kind === 'opened') {
       this.isReady = true;
-      this.setParams({});
+      this.settings.set({});
       if (this.isActive) this.send({ kind: 'run', on: true });
     } else if (message.kind === 'failed') this.context.hint(`The graph cannot be touched: ${message.message}`);
     else if (message.kind === 'recording') {
+      if (this.recordState === 'no') return; // sent before the loop heard of the stop
       this.recordState = 'on';
       this.recordButton.textContent = `Stop (${message.seconds.toFixed(1)} s)`;
     } else if (message.kind === 'recorded') this.showRecording(message.ticks);
@@ -226,17 +208,7 @@ export class TouchTab implements Tab {
   }
 
   private onTicks(ticks: Float64Array, normals: Float64Array, timing: Timing): void {
-    const { ring } = this;
-    for (let at = 0, n = 0; at < ticks.length; at += TICK, n += 3) {
-      const force = [0, 1, 2].map((k) => ticks[at + FORCE + k]!);
-      const normal = force.reduce((sum, f, k) => sum + f * normals[n + k]!, 0);
-      const size = Math.hypot(...force);
-      const i = ring.count++ % SHOWN_TICKS;
-      ring.t[i] = ticks[at + T]!;
-      ring.normal[i] = normals[n] === 0 && normals[n + 1] === 0 && normals[n + 2] === 0 ? size : normal;
-      ring.tangential[i] = Math.sqrt(Math.max(0, size * size - ring.normal[i]! ** 2));
-      ring.ratio[i] = ring.normal[i]! > 1e-12 ? ring.tangential[i]! / ring.normal[i]! : 0;
-    }
+    this.traces.add(ticks, normals);
     this.lastTick = ticks.slice(-TICK);
     this.lastNormal = normals.slice(-3);
     this.timing = timing;
@@ -244,40 +216,46 @@ export class TouchTab implements Tab {
   }
 
   private readonly animate = (now: number): boolean => {
+    const usesPad = this.readGamepad(now);
     const tick = this.lastTick;
-    if (tick === undefined || this.lastNormal === undefined || !this.hasHand) return false;
+    if (tick === undefined || this.lastNormal === undefined || !this.hasHand) return usesPad;
     const three = (at: number): [number, number, number] => [tick[at]!, tick[at + 1]!, tick[at + 2]!];
     const slips = tick[SLIP] === 1;
-    const mu = slips ? this.params.muDynamic : this.params.muStatic;
+    const mu = this.settings.mu(tick[STATE] === 1 ? tick[FEATURE]! : NONE, slips);
     this.marks.update({ hip: three(HIP), god: three(GOD), force: three(FORCE), normal: [this.lastNormal[0]!, this.lastNormal[1]!, this.lastNormal[2]!], mu, state: tick[STATE]!, slips });
     const force = Math.hypot(...three(FORCE));
-    const last = (this.ring.count - 1) % SHOWN_TICKS;
-    this.sound.play(slips ? force / (this.params.stiffness * this.depth * this.source.frame.metres) : 0);
+    this.sound.play(slips ? force / (this.settings.params.stiffness * this.settings.depth * this.source.frame.metres) : 0);
     if (now >= this.nextChart) {
       this.nextChart = now + CHART_MS;
       const state = STATES[tick[STATE]!]!;
-      this.readout.textContent = state === 'free' ? 'Free: nothing touched.' : `${slips ? 'Slips' : 'Sticks'} on a ${state}. ${short(force)} N, ratio ${this.ring.ratio[last]!.toFixed(2)}.`;
+      this.readout.textContent = state === 'free' ? 'Free: nothing touched.' : `${slips ? 'Slips' : 'Sticks'} on a ${state}. ${short(force)} N, ratio ${this.traces.ratio.toFixed(2)}.`;
       this.timingLine.textContent = `A step takes ${short(this.timing.stepNs / 1000)} µs here; 99 % of the ticks come within ${this.timing.periodP99Ms.toFixed(2)} ms.`;
-      this.drawCharts();
+      this.traces.draw();
     }
-    return false;
+    return usesPad;
   };
 
-  private drawCharts(): void {
-    const { ring } = this;
-    const count = Math.min(ring.count, SHOWN_TICKS);
-    const from = ring.count % SHOWN_TICKS;
-    const inOrder = (values: Float64Array): Float64Array => {
-      if (ring.count <= SHOWN_TICKS) return values.slice(0, count);
-      const sorted = new Float64Array(count);
-      sorted.set(values.subarray(from));
-      sorted.set(values.subarray(0, from), SHOWN_TICKS - from);
-      return sorted;
-    };
-    const newest = ring.t[(ring.count - 1) % SHOWN_TICKS]!;
-    const t = Float64Array.from({ length: count }, (_, i) => newest - (count - 1 - i) * TICK_S);
-    this.charts?.force.set(t, inOrder(ring.normal), inOrder(ring.tangential));
-    this.charts?.ratio.set(t, inOrder(ring.ratio));
+  /** The left stick moves the hand, the right one the view; the trigger presses. True: there is one. */
+  private readGamepad(now: number): boolean {
+    const seconds = Math.min(0.1, Math.max(0, (now - this.lastMs) / 1000));
+    this.lastMs = now;
+    const pad = this.isActive ? this.gamepad.read() : undefined;
+    if (pad === undefined) return false;
+    if (pad.record) this.toggleRecord();
+    if (pad.view[0] !== 0 || pad.view[1] !== 0) this.context.stage.turn(pad.view[0] * PAD_TURN_PER_S * seconds, pad.view[1] * PAD_TURN_PER_S * seconds);
+    const presses = pad.pressure > 0.02;
+    const moves = pad.hand[0] !== 0 || pad.hand[1] !== 0;
+    if (moves) {
+      this.cursor.x += pad.hand[0] * PAD_PIXELS_PER_S * seconds;
+      this.cursor.y += pad.hand[1] * PAD_PIXELS_PER_S * seconds;
+    }
+    if (presses) this.pressure = pad.pressure;
+    if (presses !== this.padPresses) {
+      this.padPresses = presses;
+      if (presses && !this.hasHand) this.aim(true);
+      this.press(presses);
+    } else if (moves || presses) this.aim(false);
+    return true;
   }
 
   // ---- recording
@@ -285,7 +263,7 @@ export class TouchTab implements Tab {
   private toggleRecord(): void {
     const on = this.recordState === 'no';
     this.recordState = on ? 'wanted' : 'no';
-    for (const input of this.inputs) input.disabled = on; // a replay has one set of parameters
+    this.settings.lock(on); // a replay has one set of parameters
     this.recordButton.setAttribute('aria-pressed', String(on));
     this.recordButton.textContent = on ? 'Stop' : 'Record';
     if (on) {
@@ -298,10 +276,10 @@ export class TouchTab implements Tab {
 
   private showRecording(ticks: Float64Array): void {
     this.recorded = ticks;
-    this.stepNs = timeRecording(this.source, ticks, this.params);
+    this.stepNs = timeRecording(this.source, ticks, this.settings.params);
     this.context.hint('');
     this.saved.hidden = false;
-    this.saved.replaceChildren(...recordingPanel(this.source, ticks, this.params, this.stepNs));
+    this.saved.replaceChildren(...recordingPanel(this.source, ticks, this.settings.params, this.stepNs));
     this.context.announce('The recording is ready to be saved.');
   }
 
@@ -314,15 +292,20 @@ export class TouchTab implements Tab {
     stage.animations.add(this.animate);
     const rectangle = stage.canvas.getBoundingClientRect();
     this.cursor = { x: rectangle.left + rectangle.width / 2, y: rectangle.top + rectangle.height / 2 };
-    this.context.dock(this.dockElement);
-    this.charts ??= {
-      force: new Chart(this.dockElement.querySelector('#chart-force')!, [{ label: 'normal', color: 'force', unit: 'N' }, { label: 'tangential', color: 'edge', unit: 'N' }], 120),
-      ratio: new Chart(this.dockElement.querySelector('#chart-ratio')!, [{ label: 'ratio', color: 'vertex', unit: '' }], 120),
-    };
+    this.context.dock(this.traces.element);
+    this.traces.begin();
+    this.settings.draw();
+    addEventListener('gamepadconnected', this.onPad);
+    if (this.gamepad.isThere) this.onPad();
     if (this.isReady) this.send({ kind: 'run', on: true });
   }
+  private readonly onPad = (): void => {
+    this.context.hint('Gamepad: the left stick moves the hand, the right one the view, the right trigger presses, Start records.');
+    this.context.stage.invalidate();
+  };
   deactivate(): void {
     this.isActive = false;
+    removeEventListener('gamepadconnected', this.onPad);
     if (this.recordState !== 'no') this.toggleRecord();
     this.press(false);
     this.leave();
@@ -357,6 +340,8 @@ export class TouchTab implements Tab {
 
   applyTheme(): void {
     this.marks.applyTheme();
+    this.settings.draw();
+    this.traces.draw();
   }
   state(): Record<string, unknown> {
     const tick = this.lastTick;
@@ -366,12 +351,19 @@ export class TouchTab implements Tab {
       contact: tick === undefined ? undefined : STATES[tick[STATE]!],
       slips: tick?.[SLIP] === 1,
       force: tick === undefined ? 0 : Math.hypot(tick[FORCE]!, tick[FORCE + 1]!, tick[FORCE + 2]!),
-      ticks: this.ring.count,
+      ticks: this.traces.count,
+      ratio: this.traces.ratio,
+      hip: tick === undefined ? undefined : [...tick.slice(HIP, HIP + 3)],
+      godObject: tick === undefined ? undefined : [...tick.slice(GOD, GOD + 3)],
+      seen: this.marks.state(),
+      loudness: this.sound.loudness,
+      gamepad: this.gamepad.isThere,
+      handSpeed: this.settings.handSpeed,
       recording: this.recordState,
       recorded: this.recorded === undefined ? 0 : this.recorded.length / TICK,
       timing: this.timing,
       recordedStepNs: this.stepNs,
-      params: { ...this.params },
+      params: structuredClone(this.settings.params),
     };
   }
 }

@@ -15,6 +15,7 @@ let runtime: Runtime | undefined;
 let running = false;
 let hip: [number, number, number] | undefined;
 let target: [number, number, number] | undefined;
+let mostSpeed = 0; // of the HIP, metres a second; 0: as the target asks
 let tick = 0;
 let dueMs = 0;
 let lastMs = 0;
@@ -44,7 +45,9 @@ const sleeper = ((): Int32Array | undefined => {
 function makeTick(now: number): void {
   if (runtime === undefined || target === undefined) return;
   hip ??= [...target];
-  for (let k = 0; k < 3; ++k) hip[k] = hip[k]! + (target[k]! - hip[k]!) * FOLLOW;
+  const way = target.map((x, k) => (x - hip![k]!) * FOLLOW);
+  const most = mostSpeed > 0 ? Math.min(1, (mostSpeed * TICK_S) / Math.hypot(...way)) : 1;
+  for (let k = 0; k < 3; ++k) hip[k] = hip[k]! + way[k]! * most;
   if (recording === 'wanted' && (result === undefined || result.state === 0)) {
     runtime.reset(); // what replays natively begins with a contact that has touched nothing
     recording = 'on';
@@ -124,6 +127,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
   if (message.kind === 'open') open(message).catch((error: unknown) => say({ kind: 'failed', message: String(error) }));
   else if (message.kind === 'run') setRunning(message.on);
   else if (message.kind === 'params') runtime?.setParams(message.params);
+  else if (message.kind === 'hand') mostSpeed = message.metresPerS;
   else if (message.kind === 'record') {
     if (message.on) recording = 'wanted';
     else stopRecording();

@@ -14,6 +14,7 @@
 
 #include "fdcg/device_status.hpp"
 #include "fdcg/scene.h"
+#include "fdcg/session_view.hpp"
 
 namespace fdcg::dev {
 
@@ -158,6 +159,9 @@ class LogReplay {
   [[nodiscard]] std::string csv_row() const;
   [[nodiscard]] std::string touches_header() const;
   [[nodiscard]] std::string touches_rows() const;
+  // The same to be looked at. A tick without a good report has a view too: the scene may move on.
+  [[nodiscard]] ViewedScene scene() const;
+  [[nodiscard]] ViewedTick view() const;
   // The log anew: its header, the record of the tick, its end ("" where it has none).
   [[nodiscard]] std::string header_bytes() const;
   [[nodiscard]] std::string record_bytes() const;

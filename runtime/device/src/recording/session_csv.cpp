@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/rotation.hpp"
+#include "recording/replayed_scene.hpp"
 
 namespace fdcg::dev {
 namespace {
@@ -28,23 +28,6 @@ void append(std::string& line, const double (&values)[3]) {
     append(line, value);
 }
 
-struct Touch {
-  const fdcg_touch* touch;
-  int contact;
-};
-
-// Contact by contact.
-std::vector<Touch> touches_of(const DeviceSetup& setup) {
-  std::vector<Touch> touches;
-  for (int contact = 0; contact < setup.contact_count; ++contact) {
-    fdcg_finger_result finger{};
-    const bool is_there = fdcg_scene_get_result(setup.scene, setup.fingers[contact], &finger, nullptr) == FDCG_OK;
-    for (std::uint32_t i = 0; is_there && i < finger.touch_count; ++i)
-      if (finger.touches[i].state != FDCG_FREE) touches.push_back({finger.touches + i, contact});
-  }
-  return touches;
-}
-
 std::string state_columns(const fdcg_touch& touch) {
   return std::string(kStates[touch.state & 3]) + "," + std::to_string(touch.feature) + "," + std::to_string(touch.slipping) +
          ",";
@@ -63,43 +46,10 @@ struct Load {
   double along_n = 0, across_n = 0, margin = 0;
 };
 
-// Where an object was in that tick.
-const fdcg_pose& tick_pose(const HostConfig& config, const ReplayedTick& tick, std::size_t object) {
-  std::size_t body = 0, moved = 0;
-  for (std::size_t i = 0; i < object; ++i) {
-    body += config.objects[i].motion.kind == MotionKind::kBody;
-    moved += is_moved(config.objects[i].motion);
-  }
-  const ObjectConfig& of = config.objects[object];
-  if (of.motion.kind == MotionKind::kBody) return tick.output->bodies[body];
-  if (is_moved(of.motion) && moved < tick.input->pose_count) return tick.input->poses[moved];
-  return of.pose;
-}
-
-void normal_of_ball(const ObjectConfig& ball, const fdcg_pose& pose, const double at_m[3], double normal[3]) {
-  double square = 0;
-  for (int i = 0; i < 3; ++i) {
-    normal[i] = (at_m[i] - pose.translation_m[i]) * (ball.surface.is_hollow != 0 ? -1 : 1);
-    square += normal[i] * normal[i];
-  }
-  const double length = std::sqrt(square);
-  for (int i = 0; i < 3; ++i)
-    normal[i] /= length > 0 ? length : 1;
-}
-
 Load load_of(const SessionReplay& replay, const ReplayedTick& tick, const fdcg_touch& touch) {
   Load load;
-  const std::size_t object = touch.object.index;
-  const ObjectConfig& of = replay.config().objects[object];
   double normal[3];
-  if (of.is_surface && of.surface.kind == FDCG_SURFACE_SPHERE) {
-    normal_of_ball(of, tick_pose(replay.config(), tick, object), touch.god_object_m, normal);
-  } else if (!of.is_surface && of.motion.kind != MotionKind::kSoft && touch.state == FDCG_FACE) {
-    turn(tick_pose(replay.config(), tick, object).rotation_xyzw, fdcg_get_node(&replay.graph(object), touch.feature).normal,
-         normal);
-  } else {
-    return load;
-  }
+  if (!touched_normal(replay, tick, touch, normal)) return load;
   double square = 0;
   for (int i = 0; i < 3; ++i)
     load.along_n += touch.force_n[i] * normal[i];
@@ -109,7 +59,7 @@ Load load_of(const SessionReplay& replay, const ReplayedTick& tick, const fdcg_t
   }
   load.is_known = load.along_n > 0;
   load.across_n = std::sqrt(square);
-  const double mu = replay.config().objects[object].params.mu_static;
+  const double mu = replay.config().objects[touch.object.index].params.mu_static;
   load.margin = mu > 0 ? 1 - load.across_n / (mu * load.along_n) : 0;
   return load;
 }
@@ -131,13 +81,13 @@ std::string session_csv_header(const HostConfig& config) {
 // Of the touch with the largest force: god-object, state and so on.
 std::string session_csv_row(const ReplayedTick& tick, std::uint64_t first_ns) {
   const LoggedOutput& output = *tick.output;
-  const std::vector<Touch> touches = touches_of(tick.state->setup);
-  const auto square = [](const Touch& touch) {
+  const std::vector<ReplayedTouch> touches = touches_of(tick.state->setup);
+  const auto square = [](const ReplayedTouch& touch) {
     const double* const f = touch.touch->force_n;
     return f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   };
-  const auto best =
-      std::max_element(touches.begin(), touches.end(), [&](const Touch& a, const Touch& b) { return square(a) < square(b); });
+  const auto best = std::max_element(touches.begin(), touches.end(),
+                                     [&](const ReplayedTouch& a, const ReplayedTouch& b) { return square(a) < square(b); });
   const bool is_free = best == touches.end();
   std::string line;
   append(line, static_cast<double>(tick.input->now_ns - first_ns) * 1e-9);

@@ -5,6 +5,7 @@
 #include "fdcg/device_tools.hpp"
 #include "recording/session_csv.hpp"
 #include "recording/session_replay.hpp"
+#include "recording/viewed_session.hpp"
 
 namespace fdcg::dev {
 
@@ -46,6 +47,12 @@ std::string LogReplay::touches_header() const {
 }
 std::string LogReplay::touches_rows() const {
   return impl_->tick.output->has_sample ? touches_csv_rows(impl_->replay, impl_->tick, impl_->first_ns) : "";
+}
+ViewedScene LogReplay::scene() const {
+  return viewed_scene(impl_->replay.config());
+}
+ViewedTick LogReplay::view() const {
+  return viewed_tick(impl_->replay, impl_->tick, impl_->first_ns);
 }
 std::string LogReplay::header_bytes() const {
   return impl_->replay.header_bytes();
