@@ -2,7 +2,7 @@
 # cmake --install [--component NAME]: headers, libraries, the two programs where they are built, a CMake package and pkg-config
 # files. Components, of the installation and of find_package(fdcg): the runtime's parts, step, query, scene, surface, deform
 # and body; runtime, which is all of them in one library; shared, the same as a shared library; and, unless FDCG_RUNTIME_ONLY, tools (fdcg::fdcg, fdcg::fdcg-servo), bake
-# (fdcg::bake) and device (fdcg::device). One that is installed alone brings those that it needs.
+# (fdcg::bake), bake_c (fdcg::bake_c) and device (fdcg::device). One that is installed alone brings those that it needs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fdcg)
@@ -70,5 +70,7 @@ if(NOT FDCG_RUNTIME_ONLY)
             DESTINATION ${CMAKE_INSTALL_DATAROOTDIR} COMPONENT tools)
   endif()
   fdcg_install_component(bake TARGETS fdcg_bake NEEDS runtime HEADERS lib/include PATTERN *.hpp)
+  fdcg_install_component(bake_c TARGETS fdcg_bake_c NEEDS package HEADERS lib/include PATTERN bake.h)
+  fdcg_install_pc(fdcg-bake-c fdcg_bake_c bake_c)
   fdcg_install_component(device TARGETS fdcg_device NEEDS runtime HEADERS runtime/device/include PATTERN *.h)
 endif()
