@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake --install [--component NAME]: headers, libraries, the two programs where they are built, a CMake package and pkg-config
-# files. Components, of the installation and of find_package(fdcg): the runtime's parts, step, scene, surface, deform and body;
-# runtime, which is all of them in one library; and, unless FDCG_RUNTIME_ONLY, tools (fdcg::fdcg, fdcg::fdcg-servo), bake
-# (fdcg::bake) and device (fdcg::device). One that is installed alone brings those that it needs.
+# files. Components, of the installation and of find_package(fdcg): the runtime's parts, step, query, scene, surface, deform
+# and body; runtime, which is all of them in one library; shared, the same as a shared library; and, unless FDCG_RUNTIME_ONLY, tools (fdcg::fdcg, fdcg::fdcg-servo), bake
+# (fdcg::bake), bake_c (fdcg::bake_c) and device (fdcg::device). One that is installed alone brings those that it needs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fdcg)
@@ -13,6 +13,7 @@ file(RELATIVE_PATH fdcg_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 function(fdcg_install_component name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADERS;PATTERN" "TARGETS;NEEDS")
   install(TARGETS ${arg_TARGETS} EXPORT fdcg-${name}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${name}
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
@@ -47,10 +48,16 @@ install(DIRECTORY runtime/include/fdcg DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} C
 
 fdcg_install_component(runtime TARGETS fdcg_runtime NEEDS package)
 fdcg_install_pc(fdcg fdcg_runtime runtime)
+if(TARGET fdcg_runtime_shared)
+  fdcg_install_component(shared TARGETS fdcg_runtime_shared NEEDS package)
+  fdcg_install_pc(fdcg-shared fdcg shared)
+endif()
 fdcg_install_component(step TARGETS fdcg_step NEEDS package)
 fdcg_install_pc(fdcg-step fdcg_step step)
-fdcg_install_component(scene TARGETS fdcg_scene NEEDS step)
-fdcg_install_pc(fdcg-scene fdcg_scene scene fdcg-step)
+fdcg_install_component(query TARGETS fdcg_query NEEDS step)
+fdcg_install_pc(fdcg-query fdcg_query query fdcg-step)
+fdcg_install_component(scene TARGETS fdcg_scene NEEDS query)
+fdcg_install_pc(fdcg-scene fdcg_scene scene fdcg-query)
 foreach(part surface deform body)
   fdcg_install_component(${part} TARGETS fdcg_${part} NEEDS scene)
   fdcg_install_pc(fdcg-${part} fdcg_${part} ${part} fdcg-scene)
@@ -63,5 +70,7 @@ if(NOT FDCG_RUNTIME_ONLY)
             DESTINATION ${CMAKE_INSTALL_DATAROOTDIR} COMPONENT tools)
   endif()
   fdcg_install_component(bake TARGETS fdcg_bake NEEDS runtime HEADERS lib/include PATTERN *.hpp)
+  fdcg_install_component(bake_c TARGETS fdcg_bake_c NEEDS package HEADERS lib/include PATTERN bake.h)
+  fdcg_install_pc(fdcg-bake-c fdcg_bake_c bake_c)
   fdcg_install_component(device TARGETS fdcg_device NEEDS runtime HEADERS runtime/device/include PATTERN *.h)
 endif()

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# find_package(fdcg [COMPONENTS step scene surface deform body runtime tools bake device]): the runtime's libraries that are
-# installed, fdcg::step ... fdcg::body, and fdcg::runtime, which is all of them; fdcg_add_graph; the programs fdcg::fdcg and
+# find_package(fdcg [COMPONENTS step query scene surface deform body runtime shared tools bake bake_c device]): the runtime's libraries that are
+# installed, fdcg::step ... fdcg::body, and fdcg::runtime and fdcg::shared, which are all of them; fdcg_add_graph; the programs fdcg::fdcg and
 # fdcg::fdcg-servo where they are installed; fdcg::bake and fdcg::device on request, since they look for what they link. A
 # component that is asked for and not installed is an error.
 include(CMakeFindDependencyMacro)
 set(${CMAKE_FIND_PACKAGE_NAME}_FOUND TRUE)
 set(fdcg_wanted ${${CMAKE_FIND_PACKAGE_NAME}_FIND_COMPONENTS})
-set(fdcg_libraries step scene surface deform body runtime) # each after what it links
+set(fdcg_libraries step query scene surface deform body runtime shared) # each after what it links
 
 foreach(component IN LISTS fdcg_wanted)
-  if(component IN_LIST fdcg_libraries OR component MATCHES "^(tools|bake|device)$")
+  if(component IN_LIST fdcg_libraries OR component MATCHES "^(tools|bake|bake_c|device)$")
     if(EXISTS "${CMAKE_CURRENT_LIST_DIR}/fdcg-${component}.cmake")
       set(${CMAKE_FIND_PACKAGE_NAME}_${component}_FOUND TRUE)
       continue()
@@ -45,6 +45,9 @@ if("bake" IN_LIST fdcg_wanted)
   find_dependency(ZLIB)
   find_dependency(OpenMesh CONFIG)
   include("${CMAKE_CURRENT_LIST_DIR}/fdcg-bake.cmake")
+endif()
+if(EXISTS "${CMAKE_CURRENT_LIST_DIR}/fdcg-bake_c.cmake")
+  include("${CMAKE_CURRENT_LIST_DIR}/fdcg-bake_c.cmake")
 endif()
 if("device" IN_LIST fdcg_wanted)
   find_dependency(Threads)

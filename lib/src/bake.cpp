@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "bake_core.hpp"
 #include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/quantum.hpp"
@@ -198,65 +199,6 @@ CheckOptions check_options_of(const CompileOptions& options, unsigned jobs) {
   return how;
 }
 
-// ---- repair
-
-// Before anything is repaired.
-RepairAccount account_of(const Report& report, RepairLevel level, const PolygonSoup& soup) {
-  RepairAccount account;
-  account.level = level;
-  for (const Issue& issue : report.issues)
-    account.found[issue.rule] = issue.total;
-  account.faces_before = account.faces_after = soup.face_count();
-  return account;
-}
-
-// As floats in the local frame hold them, so that what is repaired is what is stored.
-PolygonSoup as_stored(const PolygonSoup& soup, Precision precision) {
-  PolygonSoup stored = soup;
-  if (precision == Precision::f64) return stored;
-  const Mesh mesh = weld_points(soup, {Weld::Kind::none, 0}, precision);
-  for (std::size_t v = 0; v < stored.points.size(); ++v)
-    stored.points[v] = mesh.points[v] + mesh.origin;
-  return stored;
-}
-
-// From the numbering of the repaired mesh to that of the input.
-void number_as_input(const PolygonSoup& input, const Repaired& repaired, Report& report) {
-  for (Issue& issue : report.issues) {
-    for (Element& element : issue.elements) {
-      for (std::uint32_t& f : element.faces)
-        f = repaired.source_face[f];
-      for (std::uint32_t& v : element.vertices)
-        v = repaired.source_point[v];
-      for (auto& [u, v] : element.edges)
-        u = repaired.source_point[u], v = repaired.source_point[v];
-      if (!element.faces.empty() && element.faces[0] < input.face_line.size()) element.line = input.face_line[element.faces[0]];
-    }
-  }
-}
-
-// The mesh after its repair; its report and the account take their places in `compiled`.
-Prepared repaired_mesh(const PolygonSoup& soup, const CompileOptions& options, const CheckOptions& how, Compiled& compiled) {
-  RepairOptions steps = repair_options(*options.repair);
-  steps.weld = options.weld;
-  steps.reverse_inside_out = !options.allow.contains("inside-out");
-  steps.judges = false;
-  steps.jobs = how.jobs;
-  steps.progress = options.progress;
-  Result<Repaired> repaired = repair(as_stored(soup, options.precision), steps);
-  if (repaired->soup.face_count() == 0) return {};  // the report before says why
-  Prepared ready = prepare(repaired->soup, {Weld::Kind::none, 0}, options.precision, false, how.jobs);
-  compiled.flipped_faces = 0;  // the account has those that were turned
-  compiled.report = check(repaired->soup, ready.mesh, ready.topology, ready.states, how);
-  number_as_input(soup, *repaired, compiled.report);
-  std::map<std::string, std::uint64_t> found = std::move(compiled.repair->found);
-  *compiled.repair = std::move(static_cast<RepairAccount&>(*repaired));
-  compiled.repair->level = *options.repair;
-  compiled.repair->found = std::move(found);
-  ready.mesh.source_face = std::move(repaired->source_face);
-  return ready;
-}
-
 }  // namespace
 
 // A closed mesh has half as many connections as sides, and some six fan entries to a corner.
@@ -275,7 +217,7 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
   return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side;
 }
 
-Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options) {
+Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair) {
   if (std::string reason = check_options(options); !reason.empty()) return Failure{2, std::move(reason)};
   const unsigned jobs = resolve_jobs(options.jobs);
   const auto stage = [&](std::string_view name, double fraction) {
@@ -288,10 +230,7 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
   stage("check", 0.2);
   const CheckOptions how = check_options_of(options, jobs);
   compiled.report = check(soup, ready.mesh, ready.topology, ready.states, how);
-  if (options.repair) {
-    compiled.repair = account_of(compiled.report, *options.repair, soup);
-    if (!compiled.report.passes()) ready = repaired_mesh(soup, options, how, compiled);
-  }
+  if (options.repair && repair != nullptr) repair(soup, options, how, compiled, ready);
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
   const auto file = build(soup, std::move(ready.mesh), std::move(ready.topology), options, jobs, compiled);

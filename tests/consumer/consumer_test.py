@@ -118,6 +118,18 @@ class Package(ConsumerCase):
         done = self.run_program(self.path("program"), cwd=self.folder)
         self.assertEqual(PROMISED, done.stdout.decode())
 
+    def test_programs_by_package_and_by_pkg_config_step_to_one_hash(self):
+        self.need("pkg-config")
+        graphs = os.environ["FDCG_HASH_GRAPHS"]
+        expected = self.run_program(os.environ["FDCG_STEP_HASH"]).stdout
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(next(pathlib.Path(self.prefix).glob("**/pkgconfig")))}
+        for package in ("fdcg", "fdcg-shared"):
+            flags = self.run_program("pkg-config", "--cflags", "--libs", package, env=environment).stdout.decode().split()
+            folder = next(flag[2:] for flag in flags if flag.startswith("-L"))
+            self.run_program("cc", *C, "-O1", "-I", graphs, str(ROOT / "tests" / "anywhere" / "step_hash.c"), os.environ["FDCG_HASH_ARRAYS"],
+                             *flags, f"-Wl,-rpath,{folder}", "-o", self.path(package))
+            self.assertEqual(expected, self.run_program(self.path(package)).stdout, package)
+
     def test_another_minor_version_is_refused(self):
         project = self.copied("c_only")
         text = (project / "CMakeLists.txt").read_text()
@@ -129,8 +141,9 @@ class Package(ConsumerCase):
 class Parts(ConsumerCase):
     """The runtime's parts as components, each installed by itself."""
 
-    NEEDED = {"step": {"step"}, "scene": {"step", "scene"}, "surface": {"step", "scene", "surface"},
-              "deform": {"step", "scene", "deform"}, "body": {"step", "scene", "body"}, "runtime": {"runtime"}}
+    NEEDED = {"step": {"step"}, "query": {"step", "query"}, "scene": {"step", "query", "scene"},
+              "surface": {"step", "query", "scene", "surface"}, "deform": {"step", "query", "scene", "deform"},
+              "body": {"step", "query", "scene", "body"}, "runtime": {"runtime"}}
 
     def installed(self, *components):
         prefix = self.path("-".join(components))
@@ -226,15 +239,18 @@ class Rebuild(ConsumerCase):
 
 class Subproject(ConsumerCase):
     def test_each_way_builds_the_runtime_alone_and_the_graph_by_the_hosts_compiler(self):
+        hashed = [f"-D{name}={os.environ[name]}" for name in ("FDCG_HASH_ARRAYS", "FDCG_HASH_GRAPHS")]
         for how in ("add_subdirectory", "FetchContent", "runtime_folder"):
             folder = self.path(how)
-            self.configure(CONSUMER / "subproject", folder, f"-DHOW={how}", f"-DFDCG_SOURCE={ROOT}", prefix="/nowhere",
+            self.configure(CONSUMER / "subproject", folder, f"-DHOW={how}", f"-DFDCG_SOURCE={ROOT}", *hashed, prefix="/nowhere",
                            environment={**os.environ, "PATH": os.path.join(self.prefix, "bin") + ":/usr/bin:/bin"})
             self.build(folder)
             if how == "runtime_folder":  # the library alone: the graph comes from elsewhere
                 self.fdcg("compile", str(EXAMPLES / "cube.obj"), "--units", "cm", "-q", "-o", os.path.join(folder, "cube.fdcg"))
             done = self.run_program(os.path.join(folder, "consumer"), cwd=folder)
             self.assertEqual(PROMISED, done.stdout.decode(), how)
+            self.assertEqual(self.run_program(os.environ["FDCG_STEP_HASH"]).stdout,
+                             self.run_program(os.path.join(folder, "step_hash")).stdout, how)
             built = [path.name for path in pathlib.Path(folder).glob("**/*.a")]
             self.assertEqual(["libfdcg_runtime.a"], built, how)
 

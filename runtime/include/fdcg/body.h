@@ -58,9 +58,9 @@ typedef struct fdcg_body_config {
 
 /** Sets the first `struct_bytes` bytes of *config: 1 kg, a ball's inertia of radius 0.1 m, gravity -9.80665 along z, no
  * damping, asleep after 0.5 s below 1e-5 m/s and 1e-4 rad/s, awake at 1e-3 m/s^2. */
-void fdcg_body_config_init(fdcg_body_config* config, uint32_t struct_bytes);
+FDCG_API void fdcg_body_config_init(fdcg_body_config* config, uint32_t struct_bytes);
 /** The default config of fdcg_body_config_init. */
-static inline fdcg_body_config fdcg_make_body_config(void) {
+FDCG_INLINE fdcg_body_config fdcg_make_body_config(void) {
   fdcg_body_config config;
   fdcg_body_config_init(&config, (uint32_t)sizeof config);
   return config;
@@ -69,8 +69,8 @@ static inline fdcg_body_config fdcg_make_body_config(void) {
 /** Fills in mass, centre and inertia of a graph's solid at a density, or at the file's own where density_kg_per_m3 is 0; for an
  * object of this scale in the scene. FDCG_E_ARGUMENT, and *config stays, where neither says what it weighs, or where what comes
  * of it is none that fdcg_body_init takes. */
-fdcg_status fdcg_body_set_mass(fdcg_body_config* config, const fdcg_mass* mass, double density_kg_per_m3, double scale,
-                               fdcg_error* error);
+FDCG_API fdcg_status fdcg_body_set_mass(fdcg_body_config* config, const fdcg_mass* mass, double density_kg_per_m3, double scale,
+                                        fdcg_error* error);
 
 /** A body and its motion. Read the fields; set them through the functions. All zero is no body. */
 typedef struct fdcg_body {
@@ -97,35 +97,36 @@ typedef struct fdcg_body {
 /** Makes a body at rest at a pose, awake. FDCG_E_ARGUMENT unless every number is in range and the inertia is a solid's. `error`
  * may be NULL.
  */
-fdcg_status fdcg_body_init(fdcg_body* body, const fdcg_body_config* config, const fdcg_pose* pose, fdcg_error* error);
+FDCG_API fdcg_status fdcg_body_init(fdcg_body* body, const fdcg_body_config* config, const fdcg_pose* pose, fdcg_error* error);
 
 /** Sets it in motion: velocity of the centre of mass and angular velocity, world. Wakes it. FDCG_E_ARGUMENT where they are not
  * finite or beyond 1e6. */
-fdcg_status fdcg_body_set_motion(fdcg_body* body, const double velocity_m_per_s[3], const double angular_rad_per_s[3],
-                                 fdcg_error* error);
+FDCG_API fdcg_status fdcg_body_set_motion(fdcg_body* body, const double velocity_m_per_s[3], const double angular_rad_per_s[3],
+                                          fdcg_error* error);
 
 /** Lets a force at the centre of mass and a torque act on it, world, in every tick of a scene or a pile until they are set
  * anew; beside gravity, fingers and touches. Zero to begin with. A change wakes it as any other change of force does.
  * FDCG_E_ARGUMENT where they are not finite or beyond 1e12. fdcg_body_step alone takes no notice of them. */
-fdcg_status fdcg_body_set_push(fdcg_body* body, const double force_n[3], const double torque_n_m[3], fdcg_error* error);
+FDCG_API fdcg_status fdcg_body_set_push(fdcg_body* body, const double force_n[3], const double torque_n_m[3],
+                                        fdcg_error* error);
 
 /** Moves it on by dt_s (1e-9 to 1) under a force and a torque about the centre of mass, world, gravity beside them. Some 0.2 us
  * where it turns by less than half a radian a step; at most 64 times that. Asleep: a comparison, unless the force has changed.
  */
-void fdcg_body_step(fdcg_body* body, const double force_n[3], const double torque_n_m[3], double dt_s);
+FDCG_API void fdcg_body_step(fdcg_body* body, const double force_n[3], const double torque_n_m[3], double dt_s);
 
 /** The pose of its object: for fdcg_scene_set_pose. */
-fdcg_pose fdcg_body_get_pose(const fdcg_body* body);
+FDCG_API fdcg_pose fdcg_body_get_pose(const fdcg_body* body);
 
 /** Its angular velocity now, world. */
-void fdcg_body_get_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]);
+FDCG_API void fdcg_body_get_angular_velocity(const fdcg_body* body, double angular_rad_per_s[3]);
 
 /** Its kinetic energy, of motion and turn together. */
-double fdcg_body_get_kinetic_energy_j(const fdcg_body* body);
+FDCG_API double fdcg_body_get_kinetic_energy_j(const fdcg_body* body);
 
 /** How many steps a tick of tick_s takes so that springs of this stiffness in all, at points no farther than reach_m from the
  * centre of mass, stay at half of the bound above: 1 to FDCG_BODY_MAX_SUBSTEPS; 0 where more would be needed. */
-uint32_t fdcg_body_get_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s);
+FDCG_API uint32_t fdcg_body_get_substeps(const fdcg_body* body, double stiffness_n_per_m, double reach_m, double tick_s);
 
 /* ---- bodies in a scene ------------------------------------------------------------------------------------------------- */
 
@@ -138,11 +139,13 @@ typedef struct fdcg_scene_body {
 /** A tick of the scene and its bodies: `substeps` times (1 to FDCG_BODY_MAX_SUBSTEPS) a fdcg_scene_step, the reactions to the
  * fingers' forces, each body moved on by tick_s / substeps, its pose handed to the scene. `reactions`: room for one entry by
  * object index, of at least the largest index among the bodies and one; zeroed or left half done where the call fails. No
- * object is that of two bodies. tick_s / substeps: 1e-9 to 1. A finger goes an equal part of its way in each
+ * object is that of two bodies, and each stands where its body does: FDCG_E_ARGUMENT where the caller has set another pose for
+ * it, or has moved the body by fdcg_body_step. tick_s / substeps: 1e-9 to 1. A finger goes an equal part of its way in each
  * substep; its result is that of the last one. Stops with the
  * scene's own status where a pose is refused: a body that flew beyond 1e12 m, or an object removed. */
-fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
-                                   double tick_s, fdcg_reaction* reactions, uint32_t reaction_count, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_step_bodies(fdcg_scene* scene, fdcg_scene_body* bodies, uint32_t body_count, uint32_t substeps,
+                                            double tick_s, fdcg_reaction* reactions, uint32_t reaction_count,
+                                            fdcg_error* error);
 
 #ifdef __cplusplus
 }

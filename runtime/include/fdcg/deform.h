@@ -81,42 +81,45 @@ typedef struct fdcg_deform_config {
 } fdcg_deform_config;
 
 /** Sets the first `struct_bytes` bytes of *config: the default margin. */
-void fdcg_deform_config_init(fdcg_deform_config* config, uint32_t struct_bytes);
+FDCG_API void fdcg_deform_config_init(fdcg_deform_config* config, uint32_t struct_bytes);
 /** The default config of fdcg_deform_config_init. */
-static inline fdcg_deform_config fdcg_make_deform_config(void) {
+FDCG_INLINE fdcg_deform_config fdcg_make_deform_config(void) {
   fdcg_deform_config config;
   fdcg_deform_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
 /** The bytes that fdcg_deform_create needs; 0 if the graph cannot be deformed (fdcg_deform_create says why). */
-uint64_t fdcg_deform_bytes(const fdcg_graph* graph);
+FDCG_API uint64_t fdcg_deform_bytes(const fdcg_graph* graph);
 
 /** Makes a deformable mesh in `memory`, a multiple of 8 (*deform is the next multiple of 64), with every vertex where the graph
  * has it. FDCG_E_GRAPH unless every node is a triangle and no corner has more than FDCG_DEFORM_MOST_FAN edges. `error` may be
  * NULL, here and below. Cost: linear in the graph. */
-fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fdcg_graph* graph, const fdcg_deform_config* config,
-                               fdcg_deform** deform, fdcg_error* error);
+FDCG_API fdcg_status fdcg_deform_create(void* memory, uint64_t bytes, const fdcg_graph* graph, const fdcg_deform_config* config,
+                                        fdcg_deform** deform, fdcg_error* error);
 
 /** Finds the corner at a place: of those nearer than 2^-20 of the extent the nearest, of equally near ones the lowest.
  * FDCG_E_ABSENT where there is none, however far away; FDCG_E_ARGUMENT for a place that is not finite. Ask before vertices
  * move: a mesh's vertex has the place that its file says, in metres in the object's frame. Vertices that the compiler welded
  * are one corner. Cost: the boxes around the place. */
-fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_object_m[3], uint32_t* corner, fdcg_error* error);
+FDCG_API fdcg_status fdcg_deform_find(const fdcg_deform* deform, const double position_object_m[3], uint32_t* corner,
+                                      fdcg_error* error);
 
 /** Moves a corner. FDCG_E_ARGUMENT, and it stays where it was, for a place that is not finite or beyond the margin, or a number
  * that no corner has. Moved more than once between two steps it counts as moved straight from the first place to the last. */
-fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3], fdcg_error* error);
+FDCG_API fdcg_status fdcg_deform_move(fdcg_deform* deform, uint32_t corner, const double position_object_m[3],
+                                      fdcg_error* error);
 
 /** Moves many corners, each as fdcg_deform_move does: corners[i] to the three numbers at positions_object_m + 3 i. Stops at the
  * first that is refused, whose number the error says: those before it have been moved. Faster by some nanoseconds each. */
-fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
-                                     uint64_t count, fdcg_error* error);
+FDCG_API fdcg_status fdcg_deform_move_corners(fdcg_deform* deform, const uint32_t* corners, const double* positions_object_m,
+                                              uint64_t count, fdcg_error* error);
 
 /** Reads where a corner is: the place it was moved to, rounded to the file's precision. FDCG_E_ARGUMENT for a number that none
  * has.
  */
-fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3], fdcg_error* error);
+FDCG_API fdcg_status fdcg_deform_place(const fdcg_deform* deform, uint32_t corner, double position_object_m[3],
+                                       fdcg_error* error);
 
 /** One contact point on one deformable mesh. All zero: not yet started. Copy it freely. */
 typedef struct fdcg_deform_contact {
@@ -134,12 +137,18 @@ typedef struct fdcg_deform_contact {
 #define FDCG_DEFORM_CAUGHT 0x20000u
 
 /** Steps a contact as fdcg_step does, on the mesh as it is now. The first step after vertices have moved begins a tick. */
-void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_deform_contact* contact,
-                      const double hip_object_m[3], fdcg_result* result);
+FDCG_API void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_deform_contact* contact,
+                               const double hip_object_m[3], fdcg_result* result);
+
+/** Shares a result's force out among the corners that bear it, to hand it back to a simulation: corners[k], of which as many as
+ * the feature has (three, two, one) are not FDCG_NONE, with weights that add up to 1. In free space all are FDCG_NONE and 0.
+ * FDCG_E_ARGUMENT for a feature that the mesh does not have. */
+FDCG_API fdcg_status fdcg_deform_share(const fdcg_deform* deform, const fdcg_result* result, uint32_t corners[3],
+                                       double weights[3], fdcg_error* error);
 
 /** Brings the whole mesh up to date, to look at: fdcg_get_node and its like. Good until a vertex is moved. Not for fdcg_step
  * where a triangle has no area. Not to be closed. Cost: linear in the mesh. */
-const fdcg_graph* fdcg_deform_get_graph(fdcg_deform* deform);
+FDCG_API const fdcg_graph* fdcg_deform_get_graph(fdcg_deform* deform);
 
 /** Adds a deformable mesh to a scene, as fdcg_scene_add_object does a graph; the mesh must outlive the scene, and stays where
  * it was created. FDCG_E_ARGUMENT unless the scene was created with config.has_deforms. All else of scene.h takes the object as
@@ -149,8 +158,8 @@ const fdcg_graph* fdcg_deform_get_graph(fdcg_deform* deform);
  * a finger sees the motion from the next step on. fdcg_touch.flags says FDCG_DEFORM_MISSED and FDCG_DEFORM_CAUGHT too. Several
  * objects may be one mesh, and a copy of the scene's memory goes on with the same. Bodies of a pile do not meet it:
  * fdcg_pile_add refuses it. Cost: brings the whole mesh up to date, once. */
-fdcg_status fdcg_scene_add_deform(fdcg_scene* scene, fdcg_deform* deform, const fdcg_params* params, const fdcg_pose* pose,
-                                  fdcg_object_id* object, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_add_deform(fdcg_scene* scene, fdcg_deform* deform, const fdcg_params* params,
+                                           const fdcg_pose* pose, fdcg_object_id* object, fdcg_error* error);
 
 #ifdef __cplusplus
 }

@@ -13,6 +13,7 @@
  *     fdcg_close(&graph);
  *
  * Objects that move, and several fingers: scene.h. Bodies: body.h, pile.h. Without a mesh: surface.h. Deformable: deform.h.
+ * Nearest points, rays, what a contact is on: query.h.
  *
  * fdcg_step is the friction-cone god-object algorithm of Melder and Harwin (2004) with its gaps closed. The hand's position is
  * the haptic interface point (HIP); the god-object is the point on the surface that a spring binds to it.
@@ -25,7 +26,8 @@
  * (format.h).
  *
  * **Ownership.** All memory is the caller's. A graph is a view: the bytes that it points to must outlive it. Params, contacts
- * and results are plain structs, copied freely; fdcg_params.materials must outlive the params.
+ * and results are plain structs, copied freely; fdcg_params.materials must outlive the params (a
+ * scene copies it).
  *
  * **Threads.** A graph is only read, so any number of threads may step contacts on it at once. One contact is stepped by one
  * thread at a time. Functions without a note are safe to call from several threads on different structs.
@@ -38,6 +40,7 @@
 #ifndef FDCG_FDCG_H
 #define FDCG_FDCG_H
 
+#include "fdcg/api.h"
 #include "fdcg/format.h"
 
 #ifdef __cplusplus
@@ -54,23 +57,26 @@ extern "C" {
 /** FDCG_VERSION of the library that is linked. Structs that begin with struct_bytes may grow at their end in any version, and a
  * program built against a smaller one goes on working: what it does not know takes its default. The other structs keep their
  * layout while FDCG_VERSION_MAJOR (before 1.0: also FDCG_VERSION_MINOR) stays. */
-uint32_t fdcg_version(void);
+FDCG_API uint32_t fdcg_version(void);
 
 /* ---- errors ------------------------------------------------------------------------------------------------------------ */
 
 /** What went wrong. */
 typedef enum fdcg_status {
-  FDCG_OK = 0,      /**< nothing */
-  FDCG_E_ARGUMENT,  /**< a null pointer, a number outside its range */
-  FDCG_E_IO,        /**< the file cannot be opened, read or mapped */
-  FDCG_E_ALIGNMENT, /**< the memory does not start at a multiple of 8 */
-  FDCG_E_TRUNCATED, /**< fewer bytes than the header promises, or more */
-  FDCG_E_MAGIC,     /**< not an FDCG file */
-  FDCG_E_VERSION,   /**< a format version or precision that this library was not built for */
-  FDCG_E_LAYOUT,    /**< header or section table contradict themselves */
-  FDCG_E_CHECKSUM,  /**< bytes have changed since the file was written */
-  FDCG_E_GRAPH,     /**< an index or a number inside a section is out of range */
-  FDCG_E_ABSENT     /**< the file does not hold what is asked for */
+  FDCG_OK = 0,       /**< nothing */
+  FDCG_E_ARGUMENT,   /**< a null pointer, a number outside its range */
+  FDCG_E_IO,         /**< the file cannot be opened, read or mapped */
+  FDCG_E_ALIGNMENT,  /**< the memory does not start at a multiple of 8 */
+  FDCG_E_TRUNCATED,  /**< fewer bytes than the header promises, or more */
+  FDCG_E_MAGIC,      /**< not an FDCG file */
+  FDCG_E_VERSION,    /**< a format version or precision that this library was not built for */
+  FDCG_E_LAYOUT,     /**< header or section table contradict themselves */
+  FDCG_E_CHECKSUM,   /**< bytes have changed since the file was written */
+  FDCG_E_GRAPH,      /**< an index or a number inside a section is out of range */
+  FDCG_E_ABSENT,     /**< the file does not hold what is asked for */
+  FDCG_E_ARITHMETIC, /**< the processor or the compiler rounds otherwise than the step's promises need */
+  FDCG_E_MESH,       /**< the mesh has errors, which the findings name (bake.h) */
+  FDCG_E_MEMORY      /**< the allocator, or the system, has no memory left */
 } fdcg_status;
 
 /** Filled in by every function that returns an fdcg_status other than FDCG_OK. */
@@ -81,7 +87,7 @@ typedef struct fdcg_error {
 } fdcg_error;
 
 /** What a status means, without the case at hand: static text, one line, never NULL. */
-const char* fdcg_status_text(fdcg_status status);
+FDCG_API const char* fdcg_status_text(fdcg_status status);
 
 /* ---- set-up ------------------------------------------------------------------------------------------------------------ */
 
@@ -95,13 +101,13 @@ typedef enum fdcg_log_level {
 typedef void (*fdcg_log_handler)(void* context, fdcg_log_level level, const char* text);
 /** Sets the log handler, which gets `context` back; NULL takes it away. Global: set it before the first graph is opened, and
  * not while other threads use the library. */
-void fdcg_set_log_handler(fdcg_log_handler handler, void* context);
+FDCG_API void fdcg_set_log_handler(fdcg_log_handler handler, void* context);
 
 /** Called when the library finds a fault of its own. Debug builds (FDCG_WITH_ASSERTS) look for them; in others it is never
  * called. May be called in the step. If it returns, the library goes on as best it can; without a handler it traps. */
 typedef void (*fdcg_assert_handler)(void* context, const char* condition, const char* file, uint32_t line);
 /** Sets the assert handler, which gets `context` back; NULL takes it away. Global, as fdcg_set_log_handler. */
-void fdcg_set_assert_handler(fdcg_assert_handler handler, void* context);
+FDCG_API void fdcg_set_assert_handler(fdcg_assert_handler handler, void* context);
 
 /* ---- graph ------------------------------------------------------------------------------------------------------------- */
 
@@ -117,7 +123,9 @@ typedef enum fdcg_verify {
                               behaviour or an unbounded step. Reads the file once */
 } fdcg_verify;
 
-/** A read-only view; the bytes that it points into must outlive it. Read its fields, do not write them. */
+/** A read-only view; the bytes that it points into must outlive it. Read its fields, do not write them. A copy is a view as
+ * good as the first, while that is open. Opening asks first whether the processor rounds as the step's promises need: to
+ * nearest, with subnormal numbers, product and sum apart (FDCG_E_ARITHMETIC, with what is otherwise in the message). */
 typedef struct fdcg_graph {
   const fdcg_header* header;             /**< the file's; NULL: nothing is open */
   const void* nodes;                     /**< blocks of fdcg_node_f64 or _f32, by header->real_bytes */
@@ -139,19 +147,21 @@ typedef struct fdcg_graph {
   uint32_t material_count;               /**< entries of `materials` */
   uint32_t fan_run_count;                /**< entries of `fan_runs` */
   const fdcg_fan_run* fan_runs;          /**< NULL: not in the file */
+  const struct fdcg_graph* owner;        /**< of a mapping: the struct that was opened, and alone unmaps it */
 } fdcg_graph;
 
 /** Views `bytes` bytes at `data` (a multiple of 8) as a graph. Nothing is copied. On failure *graph is zeroed.
  * Cost: SAFE reads every byte once, FULL twice; TRUSTED touches the header and the section table only. `error` may be NULL. */
-fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
+FDCG_API fdcg_status fdcg_open_memory(const void* data, uint64_t bytes, fdcg_verify verify, fdcg_graph* graph,
+                                      fdcg_error* error);
 
 /** fdcg_open_memory with FDCG_VERIFY_TRUSTED, for small programs: one that opens graphs by this function alone links nothing
  * of verification. */
-fdcg_status fdcg_open_trusted(const void* data, uint64_t bytes, fdcg_graph* graph, fdcg_error* error);
+FDCG_API fdcg_status fdcg_open_trusted(const void* data, uint64_t bytes, fdcg_graph* graph, fdcg_error* error);
 
 /** The same for a file, mapped read-only. Undo with fdcg_close. FDCG_E_IO in a library built without files (FDCG_WITH_FILES).
  */
-fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
+FDCG_API fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg_graph* graph, fdcg_error* error);
 
 /** How fdcg_open_file_with opens a file. Make it by fdcg_make_open_options, then change fields.
  *
@@ -167,24 +177,31 @@ typedef struct fdcg_open_options {
 } fdcg_open_options;
 
 /** Sets the first `struct_bytes` bytes of *options: FDCG_VERIFY_SAFE, not populated, no huge pages. */
-void fdcg_open_options_init(fdcg_open_options* options, uint32_t struct_bytes);
+FDCG_API void fdcg_open_options_init(fdcg_open_options* options, uint32_t struct_bytes);
 /** The default options of fdcg_open_options_init. */
-static inline fdcg_open_options fdcg_make_open_options(void) {
+FDCG_INLINE fdcg_open_options fdcg_make_open_options(void) {
   fdcg_open_options options;
   fdcg_open_options_init(&options, (uint32_t)sizeof options);
   return options;
 }
 
 /** fdcg_open_file with options. */
-fdcg_status fdcg_open_file_with(const char* path, const fdcg_open_options* options, fdcg_graph* graph, fdcg_error* error);
+FDCG_API fdcg_status fdcg_open_file_with(const char* path, const fdcg_open_options* options, fdcg_graph* graph,
+                                         fdcg_error* error);
 
-/** Unmaps what fdcg_open_file mapped and zeroes the view. Harmless on a zeroed or memory graph. */
-void fdcg_close(fdcg_graph* graph);
+/** Unmaps what fdcg_open_file mapped and zeroes the view. Harmless on a zeroed or memory graph, and on NULL. A copy of a view
+ * that owns a mapping is zeroed and refused (FDCG_E_ARGUMENT): the graph stays open in the struct that it was opened in, or
+ * moved to. */
+FDCG_API fdcg_status fdcg_close(fdcg_graph* graph);
+
+/** Moves a graph into another struct, which must have none open and closes it from then on; *from is zeroed. FDCG_E_ARGUMENT
+ * for a copy. Contacts, scenes and views go on as they were. */
+FDCG_API fdcg_status fdcg_move_graph(fdcg_graph* from, fdcg_graph* to, fdcg_error* error);
 
 /** Touches every page of an open graph, so that no tick waits for one that is not mapped yet: for graphs in the caller's memory
  * (a mapping of its own, or memory just filled by another process), and for files that were opened without `populate`. Cost:
  * linear in the file; not for the servo thread. */
-void fdcg_warm(const fdcg_graph* graph);
+FDCG_API void fdcg_warm(const fdcg_graph* graph);
 
 /* ---- verification in chunks -------------------------------------------------------------------------------------------- */
 
@@ -201,19 +218,19 @@ typedef struct fdcg_verification {
 } fdcg_verification;
 
 /** How many chunks an open graph is verified in: at least 1, some 64 kB of the file each. */
-uint32_t fdcg_verify_chunk_count(const fdcg_graph* graph);
+FDCG_API uint32_t fdcg_verify_chunk_count(const fdcg_graph* graph);
 
 /** Verifies one chunk of a graph that was opened as trusted, and adds what it comes to to *part. Chunks of one level may be
  * done in any order, by several threads, each with a part of its own. SAFE is all chunks at FDCG_VERIFY_SAFE and then
  * fdcg_verify_sum of the parts; FULL is, once that has passed, the same again at FDCG_VERIFY_FULL. The graph must not be used
  * before. */
-fdcg_status fdcg_verify_chunk(const fdcg_graph* graph, fdcg_verify level, uint32_t chunk, fdcg_verification* part,
-                              fdcg_error* error);
+FDCG_API fdcg_status fdcg_verify_chunk(const fdcg_graph* graph, fdcg_verify level, uint32_t chunk, fdcg_verification* part,
+                                       fdcg_error* error);
 
 /** Whether the parts of all chunks, `count` of them, together are a graph's: checksums, sums of counts. FDCG_E_ARGUMENT where
  * they are not of as many chunks as the graph has. */
-fdcg_status fdcg_verify_sum(const fdcg_graph* graph, fdcg_verify level, const fdcg_verification* parts, uint32_t count,
-                            fdcg_error* error);
+FDCG_API fdcg_status fdcg_verify_sum(const fdcg_graph* graph, fdcg_verify level, const fdcg_verification* parts, uint32_t count,
+                                     fdcg_error* error);
 
 /* ---- records of a graph ------------------------------------------------------------------------------------------------ */
 
@@ -226,7 +243,7 @@ typedef struct fdcg_node_info {
   uint32_t flags;      /**< FDCG_NODE_INEXACT */
 } fdcg_node_info;
 /** Reads a node. `node` must be below header->node_count; nothing is checked, here and in the next four. */
-fdcg_node_info fdcg_get_node(const fdcg_graph* graph, uint32_t node);
+FDCG_API fdcg_node_info fdcg_get_node(const fdcg_graph* graph, uint32_t node);
 
 /** A side of a node: its end of a connection. */
 typedef struct fdcg_side_info {
@@ -238,7 +255,7 @@ typedef struct fdcg_side_info {
   uint32_t across;          /**< node, or FDCG_NONE */
 } fdcg_side_info;
 /** Reads a side of a node; `side` below the node's side_count. */
-fdcg_side_info fdcg_get_side(const fdcg_graph* graph, uint32_t node, uint32_t side);
+FDCG_API fdcg_side_info fdcg_get_side(const fdcg_graph* graph, uint32_t node, uint32_t side);
 
 /** An edge of the graph. */
 typedef struct fdcg_connection_info {
@@ -251,7 +268,7 @@ typedef struct fdcg_connection_info {
   uint32_t flatness;   /**< fdcg_flatness */
 } fdcg_connection_info;
 /** Reads a connection; its number below header->connection_count. */
-fdcg_connection_info fdcg_get_connection(const fdcg_graph* graph, uint32_t connection);
+FDCG_API fdcg_connection_info fdcg_get_connection(const fdcg_graph* graph, uint32_t connection);
 
 /** A vertex of the graph. */
 typedef struct fdcg_corner_info {
@@ -261,11 +278,11 @@ typedef struct fdcg_corner_info {
   uint32_t is_open;   /**< a boundary connection ends here */
 } fdcg_corner_info;
 /** Reads a corner; its number below header->corner_count. */
-fdcg_corner_info fdcg_get_corner(const fdcg_graph* graph, uint32_t corner);
+FDCG_API fdcg_corner_info fdcg_get_corner(const fdcg_graph* graph, uint32_t corner);
 
 /** Lists the corner's connections, counter-clockwise seen from outside, each as connection << 1 | end (end 0: its corner[0] is
  * this corner). Writes at most `capacity` of them and returns their number. Cost: linear in that. */
-uint32_t fdcg_get_fan(const fdcg_graph* graph, uint32_t corner, uint32_t* entries, uint32_t capacity);
+FDCG_API uint32_t fdcg_get_fan(const fdcg_graph* graph, uint32_t corner, uint32_t* entries, uint32_t capacity);
 
 /** Mass properties of the solid that the mesh encloses, all of one density (fdcg compile --density or --mass; a caller may set
  * its own). */
@@ -281,18 +298,18 @@ typedef struct fdcg_mass {
 /** Reads the mass properties. FDCG_E_ABSENT where the file holds none: an open mesh, one that is inside out, or --without mass.
  * FDCG_E_GRAPH where its numbers cannot be: a damaged file that was opened as trusted. On failure *mass is zeroed. Cost: a look
  * at the section table. */
-fdcg_status fdcg_get_mass(const fdcg_graph* graph, fdcg_mass* mass, fdcg_error* error);
+FDCG_API fdcg_status fdcg_get_mass(const fdcg_graph* graph, fdcg_mass* mass, fdcg_error* error);
 
 /** The material of a node (below header->node_count), by number. Materials are those of the mesh file (OBJ usemtl, glTF
  * material). FDCG_NONE: its faces have none, or the file has no materials. */
-uint32_t fdcg_get_node_material(const fdcg_graph* graph, uint32_t node);
+FDCG_API uint32_t fdcg_get_node_material(const fdcg_graph* graph, uint32_t node);
 /** The name that the mesh file gives a material; lives as long as the graph. NULL: there is no such material. */
-const char* fdcg_get_material_name(const fdcg_graph* graph, uint32_t material);
+FDCG_API const char* fdcg_get_material_name(const fdcg_graph* graph, uint32_t material);
 /** The number of a material, by name. FDCG_NONE: there is none. Cost: linear in the materials. */
-uint32_t fdcg_find_material(const fdcg_graph* graph, const char* name);
+FDCG_API uint32_t fdcg_find_material(const fdcg_graph* graph, const char* name);
 
 /** The checksum of the format: `bytes` bytes at `data`. Any change of one byte changes it (schemas/fdcg-v1.md). */
-uint64_t fdcg_checksum(const void* data, uint64_t bytes);
+FDCG_API uint64_t fdcg_checksum(const void* data, uint64_t bytes);
 
 /* ---- step -------------------------------------------------------------------------------------------------------------- */
 
@@ -376,7 +393,7 @@ typedef struct fdcg_material {
 
 /** Combines two materials in contact: coefficients by their geometric mean (so that a frictionless one stays so, equal ones
  * stay as they are, and mu_static >= mu_dynamic), stiffness as of two springs in series. */
-fdcg_material fdcg_combine_materials(const fdcg_material* surface, const fdcg_material* finger);
+FDCG_API fdcg_material fdcg_combine_materials(const fdcg_material* surface, const fdcg_material* finger);
 
 /** What a contact feels like. Make it by fdcg_make_params, then change fields, then fdcg_check_params. */
 typedef struct fdcg_params {
@@ -403,17 +420,18 @@ typedef struct fdcg_params {
 /** Sets the first `struct_bytes` bytes of *params: mu 0.6 static, 0.4 dynamic, 1,000 N/m, no damping, 1 kHz, wedge, no friction
  * flags; for those: Stribeck 0.05 m/s, viscous 0.1 s/m, presliding 100,000 N/m, lag 0.03 s, depth 0.01 m, a finger of mu 1 and
  * 10,000 N/m, no materials. */
-void fdcg_params_init(fdcg_params* params, uint32_t struct_bytes);
+FDCG_API void fdcg_params_init(fdcg_params* params, uint32_t struct_bytes);
 /** The default parameters of fdcg_params_init. */
-static inline fdcg_params fdcg_make_params(void) {
+FDCG_INLINE fdcg_params fdcg_make_params(void) {
   fdcg_params params;
   fdcg_params_init(&params, (uint32_t)sizeof params);
   return params;
 }
 
-/** Checks every field. FDCG_E_ARGUMENT, with the field, its value and its limit in the message, unless all are in range. The
- * step does not check: call this whenever the parameters change. */
-fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
+/** Checks every field. FDCG_E_ARGUMENT, with the field, its value and its limit in the message, unless all are in range. Call
+ * this whenever the parameters change. The step itself looks at struct_bytes, and where a contact begins at the coefficients,
+ * stiffness and damping (FDCG_RESULT_BAD_PARAMS); the rest it does not check. */
+FDCG_API fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
 
 /** A sweep through free space that one tick could not finish. The path is frozen: from the god-object, which stays where it is,
  * to `target`. Later ticks test the faces in index order, from `next_leaf` on, until all that the path may meet are done. Then
@@ -458,13 +476,18 @@ typedef struct fdcg_contact {
   fdcg_clear_ball clear_ball;      /**< where no sweep is needed */
   double slip_m_per_s;             /**< the speed that friction has followed to, where it lags; else 0 */
   double stiffness_n_per_m;        /**< current stiffness, where materials or presliding count. 0: a new contact */
+  uint64_t on; /**< marks the graph, deformable mesh or kind of surface that it is on: on another it is refused. 0: not yet */
 } fdcg_contact;
 
 /** What was special about a tick. */
 typedef enum fdcg_result_flag {
   FDCG_RESULT_NON_FINITE = 1,       /**< HIP was NaN, infinite or absurdly far away: nothing moved, no force */
   FDCG_RESULT_TRANSITION_BOUND = 2, /**< work is carried over; the god-object is valid and goes on next tick */
-  FDCG_RESULT_SWEEP_BOUND = 4       /**< a sweep is carried over: free, no force; it goes on next tick */
+  FDCG_RESULT_SWEEP_BOUND = 4,      /**< a sweep is carried over: free, no force; it goes on next tick */
+  FDCG_RESULT_OTHER_CONTACT = 8,    /**< refused: the contact is on another graph or kind of surface; start from one of zeros */
+  FDCG_RESULT_BAD_PARAMS = 16,      /**< refused: params of zeros, of another size, or out of range where the contact began */
+  FDCG_RESULT_NOT_OPEN = 32,        /**< refused: nothing is open in the graph */
+  FDCG_RESULT_REFUSED = 56          /**< any of these three: nothing moved, no force */
 } fdcg_result_flag;
 
 /** What the hand should feel, and where the god-object is. */
@@ -490,8 +513,8 @@ typedef struct fdcg_result {
  * which the largest is a face that the path meets within rounding: an exact sign for each of its sides, of which fdcg compile
  * gives a face at most 16. The dearest tick that a search over 23 awkward bodies has found takes 11 us
  * (tests/bench/worst_case.cpp), all but a few under 5. */
-void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
-               fdcg_result* result);
+FDCG_API void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
+                        fdcg_result* result);
 
 #ifdef __cplusplus
 }

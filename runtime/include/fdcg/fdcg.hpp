@@ -26,13 +26,12 @@ class Graph {
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
   /// Leaves `other` with nothing open.
-  Graph(Graph&& other) noexcept : graph_(other.graph_) { other.graph_ = {}; }
+  Graph(Graph&& other) noexcept { fdcg_move_graph(&other.graph_, &graph_, nullptr); }
   /// Closes what was open, and leaves `other` with nothing open.
   Graph& operator=(Graph&& other) noexcept {
     if (this != &other) {
       fdcg_close(&graph_);
-      graph_ = other.graph_;
-      other.graph_ = {};
+      fdcg_move_graph(&other.graph_, &graph_, nullptr);
     }
     return *this;
   }

@@ -82,36 +82,37 @@ typedef struct fdcg_pile_config {
   uint32_t reserved;               /**< 0 */
 } fdcg_pile_config;
 
-/** Sets the first `struct_bytes` bytes of *config: 64 objects, 128 points, 128 touches, ratios 1 and 4; some 70 KB. */
-void fdcg_pile_config_init(fdcg_pile_config* config, uint32_t struct_bytes);
+/** Sets the first `struct_bytes` bytes of *config: 64 objects, 128 points, 128 touches, ratios 1 and 4; some 75 KB. */
+FDCG_API void fdcg_pile_config_init(fdcg_pile_config* config, uint32_t struct_bytes);
 /** The default config of fdcg_pile_config_init. */
-static inline fdcg_pile_config fdcg_make_pile_config(void) {
+FDCG_INLINE fdcg_pile_config fdcg_make_pile_config(void) {
   fdcg_pile_config config;
   fdcg_pile_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
 /** The bytes that fdcg_pile_create needs; 0 if the config is out of range (fdcg_pile_create says why). */
-uint64_t fdcg_pile_bytes(const fdcg_pile_config* config);
+FDCG_API uint64_t fdcg_pile_bytes(const fdcg_pile_config* config);
 
 /** Makes an empty pile without ground at `memory`, a multiple of 8. `error` may be NULL, here and below. */
-fdcg_status fdcg_pile_create(void* memory, uint64_t bytes, const fdcg_pile_config* config, fdcg_pile** pile, fdcg_error* error);
+FDCG_API fdcg_status fdcg_pile_create(void* memory, uint64_t bytes, const fdcg_pile_config* config, fdcg_pile** pile,
+                                      fdcg_error* error);
 
 /** Sets the ground: solid where normal . x < offset_m, world; a normal of unit length within 1e-3 (made exactly so). params
  * NULL takes it away. Of them, what counts are the two coefficients, the stiffness and the friction curve
  * (FDCG_FRICTION_STRIBECK, _VISCOUS, _LAG); it has no edges, no faces with materials, and no presliding. A point that begins
  * below it is pushed out. */
-fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal[3], double offset_m, const fdcg_params* params,
-                                 fdcg_error* error);
+FDCG_API fdcg_status fdcg_pile_set_ground(fdcg_pile* pile, const double normal[3], double offset_m, const fdcg_params* params,
+                                          fdcg_error* error);
 
 /** Adds an object of the scene: `point_count` points in its own frame, before the pose's scale, up to 1e12 m; none for one
  * that is only touched. Called again for the same object: with other points, letting go of what it touched. FDCG_E_ARGUMENT
  * where the capacities do not suffice. Cost: the points and the touches. (C before C23, asked to be pedantic, warns of points
  * that are not const: the cast is (const double(*)[3])points.) */
-fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, fdcg_object_id object, const double (*points_m)[3],
-                          uint32_t point_count, fdcg_error* error);
+FDCG_API fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, fdcg_object_id object, const double (*points_m)[3],
+                                   uint32_t point_count, fdcg_error* error);
 /** Takes an object out. One that left the scene leaves by itself. */
-fdcg_status fdcg_pile_remove(fdcg_pile* pile, fdcg_object_id object, fdcg_error* error);
+FDCG_API fdcg_status fdcg_pile_remove(fdcg_pile* pile, fdcg_object_id object, fdcg_error* error);
 
 /** Picks points for a graph's body, in the object's frame, `capacity` (1 to 256) of them or fewer. First corners: for each of
  * 64 * capacity directions spread over the sphere the one farthest that way, each once, in the order found: all corners of a
@@ -121,20 +122,20 @@ fdcg_status fdcg_pile_remove(fdcg_pile* pile, fdcg_object_id object, fdcg_error*
  * other need. Each is drawn in by 1/1024 of its way from the corners' mean: boxes that lie flush, edge over edge, then stand on
  * one another. For set-up: reads the graph's corners 64 * capacity times (20 ms for 10^4 corners and 32 points); 12 KB of
  * stack. */
-fdcg_status fdcg_pick_points(const fdcg_graph* graph, double (*points_m)[3], uint32_t capacity, uint32_t* count,
-                             fdcg_error* error);
+FDCG_API fdcg_status fdcg_pick_points(const fdcg_graph* graph, double (*points_m)[3], uint32_t capacity, uint32_t* count,
+                                      fdcg_error* error);
 
 /** Makes a tick like fdcg_scene_step_bodies (body.h: arguments, errors), where the pile's members meet as well, in every
  * substep. `reactions` are those to the fingers. A body that is no member meets nothing but fingers. */
-fdcg_status fdcg_scene_step_pile(fdcg_scene* scene, fdcg_pile* pile, fdcg_scene_body* bodies, uint32_t body_count,
-                                 uint32_t substeps, double tick_s, fdcg_reaction* reactions, uint32_t reaction_count,
-                                 fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_step_pile(fdcg_scene* scene, fdcg_pile* pile, fdcg_scene_body* bodies, uint32_t body_count,
+                                          uint32_t substeps, double tick_s, fdcg_reaction* reactions, uint32_t reaction_count,
+                                          fdcg_error* error);
 
 /** How many substeps a tick of tick_s takes so that no touch between any two of the pile's members, or with the ground, is made
  * softer than their parameters ask: 1 to FDCG_BODY_MAX_SUBSTEPS; 0 where more would be needed. `bodies`: those of the ticks.
  * For set-up: the square of the members, times their points. */
-uint32_t fdcg_pile_get_substeps(const fdcg_pile* pile, const fdcg_scene* scene, const fdcg_scene_body* bodies,
-                                uint32_t body_count, double tick_s);
+FDCG_API uint32_t fdcg_pile_get_substeps(const fdcg_pile* pile, const fdcg_scene* scene, const fdcg_scene_body* bodies,
+                                         uint32_t body_count, double tick_s);
 
 /** One point that presses on something. */
 typedef struct fdcg_pile_touch {
@@ -155,7 +156,7 @@ typedef struct fdcg_pile_touch {
 } fdcg_pile_touch;
 
 /** Copies at most `capacity` touches, by object and point, and returns how many there are. Cost: the points. */
-uint32_t fdcg_pile_get_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity);
+FDCG_API uint32_t fdcg_pile_get_touches(const fdcg_pile* pile, fdcg_pile_touch* touches, uint32_t capacity);
 
 /** What happened since the pile was made. */
 typedef struct fdcg_pile_counts {
@@ -165,7 +166,7 @@ typedef struct fdcg_pile_counts {
   uint64_t softened_steps;      /**< those of them with less stiffness than was asked for */
 } fdcg_pile_counts;
 /** Reads the counts. */
-fdcg_pile_counts fdcg_pile_get_counts(const fdcg_pile* pile);
+FDCG_API fdcg_pile_counts fdcg_pile_get_counts(const fdcg_pile* pile);
 
 #ifdef __cplusplus
 }

@@ -29,14 +29,14 @@
  * stiffness and damping act on the distance in the world; friction does not depend on scale, and speeds of its curve are those
  * in the world.
  *
- * **Ownership.** The scene lives in the caller's memory, and points to graphs and deformable meshes, which must outlive it.
- * Params, poses, surfaces and materials are copied in; fdcg_params.materials is pointed to.
+ * **Ownership.** The scene lives in the caller's memory. Graphs' views, params with their tables of materials, poses and
+ * surfaces are copied in, and may go or move; the bytes that a graph views, and deformable meshes, must outlive the scene.
  *
  * **Cost.** A free finger out of reach of every object costs a comparison (some 10 ns), however many objects there are. When
  * its own motion and the objects' largest together have used up the distance that it last measured, it measures again to all of
  * them (2 to 3 ns each: 2.5 us for 1,000). An object that it may have met costs a fdcg_step and two changes of frame; so a
  * finger's step is at most one such measurement and touches_per_finger steps. Memory: 0.2 KB a finger and, for each of
- * touches_per_finger, 0.3 KB; 0.7 KB an object. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
+ * touches_per_finger, 0.3 KB; 0.9 KB an object. Nothing allocates, locks, recurses or reads a clock; every loop is bounded by
  * the capacities in the config.
  *
  * **Threads.** The scene holds no lock. fdcg_scene_step is fdcg_scene_advance, then fdcg_scene_step_finger for every finger.
@@ -54,19 +54,20 @@
 extern "C" {
 #endif
 
-/** A scene, in memory of the caller's. Holds no pointer into itself: copied as a whole, to another multiple of 8, it is an
- * independent snapshot. There is nothing to destroy. */
+/** A scene, in memory of the caller's. Copied as a whole, to another multiple of 8, it is an independent snapshot, in which the
+ * same ids name the same objects and fingers. There is nothing to destroy. */
 typedef struct fdcg_scene fdcg_scene;
 
-/** Names an object by value; all zeros name none. What was removed is not found again under its old name. */
+/** Names an object by value; all zeros name none. What was removed is not found again under its old name, and ids of another
+ * scene name nothing: their numbers begin elsewhere. */
 typedef struct fdcg_object_id {
   uint32_t index;      /**< its place; fdcg_reaction arrays are by it */
-  uint32_t generation; /**< how often that place was used */
+  uint32_t generation; /**< one more for each time that the place was used, from a number that differs from scene to scene */
 } fdcg_object_id;
 /** Names a finger by value, likewise. */
 typedef struct fdcg_finger_id {
   uint32_t index;      /**< its place */
-  uint32_t generation; /**< how often that place was used */
+  uint32_t generation; /**< likewise */
 } fdcg_finger_id;
 
 /** Where an object is: world = R (scale * object) + translation, and back: object = (R^T (world - translation)) / scale, where
@@ -79,7 +80,7 @@ typedef struct fdcg_pose {
 } fdcg_pose;
 
 /** A pose of no rotation, no translation, scale 1. */
-fdcg_pose fdcg_make_identity_pose(void);
+FDCG_API fdcg_pose fdcg_make_identity_pose(void);
 
 /** What a scene does not do where it cannot matter. Each can be switched off in the config: every force stays the same, bit
  * for bit, and the difference in time is what it saves. */
@@ -100,79 +101,89 @@ typedef struct fdcg_scene_config {
   uint32_t touches_per_finger;     /**< 1 to 32: objects that one finger can touch, or have within its reach, at once */
   uint32_t disabled_optimizations; /**< fdcg_scene_optimization bits that are off; 0: all are on */
   uint32_t has_soft_fingers;       /**< 1: room for fingers that resist being turned (soft_finger.h), 0.1 KB a touch; else 0 */
-  uint32_t has_deforms; /**< 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
-  uint32_t reserved;    /**< 0 */
+  uint32_t has_deforms;       /**< 1: room for objects that are deformable meshes (deform.h), some 24 bytes a touch; else 0 */
+  uint32_t material_capacity; /**< rows of fdcg_params.materials, of all objects together, 24 bytes each; 0: 64 */
 } fdcg_scene_config;
 
-/** Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every optimization on; some 57
+/** Sets the first `struct_bytes` bytes of *config: 64 objects, 8 fingers, 4 touches a finger, every optimization on; some 69
  * KB. */
-void fdcg_scene_config_init(fdcg_scene_config* config, uint32_t struct_bytes);
+FDCG_API void fdcg_scene_config_init(fdcg_scene_config* config, uint32_t struct_bytes);
 /** The default config of fdcg_scene_config_init. */
-static inline fdcg_scene_config fdcg_make_scene_config(void) {
+FDCG_INLINE fdcg_scene_config fdcg_make_scene_config(void) {
   fdcg_scene_config config;
   fdcg_scene_config_init(&config, (uint32_t)sizeof config);
   return config;
 }
 
 /** The bytes that fdcg_scene_create needs; 0 if the config is out of range (fdcg_scene_create says why). */
-uint64_t fdcg_scene_bytes(const fdcg_scene_config* config);
+FDCG_API uint64_t fdcg_scene_bytes(const fdcg_scene_config* config);
 
 /** Makes an empty scene at `memory`, a multiple of 8. `error` may be NULL, here and below. */
-fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdcg_scene_config* config, fdcg_scene** scene,
-                              fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdcg_scene_config* config, fdcg_scene** scene,
+                                       fdcg_error* error);
 
 /* ---- objects ----------------------------------------------------------------------------------------------------------- */
 
 /** Adds an object, a graph at a pose. A finger that is inside the object when it is added passes out of it freely. Cost: the
  * graph's header. */
-fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph* graph, const fdcg_params* params, const fdcg_pose* pose,
-                                  fdcg_object_id* object, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph* graph, const fdcg_params* params,
+                                           const fdcg_pose* pose, fdcg_object_id* object, fdcg_error* error);
 /** Removes an object: every finger lets go of it. Cost: the fingers. */
-fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_id object, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_id object, fdcg_error* error);
 
 /** Moves an object, from the next advance on: the tick between sweeps from the old pose to the new one. FDCG_E_ARGUMENT, and
  * the old pose stays, unless every number is in range. */
-fdcg_status fdcg_scene_set_pose(fdcg_scene* scene, fdcg_object_id object, const fdcg_pose* pose, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_set_pose(fdcg_scene* scene, fdcg_object_id object, const fdcg_pose* pose, fdcg_error* error);
 /** Changes an object's parameters, from the next step on. FDCG_E_ARGUMENT, and the old ones stay, unless fdcg_check_params
  * takes them. */
-fdcg_status fdcg_scene_set_params(fdcg_scene* scene, fdcg_object_id object, const fdcg_params* params, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_set_params(fdcg_scene* scene, fdcg_object_id object, const fdcg_params* params,
+                                           fdcg_error* error);
+
+/** Gives an object another graph, a mesh compiled anew: fingers that touch go on at the nearest place of it, with the friction
+ * that they had; others start anew. The graph before may be closed then. FDCG_E_ARGUMENT for surfaces and deformable meshes.
+ * Cost: the fingers, and a search (query.h) for each that touches; not for the servo thread. */
+FDCG_API fdcg_status fdcg_scene_replace_graph(fdcg_scene* scene, fdcg_object_id object, const fdcg_graph* graph,
+                                              fdcg_error* error);
 
 /** Switches an object off (0) or on. A disabled object is not felt; enabled again it is as if just added, where its pose is. */
-fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_id object, int is_enabled, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_id object, int is_enabled, fdcg_error* error);
 
 /* ---- fingers ----------------------------------------------------------------------------------------------------------- */
 
 /** Adds a finger. It begins, free, where it is when it is stepped for the first time: nothing on the way there is met. From
  * then on its motion is swept. */
-fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip_world_m[3], fdcg_finger_id* finger, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_add_finger(fdcg_scene* scene, const double hip_world_m[3], fdcg_finger_id* finger,
+                                           fdcg_error* error);
 /** Removes a finger. */
-fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_remove_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
 
 /** Says where a finger's HIP is in the next step. Not moved, it stays. Any number is taken: one that is not finite or beyond
  * 1e100 is found by the step, which then leaves the HIP where it was, gives no force and counts it. */
-fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_move_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3],
+                                            fdcg_error* error);
 
 /** Says what a finger is made of, combined with what it touches (fdcg_combine_materials); NULL: nothing of its own. From the
  * next step on. FDCG_E_ARGUMENT, and the old one stays, unless 0 <= mu_dynamic <= mu_static and the stiffness is above 0. A
  * library built without FDCG_WITH_FRICTION_TERMS does it too: faces have no materials of their own there, and the object's are
  * combined. */
-fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
-                                           fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_set_finger_material(fdcg_scene* scene, fdcg_finger_id finger, const fdcg_material* material,
+                                                    fdcg_error* error);
 
 /** Lets go of everything and starts anew at a place, as if just added: nothing on the way there is met. */
-fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3], fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_reset_finger(fdcg_scene* scene, fdcg_finger_id finger, const double hip_world_m[3],
+                                             fdcg_error* error);
 
 /* ---- step -------------------------------------------------------------------------------------------------------------- */
 
 /** A tick: takes in the poses that were set, steps every finger. */
-void fdcg_scene_step(fdcg_scene* scene);
+FDCG_API void fdcg_scene_step(fdcg_scene* scene);
 
 /** First half of fdcg_scene_step, for fingers on threads of their own: begins a tick and takes in the poses that were set. */
-void fdcg_scene_advance(fdcg_scene* scene);
+FDCG_API void fdcg_scene_advance(fdcg_scene* scene);
 /** Second half, for one finger. It may be stepped several times in a tick (a device faster than the objects) but should be at
  * least once: of a tick that it missed it does not see the motion of objects that it did not touch, and
  * FDCG_FINGER_MISSED_TICK is set. */
-fdcg_status fdcg_scene_step_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_step_finger(fdcg_scene* scene, fdcg_finger_id finger, fdcg_error* error);
 
 /** What was special about a finger's step. */
 typedef enum fdcg_finger_flag {
@@ -208,8 +219,8 @@ typedef struct fdcg_finger_result {
 } fdcg_finger_result;
 
 /** Reads what a finger felt in its last step. */
-fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result,
-                                  fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_get_result(const fdcg_scene* scene, fdcg_finger_id finger, fdcg_finger_result* result,
+                                           fdcg_error* error);
 
 /** What the fingers do to an object. */
 typedef struct fdcg_reaction {
@@ -218,7 +229,7 @@ typedef struct fdcg_reaction {
 } fdcg_reaction;
 /** What the fingers do to the objects. Zeroes `reactions` and adds the fingers' last results up, in ascending order. `count`
  * entries by object index; objects beyond are left out. Cost: the fingers. */
-void fdcg_scene_get_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count);
+FDCG_API void fdcg_scene_get_reactions(const fdcg_scene* scene, fdcg_reaction* reactions, uint32_t count);
 
 #ifdef __cplusplus
 }

@@ -45,16 +45,16 @@ extern "C" {
  * p r dA / N, which is 2/3 of its radius where the pressure is even. The torque's limit for each newton of load is mu radius_m,
  * which `fdcg grasp` calls torsion; its --pad-radius is this radius. 0: a point again. FDCG_E_ARGUMENT where the scene has no
  * room for soft fingers. `error` may be NULL, here and below. */
-fdcg_status fdcg_scene_set_finger_radius(fdcg_scene* scene, fdcg_finger_id finger, double radius_m, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_set_finger_radius(fdcg_scene* scene, fdcg_finger_id finger, double radius_m, fdcg_error* error);
 
 /** Says where a finger points in the next step: world, a unit quaternion within 1e-3, real part last. At first 0, 0, 0, 1.
  * Not called, it stays. It must turn by less than half a turn from tick to tick. */
-fdcg_status fdcg_scene_set_finger_rotation(fdcg_scene* scene, fdcg_finger_id finger, const double rotation_xyzw[4],
-                                           fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_set_finger_rotation(fdcg_scene* scene, fdcg_finger_id finger, const double rotation_xyzw[4],
+                                                    fdcg_error* error);
 
 /** Reads the torque on a finger, world: the sum over its touches in the last step. Zero for a finger that is not soft. */
-fdcg_status fdcg_scene_get_finger_torque(const fdcg_scene* scene, fdcg_finger_id finger, double torque_n_m[3],
-                                         fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_get_finger_torque(const fdcg_scene* scene, fdcg_finger_id finger, double torque_n_m[3],
+                                                  fdcg_error* error);
 
 #ifdef __cplusplus
 }

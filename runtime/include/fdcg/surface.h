@@ -87,26 +87,26 @@ typedef struct fdcg_surface {
  * makes and no others: the makers below read these, and fdcg_surface_init and fdcg_make_surface, which do not know the kind,
  * link all. Of a surface that was made by none of them and whose kind is not linked, fdcg_check_surface says so, and the step
  * feels nothing. */
-extern const uint32_t fdcg_linked_plane;
-extern const uint32_t fdcg_linked_sphere;    /**< FDCG_SURFACE_SPHERE */
-extern const uint32_t fdcg_linked_cylinder;  /**< FDCG_SURFACE_CYLINDER */
-extern const uint32_t fdcg_linked_capsule;   /**< FDCG_SURFACE_CAPSULE */
-extern const uint32_t fdcg_linked_box;       /**< FDCG_SURFACE_BOX */
-extern const uint32_t fdcg_linked_cone;      /**< FDCG_SURFACE_CONE */
-extern const uint32_t fdcg_linked_torus;     /**< FDCG_SURFACE_TORUS */
-extern const uint32_t fdcg_linked_ellipsoid; /**< FDCG_SURFACE_ELLIPSOID */
+FDCG_API extern const uint32_t fdcg_linked_plane;
+FDCG_API extern const uint32_t fdcg_linked_sphere;    /**< FDCG_SURFACE_SPHERE */
+FDCG_API extern const uint32_t fdcg_linked_cylinder;  /**< FDCG_SURFACE_CYLINDER */
+FDCG_API extern const uint32_t fdcg_linked_capsule;   /**< FDCG_SURFACE_CAPSULE */
+FDCG_API extern const uint32_t fdcg_linked_box;       /**< FDCG_SURFACE_BOX */
+FDCG_API extern const uint32_t fdcg_linked_cone;      /**< FDCG_SURFACE_CONE */
+FDCG_API extern const uint32_t fdcg_linked_torus;     /**< FDCG_SURFACE_TORUS */
+FDCG_API extern const uint32_t fdcg_linked_ellipsoid; /**< FDCG_SURFACE_ELLIPSOID */
 /** All kinds, by fdcg_surface_kind. */
-extern const uint32_t* const fdcg_linked_surfaces[8];
+FDCG_API extern const uint32_t* const fdcg_linked_surfaces[8];
 
 /** Sets the first `struct_bytes` bytes of *surface: a plane, which is all zero except for struct_bytes. */
-static inline void fdcg_surface_init(fdcg_surface* surface, uint32_t struct_bytes) {
+FDCG_INLINE void fdcg_surface_init(fdcg_surface* surface, uint32_t struct_bytes) {
   if (surface == NULL) return;
   memset((void*)surface, 0, struct_bytes);
   surface->struct_bytes = struct_bytes;
   surface->kind = *fdcg_linked_surfaces[FDCG_SURFACE_PLANE];
 }
 /** A surface of one of the kinds above; what the makers share. */
-static inline fdcg_surface fdcg_make_linked_surface(uint32_t linked_kind, double radius_m, double length_m) {
+FDCG_INLINE fdcg_surface fdcg_make_linked_surface(uint32_t linked_kind, double radius_m, double length_m) {
   fdcg_surface surface;
   memset((void*)&surface, 0, sizeof surface);
   surface.struct_bytes = (uint32_t)sizeof surface;
@@ -116,41 +116,41 @@ static inline fdcg_surface fdcg_make_linked_surface(uint32_t linked_kind, double
   return surface;
 }
 /** A surface of a kind that is known when the program runs, with a radius and a length; set other sizes in its fields. */
-static inline fdcg_surface fdcg_make_surface(fdcg_surface_kind kind, double radius_m, double length_m) {
+FDCG_INLINE fdcg_surface fdcg_make_surface(fdcg_surface_kind kind, double radius_m, double length_m) {
   fdcg_surface surface = fdcg_make_linked_surface(*fdcg_linked_surfaces[FDCG_SURFACE_PLANE], radius_m, length_m);
   surface.kind = (uint32_t)kind;
   return surface;
 }
 /** The plane z = 0, solid below. */
-static inline fdcg_surface fdcg_make_plane(void) {
+FDCG_INLINE fdcg_surface fdcg_make_plane(void) {
   return fdcg_make_linked_surface(fdcg_linked_plane, 0, 0);
 }
 /** A ball. */
-static inline fdcg_surface fdcg_make_sphere(double radius_m) {
+FDCG_INLINE fdcg_surface fdcg_make_sphere(double radius_m) {
   return fdcg_make_linked_surface(fdcg_linked_sphere, radius_m, 0);
 }
 /** A cylinder along z. */
-static inline fdcg_surface fdcg_make_cylinder(double radius_m, double length_m) {
+FDCG_INLINE fdcg_surface fdcg_make_cylinder(double radius_m, double length_m) {
   return fdcg_make_linked_surface(fdcg_linked_cylinder, radius_m, length_m);
 }
 /** A cylinder along z between two half balls, whose centres are length_m apart. */
-static inline fdcg_surface fdcg_make_capsule(double radius_m, double length_m) {
+FDCG_INLINE fdcg_surface fdcg_make_capsule(double radius_m, double length_m) {
   return fdcg_make_linked_surface(fdcg_linked_capsule, radius_m, length_m);
 }
 /** A cone or frustum along z: radius_m at the bottom, top_radius_m at the top. */
-static inline fdcg_surface fdcg_make_cone(double radius_m, double top_radius_m, double length_m) {
+FDCG_INLINE fdcg_surface fdcg_make_cone(double radius_m, double top_radius_m, double length_m) {
   fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_cone, radius_m, length_m);
   surface.top_radius_m = top_radius_m;
   return surface;
 }
 /** A ring about z. */
-static inline fdcg_surface fdcg_make_torus(double radius_m, double tube_radius_m) {
+FDCG_INLINE fdcg_surface fdcg_make_torus(double radius_m, double tube_radius_m) {
   fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_torus, radius_m, 0);
   surface.tube_radius_m = tube_radius_m;
   return surface;
 }
 /** A box with half its sides given. */
-static inline fdcg_surface fdcg_make_box(double half_x_m, double half_y_m, double half_z_m) {
+FDCG_INLINE fdcg_surface fdcg_make_box(double half_x_m, double half_y_m, double half_z_m) {
   fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_box, 0, 0);
   surface.half_m[0] = half_x_m;
   surface.half_m[1] = half_y_m;
@@ -158,7 +158,7 @@ static inline fdcg_surface fdcg_make_box(double half_x_m, double half_y_m, doubl
   return surface;
 }
 /** An ellipsoid with its semi-axes given. */
-static inline fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m, double half_z_m) {
+FDCG_INLINE fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m, double half_z_m) {
   fdcg_surface surface = fdcg_make_linked_surface(fdcg_linked_ellipsoid, 0, 0);
   surface.half_m[0] = half_x_m;
   surface.half_m[1] = half_y_m;
@@ -169,26 +169,26 @@ static inline fdcg_surface fdcg_make_ellipsoid(double half_x_m, double half_y_m,
 /** Checks every field. FDCG_E_ARGUMENT, with the field, its value and its limit in the message, unless every field is in range:
  * sizes of 1e-9 to 1e9 m, none less than 1e-4 of the largest (a tube's radius at most 1 - 1e-4 of the torus'), and no field set
  * that the kind does not name; a capsule's length may be 0, and so may one radius of a cone. The step does not check. */
-fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_error* error);
+FDCG_API fdcg_status fdcg_check_surface(const fdcg_surface* surface, fdcg_error* error);
 
 /** Moves the contact to the HIP of this tick and computes what the hand should feel: fdcg_step for a surface. Of *params
  * neither disabled_optimizations nor `terms` count: friction is that of the two coefficients. */
-void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* contact,
-                       const double hip_object_m[3], fdcg_result* result);
+FDCG_API void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params* params, fdcg_contact* contact,
+                                const double hip_object_m[3], fdcg_result* result);
 
 /** Reads the unit normal, away from the material, at result->god_object_m; on an edge or a vertex the direction of the sum of
  * those of its faces. Zero where the result is FDCG_FREE. */
-void fdcg_surface_get_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]);
+FDCG_API void fdcg_surface_get_normal(const fdcg_surface* surface, const fdcg_result* result, double normal[3]);
 
 /** Computes volume, centroid and inertia in closed form; the density is the caller's (fdcg_body_set_mass). FDCG_E_ABSENT for a
  * plane and for what is hollow: they have no end. */
-fdcg_status fdcg_surface_get_mass(const fdcg_surface* surface, fdcg_mass* mass, fdcg_error* error);
+FDCG_API fdcg_status fdcg_surface_get_mass(const fdcg_surface* surface, fdcg_mass* mass, fdcg_error* error);
 
 /** Adds a surface to a scene, as fdcg_scene_add_object does a graph; the scene keeps a copy of the surface. All else of scene.h
  * takes the object as any other. A plane is in reach of every finger near it or below it, and takes one of its
  * touches_per_finger there; a plane that is turned, or the like, makes every finger look at all objects. */
-fdcg_status fdcg_scene_add_surface(fdcg_scene* scene, const fdcg_surface* surface, const fdcg_params* params,
-                                   const fdcg_pose* pose, fdcg_object_id* object, fdcg_error* error);
+FDCG_API fdcg_status fdcg_scene_add_surface(fdcg_scene* scene, const fdcg_surface* surface, const fdcg_params* params,
+                                            const fdcg_pose* pose, fdcg_object_id* object, fdcg_error* error);
 
 #ifdef __cplusplus
 }

@@ -2,6 +2,7 @@
 // Build options of the runtime. Each is 0 or 1 and may be set on the compiler's command line; CMake has options of these names.
 #pragma once
 
+#include "base/arithmetic.hpp"
 #include "fdcg/fdcg.h"
 
 // Graphs of either precision. A library without one refuses its files (FDCG_E_VERSION) and is some 40 % smaller.

@@ -24,14 +24,13 @@ inline const Struct& in_full(const Struct& given, Struct* room, Init init) {
 }
 
 // Writes the defaults' first `struct_bytes` bytes over *to, which may be null; what lies beyond the library's own struct is
-// zeroed.
+// left as it is: such a struct is refused where it is checked.
 template <class Struct>
 inline void fill_defaults(Struct* to, Struct defaults, uint32_t struct_bytes) {
   if (to == nullptr) return;
   const uint32_t known = struct_bytes < sizeof(Struct) ? struct_bytes : uint32_t{sizeof(Struct)};
   defaults.struct_bytes = struct_bytes;
   memcpy(static_cast<void*>(to), &defaults, known);
-  if (struct_bytes > known) memset(reinterpret_cast<unsigned char*>(to) + known, 0, struct_bytes - known);
 }
 
 // `what` names the struct and how to start from its defaults.

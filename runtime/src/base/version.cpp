@@ -17,7 +17,10 @@ extern "C" const char* fdcg_status_text(fdcg_status status) {
                                        "header and section table contradict themselves",
                                        "bytes have changed since the file was written",
                                        "an index or a number inside a section is out of range",
-                                       "the file does not hold what is asked for"};
+                                       "the file does not hold what is asked for",
+                                       "the processor or the compiler rounds otherwise than the step needs",
+                                       "the mesh has errors",
+                                       "there is no memory left"};
   const auto index = static_cast<uint32_t>(status);
-  return index <= FDCG_E_ABSENT ? kTexts[index] : "unknown status";
+  return index <= FDCG_E_MEMORY ? kTexts[index] : "unknown status";
 }

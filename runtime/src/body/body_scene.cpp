@@ -33,6 +33,31 @@ fdcg_status check_objects(const fdcg_scene_body* bodies, uint32_t body_count, fd
   return message.say(": its object is that of body ", first, " too; an object is one body's: give each its own");
 }
 
+// Whether a body stands where its object's latest pose is, but for rounding.
+bool is_at(const Object& object, const fdcg_pose& pose) {
+  constexpr double kShare = 1e-9;  // of lengths: far above rounding, far below a tick's way
+  const World translation = vec(pose.translation_m), gap = translation - vec(object.asked.translation_m);
+  if (!(norm1(gap) <= kShare * (norm1(translation) + object.now.radius))) return false;
+  for (int k = 0; k < 4; ++k) {
+    if (!(absolute(pose.rotation_xyzw[k] - object.asked.rotation_xyzw[k]) <= kShare)) return false;
+  }
+  return absolute(pose.scale - object.asked.scale) <= kShare * pose.scale;
+}
+
+// A pose that was set beside the body's, and a body that was moved beside its scene, would be lost or count twice.
+fdcg_status check_places(const fdcg_scene* scene, const fdcg_scene_body* bodies, uint32_t body_count, fdcg_error* error) {
+  for (uint32_t i = 0; i < body_count; ++i) {
+    const Object* const object = find_object(const_cast<fdcg_scene*>(scene), bodies[i].object, error);
+    if (object == nullptr) return FDCG_E_ARGUMENT;
+    if (is_at(*object, fdcg_body_get_pose(&bodies[i].body))) continue;
+    return Message(error, FDCG_E_ARGUMENT)
+        .say("body ", i, ": it is not where its object is. Either the object's pose was set, or the body was stepped or made ",
+             "elsewhere; a tick moves both. Forces of your own: fdcg_body_set_push; a new place: fdcg_body_init and ",
+             "fdcg_scene_set_pose");
+  }
+  return FDCG_OK;
+}
+
 }  // namespace
 
 fdcg_reaction about_centre(const fdcg_body& body, const fdcg_reaction& reaction) {
@@ -69,7 +94,8 @@ fdcg_status check_bodies(const fdcg_scene* scene, const fdcg_scene_body* bodies,
     return Message(error, FDCG_E_ARGUMENT)
         .say("tick_s is ", tick_s, ", allowed for each of the substeps ", kLeastStep_s, " to ", kLongestStep_s, " s");
   }
-  return check_objects(bodies, body_count, reactions, reaction_count, error);
+  const fdcg_status status = check_objects(bodies, body_count, reactions, reaction_count, error);
+  return status == FDCG_OK ? check_places(scene, bodies, body_count, error) : status;
 }
 
 void begin_ways(fdcg_scene* scene) {

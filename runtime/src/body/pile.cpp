@@ -164,7 +164,7 @@ extern "C" fdcg_status fdcg_pile_add(fdcg_pile* pile, const fdcg_scene* scene, f
   if (points_m == nullptr && point_count > 0) return refuse(error, "points_m: null pointer");
   const bool is_there = object.index < scene->object_end && scene->objects()[object.index].is_used != 0 &&
                         scene->objects()[object.index].generation == object.generation;
-  if (!is_there) return refuse(error, "object: not in the scene, or removed");
+  if (!is_there) return refuse(error, "object: not in this scene, or removed");
   if (scene->objects()[object.index].deform != nullptr)
     return refuse(error, "object: is a deformable mesh, which bodies do not meet; leave it out of the pile");
   if (object.index >= pile->config.object_capacity) {

@@ -74,6 +74,7 @@ extern "C" uint32_t fdcg_pile_get_substeps(const fdcg_pile* pile, const fdcg_sce
   using namespace fdcg;
   if (pile == nullptr || scene == nullptr || (bodies == nullptr && body_count > 0)) return 0;
   if (pile->member_end > scene->object_end) return 0;
+  settle_place(const_cast<fdcg_scene*>(scene));
   const Lightness ground = {pile->has_ground != 0, false, 0, pile->ground_params.stiffness_n_per_m};
   double most = 0;
   for (uint32_t m = 0; m < pile->member_end; ++m) {

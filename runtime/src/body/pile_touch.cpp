@@ -79,22 +79,22 @@ World slide_by_curve(const Meeting& meeting, const fdcg_material& own, Friction<
 // from the god-object to the HIP, object's frame.
 fdcg_material pair_by_faces(const Object& on, const fdcg_params& params, const fdcg_result& result, World across,
                             const PileTouch& touch, bool was_pressing) {
-  FrictionTerms terms = terms_of(params, on.graph, touch.contact);
+  FrictionTerms terms = terms_of(params, on.graph(), touch.contact);
   if (result.state == FDCG_FACE) {
     terms.select_material_of_face(result.feature);
   } else if (result.state == FDCG_EDGE) {
-    const fdcg_connection_info edge = fdcg_get_connection(on.graph, result.feature);
+    const fdcg_connection_info edge = fdcg_get_connection(on.graph(), result.feature);
     const bool is_open = edge.node[1] == FDCG_NONE;
     const double share = is_open ? 1
-                                 : share_of_load(vec(fdcg_get_node(on.graph, edge.node[0]).normal),
-                                                 vec(fdcg_get_node(on.graph, edge.node[1]).normal), across);
+                                 : share_of_load(vec(fdcg_get_node(on.graph(), edge.node[0]).normal),
+                                                 vec(fdcg_get_node(on.graph(), edge.node[1]).normal), across);
     terms.select_material_of_edge(edge.node[0], edge.node[1], share);
   } else if (was_pressing) {
     terms.material.mu_static = touch.mu_static;
   } else {
     uint32_t entry = 0;
-    fdcg_get_fan(on.graph, result.feature, &entry, 1);
-    terms.select_material_of_face(fdcg_get_connection(on.graph, entry >> 1).node[0]);
+    fdcg_get_fan(on.graph(), result.feature, &entry, 1);
+    terms.select_material_of_face(fdcg_get_connection(on.graph(), entry >> 1).node[0]);
   }
   terms.material.stiffness_n_per_m = touch.contact.stiffness_n_per_m;
   return terms.material;
@@ -138,7 +138,7 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
 
 // Whether the step combines the materials of faces and point.
 bool mixes_itself(const fdcg_params& params, const Object& on) {
-  return (params.friction_flags & FDCG_FRICTION_MATERIALS) != 0 && on.graph != nullptr;
+  return (params.friction_flags & FDCG_FRICTION_MATERIALS) != 0 && on.graph() != nullptr;
 }
 
 // The parameters of the step. Where faces have materials, it combines them with the point's as with a finger's material.

@@ -47,7 +47,7 @@ extern "C" fdcg_status fdcg_scene_add_deform(fdcg_scene* scene, fdcg_deform* def
         .text("scene: has no room for deformable meshes; set config.has_deforms to 1 before fdcg_scene_create");
   }
   fdcg::Object shape = {};
-  shape.graph = fdcg_deform_get_graph(deform);
+  shape.view = *fdcg_deform_get_graph(deform);
   shape.step_shape = fdcg::step_deform;
   shape.deform = deform;
   shape.bounds = fdcg::Bounds(deform->header);

@@ -5,6 +5,7 @@
 #include "deform/deform_clear.hpp"
 #include "deform/deform_motion.hpp"
 #include "deform/deformable_geometry.hpp"
+#include "step/admit.hpp"
 #include "step/servo_step.hpp"
 
 namespace fdcg {
@@ -291,7 +292,8 @@ void step_on(fdcg_deform* deform, const fdcg_params& params, fdcg_deform_contact
 extern "C" void fdcg_deform_step(fdcg_deform* deform, const fdcg_params* params, fdcg_deform_contact* contact,
                                  const double hip_object_m[3], fdcg_result* result) {
   fdcg_params room;
-  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_params_init);
+  params = fdcg::admitted(fdcg::deformable_mark_of(deform->header), *params, &room, &contact->contact, result);
+  if (params == nullptr) return;
   fdcg::with_real_of(deform->header,
-                     [&](auto real) { fdcg::step_on<decltype(real)>(deform, all_params, contact, hip_object_m, result); });
+                     [&](auto real) { fdcg::step_on<decltype(real)>(deform, *params, contact, hip_object_m, result); });
 }

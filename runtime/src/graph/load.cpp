@@ -2,6 +2,7 @@
 // Opening a trusted file: its header and section table. A program that opens no other links nothing of verification.
 #include <string.h>
 
+#include "base/arithmetic.hpp"
 #include "base/config.hpp"
 #include "base/hooks.hpp"
 #include "base/message.hpp"
@@ -265,7 +266,8 @@ fdcg_status open_trusted(const void* data, uint64_t bytes, fdcg_graph* graph, fd
     return Message(error, FDCG_E_ALIGNMENT)
         .text("the memory must start at a multiple of 8 bytes; align the buffer (64 is best)");
   }
-  fdcg_status status = check_header(data, bytes, error);
+  fdcg_status status = check_arithmetic(error);
+  if (status == FDCG_OK) status = check_header(data, bytes, error);
   if (status != FDCG_OK) return status;
   const auto& header = *static_cast<const fdcg_header*>(data);
   status = check_header_values(header, error);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opening a file: mapped as it is, or copied into pages of its own.
+#include "base/hooks.hpp"
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "graph/load.hpp"
@@ -29,6 +30,7 @@ fdcg_status open_mapped(const char* path, const fdcg_open_options& options, fdcg
   }
   graph->mapping = file.data;
   graph->mapping_bytes = file.bytes;
+  graph->owner = graph;
   return status;
 }
 
@@ -65,8 +67,32 @@ extern "C" fdcg_status fdcg_open_file(const char* path, fdcg_verify verify, fdcg
   return fdcg_open_file_with(path, &options, graph, error);
 }
 
-extern "C" void fdcg_close(fdcg_graph* graph) {
-  if (graph == nullptr) return;
-  if (graph->mapping != nullptr) fdcg::unmap_file({graph->mapping, graph->mapping_bytes});
+extern "C" fdcg_status fdcg_close(fdcg_graph* graph) {
+  using namespace fdcg;
+  if (graph == nullptr) return FDCG_OK;
+  const bool is_owner = graph->owner == graph;
+  const MappedFile file = {graph->mapping, graph->mapping_bytes};
   *graph = {};
+  if (file.data == nullptr) return FDCG_OK;
+  if (is_owner) {
+    unmap_file(file);
+    return FDCG_OK;
+  }
+  fdcg_error error;
+  const fdcg_status status =
+      refuse(&error, "graph: a copy was closed, the file stays mapped; close the struct that was opened");
+  log(FDCG_LOG_ERROR, error.message);
+  return status;
+}
+
+extern "C" fdcg_status fdcg_move_graph(fdcg_graph* from, fdcg_graph* to, fdcg_error* error) {
+  using namespace fdcg;
+  if (from == nullptr || to == nullptr) return refuse(error, "from or to: null pointer");
+  if (from == to) return FDCG_OK;
+  if (to->header != nullptr) return refuse(error, "to: a graph is open in it; close it first");
+  if (from->mapping != nullptr && from->owner != from) return refuse(error, "from: a copy; move the struct that was opened");
+  *to = *from;
+  if (to->owner != nullptr) to->owner = to;
+  *from = {};
+  return FDCG_OK;
 }

@@ -8,12 +8,8 @@
 namespace fdcg {
 namespace {
 
-constexpr double kLargestScale = 1e9, kFarthestTranslation_m = 1e12;
-constexpr uint32_t kMostObjects = 1000000, kMostFingers = 10000000, kMostTouches = 32;
-
-bool is_within(double value, double low, double high) {
-  return value >= low && value <= high;
-}
+constexpr uint32_t kUsualMaterials = 64;  // where the config says none
+constexpr uint32_t kMostObjects = 1000000, kMostFingers = 10000000, kMostTouches = 32, kMostMaterials = 1000000;
 
 // In range; *config is then whole.
 fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* config, fdcg_error* error) {
@@ -34,7 +30,7 @@ fdcg_status checked_config(const fdcg_scene_config* given, fdcg_scene_config* co
                           {"config.disabled_optimizations", config->disabled_optimizations, 0, FDCG_OPT_ALL},
                           {"config.has_soft_fingers", config->has_soft_fingers, 0, 1},
                           {"config.has_deforms", config->has_deforms, 0, 1},
-                          {"config.reserved", config->reserved, 0, 0}};
+                          {"config.material_capacity", config->material_capacity, 0, kMostMaterials}};
   for (const Range& range : ranges) {
     if (range.value < range.low || range.value > range.high)
       return refuse(error, range.name, range.value, range.low, range.high);
@@ -59,37 +55,15 @@ uint64_t lay_out(const fdcg_scene_config& config, fdcg_scene* scene) {
   scene->touches_at = layout.place(slots, sizeof(fdcg_touch));
   scene->soft_fingers_at = layout.place(config.has_soft_fingers != 0 ? fingers : 0, sizeof(SoftFinger));
   scene->soft_touches_at = layout.place(config.has_soft_fingers != 0 ? slots : 0, sizeof(SoftTouch));
+  scene->material_capacity = config.material_capacity != 0 ? config.material_capacity : kUsualMaterials;
+  scene->materials_at = layout.place(scene->material_capacity, sizeof(fdcg_material));
   return layout.bytes();
 }
 
-// In range, its quaternion made unit. *pose may be `asked` itself.
-fdcg_status checked_pose(const fdcg_pose* asked, fdcg_pose* pose, fdcg_error* error) {
-  if (asked == nullptr) return refuse(error, "pose: null pointer");
-  static const char* const kTranslation[] = {"pose.translation_m[0]", "pose.translation_m[1]", "pose.translation_m[2]"};
-  double length2 = 0;
-  for (const double part : asked->rotation_xyzw)
-    length2 += part * part;
-  const double length = root(length2);
-  if (!is_within(length, 1 - kUnitTolerance, 1 + kUnitTolerance))
-    return refuse(error, "pose.rotation_xyzw's length", length, 1 - kUnitTolerance, 1 + kUnitTolerance);
-  for (int k = 0; k < 3; ++k) {
-    if (!is_within(asked->translation_m[k], -kFarthestTranslation_m, kFarthestTranslation_m))
-      return refuse(error, kTranslation[k], asked->translation_m[k], -kFarthestTranslation_m, kFarthestTranslation_m);
-  }
-  if (!is_within(asked->scale, 1 / kLargestScale, kLargestScale))
-    return refuse(error, "pose.scale", asked->scale, 1 / kLargestScale, kLargestScale);
-  *pose = *asked;
-  for (double& part : pose->rotation_xyzw)
-    part /= length;
-  return FDCG_OK;
-}
-
-bool is_same(const fdcg_pose& a, const fdcg_pose& b) {
-  for (int k = 0; k < 4; ++k) {
-    if (a.rotation_xyzw[k] != b.rotation_xyzw[k]) return false;
-  }
-  return a.translation_m[0] == b.translation_m[0] && a.translation_m[1] == b.translation_m[1] &&
-         a.translation_m[2] == b.translation_m[2] && a.scale == b.scale;
+// Where the numbers of a scene's ids begin: another scene's name no object of it, but for a chance of a few in 10^9.
+uint32_t salt_of(const void* memory) {
+  const uint64_t mixed = (reinterpret_cast<uintptr_t>(memory) / 8 + 1) * 0x9E3779B97F4A7C15u;
+  return static_cast<uint32_t>(mixed >> 32);
 }
 
 // The first record that is not in use, from *first_free on, which moves up to it; null, with the reason, if there is none.
@@ -109,13 +83,17 @@ Record* find(Record* records, uint32_t end, Id id, const char* unknown, fdcg_err
   refuse(error, unknown);
   return nullptr;
 }
-Object* find(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {
+}  // namespace
+
+Object* find_object(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {
   if (scene == nullptr) {
     refuse(error, "scene: null pointer");
     return nullptr;
   }
-  return find(scene->objects(), scene->object_end, id, "object: not in the scene, or removed", error);
+  return find(scene->objects(), scene->object_end, id, "object: not in this scene, or removed", error);
 }
+
+namespace {
 
 // Sets the latest pose without a motion to it, and invalidates the broad phase of every finger.
 void put_in_place(fdcg_scene* scene, Object* object) {
@@ -159,14 +137,13 @@ fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params
   Object* const added =
       unused(scene->objects(), &scene->first_free_object, scene->config.object_capacity, "config.object_capacity", error);
   if (added == nullptr) return FDCG_E_ARGUMENT;
-  added->graph = shape.graph;
+  if (status = take_params(scene, added, *params, error); status != FDCG_OK) return status;
+  added->view = shape.view;
   added->step_shape = shape.step_shape;
   added->shape_normal = shape.shape_normal;
   added->deform = shape.deform;
   added->surface = shape.surface;
   added->bounds = shape.bounds;
-  fdcg_params room;
-  added->params = in_full(*params, &room, fdcg_params_init);
   added->asked = checked;
   added->is_used = added->is_enabled = 1;
   if (++added->generation == 0) added->generation = 1;
@@ -182,19 +159,12 @@ Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error) {
     refuse(error, "scene: null pointer");
     return nullptr;
   }
-  return find(scene->fingers(), scene->finger_end, id, "finger: not in the scene, or removed", error);
+  return find(scene->fingers(), scene->finger_end, id, "finger: not in this scene, or removed", error);
 }
 
 }  // namespace fdcg
 
 using namespace fdcg;
-
-extern "C" fdcg_pose fdcg_make_identity_pose(void) {
-  fdcg_pose pose = {};
-  pose.rotation_xyzw[3] = 1;
-  pose.scale = 1;
-  return pose;
-}
 
 extern "C" void fdcg_scene_config_init(fdcg_scene_config* config, uint32_t struct_bytes) {
   fdcg_scene_config defaults = {};
@@ -225,6 +195,12 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
   *scene = static_cast<fdcg_scene*>(memory);
   for (uint64_t i = 0; i < layout.scan_length(); ++i)
     (*scene)->scan(3)[i] = kNoReach;
+  (*scene)->place = *scene;
+  const uint32_t salt = salt_of(memory);
+  for (uint32_t i = 0; i < layout.config.object_capacity; ++i)
+    (*scene)->objects()[i].generation = salt;
+  for (uint32_t i = 0; i < layout.config.finger_capacity; ++i)
+    (*scene)->fingers()[i].generation = salt;
   return FDCG_OK;
 }
 
@@ -232,14 +208,15 @@ extern "C" fdcg_status fdcg_scene_add_object(fdcg_scene* scene, const fdcg_graph
                                              const fdcg_pose* pose, fdcg_object_id* object, fdcg_error* error) {
   if (graph == nullptr || graph->header == nullptr) return refuse(error, "graph: null pointer, or not open");
   Object shape = {};
-  shape.graph = graph;
+  shape.view = *graph;
   shape.bounds = Bounds(*graph->header);
   return add_object(scene, shape, params, pose, object, error);
 }
 
 extern "C" fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error) {
-  Object* const object = find(scene, id, error);
+  Object* const object = find_object(scene, id, error);
   if (object == nullptr) return FDCG_E_ARGUMENT;
+  drop_materials(scene, object);
   object->is_used = 0;
   if (id.index < scene->first_free_object) scene->first_free_object = id.index;
   put_in_place(scene, object);
@@ -248,7 +225,7 @@ extern "C" fdcg_status fdcg_scene_remove_object(fdcg_scene* scene, fdcg_object_i
 }
 
 extern "C" fdcg_status fdcg_scene_set_pose(fdcg_scene* scene, fdcg_object_id id, const fdcg_pose* pose, fdcg_error* error) {
-  Object* const object = find(scene, id, error);
+  Object* const object = find_object(scene, id, error);
   if (object == nullptr) return FDCG_E_ARGUMENT;
   fdcg_pose checked;
   const fdcg_status status = checked_pose(pose, &checked, error);
@@ -261,16 +238,14 @@ extern "C" fdcg_status fdcg_scene_set_pose(fdcg_scene* scene, fdcg_object_id id,
 
 extern "C" fdcg_status fdcg_scene_set_params(fdcg_scene* scene, fdcg_object_id id, const fdcg_params* params,
                                              fdcg_error* error) {
-  Object* const object = find(scene, id, error);
+  Object* const object = find_object(scene, id, error);
   if (object == nullptr) return FDCG_E_ARGUMENT;
   const fdcg_status status = fdcg_check_params(params, error);
-  fdcg_params room;
-  if (status == FDCG_OK) object->params = in_full(*params, &room, fdcg_params_init);
-  return status;
+  return status == FDCG_OK ? take_params(scene, object, *params, error) : status;
 }
 
 extern "C" fdcg_status fdcg_scene_enable_object(fdcg_scene* scene, fdcg_object_id id, int is_enabled, fdcg_error* error) {
-  Object* const object = find(scene, id, error);
+  Object* const object = find_object(scene, id, error);
   if (object == nullptr) return FDCG_E_ARGUMENT;
   if (object->is_enabled == (is_enabled != 0 ? 1u : 0u)) return FDCG_OK;
   object->is_enabled = is_enabled != 0 ? 1 : 0;

@@ -57,6 +57,7 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
 
 extern "C" void fdcg_scene_advance(fdcg_scene* scene) {
   if (scene == nullptr) return;
+  fdcg::settle_place(scene);
   ++scene->tick;
   scene->tick_travel = 0;
   if (!scene->skips(FDCG_OPT_STILL)) {

@@ -3,9 +3,11 @@
 //
 //   fdcg_scene | Object[objects] | the scan's four arrays | changing[objects] | Finger[fingers] | Slot[fingers][touches]
 //   | fdcg_contact[fingers][touches] | fdcg_touch[fingers][touches] | SoftFinger[fingers] | SoftTouch[fingers][touches]
+//   | fdcg_material[materials]
 //
 // Found by offsets from the start, so that a copy of the whole is a scene again. With config.has_deforms each contact stands in
-// an fdcg_deform_contact, as its first member.
+// an fdcg_deform_contact, as its first member. Objects' parameters point to their rows among the materials: settle_place()
+// makes those of a copy point into the copy.
 #pragma once
 
 #include "base/caller_memory.hpp"
@@ -30,7 +32,7 @@ struct Finger;
 using DeformStart = void(fdcg_scene&, Finger&);
 
 struct Object {
-  const fdcg_graph* graph;    // null: it is the surface. Of a deformable mesh its own: current where a step has just looked
+  fdcg_graph view;            // not open: it is the surface. Of a deformable mesh its own: current where a step has just looked
   ShapeStep* step_shape;      // null: it is the graph as it is
   ShapeNormal* shape_normal;  // null: a graph's
   fdcg_deform* deform;        // null: it is none
@@ -42,6 +44,9 @@ struct Object {
   uint32_t generation;
   uint32_t is_used, is_enabled;
   uint32_t is_changing;  // not 0: listed in `changing`. 2: its pose was set since the last advance; 1: before that one
+
+  // Null: it is a surface.
+  [[nodiscard]] const fdcg_graph* graph() const { return view.header != nullptr ? &view : nullptr; }
 };
 
 // A slot of a finger for an object that it touches or that is near. Separate from the contacts, so that a finger's slots are
@@ -88,10 +93,13 @@ struct fdcg_scene {
   uint32_t contact_bytes;
   fdcg::SoftStep* step_soft;  // null: no finger was ever soft
   uint64_t soft_fingers_at, soft_touches_at;
-  fdcg::DeformStart* start_on_deforms;  // null: no deformable mesh was ever added
-  double tick_travel;                   // the largest move of any object in this tick
-  double travel;                        // the sum of those, rounded up
-  double farthest;                      // the largest |x| + |y| + |z| of any object's place: scales rounding
+  uint64_t materials_at;
+  uint32_t material_capacity, material_count;  // rows of materials, those in use first
+  const fdcg_scene* place;                     // where the materials' pointers lead
+  fdcg::DeformStart* start_on_deforms;         // null: no deformable mesh was ever added
+  double tick_travel;                          // the largest move of any object in this tick
+  double travel;                               // the sum of those, rounded up
+  double farthest;                             // the largest |x| + |y| + |z| of any object's place: scales rounding
 
   fdcg::Object* objects() { return fdcg::part_at<fdcg::Object>(this, objects_at); }
   const fdcg::Object* objects() const { return fdcg::part_at<fdcg::Object>(this, objects_at); }
@@ -117,6 +125,7 @@ struct fdcg_scene {
     return fdcg::part_at<fdcg_touch>(this, touches_at) + finger * uint64_t{config.touches_per_finger};
   }
   bool skips(uint32_t what) const { return (config.disabled_optimizations & what) == 0; }
+  fdcg_material* materials() { return fdcg::part_at<fdcg_material>(this, materials_at); }
   // Present if config.has_soft_fingers.
   fdcg::SoftFinger* soft_fingers() { return fdcg::part_at<fdcg::SoftFinger>(this, soft_fingers_at); }
   fdcg::SoftTouch* soft_touches(uint32_t finger) {
@@ -137,7 +146,7 @@ void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
 inline void step_object(const Object& object, const fdcg_params* params, fdcg_contact* contact, World at, fdcg_result* result) {
   const double local[3] = {at.x, at.y, at.z};
   if (object.step_shape != nullptr) return object.step_shape(object, params, contact, local, result);
-  fdcg_step(object.graph, params, contact, local, result);
+  fdcg_step(&object.view, params, contact, local, result);
 }
 
 // The normal of an object at the contact of the step just done; object's frame, unit. Zero on a graph's edges and corners.
@@ -147,14 +156,30 @@ inline World object_normal(const Object& object, const fdcg_result& result) {
     object.shape_normal(object, &result, normal);
     return vec(normal);
   }
-  return result.state == FDCG_FACE ? vec(fdcg_get_node(object.graph, result.feature).normal) : World{0, 0, 0};
+  return result.state == FDCG_FACE ? vec(fdcg_get_node(&object.view, result.feature).normal) : World{0, 0, 0};
 }
 
 // scene.cpp: adds an object that is like `shape` in graph, surface or deformable mesh, and bounds.
 fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params* params, const fdcg_pose* pose,
                        fdcg_object_id* object, fdcg_error* error);
 
-// scene.cpp: null, with the reason in *error, unless the finger is in the scene.
+// scene_materials.cpp: copies the table of new parameters into the scene, in place of the object's own, which goes. A refusal,
+// where the rows do not suffice, leaves all as it was.
+fdcg_status take_params(fdcg_scene* scene, Object* object, const fdcg_params& params, fdcg_error* error);
+void drop_materials(fdcg_scene* scene, Object* object);
+
+// scene_materials.cpp: after the scene was copied to another place.
+[[gnu::cold]] void point_to_own_materials(fdcg_scene* scene);
+inline void settle_place(fdcg_scene* scene) {
+  if (scene->place != scene) point_to_own_materials(scene);
+}
+
+// scene_pose.cpp: in range, its quaternion made unit. *pose may be `asked` itself.
+fdcg_status checked_pose(const fdcg_pose* asked, fdcg_pose* pose, fdcg_error* error);
+bool is_same(const fdcg_pose& a, const fdcg_pose& b);
+
+// scene.cpp: null, with the reason in *error, unless it is in the scene.
+Object* find_object(fdcg_scene* scene, fdcg_object_id id, fdcg_error* error);
 Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);
 
 // The torque in the world that a finger's slot gives to the finger, or null where there is none.

@@ -24,7 +24,7 @@ constexpr uint32_t kIdleSteps = 64;
 fdcg_params params_met(const Object& object, const Finger& finger) {
   fdcg_params params = object.params;
   constexpr uint32_t kMixedInTheStep = FDCG_FRICTION_MATERIALS | FDCG_FRICTION_FINGER;
-  if (finger.has_material != 0 && object.graph != nullptr && (params.friction_flags & kMixedInTheStep) != 0) {
+  if (finger.has_material != 0 && object.graph() != nullptr && (params.friction_flags & kMixedInTheStep) != 0) {
     params.finger = finger.material;
     params.friction_flags |= FDCG_FRICTION_FINGER;
   } else if (finger.has_material != 0) {
@@ -198,6 +198,7 @@ extern "C" void fdcg_scene_step(fdcg_scene* scene) {
 extern "C" fdcg_status fdcg_scene_step_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error) {
   fdcg::Finger* const finger = fdcg::find_finger(scene, id, error);
   if (finger == nullptr) return FDCG_E_ARGUMENT;
+  fdcg::settle_place(scene);
   fdcg::step_finger(*scene, *finger);
   return FDCG_OK;
 }

@@ -3,7 +3,7 @@
 #include "step/servo_step.hpp"
 
 #include "base/mutation.hpp"
-#include "base/struct_bytes.hpp"
+#include "step/admit.hpp"
 
 extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                           const double hip_object_m[3], fdcg_result* result) {
@@ -12,9 +12,11 @@ extern "C" void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fd
     while (idle > 0)
       idle = idle - 1;
   }
+  if (graph->header == nullptr) return fdcg::refuse_step(FDCG_RESULT_NOT_OPEN, result);
   fdcg_params room;
-  const fdcg_params& all_params = fdcg::in_full(*params, &room, fdcg_params_init);
+  params = fdcg::admitted(fdcg::mark_of(*graph->header), *params, &room, contact, result);
+  if (params == nullptr) return;
   fdcg::with_real_of(*graph->header, [&](auto real) {
-    fdcg::step<fdcg::RigidGeometry<decltype(real)>>(*graph, all_params, contact, hip_object_m, result);
+    fdcg::step<fdcg::RigidGeometry<decltype(real)>>(*graph, *params, contact, hip_object_m, result);
   });
 }

@@ -2,6 +2,7 @@
 // The step on a surface without a mesh: by its kind, of those that the program links.
 #define FDCG_SURFACE_DISPATCH 1  // its references to the kinds are weak
 #include "base/struct_bytes.hpp"
+#include "step/admit.hpp"
 #include "surface/surface_drive.hpp"
 
 namespace fdcg {
@@ -37,8 +38,10 @@ extern "C" void fdcg_surface_step(const fdcg_surface* surface, const fdcg_params
   fdcg_params params_room;
   const fdcg_surface& whole = in_full(*surface, &surface_room, clear_surface);
   const SurfaceKind& kind = kind_of(whole.kind);
+  params = admitted(surface_mark_of(whole.kind, whole.is_hollow), *params, &params_room, contact, result);
+  if (params == nullptr) return;
   if (kind.step != nullptr && is_usable_place(hip_object_m)) {
-    kind.step(whole, in_full(*params, &params_room, fdcg_params_init), contact, hip_object_m, result);
+    kind.step(whole, *params, contact, hip_object_m, result);
   } else {
     if (kind.step != nullptr) ++contact->non_finite_ticks;
     result->flags = kind.step != nullptr ? FDCG_RESULT_NON_FINITE : 0;

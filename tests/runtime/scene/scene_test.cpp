@@ -289,12 +289,12 @@ TEST_CASE("ids of removed objects stay invalid") {
   CHECK(again.index == rig.object.index);
   CHECK(again.generation != rig.object.generation);
   CHECK(fdcg_scene_remove_object(rig.scene.get(), rig.object, &error) == FDCG_E_ARGUMENT);
-  CHECK_THAT(error.message, Equals("object: not in the scene, or removed"));
+  CHECK_THAT(error.message, Equals("object: not in this scene, or removed"));
   const fdcg_finger_id finger = rig.scene.add({0, 0, 0});
   REQUIRE(fdcg_scene_remove_finger(rig.scene.get(), finger, &error) == FDCG_OK);
   const double hip[3] = {};
   CHECK(fdcg_scene_move_finger(rig.scene.get(), finger, hip, &error) == FDCG_E_ARGUMENT);
-  CHECK_THAT(error.message, Equals("finger: not in the scene, or removed"));
+  CHECK_THAT(error.message, Equals("finger: not in this scene, or removed"));
   CHECK(fdcg_scene_step_finger(rig.scene.get(), {0, 0}, nullptr) == FDCG_E_ARGUMENT);
 }
 
@@ -472,10 +472,10 @@ TEST_CASE("fingers stepped on threads give the same forces as sequentially") {
   fdcg_scene_config config = fdcg_make_scene_config();
   config.finger_capacity = 16;
   Rig one(config), many(config);
-  std::vector<fdcg_finger_id> fingers;
+  std::vector<fdcg_finger_id> fingers, others;
   for (std::uint32_t i = 0; i < config.finger_capacity; ++i) {
     fingers.push_back(one.scene.add({-0.6 + 0.07 * i, 0, 0.52}));
-    many.scene.add({-0.6 + 0.07 * i, 0, 0.52});
+    others.push_back(many.scene.add({-0.6 + 0.07 * i, 0, 0.52}));
   }
   const auto hip = [](std::uint32_t finger, int tick) {
     return Place{-0.6 + 0.07 * finger, 0.001 * tick, 0.5 + 0.02 * std::sin(0.3 * tick + finger)};
@@ -491,15 +491,16 @@ TEST_CASE("fingers stepped on threads give the same forces as sequentially") {
     const auto work = [&](std::uint32_t first) {
       for (std::uint32_t i = first; i < config.finger_capacity; i += 2) {
         const Place at = hip(i, tick);
-        fdcg_scene_move_finger(many.scene.get(), fingers[i], at.data(), nullptr);
-        fdcg_scene_step_finger(many.scene.get(), fingers[i], nullptr);
+        fdcg_scene_move_finger(many.scene.get(), others[i], at.data(), nullptr);
+        fdcg_scene_step_finger(many.scene.get(), others[i], nullptr);
       }
     };
     std::thread other(work, 1);
     work(0);
     other.join();
-    for (const fdcg_finger_id finger : fingers)
-      REQUIRE(std::memcmp(one.scene.result(finger).force_n, many.scene.result(finger).force_n, sizeof(double[3])) == 0);
+    for (std::size_t i = 0; i < fingers.size(); ++i) {
+      REQUIRE(std::memcmp(one.scene.result(fingers[i]).force_n, many.scene.result(others[i]).force_n, sizeof(double[3])) == 0);
+    }
   }
 }
 

@@ -110,14 +110,12 @@ std::string SceneGraphs::open(const HostConfig& config) {
       graph_of_object_.push_back(graph_of_object_[first]);
       continue;
     }
-    fdcg_graph graph{};
+    graph_of_object_.push_back(graphs_.size());
     fdcg_error error{};
-    if (fdcg_open_file(config.objects[i].file.c_str(), FDCG_VERIFY_SAFE, &graph, &error) != FDCG_OK) {
+    if (fdcg_open_file(config.objects[i].file.c_str(), FDCG_VERIFY_SAFE, &graphs_.emplace_back(), &error) != FDCG_OK) {
       close();
       return place_of(config, i) + error.message;
     }
-    graph_of_object_.push_back(graphs_.size());
-    graphs_.push_back(graph);
   }
   return {};
 }

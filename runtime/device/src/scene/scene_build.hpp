@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,7 +29,7 @@ class SceneGraphs {
 
  private:
   static constexpr std::size_t kNone = ~std::size_t{0};  // a surface
-  std::vector<fdcg_graph> graphs_;
+  std::deque<fdcg_graph> graphs_;                        // a graph that owns its mapping stays where it was opened
   std::vector<std::size_t> graph_of_object_;
 };
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// compile() without its repair, which needs more libraries than the rest: who wants it hands it in.
+#pragma once
+
+#include "fdcg/bake.hpp"
+#include "validate/validate.hpp"
+
+namespace fdcg::bake {
+
+// Repairs a mesh that was judged; the account goes into `compiled`, the mesh as it is then into `ready`.
+using RepairStage = void(const PolygonSoup& soup, const CompileOptions& options, const CheckOptions& how, Compiled& compiled,
+                         Prepared& ready);
+
+// Null: options.repair does not count.
+Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair);
+
+}  // namespace fdcg::bake
