@@ -64,7 +64,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // plane: that is no place, but for corners off a small face's plane, which far from it is anywhere. The face below decides.
 template <class Geometry, class Real = typename Geometry::Real>
 inline Feature face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
-  if (!(walk.graph.header->max_deviation > 0) || connection.type() == FDCG_CONCAVE) return kFree;
+  if (!walk.graph.has_inexact_nodes() || connection.type() == FDCG_CONCAVE) return kFree;
   for (uint32_t k = 0; k < 2; ++k) {
     if (s.side[k] < 0 && s.voronoi[k] < 0 && s.voronoi[1 - k] > 0) return {FDCG_FACE, connection.node(k)};
   }
@@ -73,7 +73,7 @@ inline Feature face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geom
 
 // Cost: two face planes, two Voronoi planes.
 template <class Geometry, class Real = typename Geometry::Real>
-inline Decision edge_rule(Walk<Geometry>& walk) {
+[[gnu::noinline, gnu::hot]] Decision edge_rule(Walk<Geometry>& walk) {
   const uint32_t index = walk.active.index;
   const ConnectionRef<Geometry> connection = walk.graph.connection(index);
   EdgeSides<Real> s;
