@@ -28,9 +28,9 @@ def qemu(processor, *options):
 
 
 # Of the library's objects, all that a program with one sphere may link, and all that one may link that steps one graph.
-ONE_SPHERE = {"admit", "surface", "surface_sphere", "surface_step", "params", "friction_terms", "message", "version"}
+ONE_SPHERE = {"admit", "surface", "surface_sphere", "surface_step", "params", "params_init", "friction_terms", "message", "version"}
 ONE_GRAPH = {"admit", "arithmetic", "box_tree", "checksum", "exact_orient", "friction_terms", "hooks", "load", "map_file_none", "map_file_posix",
-             "material_section", "message", "params", "servo_step", "version"}
+             "material_section", "message", "params", "params_init", "servo_step", "version"}
 OTHER_PARTS = r"scene|soft_finger|deform|body|pile|_of_plane|step_plane|[Cc]ylinder|[Cc]apsule|[Cc]one[^a-z]|[Tt]orus|[Ee]llipsoid"
 
 
@@ -74,9 +74,9 @@ class AnywhereCase(Case):
         return [compiler, *CXX, *extra, *flags, "-I", str(RUNTIME / "include"), "-I", str(RUNTIME), "-I", str(RUNTIME / "src"), "-c",
                 str(source)]
 
-    def cross_runtime(self, toolchain, *options):
-        """Configures and builds the runtime alone by a toolchain file; returns the library."""
-        folder = self.path("runtime-" + toolchain)
+    def cross_runtime(self, toolchain, *options, name=""):
+        """Configures and builds the runtime alone by a toolchain file, in a folder of that name; returns the library."""
+        folder = self.path(f"runtime-{toolchain}-{name}")
         self.run_program("cmake", "-S", str(ROOT), "-B", folder, "-G", "Ninja", "-DFDCG_RUNTIME_ONLY=ON", "-DFDCG_BUILD_TESTS=OFF",
                          f"--toolchain={TOOLCHAINS / (toolchain + '.cmake')}", *options)
         self.run_program("cmake", "--build", folder)

@@ -233,7 +233,7 @@ std::vector<Row> rows() {
     all.back().switches.scene = bits;
   }
   all.push_back({"clear balls of the sweep", {}});
-  all.back().switches.step = FDCG_STEP_OPT_ALL;
+  all.back().switches.step = FDCG_STEP_OPT_CLEAR_BALL;
   all.push_back({"all of the above", {}});
   all.back().switches.scene = FDCG_OPT_ALL;
   all.back().switches.step = FDCG_STEP_OPT_ALL;

@@ -330,7 +330,8 @@ typedef enum fdcg_edge_friction {
 /** What the step does not do where it cannot matter. Forces and god-objects are the same bit for bit with all of it. */
 typedef enum fdcg_step_optimization {
   FDCG_STEP_OPT_CLEAR_BALL = 1, /**< in free space: no sweep inside a ball that no face touches */
-  FDCG_STEP_OPT_ALL = 1         /**< every one */
+  FDCG_STEP_OPT_HOP = 2,        /**< in contact: a slide over plain edges from face to face without the rules' loop */
+  FDCG_STEP_OPT_ALL = 3         /**< every one */
 } fdcg_step_optimization;
 
 /** Friction beyond two coefficients and one stiffness: which of the fields of fdcg_params below count. 0: none, at no cost.
@@ -506,7 +507,7 @@ typedef struct fdcg_result {
  * the graph and the params, writes the contact and the result; no pointer may be NULL. An unusable HIP gives no force and
  * FDCG_RESULT_NON_FINITE.
  *
- * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 600, whatever the mesh; with the
+ * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 780, whatever the mesh; with the
  * friction curve some 1,500, with presliding 1,900. Two budgets (src/base/work.hpp: FDCG_RULE_WORK for the surface,
  * FDCG_SWEEP_WORK for free space; set when the library is compiled) together let a tick run to some 75,000 instructions, 5 us
  * at 3 GHz; what is left is carried to the next tick, with a valid god-object. A budget is compared between pieces of work, of

@@ -38,6 +38,15 @@
 #define FDCG_WITH_FRICTION_TERMS 1
 #endif
 
+// Graphs with corners of more than FDCG_BUSY_FAN edges, and graphs with merged faces whose corners lie off their planes
+// (header.max_deviation). A library without one refuses such files (FDCG_E_VERSION), and the step is smaller.
+#ifndef FDCG_WITH_BUSY_CORNERS
+#define FDCG_WITH_BUSY_CORNERS 1
+#endif
+#ifndef FDCG_WITH_INEXACT_NODES
+#define FDCG_WITH_INEXACT_NODES 1
+#endif
+
 // FDCG_ASSERT: checks for programming errors in the library, in the step too. CMake sets it in debug builds.
 #ifndef FDCG_WITH_ASSERTS
 #define FDCG_WITH_ASSERTS 0

@@ -27,7 +27,7 @@ struct DeformableGeometry : GraphRecords<RealType> {
   [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return upkeep.point(index); }
   [[nodiscard]] Vec3<Real> point_of(const Corner& corner) const { return upkeep.point(index_of(corner)); }
   [[nodiscard]] uint8_t type_of(const fdcg_connection& connection) const {
-    return upkeep.type(static_cast<uint32_t>(&connection - this->connections));
+    return upkeep.type(static_cast<uint32_t>(&connection - this->connections()));
   }
 
   void read_edge_between(uint32_t, uint32_t corner0, uint32_t corner1, Edge<Real>* edge) const {
@@ -62,7 +62,7 @@ struct DeformableGeometry : GraphRecords<RealType> {
   }
 
  private:
-  [[nodiscard]] uint32_t index_of(const Corner& corner) const { return static_cast<uint32_t>(&corner - this->corners); }
+  [[nodiscard]] uint32_t index_of(const Corner& corner) const { return static_cast<uint32_t>(&corner - this->corners()); }
 };
 
 }  // namespace fdcg

@@ -50,17 +50,26 @@ inline Split operator-(Split a, Split b) {
   return a + Split{-b.value, -b.rest};
 }
 
-// An integer: sign and magnitude, lowest limb first, no leading zero limb.
-template <int kCapacity>
+// An integer: sign and magnitude, lowest limb first, no leading zero limb. Where its limbs are is its owner's business (Room),
+// so that one routine serves all sizes.
 struct Whole {
-  Limb limb[kCapacity];
+  Limb* const limb;
   int count = 0;
   bool is_negative = false;
 
+  explicit Whole(Limb* limbs) : limb(limbs) {}
+  Whole(const Whole&) = delete;
+  Whole& operator=(const Whole&) = delete;
   void trim() {
     while (count > 0 && limb[count - 1] == 0)
       --count;
   }
+};
+template <int kCapacity>
+struct Room : Whole {
+  Limb limbs[kCapacity];
+
+  Room() : Whole(limbs) {}
 };
 
 // A double as mantissa * 2^exponent, the mantissa odd or zero.
@@ -70,7 +79,7 @@ struct Parts {
   bool is_negative;
 };
 
-Parts parts_of(double x) {
+[[gnu::cold]] Parts parts_of(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);
   const int biased = static_cast<int>(bits >> 52 & 0x7FF);
@@ -82,10 +91,10 @@ Parts parts_of(double x) {
 }
 
 // parts / 2^unit, which is an integer.
-Whole<kLimbs> whole_of(const Parts& parts, int unit) {
-  Whole<kLimbs> w;
+[[gnu::cold]] void read_whole(const Parts& parts, int unit, Whole& w) {
+  w.count = 0;
   w.is_negative = parts.is_negative;
-  if (parts.mantissa == 0) return w;
+  if (parts.mantissa == 0) return;
   const int shift = parts.exponent - unit;
   int bit = shift % kLimbBits;
   for (; w.count < shift / kLimbBits; ++w.count)
@@ -95,27 +104,10 @@ Whole<kLimbs> whole_of(const Parts& parts, int unit) {
     const int taken = kLimbBits - bit;
     rest = taken < 64 ? rest >> taken : 0;
   }
-  return w;
-}
-
-// |a| + |b|, with the sign of a.
-template <int R, int A, int B>
-void join(const Whole<A>& a, const Whole<B>& b, Whole<R>& r) {
-  r.count = 0;
-  r.is_negative = a.is_negative;
-  TwoLimbs carry = 0;
-  for (; r.count < a.count || r.count < b.count; ++r.count) {
-    if (r.count < a.count) carry += a.limb[r.count];
-    if (r.count < b.count) carry += b.limb[r.count];
-    r.limb[r.count] = static_cast<Limb>(carry);
-    carry >>= kLimbBits;
-  }
-  if (carry != 0) r.limb[r.count++] = static_cast<Limb>(carry);
 }
 
 // The sign of |a| - |b|.
-template <int A, int B>
-int compare_sizes(const Whole<A>& a, const Whole<B>& b) {
+[[gnu::cold]] int compare_sizes(const Whole& a, const Whole& b) {
   if (a.count != b.count) return a.count < b.count ? -1 : 1;
   for (int i = a.count; i-- > 0;) {
     if (a.limb[i] != b.limb[i]) return a.limb[i] < b.limb[i] ? -1 : 1;
@@ -123,36 +115,24 @@ int compare_sizes(const Whole<A>& a, const Whole<B>& b) {
   return 0;
 }
 
-// |large| - |small| >= 0, with the sign given.
-template <int R, int A, int B>
-void reduce(const Whole<A>& large, const Whole<B>& small, bool is_negative, Whole<R>& r) {
-  r.count = 0;
-  r.is_negative = is_negative;
-  Limb borrow = 0;
-  for (; r.count < large.count; ++r.count) {
-    const Limb from = large.limb[r.count], take = r.count < small.count ? small.limb[r.count] : 0;
-    const Limb less = from - take;
-    r.limb[r.count] = less - borrow;
-    borrow = from < take || less < borrow ? 1 : 0;
+// r = a - b: limb by limb the larger size plus or minus the smaller. r has room for one limb more than either, and is neither.
+[[gnu::cold]] void subtract(const Whole& a, const Whole& b, Whole& r) {
+  const bool is_sum = a.is_negative != b.is_negative, is_a_larger = compare_sizes(a, b) >= 0;
+  const Whole &large = is_a_larger ? a : b, &small = is_a_larger ? b : a;
+  const Limb flip = is_sum ? 0 : ~Limb{0};
+  TwoLimbs carry = is_sum ? 0 : 1;  // a difference is a sum with the complement, and one
+  r.is_negative = is_a_larger ? a.is_negative : !b.is_negative;
+  for (r.count = 0; r.count < large.count; ++r.count) {
+    carry += static_cast<TwoLimbs>(large.limb[r.count]) + ((r.count < small.count ? small.limb[r.count] : Limb{0}) ^ flip);
+    r.limb[r.count] = static_cast<Limb>(carry);
+    carry >>= kLimbBits;
   }
+  if (is_sum && carry != 0) r.limb[r.count++] = static_cast<Limb>(carry);
   r.trim();
 }
 
-template <int R, int A, int B>
-void subtract(const Whole<A>& a, const Whole<B>& b, Whole<R>& r) {
-  static_assert(R > A && R > B);
-  if (a.is_negative != b.is_negative) {
-    join(a, b, r);
-  } else if (compare_sizes(a, b) >= 0) {
-    reduce(a, b, a.is_negative, r);
-  } else {
-    reduce(b, a, !a.is_negative, r);
-  }
-}
-
-template <int A, int B>
-Whole<A + B> product(const Whole<A>& a, const Whole<B>& b) {
-  Whole<A + B> r;
+// r = a b; r has room for both, and is neither.
+[[gnu::cold]] void multiply(const Whole& a, const Whole& b, Whole& r) {
   r.is_negative = a.is_negative != b.is_negative;
   r.count = a.count + b.count;
   for (int i = 0; i < r.count; ++i)
@@ -167,15 +147,6 @@ Whole<A + B> product(const Whole<A>& a, const Whole<B>& b) {
     r.limb[i + b.count] = static_cast<Limb>(carry);
   }
   r.trim();
-  return r;
-}
-
-// (a b - c d) e
-template <int N>
-Whole<3 * N + 1> minor_times(const Whole<N>& a, const Whole<N>& b, const Whole<N>& c, const Whole<N>& d, const Whole<N>& e) {
-  Whole<2 * N + 1> minor;
-  subtract(product(a, b), product(c, d), minor);
-  return product(minor, e);
 }
 
 // Four points in multiples of 2^unit.
@@ -185,7 +156,7 @@ struct Multiples {
   int bits;  // of the largest
 };
 
-Multiples multiples_of(const Vec3<double> (&point)[4]) {
+[[gnu::noinline, gnu::cold]] Multiples multiples_of(const Vec3<double> (&point)[4]) {
   Multiples m;
   m.unit = 4096;  // larger than any exponent
   int top = -4096;
@@ -208,7 +179,7 @@ Multiples multiples_of(const Vec3<double> (&point)[4]) {
 constexpr int kWordBits = 60;
 
 #ifdef __SIZEOF_INT128__
-int sign_in_words(const Multiples& m) {
+[[gnu::noinline, gnu::cold]] int sign_in_words(const Multiples& m) {
   __extension__ using Wide = __int128;
   int64_t edge[3][3];
   for (int k = 0; k < 3; ++k) {
@@ -234,21 +205,33 @@ int sign_in_words(const Multiples& m) {
 }
 #endif
 
-int sign_in_limbs(const Multiples& m) {
-  constexpr int N = kLimbs + 1;
-  Whole<N> edge[3][3];  // from the first point to each other
+[[gnu::noinline, gnu::cold]] int sign_in_limbs(const Multiples& m) {
+  constexpr int kEdge = kLimbs + 1, kMinor = 2 * kEdge + 1, kProduct = kMinor + kEdge;
+  Room<kEdge> edge[3][3];  // from the first point to each other
   for (int k = 0; k < 3; ++k) {
-    const Whole<kLimbs> first = whole_of(m.part[0][k], m.unit);
-    for (int p = 0; p < 3; ++p)
-      subtract(whole_of(m.part[p + 1][k], m.unit), first, edge[p][k]);
+    Room<kLimbs> first, other;
+    read_whole(m.part[0][k], m.unit, first);
+    for (int p = 0; p < 3; ++p) {
+      read_whole(m.part[p + 1][k], m.unit, other);
+      subtract(other, first, edge[p][k]);
+    }
   }
   const auto &u = edge[0], &v = edge[1], &w = edge[2];
-  Whole<3 * N + 2> less;
-  Whole<3 * N + 3> sum;
-  subtract(minor_times(u[1], v[2], u[2], v[1], w[0]), minor_times(u[0], v[2], u[2], v[0], w[1]), less);
-  subtract(less, minor_times(u[1], v[0], u[0], v[1], w[2]), sum);
-  if (sum.count == 0) return 0;
-  return sum.is_negative ? -1 : 1;
+  Room<kProduct + 1> sum[2];  // in turns
+  for (int k = 0; k < 3; ++k) {
+    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
+    Room<2 * kEdge> first, second;
+    Room<kMinor> minor;
+    Room<kProduct> term;
+    multiply(u[i], v[j], first);
+    multiply(u[j], v[i], second);
+    subtract(second, first, minor);
+    multiply(minor, w[k], term);
+    subtract(sum[k & 1], term, sum[1 - (k & 1)]);
+  }
+  const Whole& determinant = sum[1];
+  if (determinant.count == 0) return 0;
+  return determinant.is_negative ? -1 : 1;
 }
 
 // The determinant, with an error of at most 2^-98 of the size of its products.

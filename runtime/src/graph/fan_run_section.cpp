@@ -19,21 +19,21 @@ bool has_corner(NodeRef<RigidGeometry<Real>> node, uint32_t corner) {
 // The first run that is not sound, or how many there are.
 template <class Real>
 uint32_t sound_runs(const RigidView<Real>& graph) {
-  const fdcg_header& header = *graph.header;
+  const fdcg_header& header = *graph.header();
   uint64_t end = 0;
-  for (uint32_t i = 0; i < graph.fan_run_count; ++i) {
-    const fdcg_fan_run& run = graph.fan_runs[i];
+  for (uint32_t i = 0; i < graph.fan_run_count(); ++i) {
+    const fdcg_fan_run& run = graph.fan_runs()[i];
     if (run.first_node < end || run.node_count == 0 || run.node_count > header.node_count ||
         run.first_node > header.node_count - run.node_count || run.busy >= header.busy_count ||
         (run.flags & ~FDCG_RUN_INEXACT) != 0)
       return i;
     end = uint64_t{run.first_node} + run.node_count;
-    const uint32_t corner = graph.busy_corners[run.busy].corner;
+    const uint32_t corner = graph.busy_corners()[run.busy].corner;
     for (uint32_t n = run.first_node; n < end; ++n) {
       if (!has_corner<Real>(graph.node(n), corner)) return i;
     }
   }
-  return graph.fan_run_count;
+  return graph.fan_run_count();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 // Walk and the rules of the step.
 #pragma once
 
+#include "base/config.hpp"
 #include "exact/exact_orient.hpp"
 #include "fdcg/fdcg.h"
 #include "graph/box_tree.hpp"
@@ -32,9 +33,9 @@ class NodeRef {
 
   [[nodiscard]] uint32_t side_count() const { return record().side_count; }
   // The graph's, which bounds the rounding of what is stored of a node.
-  [[nodiscard]] Real extent() const { return static_cast<Real>(graph_->header->extent); }
+  [[nodiscard]] Real extent() const { return static_cast<Real>(graph_->header()->extent); }
   // Its corners lie off its plane, by up to header.max_deviation (contact-model GRAPH-4).
-  [[nodiscard]] bool is_inexact() const { return (up_to_date().flags & FDCG_NODE_INEXACT) != 0; }
+  [[nodiscard]] bool is_inexact() const { return FDCG_WITH_INEXACT_NODES && (up_to_date().flags & FDCG_NODE_INEXACT) != 0; }
   [[nodiscard]] uint16_t flags() const { return up_to_date().flags; }
   [[nodiscard]] Vec3<Real> normal() const { return vec(up_to_date().plane.normal); }
   [[nodiscard]] Plane<Real> plane() const {
@@ -59,7 +60,7 @@ class NodeRef {
 
   // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model GRAPH-3).
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
-    if (__builtin_expect(graph_->has_planes, true)) {
+    if (__builtin_expect(graph_->has_planes(), true)) {
       const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
       return {vec(stored.normal), stored.offset};
     }
@@ -103,7 +104,7 @@ class NodeRef {
 template <class Geometry>
 class ConnectionRef {
  public:
-  ConnectionRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.connections[index]) {}
+  ConnectionRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.connections()[index]) {}
 
   // fdcg_connection_type
   [[nodiscard]] uint8_t type() const { return graph_->type_of(*record_); }
@@ -132,7 +133,7 @@ class CornerRef {
   using Real = typename Geometry::Real;
 
  public:
-  CornerRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.corners[index]) {}
+  CornerRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.corners()[index]) {}
 
   [[nodiscard]] Vec3<Real> point() const { return graph_->point_of(*record_); }
   [[nodiscard]] bool is_open() const { return (record_->fan & FDCG_CORNER_OPEN) != 0; }
@@ -144,9 +145,9 @@ class CornerRef {
     return Vec3<Real>{Real(record_->normal[0]), Real(record_->normal[1]), Real(record_->normal[2])} * kUnit;
   }
   // Its fan is stored: more than FDCG_BUSY_FAN entries.
-  [[nodiscard]] bool is_busy() const { return walked_count() == 0; }
+  [[nodiscard]] bool is_busy() const { return FDCG_WITH_BUSY_CORNERS && walked_count() == 0; }
   // Of a busy corner. Without a tree, which no file has, first_box is FDCG_NONE.
-  [[nodiscard]] const fdcg_busy_corner& busy() const { return graph_->busy_corners[record_->first]; }
+  [[nodiscard]] const fdcg_busy_corner& busy() const { return graph_->busy_corners()[record_->first]; }
   // Of an ordinary corner: the node and its side with which the fan starts, and how many entries it has.
   [[nodiscard]] uint32_t first_node() const { return record_->first; }
   [[nodiscard]] uint32_t first_side() const { return record_->side; }
@@ -166,10 +167,14 @@ struct GraphView : Geometry {
 
   explicit GraphView(const fdcg_graph& graph) : Geometry(graph) {}
 
+  // How far a node's corners may lie off its plane.
+  [[nodiscard]] double max_deviation() const { return FDCG_WITH_INEXACT_NODES ? this->header()->max_deviation : 0; }
+  [[nodiscard]] bool has_inexact_nodes() const { return max_deviation() > 0; }
+
   [[nodiscard]] NodeRef<Geometry> node(uint32_t index) const {
-    const uint64_t at =
-        this->node_offsets == nullptr ? index * this->block_bytes : this->node_offsets[index] * uint64_t{sizeof(Real)};
-    return {*this, this->nodes + at, index};
+    const size_t at =
+        this->node_offsets() == nullptr ? index * this->block_bytes() : this->node_offsets()[index] * sizeof(Real);
+    return {*this, this->nodes() + at, index};
   }
   [[nodiscard]] ConnectionRef<Geometry> connection(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] CornerRef<Geometry> corner(uint32_t index) const { return {*this, index}; }
@@ -179,7 +184,7 @@ struct GraphView : Geometry {
     this->read_edge_between(node.connection(k), end[node.which(k)], end[1 - node.which(k)], edge);
   }
   void read_edge(uint32_t connection_index, Edge<Real>* edge) const {
-    const fdcg_connection& record = this->connections[connection_index];
+    const fdcg_connection& record = this->connections()[connection_index];
     read_edge(node(record.node), record.side[0], edge);
   }
   template <class... Where>
@@ -193,12 +198,12 @@ struct GraphView : Geometry {
   // this node's block, so that the cache misses of one crossing overlap. Inlined by force: GCC 12 treats a function that only
   // prefetches as one without effect, and drops its calls.
   FDCG_HOT void prefetch_crossing(NodeRef<Geometry> here, uint32_t k) const {
-    __builtin_prefetch(&this->connections[here.connection(k)]);
-    __builtin_prefetch(&this->corners[here.corner(k)]);
-    if (this->edges != nullptr) __builtin_prefetch(&this->edges[here.connection(k)]);
+    __builtin_prefetch(&this->connections()[here.connection(k)]);
+    __builtin_prefetch(&this->corners()[here.corner(k)]);
+    if (this->edges() != nullptr) __builtin_prefetch(&this->edges()[here.connection(k)]);
     if (here.across(k) == FDCG_NONE) return;
     const unsigned char* const block = node(here.across(k)).block();
-    const uint32_t bytes = node_bytes<Real>(kPrefetchedSides, this->has_planes);
+    const uint32_t bytes = node_bytes<Real>(kPrefetchedSides, this->has_planes());
     for (uint32_t at = 0; at < bytes; at += kLineBytes)
       __builtin_prefetch(block + at);
   }
@@ -206,6 +211,27 @@ struct GraphView : Geometry {
   FDCG_HOT void prefetch_around(NodeRef<Geometry> here) const {
     for (uint32_t k = 0; k < kPrefetchedSides; ++k)
       prefetch_crossing(here, k);
+  }
+  // Nodes of one size, with their planes, and stored edges: what large files are by default.
+  [[nodiscard]] bool is_plain() const {
+    return this->node_offsets() == nullptr && this->edges() != nullptr && this->has_planes();
+  }
+  // The same in a plain graph, without a branch: what lies across a border is node 0 here.
+  FDCG_HOT void prefetch_plainly_around(NodeRef<Geometry> here) const {
+    constexpr uint32_t kBytes = node_bytes<Real>(kPrefetchedSides, true);
+    const unsigned char* const nodes = this->nodes();
+    const size_t bytes = this->block_bytes();
+#pragma GCC unroll 3
+    for (uint32_t k = 0; k < kPrefetchedSides; ++k) {
+      const fdcg_side& side = here.side(k);
+      __builtin_prefetch(&this->connections()[side.link >> 1]);
+      __builtin_prefetch(&this->corners()[side.corner]);
+      __builtin_prefetch(&this->edges()[side.link >> 1]);
+      const unsigned char* const block = nodes + size_t{side.across == FDCG_NONE ? 0 : side.across} * bytes;
+#pragma GCC unroll 8
+      for (uint32_t at = 0; at < kBytes; at += kLineBytes)
+        __builtin_prefetch(block + at);
+    }
   }
 
   // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.
@@ -227,12 +253,12 @@ struct GraphView : Geometry {
         visit(FanEntry{here.connection(incoming), 1 - here.which(incoming), FDCG_NONE, 0});
         return;
       }
-      k = this->connections[here.connection(incoming)].side[1 - here.which(incoming)];
+      k = this->connections()[here.connection(incoming)].side[1 - here.which(incoming)];
     }
   }
   // Entry i of a busy corner.
   [[nodiscard]] FanEntry fan_entry(CornerRef<Geometry> corner, uint32_t i) const {
-    const uint32_t link = this->fans[corner.busy().first_fan + i], end = link & 1;
+    const uint32_t link = this->fans()[corner.busy().first_fan + i], end = link & 1;
     const ConnectionRef<Geometry> entry = connection(link >> 1);
     return {link >> 1, end, entry.node(end), entry.side(end)};
   }

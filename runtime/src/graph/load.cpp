@@ -96,6 +96,17 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
                   : "the file holds 32-bit numbers, this library was built for 64-bit ones alone; compile the mesh "
                     "with --precision f64, or the library with FDCG_WITH_F32");
   }
+  if (!FDCG_WITH_BUSY_CORNERS && header.busy_count != 0) {
+    return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, busy_count))
+        .say(header.busy_count, " corners have more than ", FDCG_BUSY_FAN,
+             " edges, this library was built without them; divide the faces there, or build it with FDCG_WITH_BUSY_CORNERS");
+  }
+  if (!FDCG_WITH_INEXACT_NODES && header.max_deviation > 0) {
+    return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, max_deviation))
+        .say("merged faces lie up to ", header.max_deviation,
+             " off their corners, this library was built without such; compile the mesh with --coplanar exact, or the library "
+             "with FDCG_WITH_INEXACT_NODES");
+  }
   const double largest = largest_extent(header);
   if (!in_range(header.extent, 1 / largest, largest)) {
     return Message(error, FDCG_E_LAYOUT, offsetof(fdcg_header, extent))
@@ -171,10 +182,12 @@ fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& head
     if (i > 0 && section.id <= sections[i - 1].id) return refuse("ids do not ascend");
     if (section.offset != at) return refuse("does not start where the one before it ends");
     if (section.reserved != 0) return refuse("reserved field is not zero");
-    if (section.record_bytes == 0 || section.record_count > (header.file_bytes - at) / section.record_bytes) {
+    uint64_t bytes;  // by a product: small processors have no 64-bit division
+    if (section.record_bytes == 0 || __builtin_mul_overflow(section.record_bytes, section.record_count, &bytes) ||
+        bytes > header.file_bytes - at) {
       return refuse("reaches beyond the end of the file");
     }
-    at += padded(section.record_bytes * section.record_count);
+    at += padded(bytes);
     if (at > header.file_bytes) return refuse("reaches beyond the end of the file");
     for (const SectionRule& rule : kSectionRules) {
       if (rule.id != section.id) continue;

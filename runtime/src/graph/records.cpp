@@ -44,7 +44,7 @@ fdcg_connection_info connection_info(const RigidView<Real>& graph, uint32_t inde
     info.side[k] = connection.side(k);
   }
   info.type = connection.type();
-  info.flatness = graph.connections[index].flatness;
+  info.flatness = graph.connections()[index].flatness;
   return info;
 }
 

@@ -12,44 +12,35 @@
 
 namespace fdcg {
 
-// A graph's records by their types: the same for every geometry.
+// A graph's records by their types: the same for every geometry. Not a copy of what the graph holds: a tick reads few of its
+// fields.
 template <class RealType>
 struct GraphRecords {
   using Real = RealType;
   using Node = typename Records<Real>::Node;
   using Corner = typename Records<Real>::Corner;
+  using StoredEdge = typename Records<Real>::Edge;
   using FanBox = typename Records<Real>::FanBox;
 
-  const fdcg_header* header;
-  const unsigned char* nodes;
-  const uint32_t* node_offsets;  // null: each block has block_bytes
-  uint64_t block_bytes;
-  bool has_planes;
-  const fdcg_connection* connections;
-  const typename Records<Real>::Edge* edges;  // null: derived
-  const Corner* corners;
-  const fdcg_busy_corner* busy_corners;
-  const uint32_t* fans;
-  const FanBox* fan_boxes;
-  const fdcg_box8* hierarchy;
-  const fdcg_fan_run* fan_runs;
-  uint32_t fan_run_count;
+  explicit GraphRecords(const fdcg_graph& graph) : raw_(&graph) {}
 
-  explicit GraphRecords(const fdcg_graph& graph)
-      : header(graph.header),
-        nodes(static_cast<const unsigned char*>(graph.nodes)),
-        node_offsets(graph.node_offsets),
-        block_bytes(graph.header->node_bytes),
-        has_planes((graph.header->flags & FDCG_STORED_PLANES) != 0),
-        connections(graph.connections),
-        edges(static_cast<const typename Records<Real>::Edge*>(graph.edges)),
-        corners(static_cast<const Corner*>(graph.corners)),
-        busy_corners(graph.busy_corners),
-        fans(graph.fans),
-        fan_boxes(static_cast<const FanBox*>(graph.fan_boxes)),
-        hierarchy(graph.hierarchy),
-        fan_runs(graph.fan_runs),
-        fan_run_count(graph.fan_run_count) {}
+  [[nodiscard]] const fdcg_header* header() const { return raw_->header; }
+  [[nodiscard]] const unsigned char* nodes() const { return static_cast<const unsigned char*>(raw_->nodes); }
+  [[nodiscard]] const uint32_t* node_offsets() const { return raw_->node_offsets; }  // null: each block has block_bytes
+  [[nodiscard]] size_t block_bytes() const { return raw_->header->node_bytes; }
+  [[nodiscard]] bool has_planes() const { return (raw_->header->flags & FDCG_STORED_PLANES) != 0; }
+  [[nodiscard]] const fdcg_connection* connections() const { return raw_->connections; }
+  [[nodiscard]] const StoredEdge* edges() const { return static_cast<const StoredEdge*>(raw_->edges); }  // null: derived
+  [[nodiscard]] const Corner* corners() const { return static_cast<const Corner*>(raw_->corners); }
+  [[nodiscard]] const fdcg_busy_corner* busy_corners() const { return raw_->busy_corners; }
+  [[nodiscard]] const uint32_t* fans() const { return raw_->fans; }
+  [[nodiscard]] const FanBox* fan_boxes() const { return static_cast<const FanBox*>(raw_->fan_boxes); }
+  [[nodiscard]] const fdcg_box8* hierarchy() const { return raw_->hierarchy; }
+  [[nodiscard]] const fdcg_fan_run* fan_runs() const { return raw_->fan_runs; }
+  [[nodiscard]] uint32_t fan_run_count() const { return raw_->fan_run_count; }
+
+ private:
+  const fdcg_graph* raw_;
 };
 
 template <class RealType>
@@ -70,7 +61,7 @@ struct RigidGeometry : GraphRecords<RealType> {
   void bring_up_to_date(NodeKey) const {}
   void bring_normal_up_to_date(const Corner&) const {}
 
-  [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return point_of(this->corners[index]); }
+  [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return point_of(this->corners()[index]); }
   [[nodiscard]] Vec3<Real> point_of(const Corner& corner) const { return vec(corner.point); }
   // fdcg_connection_type
   [[nodiscard]] uint8_t type_of(const fdcg_connection& connection) const { return connection.type; }
@@ -78,12 +69,12 @@ struct RigidGeometry : GraphRecords<RealType> {
   // A connection's edge between two corners. Written number by number where it is to be: a copy would have to store
   // and reload the numbers.
   void read_edge_between(uint32_t connection, uint32_t corner0, uint32_t corner1, Edge<Real>* edge) const {
-    const Corner& from = this->corners[corner0];
-    if (this->edges == nullptr) {
+    const Corner& from = this->corners()[corner0];
+    if (this->edges() == nullptr) {
       *edge = derive_edge(vec(from.point), corner_point(corner1));
       return;
     }
-    const auto& stored = this->edges[connection];
+    const auto& stored = this->edges()[connection];
     edge->start.x = from.point[0], edge->start.y = from.point[1], edge->start.z = from.point[2];
     edge->direction.x = stored.direction[0], edge->direction.y = stored.direction[1], edge->direction.z = stored.direction[2];
     edge->length = stored.length;

@@ -18,7 +18,7 @@ namespace fdcg {
 // stored normal is good to two units in the last place, the offset to one, the sum to three.
 template <class Graph, class Real = typename Graph::Real>
 inline Real plane_rounding_bound(const Graph& graph, Vec3<Real> x) {
-  return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header->extent));
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header()->extent));
 }
 
 // LEAVE-3: the same for one plane, where it matters that it is no more than that: each component of a stored normal is good to

@@ -38,7 +38,7 @@ class FullChunk {
 
   [[gnu::noinline]] fdcg_status connections() {
     return for_mine(header_.connection_count, "connection", [&](uint32_t c, auto* faults) {
-      const fdcg_connection& connection = graph_.connections[c];
+      const fdcg_connection& connection = graph_.connections()[c];
       const Node node = graph_.node(connection.node);
       const uint32_t k = connection.side[0], across = node.across(k);
       faults->note(node.corner(k) == node.corner(node.next(k)), "both its corners are one");
@@ -106,7 +106,7 @@ class FullChunk {
         walk.node = incoming.across;
         walk.is_open = walk.node == FDCG_NONE;
         if (!walk.is_open) {
-          walk.side = graph_.connections[incoming.link >> 1].side[1 - (incoming.link & 1)];
+          walk.side = graph_.connections()[incoming.link >> 1].side[1 - (incoming.link & 1)];
           const fdcg_side& twin = graph_.node(walk.node).side(walk.side);
           walk.is_wrong |= (twin.link != (incoming.link ^ 1u)) | (twin.across != from) | (twin.corner != walk.corner);
         }
@@ -124,8 +124,8 @@ class FullChunk {
     part_->faces += busy.fan_count - (is_open ? 1u : 0u);
     for (uint32_t i = 0; i < busy.fan_count; ++i) {
       const bool is_last = i + 1 == busy.fan_count;
-      const uint32_t entry = graph_.fans[busy.first_fan + i], c = entry >> 1, end = entry & 1;
-      const uint32_t next = graph_.fans[busy.first_fan + (is_last ? 0 : i + 1)];
+      const uint32_t entry = graph_.fans()[busy.first_fan + i], c = entry >> 1, end = entry & 1;
+      const uint32_t next = graph_.fans()[busy.first_fan + (is_last ? 0 : i + 1)];
       const auto connection = graph_.connection(c);
       if (connection.corner(end) != v) return "fan does not start here";
       const uint32_t n = connection.node(end), across = connection.node(1 - end);
@@ -135,7 +135,7 @@ class FullChunk {
       const Node node = graph_.node(n);
       const uint32_t k = connection.side(end);
       if (node.side(k).link != entry || node.across(k) != across || node.corner(k) != v) return "its nodes disagree";
-      const bool is_round_again = i > 0 && entry == graph_.fans[busy.first_fan];
+      const bool is_round_again = i > 0 && entry == graph_.fans()[busy.first_fan];
       if (is_round_again || node.connection(node.previous(k)) != next >> 1) return "fan is not in cyclic order";
     }
     return nullptr;

@@ -64,10 +64,10 @@ class SafeChunk {
       return refuse_record(error_, "header.connection_count", header_.connection_count, "no writer leaves all of them out");
     checksums();
     const bool are_sound =
-        uniform_sides_ == 3 && (records_.has_planes ? are_sound_triangles<true>() : are_sound_triangles<false>());
+        uniform_sides_ == 3 && (records_.has_planes() ? are_sound_triangles<true>() : are_sound_triangles<false>());
     fdcg_status status = are_sound ? FDCG_OK : nodes();
     if (status == FDCG_OK) status = connections();
-    if (status == FDCG_OK && records_.edges != nullptr) status = edges();
+    if (status == FDCG_OK && records_.edges() != nullptr) status = edges();
     if (status == FDCG_OK) status = corners();
     if (status == FDCG_OK && header_.busy_count != 0) status = busy_corners();
     if (status == FDCG_OK && raw_.hierarchy != nullptr) status = hierarchy();
@@ -95,9 +95,9 @@ class SafeChunk {
 
   // Where blocks differ: whether node n's follows the one before it, within the section; else null. Safe to ask of any node.
   const unsigned char* checked_block(uint32_t n) const {
-    const uint64_t at = records_.node_offsets[n] * uint64_t{sizeof(Real)};
+    const uint64_t at = records_.node_offsets()[n] * uint64_t{sizeof(Real)};
     if (at > node_section_bytes_ || node_section_bytes_ - at < sizeof(Node)) return nullptr;
-    return records_.nodes + at;
+    return records_.nodes() + at;
   }
   [[nodiscard]] uint32_t side_count_of(uint32_t n) const {
     if (uniform_sides_ != 0) return uniform_sides_;
@@ -112,9 +112,9 @@ class SafeChunk {
     constexpr uint32_t kSides = 3, kBlock = node_bytes<Real>(kSides, kHasPlanes);
     const uint64_t last_connection = header_.connection_count - 1, last_corner = header_.corner_count - 1;
     const uint64_t nodes = header_.node_count, end = chunk_.end_of(nodes);
-    const fdcg_connection* const connections = records_.connections;
+    const fdcg_connection* const connections = records_.connections();
     uint64_t n = chunk_.first_of(nodes), over = 0, wrong = 0, seconds = 0;
-    const unsigned char* block = records_.nodes + n * kBlock;
+    const unsigned char* block = records_.nodes() + n * kBlock;
     UnitCheck<Real> check(-largest_offset_, largest_offset_);
     for (; n < end; ++n, block += kBlock) {
       const auto& node = *reinterpret_cast<const Node*>(block);
@@ -160,16 +160,16 @@ class SafeChunk {
 
   [[gnu::noinline]] fdcg_status nodes() {
     return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
-      const unsigned char* const block = uniform_sides_ != 0 ? records_.nodes + n * records_.block_bytes : checked_block(n);
+      const unsigned char* const block = uniform_sides_ != 0 ? records_.nodes() + n * records_.block_bytes() : checked_block(n);
       if (block == nullptr) return faults->note(true, "its block is out of range");
       const uint32_t count = reinterpret_cast<const Node*>(block)->side_count;
       if (uniform_sides_ != 0 ? count != uniform_sides_ : count < 3 || count > FDCG_MAX_SIDES)
         return faults->note(true, "has too few sides or too many");
-      const uint64_t at = static_cast<uint64_t>(block - records_.nodes),
-                     end = at + node_bytes<Real>(count, records_.has_planes);
+      const uint64_t at = static_cast<uint64_t>(block - records_.nodes()),
+                     end = at + node_bytes<Real>(count, records_.has_planes());
       const bool is_last = n + 1 == header_.node_count;
       if (uniform_sides_ == 0) {
-        const uint64_t next = is_last ? node_section_bytes_ : records_.node_offsets[n + 1] * uint64_t{sizeof(Real)};
+        const uint64_t next = is_last ? node_section_bytes_ : records_.node_offsets()[n + 1] * uint64_t{sizeof(Real)};
         if (end > node_section_bytes_ || next != end || (n == 0 && at != 0))
           return faults->note(true, "its block does not end where the next one starts");
       }
@@ -190,7 +190,7 @@ class SafeChunk {
       const fdcg_side& side = sides[k];
       const bool is_known = side.link >> 1 < header_.connection_count;
       const uint32_t c = is_known ? side.link >> 1 : 0;
-      const uint64_t word = word_of(records_.connections[c]), which = side.link & 1;
+      const uint64_t word = word_of(records_.connections()[c]), which = side.link & 1;
       faults->note(!is_known, "connection out of range");
       faults->note(side.corner >= header_.corner_count, "corner out of range");
       faults->note(side.across + 1 > header_.node_count, "neighbour out of range");  // FDCG_NONE + 1 is 0
@@ -202,7 +202,7 @@ class SafeChunk {
       *first_sides += 1 - which;
       const bool has_neighbour = side.across < header_.node_count && which == 0;
       faults->note(has_neighbour && (word >> kSide1At & kByte) >= side_count_of(side.across), "its neighbour has no such side");
-      if (!records_.has_planes) look_at_derived(node, side, sides[k + 1 < count ? k + 1 : 0], c, faults);
+      if (!records_.has_planes()) look_at_derived(node, side, sides[k + 1 < count ? k + 1 : 0], c, faults);
     }
   }
 
@@ -211,11 +211,11 @@ class SafeChunk {
     const Real* const face = reinterpret_cast<const Node*>(block)->plane.normal;
     const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(count));
     UnitCheck<Real> check(-largest_offset_, largest_offset_);
-    if (Faults::kHasNames || !records_.has_planes) {
+    if (Faults::kHasNames || !records_.has_planes()) {
       check.look_at(face, face);
       faults->note(!check.holds(), "its normal is not of unit length, or its plane lies outside the object");
     }
-    if (!records_.has_planes) return;
+    if (!records_.has_planes()) return;
     check.look_at(face, planes);
     for (uint32_t k = 1; k < count; k += 2)
       check.look_at(planes + 4 * k, planes + 4 * (k + 1 < count ? k + 1 : k));
@@ -228,8 +228,8 @@ class SafeChunk {
   }
   // The edge vector of a side, of whatever length; `c`: its connection, in range.
   Vec3<Real> along_of(const fdcg_side& side, const fdcg_side& next, uint32_t c) const {
-    if (records_.edges != nullptr) return vec(records_.edges[c].direction);
-    const auto point = [&](uint32_t v) { return vec(records_.corners[v < header_.corner_count ? v : 0].point); };
+    if (records_.edges() != nullptr) return vec(records_.edges()[c].direction);
+    const auto point = [&](uint32_t v) { return vec(records_.corners()[v < header_.corner_count ? v : 0].point); };
     const Vec3<Real> along = point(next.corner) - point(side.corner);
     return dot(along, along) < TinyEdge<Real>::kSquare ? along * TinyEdge<Real>::kScale : along;
   }
@@ -242,7 +242,7 @@ class SafeChunk {
       const uint64_t first = c;
       c = end - first < kNode >> kPerCount ? end : first + (kNode >> kPerCount);
       const fdcg_status status = for_all(first, c, "connection", error_, [&](uint32_t i, auto* faults) {
-        const uint64_t word = word_of(records_.connections[i]), type = word >> kTypeAt & kByte;
+        const uint64_t word = word_of(records_.connections()[i]), type = word >> kTypeAt & kByte;
         faults->note((type > kTypes) | (word >> kFlatnessAt > kFlatnesses), "unknown type or flatness");
         faults->note((word >> kSide1At & kByte) >= most_sides, "its second node has no such side");
         types += uint64_t{1} << (type & kTypes) * kPerCount;
@@ -256,7 +256,7 @@ class SafeChunk {
 
   [[gnu::noinline]] fdcg_status edges() {
     const uint64_t first = chunk_.first_of(header_.connection_count), end = chunk_.end_of(header_.connection_count);
-    const auto numbers = [this](uint64_t c) { return static_cast<const Real*>(records_.edges[c].direction); };
+    const auto numbers = [this](uint64_t c) { return static_cast<const Real*>(records_.edges()[c].direction); };
     UnitCheck<Real> check(0, largest_offset_);
     for (uint64_t c = first; c < end; c += 2)
       check.look_at(numbers(c), numbers(c + 1 < end ? c + 1 : c));
@@ -276,7 +276,7 @@ class SafeChunk {
     }
     uint64_t busy_corners = 0;
     const fdcg_status status = for_mine(header_.corner_count, "corner", [&](uint32_t v, auto* faults) {
-      const auto& corner = records_.corners[v];
+      const auto& corner = records_.corners()[v];
       bool is_inside = true;
       for (int k = 0; k < 3; ++k)
         is_inside &= (double{corner.point[k]} >= low[k]) & (double{corner.point[k]} <= high[k]);
@@ -311,11 +311,11 @@ class SafeChunk {
     });
     if (status != FDCG_OK) return status;
     status = for_mine(header_.fan_count, "fan entry", [&](uint32_t i, auto* faults) {
-      faults->note(records_.fans[i] >> 1 >= header_.connection_count, "connection out of range");
+      faults->note(records_.fans()[i] >> 1 >= header_.connection_count, "connection out of range");
     });
     if (status != FDCG_OK) return status;
     return for_mine(header_.fan_box_count, "fan box", [&](uint32_t i, auto* faults) {
-      const auto& box = records_.fan_boxes[i];
+      const auto& box = records_.fan_boxes()[i];
       bool is_in_range = norm1(vec(box.centre)) <= 4;
       for (const auto& axis : box.axis)
         is_in_range = is_in_range && norm1(vec(axis)) <= 8;

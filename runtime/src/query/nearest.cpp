@@ -5,7 +5,7 @@
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "fdcg/query.h"
-#include "graph/tree_rounding.hpp"
+#include "graph/tolerances.hpp"
 #include "query/surface_search.hpp"
 
 namespace fdcg {
@@ -21,19 +21,19 @@ class NearestSearch {
       : graph_(graph),
         at_(at),
         best_(*best),
-        slack_(graph.header->max_deviation),
-        per_unit_(1 / tree_unit(graph.header->extent)),
+        slack_(graph.header()->max_deviation),
+        per_unit_(1 / tree_unit(graph.header()->extent)),
         pad_(2 * tree_rounding<double>(norm1(at) * per_unit_, norm1(at) * per_unit_ * RealLimits<double>::kEpsilon)) {}
 
   void run() {
-    if (graph_.hierarchy == nullptr) {
-      for (uint32_t n = 0; n < graph_.header->node_count; ++n)
+    if (graph_.hierarchy() == nullptr) {
+      for (uint32_t n = 0; n < graph_.header()->node_count; ++n)
         look_at_node(graph_.node(n), n);
       return;
     }
     const Place scaled = at_ * per_unit_;
     const float point[3] = {static_cast<float>(scaled.x), static_cast<float>(scaled.y), static_cast<float>(scaled.z)};
-    const BoxTree tree(graph_.header->node_count);
+    const BoxTree tree(graph_.header()->node_count);
     WaitingBoxes waiting(tree);
     narrow_limit();
     while (!waiting.is_empty()) {
@@ -44,7 +44,7 @@ class NearestSearch {
         continue;
       }
       float distance2[FDCG_TREE_WAYS];
-      squared_distances(graph_.hierarchy[tree.first[next.level] + next.index], point, distance2);
+      squared_distances(graph_.hierarchy()[tree.first[next.level] + next.index], point, distance2);
       uint32_t near = tree.lanes(next.level, next.index);
       for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j) {
         if (distance2[j] > limit2_) near &= ~(1u << j);
@@ -61,7 +61,7 @@ class NearestSearch {
   }
 
   void look_at_leaf(uint32_t leaf) {
-    const uint32_t first = leaf * FDCG_LEAF_NODES, left = graph_.header->node_count - first;
+    const uint32_t first = leaf * FDCG_LEAF_NODES, left = graph_.header()->node_count - first;
     const uint32_t count = left < FDCG_LEAF_NODES ? left : FDCG_LEAF_NODES;
     for (uint32_t n = first; n < first + count; ++n)
       look_at_node(graph_.node(n), n);
@@ -111,7 +111,7 @@ class NearestSearch {
   void take(double distance2, Place point, uint32_t state, uint32_t feature, uint32_t node) {
     if (!(distance2 < best_.distance2)) return;
     best_ = {distance2, point, state, feature, node};
-    if (graph_.hierarchy != nullptr) narrow_limit();
+    if (graph_.hierarchy() != nullptr) narrow_limit();
   }
 
   const View& graph_;

@@ -5,7 +5,7 @@
 #include "base/message.hpp"
 #include "base/struct_bytes.hpp"
 #include "fdcg/query.h"
-#include "graph/tree_rounding.hpp"
+#include "graph/tolerances.hpp"
 #include "query/surface_search.hpp"
 
 namespace fdcg {
@@ -22,17 +22,17 @@ class RaySearch {
         from_(from),
         to_(to),
         bound_(8 * static_cast<double>(RealLimits<Real>::kEpsilon) *
-                   (larger(norm1(from), norm1(to)) + 2 * graph.header->extent) +
-               graph.header->max_deviation) {}
+                   (larger(norm1(from), norm1(to)) + 2 * graph.header()->extent) +
+               graph.header()->max_deviation) {}
 
   FirstMeeting run() {
-    if (graph_.hierarchy == nullptr) {
-      for (uint32_t n = 0; n < graph_.header->node_count; ++n)
+    if (graph_.hierarchy() == nullptr) {
+      for (uint32_t n = 0; n < graph_.header()->node_count; ++n)
         look_at_node(n);
       return best_;
     }
     if (!enter_tree()) return best_;
-    const BoxTree tree(graph_.header->node_count);
+    const BoxTree tree(graph_.header()->node_count);
     WaitingBoxes waiting(tree);
     while (!waiting.is_empty()) {
       const WaitingBoxes::Item next = waiting.pop();
@@ -43,7 +43,7 @@ class RaySearch {
         continue;
       }
       float entry[FDCG_TREE_WAYS];
-      const uint32_t touched = touched_boxes(graph_.hierarchy[tree.first[next.level] + next.index], way_, limit, entry);
+      const uint32_t touched = touched_boxes(graph_.hierarchy()[tree.first[next.level] + next.index], way_, limit, entry);
       waiting.push(next, touched & tree.lanes(next.level, next.index), entry);
     }
     return best_;
@@ -53,7 +53,7 @@ class RaySearch {
   // Puts the segment into tree units, cut to its part near the tree. False: it passes by.
   bool enter_tree() {
     constexpr double kNear = 16;
-    const double per_unit = 1 / tree_unit(graph_.header->extent);
+    const double per_unit = 1 / tree_unit(graph_.header()->extent);
     const Place from = from_ * per_unit, to = to_ * per_unit, along = to - from;
     const double size = norm1(from) + norm1(to);
     if (!(size > kNear)) {
@@ -75,7 +75,7 @@ class RaySearch {
   }
 
   void look_at_leaf(uint32_t leaf) {
-    const uint32_t first = leaf * FDCG_LEAF_NODES, left = graph_.header->node_count - first;
+    const uint32_t first = leaf * FDCG_LEAF_NODES, left = graph_.header()->node_count - first;
     const uint32_t count = left < FDCG_LEAF_NODES ? left : FDCG_LEAF_NODES;
     for (uint32_t n = first; n < first + count; ++n)
       look_at_node(n);

@@ -59,7 +59,7 @@ inline double plane_distance(const RigidView<Real>& graph, NodeRef<RigidGeometry
 template <class Real>
 inline int plane_sign(const RigidView<Real>& graph, NodeRef<RigidGeometry<Real>> node, Place at) {
   const double distance = plane_distance(graph, node, at);
-  const double bound = 8 * static_cast<double>(RealLimits<Real>::kEpsilon) * (norm1(at) + 2 * graph.header->extent);
+  const double bound = 8 * static_cast<double>(RealLimits<Real>::kEpsilon) * (norm1(at) + 2 * graph.header()->extent);
   if (absolute(distance) > bound || node.is_inexact()) return distance > 0 ? 1 : distance < 0 ? -1 : 0;
   return orient3d_sign(corner_place(graph, node.corner(0)), corner_place(graph, node.corner(1)),
                        corner_place(graph, node.corner(2)), at);

@@ -26,7 +26,7 @@ inline bool is_in_clear_ball(const fdcg_clear_ball& ball, Vec3<double> hip) {
 template <class Geometry, class Real = typename Geometry::Real>
 inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> at, Real nearest) {
   const Real from_plane = absolute(node.plane().distance(at));
-  if (node.is_inexact()) return from_plane - static_cast<Real>(graph.header->max_deviation);
+  if (node.is_inexact()) return from_plane - static_cast<Real>(graph.max_deviation());
   if (!(from_plane < nearest)) return from_plane;
   Real beside = 0;
   for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -41,7 +41,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 inline float squared_leaf_distance(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<Real> at, Real reach, Real per_unit) {
   const uint32_t first = leaf * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
   Real nearest = reach;
-  for (uint32_t n = first; n < end && n < graph.header->node_count; ++n) {
+  for (uint32_t n = first; n < end && n < graph.header()->node_count; ++n) {
     const Real distance = node_distance(graph, graph.node(n), at, nearest);
     if (distance < nearest) nearest = distance > 0 ? distance : Real(0);
   }
@@ -67,7 +67,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   constexpr Real kWaysAhead = 12;              // what a look is to pay for, in ways of this tick
   constexpr Real kLeastReach = Real(1) / 256;  // ... and tree units
   constexpr Real kFar = 64, kTreeReach = 16;   // tree units: no box reaches further than 8
-  const Real unit = static_cast<Real>(tree_unit(graph.header->extent)), per_unit = 1 / unit;
+  const Real unit = static_cast<Real>(tree_unit(graph.header()->extent)), per_unit = 1 / unit;
   const Vec3<Real> p = at * per_unit;
   const Real size = norm1(p);
   if (size > kFar) return (size / 3 - kTreeReach) * kClearShare<Real> * unit;
@@ -79,7 +79,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const float least = static_cast<float>(length + margin), too_near2 = least * least;
   constexpr float kOpened = 0.25F;  // what is not nearer than half the nearest node so far is not opened but taken as it is
   float node2 = static_cast<float>(reach * reach), clear2 = node2;
-  const BoxTree tree(graph.header->node_count);
+  const BoxTree tree(graph.header()->node_count);
   WaitingBoxes waiting(tree);
   for (int visits = 0; !waiting.is_empty() && clear2 > too_near2;) {
     const WaitingBoxes::Item next = waiting.pop();
@@ -97,7 +97,7 @@ template <class Geometry, class Real = typename Geometry::Real>
       continue;
     }
     float distance2[FDCG_TREE_WAYS];
-    const fdcg_box8& boxes = graph.hierarchy[tree.first[next.level] + next.index];
+    const fdcg_box8& boxes = graph.hierarchy()[tree.first[next.level] + next.index];
     const uint32_t lanes = tree.lanes(next.level, next.index);
     uint32_t near = nearer_boxes(boxes, point, clear2, distance2) & lanes;
     if (graph.has_tightened(next.level, next.index, near)) near = nearer_boxes(boxes, point, clear2, distance2) & lanes;

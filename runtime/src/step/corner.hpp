@@ -28,7 +28,7 @@ struct Steepest {
 
 // Whether the HIP is behind a face, or behind an edge as that rules, so that it holds the god-object (contact-model EDGE-1).
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool holds(Walk<Geometry>& walk, Feature feature) {
+[[gnu::noinline, gnu::cold]] bool holds(Walk<Geometry>& walk, Feature feature) {
   if (feature.state == FDCG_FACE) return walk.side(walk.graph.node(feature.index)) < 0;
   const ConnectionRef<Geometry> connection = walk.graph.connection(feature.index);
   EdgeSides<Real> s;
@@ -55,7 +55,7 @@ struct FanSearch {
     if (best.is_less_steep_than(found, half_t2) && (!must_hold || holds(walk, found.feature))) best = found;
   }
   // One entry of the fan: its edge, and the face to the left of it.
-  [[gnu::noinline]] void look_at(const FanEntry& entry) {
+  [[gnu::noinline, gnu::cold]] void look_at(const FanEntry& entry) {
     const Vec3<Real> direction = walk.graph.edge(entry.connection).direction;
     const Real forward = dot(t, direction);
     if (entry.end == 0 ? forward > 0 : forward < 0) {
@@ -83,7 +83,7 @@ inline void search_all(FanSearch<Geometry>& search, CornerRef<Geometry> corner) 
 // The most that t.u can be for a unit vector u of the box, or more: the lesser of what the box alone allows, and, since u is no
 // longer than 1, of sup over the box of t.u - (|t|/2) (|u|^2 - 1), which is tight where u can point along t but for a little.
 template <class Real, class FanBox>
-inline Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
+[[gnu::noinline, gnu::cold]] Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
   const Vec3<Real> centre = vec(box.centre);
   const Real along_centre = dot(t, centre), weight = length / 2;
   Real in_box = along_centre, in_ball = along_centre + weight * (1 - dot(centre, centre));
@@ -102,7 +102,7 @@ inline Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
 // is found, but for rounding, is left out. So one of several directions that tie is taken: at the apex of a regular fan they
 // all do.
 template <class Geometry, class Real = typename Geometry::Real>
-inline void search_by_tree(FanSearch<Geometry>& search, CornerRef<Geometry> corner) {
+[[gnu::noinline, gnu::cold]] void search_by_tree(FanSearch<Geometry>& search, CornerRef<Geometry> corner) {
   const GraphView<Geometry>& graph = search.walk.graph;
   const Vec3<Real> t = search.t;
   struct Waiting {
@@ -111,7 +111,7 @@ inline void search_by_tree(FanSearch<Geometry>& search, CornerRef<Geometry> corn
     int level;
   };
   const ImplicitTree layout(corner.fan_count(), FDCG_LEAF_FAN);
-  const auto* boxes = graph.fan_boxes + corner.busy().first_box;
+  const auto* boxes = graph.fan_boxes() + corner.busy().first_box;
   const Real tie = fan_rounding<Real>(t);
   const Real length = norm(t);
   const auto bound_of = [&](int level, uint32_t i) { return most_along(boxes[layout.first[level] + i], t, length) - tie; };
@@ -188,7 +188,7 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
 // it was, which at the corner it might be. Free, the way begins at the corner, lest it pass below a face of it. `t`: from the
 // corner to the HIP.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Vec3<Real> moved_beside(const Walk<Geometry>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
+[[gnu::noinline, gnu::cold]] Vec3<Real> moved_beside(const Walk<Geometry>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
   if (next == kFree) return point;
   Vec3<Real> down;  // to the foot of the HIP on `next`
   if (next.state == FDCG_FACE) {
@@ -205,7 +205,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // Cost: one connection, one node and two Voronoi planes for each edge of the corner; at a busy corner for some eight of them,
 // and the logarithm of their number in boxes.
 template <class Geometry, class Real = typename Geometry::Real>
-inline Decision corner_rule(Walk<Geometry>& walk) {
+[[gnu::noinline, gnu::cold]] Decision corner_rule(Walk<Geometry>& walk) {
   const CornerRef<Geometry> corner = walk.graph.corner(walk.active.index);
   const Vec3<Real> point = corner.point(), t = walk.hip - point;
   const Feature next = next_from_corner(walk, corner, t);

@@ -45,7 +45,7 @@ class WayToEdge {
   }
 
   // A face of the fan. Call for each, or for all that the plane of the way can meet.
-  [[gnu::noinline]] void pass(const FanEntry& entry) {
+  [[gnu::noinline, gnu::cold]] void pass(const FanEntry& entry) {
     if (entry.node == FDCG_NONE) return;
     const NodeRef<Geometry> node = walk_.graph.node(entry.node);
     const bool is_beside = entry.node == beside_[0] || entry.node == beside_[1];
@@ -58,7 +58,7 @@ class WayToEdge {
     if (from == 0 && to == 0 ? !is_far_sided(node) : beside(from) == beside(to)) return;
     if (from != to && beside(from) != (hip_side > 0 ? 1 : -1)) return;  // what is met is the face's other side of the corner
     const Real target_side = side(node, target_, target_bound_);
-    if (node.is_inexact() && absolute(target_side) <= walk_.graph.header->max_deviation + target_bound_) return;  // on it
+    if (node.is_inexact() && absolute(target_side) <= walk_.graph.max_deviation() + target_bound_) return;  // on it
     if (hip_side > 0 ? target_side < 0 : target_side > 0) is_outside_ = !is_outside_;
   }
 
@@ -72,7 +72,7 @@ class WayToEdge {
   }
   // Two sides in one line with the corner, and in the plane of the way: the face is all on the other side of it than corners
   // in it are taken to be.
-  [[gnu::noinline]] bool is_far_sided(NodeRef<Geometry> node) {
+  [[gnu::noinline, gnu::cold]] bool is_far_sided(NodeRef<Geometry> node) {
     for (uint32_t k = 0; k < node.side_count() && node.side_count() > 3; ++k) {
       const int sign = sign_of(node.corner(k));
       if (sign != 0) return sign != tie_;
@@ -86,13 +86,13 @@ class WayToEdge {
            turns_left(hip, widen(walk_.graph.corner_point(right)), node);
   }
   // Whether b is to the left of a about the corner, seen from the front of a node that they lie on; or in line with it.
-  [[gnu::noinline]] bool turns_left(const Vec3<double>& a, const Vec3<double>& b, NodeRef<Geometry> node) {
-    const Vec3<double> above = corner_ + widen(node.normal()) * walk_.graph.header->extent;
+  [[gnu::noinline, gnu::cold]] bool turns_left(const Vec3<double>& a, const Vec3<double>& b, NodeRef<Geometry> node) {
+    const Vec3<double> above = corner_ + widen(node.normal()) * walk_.graph.header()->extent;
     return orient3d_sign(corner_, a, b, above, &work_left_) >= 0;
   }
   [[nodiscard]] int beside(int sign) const { return sign == 0 ? tie_ : sign; }
   // Kept for the last: the next face of the fan asks for it again.
-  [[gnu::noinline]] int sign_of(uint32_t corner) {
+  [[gnu::noinline, gnu::cold]] int sign_of(uint32_t corner) {
     if (corner != last_) {
       last_ = corner;
       spend(&work_left_, kFanSignWork);
@@ -105,7 +105,7 @@ class WayToEdge {
   static constexpr uint32_t kMuch = 1u << 30;
 
   [[nodiscard]] Real side(NodeRef<Geometry> node) { return side(node, walk_.hip, walk_.hip_bound); }
-  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) {
+  [[nodiscard, gnu::noinline, gnu::cold]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) {
     return side_of(walk_.graph, node, x, bound, &work_left_);
   }
 
@@ -124,7 +124,7 @@ class WayToEdge {
 // The faces of a busy corner that the plane of the way can meet: those in boxes of its tree on both sides of the plane. False:
 // they are too many.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool pass_by_tree(Walk<Geometry>& walk, CornerRef<Geometry> corner, WayToEdge<Geometry>& way) {
+[[gnu::noinline, gnu::cold]] bool pass_by_tree(Walk<Geometry>& walk, CornerRef<Geometry> corner, WayToEdge<Geometry>& way) {
   // In double and from the points themselves: of a long body's tip all directions are one but for their last digits.
   const Vec3<double> point = widen(corner.point()), t = widen(walk.hip) - point, along = widen(way.target()) - point;
   const Vec3<double> normal = cross(t, along);
@@ -132,7 +132,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (norm1(normal) <= own_rounding) return true;  // the HIP is beside the edge: nothing lies between
   const double rounding = fan_rounding<Real>(normal) + own_rounding;
   const ImplicitTree layout(corner.fan_count(), FDCG_LEAF_FAN);
-  const auto* boxes = walk.graph.fan_boxes + corner.busy().first_box;
+  const auto* boxes = walk.graph.fan_boxes() + corner.busy().first_box;
   uint32_t stack[2 * kMaxLevels];  // box * 32 + level
   int waiting = 0;
   const auto push = [&](uint32_t level, uint32_t i) {
@@ -165,7 +165,7 @@ enum class Beginning { outside, inside, not_told };
 // contact-model CORNER-4. Exact, but at corners of faces that lie off their planes. Not told: of an open corner, which has no
 // inside, and of a busy one where hundreds of faces lie in one plane with the way.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Beginning beginning_of_way(Walk<Geometry>& walk, CornerRef<Geometry> corner) {
+[[gnu::noinline, gnu::cold]] Beginning beginning_of_way(Walk<Geometry>& walk, CornerRef<Geometry> corner) {
   if (corner.is_open()) return Beginning::not_told;
   const GraphView<Geometry>& graph = walk.graph;
   const Vec3<Real> t = walk.hip - corner.point();

@@ -62,7 +62,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // to hold.
 template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
-  if (!(walk.graph.header->max_deviation > 0)) return FDCG_NONE;
+  if (!walk.graph.has_inexact_nodes()) return FDCG_NONE;
   const bool is_concave = connection.type() == FDCG_CONCAVE;
   for (uint32_t k = 0; k < 2; ++k) {
     const bool is_over = s.voronoi[k] < 0 && s.voronoi[1 - k] > 0, is_behind = s.side[k] < 0;
@@ -73,7 +73,7 @@ inline uint32_t face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geo
 
 // Cost: two face planes, two Voronoi planes.
 template <class Geometry, class Real = typename Geometry::Real>
-inline Decision edge_rule(Walk<Geometry>& walk) {
+[[gnu::noinline, gnu::hot]] Decision edge_rule(Walk<Geometry>& walk) {
   const uint32_t index = walk.active.index;
   const ConnectionRef<Geometry> connection = walk.graph.connection(index);
   EdgeSides<Real> s;

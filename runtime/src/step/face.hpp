@@ -21,7 +21,7 @@ struct Crossing {
 // contact-model FACE-8: whether `to` is past the corner at which side k starts: before that side's start and beyond the end of
 // the side before.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool is_past_corner(NodeRef<Geometry> node, uint32_t k, Vec3<Real> to) {
+[[gnu::noinline, gnu::cold]] bool is_past_corner(NodeRef<Geometry> node, uint32_t k, Vec3<Real> to) {
   const Real rounding = on_plane_rounding(to, node.extent());
   const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
   const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
@@ -94,8 +94,8 @@ struct FaceMove {
 // `bound`: plane_rounding_bound of the HIP. `reach`: from the HIP to the god-object, more exactly than the two can say.
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
-template <class Geometry, class Real = typename Geometry::Real>
-FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Friction<Real>& friction, Vec3<Real> hip, Real bound, Real side,
+template <class Geometry, class Laws, class Real = typename Geometry::Real>
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
                                      Vec3<Real> god_object, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
   if (FDCG_MUTANT("on-plane") ? side > 0 : !(side < 0)) return {Kind::leaves, god_object, {}};
@@ -114,7 +114,7 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Friction<Real>& fri
 // A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.
 template <class Geometry, class Real = typename Geometry::Real>
 inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
-  return norm1(hip) > kNearExtents * Real(graph.header->extent);
+  return norm1(hip) > kNearExtents * Real(graph.header()->extent);
 }
 
 // contact-model FACE-6: seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have
@@ -122,7 +122,7 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 // is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side, Vec3<Real> point) {
-  const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.header->max_deviation);
+  const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.max_deviation());
   const Plane<Real> plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
@@ -147,7 +147,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // ends: a face like a needle may be narrower than that rounding, and near the planes of all its sides.
 template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
-  const Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header->extent));
+  const Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header()->extent));
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding && is_between_ends(node, k, walk.god_object)) return k;
   }
@@ -157,7 +157,7 @@ inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
 // contact-model FACE-1: the face has lost the HIP: the seat's rule decides; without a seat this is Free. A god-object that slid
 // to the face's rim but for rounding may be behind the faces across, so it is seated there first.
 template <class Geometry>
-inline Feature leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
+[[gnu::noinline, gnu::cold]] Feature leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
   if (!(walk.seat == kFree)) return walk.seat;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) return kFree;
@@ -166,7 +166,7 @@ inline Feature leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
 
 // Places the god-object where the move says. Returns what comes next.
 template <class Geometry, class Real = typename Geometry::Real>
-inline Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
+[[gnu::noinline, gnu::hot]] Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
   using Kind = typename FaceMove<Real>::Kind;
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   if (move.kind == Kind::leaves) return go_to(FDCG_MUTANT("seat") ? kFree : leave_face(walk, node));
@@ -176,7 +176,7 @@ inline Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
   }
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = move.crossing.local_side;
-  walk.graph.prefetch_crossing(node, side);
+  if (node.side_count() > walk.graph.kPrefetchedSides) walk.graph.prefetch_crossing(node, side);  // else it has been
   const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.rounding_residual;
   const Vec3<Real> ahead = walk.rounding_residual + way * move.crossing.fraction;  // from `from` to the crossing
   const Feature landed = place_on_rim(walk, node, side, from + ahead);
@@ -185,7 +185,7 @@ inline Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
 }
 
 template <class Geometry, class Real = typename Geometry::Real>
-inline Decision face_rule(Walk<Geometry>& walk) {
+[[gnu::noinline, gnu::hot]] Decision face_rule(Walk<Geometry>& walk) {
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
   if constexpr (FDCG_WITH_FRICTION_TERMS) {

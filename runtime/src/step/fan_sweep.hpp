@@ -23,16 +23,16 @@ class FanSweep : public NodeEntry<Geometry> {
   using Entry::best_, Entry::from_, Entry::from_bound_, Entry::glance_at_node, Entry::graph_, Entry::is_before_best;
   using Entry::left_, Entry::slab_, Entry::to_, Entry::to_bound_, Entry::way_, Entry::work_left_;
 
-  [[nodiscard]] bool has_runs() const { return graph_.fan_run_count != 0; }
+  [[nodiscard]] bool has_runs() const { return FDCG_WITH_BUSY_CORNERS && graph_.fan_run_count() != 0; }
   // Whether the work ran out before all of a fan was looked at.
   [[nodiscard]] bool is_cut_short() const { return is_cut_short_; }
 
   // Whether all nodes below an item of the hierarchy (level -1: a leaf) have been looked at: by their corners' trees, a leaf's
   // others one by one. A fan is looked at once, for the first item in it.
-  [[gnu::noinline]] bool looked_at_fans(int level, uint32_t index) {
-    const uint64_t first = uint64_t{index} * FDCG_LEAF_NODES << 3 * (level + 1), nodes = graph_.header->node_count;
+  [[gnu::noinline, gnu::cold]] bool looked_at_fans(int level, uint32_t index) {
+    const uint64_t first = uint64_t{index} * FDCG_LEAF_NODES << 3 * (level + 1), nodes = graph_.header()->node_count;
     const uint64_t beyond = first + (uint64_t{FDCG_LEAF_NODES} << 3 * (level + 1)), end = beyond < nodes ? beyond : nodes;
-    if (end <= graph_.fan_runs[0].first_node) return false;
+    if (end <= graph_.fan_runs()[0].first_node) return false;
     if (level >= 0) {
       uint32_t run = run_of(static_cast<uint32_t>(first));
       const uint32_t last = last_run(run, end);
@@ -70,22 +70,22 @@ class FanSweep : public NodeEntry<Geometry> {
 
   // The run that a node is in, or FDCG_NONE.
   [[nodiscard]] uint32_t run_of(uint32_t n) const {
-    uint32_t low = 0, high = graph_.fan_run_count;
+    uint32_t low = 0, high = graph_.fan_run_count();
     while (low < high) {
       const uint32_t middle = low + (high - low) / 2;
-      if (graph_.fan_runs[middle].first_node <= n) {
+      if (graph_.fan_runs()[middle].first_node <= n) {
         low = middle + 1;
       } else {
         high = middle;
       }
     }
     if (low == 0) return FDCG_NONE;
-    const fdcg_fan_run& run = graph_.fan_runs[low - 1];
+    const fdcg_fan_run& run = graph_.fan_runs()[low - 1];
     return n - run.first_node < run.node_count ? low - 1 : FDCG_NONE;
   }
 
   [[nodiscard]] uint64_t end_of(uint32_t run) const {
-    return uint64_t{graph_.fan_runs[run].first_node} + graph_.fan_runs[run].node_count;
+    return uint64_t{graph_.fan_runs()[run].first_node} + graph_.fan_runs()[run].node_count;
   }
 
   // The run that node end - 1 is in, where `run` and few others without gaps reach there; else FDCG_NONE. A record of the
@@ -95,7 +95,7 @@ class FanSweep : public NodeEntry<Geometry> {
     for (uint32_t last = run; last < run + kFewFans; ++last) {
       if (end <= end_of(last)) return last;
       const uint32_t next = last + 1;
-      if (next >= graph_.fan_run_count || graph_.fan_runs[next].first_node != end_of(last)) return FDCG_NONE;
+      if (next >= graph_.fan_run_count() || graph_.fan_runs()[next].first_node != end_of(last)) return FDCG_NONE;
     }
     return FDCG_NONE;
   }
@@ -105,8 +105,8 @@ class FanSweep : public NodeEntry<Geometry> {
       if (fans_[i] == run) return;
     }
     fans_[looked_at_++ % kRemembered] = run;
-    const fdcg_fan_run& fan = graph_.fan_runs[run];
-    const fdcg_busy_corner& busy = graph_.busy_corners[fan.busy];
+    const fdcg_fan_run& fan = graph_.fan_runs()[run];
+    const fdcg_busy_corner& busy = graph_.busy_corners()[fan.busy];
     if (left_ == Feature{FDCG_VERTEX, busy.corner}) return;  // contact-model LEAVE-1: all of its faces are left out
     Arc arc;
     if (spans_arc(fan, busy.corner, &arc)) search_fan(busy, arc);
@@ -115,7 +115,7 @@ class FanSweep : public NodeEntry<Geometry> {
   // False: no face of the fan is to be asked.
   // In double: a difference of floats has no rounding there, and the plane of a fine needle's tip and a way is felt in the last
   // digits of their places.
-  [[gnu::noinline]] bool spans_arc(const fdcg_fan_run& fan, uint32_t corner, Arc* arc) {
+  [[gnu::noinline, gnu::cold]] bool spans_arc(const fdcg_fan_run& fan, uint32_t corner, Arc* arc) {
     spend(work_left_, kArcWork);
     const Vec3<double> point = widen(graph_.corner_point(corner)), a = widen(from_) - point, b = widen(to_) - point;
     const Vec3<double> way = widen(to_) - widen(from_);
@@ -161,7 +161,7 @@ class FanSweep : public NodeEntry<Geometry> {
   // contact-model FREE-8: a way that passes the corner within rounding meets it, and not one of thousands of faces there whose
   // sides it passes by as little. `at`: the fraction of the way; `off`: how far from the corner.
   bool is_met(const fdcg_fan_run& fan, uint32_t corner, double at, double off) {
-    const double extent = graph_.header->extent, deviation = graph_.header->max_deviation;
+    const double extent = graph_.header()->extent, deviation = graph_.max_deviation();
     const double rounding = at_corner_rounding<Real>(widen(graph_.corner_point(corner)), extent);
     if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : 0) && at >= 0 && at < 1)) return false;
     const auto fraction = static_cast<Real>(at);
@@ -205,7 +205,7 @@ class FanSweep : public NodeEntry<Geometry> {
       int level;
     };
     const ImplicitTree layout(busy.fan_count, FDCG_LEAF_FAN);
-    const auto* const boxes = graph_.fan_boxes + busy.first_box;
+    const auto* const boxes = graph_.fan_boxes() + busy.first_box;
     const CornerRef<Geometry> corner = graph_.corner(busy.corner);
     Waiting stack[kMaxLevels + 2];
     int waiting = 0;

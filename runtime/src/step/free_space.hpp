@@ -18,7 +18,7 @@ inline Vec3<Real> onto_slab(const Walk<Geometry>& walk, Vec3<Real> point, uint32
 
 // Places the contact at the first collision on the way, or at its end.
 template <class Geometry, class Real = typename Geometry::Real>
-inline void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
+[[gnu::noinline]] void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
   const Real over = FDCG_MUTANT("grazing") && is_on_face ? first.fraction + Real(0.01)
                     : is_on_face                         ? sweep.part_over(first.feature.index, first.fraction, 0)
@@ -39,7 +39,7 @@ inline void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real
 // contact-model FREE-2, BOUND-2: goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has
 // not moved.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool finish_carried_sweep(Walk<Geometry>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
+[[gnu::noinline, gnu::cold]] bool finish_carried_sweep(Walk<Geometry>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
   const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
   Sweep<Geometry> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature},
@@ -90,9 +90,9 @@ inline bool is_in_new_ball(const GraphView<Geometry>& graph, Vec3<Real> from, Ve
 // where its numbers, which out there are coarser than the object, cannot tell. A place computed from the whole way might be
 // anywhere.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Vec3<Real> near_start(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to) {
+[[gnu::noinline, gnu::cold]] Vec3<Real> near_start(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to) {
   constexpr Real kFar = kNearExtents, kBefore = 4;  // extents; the graph lies within less than two of the origin
-  const Real extent = static_cast<Real>(graph.header->extent);
+  const Real extent = static_cast<Real>(graph.header()->extent);
   if (!(norm1(from) > kFar * extent)) return from;
   const Vec3<Real> way = to - from;
   const Real length = norm(way);
@@ -112,7 +112,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // to the HIP meets, or at the HIP. A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work
 // ran out, else 0.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
+[[gnu::noinline, gnu::hot]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
   fdcg_carried_sweep* carried = space->carried;
   space->ball->radius2 = 0;
   if (carried->is_carried != 0) {
@@ -129,7 +129,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   }
   const Vec3<Real> to = walk.hip, from = left == kFree ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
-  const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy != nullptr;
+  const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy() != nullptr;
   if (is_still || (may_look && is_in_new_ball(walk.graph, from, to, space->ball))) {
     walk.place(to, kFree);
     carried->stalled_sweeps = 0;

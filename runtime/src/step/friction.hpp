@@ -22,12 +22,12 @@ struct Slip {
   Real gap;
 };
 
+// Two coefficients.
 template <class Real>
-struct Friction {
+struct PlainFriction {
   Real mu_static, mu_dynamic;
-  bool has_wedge;                  // on edges: contact-model EDGE-4
-  bool is_slipping;                // dynamic friction holds
-  FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
+  bool has_wedge;    // on edges: contact-model EDGE-4
+  bool is_slipping;  // dynamic friction holds
 
   // contact-model FRIC-1 to FRIC-4. `gap2` is the squared distance of the god-object from the surface point, `load` the depth
   // that presses it on. Slipping
@@ -35,9 +35,6 @@ struct Friction {
   // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
   // the rounding of its own place. Squares, so that rest costs no root.
   Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
-    if constexpr (FDCG_WITH_FRICTION_TERMS) {
-      if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
-    }
     constexpr Real kStickAgain = Real(kStickAgainShare);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {
@@ -50,12 +47,35 @@ struct Friction {
     if (FDCG_MUTANT("rest-untouched")) return {false, is_slipping ? gap : root(gap2)};
     return {!is_slipping || gap2 <= square(gap + circle_rounding(god_object, gap)), gap};
   }
+};
 
+// The same, or with terms.
+template <class Real>
+struct Friction : PlainFriction<Real> {
+  FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
+
+  Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
+    if constexpr (FDCG_WITH_FRICTION_TERMS) {
+      if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
+    }
+    return PlainFriction<Real>::slip(god_object, gap2, load);
+  }
+
+ private:
   [[gnu::noinline, gnu::cold]] Slip<Real> slip_with_terms(Vec3<Real> god_object, Real gap2, Real load) {
     const TermSlip slip =
-        terms->slip({god_object.x, god_object.y, god_object.z}, gap2, load, RealLimits<Real>::kEpsilon, &is_slipping);
+        terms->slip({god_object.x, god_object.y, god_object.z}, gap2, load, RealLimits<Real>::kEpsilon, &this->is_slipping);
     return {slip.is_rest, static_cast<Real>(slip.gap)};
   }
 };
+
+// Of a tick that is known to have no terms; where the library is built for size, one kind serves all.
+#if FDCG_WITH_FRICTION_TERMS && !defined(__OPTIMIZE_SIZE__)
+template <class Real>
+using QuickFriction = PlainFriction<Real>;
+#else
+template <class Real>
+using QuickFriction = Friction<Real>;
+#endif
 
 }  // namespace fdcg

@@ -13,10 +13,11 @@ namespace fdcg {
 
 // `point`, moved along `outward` by as little as puts it in front of the node's plane: a slit may be narrower than a rounding.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Vec3<Real> in_front_of(Walk<Geometry>& walk, NodeRef<Geometry> node, Vec3<Real> point, Vec3<Real> outward) {
+[[gnu::noinline, gnu::cold]] Vec3<Real> in_front_of(Walk<Geometry>& walk, NodeRef<Geometry> node, Vec3<Real> point,
+                                                    Vec3<Real> outward) {
   constexpr int kMostMoves = 16;  // each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, point);
-  const Real least = least_step_clear<Real>(walk.graph.header->extent);
+  const Real least = least_step_clear<Real>(walk.graph.header()->extent);
   const Real behind = absolute(node.plane().distance(point));
   Real step = behind > least ? behind : least;
   for (int i = 0; i < kMostMoves; ++i, step = 2 * step) {
@@ -28,7 +29,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // Call before the sweep that leaves `left`, whose rule has found the HIP outside.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] void step_clear_of(Walk<Geometry>& walk, Feature left) {
+[[gnu::noinline, gnu::cold]] void step_clear_of(Walk<Geometry>& walk, Feature left) {
   if (left.state == FDCG_FACE) {
     const NodeRef<Geometry> node = walk.graph.node(left.index);
     walk.god_object = in_front_of(walk, node, walk.god_object, node.normal());

@@ -37,7 +37,7 @@ class NodeEntry {
         to_bound_(plane_rounding_bound(graph_, to_)),
         left_(left),
         work_left_(work_left) {
-    slab_ = slab_depth(graph_.header->max_deviation, from_bound_);
+    slab_ = slab_depth(graph_.max_deviation(), from_bound_);
   }
 
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
@@ -47,7 +47,7 @@ class NodeEntry {
   // one that grazes it, the roundings of two sides make `fraction` arbitrary, and its point might lie anywhere beyond the rim.
   // kNever where it is nowhere over the face: a loop that is not flat is passed, seen edge-on, by ways that end before it, and
   // by ways that pass it by.
-  [[nodiscard, gnu::noinline]] Real part_over(uint32_t n, Real fraction, Real least) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Geometry> node = graph_.node(n);
     const Real rounding = side_rounding(from_bound_, to_bound_), off = slab_ - from_bound_;  // corners off their planes
     Real begin = least, end = 1, widest_begin = least, widest_end = 1;
@@ -86,7 +86,7 @@ class NodeEntry {
   static constexpr uint32_t kLastBit = 63;
 
   // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
-  [[nodiscard, gnu::noinline]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end) const {
     spend(work_left_, kSideWork * node.side_count());
     bool is_beside = false;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -113,7 +113,7 @@ class NodeEntry {
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
-    const bool is_slab = graph_.header->max_deviation > 0;
+    const bool is_slab = graph_.has_inexact_nodes();
     if (start_side < (is_slab ? -slab_ : Real(0))) {
       if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
       return;
@@ -175,7 +175,7 @@ class NodeEntry {
   // contact-model LEAVE-3: a slit may be narrower than the rounding of the god-object's place, which then is behind the other
   // wall; that wall must hold it. Where the way crossed the wall cannot be told, for the same reason: it counts if the way
   // begins over it.
-  [[gnu::noinline]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
+  [[gnu::noinline, gnu::cold]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
     const Plane<Real> plane = node.plane();
     if (plane.distance(from_) < -own_plane_rounding(plane, from_)) return;  // of a flat or a long body much less than the bound
@@ -217,7 +217,7 @@ class NodeEntry {
   }
   // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it,
   // though it may begin in its slab.
-  [[nodiscard, gnu::noinline]] bool left_lies_behind(NodeRef<Geometry> node) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] bool left_lies_behind(NodeRef<Geometry> node) const {
     if (left_.state != FDCG_FACE && left_.state != FDCG_EDGE) return false;
     const bool is_edge = left_.state == FDCG_EDGE;
     const NodeRef<Geometry> face = is_edge ? node : graph_.node(left_.index);
@@ -242,7 +242,7 @@ class NodeEntry {
     }
     return false;
   }
-  [[nodiscard, gnu::noinline]] Real side_of_corner(NodeRef<Geometry> plane, uint32_t corner) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] Real side_of_corner(NodeRef<Geometry> plane, uint32_t corner) const {
     const Vec3<Real> point = graph_.corner_point(corner);
     spend(work_left_, kNodeWork);
     return side(plane, point, plane_rounding_bound(graph_, point));
@@ -304,8 +304,9 @@ class NodeEntry {
   // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
   // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
   // inwards up to rounding error included, winds about the way: that is still to be asked, once for all sides.
-  [[nodiscard, gnu::noinline]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction, bool* must_wind) const {
-    if (!(graph_.header->max_deviation > 0)) return false;
+  [[nodiscard, gnu::noinline, gnu::cold]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction,
+                                                       bool* must_wind) const {
+    if (!graph_.has_inexact_nodes()) return false;
     spend(work_left_, kNodeWork);
     const bool is_near = node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
     if (is_near && graph_.connection(node.connection(k)).type() == FDCG_CONCAVE) {
@@ -318,7 +319,7 @@ class NodeEntry {
 
   // Whether the line passes through the loop, convex or not, from its front: through one more of the fan's triangles from the
   // front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
-  [[nodiscard, gnu::noinline]] bool is_wound_by(NodeRef<Geometry> node) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] bool is_wound_by(NodeRef<Geometry> node) const {
     const Vec3<Real> apex = graph_.corner_point(node.corner(0));
     Vec3<Real> start = graph_.corner_point(node.corner(1));
     int times = 0, first = orientation(apex, start);
@@ -338,7 +339,7 @@ class NodeEntry {
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
   // the face's own plane meets all sides, and the point may be beside most of them.
-  Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly, Vec3<Real> point) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly, Vec3<Real> point) const {
     Feature nearest = kFree;
     Real nearest2 = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {

@@ -22,6 +22,7 @@
 #include "step/edge.hpp"
 #include "step/face.hpp"
 #include "step/free_space.hpp"
+#include "step/hop.hpp"
 #include "step/leave.hpp"
 #include "step/near_zero.hpp"
 #include "step/presliding.hpp"
@@ -220,9 +221,9 @@ inline void start(Vec3<Real> hip, fdcg_contact* contact) {
 }
 
 template <class Real>
-inline Friction<Real> friction_of(const fdcg_params& params, const fdcg_contact& contact) {
+inline PlainFriction<Real> friction_of(const fdcg_params& params, const fdcg_contact& contact) {
   return {static_cast<Real>(params.mu_static), static_cast<Real>(params.mu_dynamic), params.edge_friction == FDCG_EDGE_WEDGE,
-          contact.slipping != 0, nullptr};
+          contact.slipping != 0};
 }
 
 // The force of a spring, damped along its direction. Call before the new HIP is stored in the contact.
@@ -254,13 +255,13 @@ template <class Geometry>
   const double stiffness = settle(walk, {contact->state, contact->feature}, vec(contact->god_object));
   if (terms.has_springs()) contact->stiffness_n_per_m = stiffness;
   const Vec3<double> hip = widen(walk.hip), spring = widen(walk.god_object) - hip + terms.yielded;
-  spring_damper_force(*walk.graph.header, params, *contact, stiffness, hip, spring, result);
+  spring_damper_force(*walk.graph.header(), params, *contact, stiffness, hip, spring, result);
 }
 
 // The long way: drives the rules from where the contact stands. `move` is null, or what its face has already made of it.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] void walk_to_hip(Walk<Geometry> walk, const FaceMove<Real>* move, const fdcg_params& params,
-                                   fdcg_contact* contact, fdcg_result* result) {
+[[gnu::noinline, gnu::cold]] void walk_to_hip(Walk<Geometry>& walk, const FaceMove<Real>* move, const fdcg_params& params,
+                                              fdcg_contact* contact, fdcg_result* result) {
   const Vec3<Real> start_gap = walk.god_object - walk.hip;
   const Feature start = walk.active;
   Decision decided = rest();
@@ -274,14 +275,14 @@ template <class Geometry, class Real = typename Geometry::Real>
     walk.god_object = walk.hip;
     walk.active = walk.seat = kFree;
   }
-  FDCG_ASSERT(is_of_graph(walk.active, *walk.graph.header));
+  FDCG_ASSERT(is_of_graph(walk.active, *walk.graph.header()));
   contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
   contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
   result->flags = progress.flags;
   result->transitions = progress.transitions;
   const bool is_free = walk.active == kFree;
   if (walk.friction.terms == nullptr) {
-    if (!is_free) respond(*walk.graph.header, params, *contact, walk.hip, walk.god_object, result);
+    if (!is_free) respond(*walk.graph.header(), params, *contact, walk.hip, walk.god_object, result);
   } else if constexpr (FDCG_WITH_FRICTION_TERMS) {
     respond_with_terms(walk, contact, result);
   }
@@ -300,21 +301,29 @@ template <class Geometry, class Real = typename Geometry::Real>
                                                   fdcg_contact* contact, fdcg_result* result) {
   const GraphView<Geometry> graph(raw);
   FrictionTerms terms = terms_of(params, &raw, *contact);
-  Friction<Real> friction = friction_of<Real>(params, *contact);
-  friction.terms = &terms;
-  walk_to_hip<Geometry, Real>({graph,
-                               friction,
-                               hip,
-                               plane_rounding_bound(graph, hip),
-                               narrow<Real>(contact->god_object),
-                               {contact->state, contact->feature},
-                               {contact->seat_state, contact->seat_feature},
-                               kRuleWork},
-                              nullptr, params, contact, result);
+  Walk<Geometry> walk = {graph,
+                         {friction_of<Real>(params, *contact), &terms},
+                         hip,
+                         plane_rounding_bound(graph, hip),
+                         narrow<Real>(contact->god_object),
+                         {contact->state, contact->feature},
+                         {contact->seat_state, contact->seat_feature},
+                         kRuleWork};
+  walk_to_hip<Geometry, Real>(walk, nullptr, params, contact, result);
   store(hip, contact->hip);
   write_position(*raw.header, *contact, result);
   store(vec(result->god_object_m) + terms.yielded * raw.header->metres_per_unit, result->god_object_m);
 }
+
+// Not on a mesh whose corners move, where work is counted as numbers are renewed, nor where a test takes rules out; and a
+// library built for size does without.
+#if defined(__OPTIMIZE_SIZE__) || FDCG_WITH_MUTANTS
+template <class Geometry>
+inline constexpr bool kHasHops = false;
+#else
+template <class Geometry>
+inline constexpr bool kHasHops = Geometry::kKeepsDirections;
+#endif
 
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7).
 template <class Geometry, class Real = typename Geometry::Real>
@@ -345,11 +354,21 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     const Real bound = plane_rounding_bound(graph, hip);
     const Vec3<Real> god_object = narrow<Real>(contact->god_object);
     const bool is_on_face = contact->state == FDCG_FACE;
-    Friction<Real> friction = friction_of<Real>(params, *contact);
+    QuickFriction<Real> friction = {friction_of<Real>(params, *contact)};
     FaceMove<Real> move;
     if (is_on_face) {
       const NodeRef<Geometry> node = graph.node(contact->feature);
       move = move_on_face(node, friction, hip, bound, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
+    }
+    if (kHasHops<Geometry> && is_on_face && move.kind == Kind::crosses &&
+        (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0) {
+      Hop<Real> hop = {contact->feature, 0, god_object, {0, 0, 0}, friction, move};
+      if (hop_to_hip(graph, hip, bound, &hop) && !is_far(graph, hip)) {
+        contact->feature = hop.node;
+        result->transitions = hop.transitions;
+        friction = hop.friction;
+        move = hop.move;
+      }
     }
     if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
       if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
@@ -358,15 +377,15 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
       respond(header, params, *contact, hip, move.target, result);
       store(move.target, contact->god_object);
     } else {
-      walk_to_hip<Geometry, Real>({graph,
-                                   friction,
-                                   hip,
-                                   bound,
-                                   god_object,
-                                   {contact->state, contact->feature},
-                                   {contact->seat_state, contact->seat_feature},
-                                   kRuleWork},
-                                  is_on_face ? &move : nullptr, params, contact, result);
+      Walk<Geometry> walk = {graph,
+                             {static_cast<const PlainFriction<Real>&>(friction), nullptr},
+                             hip,
+                             bound,
+                             god_object,
+                             {contact->state, contact->feature},
+                             {contact->seat_state, contact->seat_feature},
+                             kRuleWork};
+      walk_to_hip<Geometry, Real>(walk, is_on_face ? &move : nullptr, params, contact, result);
     }
     store(hip, contact->hip);
   }

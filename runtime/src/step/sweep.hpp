@@ -25,7 +25,7 @@ class Sweep : public FanSweep<Geometry> {
   // Nearest boxes first. False: the work ran out; what was met so far stands.
   bool run(FirstHit<Real>* first) {
     best_ = *first;
-    const bool is_done = graph_.hierarchy != nullptr && search();
+    const bool is_done = graph_.hierarchy() != nullptr && search();
     *first = best_;
     return is_done;
   }
@@ -34,14 +34,14 @@ class Sweep : public FanSweep<Geometry> {
   // False: the work ran out.
   bool run_in_order(FirstHit<Real>* first, uint32_t* next_leaf) {
     best_ = *first;
-    const bool is_done = graph_.hierarchy == nullptr ? try_all_nodes(next_leaf) : search_in_order(next_leaf);
+    const bool is_done = graph_.hierarchy() == nullptr ? try_all_nodes(next_leaf) : search_in_order(next_leaf);
     *first = best_;
     return is_done;
   }
 
  private:
-  bool try_all_nodes(uint32_t* next_node) {
-    for (; *next_node < graph_.header->node_count; ++*next_node) {
+  [[gnu::noinline, gnu::cold]] bool try_all_nodes(uint32_t* next_node) {
+    for (; *next_node < graph_.header()->node_count; ++*next_node) {
       if (*work_left_ == 0) return false;
       glance_at_node(*next_node);
     }
@@ -50,7 +50,7 @@ class Sweep : public FanSweep<Geometry> {
 
   bool search() {
     if (!enter_tree()) return true;
-    const BoxTree tree(graph_.header->node_count);
+    const BoxTree tree(graph_.header()->node_count);
     WaitingBoxes waiting(tree);
     while (!waiting.is_empty()) {
       if (*work_left_ == 0) return false;
@@ -72,9 +72,9 @@ class Sweep : public FanSweep<Geometry> {
 
   // Box by box: into one that the way touches, past one that it does not; up again after the last below a record. A record that
   // is at hand is not asked twice.
-  bool search_in_order(uint32_t* next_leaf) {
+  [[gnu::noinline, gnu::cold]] bool search_in_order(uint32_t* next_leaf) {
     if (!enter_tree()) return true;
-    const BoxTree tree(graph_.header->node_count);
+    const BoxTree tree(graph_.header()->node_count);
     uint32_t record[kMostTreeLevels], touched[kMostTreeLevels];
     for (uint32_t& r : record)
       r = FDCG_NONE;
@@ -102,9 +102,9 @@ class Sweep : public FanSweep<Geometry> {
     return true;
   }
 
-  uint32_t touch(const BoxTree& tree, int level, uint32_t record, float (&entry)[FDCG_TREE_WAYS]) const {
+  [[gnu::noinline]] uint32_t touch(const BoxTree& tree, int level, uint32_t record, float (&entry)[FDCG_TREE_WAYS]) const {
     spend(work_left_, kBoxWork);
-    const fdcg_box8& boxes = graph_.hierarchy[tree.first[level] + record];
+    const fdcg_box8& boxes = graph_.hierarchy()[tree.first[level] + record];
     const float limit = tree_fraction(best_.fraction);
     const uint32_t touched = touched_boxes(boxes, in_tree_, limit, entry) & tree.lanes(level, record);
     const bool has_tightened = graph_.has_tightened(level, record, touched);
@@ -120,9 +120,9 @@ class Sweep : public FanSweep<Geometry> {
 
   // Puts the way into tree units. A way from far away is cut to the part near the tree, lest floats lose it. False: it passes
   // by.
-  bool enter_tree() {
+  [[gnu::noinline]] bool enter_tree() {
     constexpr Real kNear = 16, kEpsilon = RealLimits<Real>::kEpsilon;
-    const Real per_unit = static_cast<Real>(1 / tree_unit(graph_.header->extent));
+    const Real per_unit = static_cast<Real>(1 / tree_unit(graph_.header()->extent));
     const Vec3<Real> from = from_ * per_unit, to = to_ * per_unit;
     const Real size = norm1(from) + norm1(to);
     if (!(size > kNear)) {
@@ -140,10 +140,10 @@ class Sweep : public FanSweep<Geometry> {
     return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
   }
 
-  void try_leaf(uint32_t leaf) {
+  [[gnu::noinline]] void try_leaf(uint32_t leaf) {
     spend(work_left_, kLeafWork);
     const uint32_t first = leaf * FDCG_LEAF_NODES;
-    const uint32_t left_in_graph = graph_.header->node_count - first;
+    const uint32_t left_in_graph = graph_.header()->node_count - first;
     const uint32_t count = left_in_graph < FDCG_LEAF_NODES ? left_in_graph : FDCG_LEAF_NODES;
     for (uint32_t n = first; n < first + count; ++n)
       glance_at_node(n);

@@ -36,7 +36,9 @@ struct Walk {
   // these errors.
   Vec3<Real> rounding_residual = {0, 0, 0};
 
-  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node) { return side_of(graph, node, hip, hip_bound, &work_left); }
+  [[nodiscard, gnu::noinline, gnu::hot]] Real side(NodeRef<Geometry> node) {
+    return side_of(graph, node, hip, hip_bound, &work_left);
+  }
   void spend(uint32_t units) { fdcg::spend(&work_left, units); }
 
   // A move on a face's inside or along an edge.
@@ -77,6 +79,11 @@ inline Decision go_to(Feature next) {
   return Decision::go_to(next);
 }
 
+template <class Real>
+inline Real edge_end_tolerance(Vec3<Real> start, Real length) {
+  return 8 * RealLimits<Real>::kEpsilon * (norm1(start) + length);
+}
+
 // A connection's line, and how near to an end the vertex is meant (contact-model FACE-6).
 template <class Real>
 struct EdgeLine : Edge<Real> {
@@ -96,16 +103,17 @@ struct EdgeLine : Edge<Real> {
 // god-object there would increase the distance by more than a step may; it stays at u, but the corner's rule decides, since two
 // edges of a needle's tip would pass it to each other.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line, uint32_t end,
+[[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line, uint32_t end,
                                                    Real from_end) {
-  if (from_end <= snap_growth(static_cast<Real>(walk.graph.header->extent))) return false;
+  if (from_end <= snap_growth(static_cast<Real>(walk.graph.header()->extent))) return false;
   const Real foot = line.parameter(walk.hip);
   return 2 * (end == 0 ? foot : line.length - foot) > from_end;
 }
 
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Feature place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line, Real u) {
+[[gnu::noinline, gnu::hot]] Feature place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line,
+                                                  Real u) {
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
     if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;

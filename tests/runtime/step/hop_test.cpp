@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slides from face to face in one go (step/hop.hpp): contacts and results are the same bit for bit with and without.
+#include <cmath>
+#include <cstring>
+
+#include "catch.hpp"
+#include "contact_rig.hpp"
+#include "meshes.hpp"
+#include "random.hpp"
+
+using namespace fdcg::test;
+using fdcg::bake::CompileOptions;
+using fdcg::bake::Precision;
+
+namespace {
+
+constexpr int kTicks = 8000;
+
+fdcg_params params_of(double mu_static, double mu_dynamic, std::uint32_t disabled) {
+  fdcg_params params = contact_params(mu_static, mu_dynamic);
+  params.disabled_optimizations = disabled;
+  return params;
+}
+
+// Under the surface by a share of the size, along it at a speed that changes, in a direction that turns.
+class Slide {
+ public:
+  Slide(double size, std::uint64_t seed) : size_(size), random_(seed) {}
+
+  Hip next() {
+    if (random_.chance(0.01)) speed_ = std::pow(10.0, random_.uniform(-4, -0.7));
+    if (random_.chance(0.01)) depth_ = std::pow(10.0, random_.uniform(-6, -0.5));
+    if (random_.chance(0.05)) turn_ = random_.direction();
+    const double d[3] = {turn_.x, turn_.y, turn_.z};
+    double length = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      at_[k] += d[k] * speed_, length += at_[k] * at_[k];
+    Hip hip;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at_[k] /= std::sqrt(length);
+      hip[k] = at_[k] * size_ * (lift() ? 1.5 : 0.5 * (1 - depth_));
+    }
+    ++tick_;
+    return hip;
+  }
+
+ private:
+  [[nodiscard]] bool lift() const { return tick_ % 500 < 3; }
+
+  double size_;
+  Random random_;
+  Hip at_{0.3, 0.5, 0.8};
+  fdcg::bake::Vec3 turn_{1, 0, 0};
+  double speed_ = 1e-2, depth_ = 0.01;
+  int tick_ = 0;
+};
+
+struct Tally {
+  long sliding = 0, crossing = 0, far_crossing = 0;
+};
+
+void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::uint64_t seed, Tally* tally) {
+  CompileOptions options;
+  options.precision = precision;
+  const CompiledMesh mesh(soup, options);
+  const double mu_static = is_smooth ? 0 : 0.5, mu_dynamic = is_smooth ? 0 : 0.3;
+  Contact with(mesh.view(), params_of(mu_static, mu_dynamic, 0));
+  Contact without(mesh.view(), params_of(mu_static, mu_dynamic, FDCG_STEP_OPT_HOP));
+  Slide slide(extent(soup), seed);
+  for (int i = 0; i < kTicks; ++i) {
+    const Hip hip = slide.next();
+    const bool was_on_face = with.state.state == FDCG_FACE;
+    with.step(hip);
+    without.step(hip);
+    INFO(soup.name << ", seed " << seed << ", tick " << i << ": " << with.describe() << "; without: " << without.describe());
+    REQUIRE(std::memcmp(&with.result, &without.result, sizeof with.result) == 0);
+    REQUIRE(std::memcmp(&with.state, &without.state, sizeof with.state) == 0);
+    if (!was_on_face || with.result.state != FDCG_FACE) continue;
+    tally->sliding += with.result.transitions == 0;
+    tally->crossing += with.result.transitions == 2;
+    tally->far_crossing += with.result.transitions > 2;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("contacts are the same bit for bit with and without hops from face to face") {
+  Tally tally;
+  std::uint64_t seed = 0;
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    for (const bool is_smooth : {false, true}) {
+      for (const PolygonSoup& soup :
+           {ico_sphere(3), ico_sphere(5), star_sphere(3, 0.3, 1), spiky_sphere(3, 0.5, 2), torus(40, 20), cone(300),
+            scaled(ico_sphere(4), 1e-6), scaled(star_sphere(2, 0.3, 4), 1e6), needle_strip(200, 0.3, 2),
+            rounded_to_float(transformed(grid_box(5, 5, 5, {1, 1, 1}), random_rotation(3)))})
+        compare(soup, precision, is_smooth, ++seed, &tally);
+    }
+  }
+  CHECK(tally.sliding > 100000);
+  CHECK(tally.crossing > 5000);
+  CHECK(tally.far_crossing > 5000);  // else hops were hardly tried
+}
