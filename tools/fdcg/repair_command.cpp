@@ -15,7 +15,8 @@ namespace fdcg::tools {
 namespace {
 
 constexpr const char* kSteps =
-    "--all for all but --solid and --simplify, or of these: --weld, --drop-unusable, --triangulate-crossing, --drop-degenerate, "
+    "--all for all but --solid and --simplify, or of these: --weld, --drop-unusable, --triangulate-crossing, "
+    "--drop-degenerate, "
     "--drop-duplicates, --unfold, --cut-non-manifold, --split-non-manifold-vertices, --orient, --drop-blocking, "
     "--reverse-inside-out, --solid, --simplify";
 
@@ -137,10 +138,10 @@ int export_repaired(const RepairArguments& arguments, const bake::Repaired& repa
   return kClean;
 }
 
-// Unless it was asked to and had to leave the mesh as it is.
-bool did_simplify(const bake::Repaired& repaired) {
+// simplify and solid are done, or were not asked for.
+bool did_all(const bake::Repaired& repaired) {
   return std::none_of(repaired.actions.begin(), repaired.actions.end(),
-                      [](const bake::RepairAction& action) { return action.name == "simplify" && action.left != 0; });
+                      [](const bake::RepairAction& action) { return action.is_refused; });
 }
 
 int run_repair(RepairArguments& arguments) {
@@ -176,14 +177,15 @@ int run_repair(RepairArguments& arguments) {
     if (repaired->read_with == bake::Weld::Kind::none)
       std::fputs("read it with --weld none: vertices at equal coordinates are apart on purpose\n", stream);
   }
-  return repaired->after.passes() && did_simplify(*repaired) ? kClean : kFindings;
+  return repaired->after.passes() && did_all(*repaired) ? kClean : kFindings;
 }
 
 void add_step_options(CLI::App& command, RepairArguments& arguments) {
   bake::RepairOptions& options = arguments.options;
   const OptionGroup repairs(command, "Repairs");
   repairs.flag("--all", arguments.all,
-               "All repairs: --weld exact and the flags below, without --solid and --simplify. What each did to the surface is measured.");
+               "All repairs: --weld exact and the flags below, without --solid and --simplify. What each did to the surface is "
+               "measured.");
   add_weld_option(repairs, arguments.weld, "");
   repairs.flag("--drop-unusable", options.drop_unusable_faces,
                "Drop faces with a corner that is not finite or not in the file.");
@@ -212,14 +214,15 @@ void add_step_options(CLI::App& command, RepairArguments& arguments) {
                 "out what lies inside. The result is closed, and no two of its faces meet but at a shared corner or edge. "
                 "--solid=remesh: rebuild the surface on a lattice in place of that, where the exact way says that it cannot.")
       ->group("Repairs");
-  repairs.parsed("--hole-size", "LENGTH", [&arguments](const std::string& text) {
-    arguments.hole_size = extent_of("--hole-size", text);
-  }, "With --solid: close holes up to this size, the diagonal of their bounds, in the file's units or as 5% of the object's "
-     "size. Parts with a larger hole are left out.", "100%");
-  repairs.parsed("--voxel", "LENGTH", [&arguments](const std::string& text) {
-    arguments.voxel = extent_of("--voxel", text);
-  }, "With --solid=remesh: the lattice's step, in the file's units or as 1% of the object's size. What is smaller is lost.",
-                 "0.5%");
+  repairs.parsed(
+      "--hole-size", "LENGTH", [&arguments](const std::string& text) { arguments.hole_size = extent_of("--hole-size", text); },
+      "With --solid: close holes up to this size, the diagonal of their bounds, in the file's units or as 5% of the object's "
+      "size. Parts with a larger hole are left out.",
+      "100%");
+  repairs.parsed(
+      "--voxel", "LENGTH", [&arguments](const std::string& text) { arguments.voxel = extent_of("--voxel", text); },
+      "With --solid=remesh: the lattice's step, in the file's units or as 1% of the object's size. What is smaller is lost.",
+      "0.5%");
   const auto parse_error = [&options](const std::string& text) {
     options.simplify_error = positive_number("--simplify", text, "no distance above 0 in the file's units");
   };
@@ -235,12 +238,13 @@ Command add_repair(CLI::App& app) {
   command->footer(R"(Examples:
   fdcg repair scan.ply -o clean.ply --all
   fdcg repair part.stl -o part.obj --weld exact --drop-degenerate --orient
+  fdcg repair --solid --hole-size 5% part.stl -o solid.stl
   fdcg repair --all --dry-run --report account.json part.stl
 
 Defects that cannot be repaired safely are left and reported.
 
 )" + exit_codes("the result has no errors",
-                "errors are left, or --simplify could not be done; the mesh is written unless --strict"));
+                "errors are left, or --simplify or --solid could not be done; the mesh is written unless --strict"));
   const auto arguments = std::make_shared<RepairArguments>();
   add_mesh_argument(*command, arguments->mesh);
   const OptionGroup output(*command, "Output");

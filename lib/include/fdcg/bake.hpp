@@ -361,6 +361,7 @@ struct RepairAction {
   std::uint64_t left = 0;              ///< found and not done
   std::string left_message;            ///< why; empty where nothing was left
   std::vector<Element> left_elements;  ///< likewise
+  bool is_refused = false;             ///< simplify, solid: the step as a whole could not be taken; left_message says why
   /// Measured, source units: no point of the surface before or after the step is farther than this from the other surface. An
   /// upper bound, at most a hundredth above the largest distance, or 1e-9 of the object's size. Infinite where no surface is
   /// left.

@@ -266,8 +266,7 @@ int ExactPoints::side(const PointTriangle& plane, PointId p) const {
   const double most = bound(x, ad.x) + bound(y, ad.y) + bound(z, ad.z);
   if (std::fabs(value) > most && std::isfinite(value) && std::isfinite(most)) return sign_of(value);
   const Triple<Fraction> from = exact_->fraction(plane[0]);
-  const Triple<Fraction> normal =
-      cross_of(minus(exact_->fraction(plane[1]), from), minus(exact_->fraction(plane[2]), from));
+  const Triple<Fraction> normal = cross_of(minus(exact_->fraction(plane[1]), from), minus(exact_->fraction(plane[2]), from));
   return static_cast<int>(CGAL::sign(dot_of(normal, minus(exact_->fraction(p), from))));
 }
 

@@ -13,8 +13,8 @@
 namespace fdcg::bake {
 
 struct HolePatch {
-  bool is_flat = false;      // the hole lies in a plane, but for rounding
-  std::vector<Vec3> points;  // new ones, inside the patch
+  bool is_flat = false;                                 // the hole lies in a plane, but for rounding
+  std::vector<Vec3> points;                             // new ones, inside the patch
   std::vector<std::array<std::uint32_t, 3>> triangles;  // corners of the outline, then new points
 };
 

@@ -51,7 +51,11 @@ class LevelSetMesher {
     }
     constexpr double kMargin = 8;  // voxels
     origin_ = low - kMargin * voxel * Vec3{1, 1, 1};
-    is_too_fine_ = largest_component(high - low) / voxel + 2 * kMargin >= static_cast<double>(kLatticeMask);
+    double area = 0;
+    for (const auto& [a, b, c] : triangles)
+      area += 0.5 * length(cross(b - a, c - a));
+    is_too_fine_ = largest_component(high - low) / voxel + 2 * kMargin >= static_cast<double>(kLatticeMask) ||
+                   2 * area / (voxel * voxel) > static_cast<double>(kMostLatticePoints);
   }
 
   LevelSet run(const Progress& progress) {
@@ -86,8 +90,9 @@ class LevelSetMesher {
 
   // Negative inside: the distance from the triangles, and no more than goes with how clearly the winding number tells.
   [[nodiscard]] double value(const Vec3& p) const {
-    constexpr double kBand = 4;  // voxels
-    const double inside = winding_.at(p) - 0.5, clear = 2 * kBand * voxel_ * std::fabs(inside);
+    constexpr double kBand = 4;         // voxels
+    constexpr double kRounding = 1e-9;  // a point on a sheet is not inside
+    const double inside = winding_.at(p) - 0.5 - kRounding, clear = 2 * kBand * voxel_ * std::fabs(inside);
     return (inside > 0 ? -1 : 1) * std::min(near_.nearest(p).distance, clear);
   }
 
@@ -96,12 +101,16 @@ class LevelSetMesher {
     std::vector<LatticePoint> points;
     for (const auto& t : triangles_) {
       add_seeds(t, points);
-      if (points.size() > 8 * kMostLatticePoints) is_too_fine_ = true;
+      if (points.size() > 2 * kMostLatticePoints) keep_one_each(points);
+      is_too_fine_ = points.size() > kMostLatticePoints;
       if (is_too_fine_) return {};
     }
+    keep_one_each(points);
+    return points;
+  }
+  static void keep_one_each(std::vector<LatticePoint>& points) {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
-    return points;
   }
   void add_seeds(const std::array<Vec3, 3>& t, std::vector<LatticePoint>& points) const {
     std::vector<std::array<Vec3, 3>> open{t};
@@ -113,7 +122,6 @@ class LevelSetMesher {
       if (largest_component(high - low) > 2 * voxel_) {
         const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
         open.insert(open.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-        if (points.size() > 8 * kMostLatticePoints) return;
         continue;
       }
       const auto cell = [&](double x, double from) { return static_cast<std::uint64_t>(std::floor((x - from) / voxel_)); };
@@ -160,8 +168,7 @@ class LevelSetMesher {
         }
       }
     }
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    keep_one_each(points);
     return points;
   }
 

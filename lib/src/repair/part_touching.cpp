@@ -47,30 +47,92 @@ std::vector<std::uint32_t> shared_places(const PolygonSoup& soup) {
   return shared;
 }
 
-struct Inwards {
-  Vec3 way;                 // of length 1, or 0 where there is none
-  double shortest = 1e300;  // edge at the point
-};
-
-std::vector<Inwards> inward_ways(const PolygonSoup& soup) {
-  std::vector<Inwards> ways(soup.points.size());
-  for (std::size_t f = 0; f < soup.face_count(); ++f) {
-    const std::uint32_t* const c = &soup.corners[soup.face_first[f]];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 a = soup.points[c[(i + 1) % 3]] - soup.points[c[i]], b = soup.points[c[(i + 2) % 3]] - soup.points[c[i]];
-      const Vec3 normal = cross(a, b);
-      const double size = length(normal);
-      Inwards& way = ways[c[i]];
-      way.shortest = std::min({way.shortest, length(a), length(b)});
-      if (size > 0) way.way = way.way - std::atan2(size, dot(a, b)) / size * normal;
+// Of the faces at one vertex: where the vertex may go to leave the others at its place.
+class TouchingFans {
+ public:
+  TouchingFans(const PolygonSoup& soup, const std::vector<std::uint32_t>& shared) : soup_(soup), fan_(soup.points.size()) {
+    for (const std::uint32_t v : shared)
+      fan_[v].is_shared = true;
+    for (std::uint32_t f = 0; f < soup.face_count(); ++f) {
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        if (fan_[soup.corners[3 * f + i]].is_shared) add(f, i);
+      }
+    }
+    const auto key = [&](std::uint32_t v) { return std::tie(soup.points[v].x, soup.points[v].y, soup.points[v].z); };
+    std::vector<std::uint32_t> order = shared;
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+      while (end < order.size() && key(order[end]) == key(order[first]))
+        ++end;
+      for (std::size_t i = first; i < end; ++i)
+        fan_[order[i]].way = way_of(
+            order[i], {order.begin() + static_cast<std::ptrdiff_t>(first), order.begin() + static_cast<std::ptrdiff_t>(end)});
     }
   }
-  for (Inwards& each : ways) {
-    const double size = length(each.way);
-    each.way = size > 1e-6 ? 1 / size * each.way : Vec3{};
+
+  // Of length 1, or 0 where there is none.
+  [[nodiscard]] const Vec3& way(std::uint32_t v) const { return fan_[v].way; }
+  // The least distance of the vertex from the sides across in its faces.
+  [[nodiscard]] double room(std::uint32_t v) const { return fan_[v].room; }
+
+ private:
+  struct Sector {  // a face at the vertex, as two directions of length 1
+    Vec3 a, b;
+  };
+  struct Fan {
+    bool is_shared = false;
+    std::vector<Sector> sectors;
+    Vec3 normal, way;
+    double room = 1e300;
+  };
+
+  void add(std::uint32_t f, std::uint32_t i) {
+    const std::uint32_t* const c = &soup_.corners[3 * f];
+    const Vec3 a = soup_.points[c[(i + 1) % 3]] - soup_.points[c[i]], b = soup_.points[c[(i + 2) % 3]] - soup_.points[c[i]];
+    const Vec3 normal = cross(a, b);
+    const double size = length(normal), across = length(b - a);
+    Fan& fan = fan_[c[i]];
+    if (!(size > 0)) return;
+    fan.room = std::min({fan.room, size / across, length(a), length(b)});
+    fan.normal = fan.normal + std::atan2(size, dot(a, b)) / size * normal;
+    fan.sectors.push_back({1 / length(a) * a, 1 / length(b) * b});
   }
-  return ways;
-}
+
+  // Away from the others: into the solid behind the fan where they are in front of it, into the air before it where they are
+  // behind; none where they are on both sides, which then have to leave it.
+  [[nodiscard]] Vec3 way_of(std::uint32_t v, const std::vector<std::uint32_t>& group) const {
+    const Fan& fan = fan_[v];
+    const double size = length(fan.normal);
+    constexpr double kFlat = 1e-6;
+    if (fan.sectors.empty() || !(size > kFlat)) return {};
+    bool has_front = false, has_back = false;
+    for (const std::uint32_t other : group) {
+      if (other == v || fan_[other].sectors.empty()) continue;
+      const Sector& sector = fan_[other].sectors[fan_[other].sectors.size() / 2];
+      (is_behind(fan, sector.a + sector.b) ? has_back : has_front) = true;
+    }
+    if (has_front == has_back) return {};
+    return (has_front ? -1 : 1) / size * fan.normal;
+  }
+
+  // Whether a direction leads into the solid: by the sectors that the way to a place just in front of one of them passes.
+  static bool is_behind(const Fan& fan, const Vec3& to) {
+    const Sector& first = fan.sectors[fan.sectors.size() / 3];
+    const Vec3 normal = cross(first.a, first.b);
+    const Vec3 front = 0.5 * (first.a + first.b) + 1e-3 / length(normal) * normal;
+    bool is_behind = false;
+    for (const Sector& sector : fan.sectors) {
+      const Vec3 m = cross(sector.a, sector.b);
+      if ((dot(m, front) > 0) == (dot(m, to) > 0)) continue;
+      const Vec3 at = std::fabs(dot(m, to)) * front + std::fabs(dot(m, front)) * to;  // where the way passes the plane
+      if (dot(cross(sector.a, at), m) > 0 && dot(cross(at, sector.b), m) > 0) is_behind = !is_behind;
+    }
+    return is_behind;
+  }
+
+  const PolygonSoup& soup_;
+  std::vector<Fan> fan_;
+};
 
 SelfIntersections meeting_faces(const Workpiece& piece, unsigned jobs) {
   const View view(piece);
@@ -90,16 +152,16 @@ Parting part_touching(Workpiece& piece, double reach, bool as_floats, unsigned j
   const std::vector<std::uint32_t> shared = shared_places(soup);
   if (shared.empty()) return parting;
   const std::vector<Vec3> places = soup.points;
-  const std::vector<Inwards> ways = inward_ways(soup);
-  constexpr double kShareOfEdge = 1.0 / 16, kLess = 1.0 / 8;
+  const TouchingFans fans(soup, shared);
+  constexpr double kShareOfRoom = 1.0 / 8, kLess = 1.0 / 4;
   std::vector<double> step(soup.points.size(), 0);
   for (const std::uint32_t v : shared)
-    step[v] = std::min(reach, kShareOfEdge * ways[v].shortest);
-  constexpr int kMostTries = 6;
+    step[v] = std::min(reach, kShareOfRoom * fans.room(v));
+  constexpr int kMostTries = 8;
   for (int round = 0; round < kMostTries; ++round) {
     parting.distance = 0;
     for (const std::uint32_t v : shared) {
-      Vec3 p = places[v] + step[v] * ways[v].way;
+      Vec3 p = places[v] + step[v] * fans.way(v);
       if (as_floats) p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
       soup.points[v] = p;
       parting.distance = std::max(parting.distance, length(p - places[v]));

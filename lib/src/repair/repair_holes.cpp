@@ -41,9 +41,7 @@ class HoleCloser {
  private:
   using Loops = std::vector<std::vector<std::uint32_t>>;
 
-  static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-  }
+  static std::uint64_t key(std::uint32_t a, std::uint32_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
   // The triangles, as points of the soup.
   Loops patch(const BoundaryLoop& loop) {
@@ -121,8 +119,9 @@ RepairAction close_holes_action(const Workpiece& piece, HoleTally& tally) {
   }
   RepairAction action = action_of(piece, "close-holes", Kind::faces, std::move(message), tally);
   if (action.left != 0) {
-    action.left_message = counted(action.left, "hole was left", "holes were left") + " open: larger than --hole-size; the largest is " +
-                          in_digits(tally.largest_left) + " across; each is listed by a face at it";
+    action.left_message = counted(action.left, "hole was left", "holes were left") +
+                          " open: larger than --hole-size; the largest is " + in_digits(tally.largest_left) +
+                          " across; each is listed by a face at it";
   }
   return action;
 }

@@ -31,6 +31,7 @@ RepairAction remesh_step(Workpiece& piece, double voxel, bool as_floats, unsigne
   if (made.outcome != LevelSet::Outcome::done) {
     tally.left = piece.source_face;
     RepairAction action = action_of(piece, "solid", Kind::faces, "the surface was left as it is", tally);
+    action.is_refused = true;
     action.left_message = made.outcome == LevelSet::Outcome::too_fine
                               ? "no solid was made: more than " + std::to_string(kMostLatticePoints) +
                                     " lattice points at a voxel of " + in_digits(voxel) + "; give a larger --voxel"
@@ -49,8 +50,8 @@ RepairAction remesh_step(Workpiece& piece, double voxel, bool as_floats, unsigne
   effect.is_solid = true;
   tally.done = piece.source_face;
   return action_of(piece, "solid", Kind::faces,
-                   "the surface was rebuilt from its winding number with a voxel of " + in_digits(voxel) +
-                       ", as " + std::to_string(piece.source_face.size()) + " triangles: what is smaller is lost, edges are blunted",
+                   "the surface was rebuilt from its winding number with a voxel of " + in_digits(voxel) + ", as " +
+                       std::to_string(piece.source_face.size()) + " triangles: what is smaller is lost, edges are blunted",
                    tally);
 }
 

@@ -60,9 +60,9 @@ std::string why_not(OuterSurface::Outcome outcome) {
 
 std::string account_of(const OuterSurface& outer) {
   std::string text = counted(outer.pairs, "pair of faces that met was", "pairs of faces that met were") +
-                     " resolved into the outer surface, " + counted(outer.cut, "face was cut", "faces were cut") +
-                     "; of each face listed nothing is left, since it lay inside or enclosed nothing: " +
-                     std::to_string(outer.inner.size());
+                     " resolved into the outer surface, " + counted(outer.cut, "face was cut", "faces were cut") + "; of " +
+                     counted(outer.inner.size(), "face", "faces") +
+                     " nothing is left, since they lay inside or enclosed nothing";
   if (outer.met_again != 0) {
     text += "; rounding brought back " + counted(outer.met_again, "pair", "pairs") + ", resolved in " +
             counted(static_cast<std::uint64_t>(outer.rounds), "round", "rounds");
@@ -77,13 +77,13 @@ RepairAction solid_step(Workpiece& piece, bool as_floats, unsigned jobs, const P
   FacetSet set = closed_facets(piece, tally.left);
   for (std::size_t i = 0; i < tally.left.size(); ++i)
     ++tally.reasons["in parts with an open hole, which enclose nothing and were left out"];
-  OuterSurface outer;
-  outer = outer_surface(std::move(set), {as_floats, resolve_jobs(jobs), progress});
+  OuterSurface outer = outer_surface(std::move(set), {as_floats, resolve_jobs(jobs), progress});
   RepairAction action;
   if (outer.outcome != OuterSurface::Outcome::done || outer.set.facets.empty()) {
     Tally all;
     all.left = piece.source_face;
     action = action_of(piece, "solid", Kind::faces, "the surface was left as it is", all);
+    action.is_refused = true;
     action.left_message = "no solid was made: " + why_not(outer.outcome);
     return action;
   }

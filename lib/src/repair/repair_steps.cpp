@@ -229,6 +229,7 @@ class Run {
     action.message += "; " + counted(parting.moved, "vertex was", "vertices were") + " moved by up to " +
                       in_digits(parting.distance) + ", since solids touched there";
     if (parting.left == 0) return;
+    action.is_refused = true;
     action.left += parting.left;
     action.left_message += (action.left_message.empty() ? "" : "; ") +
                            counted(parting.left, "pair of faces still meets", "pairs of faces still meet") +

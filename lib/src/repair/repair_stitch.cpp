@@ -150,9 +150,9 @@ RepairAction stitch_step(Workpiece& piece, double gap) {
   StitchTally tally;
   Stitcher(piece, gap).run(tally);
   return action_of(piece, "stitch", Kind::vertices,
-                   counted(tally.joined, "border vertex was", "border vertices were") + " joined to another across a gap of up to " +
-                       in_digits(gap) + ", " + counted(tally.divided, "border edge got", "border edges got") +
-                       " vertices near it as corners",
+                   counted(tally.joined, "border vertex was", "border vertices were") +
+                       " joined to another across a gap of up to " + in_digits(gap) + ", " +
+                       counted(tally.divided, "border edge got", "border edges got") + " vertices near it as corners",
                    tally);
 }
 

@@ -224,8 +224,8 @@ class Arranger {
   }
 
   void keep(const PlaneTriangulation& plane, const PlaneTriangulation::Face& face, std::int32_t weight, std::uint32_t t) {
-    Facet facet{{plane.point(face.corner[0]), plane.point(face.corner[1]), plane.point(face.corner[2])}, weight,
-                set_.facets[t].source};
+    Facet facet{
+        {plane.point(face.corner[0]), plane.point(face.corner[1]), plane.point(face.corner[2])}, weight, set_.facets[t].source};
     if (weight < 0) {
       std::swap(facet.corner[1], facet.corner[2]);
       facet.weight = -weight;

@@ -31,9 +31,8 @@ std::uint32_t FacetTree::build(const FacetSet& set, const std::vector<Vec3>& mid
   if (end - first <= kLeaf) return number;
   const int axis = dominant_axis(high - low);
   const std::uint32_t half = first + (end - first) / 2;
-  std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + end, [&](std::uint32_t s, std::uint32_t t) {
-    return component(middles[s], axis) < component(middles[t], axis);
-  });
+  std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + end,
+                   [&](std::uint32_t s, std::uint32_t t) { return component(middles[s], axis) < component(middles[t], axis); });
   const std::uint32_t below = build(set, middles, first, half), above = build(set, middles, half, end);
   nodes_[number].first = below;
   nodes_[number].end = above;

@@ -57,9 +57,8 @@ FacetSet gathered(std::span<const Vec3> points, std::vector<Facet> facets) {
     }
   }
   if (!set.facets.empty() && set.facets.back().weight == 0) set.facets.pop_back();
-  std::sort(set.facets.begin(), set.facets.end(), [](const Facet& s, const Facet& t) {
-    return std::tie(s.source, s.corner) < std::tie(t.source, t.corner);
-  });
+  std::sort(set.facets.begin(), set.facets.end(),
+            [](const Facet& s, const Facet& t) { return std::tie(s.source, s.corner) < std::tie(t.source, t.corner); });
   constexpr std::uint32_t kUnused = 0xFFFFFFFFu;
   std::vector<std::uint32_t> number(points.size(), kUnused);
   for (Facet& facet : set.facets) {

@@ -10,8 +10,8 @@
 namespace fdcg::bake {
 
 struct OuterFacets {
-  bool is_closed = true;       // else there are no facets
-  std::vector<Facet> facets;   // weight 1; corners are those of the arrangement; the front is outside
+  bool is_closed = true;             // else there are no facets
+  std::vector<Facet> facets;         // weight 1; corners are those of the arrangement; the front is outside
   std::vector<std::uint32_t> inner;  // sources of facets that were left out, ascending, each once, where no piece of it stays
 };
 

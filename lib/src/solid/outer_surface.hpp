@@ -36,9 +36,9 @@ struct OuterSurface {
   double moved = 0;                  // no point is farther than this from where it exactly was
 };
 
-// The boundary of all that closed facets enclose, that is, where their winding number is above 0. Exact, but for the rounding of
-// points to the coordinates of the result; where that makes facets meet, the result is cut again, until it does not: in later
-// rounds the points around go to a coarser grid.
+// The boundary of all that closed facets enclose, that is, where their winding number is above 0. Exact, but for the rounding
+// of points to the coordinates of the result; where that makes facets meet, the result is cut again, until it does not: in
+// later rounds the points around go to a coarser grid.
 [[nodiscard]] OuterSurface outer_surface(FacetSet set, const OuterSurfaceOptions& options);
 
 }  // namespace fdcg::bake

@@ -20,10 +20,10 @@ class PlaneTriangulation {
   static constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
 
   struct Face {
-    std::array<Local, 3> corner;                               // counter-clockwise as seen
+    std::array<Local, 3> corner;                                        // counter-clockwise as seen
     std::array<std::uint32_t, 3> across{kNothing, kNothing, kNothing};  // the face at the side from corner i to the next
     std::array<std::uint32_t, 3> line{kNothing, kNothing, kNothing};    // the support line of that side where it is a segment
-    std::array<std::int32_t, 3> along{};                       // of the segments there: those that run this way less the others
+    std::array<std::int32_t, 3> along{};  // of the segments there: those that run this way less the others
   };
 
   // `triangle`: whose plane it is. It is seen along the axis, from the side on which its corners are counter-clockwise.
@@ -68,8 +68,8 @@ class PlaneTriangulation {
   void mark(Local a, Local b, std::uint32_t line, std::int32_t along);
 
   struct Step {
-    Local next;             // the vertex to go on to
-    bool is_made = false;   // it still has to become a neighbour
+    Local next;            // the vertex to go on to
+    bool is_made = false;  // it still has to become a neighbour
   };
   [[nodiscard]] std::optional<Step> step_towards(Local a, Local b, std::uint32_t line);
   [[nodiscard]] bool make_side(Local a, Local b);

@@ -59,10 +59,9 @@ std::uint32_t WindingTree::build(std::uint32_t first, std::uint32_t end) {
   if (!node.is_leaf) {
     const int axis = dominant_axis(high - low);
     const std::uint32_t half = first + (end - first) / 2;
-    std::nth_element(triangles_.begin() + first, triangles_.begin() + half, triangles_.begin() + end,
-                     [axis](const Triangle& s, const Triangle& t) {
-                       return component(middle_of(s), axis) < component(middle_of(t), axis);
-                     });
+    std::nth_element(
+        triangles_.begin() + first, triangles_.begin() + half, triangles_.begin() + end,
+        [axis](const Triangle& s, const Triangle& t) { return component(middle_of(s), axis) < component(middle_of(t), axis); });
     node.first = build(first, half);
     node.end = build(half, end);
   }

@@ -23,8 +23,8 @@ class WindingTree {
 
  private:
   struct Node {
-    Vec3 middle, normal;  // the mean place of the area, the sum of area normals
-    double radius = 0;    // no point of the triangles is farther from the middle
+    Vec3 middle, normal;               // the mean place of the area, the sum of area normals
+    double radius = 0;                 // no point of the triangles is farther from the middle
     std::uint32_t first = 0, end = 0;  // a leaf's triangles; else the two nodes below
     bool is_leaf = true;
   };

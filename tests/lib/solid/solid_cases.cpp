@@ -10,7 +10,9 @@ using bake::Vec3;
 // The bottle as an immersion: a tube that passes through its own wall. It has no inside and outside, one side only.
 Vec3 klein(double u, double v) {
   const double t = 2 * kPi * u, w = 2 * kPi * v, r = 1 - 0.5 * std::cos(t);
-  if (t < kPi) return {1.5 * std::cos(t) * (1 + std::sin(t)) + r * std::cos(t) * std::cos(w), 4 * std::sin(t) + r * std::sin(t) * std::cos(w), r * std::sin(w)};
+  if (t < kPi)
+    return {1.5 * std::cos(t) * (1 + std::sin(t)) + r * std::cos(t) * std::cos(w),
+            4 * std::sin(t) + r * std::sin(t) * std::cos(w), r * std::sin(w)};
   return {1.5 * std::cos(t) * (1 + std::sin(t)) + r * std::cos(w + kPi), 4 * std::sin(t), r * std::sin(w)};
 }
 
@@ -23,7 +25,8 @@ Vec3 eight(double u, double v) {
   return {at.x + r * std::cos(w) * -dy / size, at.y + r * std::cos(w) * dx / size, at.z + r * std::sin(w)};
 }
 
-SolidCase boxes(const std::string& name, double volume, const std::vector<std::pair<Vec3, Vec3>>& list, std::uint64_t components = 1) {
+SolidCase boxes(const std::string& name, double volume, const std::vector<std::pair<Vec3, Vec3>>& list,
+                std::uint64_t components = 1) {
   SoupMaker maker;
   for (const auto& [low, high] : list)
     maker.box(low, high);
@@ -33,10 +36,13 @@ SolidCase boxes(const std::string& name, double volume, const std::vector<std::p
 SolidCase turned_boxes() {
   SoupMaker maker;
   maker.box({0, 0, 0}, {1, 1, 1});
-  maker.sheet(4, 1, [](double u, double v) {  // a prism of square section, turned about its long axis
-    const double t = 2 * kPi * u + 0.3;
-    return Vec3{0.5 + 0.25 * std::cos(t), 0.5 + 0.25 * std::sin(t), 3 * v - 1};
-  }, true, false);
+  maker.sheet(
+      4, 1,
+      [](double u, double v) {  // a prism of square section, turned about its long axis
+        const double t = 2 * kPi * u + 0.3;
+        return Vec3{0.5 + 0.25 * std::cos(t), 0.5 + 0.25 * std::sin(t), 3 * v - 1};
+      },
+      true, false);
   return {maker.take("a prism through a cube, open at its ends"), 1 + 2 * 0.125, 1e-9};
 }
 
@@ -49,10 +55,12 @@ std::vector<SolidCase> solid_cases() {
   cases.push_back(boxes("cubes with sides in one plane", 1.5, {{{0, 0, 0}, {1, 1, 1}}, {{0.5, 0, 0}, {1.5, 1, 1}}}));
   cases.push_back(boxes("a block on a block", 1.125, {{{0, 0, 0}, {1, 1, 1}}, {{0.25, 0.25, 1}, {0.75, 0.75, 1.5}}}));
   cases.push_back(boxes("a block flush in a corner of a block", 1, {{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {0.5, 0.5, 0.5}}}));
-  cases.push_back(boxes("three equal cubes at one place", 1, {{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}}));
+  cases.push_back(
+      boxes("three equal cubes at one place", 1, {{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}}));
   cases.push_back(boxes("cubes that share an edge", 2, {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 0}, {2, 2, 1}}}, 2));
   cases.push_back(boxes("cubes that share a corner", 2, {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}}, 2));
-  cases.push_back(boxes("decimal cubes in a row", 0.1 * 0.1 * 0.3, {{{0, 0, 0}, {0.1, 0.1, 0.1}}, {{0.1, 0, 0}, {0.2, 0.1, 0.1}}, {{0.2, 0, 0}, {0.3, 0.1, 0.1}}}));
+  cases.push_back(boxes("decimal cubes in a row", 0.1 * 0.1 * 0.3,
+                        {{{0, 0, 0}, {0.1, 0.1, 0.1}}, {{0.1, 0, 0}, {0.2, 0.1, 0.1}}, {{0.2, 0, 0}, {0.3, 0.1, 0.1}}}));
   {
     SoupMaker maker;
     maker.box({0, 0, 0}, {3, 3, 3});

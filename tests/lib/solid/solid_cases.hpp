@@ -53,8 +53,8 @@ class SoupMaker {
     for (unsigned j = 0; j < rows; ++j) {
       for (unsigned i = 0; i < columns; ++i) {
         if (has && !has(i, j)) continue;
-        const std::uint32_t a = v[j * across + i], b = v[j * across + (i + 1) % across], c = v[(j + 1) % up * across + (i + 1) % across],
-                            d = v[(j + 1) % up * across + i];
+        const std::uint32_t a = v[j * across + i], b = v[j * across + (i + 1) % across],
+                            c = v[(j + 1) % up * across + (i + 1) % across], d = v[(j + 1) % up * across + i];
         face({a, b, c});
         face({a, c, d});
       }
@@ -62,11 +62,14 @@ class SoupMaker {
   }
   void sphere(const Vec3& middle, double radius, unsigned rings, const std::function<bool(unsigned, unsigned)>& has = {}) {
     constexpr double kPi = 3.14159265358979323846;
-    sheet(2 * rings, rings, [&](double u, double w) {
-      const double turn = 2 * kPi * u, fall = kPi * (w - 0.5), flat = w == 0 || w == 1 ? 0 : std::cos(fall);
-      return Vec3{middle.x + radius * flat * std::cos(turn), middle.y + radius * flat * std::sin(turn),
-                  middle.z + radius * std::sin(fall)};
-    }, true, false, has);
+    sheet(
+        2 * rings, rings,
+        [&](double u, double w) {
+          const double turn = 2 * kPi * u, fall = kPi * (w - 0.5), flat = w == 0 || w == 1 ? 0 : std::cos(fall);
+          return Vec3{middle.x + radius * flat * std::cos(turn), middle.y + radius * flat * std::sin(turn),
+                      middle.z + radius * std::sin(fall)};
+        },
+        true, false, has);
   }
   [[nodiscard]] bake::PolygonSoup take(const std::string& name) {
     soup_.name = name;
@@ -79,8 +82,8 @@ class SoupMaker {
 
 struct SolidCase {
   bake::PolygonSoup soup;
-  double volume;           // enclosed; 0: nothing is
-  double tolerance = 0;    // of the volume, relative
+  double volume;         // enclosed; 0: nothing is
+  double tolerance = 0;  // of the volume, relative
   std::uint64_t components = 1;
 };
 

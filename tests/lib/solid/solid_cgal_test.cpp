@@ -7,10 +7,12 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 
 #include "catch.hpp"
 #include "fdcg/bake.hpp"
@@ -44,6 +46,16 @@ std::string fault_of(const PolygonSoup& soup) {
   return {};
 }
 
+double size_of(const PolygonSoup& soup) {
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  for (const Vec3& p : soup.points) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
+}
+
 }  // namespace
 
 TEST_CASE("CGAL finds the results closed, outward and free of intersections") {
@@ -51,22 +63,25 @@ TEST_CASE("CGAL finds the results closed, outward and free of intersections") {
     INFO(each.soup.name);
     const Result<Repaired> repaired = repair(each.soup, repair_options(RepairLevel::solid));
     REQUIRE(repaired.has_value());
-    if (repaired->actions.back().left != 0) continue;
+    if (repaired->actions.back().is_refused) continue;
     CHECK(fault_of(repaired->soup) == "");
   }
 }
 
-TEST_CASE("CGAL finds most real files that are warned of or refused closed and free of intersections after repair --solid") {
+// Of every mesh file in a folder that FDCG_REAL_MESHES names: at least 80 % become solids, within a thousandth of their size
+// but for the patches of holes; every other one says why not.
+TEST_CASE("CGAL finds most real files closed and free of intersections after repair --solid") {
   const char* const folder = std::getenv("FDCG_REAL_MESHES");
   if (folder == nullptr || !std::filesystem::is_directory(folder)) {
     WARN("skipped: FDCG_REAL_MESHES names no folder of mesh files");
     return;
   }
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) paths.push_back(entry.path());
+  }
   std::sort(paths.begin(), paths.end());
-  std::size_t good = 0, reasoned = 0, count = 0;
+  std::size_t good = 0, near = 0, count = 0;
   for (const auto& path : paths) {
     const Result<PolygonSoup> soup = import_mesh(path.string());
     if (!soup) continue;
@@ -74,14 +89,23 @@ TEST_CASE("CGAL finds most real files that are warned of or refused closed and f
     const auto begin = std::chrono::steady_clock::now();
     const Result<Repaired> repaired = repair(*soup, repair_options(RepairLevel::solid));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    INFO(path);
     REQUIRE(repaired.has_value());
     const RepairAction& solid = repaired->actions.back();
-    const std::string fault = solid.left_message.find("no solid") == 0 ? solid.left_message : fault_of(repaired->soup);
-    std::cout << (fault.empty() ? "good " : "FAULT ") << path.filename().string() << " " << soup->face_count() << " -> "
-              << repaired->soup.face_count() << " faces, " << seconds << " s, moved " << solid.distance << ", volume " << repaired->volume_before << " -> " << repaired->volume_after << "; " << fault << "; "
-              << solid.message << std::endl;
+    const std::string fault = solid.is_refused ? solid.left_message : fault_of(repaired->soup);
+    const double share = repaired->distance / size_of(*soup);
+    std::printf("%-5s %s: %zu -> %zu faces, %.2f s, volume %.4g -> %.4g, distance %.1e of the size; %s; %s %s\n",
+                fault.empty() ? "good" : "FAULT", path.filename().c_str(), soup->face_count(), repaired->soup.face_count(),
+                seconds, repaired->volume_before, repaired->volume_after, share, fault.c_str(), solid.message.c_str(),
+                solid.left_message.c_str());
+    for (const RepairAction& action : repaired->actions) {
+      if (action.name != "close-holes" && action.distance / size_of(*soup) > 1e-4)
+        std::printf("      %s: distance %.1e of the size\n", action.name.c_str(), action.distance / size_of(*soup));
+    }
+    CHECK((fault.empty() || solid.is_refused));
     good += fault.empty();
-    reasoned += solid.left != 0;
+    near += fault.empty() && share <= 1e-3;
   }
-  std::cout << good << " good, " << reasoned << " with a reason, of " << count << std::endl;
+  std::printf("%zu solids, %zu within a thousandth of the size, of %zu files\n", good, near, count);
+  CHECK(10 * good >= 8 * count);
 }
