@@ -32,8 +32,8 @@ void cut_polygons(Workpiece& piece) {
   piece.source_face = std::move(source);
 }
 
-// Points at whose coordinates there is another one.
-std::vector<std::uint32_t> shared_places(const PolygonSoup& soup) {
+// Points at whose coordinates there is another one, and those from `first_made` on.
+std::vector<std::uint32_t> shared_places(const PolygonSoup& soup, std::uint32_t first_made) {
   std::vector<std::uint32_t> order(soup.points.size()), shared;
   std::iota(order.begin(), order.end(), 0U);
   const auto key = [&](std::uint32_t v) { return std::tie(soup.points[v].x, soup.points[v].y, soup.points[v].z); };
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> shared_places(const PolygonSoup& soup) {
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool as_before = i > 0 && key(order[i]) == key(order[i - 1]);
     const bool as_after = i + 1 < order.size() && key(order[i]) == key(order[i + 1]);
-    if (as_before || as_after) shared.push_back(order[i]);
+    if (as_before || as_after || order[i] >= first_made) shared.push_back(order[i]);
   }
   std::sort(shared.begin(), shared.end());
   return shared;
@@ -70,8 +70,18 @@ class TouchingFans {
     }
   }
 
-  // Of length 1, or 0 where there is none.
-  [[nodiscard]] const Vec3& way(std::uint32_t v) const { return fan_[v].way; }
+  // A way to try, the likeliest first; of length 1, or 0 where there is none. They repeat.
+  [[nodiscard]] Vec3 way(std::uint32_t v, int attempt) const {
+    const Fan& fan = fan_[v];
+    if (attempt % kWays == 0) return fan.way;
+    if (attempt % kWays == 2) return -fan.way;
+    Vec3 sum;
+    for (const Sector& sector : fan.sectors)
+      sum = sum + sector.a + sector.b;
+    const double size = length(sum);
+    return size > 0 ? 1 / size * sum : Vec3{};
+  }
+  static constexpr int kWays = 3;
   // The least distance of the vertex from the sides across in its faces.
   [[nodiscard]] double room(std::uint32_t v) const { return fan_[v].room; }
 
@@ -105,6 +115,7 @@ class TouchingFans {
     const double size = length(fan.normal);
     constexpr double kFlat = 1e-6;
     if (fan.sectors.empty() || !(size > kFlat)) return {};
+    if (group.size() == 1) return -1 / size * fan.normal;  // the middle of an edge where solids touch
     bool has_front = false, has_back = false;
     for (const std::uint32_t other : group) {
       if (other == v || fan_[other].sectors.empty()) continue;
@@ -145,23 +156,22 @@ SelfIntersections meeting_faces(const Workpiece& piece, unsigned jobs) {
 
 }  // namespace
 
-Parting part_touching(Workpiece& piece, double reach, bool as_floats, unsigned jobs) {
+Parting part_touching(Workpiece& piece, std::uint32_t first_made, double reach, bool as_floats, unsigned jobs) {
   Parting parting;
   cut_polygons(piece);
   PolygonSoup& soup = piece.soup;
-  const std::vector<std::uint32_t> shared = shared_places(soup);
+  const std::vector<std::uint32_t> shared = shared_places(soup, first_made);
   if (shared.empty()) return parting;
   const std::vector<Vec3> places = soup.points;
   const TouchingFans fans(soup, shared);
-  constexpr double kShareOfRoom = 1.0 / 8, kLess = 1.0 / 4;
-  std::vector<double> step(soup.points.size(), 0);
-  for (const std::uint32_t v : shared)
-    step[v] = std::min(reach, kShareOfRoom * fans.room(v));
-  constexpr int kMostTries = 8;
-  for (int round = 0; round < kMostTries; ++round) {
+  constexpr double kShareOfRoom = 1.0 / 8, kLess = 1.0 / 8;
+  constexpr int kSizes = 3;  // of each way
+  std::vector<int> tried(soup.points.size(), 0);
+  for (int round = 0; round < kSizes * TouchingFans::kWays; ++round) {
     parting.distance = 0;
     for (const std::uint32_t v : shared) {
-      Vec3 p = places[v] + step[v] * fans.way(v);
+      const double step = std::min(reach, kShareOfRoom * fans.room(v)) * std::pow(kLess, tried[v] % kSizes);
+      Vec3 p = places[v] + step * fans.way(v, tried[v] / kSizes);
       if (as_floats) p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
       soup.points[v] = p;
       parting.distance = std::max(parting.distance, length(p - places[v]));
@@ -169,12 +179,15 @@ Parting part_touching(Workpiece& piece, double reach, bool as_floats, unsigned j
     const SelfIntersections found = meeting_faces(piece, jobs);
     parting.left = found.crossing + found.touching;
     if (parting.left == 0) break;
+    std::vector<bool> is_met(soup.points.size(), false);
     for (const MeetingFaces& pair : found.listed) {
       for (const FaceId f : {pair.a, pair.b}) {
         for (std::size_t i = 0; i < 3; ++i)
-          step[soup.corners[3 * +f + i]] *= kLess;
+          is_met[soup.corners[3 * +f + i]] = true;
       }
     }
+    for (std::size_t v = 0; v < is_met.size(); ++v)
+      tried[v] += is_met[v];
   }
   parting.moved = shared.size();
   return parting;

@@ -17,6 +17,7 @@ struct Parting {
 // The faces become triangles. Vertices at equal coordinates, which cut_edges() and split_vertices_step() have put apart, are
 // moved into the solids that they belong to, by at most `reach`, or less where that would make faces meet. Each belongs to one
 // fan of a closed surface that does not pass through itself.
-[[nodiscard]] Parting part_touching(Workpiece& piece, double reach, bool as_floats, unsigned jobs);
+// `first_made`: points from it on are those that the two made.
+[[nodiscard]] Parting part_touching(Workpiece& piece, std::uint32_t first_made, double reach, bool as_floats, unsigned jobs);
 
 }  // namespace fdcg::bake

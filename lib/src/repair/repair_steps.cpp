@@ -208,12 +208,13 @@ class Run {
     SolidEffect effect;
     RepairAction action = solid_step(piece_, options_.solid->as_floats, options_.jobs, options_.progress, effect);
     if (effect.is_solid) {
+      const auto first_made = static_cast<std::uint32_t>(piece_.soup.points.size());
       CutTally cut;
       cut_edges(piece_, cut);
       (void)split_vertices_step(piece_);
       constexpr double kApart = 0x1p-20;  // of the object's size
-      const Parting parting = part_touching(piece_, kApart * length(bounds_.high - bounds_.low), options_.solid->as_floats,
-                                            resolve_jobs(options_.jobs));
+      const Parting parting = part_touching(piece_, first_made, kApart * length(bounds_.high - bounds_.low),
+                                            options_.solid->as_floats, resolve_jobs(options_.jobs));
       add_parting(parting, action);
       effect.distance += parting.distance;
     }

@@ -135,7 +135,6 @@ OuterSurface outer_surface(FacetSet set, const OuterSurfaceOptions& options) {
       result.outcome = result.rounds == 0 ? Outcome::not_closed : Outcome::fault;
       return result;
     }
-    if (std::getenv("SOLID_DEBUG"))
       std::fprintf(stderr, "round %d: %zu facets, %lu pairs, %lu cut, %zu pieces, %zu outer, moved %g\n", result.rounds,
                    set.facets.size(), arrangement.pairs, arrangement.cut, arrangement.facets.size(), outer.facets.size(),
                    result.moved);
