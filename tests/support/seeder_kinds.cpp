@@ -19,8 +19,6 @@ using bake::operator+;
 using bake::operator-;
 using bake::operator*;
 
-constexpr std::uint32_t kNone = CleanMesh::kNone;
-
 Vec3 as_float(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
@@ -99,7 +97,7 @@ bool Seeder::duplicate_face() {
   if (!f) return false;
   Polygon loop = clean_loops_[*f];
   if (random_.chance(0.5)) std::reverse(loop.begin(), loop.end());
-  const Face copy = add_face(loop, kNone);
+  const Face copy = add_face(loop, CleanMesh::kNone);
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vertex u = loop[i], v = loop[(i + 1) % loop.size()];
     find("non-manifold-edge", {*f, copy, across(u, v, *f)}, {u, v});
@@ -269,7 +267,7 @@ bool Seeder::repeated_corner() {
   const auto f = free_face(false);
   if (!f) return false;
   const Vertex a = clean_loops_[*f][0], b = clean_loops_[*f][1];
-  const Face face = add_face(random_.chance(0.5) ? Polygon{a, b, b} : Polygon{a, b, a}, kNone);
+  const Face face = add_face(random_.chance(0.5) ? Polygon{a, b, b} : Polygon{a, b, a}, CleanMesh::kNone);
   find("degenerate-face", {face});
   dropped_.insert(face);
   return true;
@@ -279,7 +277,7 @@ bool Seeder::repeated_corner() {
 bool Seeder::collinear_face() {
   const Vec3 at = far_away(), step{0.5, 1, -0.25};
   const Vertex a = add_point(at), b = add_point(at + step), c = add_point(at + 3 * step);
-  const Face f = add_face({a, b, c}, kNone);
+  const Face f = add_face({a, b, c}, CleanMesh::kNone);
   find("degenerate-face", {f});
   dropped_.insert(f);
   find("boundary-edge", {f}, {a, b});
@@ -347,7 +345,7 @@ bool Seeder::fin() {
   constexpr double kHeight = 0.7;  // over the edge's length
   const double height = kHeight * length(points_[u] - points_[v]);
   const Vertex tip = add_point(as_float(0.5 * (points_[u] + points_[v]) + height / length(out) * out));
-  const Face third = add_face(random_.chance(0.5) ? Polygon{u, v, tip} : Polygon{v, u, tip}, kNone);
+  const Face third = add_face(random_.chance(0.5) ? Polygon{u, v, tip} : Polygon{v, u, tip}, CleanMesh::kNone);
   find("non-manifold-edge", {*f, g, third}, {u, v});
   find("boundary-edge", {third}, {u, tip});
   find("boundary-edge", {third}, {v, tip});
@@ -372,9 +370,9 @@ bool Seeder::moebius_band() {
   for (std::uint32_t i = 0; i < kQuads; ++i) {
     const bool seam = i + 1 == kQuads;
     const Vertex a = v[2 * i], b = v[2 * i + 1], c = seam ? v[1] : v[2 * i + 2], d = seam ? v[0] : v[2 * i + 3];
-    faces.push_back(add_face({a, c, b}, kNone));
+    faces.push_back(add_face({a, c, b}, CleanMesh::kNone));
     find("boundary-edge", {faces.back()}, {a, c});
-    faces.push_back(add_face({b, c, d}, kNone));
+    faces.push_back(add_face({b, c, d}, CleanMesh::kNone));
     find("boundary-edge", {faces.back()}, {b, d});
   }
   find("winding-inconsistent", {faces.front(), faces.back()}, {v[0], v[1]});
@@ -387,7 +385,8 @@ bool Seeder::folded_pair() {
   const Vertex a = add_point(at), b = add_point(at + Vec3{1, 0, 0.5}), c = add_point(at + Vec3{0.5, 1, 0.25}),
                d = add_point(at + Vec3{0.25, 0.75, 0.125});  // all on z = x / 2
   const bool same_way = random_.chance(0.5);
-  const Face f = add_face({a, b, c}, kNone), g = add_face(same_way ? Polygon{a, b, d} : Polygon{b, a, d}, kNone);
+  const Face f = add_face({a, b, c}, CleanMesh::kNone),
+             g = add_face(same_way ? Polygon{a, b, d} : Polygon{b, a, d}, CleanMesh::kNone);
   find("folded-edge", {f, g}, {a, b});
   find("self-intersection", {f, g});
   if (same_way) find("winding-inconsistent", {f, g}, {a, b});
@@ -401,7 +400,7 @@ bool Seeder::folded_pair() {
 bool Seeder::sliver() {
   const Vec3 at = far_away();
   const Vertex a = add_point(at), b = add_point(at + Vec3{1, 0, 0}), c = add_point(at + Vec3{0.5, 0x1p-12, 0});
-  const Face f = add_face({a, b, c}, kNone);
+  const Face f = add_face({a, b, c}, CleanMesh::kNone);
   find("sliver-face", {f});
   find("boundary-edge", {f}, {a, b});
   find("boundary-edge", {f}, {b, c});
@@ -414,7 +413,7 @@ bool Seeder::bow_tie() {
   const Vec3 at = far_away();
   const Vertex a = add_point(at), b = add_point(at + Vec3{1, 1, 0}), c = add_point(at + Vec3{1, 0, 0}),
                d = add_point(at + Vec3{0, 1, 0});
-  const Face f = add_face({a, b, c, d}, kNone);
+  const Face f = add_face({a, b, c, d}, CleanMesh::kNone);
   find("self-crossing-face", {f});
   const Vertex loop[] = {a, b, c, d};
   for (std::size_t i = 0; i < 4; ++i)

@@ -2,7 +2,6 @@
 // How far the god-object is from the exact one: the runtime beside rational arithmetic and beside its rules in wider numbers,
 // over bodies, ways, friction, precisions and ways of storing a graph. Errors in ulps of the extent, f32 in its own.
 // Over 400 lines: plan, search, tables and bars of one program, read from top to bottom.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "ground.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"
+#include "program_options.hpp"
 #include "table.hpp"
 #include "ways.hpp"
 
@@ -516,26 +516,20 @@ int say_and_judge(const std::string& folder, const Plan& plan, const std::vector
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{
+  ProgramOptions program(
       "The god-object's error against exact rational arithmetic and against the same rules in wider numbers.\n"
       "Writes god_object_error.csv, god_object_error_histogram.csv, god_object_conditioning.csv, god_object_search.csv\n"
       "and bench_accuracy.bars.csv.\n"
-      "Exit code 1: a bar failed.\n\nExample: fdcg_bench_accuracy --quick --output build/accuracy"};
-  app.add_flag("--quick", options.is_quick, "a few seconds instead of a few minutes");
-  app.add_flag("--explain", options.explains,
+      "Exit code 1: a bar failed.\n\nExample: fdcg_bench_accuracy --quick --output build/accuracy");
+  program.flag("--quick", options.is_quick, "a few seconds instead of a few minutes");
+  program.flag("--explain", options.explains,
                "say everything about ticks above the limit of p99.9, and about ties without an explanation");
-  app.add_option("--output", options.output, "folder for the tables")->capture_default_str();
-  app.add_option("--seed", options.seed, "of the ways")->capture_default_str();
-  app.add_option("--threads", options.threads, "the results do not depend on it")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 64));
-  app.add_option("--body", options.body, "only this one, by its name in the tables");
-  app.add_option("--way", options.way, "only this one");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  program.option("--output", options.output, "folder for the tables");
+  program.option("--seed", options.seed, "of the ways");
+  program.option("--threads", options.threads, "the results do not depend on it", 1, 64);
+  program.option("--body", options.body, "only this one, by its name in the tables");
+  program.option("--way", options.way, "only this one");
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
     const Plan plan = make_plan(options);
     std::vector<AccuracyOutcome> outcomes = run_all(plan, options.threads);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg_bench_closed_loop: the largest stiffness at which a device pressed on a wall is stable, against rate, delay and the
 // encoder's quantum, beside the lines of theory. See tests/evaluation/README.md.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 
 #include "linear_limit.hpp"
 #include "parallel.hpp"
+#include "program_options.hpp"
 #include "random.hpp"
 #include "table.hpp"
 #include "wall_loop.hpp"
@@ -212,20 +212,14 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   fdcg::test::Options options;
-  CLI::App app{
+  fdcg::test::ProgramOptions program(
       "Finds the largest stable stiffness of a simulated device on a wall that fdcg_step renders.\n"
-      "Example: fdcg_bench_closed_loop --quick --output closed_loop"};
-  app.add_flag("--quick", options.is_quick, "A few seconds: two rates");
-  app.add_option("--output", options.output, "Folder for the tables")->capture_default_str();
-  app.add_option("--seed", options.seed, "Of the wall's orientation and the encoder's steps")->capture_default_str();
-  app.add_option("--threads", options.threads, "The results do not depend on it")
-      ->check(CLI::Range(1u, 256u))
-      ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+      "Example: fdcg_bench_closed_loop --quick --output closed_loop");
+  program.flag("--quick", options.is_quick, "A few seconds: two rates");
+  program.option("--output", options.output, "Folder for the tables");
+  program.option("--seed", options.seed, "Of the wall's orientation and the encoder's steps");
+  program.option("--threads", options.threads, "The results do not depend on it", 1, 256);
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
     return fdcg::test::run(options);
   } catch (const std::exception& error) {

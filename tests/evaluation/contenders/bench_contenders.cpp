@@ -2,7 +2,6 @@
 // Run time against error: this runtime in its variants, and other ways to find a god-object, along the same ways in the same
 // harness. Errors are against brute force in long double. See timing.hpp for how times are taken, metrics.hpp for what is
 // judged, contender.hpp for who takes part.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include "metrics.hpp"
 #include "pareto.hpp"
 #include "plan.hpp"
+#include "program_options.hpp"
 #include "table.hpp"
 #include "timing.hpp"
 #include "truth.hpp"
@@ -259,8 +259,9 @@ void Evaluation::rank_body(const Body& body, std::vector<Standing> standings, do
   for (const std::size_t which : {0, 1}) {
     char note[160];
     std::snprintf(note, sizeof note, "f32 takes %.3f of f64's time, told apart from %.1f %%", ratio, 100 * resolution);
-    bars_.at_least(std::string(which == 0 ? "f64" : "f32") + " variants on the frontier, " + body.name, on_frontier[which], 1,
-                   "variants", on_frontier[which] > 0 ? note : note + std::string("; beaten: ") + beaten[which].substr(2));
+    bars_.at_least((which == 0 ? "f64 variants on the frontier, " : "f32 variants on the frontier, ") + body.name,
+                   on_frontier[which], 1, "variants",
+                   on_frontier[which] > 0 ? note : std::string(note).append("; beaten: ").append(beaten[which], 2));
   }
 }
 
@@ -286,25 +287,22 @@ std::vector<BodyPlan> plan_with(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{
+  ProgramOptions program(
       "Run time against error: this runtime and other ways to find a god-object, along the same ways.\n"
-      "Example: fdcg_bench_contenders --body star_10k --way hand --output bench"};
-  app.add_flag("--quick", options.is_quick, "small bodies, few ways: some 10 s in place of 3 minutes");
-  app.add_flag("!--no-time-bars", options.judges_times, "measure times briefly and do not judge them: for busy machines");
-  app.add_option("--output", options.output, "folder for contenders.csv, pareto.csv, pareto_verdict.csv and the bars")
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "of the ways")->capture_default_str();
-  app.add_option("--body", options.bodies, "only these; any of bodies.hpp, up to 10 million faces (some 12 GB)");
-  app.add_option("--way", options.ways, "only these of the plan's ways");
-  app.add_option("--ticks", options.ticks, "of each way; default 10,000, quick 4,000")->check(CLI::Range(100u, 1'000'000u));
+      "Example: fdcg_bench_contenders --body star_10k --way hand --output bench");
+  program.flag("--quick", options.is_quick, "small bodies, few ways: some 10 s in place of 3 minutes");
+  program.flag("!--no-time-bars", options.judges_times, "measure times briefly and do not judge them: for busy machines");
+  program.option("--output", options.output, "folder for contenders.csv, pareto.csv, pareto_verdict.csv and the bars");
+  program.option("--seed", options.seed, "of the ways");
+  program.option("--body", options.bodies, "only these; any of bodies.hpp, up to 10 million faces (some 12 GB)");
+  program.option("--way", options.ways, "only these of the plan's ways");
+  program.option("--ticks", options.ticks, "of each way; default 10,000, quick 4,000", 100, 1e6);
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
-    app.parse(argc, argv);
     for (const std::string& name : options.bodies)
       (void)body_named(name);
     for (const std::string& name : options.ways)
       (void)way_named(name);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

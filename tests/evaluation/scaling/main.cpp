@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg_bench_scaling: how bake, memory, opening and the step grow with faces, contacts and objects; f32 beside f64.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <string>
 
+#include "program_options.hpp"
 #include "scaling.hpp"
 
 using namespace fdcg::test;
@@ -13,23 +13,16 @@ int main(int argc, char** argv) {
   ScalingRun run;
   run.output = "build/evaluation/scaling";
   std::string part = "all";
-  CLI::App app("How bake time, memory, opening and the step grow with faces, contacts and objects; f32 beside f64.");
-  app.footer("Example: fdcg_bench_scaling --quick --part contacts --output scaling");
-  app.add_flag("--quick", run.is_quick,
+  ProgramOptions program(
+      "How bake time, memory, opening and the step grow with faces, contacts and objects; f32 beside f64.\n"
+      "Example: fdcg_bench_scaling --quick --part contacts --output scaling");
+  program.flag("--quick", run.is_quick,
                "up to 10^5 faces, 10^4 contacts and 10^3 objects; else 10^7, 10^5 and 10^4, in some 12 GB");
-  bool no_time_bars = false;
-  app.add_flag("--no-time-bars", no_time_bars, "do not fail on times: for a machine that does other work");
-  app.add_option("--output", run.output, "folder for the tables")->capture_default_str();
-  app.add_option("--seed", run.seed, "of the contacts' places and the jumps")->capture_default_str();
-  app.add_option("--part", part, "what to measure")
-      ->check(CLI::IsMember({"all", "faces", "contacts", "objects"}))
-      ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  run.judges_times = !no_time_bars;
+  program.flag("!--no-time-bars", run.judges_times, "do not fail on times: for a machine that does other work");
+  program.option("--output", run.output, "folder for the tables");
+  program.option("--seed", run.seed, "of the contacts' places and the jumps");
+  program.choice("--part", part, "what to measure", {"all", "faces", "contacts", "objects"});
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
     Bars bars(run.output, "fdcg_bench_scaling");
     Table exponents(run.output, "scaling_exponents",

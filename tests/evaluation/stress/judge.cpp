@@ -12,9 +12,6 @@ namespace {
 constexpr std::uint32_t bit(Fault fault) {
   return 1u << static_cast<unsigned>(fault);
 }
-Hip hip_of(const double (&a)[3]) {
-  return {a[0], a[1], a[2]};
-}
 bool is_same(const double (&a)[3], const double (&b)[3]) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }

@@ -2,7 +2,6 @@
 // fdcg_stress: runs the step on every case of stress_case.hpp, judges every tick, and says how to repeat what fails.
 // Over 400 lines: the table's columns and the bars are lists.
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include "minimise.hpp"
+#include "program_options.hpp"
 #include "reproducer.hpp"
 #include "stress_run.hpp"
 #include "table.hpp"
@@ -374,28 +374,24 @@ void list_cases() {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  ProgramOptions program(
       "Runs the step on every stress case, judges every tick, writes stress_cases.csv and fdcg_stress.bars.csv.\n"
       "Exit code 1: a bar fails; 2: wrong usage.\n"
       "Example: fdcg_stress --steps 1e9 --threads 2 --output stress\n"
       "         fdcg_stress --case tremor --precision f32 --block 7\n"
       "         fdcg_stress --minimise stress/tremor-f32-push-through-1.obj");
-  app.add_flag("--quick", options.is_quick, "a few seconds");
-  app.add_option("--output", options.output, "folder for the tables and reproducers")->capture_default_str();
-  app.add_option("--seed", options.seed, "of everything; results but for times depend on it alone")->capture_default_str();
-  app.add_option("--steps", options.steps, "how many ticks in all, shared among the cases");
-  app.add_option("--threads", options.threads, "results do not depend on it")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--case", options.only, "this one alone");
-  app.add_option("--precision", options.precision, "f64 or f32 alone")->check(CLI::IsMember({"f64", "f32"}));
-  app.add_option("--block", options.block, "this block of each case alone");
-  app.add_option("--minimise", options.minimise, "cut this reproducer down; writes FILE.small.obj and FILE.test.cpp");
-  app.add_option("--replay", options.replay, "step this reproducer; exit code 1 if it still fails");
-  app.add_flag("--list", options.lists, "the cases");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
+  program.flag("--quick", options.is_quick, "a few seconds");
+  program.option("--output", options.output, "folder for the tables and reproducers");
+  program.option("--seed", options.seed, "of everything; results but for times depend on it alone");
+  program.option("--steps", options.steps, "how many ticks in all, shared among the cases");
+  program.option("--threads", options.threads, "results do not depend on it", 1, 64);
+  program.option("--case", options.only, "this one alone");
+  program.choice("--precision", options.precision, "f64 or f32 alone", {"f64", "f32"});
+  program.option("--block", options.block, "this block of each case alone");
+  program.option("--minimise", options.minimise, "cut this reproducer down; writes FILE.small.obj and FILE.test.cpp");
+  program.option("--replay", options.replay, "step this reproducer; exit code 1 if it still fails");
+  program.flag("--list", options.lists, "the cases");
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
     if (options.lists) return list_cases(), 0;
     if (!options.replay.empty()) return replay(options.replay);

@@ -8,13 +8,6 @@
 #include "meshes.hpp"
 
 namespace fdcg::test {
-namespace {
-
-Hip hip_of(const double (&a)[3]) {
-  return {a[0], a[1], a[2]};
-}
-
-}  // namespace
 
 Specimen::Specimen(Body b) : body(std::move(b)), mesh(body.soup, body.options) {
   read_shapes();

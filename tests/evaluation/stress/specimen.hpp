@@ -14,6 +14,10 @@
 
 namespace fdcg::test {
 
+inline Hip hip_of(const double (&a)[3]) {
+  return {a[0], a[1], a[2]};
+}
+
 // A body as a case makes it.
 struct Body {
   bake::PolygonSoup soup;  // source units

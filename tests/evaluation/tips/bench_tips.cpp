@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fdcg_bench_tips: hands of 0.1, 0.3 and 1 m/s at 1 kHz on pointed bodies; how long they are inside without force, how large
 // the first force is, what the worst tick costs.
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <string>
@@ -10,6 +9,7 @@
 #include "contact_rig.hpp"
 #include "hand_probe.hpp"
 #include "pointed_bodies.hpp"
+#include "program_options.hpp"
 
 using namespace fdcg::test;
 using fdcg::bake::CompileOptions;
@@ -77,12 +77,12 @@ int run(const Choices& choices) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Hands on pointed bodies: ticks inside without force"};
+  ProgramOptions program("Hands on pointed bodies: ticks inside without force");
   Choices choices;
-  app.add_option("--sides", choices.sides, "of each body");
-  app.add_option("--ways", choices.ways, "of each approach and speed");
-  app.add_option("--seed", choices.seed, "of turns and ways");
-  app.add_flag("--merge", choices.merges, "compile as by default: faces merged within the numbers' quantum");
-  CLI11_PARSE(app, argc, argv);
+  program.option("--sides", choices.sides, "of each body");
+  program.option("--ways", choices.ways, "of each approach and speed");
+  program.option("--seed", choices.seed, "of turns and ways");
+  program.flag("--merge", choices.merges, "compile as by default: faces merged within the numbers' quantum");
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   return run(choices);
 }
