@@ -135,9 +135,6 @@ OuterSurface outer_surface(FacetSet set, const OuterSurfaceOptions& options) {
       result.outcome = result.rounds == 0 ? Outcome::not_closed : Outcome::fault;
       return result;
     }
-      std::fprintf(stderr, "round %d: %zu facets, %lu pairs, %lu cut, %zu pieces, %zu outer, moved %g\n", result.rounds,
-                   set.facets.size(), arrangement.pairs, arrangement.cut, arrangement.facets.size(), outer.facets.size(),
-                   result.moved);
     const bool is_first = result.rounds == 0;
     if (!is_first && arrangement.pairs == 0 && outer.facets.size() == set.facets.size()) {
       result.set = std::move(set);
