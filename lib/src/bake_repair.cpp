@@ -50,6 +50,7 @@ void number_as_input(const PolygonSoup& input, const Repaired& repaired, Report&
 Prepared repaired_mesh(const PolygonSoup& soup, const CompileOptions& options, const CheckOptions& how, Compiled& compiled) {
   RepairOptions steps = repair_options(*options.repair);
   steps.weld = options.weld;
+  if (steps.solid) steps.solid->as_floats = options.precision == Precision::f32;
   steps.reverse_inside_out = !options.allow.contains("inside-out");
   steps.judges = false;
   steps.jobs = how.jobs;
@@ -71,7 +72,8 @@ Prepared repaired_mesh(const PolygonSoup& soup, const CompileOptions& options, c
 void repair_first(const PolygonSoup& soup, const CompileOptions& options, const CheckOptions& how, Compiled& compiled,
                   Prepared& ready) {
   compiled.repair = account_of(compiled.report, *options.repair, soup);
-  if (!compiled.report.passes()) ready = repaired_mesh(soup, options, how, compiled);
+  const bool is_wanted = options.repair == RepairLevel::solid || !compiled.report.passes();
+  if (is_wanted) ready = repaired_mesh(soup, options, how, compiled);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ DEFECTIVE = """OFF
 3 1 1 1
 """
 STEPS = ("--weld", "--drop-degenerate", "--drop-duplicates", "--split-non-manifold-vertices", "--orient",
-         "--drop-unusable", "--triangulate-crossing", "--unfold", "--cut-non-manifold", "--drop-blocking", "--reverse-inside-out", "--simplify", "--all")
+         "--drop-unusable", "--triangulate-crossing", "--unfold", "--cut-non-manifold", "--drop-blocking", "--reverse-inside-out", "--solid", "--simplify", "--all")
 
 
 def check_schema(report):
@@ -189,6 +189,56 @@ class Repair(Case):
         self.assertIn(b"face 0 has 4 corners", done.stdout)
         self.assert_one_line(self.fdcg("repair", mesh, "-o", self.path("few.ply"), "--simplify", "0", code=2), "--simplify", "above 0")
 
+    # A box without its lid, and a bar that passes through its walls.
+    OPEN_BOX = ("OFF", "16 22 0", "0 0 0", "4 0 0", "4 4 0", "0 4 0", "0 0 4", "4 0 4", "4 4 4", "0 4 4",
+                "-1 1 1", "5 1 1", "5 2 1", "-1 2 1", "-1 1 2", "5 1 2", "5 2 2", "-1 2 2")
+    SIDES = ((0, 2, 1), (0, 3, 2), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7))
+    LID = ((4, 5, 6), (4, 6, 7))
+
+    def box_and_bar(self):
+        faces = [*self.SIDES, *(tuple(v + 8 for v in side) for side in (*self.SIDES, *self.LID))]
+        return self.write("box.off", "\n".join([*self.OPEN_BOX, *(f"3 {a} {b} {c}" for a, b, c in faces)]) + "\n")
+
+    def test_a_solid_is_closed_and_does_not_meet_itself(self):
+        mesh = self.box_and_bar()
+        self.assertIn("self-intersection", self.totals("box.off"))
+        for ending, options in (("off", ()), ("stl", ()), ("stl", ("--ascii",)), ("ply", ("--hole-size", "6")), ("obj", ("--hole-size", "90%"))):
+            with self.subTest(ending=ending, options=options):
+                out = self.path("solid." + ending)
+                self.fdcg("repair", "--solid", mesh, "-o", out, *options, "--report", self.path("report.json"), "-q")
+                report = self.report()
+                self.assertAlmostEqual(64 + 2, report["effect"]["volume_after"], places=4)
+                self.assertLess(report["effect"]["distance"], 1e-6)
+                actions = {action["name"]: action for action in report["actions"]}
+                self.assertEqual(1, actions["close-holes"]["total"])
+                self.assertGreater(actions["close-holes"]["effect"]["distance"], 1)
+                self.assertGreater(actions["solid"]["total"], 0)
+                found = self.totals("solid." + ending)
+                self.assertFalse({"self-intersection", "boundary-edge", "non-manifold-edge", "inside-out"} & set(found), found)
+
+    def test_a_part_with_a_hole_larger_than_the_limit_is_left_out(self):
+        self.fdcg("repair", "--solid", self.box_and_bar(), "--hole-size", "1", "-o", self.path("solid.off"), "--report", self.path("report.json"))
+        report = self.report()
+        self.assertAlmostEqual(6, report["effect"]["volume_after"])
+        actions = {action["name"]: action for action in report["actions"]}
+        self.assertEqual(1, actions["close-holes"]["left"]["total"])
+        self.assertIn("--hole-size", actions["close-holes"]["left"]["message"])
+        self.assertEqual(10, actions["solid"]["left"]["total"])
+
+    def test_a_sheet_encloses_nothing_and_says_so(self):
+        mesh = self.write("sheet.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n")
+        done = self.fdcg("repair", "--solid", mesh, "-o", self.path("solid.off"), code=1)
+        self.assertIn(b"no solid was made: its faces enclose nothing", done.stdout)
+
+    def test_a_surface_rebuilt_on_a_lattice_is_closed(self):
+        self.fdcg("repair", "--solid=remesh", "--voxel", "0.25", self.box_and_bar(), "-o", self.path("solid.ply"), "-q", "--report", self.path("report.json"))
+        report = self.report()
+        self.assertGreater(report["effect"]["volume_after"], 40)  # across the lid the surface is where the winding number is a half
+        found = self.totals("solid.ply")
+        self.assertFalse({"self-intersection", "boundary-edge", "non-manifold-edge", "inside-out"} & set(found), found)
+        done = self.fdcg("repair", "--solid=remesh", "--voxel", "0.0001", self.box_and_bar(), "-o", self.path("fine.ply"), code=1)
+        self.assertIn(b"--voxel", done.stdout)
+
     def test_wrong_usage_names_what_is_right(self):
         mesh, out = self.write("cube.off", CUBE), self.path("out.off")
         for arguments, words in (
@@ -199,6 +249,10 @@ class Repair(Case):
             ((mesh, "-o", out, "--orient", "--format", "glb"), ("off, obj, ply, stl",)),
             ((mesh, "-o", out, "--weld", "-1"), ("exact, none",)),
             ((mesh, "-o", mesh, "--orient"), ("overwrite",)),
+            ((mesh, "-o", out, "--solid=best"), ("exact and remesh",)),
+            ((mesh, "-o", out, "--all", "--hole-size", "1"), ("--solid",)),
+            ((mesh, "-o", out, "--solid", "--voxel", "1"), ("--solid=remesh",)),
+            ((mesh, "-o", out, "--solid", "--hole-size", "-5%"), ("percentage",)),
             ((mesh, "-o", out, "--orient", "--report", out), ("different",)),
             (("-o", out, "--orient"), ("mesh",)),
         ):

@@ -226,9 +226,10 @@ std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<
 int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
   if (!arguments.repair.empty()) {
-    if (arguments.repair != "safe" && arguments.repair != "full")
-      return fail(kUsage, "--repair: '" + arguments.repair + "' is no level; there are safe and full");
-    arguments.options.repair = arguments.repair == "safe" ? bake::RepairLevel::safe : bake::RepairLevel::full;
+    for (const bake::RepairLevel level : {bake::RepairLevel::safe, bake::RepairLevel::full, bake::RepairLevel::solid})
+      if (arguments.repair == bake::level_name(level)) arguments.options.repair = level;
+    if (!arguments.options.repair)
+      return fail(kUsage, "--repair: '" + arguments.repair + "' is no level; there are safe, full and solid");
   }
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
@@ -373,7 +374,8 @@ give the same bytes.
           "--repair{full}", arguments->repair,
           "Where the mesh has errors, repair it first; what was done is measured and stored in the file. --repair=safe: no "
           "point of the surface moves; --repair or --repair=full: also unfolds slivers, triangulates polygons that cross "
-          "themselves, and drops what no graph can have.")
+          "themselves, and drops what no graph can have. --repair=solid: any mesh, also one without errors, becomes the outer "
+          "surface of what it encloses, with its holes closed.")
       ->group("Mesh checks");
   add_allow_option(checks, options.allow, Allowable::errors_the_graph_stands);
   add_graph_options(*command, options);

@@ -16,9 +16,10 @@ namespace fdcg::tools {
 namespace {
 
 constexpr const char* kSteps =
-    "--all for all but --simplify, or of these: --weld, --drop-unusable, --triangulate-crossing, --drop-degenerate, "
+    "--all for all but --solid and --simplify, or of these: --weld, --drop-unusable, --triangulate-crossing, "
+    "--drop-degenerate, "
     "--drop-duplicates, --unfold, --cut-non-manifold, --split-non-manifold-vertices, --orient, --drop-blocking, "
-    "--reverse-inside-out, --simplify";
+    "--reverse-inside-out, --solid, --simplify";
 
 struct RepairArguments {
   std::string mesh;
@@ -28,6 +29,8 @@ struct RepairArguments {
   std::optional<bake::Weld> weld;
   bake::RepairOptions options;
   bool all = false;
+  std::string solid;  // how; empty: not asked for
+  std::optional<bake::Extent> hole_size, voxel;
   bool ascii = false;
   bool dry_run = false;
   bool strict = false;
@@ -47,11 +50,18 @@ std::string ending_of(const std::string& path) {
 // What can be known to be wrong before any work is done.
 int check(RepairArguments& arguments) {
   bake::RepairOptions& options = arguments.options;
-  if (arguments.all) {
+  if (!arguments.solid.empty() && arguments.solid != "exact" && arguments.solid != "remesh")
+    return fail(kUsage, "--solid: '" + arguments.solid + "' is no method; there are exact and remesh");
+  if (arguments.solid != "exact" && arguments.hole_size) return fail(kUsage, "--hole-size is for --solid");
+  if (arguments.solid != "remesh" && arguments.voxel) return fail(kUsage, "--voxel is for --solid=remesh");
+  if (arguments.all || !arguments.solid.empty()) {
     const std::optional<double> simplify_error = options.simplify_error;
-    options = bake::repair_options(bake::RepairLevel::full);
+    options = bake::repair_options(arguments.solid.empty() ? bake::RepairLevel::full : bake::RepairLevel::solid);
     options.simplify_error = simplify_error;
   }
+  if (arguments.solid == "remesh") options.solid->method = bake::SolidOptions::Method::remesh;
+  if (arguments.voxel) options.solid->voxel = *arguments.voxel;
+  if (arguments.hole_size) options.solid->hole_size = *arguments.hole_size;
   if (arguments.weld) options.weld = arguments.weld;
   const bool asks_for_any = options.weld || options.drop_degenerate_faces || options.drop_duplicate_faces ||
                             options.split_non_manifold_vertices || options.orient || options.reverse_inside_out ||
@@ -66,12 +76,21 @@ int check(RepairArguments& arguments) {
   if (!arguments.format)
     return fail(kUsage, "'" + arguments.output + "' does not end in .off, .obj, .ply or .stl; name the format with --format");
   options.part_equal_points = arguments.format == bake::Format::stl;
+  if (options.solid) options.solid->as_floats = arguments.format == bake::Format::stl && !arguments.ascii;
   const auto is_same = [](const std::string& a, const std::string& b) { return !a.empty() && (a == b || is_same_file(a, b)); };
   if (is_same(arguments.output, arguments.report)) return fail(kUsage, "-o and --report must be different files");
   for (const std::string* path : {&arguments.output, &arguments.report}) {
     if (is_same_file(arguments.mesh, *path)) return fail(kUsage, "'" + *path + "' would overwrite the mesh itself");
   }
   return kClean;
+}
+
+// A length in the file's units, or a percentage of the object's size.
+bake::Extent extent_of(const std::string& option, const std::string& text) {
+  const bool is_share = !text.empty() && text.back() == '%';
+  const std::string number = is_share ? text.substr(0, text.size() - 1) : text;
+  const double value = positive_number(option, number, "no length above 0 in the file's units, and no percentage of its size");
+  return {is_share ? value / 100 : value, is_share};
 }
 
 void append_elements(std::string& text, const std::vector<bake::Element>& elements, std::uint64_t total) {
@@ -129,10 +148,10 @@ int export_repaired(const RepairArguments& arguments, const bake::Repaired& repa
   return kClean;
 }
 
-// Unless it was asked to and had to leave the mesh as it is.
-bool did_simplify(const bake::Repaired& repaired) {
+// simplify and solid are done, or were not asked for.
+bool did_all(const bake::Repaired& repaired) {
   return std::none_of(repaired.actions.begin(), repaired.actions.end(),
-                      [](const bake::RepairAction& action) { return action.name == "simplify" && action.left != 0; });
+                      [](const bake::RepairAction& action) { return action.is_refused; });
 }
 
 int run_repair(RepairArguments& arguments) {
@@ -168,14 +187,15 @@ int run_repair(RepairArguments& arguments) {
     if (repaired->read_with == bake::Weld::Kind::none)
       std::fputs("read it with --weld none: vertices at equal coordinates are apart on purpose\n", stream);
   }
-  return repaired->after.passes() && did_simplify(*repaired) ? kClean : kFindings;
+  return repaired->after.passes() && did_all(*repaired) ? kClean : kFindings;
 }
 
 void add_step_options(CLI::App& command, RepairArguments& arguments) {
   bake::RepairOptions& options = arguments.options;
   const OptionGroup repairs(command, "Repairs");
   repairs.flag("--all", arguments.all,
-               "All repairs: --weld exact and the flags below, without --simplify. What each did to the surface is measured.");
+               "All repairs: --weld exact and the flags below, without --solid and --simplify. What each did to the surface is "
+               "measured.");
   add_weld_option(repairs, arguments.weld, "");
   repairs.flag("--drop-unusable", options.drop_unusable_faces,
                "Drop faces with a corner that is not finite or not in the file.");
@@ -198,6 +218,21 @@ void add_step_options(CLI::App& command, RepairArguments& arguments) {
                "Make the winding of each patch consistent, and that of closed patches of mixed winding outward.");
   repairs.flag("--reverse-inside-out", options.reverse_inside_out,
                "Reverse closed patches that enclose negative volume, by nesting depth.");
+  command
+      .add_flag("--solid{exact}", arguments.solid,
+                "All repairs, and: close holes, resolve self-intersections into the outer surface by exact arithmetic, leave "
+                "out what lies inside. The result is closed, and no two of its faces meet but at a shared corner or edge. "
+                "--solid=remesh: rebuild the surface on a lattice in place of that, where the exact way says that it cannot.")
+      ->group("Repairs");
+  repairs.parsed(
+      "--hole-size", "LENGTH", [&arguments](const std::string& text) { arguments.hole_size = extent_of("--hole-size", text); },
+      "With --solid: close holes up to this size, the diagonal of their bounds, in the file's units or as 5% of the object's "
+      "size. Parts with a larger hole are left out.",
+      "100%");
+  repairs.parsed(
+      "--voxel", "LENGTH", [&arguments](const std::string& text) { arguments.voxel = extent_of("--voxel", text); },
+      "With --solid=remesh: the lattice's step, in the file's units or as 1% of the object's size. What is smaller is lost.",
+      "0.5%");
   const auto parse_error = [&options](const std::string& text) {
     options.simplify_error = positive_number("--simplify", text, "no distance above 0 in the file's units");
   };
@@ -213,12 +248,13 @@ Command add_repair(CLI::App& app) {
   command->footer(R"(Examples:
   fdcg repair scan.ply -o clean.ply --all
   fdcg repair part.stl -o part.obj --weld exact --drop-degenerate --orient
+  fdcg repair --solid --hole-size 5% part.stl -o solid.stl
   fdcg repair --all --dry-run --report account.json part.stl
 
 Defects that cannot be repaired safely are left and reported.
 
 )" + exit_codes("the result has no errors",
-                "errors are left, or --simplify could not be done; the mesh is written unless --strict"));
+                "errors are left, or --simplify or --solid could not be done; the mesh is written unless --strict"));
   const auto arguments = std::make_shared<RepairArguments>();
   add_mesh_argument(*command, arguments->mesh);
   const OptionGroup output(*command, "Output");

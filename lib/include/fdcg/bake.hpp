@@ -364,6 +364,7 @@ struct RepairAction {
   std::uint64_t left = 0;              ///< found and not done
   std::string left_message;            ///< why; empty where nothing was left
   std::vector<Element> left_elements;  ///< likewise
+  bool is_refused = false;             ///< simplify, solid: the step as a whole could not be taken; left_message says why
   /// Measured, source units: no point of the surface before or after the step is farther than this from the other surface. An
   /// upper bound, at most a hundredth above the largest distance, or 1e-9 of the object's size. Infinite where no surface is
   /// left.
@@ -375,7 +376,13 @@ struct RepairAction {
 enum class RepairLevel {
   safe,  ///< every point of the surface stays: welds, drops faces without area and copies, turns, splits, cuts
   full,  ///< also unfolds slivers, triangulates polygons that cross themselves, and drops faces that no graph can have
+  solid,  ///< also closes holes and resolves intersections into the outer surface (SolidOptions' defaults)
 };
+
+/// As on the command line.
+constexpr std::string_view level_name(RepairLevel level) {
+  return level == RepairLevel::safe ? "safe" : level == RepairLevel::full ? "full" : "solid";
+}
 
 /// What a repair did to the surface as a whole.
 struct RepairAccount {
@@ -446,6 +453,23 @@ Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options)
 
 // ---- repair ----------------------------------------------------------------------------------------------------------------
 
+/// A length in source units, or as a share of the object's size, the diagonal of its bounds.
+struct Extent {
+  double value = 0;       ///< the length, or the share
+  bool is_share = false;  ///< which
+};
+
+/// How a mesh becomes the boundary of a solid.
+struct SolidOptions {
+  /// Cut along its intersections by exact arithmetic, or rebuilt on a lattice from its winding number.
+  enum class Method { exact, remesh };
+  Method method = Method::exact;  ///< which
+  Extent hole_size{1, true};  ///< holes whose bounds have a longer diagonal are left open
+  Extent voxel{0.005, true};  ///< of the lattice, where rebuilt: what is smaller is lost
+  Extent gap{1e-4, true};     ///< borders no farther apart are joined first
+  bool as_floats = false;     ///< the result's coordinates are floats, as binary STL has them
+};
+
 /// What may be done to a mesh; each step is taken only where it is asked for, in this order. All but a weld by distance and
 /// simplify leave the set of points that the surface covers as it is.
 struct RepairOptions {
@@ -463,6 +487,7 @@ struct RepairOptions {
   bool triangulate_crossing_faces = false;  ///< polygons that cross themselves or come twice to a corner
   bool unfold = false;                      ///< folded slivers thinner than 1e-3 of the object's size
   bool drop_blocking_faces = false;         ///< what no step above could mend and no graph can have
+  std::optional<SolidOptions> solid;        ///< close holes, resolve intersections, leave out what lies inside; implies weld
   std::optional<double> simplify_error;  ///< source units: no point of the result or the input farther from the other surface
   bool part_equal_points = false;  ///< move vertices that a repair put apart at equal coordinates apart by a float's rounding
   bool judges = true;              ///< fills Repaired::before and after

@@ -38,7 +38,7 @@ Json options_json(const CompileOptions& options) {
 // Totals and measures; the lists are for reports.
 Json repair_info(const RepairAccount& account) {
   Json json;
-  json["level"] = account.level == RepairLevel::safe ? "safe" : "full";
+  json["level"] = level_name(account.level);
   json["found"] = account.found;
   json["actions"] = Json::array();
   for (const RepairAction& action : account.actions) {

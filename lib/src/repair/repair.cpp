@@ -3,6 +3,7 @@
 #include "repair/repair.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -158,6 +159,11 @@ RepairAction action_of(const Workpiece& piece, std::string name, Kind kind, std:
 
 std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string in_digits(double value) {
+  char text[32];
+  return {text, std::to_chars(std::begin(text), std::end(text), value, std::chars_format::general, 6).ptr};
 }
 
 }  // namespace fdcg::bake

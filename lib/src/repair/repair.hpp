@@ -116,6 +116,31 @@ RepairAction drop_blocking_action(const Workpiece& piece, Tally& tally);
 // is left unchanged.
 RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const Progress& progress);
 
+// Borders that run along one another no farther apart than `gap`. The workpiece is welded.
+struct StitchTally : Tally {
+  std::uint64_t joined = 0, divided = 0;  // vertices, edges
+};
+RepairAction stitch_step(Workpiece& piece, double gap);
+
+// Holes up to a size, flat or of little bending. The workpiece is welded. May be called again.
+struct HoleTally : Tally {
+  std::uint64_t flat = 0, fair = 0;
+  double largest = 0, largest_left = 0;  // the diagonal of a hole's bounds
+};
+void close_holes(Workpiece& piece, double largest, HoleTally& tally);
+RepairAction close_holes_action(const Workpiece& piece, HoleTally& tally);
+
+// The outer surface of what closed parts enclose (solid/outer_surface.hpp). Parts with a hole are left out. All or nothing:
+// where there is no such surface, the mesh stays. Afterwards edges may have more than two faces, where solids touch.
+struct SolidEffect {
+  bool is_solid = false;
+  double distance = 0;  // of the surface that stays from where it was
+};
+RepairAction solid_step(Workpiece& piece, bool as_floats, unsigned jobs, const Progress& progress, SolidEffect& effect);
+// The surface rebuilt from its winding number (level_set.hpp): closed, manifold, without intersections.
+RepairAction remesh_step(Workpiece& piece, double voxel, bool as_floats, unsigned jobs, const Progress& progress,
+                         SolidEffect& effect);
+
 // ---- for the steps
 
 // Faces of the soup, ascending, each with the loops (of points) that take its place; none: the face is dropped.
@@ -129,5 +154,8 @@ RepairAction action_of(const Workpiece& piece, std::string name, Kind kind, std:
 
 // "1 face", "12 faces"
 std::string counted(std::uint64_t count, const std::string& one, const std::string& many);
+
+// The shortest decimal of six digits at most.
+std::string in_digits(double value);
 
 }  // namespace fdcg::bake

@@ -53,7 +53,7 @@ std::string compile_report_json(const Compiled& compiled) {
   if (!compiled.repair) return report_json({compiled.report});
   Json document = Json::parse(report_json({compiled.report}));
   Json& entry = document["files"][0]["repair"];
-  entry["level"] = compiled.repair->level == RepairLevel::safe ? "safe" : "full";
+  entry["level"] = level_name(compiled.repair->level);
   entry["found"] = compiled.repair->found;
   add_account(*compiled.repair, entry);
   return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -139,6 +139,7 @@ RepairAction simplify_step(Workpiece& piece, double error, unsigned jobs, const 
   action.name = "simplify";
   const auto leave = [&](const std::string& why) {
     action.message = "the mesh was left as it is";
+    action.is_refused = true;
     action.left = mesh.face_count();
     action.left_message = "the mesh was not simplified: " + why;
     return action;

@@ -6,6 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "base/vec3.hpp"
+#include "repair/part_touching.hpp"
 #include "repair/repair.hpp"
 #include "repair/surface_distance.hpp"
 #include "topology/weld.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 bool needs_weld(const RepairOptions& options) {
   return options.split_non_manifold_vertices || options.cut_non_manifold || options.triangulate_crossing_faces ||
-         options.unfold || options.drop_blocking_faces;
+         options.unfold || options.drop_blocking_faces || options.solid;
 }
 
 bool asks_for_anything(const RepairOptions& options) {
@@ -89,6 +90,7 @@ class Run {
       RepairAction action = weld_step(piece_, *weld);
       moves ? measure(std::move(action)) : keep(std::move(action));
     }
+    if (options_.solid) measure(stitch_step(piece_, in_units(options_.solid->gap)));
     if (options_.triangulate_crossing_faces) measure(triangulate_crossing_step(piece_));
     if (options_.unfold) unfold_slivers();
     drop();
@@ -100,6 +102,7 @@ class Run {
     if (options_.orient && !options_.cut_non_manifold) measure(orient_step(piece_));
     if (options_.drop_blocking_faces) drop_blocking_faces();
     if (options_.reverse_inside_out) measure(reverse_inside_out_step(piece_));
+    if (options_.solid) options_.solid->method == SolidOptions::Method::exact ? make_solid() : remesh();
     if (options_.simplify_error) simplify();
     if (options_.part_equal_points && weld && weld->kind != Weld::Kind::none) measure(part_equal_points_step(piece_));
   }
@@ -116,8 +119,9 @@ class Run {
     if (piece_.identity.kind == Weld::Kind::none && has_equal_points(piece_.soup)) repaired.read_with = Weld::Kind::none;
     account_.faces_after = piece_.soup.face_count();
     account_.volume_after = signed_volume(surface());
-    for (const RepairAction& action : account_.actions)
-      account_.distance += action.distance;
+    for (const RepairAction& action : account_.actions) {
+      if (action.name != "close-holes") account_.distance += action.distance;
+    }
     static_cast<RepairAccount&>(repaired) = std::move(account_);
     if (options_.judges) repaired.after = judged(piece_.soup, repaired.read_with, options_);
     repaired.source_face = std::move(piece_.source_face);
@@ -185,6 +189,54 @@ class Run {
     measure(drop_blocking_action(piece_, tally));
   }
 
+  [[nodiscard]] double in_units(const Extent& extent) const {
+    constexpr double kSlack = 1 + 1e-9;  // a hole as large as the object is not larger than it
+    return extent.is_share ? kSlack * extent.value * length(bounds_.high - bounds_.low) : extent.value;
+  }
+
+  void remesh() {
+    SolidEffect effect;
+    const SolidOptions& how = *options_.solid;
+    measure(remesh_step(piece_, in_units(how.voxel), how.as_floats, options_.jobs, options_.progress, effect));
+  }
+
+  void make_solid() {
+    HoleTally holes;
+    close_holes(piece_, in_units(options_.solid->hole_size), holes);
+    measure(close_holes_action(piece_, holes));
+    if (!account_.actions.back().elements.empty()) measure(reverse_inside_out_step(piece_));
+    SolidEffect effect;
+    RepairAction action = solid_step(piece_, options_.solid->as_floats, options_.jobs, options_.progress, effect);
+    if (effect.is_solid) {
+      const auto first_made = static_cast<std::uint32_t>(piece_.soup.points.size());
+      CutTally cut;
+      cut_edges(piece_, cut);
+      (void)split_vertices_step(piece_);
+      constexpr double kApart = 0x1p-20;  // of the object's size
+      const Parting parting = part_touching(piece_, first_made, kApart * length(bounds_.high - bounds_.low),
+                                            options_.solid->as_floats, resolve_jobs(options_.jobs));
+      add_parting(parting, action);
+      effect.distance += parting.distance;
+    }
+    const double before = signed_volume(surface_);
+    surface_ = surface();
+    action.distance = effect.distance;
+    action.volume_change = signed_volume(surface_) - before;
+    keep(std::move(action));
+  }
+
+  static void add_parting(const Parting& parting, RepairAction& action) {
+    if (parting.moved == 0) return;
+    action.message += "; " + counted(parting.moved, "vertex was", "vertices were") + " moved by up to " +
+                      in_digits(parting.distance) + ", since solids touched there";
+    if (parting.left == 0) return;
+    action.is_refused = true;
+    action.left += parting.left;
+    action.left_message += (action.left_message.empty() ? "" : "; ") +
+                           counted(parting.left, "pair of faces still meets", "pairs of faces still meet") +
+                           " where solids touch";
+  }
+
   // The step proves its distance for each collapse.
   void simplify() {
     RepairAction action = simplify_step(piece_, *options_.simplify_error, options_.jobs, options_.progress);
@@ -210,7 +262,8 @@ RepairOptions repair_options(RepairLevel level) {
   options.weld = Weld{};
   options.drop_degenerate_faces = options.drop_duplicate_faces = options.split_non_manifold_vertices = true;
   options.orient = options.reverse_inside_out = options.cut_non_manifold = true;
-  const bool is_full = level == RepairLevel::full;
+  const bool is_full = level != RepairLevel::safe;
+  if (level == RepairLevel::solid) options.solid = SolidOptions{};
   options.drop_unusable_faces = options.triangulate_crossing_faces = options.unfold = options.drop_blocking_faces = is_full;
   return options;
 }
