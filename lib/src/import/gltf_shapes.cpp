@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shapes of KHR_implicit_shapes as surfaces of a scene.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "import/gltf_physics.hpp"
@@ -145,25 +144,5 @@ std::array<Vec3, 8> corners_of_box(const ImplicitShape& box) {
 }
 
 }  // namespace gltf
-
-namespace {
-
-std::string shortest(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
-}  // namespace
-
-std::string surface_json(const StatedShape& shape) {
-  std::string text = R"({"kind":")" + shape.kind + '"';
-  if (shape.radius_m > 0 || shape.kind == "cone") text += R"(,"radius_m":)" + shortest(shape.radius_m);
-  if (shape.kind == "cone") text += R"(,"top_radius_m":)" + shortest(shape.top_radius_m);
-  if (shape.length_m > 0) text += R"(,"length_m":)" + shortest(shape.length_m);
-  if (shape.kind == "box" || shape.kind == "ellipsoid")
-    text +=
-        R"(,"half_m":[)" + shortest(shape.half_m[0]) + ',' + shortest(shape.half_m[1]) + ',' + shortest(shape.half_m[2]) + ']';
-  return text + '}';
-}
 
 }  // namespace fdcg::bake
