@@ -138,7 +138,7 @@ class Repair(Case):
         info = json.loads(self.fdcg("inspect", "--json", self.path("a.fdcg")).stdout)
         self.assertIn('"volume_after"', json.dumps(info))
         self.fdcg("inspect", "--verify", self.path("a.fdcg"))
-        self.assert_one_line(self.fdcg("compile", mesh, "-o", self.path("a.fdcg"), "--repair=most", code=2), "'most'", "safe and full")
+        self.assert_one_line(self.fdcg("compile", mesh, "-o", self.path("a.fdcg"), "--repair=most", code=2), "'most'", "safe, full and solid")
 
     def test_standard_input_and_output(self):
         done = subprocess.run([FDCG, "repair", "-", "-o", "-", "--format", "off", "--all"], input=DEFECTIVE.encode(),

@@ -11,13 +11,15 @@ namespace {
 
 constexpr double kFullAngle = 4 * 3.14159265358979323846;
 
-// Van Oosterom and Strackee 1983.
+// Van Oosterom and Strackee 1983. From a place in the triangle's plane, or within rounding of it, 0: of two that lie on one
+// another and are turned against each other neither is seen.
 double solid_angle(const WindingTree::Triangle& t, const Vec3& p) {
   const Vec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;
   const double la = length(a), lb = length(b), lc = length(c);
   const double above = dot(a, cross(b, c));
   const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return above == 0 && below == 0 ? 0 : 2 * std::atan2(above, below);
+  constexpr double kRounding = 1e-12;
+  return std::fabs(above) <= kRounding * la * lb * lc ? 0 : 2 * std::atan2(above, below);
 }
 
 Vec3 middle_of(const WindingTree::Triangle& t) {
@@ -71,7 +73,7 @@ std::uint32_t WindingTree::build(std::uint32_t first, std::uint32_t end) {
 
 double WindingTree::at(const Vec3& p) const {
   if (nodes_.empty()) return 0;
-  constexpr double kFar = 2.5;  // radii from which on a group counts as one
+  constexpr double kFar = 4;  // radii from which on a group counts as one: the sum is off by less than 0.01 then
   double sum = 0;
   std::uint32_t open[128] = {0};
   for (std::size_t count = 1; count > 0;) {

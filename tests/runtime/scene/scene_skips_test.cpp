@@ -34,8 +34,11 @@ class Log {
     add(felt.force_n, sizeof felt.force_n);
     add(&felt.flags, sizeof felt.flags);
     add(&felt.touch_count, sizeof felt.touch_count);
-    for (std::uint32_t i = 0; i < felt.touch_count; ++i)
-      add(felt.touches + i, sizeof felt.touches[i]);
+    for (std::uint32_t i = 0; i < felt.touch_count; ++i) {
+      fdcg_touch touch = felt.touches[i];
+      touch.object.generation = 0;  // another one in each scene
+      add(&touch, sizeof touch);
+    }
     add(&felt.overflowed_steps, sizeof felt.overflowed_steps);
     add(&felt.non_finite_steps, sizeof felt.non_finite_steps);
   }
