@@ -50,7 +50,8 @@ namespace Fdcg {
 
   public enum fdcg_step_optimization {
     FDCG_STEP_OPT_CLEAR_BALL = 1,
-    FDCG_STEP_OPT_ALL = 1,
+    FDCG_STEP_OPT_HOP = 2,
+    FDCG_STEP_OPT_ALL = 3,
   }
 
   public enum fdcg_friction_flag {

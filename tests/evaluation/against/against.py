@@ -55,7 +55,7 @@ class Build:
         symbol = f"{self.name}_side"
         part, whole = work / f"{symbol}.part.o", work / f"{symbol}.o"
         header = (self.headers / "fdcg/fdcg.h").read_text(encoding="utf-8")
-        make_params = re.search(r"^static inline fdcg_params (\w+)\(void\)", header, re.M)
+        make_params = re.search(r"^(?:static inline|FDCG_INLINE) fdcg_params (\w+)\(void\)", header, re.M)
         if make_params is None:
             raise AgainstError(f"{self.headers}/fdcg/fdcg.h: no function makes default parameters")
         run(["cc", "-std=c11", "-O2", f"-DSIDE={symbol}", f"-DDEFAULT_PARAMS={make_params.group(1)}", "-I", self.headers, "-c", HERE / "side.c", "-o", part])
@@ -80,7 +80,7 @@ def compare(base, head, args):
         work = pathlib.Path(folder)
         program = work / "against"
         run(["c++", "-std=c++20", "-O2", "-I", HERE, "-I", HERE.parent.parent / "bench", HERE / "against.cpp", base.side(work),
-             head.side(work), "-lm", "-o", program])
+             head.side(work), "-Wl,--allow-multiple-definition", "-lm", "-o", program])
         print(f"{'faces':>6} {'m/s':>5} {'contact':>7} | {'p50 base':>9} {'head':>8} {'ratio':>6} | {'p99 base':>9} {'head':>8} {'ratio':>6} | ns")
         for body in args.bodies.split(","):
             run([args.ways, body, args.ticks, work])
