@@ -120,7 +120,7 @@ bool step_on_ground(const Meeting& meeting, const PileMember& owner, const Point
   }
   const GroundStep step = {n, god_object, way.to + n * depth, depth};
   const bool holds = touch->patch == PatchFriction::holds && pile.ground_params.friction_flags == 0;
-  Friction<double> friction = {pair.mu_static, holds ? pair.mu_static : pair.mu_dynamic, true, contact.slipping != 0};
+  Friction<double> friction = {{pair.mu_static, holds ? pair.mu_static : pair.mu_dynamic, true, contact.slipping != 0}};
 #if FDCG_WITH_FRICTION_TERMS
   god_object =
       pile.ground_params.friction_flags != 0 ? slide_by_curve(meeting, own, friction, step, &contact) : slide(friction, step);

@@ -5,7 +5,7 @@
 namespace fdcg {
 namespace {
 
-bool is_same(const char* a, const char* b) {
+bool is_same_text(const char* a, const char* b) {
   for (; *a != '\0' && *a == *b; ++a, ++b) {
   }
   return *a == *b;
@@ -25,7 +25,7 @@ extern "C" const char* fdcg_get_material_name(const fdcg_graph* graph, uint32_t 
 
 extern "C" uint32_t fdcg_find_material(const fdcg_graph* graph, const char* name) {
   for (uint32_t i = 0; i < graph->material_count; ++i) {
-    if (fdcg::is_same(graph->materials[i].name, name)) return i;
+    if (fdcg::is_same_text(graph->materials[i].name, name)) return i;
   }
   return FDCG_NONE;
 }

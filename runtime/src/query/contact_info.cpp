@@ -8,9 +8,9 @@
 
 namespace fdcg {
 
-Place normal_at(const fdcg_graph& graph, uint32_t state, uint32_t feature) {
+QueryPoint normal_at(const fdcg_graph& graph, uint32_t state, uint32_t feature) {
   if (state == FDCG_FACE) return vec(fdcg_get_node(&graph, feature).normal);
-  Place sum = {0, 0, 0};
+  QueryPoint sum = {0, 0, 0};
   if (state == FDCG_VERTEX) sum = vec(fdcg_get_corner(&graph, feature).normal);
   if (state == FDCG_EDGE) {
     const fdcg_connection_info edge = fdcg_get_connection(&graph, feature);
@@ -39,7 +39,7 @@ uint32_t node_at(const fdcg_graph& graph, uint32_t state, uint32_t feature) {
   return fdcg_get_connection(&graph, feature).node[0];
 }
 
-Place place_of(const fdcg_graph& graph, uint32_t corner) {
+QueryPoint place_of(const fdcg_graph& graph, uint32_t corner) {
   return vec(fdcg_get_corner(&graph, corner).point);
 }
 
@@ -55,15 +55,15 @@ void set_weights(double a, double b, double c, fdcg_contact_info* info) {
 }
 
 // Of the fan of triangles from the face's first corner that in which the place lies deepest.
-void weigh_on_face(const fdcg_graph& graph, uint32_t node, Place at, fdcg_contact_info* info) {
+void weigh_on_face(const fdcg_graph& graph, uint32_t node, QueryPoint at, fdcg_contact_info* info) {
   const fdcg_node_info face = fdcg_get_node(&graph, node);
-  const Place normal = vec(face.normal);
+  const QueryPoint normal = vec(face.normal);
   const uint32_t hub = fdcg_get_side(&graph, node, 0).corner;
   uint32_t last = fdcg_get_side(&graph, node, 1).corner;
   double deepest = -HUGE_VAL;
   for (uint32_t k = 2; k < face.side_count; ++k) {
     const uint32_t next = fdcg_get_side(&graph, node, k).corner;
-    const Place a = place_of(graph, hub), b = place_of(graph, last), c = place_of(graph, next);
+    const QueryPoint a = place_of(graph, hub), b = place_of(graph, last), c = place_of(graph, next);
     const double of_a = dot(cross(b - at, c - at), normal), of_b = dot(cross(c - at, a - at), normal),
                  of_c = dot(cross(a - at, b - at), normal);
     const double whole = of_a + of_b + of_c, depth = smaller(smaller(of_a, of_b), of_c) / (whole > 0 ? whole : 1);
@@ -84,7 +84,7 @@ void weigh(const fdcg_graph& graph, const fdcg_result& now, fdcg_contact_info* i
     return;
   }
   const fdcg_header& header = *graph.header;
-  const Place at = vec(now.god_object_m) * (1 / header.metres_per_unit) - vec(header.origin);
+  const QueryPoint at = vec(now.god_object_m) * (1 / header.metres_per_unit) - vec(header.origin);
   if (now.state == FDCG_FACE) return weigh_on_face(graph, now.feature, at, info);
   const fdcg_connection_info edge = fdcg_get_connection(&graph, now.feature);
   const double way = dot(at - place_of(graph, edge.corner[0]), vec(edge.direction));

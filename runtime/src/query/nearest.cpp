@@ -17,7 +17,7 @@ class NearestSearch {
   using Node = NodeRef<RigidGeometry<Real>>;
 
  public:
-  NearestSearch(const View& graph, Place at, NearestPlace* best)
+  NearestSearch(const View& graph, QueryPoint at, NearestPlace* best)
       : graph_(graph),
         at_(at),
         best_(*best),
@@ -31,7 +31,7 @@ class NearestSearch {
         look_at_node(graph_.node(n), n);
       return;
     }
-    const Place scaled = at_ * per_unit_;
+    const QueryPoint scaled = at_ * per_unit_;
     const float point[3] = {static_cast<float>(scaled.x), static_cast<float>(scaled.y), static_cast<float>(scaled.z)};
     const BoxTree tree(graph_.header()->node_count);
     WaitingBoxes waiting(tree);
@@ -96,26 +96,26 @@ class NearestSearch {
 
   void look_at_side(const Node& node, uint32_t k, uint32_t index) {
     const uint32_t ends[2] = {node.corner(k), node.corner(node.next(k))};
-    const Place a = corner_place(graph_, ends[0]), along = corner_place(graph_, ends[1]) - a, from_a = at_ - a;
+    const QueryPoint a = corner_place(graph_, ends[0]), along = corner_place(graph_, ends[1]) - a, from_a = at_ - a;
     const double length2 = dot(along, along), way = dot(from_a, along);
     if (way > 0 && way < length2) {
-      const Place foot = a + along * (way / length2), gap = at_ - foot;
+      const QueryPoint foot = a + along * (way / length2), gap = at_ - foot;
       take(dot(gap, gap), foot, FDCG_EDGE, node.connection(k), index);
       return;
     }
     const uint32_t end = way > 0 ? 1 : 0;
-    const Place corner = corner_place(graph_, ends[end]), gap = at_ - corner;
+    const QueryPoint corner = corner_place(graph_, ends[end]), gap = at_ - corner;
     take(dot(gap, gap), corner, FDCG_VERTEX, ends[end], index);
   }
 
-  void take(double distance2, Place point, uint32_t state, uint32_t feature, uint32_t node) {
+  void take(double distance2, QueryPoint point, uint32_t state, uint32_t feature, uint32_t node) {
     if (!(distance2 < best_.distance2)) return;
     best_ = {distance2, point, state, feature, node};
     if (graph_.hierarchy() != nullptr) narrow_limit();
   }
 
   const View& graph_;
-  Place at_;
+  QueryPoint at_;
   NearestPlace& best_;
   double slack_, per_unit_, pad_;
   float limit2_ = 0;
@@ -124,7 +124,7 @@ class NearestSearch {
 }  // namespace
 
 template <class Real>
-void find_nearest(const RigidView<Real>& graph, Place at, NearestPlace* best) {
+void find_nearest(const RigidView<Real>& graph, QueryPoint at, NearestPlace* best) {
   NearestSearch<Real>(graph, at, best).run();
 }
 
@@ -135,7 +135,7 @@ fdcg_status search_nearest(const fdcg_graph* graph, const double point_object_m[
   if (graph == nullptr || graph->header == nullptr) return refuse(error, "graph: null pointer, or not open");
   if (point_object_m == nullptr) return refuse(error, "point_object_m: null pointer");
   if (!(reach_m >= 0)) return refuse(error, "reach_m: below 0, or not a number");
-  Place at;
+  QueryPoint at;
   if (!to_local_place(*graph->header, point_object_m, &at))
     return refuse(error, "point_object_m: not finite, or farther than 1e60 times the object's size");
   constexpr double kFarthest = 1e150;

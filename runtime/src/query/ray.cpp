@@ -17,7 +17,7 @@ class RaySearch {
   using Node = NodeRef<RigidGeometry<Real>>;
 
  public:
-  RaySearch(const View& graph, Place from, Place to)
+  RaySearch(const View& graph, QueryPoint from, QueryPoint to)
       : graph_(graph),
         from_(from),
         to_(to),
@@ -54,7 +54,7 @@ class RaySearch {
   bool enter_tree() {
     constexpr double kNear = 16;
     const double per_unit = 1 / tree_unit(graph_.header()->extent);
-    const Place from = from_ * per_unit, to = to_ * per_unit, along = to - from;
+    const QueryPoint from = from_ * per_unit, to = to_ * per_unit, along = to - from;
     const double size = norm1(from) + norm1(to);
     if (!(size > kNear)) {
       way_ = tree_way({static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
@@ -85,11 +85,11 @@ class RaySearch {
     const Node node = graph_.node(index);
     const double from = plane_distance(graph_, node, from_), to = plane_distance(graph_, node, to_);
     if ((from > bound_ && to > bound_) || (from < -bound_ && to < -bound_)) return;
-    const Place hub = corner_place(graph_, node.corner(0));
-    Place last = corner_place(graph_, node.corner(1));
+    const QueryPoint hub = corner_place(graph_, node.corner(0));
+    QueryPoint last = corner_place(graph_, node.corner(1));
     int hub_sign = orient3d_sign(from_, to_, hub, last);
     for (uint32_t k = 2; k < node.side_count(); ++k) {
-      const Place next = corner_place(graph_, node.corner(k));
+      const QueryPoint next = corner_place(graph_, node.corner(k));
       const int side_sign = orient3d_sign(from_, to_, last, next), back_sign = orient3d_sign(from_, to_, next, hub);
       look_at_triangle({hub, last, next}, {hub_sign, side_sign, back_sign}, index, from, to);
       hub_sign = -back_sign;
@@ -98,7 +98,7 @@ class RaySearch {
   }
 
   struct Corners {
-    Place a, b, c;
+    QueryPoint a, b, c;
   };
   struct Signs {
     int ab, bc, ca;
@@ -118,7 +118,7 @@ class RaySearch {
   }
 
   const View& graph_;
-  Place from_, to_;
+  QueryPoint from_, to_;
   double bound_;
   TreeWay way_ = {};
   double begin_ = 0, per_part_ = 1;  // of the segment: what way_ covers
@@ -128,15 +128,15 @@ class RaySearch {
 }  // namespace
 
 template <class Real>
-FirstMeeting find_first(const RigidView<Real>& graph, Place from, Place to) {
+FirstMeeting find_first(const RigidView<Real>& graph, QueryPoint from, QueryPoint to) {
   return RaySearch<Real>(graph, from, to).run();
 }
 
 #if FDCG_WITH_F64
-template FirstMeeting find_first<double>(const RigidView<double>&, Place, Place);
+template FirstMeeting find_first<double>(const RigidView<double>&, QueryPoint, QueryPoint);
 #endif
 #if FDCG_WITH_F32
-template FirstMeeting find_first<float>(const RigidView<float>&, Place, Place);
+template FirstMeeting find_first<float>(const RigidView<float>&, QueryPoint, QueryPoint);
 #endif
 
 }  // namespace fdcg
@@ -153,17 +153,17 @@ extern "C" fdcg_status fdcg_cast_ray(const fdcg_graph* graph, const double from_
     return status;
   }
   const fdcg_header& header = *graph->header;
-  Place from;
+  QueryPoint from;
   if (!to_local_place(header, from_object_m, &from))
     return refuse(error, "from_object_m: not finite, or farther than 1e60 times the object's size");
   const double size = larger(larger(absolute(direction[0]), absolute(direction[1])), absolute(direction[2]));
   if (!(size > 0 && size <= 1e300)) return refuse(error, "direction: zero or not finite");
   if (!(reach_m >= 0)) return refuse(error, "reach_m: below 0, or not a number");
-  Place unit = Place{direction[0] / size, direction[1] / size, direction[2] / size};
+  QueryPoint unit = QueryPoint{direction[0] / size, direction[1] / size, direction[2] / size};
   unit = unit * (1 / norm(unit));
   // Far enough to be past the object, wherever it starts.
   const double length = smaller(reach_m / header.metres_per_unit, norm1(from) + 4 * header.extent);
-  const Place to = from + unit * length;
+  const QueryPoint to = from + unit * length;
   FirstMeeting met;
   with_real_of(header, [&](auto real) { met = find_first(RigidView<decltype(real)>(*graph), from, to); });
   if (met.node == FDCG_NONE) return refuse(error, FDCG_E_ABSENT, "the ray meets nothing within reach_m");

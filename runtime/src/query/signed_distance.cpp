@@ -9,8 +9,8 @@ namespace fdcg {
 namespace {
 
 template <class Real>
-int side_of_edge(const RigidView<Real>& graph, Place gap, uint32_t connection) {
-  Place sum = {0, 0, 0};
+int side_of_edge(const RigidView<Real>& graph, QueryPoint gap, uint32_t connection) {
+  QueryPoint sum = {0, 0, 0};
   for (uint32_t k = 0; k < 2; ++k) {
     const uint32_t n = graph.connection(connection).node(k);
     if (n != FDCG_NONE) sum = sum + widen(graph.node(n).normal());
@@ -20,9 +20,9 @@ int side_of_edge(const RigidView<Real>& graph, Place gap, uint32_t connection) {
 }
 
 template <class Real>
-int side_by_way(const RigidView<Real>& graph, Place at, uint32_t node) {
+int side_by_way(const RigidView<Real>& graph, QueryPoint at, uint32_t node) {
   const NodeRef<RigidGeometry<Real>> face = graph.node(node);
-  Place middle = {0, 0, 0};
+  QueryPoint middle = {0, 0, 0};
   for (uint32_t k = 0; k < face.side_count(); ++k)
     middle = middle + corner_place(graph, face.corner(k)) * (1.0 / face.side_count());
   // A little beyond: the face itself is met at the latest.
@@ -31,7 +31,7 @@ int side_by_way(const RigidView<Real>& graph, Place at, uint32_t node) {
 }
 
 template <class Real>
-int side_of_vertex(const RigidView<Real>& graph, Place at, Place gap, uint32_t corner) {
+int side_of_vertex(const RigidView<Real>& graph, QueryPoint at, QueryPoint gap, uint32_t corner) {
   bool is_before_one = false, is_behind_one = false;
   double farthest = -1;
   uint32_t node = FDCG_NONE;
@@ -49,18 +49,18 @@ int side_of_vertex(const RigidView<Real>& graph, Place at, Place gap, uint32_t c
 }  // namespace
 
 template <class Real>
-int side_of_nearest(const RigidView<Real>& graph, Place at, const NearestPlace& nearest) {
+int side_of_nearest(const RigidView<Real>& graph, QueryPoint at, const NearestPlace& nearest) {
   if (nearest.state == FDCG_FACE) return plane_sign(graph, graph.node(nearest.feature), at);
-  const Place gap = at - nearest.point;
+  const QueryPoint gap = at - nearest.point;
   if (nearest.state == FDCG_EDGE) return side_of_edge(graph, gap, nearest.feature);
   return side_of_vertex(graph, at, gap, nearest.feature);
 }
 
 #if FDCG_WITH_F64
-template int side_of_nearest<double>(const RigidView<double>&, Place, const NearestPlace&);
+template int side_of_nearest<double>(const RigidView<double>&, QueryPoint, const NearestPlace&);
 #endif
 #if FDCG_WITH_F32
-template int side_of_nearest<float>(const RigidView<float>&, Place, const NearestPlace&);
+template int side_of_nearest<float>(const RigidView<float>&, QueryPoint, const NearestPlace&);
 #endif
 
 }  // namespace fdcg

@@ -125,7 +125,7 @@ FDCG_HOT void respond_free(const Tick& tick, Point at, Point hip) {
 
 FDCG_HOT Touch touch_of(const Tick& tick, Point hip) {
   const fdcg_params& params = tick.params;
-  return {{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, tick.contact->slipping != 0},
+  return {{{params.mu_static, params.mu_dynamic, params.edge_friction == FDCG_EDGE_WEDGE, tick.contact->slipping != 0}},
           hip,
           vec(tick.contact->god_object)};
 }
