@@ -27,7 +27,7 @@ SUPPORT = {"body", "body_scene", "body_symbols", "contact_info", "deform_share",
 KB = 1024
 X86_BOTH = {"bar": 48 * KB, "limit": 140 * KB}
 X86_F64 = {"bar": 48 * KB, "limit": 86 * KB}
-M7_F32 = {"bar": 20 * KB, "limit": 45_000}
+M7_F32 = {"bar": 20 * KB, "limit": 47_000}
 M7_F32_TERMS = {"bar": 20 * KB, "limit": 51 * KB}
 
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
@@ -95,10 +95,18 @@ class Parts(WeightCase):
     F64, F32 = (*NO_WORDS, "-DFDCG_WITH_F32=OFF"), (*NO_WORDS, "-DFDCG_WITH_F64=OFF")
     PLAIN = ("-DFDCG_WITH_FRICTION_TERMS=OFF", "-DFDCG_WITH_BUSY_CORNERS=OFF", "-DFDCG_WITH_INEXACT_NODES=OFF")
     # program, what it is built with: the bar, and the limit, which a change may not pass
-    X86_GRAPHS = (("one_graph", "f64", F64, 64 * KB, 70_000), ("one_graph", "both", NO_WORDS, 96 * KB, 121_000))
-    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 37_000),
-                 ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 30_000),
-                 ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 40_000))
+    X86_GRAPHS = (("one_graph", "f64", F64, 64 * KB, 72_500), ("one_graph", "both", NO_WORDS, 96 * KB, 125_000))
+    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 39_000),
+                 ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 32_500),
+                 ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 43_500))
+
+    def embedded(self, precision="f32"):
+        """The folder with the embedded graph, its array and its header."""
+        graph = self.path("block.fdcg")
+        self.fdcg("compile", str(RUNTIME / "examples" / "cube.obj"), "-q", "--precision", precision, "-o", graph)
+        self.run_program("cmake", f"-DINPUT={graph}", f"-DOUTPUT={self.path('block.c')}", "-DSYMBOL=block", "-P",
+                         str(ROOT / "cmake" / "FdcgEmbed.cmake"))
+        return str(self.folder)
 
     def sources(self, program):
         return [str(PARTS / (program + ".c")), *([] if program == "one_sphere" else [self.path("block.c")])]

@@ -14,20 +14,20 @@ namespace fdcg::bake {
 
 /// How a surface is in contact. A file that leaves a value out has the format's default, which stands here.
 struct PhysicsMaterial {
-  std::string name;              ///< as in the file, else by number: "physicsMaterials[2]"
-  double static_friction = 0.6;  ///< of 0 or more
-  double dynamic_friction = 0.6;
-  double restitution = 0;
+  std::string name;                 ///< as in the file, else by number: "physicsMaterials[2]"
+  double static_friction = 0.6;     ///< of 0 or more
+  double dynamic_friction = 0.6;    ///< of 0 or more
+  double restitution = 0;           ///< of 0 to 1
   std::string friction_combine;     ///< average, minimum, maximum or multiply: with the other surface's; empty: not stated
   std::string restitution_combine;  ///< likewise
 };
 
 /// A thing that moves as one.
 struct PhysicsBody {
-  std::string node;           ///< of the file
-  double mass_kg = 0;         ///< 0: not stated
-  bool is_kinematic = false;  ///< its motion is given, whatever its mass
-  std::optional<std::array<double, 3>> centre_of_mass_m;
+  std::string node;                                       ///< of the file
+  double mass_kg = 0;                                     ///< 0: not stated
+  bool is_kinematic = false;                              ///< its motion is given, whatever its mass
+  std::optional<std::array<double, 3>> centre_of_mass_m;  ///< in the frame of its node; none: not stated
 };
 
 /// A shape by formula, as an object of a scene of fdcg-servo has it (docs/surfaces.md).
@@ -40,16 +40,16 @@ struct StatedShape {
   double length_m = 0;      ///< cylinder, capsule, cone
   std::array<double, 3> half_m{};                      ///< box, ellipsoid
   std::array<double, 4> rotation_xyzw = {0, 0, 0, 1};  ///< of its pose
-  std::array<double, 3> translation_m{};
-  std::string material;    ///< of a PhysicsMaterial; empty: none
-  bool has_faces = false;  ///< it stands in the soup
+  std::array<double, 3> translation_m{};               ///< of its pose
+  std::string material;                                ///< of a PhysicsMaterial; empty: none
+  bool has_faces = false;                              ///< it stands in the soup
 };
 
 /// All of it; empty where the file states none.
 struct StatedPhysics {
-  std::vector<PhysicsMaterial> materials;
-  std::vector<PhysicsBody> bodies;
-  std::vector<StatedShape> shapes;
+  std::vector<PhysicsMaterial> materials;  ///< in the file's order
+  std::vector<PhysicsBody> bodies;         ///< in the order of their nodes
+  std::vector<StatedShape> shapes;         ///< in the order of their nodes
   /// There is nothing.
   [[nodiscard]] bool is_empty() const { return materials.empty() && bodies.empty() && shapes.empty(); }
 };
