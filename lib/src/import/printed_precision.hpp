@@ -18,6 +18,7 @@ struct Printed {
 class PrintedPrecision {
  public:
   void note(double value, const Printed& number) {
+    if (number.decimals == TextScanner::kNoDecimals) return;
     if (number.decimals > finest_decimals_) finest_decimals_ = number.decimals;
     if (prints_floats_ && number.digits > kFewDigits) look_for_float(value, number);
   }

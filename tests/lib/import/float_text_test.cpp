@@ -105,3 +105,10 @@ TEST_CASE("text of doubles, and of numbers typed with few digits, keeps its own 
   CHECK(read(ply(moved, "double")).relative_quantum == kDouble);
   CHECK(read(ply(moved, "float")).relative_quantum == kFloat);  // as the header says
 }
+
+TEST_CASE("a coordinate that is no number says nothing about the others' precision") {
+  std::string text = off(formatted("%.9g"));
+  text.replace(text.find("8 12 0"), 6, "9 12 0");
+  text.insert(text.find("3 0 2 1"), "nan inf 00000000000000000000e0\n");
+  CHECK(read(text).relative_quantum == kFloat);
+}
