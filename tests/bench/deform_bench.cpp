@@ -2,6 +2,7 @@
 // What a deformable mesh costs beside a rigid one: a sheet of 100,352 triangles, of whose vertices a hundredth moves each tick,
 // and the same HIP on both; where it skims over waves the rigid ones stand still. Prints a table; exits with 1 where a bar does
 // not hold: a moved vertex 20 ns, a step three times the rigid one's.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>

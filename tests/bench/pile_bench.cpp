@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a tick of fingers and bodies costs: five fingers, three bodies, ground, all of them touching; and what sleep and the
 // other things that are left undone save, with the motions compared bit for bit where they must be the same.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene's tick costs, and what each thing that is skipped saves: in nanoseconds, in bytes, with the forces compared bit
 // for bit in the same run. One file, since the scenes, the switches and the table are one experiment.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>

@@ -7,6 +7,7 @@
 // `batch` is the whole path timed at once over its ticks: a mean without the clock in it, to check the others against.
 // Bars: a way at a hand's speed, 45 ns and 180 ns a face crossed; a way that crosses as many faces a tick as on the small body
 // (`times`), 1.3 times that body's; no step over 5 microseconds of own work. See README.md beside this file.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -2,6 +2,7 @@
 // What a step on each surface without a mesh costs: free, pressed and still, and sliding as a hand does, with friction and
 // without. Figures as in step_bench.cpp: `tick` is one tick timed alone; `own` the same again from a copy of the contact, the
 // least of seven replays; `batch` the whole way over its ticks. See README.md beside this file.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A package as it is, or XML, which becomes the model of one, and what follows a zero byte in it a second part: so that the
 // mutations need not keep the archive right. COLLADA becomes the scene of a .zae.
+#include <algorithm>
 #include <string>
 
 #include "fuzz_import.hpp"

@@ -2,6 +2,7 @@
 // Over 400 lines: a list of short, independent formulas, one a mesh, that reads better unbroken.
 #include "meshes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "friction_options.hpp"
 
+#include <algorithm>
+
 namespace fdcg::servo {
 namespace {
 

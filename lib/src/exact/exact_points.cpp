@@ -4,6 +4,7 @@
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Interval_nt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

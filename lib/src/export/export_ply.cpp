@@ -2,6 +2,8 @@
 // PLY (Turk 1994), text or binary: coordinates are written as float where that is exact.
 #include "export/export.hpp"
 
+#include <algorithm>
+
 namespace fdcg::bake {
 namespace {
 

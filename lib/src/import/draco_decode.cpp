@@ -5,6 +5,7 @@
 #include <draco/attributes/attribute_quantization_transform.h>
 #include <draco/compression/decode.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Object File Format of Geomview, text: [ST][C][N]OFF, counts, vertices, faces. Its binary and four-dimensional kinds are
 // refused.
+#include <algorithm>
 #include <cstdint>
 #include <string>
 

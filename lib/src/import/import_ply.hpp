@@ -2,6 +2,7 @@
 // PLY (Turk 1994): the header, and what the readers of text and binary bodies share.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>

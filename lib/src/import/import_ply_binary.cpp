@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary PLY bodies. Two layouts cover nearly all files and have fast paths: vertices whose x, y, z have one type, and faces
 // with one list of 32-bit indices, most of them triangles. Everything else is read value by value.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <concepts>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stereolithography: binary (80 bytes of anything, a count, 50 bytes a triangle) and text (solids of facets). Each triangle has
 // three points of its own; the weld joins them.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>

@@ -3,6 +3,7 @@
 // pose.
 #include "profile/kinematics.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The examples of testdata/scenes, from end to end and without real time: simulated device, gate, log, replay. What is held
 // does not slip: each finger's god-object stays where it took hold, in the frame of what it holds.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Devices that share a scene, as whole sessions on simulated ones: the cube when one of them fails, their log, and refusals.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>

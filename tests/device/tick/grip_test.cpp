@@ -2,6 +2,7 @@
 // Contacts that close and turn while a button is held.
 #include "tick/grip.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

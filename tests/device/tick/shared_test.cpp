@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Devices that share a scene, tick by tick: the clock device, and the fingers that take part. Whole sessions:
 // shared_session_test.cpp.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>

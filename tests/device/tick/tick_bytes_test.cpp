@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tick/tick_bytes.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 

@@ -3,6 +3,7 @@
 // virtual time: simulated_real_time_test.cpp has the rest.
 #include "simulated_rig.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/threads.hpp"

@@ -2,6 +2,7 @@
 // What is written reads back as it was: by our readers to the bit, by OpenMesh to the float.
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -3,6 +3,7 @@
 // A few lines over 400: a list of solids with their mass.
 #include <gmpxx.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The meshes and fuzz finds under testdata: the good ones agree, each bad one has the defect in its name, and all truncations
 // and single-byte changes give a soup or a refusal (with the sanitizers this excludes memory errors for these bytes).
+#include <algorithm>
 #include <cmath>
 
 #include "../../support/import_support.hpp"

@@ -2,6 +2,8 @@
 // EXT_meshopt_compression: what meshoptimizer's encoders wrote comes back bit by bit.
 #include <meshoptimizer.h>
 
+#include <algorithm>
+
 #include "../../support/gltf_writer.hpp"
 #include "../../support/import_support.hpp"
 

@@ -2,6 +2,7 @@
 // OpenMesh as a second opinion: the same files give the same faces, and the same coordinates to float precision.
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <algorithm>
 #include <cmath>
 #include <random>
 

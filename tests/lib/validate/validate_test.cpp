@@ -2,6 +2,7 @@
 // A little over 400 lines: rules on small meshes by hand, solids within solids, elements and caps, then a recount at random.
 #include "validate/validate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <limits>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies in a scene: fingers that hold, swing and let go of a cube.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One rigid body: conservation, order of convergence, stability, sleep, refusals.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies on the ground, on ramps, on one another: sticking, sliding and its speed, coming to rest and staying at rest.
+#include <algorithm>
 #include <cmath>
 
 #include "catch.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Piles under strain: stacks for long, heavy bodies on light ones, fast impacts, stiff grips, forces of the caller's.
+#include <algorithm>
 #include <cmath>
 
 #include "catch.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Piles: contact points, conservation, skipped work, refusals.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>

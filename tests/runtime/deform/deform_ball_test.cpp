@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deformable meshes: clear balls of any contact do not change forces; the tick count may pass 2^32.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>

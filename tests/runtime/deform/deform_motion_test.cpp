@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deformable meshes: nothing falls through a surface that moves, god-objects stay on it, and triangles may lose their area.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>

@@ -2,6 +2,7 @@
 // Nearest places, sides and rays on bodies whose answers are known, at corners, on edges and beyond; what a contact is on.
 #include "fdcg/query.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>

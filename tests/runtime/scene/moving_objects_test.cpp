@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects that move, turn and grow, against fingers that are still or move. FDCG_SCENE_TICKS in the environment sets the ticks
 // of each run.
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <memory>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Optimizations of a scene do not change results: logs of scenes full of events are the same bit for bit for every combination
 // of flags. FDCG_SCENE_TICKS in the environment sets the ticks of each run.
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <limits>

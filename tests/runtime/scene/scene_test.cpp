@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions of a scene. Over 400 lines: short cases, one for each guarantee of scene.h, in its order.
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <string>

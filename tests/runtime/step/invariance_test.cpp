@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same contact however a planar region is cut up, however the object is turned, moved and scaled.
+#include <algorithm>
 #include <cmath>
 
 #include "catch.hpp"

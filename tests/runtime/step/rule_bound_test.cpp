@@ -2,6 +2,7 @@
 // The bound on the rules: where a jump crosses more features than one tick has work for, the rest is carried over with the
 // god-object on the surface and ever nearer to the HIP, and without friction it ends, bit for bit, where an unbounded step
 // does.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shapes and motions that break god-object methods. The judge is geometry, not the reference: in a closed body a HIP that came
 // from outside and is inside must be in contact, and a free HIP lies outside.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

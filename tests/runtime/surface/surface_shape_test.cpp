@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a surface may be, what is said of one that may not, and what each solid weighs.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>

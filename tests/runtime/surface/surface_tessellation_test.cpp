@@ -3,6 +3,7 @@
 // that along the surface it is off by depth times an angle of first order, this way on one half of a facet and that way on the
 // other (tests/evaluation/laws/tessellation.cpp). Of second order are the size of the force, and over many facets the mean of
 // everything.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rules of the contact model on every surface, under a hand that does all that a hand should not. FDCG_STEPS in the
 // environment sets the steps of each walk.
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <limits>

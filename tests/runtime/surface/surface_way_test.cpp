@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The way of one tick over a curved surface, against the steepest descent followed in long double by small steps: right to
 // second order in the tick's way, whichever of the step's paths it takes. And its end, however deep the hand is.
+#include <algorithm>
 #include <cmath>
 
 #include "catch.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes: read, validate, repair, compile, write.
+#include <algorithm>
 #include <memory>
 
 #include "bind.hpp"

@@ -2,6 +2,7 @@
 // Scenes: objects with poses, fingers that feel all of them.
 #include "fdcg/scene.h"
 
+#include <algorithm>
 #include <memory>
 
 #include "bind.hpp"
