@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "catch.hpp"
@@ -33,7 +34,7 @@ std::uint64_t total(const Report& report, const std::string& rule) {
   return 0;
 }
 
-const RepairAction& action(const Repaired& repaired, const std::string& name) {
+const RepairAction& action(const Repaired& repaired, std::string_view name) {
   const auto found =
       std::find_if(repaired.actions.begin(), repaired.actions.end(), [&](const auto& a) { return a.name == name; });
   REQUIRE(found != repaired.actions.end());

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "catch.hpp"
 #include "fdcg/bake.hpp"
@@ -50,7 +51,7 @@ Repaired repaired(const PolygonSoup& soup, const RepairOptions& options) {
   return r;
 }
 
-const RepairAction& action(const Repaired& r, const std::string& name) {
+const RepairAction& action(const Repaired& r, std::string_view name) {
   const auto found = std::find_if(r.actions.begin(), r.actions.end(), [&](const RepairAction& a) { return a.name == name; });
   REQUIRE(found != r.actions.end());
   return *found;

@@ -21,7 +21,7 @@ std::uint64_t total_of(const Report& report, const std::string& rule) {
   return 0;
 }
 
-const RepairAction& last_action(const Repaired& repaired, const std::string& name) {
+const RepairAction& last_action(const Repaired& repaired, std::string_view name) {
   const auto found =
       std::find_if(repaired.actions.rbegin(), repaired.actions.rend(), [&](const auto& a) { return a.name == name; });
   REQUIRE(found != repaired.actions.rend());
