@@ -9,6 +9,8 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fdcg)
 # relative to the .pc file, so that the installed tree may be moved
 file(RELATIVE_PATH fdcg_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 
+add_custom_target(fdcg_installed) # builds what cmake --install takes
+
 # fdcg_install_component(NAME TARGETS target... [NEEDS component...] [HEADERS folder PATTERN glob])
 function(fdcg_install_component name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADERS;PATTERN" "TARGETS;NEEDS")
@@ -17,6 +19,7 @@ function(fdcg_install_component name)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${name}
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  add_dependencies(fdcg_installed ${arg_TARGETS})
   install(EXPORT fdcg-${name} NAMESPACE fdcg:: DESTINATION ${package_folder} COMPONENT ${name})
   if(arg_HEADERS)
     # C++ headers beside the device host's C header are for fdcg-servo alone.
@@ -73,4 +76,17 @@ if(NOT FDCG_RUNTIME_ONLY)
   fdcg_install_component(bake_c TARGETS fdcg_bake_c NEEDS package HEADERS lib/include PATTERN bake.h)
   fdcg_install_pc(fdcg-bake-c fdcg_bake_c bake_c)
   fdcg_install_component(device TARGETS fdcg_device NEEDS runtime HEADERS runtime/device/include PATTERN *.h)
+endif()
+
+# cpack (tools/package archive): all of it in one folder of an archive, for any place.
+if(PROJECT_IS_TOP_LEVEL)
+  set(CPACK_GENERATOR TGZ)
+  if(CMAKE_SYSTEM_NAME STREQUAL "Windows")
+    set(CPACK_GENERATOR ZIP)
+  endif()
+  string(TOLOWER "${CMAKE_SYSTEM_NAME}" system)
+  set(CPACK_PACKAGE_FILE_NAME fdcg-${PROJECT_VERSION}-${system}-${CMAKE_SYSTEM_PROCESSOR})
+  set(CPACK_STRIP_FILES ON)
+  set(CPACK_VERBATIM_VARIABLES ON)
+  include(CPack)
 endif()
