@@ -343,9 +343,9 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   round_to(local_hip, &hip);
   if (contact->started == 0) {
     start(hip, contact);
-  } else if (is_in_clear_ball(contact->clear_ball, local_hip) &&
+  } else if (contact->state == FDCG_FREE && is_in_clear_ball(contact->clear_ball, local_hip) &&
              (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0) {
-    store(hip, contact->god_object);  // free: a contact that is not has no such ball
+    store(hip, contact->god_object);
     store(hip, contact->hip);
   } else if (FDCG_WITH_FRICTION_TERMS && params.friction_flags != 0) {
     if constexpr (FDCG_WITH_FRICTION_TERMS) return step_with_terms<Geometry>(raw, params, hip, contact, result);
