@@ -100,5 +100,5 @@ class BrowserCase(PageCase):
                 if not address.startswith(("file:", "blob:", "data:", "chrome")):
                     asked.append(address)
         self.assertEqual([], asked)
-        wrong = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] in ("SEVERE", "ERROR")]
+        wrong = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] in ("SEVERE", "ERROR") or "GL_INVALID" in entry["message"]]
         self.assertEqual([], wrong)

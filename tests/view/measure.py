@@ -5,6 +5,7 @@ import array
 import csv
 import json
 import os
+import pathlib
 import random
 import subprocess
 import sys
@@ -63,7 +64,7 @@ def cpu_s(root):
     parents, spent = {}, {}
     for name in filter(str.isdigit, os.listdir("/proc")):
         try:
-            fields = open(f"/proc/{name}/stat").read().rpartition(")")[2].split()
+            fields = pathlib.Path(f"/proc/{name}/stat").read_text().rpartition(")")[2].split()
         except OSError:
             continue  # it has ended
         parents[int(name)] = int(fields[1])
@@ -101,11 +102,11 @@ class Measure(BrowserCase):
         shown = self.browser.execute_script("return performance.getEntriesByName('shown')[0]?.startTime ?? performance.now()")
         return {"page_mb": os.path.getsize(page) / 1e6, "shown_s": shown / 1000, "polled_s": time.monotonic() - before, "shown_cpu_s": self.cpu_s() - cpu}
 
-    def turning(self):
+    def turning(self, seconds=TURNED_S):
         self.wait_for(lambda state: not state["flying"])
         cpu = self.cpu_s()
-        frames, drawn = self.browser.execute_async_script(TURN, TURNED_S)
-        return {"frames_per_s": frames, "frame_cpu_ms": 1000 * (self.cpu_s() - cpu) / (frames * TURNED_S), "triangles_drawn": drawn}
+        frames, drawn = self.browser.execute_async_script(TURN, seconds)
+        return {"frames_per_s": frames, "frame_cpu_ms": 1000 * (self.cpu_s() - cpu) / (frames * seconds), "triangles_drawn": drawn}
 
     def touching(self, seconds=PRESSED_S):
         """Presses and strokes; the loop's period beside what is drawn, and the step's time, in the page and native."""

@@ -113,7 +113,7 @@ class App {
     this.tabs = [];
     this.active = undefined;
     this.mesh = undefined;
-    this.stage.onMoving = undefined;
+    this.stage.moving.clear();
     clearGroup(this.stage.content);
     const item = await readItem(index);
     this.item = item;
@@ -293,11 +293,13 @@ class App {
       camera: this.stage.camera.position.toArray(),
       target: this.stage.controls.target.toArray(),
       frames: this.stage.frames,
+      wholeFrames: this.stage.wholeFrames,
       edges: this.mesh?.edgesShown,
       drawn: this.mesh?.drawn,
       triangles: this.mesh?.model.triangleFace.length,
       colors: this.mesh?.colorsShown,
       slow: this.stage.isSlow,
+      pixelRatio: this.stage.pixelRatio,
       ...this.active?.state(),
     };
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A graph: nodes, edges by type, corners with busy fans, the hierarchy's boxes, and the records of what is picked.
-import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Vector3 } from 'three';
 import type { Context, Tab } from './context';
+import { DetailedSurface, restingLines } from './detail';
 import { checkbox, h, replaceChildren } from './dom';
 import type { BoxLevel, GraphModel } from './graph_model';
 import { clearGroup, dots, fatLines, filled, marked } from './highlight';
@@ -22,7 +23,7 @@ export class GraphTab implements Tab {
   private readonly details = new Group(); // what only this tab shows
   private readonly selection = new Group();
   private readonly material = new SurfaceMaterial(true);
-  private readonly surface: Mesh;
+  private readonly surface: DetailedSurface;
   private readonly edges: LineSegments[];
   private readonly records = h('pre.records', { tabIndex: 0, 'aria-label': 'Records of what is picked' });
   private readonly boxes = new Group();
@@ -36,15 +37,15 @@ export class GraphTab implements Tab {
     private readonly model: GraphModel,
     private readonly showMesh: (shown: boolean) => void,
   ) {
-    this.surface = new Mesh(model.geometry, this.material);
+    this.surface = new DetailedSurface(context.stage, model.geometry, this.material);
     this.edges = TYPES.map((_, type) => {
       const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(model.lines[type]!, 3));
       return new LineSegments(geometry, new LineBasicMaterial());
     });
     const busy = dots(model.busyCorners, { color: themeColor('glow'), width: 2.5 });
     busy.name = 'busy';
-    this.details.add(...this.edges, busy, this.boxes, this.selection);
-    this.group.add(this.surface, this.details);
+    this.details.add(...this.edges.map((lines) => restingLines(context.stage, lines)), busy, this.boxes, this.selection);
+    this.group.add(this.surface.group, this.details);
     this.group.visible = false;
     context.stage.content.add(this.group);
     this.element.append(this.counts(), this.looks(), this.finder(), this.records);
@@ -220,7 +221,7 @@ export class GraphTab implements Tab {
   }
 
   pointer(event: PointerEvent): void {
-    const hit = this.context.stage.rayAt(event.clientX, event.clientY).intersectObject(this.surface, false)[0];
+    const hit = this.context.stage.rayAt(event.clientX, event.clientY).intersectObject(this.surface.full, false)[0];
     if (hit?.faceIndex === undefined || hit.faceIndex === null) {
       this.pickFeature(undefined, false);
       return;

@@ -45,7 +45,7 @@ export class LogTab implements Tab {
     context.stage.marks.add(this.marks.group);
     const time = (this.time = Float64Array.from({ length: this.count }, (_, i) => this.value(i, T)));
     this.lanes = new Lanes(time, [{ height: 14, level: (i) => this.value(i, STATE), colors: STATES }, { height: 9, level: (i) => this.value(i, SLIP) - 1, colors: ['force'] }], '', (t) => this.timeline.seekTime(t));
-    this.timeline = new Timeline({ time, show: (at) => this.show(at), invalidate: () => context.stage.invalidate() }, h('div.chart', { id: 'chart-log' }, h('p.chart-title', {}, h('span.key.force', {}, 'Force'), this.runtime !== undefined && h('span.key.edge', {}, 'along the face'), ', newtons')), this.lanes.element);
+    this.timeline = new Timeline({ time, show: (at) => this.show(at), invalidate: () => context.stage.invalidateMarks() }, h('div.chart', { id: 'chart-log' }, h('p.chart-title', {}, h('span.key.force', {}, 'Force'), this.runtime !== undefined && h('span.key.edge', {}, 'along the face'), ', newtons')), this.lanes.element);
     this.element.append(this.summary(name), this.readout);
     this.applyTheme();
   }
@@ -107,7 +107,7 @@ export class LogTab implements Tab {
     const text = `${t.toFixed(3)} s: ${STATES[state]}${state === 0 ? '' : ` ${feature}, ${slips ? 'slips' : 'sticks'}, ${short(this.force(at))} N`}.`;
     this.readout.textContent = text;
     this.chart?.mark(t);
-    this.context.stage.invalidate();
+    this.context.stage.invalidateMarks();
     return text;
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh on the stage: its surface, its edges, the findings of each rule as a layer, and what is selected.
-import { Box3, BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Mesh, Raycaster, Sphere, Vector3 } from 'three';
-import { coarseIndex } from './coarse';
+import { Box3, BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Raycaster, Sphere, Vector3 } from 'three';
 import type { Element3, Issue } from './data';
+import { DetailedSurface, restingLines } from './detail';
 import { clearGroup, FILLED, type Marks, marked } from './highlight';
 import { type MeshModel, newell } from './mesh_model';
 import { colorOfNumber } from './number_colors';
@@ -14,10 +14,7 @@ import { themeColor } from './theme';
 const FLAT = 1e-6; // twice the area of a face that cannot be seen, of the object's size squared
 const LEAST_RADIUS = 0.004; // of the object's size
 const AROUND = 5; // a finding is shown with this many times its own radius about it
-const COARSE_FROM = { slow: 150_000, fast: 2_000_000 }; // triangles from which a coarse version is drawn while the view moves
 const LAYERED = 20000; // elements of a rule that are drawn at once
-
-const COARSE = 'coarse';
 
 export interface Picked {
   face: number;
@@ -27,11 +24,11 @@ export interface Picked {
 export class MeshView {
   readonly group = new Group();
   readonly material = new SurfaceMaterial();
-  private readonly surface: Mesh;
+  private readonly surface: DetailedSurface;
   private readonly layers = new Map<string, Group>();
   private readonly selection = new Group();
   private edges: LineSegments | undefined;
-  private readonly painted = new Map<'patches' | 'materials', { mesh: Mesh; count: number }>();
+  private readonly painted = new Map<'patches' | 'materials', { surface: DetailedSurface; count: number }>();
   private colors: 'patches' | 'materials' | undefined;
   private showsWinding = true;
 
@@ -39,29 +36,13 @@ export class MeshView {
     private readonly stage: Stage,
     readonly model: MeshModel,
   ) {
-    this.surface = new Mesh(model.geometry, this.material);
-    this.group.add(this.surface, this.selection);
-    if (model.triangleFace.length >= (stage.isSlow ? COARSE_FROM.slow : COARSE_FROM.fast)) this.addCoarse();
+    this.surface = new DetailedSurface(stage, model.geometry, this.material);
+    this.group.add(this.surface.group, this.selection);
   }
 
-  private addCoarse(): void {
-    const position = this.model.geometry.getAttribute('position') as BufferAttribute;
-    const geometry = new BufferGeometry().setAttribute('position', position);
-    geometry.setIndex(new BufferAttribute(coarseIndex(position.array, this.model.geometry.getIndex()!.array as Uint32Array), 1));
-    const coarse = new Mesh(geometry, this.material);
-    coarse.visible = false;
-    coarse.name = COARSE;
-    this.group.add(coarse);
-    this.stage.onMoving = (moving) => {
-      coarse.visible = moving;
-      this.surface.visible = !moving && this.colors === undefined;
-      if (this.colors !== undefined) coarse.visible = false;
-    };
-  }
   /** Triangles that are drawn now. */
   get drawn(): number {
-    const coarse = this.group.getObjectByName(COARSE) as Mesh | undefined;
-    return coarse?.visible ? coarse.geometry.getIndex()!.count / 3 : this.model.triangleFace.length;
+    return this.surface.drawn;
   }
 
   applyTheme(): void {
@@ -82,7 +63,7 @@ export class MeshView {
       geometry.setAttribute('position', this.model.geometry.getAttribute('position') as BufferAttribute);
       geometry.setIndex(new BufferAttribute(pairs, 1));
       this.edges = new LineSegments(geometry, new LineBasicMaterial({ color: themeColor('mesh-edge'), transparent: true, opacity: 0.55 }));
-      this.group.add(this.edges);
+      this.group.add(restingLines(this.stage, this.edges));
     }
     if (this.edges !== undefined) this.edges.visible = shown;
     this.stage.invalidate();
@@ -94,15 +75,15 @@ export class MeshView {
   /** Each patch, or each material, in a colour of its own; undefined: all faces alike. */
   setColors(by: 'patches' | 'materials' | undefined): void {
     if (by !== undefined && !this.painted.has(by)) this.painted.set(by, this.paint(by));
-    for (const [what, { mesh }] of this.painted) mesh.visible = what === by;
-    this.surface.visible = by === undefined;
+    for (const [what, { surface }] of this.painted) surface.group.visible = what === by;
+    this.surface.group.visible = by === undefined;
     this.colors = by;
     this.stage.invalidate();
   }
   get colorsShown(): { by: string; count: number } | undefined {
     return this.colors === undefined ? undefined : { by: this.colors, count: this.painted.get(this.colors)!.count };
   }
-  private paint(by: 'patches' | 'materials'): { mesh: Mesh; count: number } {
+  private paint(by: 'patches' | 'materials'): { surface: DetailedSurface; count: number } {
     const materials = this.model.faceMaterials;
     const { ofFace, count } = by === 'patches' ? patchesOf(this.model) : { ofFace: materials!, count: new Set(materials).size };
     const geometry = this.model.geometry.toNonIndexed();
@@ -112,9 +93,9 @@ export class MeshView {
       for (let k = 0; k < 3; ++k) colors.set(color, 9 * t + 3 * k);
     });
     geometry.setAttribute('faceColor', new BufferAttribute(colors, 3));
-    const mesh = new Mesh(geometry, new SurfaceMaterial(true));
-    this.group.add(mesh);
-    return { mesh, count };
+    const surface = new DetailedSurface(this.stage, geometry, new SurfaceMaterial(true));
+    this.group.add(surface.group);
+    return { surface, count };
   }
 
   /** What an element of a finding is on the stage. */
@@ -193,7 +174,7 @@ export class MeshView {
     let farthest = -1;
     for (const direction of [best, this.stage.approach(normal.clone().negate()), this.stage.approach()]) {
       const ray = new Raycaster(centre, direction, radius * 0.02, far);
-      const free = ray.intersectObject(this.surface, false)[0]?.distance ?? far;
+      const free = ray.intersectObject(this.surface.full, false)[0]?.distance ?? far;
       if (free > farthest * 1.01) [best, farthest] = [direction, free];
     }
     return best;
@@ -214,7 +195,7 @@ export class MeshView {
   }
 
   pick(clientX: number, clientY: number): Picked | undefined {
-    const hit = this.stage.rayAt(clientX, clientY).intersectObject(this.surface, false)[0];
+    const hit = this.stage.rayAt(clientX, clientY).intersectObject(this.surface.full, false)[0];
     if (hit?.faceIndex === undefined || hit.faceIndex === null) return undefined;
     return { face: this.model.triangleFace[hit.faceIndex]!, point: hit.point };
   }

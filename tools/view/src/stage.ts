@@ -3,10 +3,13 @@
 import { Box3, Group, MathUtils, Matrix4, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { prefersReducedMotion } from './dom';
+import { Still } from './still';
 import { themeColor } from './theme';
 
 const FLIGHT_MS = 600;
 const REST_MS = 250; // without motion: the camera is at rest
+const MARKS_MS = 33; // between frames in which only marks move, where the processor draws: the loop needs it too
+const MOVING_RATIO = 0.7; // of the pixels' side, while the processor draws a view that moves
 
 interface Flight {
   from: Vector3;
@@ -17,15 +20,19 @@ interface Flight {
 }
 
 /** Undefined where the browser cannot draw: lists, records and forces are there all the same. Without a graphics processor smooth
- * edges cost more than all the rest. */
+ * edges cost more than all the rest. The canvas is opaque, which three.js does not ask for: to blend it with the page costs as much
+ * as to draw a small model. */
 function makeRenderer(): { renderer: WebGLRenderer; isSlow: boolean } | undefined {
-  const context = document.createElement('canvas').getContext('webgl2');
-  if (context === null) return undefined;
-  const names = context.getExtension('WEBGL_debug_renderer_info');
-  const name = names === null ? '' : String(context.getParameter(names.UNMASKED_RENDERER_WEBGL));
-  context.getExtension('WEBGL_lose_context')?.loseContext();
+  const probe = document.createElement('canvas').getContext('webgl2');
+  if (probe === null) return undefined;
+  const names = probe.getExtension('WEBGL_debug_renderer_info');
+  const name = names === null ? '' : String(probe.getParameter(names.UNMASKED_RENDERER_WEBGL));
+  probe.getExtension('WEBGL_lose_context')?.loseContext();
   const isSlow = /swiftshader|llvmpipe|software|basic render/i.test(name);
-  const renderer = new WebGLRenderer({ antialias: !isSlow, powerPreference: 'high-performance' });
+  const canvas = document.createElement('canvas');
+  const context = canvas.getContext('webgl2', { alpha: false, antialias: !isSlow, powerPreference: 'high-performance' });
+  if (context === null) return undefined;
+  const renderer = new WebGLRenderer({ canvas, context });
   renderer.setPixelRatio(isSlow ? 1 : Math.min(devicePixelRatio, 2));
   return { renderer, isSlow };
 }
@@ -39,10 +46,11 @@ export class Stage {
   readonly canvas: HTMLCanvasElement;
   readonly resolution = new Vector2(1, 1); // of fat lines, CSS pixels
   frames = 0;
+  wholeFrames = 0; // of them those in which more than the marks was drawn
   /** Called before each frame with the time; true: draw again after it. */
   readonly animations = new Set<(now: number) => boolean>();
   /** Called when the camera begins to move, and when it has come to rest: what is large may be drawn coarsely meanwhile. */
-  onMoving: ((moving: boolean) => void) | undefined;
+  readonly moving = new Set<(moves: boolean) => void>();
   /** Drawn by the processor. */
   readonly isSlow: boolean;
   private readonly renderer: WebGLRenderer | undefined;
@@ -50,6 +58,11 @@ export class Stage {
   private restTimer: ReturnType<typeof setTimeout> | undefined;
   private flight: Flight | undefined;
   private pending = false;
+  private waits = false; // for marks alone
+  private isStale = true; // more than marks has changed
+  private isMoving = false;
+  private lastDrawn = 0;
+  private readonly still = new Still();
 
   constructor(private readonly holder: HTMLElement) {
     const made = makeRenderer();
@@ -82,6 +95,24 @@ export class Stage {
   }
 
   invalidate(): void {
+    this.isStale = true;
+    this.request();
+  }
+  /** Only `marks` have changed, none of which is hidden by what is not. */
+  invalidateMarks(): void {
+    if (this.pending || this.waits) return;
+    const wait = this.isSlow ? this.lastDrawn + MARKS_MS - performance.now() : 0;
+    if (wait <= 0) {
+      this.request();
+      return;
+    }
+    this.waits = true;
+    setTimeout(() => {
+      this.waits = false;
+      this.request();
+    }, wait);
+  }
+  private request(): void {
     if (this.pending) return;
     this.pending = true;
     requestAnimationFrame((now) => this.draw(now));
@@ -94,29 +125,60 @@ export class Stage {
 
   private draw(now: number): void {
     this.pending = false;
-    let again = this.fly(now);
+    const flies = this.fly(now);
+    let again = false;
     for (const animation of this.animations) again = animation(now) || again;
     const distance = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(distance * 0.01, 1e-5);
     this.camera.far = distance + 10;
     this.camera.updateProjectionMatrix();
     this.noteMotion();
-    this.renderer?.render(this.scene, this.camera);
+    if (this.renderer !== undefined) this.render(this.renderer);
+    this.lastDrawn = now;
     ++this.frames;
-    if (again) this.invalidate();
+    if (flies) this.invalidate();
+    else if (again) this.invalidateMarks();
+  }
+
+  private render(renderer: WebGLRenderer): void {
+    if (this.isStale || !this.isSlow) {
+      this.isStale = false;
+      this.still.drop();
+      renderer.render(this.scene, this.camera);
+      ++this.wholeFrames;
+      return;
+    }
+    if (this.still.isKept) this.still.draw(renderer);
+    else {
+      this.scene.remove(this.marks);
+      renderer.render(this.scene, this.camera);
+      this.scene.add(this.marks);
+      this.still.keep(renderer);
+      ++this.wholeFrames;
+    }
+    renderer.autoClear = false;
+    renderer.render(this.marks, this.camera);
+    renderer.autoClear = true;
   }
 
   private noteMotion(): void {
     this.camera.updateMatrixWorld();
     const moved = !this.drawnFrom.equals(this.camera.matrixWorld);
     this.drawnFrom.copy(this.camera.matrixWorld);
-    if (!moved || this.onMoving === undefined) return;
-    this.onMoving(true);
+    if (!moved) return;
+    this.isStale = true;
+    this.setMoving(true);
     clearTimeout(this.restTimer);
     this.restTimer = setTimeout(() => {
-      this.onMoving?.(false);
+      this.setMoving(false);
       this.invalidate();
     }, REST_MS);
+  }
+  private setMoving(moves: boolean): void {
+    if (moves === this.isMoving) return;
+    this.isMoving = moves;
+    if (this.isSlow) this.renderer?.setPixelRatio(moves ? MOVING_RATIO : 1);
+    for (const change of this.moving) change(moves);
   }
 
   private fly(now: number): boolean {
@@ -158,6 +220,10 @@ export class Stage {
     this.invalidate();
   }
 
+  /** Pixels drawn per pixel of the page. */
+  get pixelRatio(): number {
+    return this.renderer?.getPixelRatio() ?? 0;
+  }
   get isBlank(): boolean {
     return this.renderer === undefined;
   }
@@ -230,6 +296,7 @@ export class Stage {
     this.resolution.set(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.renderer?.render(this.scene, this.camera);
+    this.isStale = true;
+    if (this.renderer !== undefined) this.render(this.renderer);
   }
 }

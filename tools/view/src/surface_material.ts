@@ -5,18 +5,22 @@ import { Color, DoubleSide, ShaderMaterial, Vector3 } from 'three';
 import { themeColor } from './theme';
 
 const VERTEX = `
-attribute vec3 faceColor;
 varying vec3 vPosition;
+#ifdef FOCUSED
 varying vec3 vWorld;
+#endif
+#ifdef COLOURED
+attribute vec3 faceColor;
 varying vec3 vColor;
+#endif
 void main() {
   vec4 eye = modelViewMatrix * vec4(position, 1.0);
   vPosition = eye.xyz;
+#ifdef FOCUSED
   vWorld = (modelMatrix * vec4(position, 1.0)).xyz;
+#endif
 #ifdef COLOURED
-  vColor = faceColor;
-#else
-  vColor = vec3(1.0);
+  vColor = 1.055 * pow(faceColor, vec3(1.0 / 2.4)) - 0.055;
 #endif
   gl_Position = projectionMatrix * eye;
 }`;
@@ -24,30 +28,34 @@ void main() {
 const FRAGMENT = `
 uniform vec3 front;
 uniform vec3 back;
+varying vec3 vPosition;
+#ifdef FOCUSED
 uniform vec3 focus;
 uniform float focusRadius;
 uniform float ghost;
-varying vec3 vPosition;
 varying vec3 vWorld;
+#endif
+#ifdef COLOURED
 varying vec3 vColor;
+#endif
 void main() {
-  float away = focusRadius > 0.0 ? distance(vWorld, focus) / focusRadius : 9.0;
-  float kept = max(1.0 - ghost, smoothstep(0.8, 1.0, away));
+#ifdef FOCUSED
+  float kept = max(1.0 - ghost, smoothstep(0.8, 1.0, distance(vWorld, focus) / focusRadius));
   vec2 cell = mod(floor(gl_FragCoord.xy), 4.0);
   float threshold = mod(cell.x * 5.0 + cell.y * 7.0 + mod(cell.x * cell.y, 2.0) * 3.0, 16.0) / 16.0;
   if (kept < 0.999 && threshold >= kept) discard;
-  vec3 normal = normalize(cross(dFdx(vPosition), dFdy(vPosition)));
-  vec3 toEye = normalize(-vPosition);
-  float facing = abs(dot(normal, toEye));
-  float above = 0.5 + 0.5 * normal.y;
-  float light = 0.2 + 0.58 * facing + 0.26 * above;
+#endif
+  vec3 normal = cross(dFdx(vPosition), dFdy(vPosition));
+  float perLength = inversesqrt(dot(normal, normal));
+  float facing = abs(dot(normal, vPosition)) * perLength * inversesqrt(dot(vPosition, vPosition));
+  float light = 0.33 + 0.58 * facing + 0.13 * normal.y * perLength;
 #ifdef COLOURED
   vec3 base = gl_FrontFacing ? vColor : mix(vColor, back, 0.7);
 #else
   vec3 base = gl_FrontFacing ? front : back;
 #endif
-  gl_FragColor = vec4(base * light, 1.0);
-  #include <colorspace_fragment>
+  float curve = 0.0724 - 0.101 * light + 1.0283 * sqrt(light);
+  gl_FragColor = vec4((base + 0.055) * curve - 0.055, 1.0);
 }`;
 
 export class SurfaceMaterial extends ShaderMaterial {
@@ -72,22 +80,31 @@ export class SurfaceMaterial extends ShaderMaterial {
   }
   /** Without winding both sides look alike. */
   applyTheme(showsWinding: boolean): void {
-    this.uniforms['front']!.value = themeColor('face-front');
-    this.uniforms['back']!.value = themeColor(showsWinding ? 'face-back' : 'face-front');
+    this.setSides(themeColor('face-front'), themeColor(showsWinding ? 'face-back' : 'face-front'));
   }
   /** Both sides in a colour that the theme's own is mixed with. */
   tint(color: Color): void {
     const mixed = themeColor('face-front').lerp(color, 0.7);
-    this.uniforms['front']!.value = mixed;
-    this.uniforms['back']!.value = mixed;
+    this.setSides(mixed, mixed);
+  }
+  private setSides(front: Color, back: Color): void {
+    this.uniforms['front']!.value = front.clone().convertLinearToSRGB();
+    this.uniforms['back']!.value = back.clone().convertLinearToSRGB();
   }
   get isGhost(): boolean {
-    return (this.uniforms['ghost']!.value as number) > 0;
+    return 'FOCUSED' in this.defines!;
   }
-  /** The surface within the radius of the point is drawn by this share less. 0: whole. */
+  /** The surface within the radius of the point is drawn by this share less. */
   setFocus(point: Vector3 | undefined, radius = 0, ghost = 0.75): void {
-    if (point !== undefined) (this.uniforms['focus']!.value as Vector3).copy(point);
-    this.uniforms['focusRadius']!.value = point === undefined ? 0 : radius;
-    this.uniforms['ghost']!.value = point === undefined ? 0 : ghost;
+    const isFocused = point !== undefined && radius > 0;
+    if (isFocused) {
+      (this.uniforms['focus']!.value as Vector3).copy(point);
+      this.uniforms['focusRadius']!.value = radius;
+      this.uniforms['ghost']!.value = ghost;
+    }
+    if (isFocused === this.isGhost) return;
+    if (isFocused) this.defines!['FOCUSED'] = '';
+    else delete this.defines!['FOCUSED'];
+    this.needsUpdate = true; // a shader that discards nothing is much cheaper: hidden faces are left out before it
   }
 }

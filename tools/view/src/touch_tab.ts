@@ -15,7 +15,7 @@ import { TouchSettings } from './touch_settings';
 import { TouchTraces } from './touch_traces';
 
 const HOVER = 0.02; // of the object's size: how far before the surface the hand is while nothing is pressed
-const CHART_MS = 60;
+const CHART_MS = { slow: 160, fast: 60 };
 const PAD_PIXELS_PER_S = 420; // of the hand at full tilt
 const PAD_TURN_PER_S = 1.8; // radians of the view
 
@@ -212,7 +212,7 @@ export class TouchTab implements Tab {
     this.lastTick = ticks.slice(-TICK);
     this.lastNormal = normals.slice(-3);
     this.timing = timing;
-    this.context.stage.invalidate();
+    this.context.stage.invalidateMarks();
   }
 
   private readonly animate = (now: number): boolean => {
@@ -226,7 +226,7 @@ export class TouchTab implements Tab {
     const force = Math.hypot(...three(FORCE));
     this.sound.play(slips ? force / (this.settings.params.stiffness * this.settings.depth * this.source.frame.metres) : 0);
     if (now >= this.nextChart) {
-      this.nextChart = now + CHART_MS;
+      this.nextChart = now + CHART_MS[this.context.stage.isSlow ? 'slow' : 'fast'];
       const state = STATES[tick[STATE]!]!;
       this.readout.textContent = state === 'free' ? 'Free: nothing touched.' : `${slips ? 'Slips' : 'Sticks'} on a ${state}. ${short(force)} N, ratio ${this.traces.ratio.toFixed(2)}.`;
       this.timingLine.textContent = `A step takes ${short(this.timing.stepNs / 1000)} µs here; 99 % of the ticks come within ${this.timing.periodP99Ms.toFixed(2)} ms.`;
