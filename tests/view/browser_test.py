@@ -78,6 +78,7 @@ class Findings(BrowserCase):
     def test_edges_winding_theme_and_help_by_keys(self):
         self.press("e")
         self.assertTrue(self.state()["edges"])
+        self.assertEqual(12, self.state()["edgeCount"])  # of a box, each once
         orange = (200, 102, 42)
         self.press("t")
         self.press("t")

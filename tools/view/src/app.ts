@@ -79,8 +79,9 @@ class App {
     const patches = checkbox('Patches', false, (shown) => this.showColors('patches', shown), 'show-patches');
     patches.title = 'Faces joined across edges, a colour each (C)';
     const hasMaterials = (this.item?.materials?.length ?? 0) > 1;
-    const materials = checkbox('Materials', hasMaterials, (shown) => this.showColors('materials', shown), 'show-materials');
-    if (hasMaterials) this.mesh?.setColors('materials');
+    const inMaterials = hasMaterials && this.item?.report?.verdict !== 'fail'; // else front and back in two colours tell more
+    const materials = checkbox('Materials', inMaterials, (shown) => this.showColors('materials', shown), 'show-materials');
+    if (inMaterials) this.mesh?.setColors('materials');
     replaceChildren(
       this.view,
       this.mesh !== undefined && winding,
@@ -295,6 +296,7 @@ class App {
       frames: this.stage.frames,
       wholeFrames: this.stage.wholeFrames,
       edges: this.mesh?.edgesShown,
+      edgeCount: this.mesh?.edgeCount,
       drawn: this.mesh?.drawn,
       triangles: this.mesh?.model.triangleFace.length,
       colors: this.mesh?.colorsShown,

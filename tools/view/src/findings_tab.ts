@@ -179,8 +179,9 @@ export class FindingsTab implements Tab {
   }
 
   activate(): void {
+    const worst = this.issues.some((issue) => issue.severity === 'error') ? 'error' : 'warning'; // the rest on request: it would hide the worst
     for (const issue of this.issues) {
-      if (issue.severity !== 'note' && issue.elements.length <= 5000) this.view?.setLayer(issue, true);
+      if (issue.severity === worst && issue.elements.length <= 5000) this.view?.setLayer(issue, true);
     }
     if (this.element.querySelector('.rule') !== null) this.list();
   }

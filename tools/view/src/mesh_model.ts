@@ -2,6 +2,7 @@
 // A mesh as its file has it: polygons by the file's own numbers, and triangles to draw them.
 import { BufferAttribute, BufferGeometry, ShapeUtils, Vector2, Vector3 } from 'three';
 import { type Geometry, readArray } from './data';
+import { eachSide } from './edges';
 import { Frame } from './frame';
 
 function words(bytes: Uint8Array<ArrayBuffer>): Uint32Array<ArrayBuffer> {
@@ -121,21 +122,14 @@ export class MeshModel {
 
   /** Pairs of points, one for each edge of the file's faces. */
   edges(): Uint32Array {
-    const seen = new Set<number>();
-    const pairs: number[] = [];
-    for (let f = 0; f < this.faceCount; ++f) {
-      const way = this.face(f);
-      for (let k = 0; k < way.length; ++k) {
-        const a = way[k]!;
-        const b = way[(k + 1) % way.length]!;
-        if (!this.isDrawable(a) || !this.isDrawable(b)) continue;
-        const key = Math.min(a, b) * this.pointCount + Math.max(a, b);
-        if (seen.has(key)) continue;
-        seen.add(key);
-        pairs.push(a, b);
-      }
-    }
-    return Uint32Array.from(pairs);
+    const pairs = new Uint32Array(2 * this.corners.length);
+    let count = 0;
+    eachSide(this, undefined, (_edge, isNew, _face, a, b) => {
+      if (!isNew || !this.isDrawable(a) || !this.isDrawable(b)) return;
+      pairs[count++] = a;
+      pairs[count++] = b;
+    });
+    return pairs.slice(0, count);
   }
 }
 

@@ -68,6 +68,9 @@ export class MeshView {
     if (this.edges !== undefined) this.edges.visible = shown;
     this.stage.invalidate();
   }
+  get edgeCount(): number {
+    return (this.edges?.geometry.getIndex()?.count ?? 0) / 2;
+  }
   get edgesShown(): boolean {
     return this.edges?.visible === true;
   }

@@ -1,28 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Patches of a mesh: faces joined across edges of exactly two faces, after vertices at equal coordinates have become one.
+import { eachSide } from './edges';
 import type { MeshModel } from './mesh_model';
-
-/** Of numbers a table of places by key, open addressing. */
-class Table {
-  private readonly keys: Float64Array;
-  private readonly mask: number;
-  constructor(most: number) {
-    let size = 16;
-    while (size < 2 * most) size *= 2;
-    this.keys = new Float64Array(size).fill(-1);
-    this.mask = size - 1;
-  }
-  get size(): number {
-    return this.keys.length;
-  }
-  /** The key's place; a new key gets one. */
-  place(key: number): number {
-    let at = (Math.imul(key % 0x7fffffff, 0x9e3779b1) ^ Math.imul(Math.floor(key / 0x7fffffff), 0x85ebca6b)) & this.mask;
-    while (this.keys[at] !== key && this.keys[at] !== -1) at = (at + 1) & this.mask;
-    this.keys[at] = key;
-    return at;
-  }
-}
 
 /** Of each point the first one at its coordinates. */
 function welded(points: Float32Array): Uint32Array {
@@ -65,19 +44,12 @@ export function patchesOf(model: MeshModel): Patches {
     while (parent[f] !== f) f = parent[f] = parent[parent[f]!]!;
     return f;
   };
-  const edges = new Table(model.corners.length);
-  const faces = new Int32Array(edges.size).fill(-1); // of an edge its first face
-  const others = new Int32Array(edges.size).fill(-1); // its second; -2: it has more
-  for (let f = 0; f < model.faceCount; ++f) {
-    const way = model.face(f);
-    for (let k = 0; k < way.length; ++k) {
-      const [p, q] = [first[way[k]!], first[way[(k + 1) % way.length]!]];
-      if (p === undefined || q === undefined || p === q) continue;
-      const at = edges.place(Math.min(p, q) * model.pointCount + Math.max(p, q));
-      if (faces[at]! < 0) faces[at] = f;
-      else others[at] = others[at] === -1 ? f : -2;
-    }
-  }
+  const faces = new Int32Array(model.corners.length).fill(-1); // of an edge its first face
+  const others = new Int32Array(model.corners.length).fill(-1); // its second; -2: it has more
+  eachSide(model, first, (edge, isNew, f) => {
+    if (isNew) faces[edge] = f;
+    else others[edge] = others[edge] === -1 ? f : -2;
+  });
   for (let at = 0; at < faces.length; ++at) if (others[at]! >= 0) parent[root(faces[at]!)] = root(others[at]!);
   const numbers = new Map<number, number>();
   const ofFace = Uint32Array.from(parent, (_, f) => {

@@ -8,6 +8,7 @@ import { themeColor } from './theme';
 
 const FLIGHT_MS = 600;
 const REST_MS = 250; // without motion: the camera is at rest
+const REST_FRAMES = 3; // and for this many frames: slow ones take longer
 const MARKS_MS = 33; // between frames in which only marks move, where the processor draws: the loop needs it too
 const MOVING_RATIO = 0.7; // of the pixels' side, while the processor draws a view that moves
 
@@ -49,18 +50,19 @@ export class Stage {
   wholeFrames = 0; // of them those in which more than the marks was drawn
   /** Called before each frame with the time; true: draw again after it. */
   readonly animations = new Set<(now: number) => boolean>();
-  /** Called when the camera begins to move, and when it has come to rest: what is large may be drawn coarsely meanwhile. */
+  /** Called in each frame in which the camera moves, and when it has come to rest: what is large may be drawn coarsely meanwhile. */
   readonly moving = new Set<(moves: boolean) => void>();
   /** Drawn by the processor. */
   readonly isSlow: boolean;
   private readonly renderer: WebGLRenderer | undefined;
   private readonly drawnFrom = new Matrix4(); // the camera's place in the last frame
-  private restTimer: ReturnType<typeof setTimeout> | undefined;
   private flight: Flight | undefined;
   private pending = false;
   private waits = false; // for marks alone
   private isStale = true; // more than marks has changed
   private isMoving = false;
+  private movedMs = 0;
+  private restFrames = 0;
   private lastDrawn = 0;
   private readonly still = new Still();
 
@@ -132,7 +134,7 @@ export class Stage {
     this.camera.near = Math.max(distance * 0.01, 1e-5);
     this.camera.far = distance + 10;
     this.camera.updateProjectionMatrix();
-    this.noteMotion();
+    this.noteMotion(now, flies);
     if (this.renderer !== undefined) this.render(this.renderer);
     this.lastDrawn = now;
     ++this.frames;
@@ -161,23 +163,29 @@ export class Stage {
     renderer.autoClear = true;
   }
 
-  private noteMotion(): void {
+  private noteMotion(now: number, flies: boolean): void {
     this.camera.updateMatrixWorld();
-    const moved = !this.drawnFrom.equals(this.camera.matrixWorld);
+    const moved = flies || !this.drawnFrom.equals(this.camera.matrixWorld);
     this.drawnFrom.copy(this.camera.matrixWorld);
     if (!moved) return;
     this.isStale = true;
+    this.movedMs = now;
+    this.restFrames = 0;
+    if (!this.isMoving) requestAnimationFrame(this.awaitRest);
     this.setMoving(true);
-    clearTimeout(this.restTimer);
-    this.restTimer = setTimeout(() => {
-      this.setMoving(false);
-      this.invalidate();
-    }, REST_MS);
   }
+  private readonly awaitRest = (now: number): void => {
+    const isAtRest = now - this.movedMs >= REST_MS && ++this.restFrames > REST_FRAMES;
+    if (!isAtRest) {
+      requestAnimationFrame(this.awaitRest);
+      return;
+    }
+    this.setMoving(false);
+    this.invalidate();
+  };
   private setMoving(moves: boolean): void {
-    if (moves === this.isMoving) return;
+    if (this.isSlow && moves !== this.isMoving) this.renderer?.setPixelRatio(moves ? MOVING_RATIO : 1);
     this.isMoving = moves;
-    if (this.isSlow) this.renderer?.setPixelRatio(moves ? MOVING_RATIO : 1);
     for (const change of this.moving) change(moves);
   }
 
