@@ -76,7 +76,7 @@ export class GraphTab implements Tab {
     return h(
       'section.looks',
       {},
-      h('fieldset', {}, h('legend', {}, 'Edges'), ...types, checkbox(`busy corners (${grouped(this.model.busyCorners.length)})`, true, (shown) => this.show('busy', shown))),
+      h('fieldset', {}, h('legend', {}, 'Edges'), ...types, checkbox(`busy corners (${grouped(this.model.busyCorners.length)})`, true, (shown) => this.show('busy', shown), 'show-busy')),
       h('label.field', { for: 'node-colour' }, 'Nodes'),
       select,
       h('label.field', { for: 'box-level' }, 'Hierarchy boxes'),
