@@ -122,6 +122,14 @@ class Layers(BrowserCase):
                 self.assertNotEqual(pictures[True], pictures[False])
         self.assert_quiet()
 
+    def test_fans_at_a_vertex_have_a_colour_each(self):
+        self.open(self.view(str(ROOT / "testdata" / "meshes" / "bad" / "non-manifold-vertex.off")))
+        self.press("n")
+        self.wait_for(lambda s: s["rule"] == "non-manifold-vertex" and not s["flying"])
+        self.assertIn("2 fans of faces", self.browser.find_element(By.CSS_SELECTOR, ".hint").text)
+        for color in ((200, 170, 175), (160, 176, 208)):  # the first two colours of numbers, over the surface's grey
+            self.assertGreater(self.share_of(color, 14), 0.05)
+
     def test_a_line_of_the_file_finds_its_element(self):
         self.open(self.view(self.write("bad.off", NON_MANIFOLD)))
         self.press("n")

@@ -168,7 +168,8 @@ export class FindingsTab implements Tab {
     this.view?.select(entry.element);
     this.showPlace();
     this.context.announce(`${entry.issue.severity}: ${entry.issue.rule}, ${describe(entry.element)}`);
-    this.context.hint(`${entry.issue.rule}: ${describe(entry.element)}${entry.element.part ? ` · ${entry.element.part}` : ''}`);
+    const fans = (this.view?.fanCount ?? 0) > 1 ? ` · ${this.view!.fanCount} fans of faces, a colour each` : '';
+    this.context.hint(`${entry.issue.rule}: ${describe(entry.element)}${entry.element.part ? ` · ${entry.element.part}` : ''}${fans}`);
     for (const chosen of this.results.querySelectorAll('[aria-current]')) chosen.removeAttribute('aria-current');
     const item = this.results.querySelector<HTMLElement>(`[data-entry="${index}"]`);
     if (item === null) return;

@@ -58,6 +58,20 @@ export class MeshModel {
     const v = new Vector3(this.points[3 * p], this.points[3 * p + 1], this.points[3 * p + 2]);
     return Number.isFinite(v.x + v.y + v.z) ? v : undefined;
   }
+  /** The faces at a point, in fans: of one fan are those that share an edge at it. */
+  fans(p: number): number[][] {
+    let fans: { faces: number[]; ends: Set<number> }[] = [];
+    for (let f = 0; f < this.faceCount; ++f) {
+      const way = this.face(f);
+      const at = way.indexOf(p);
+      if (at < 0) continue;
+      const ends = [way[(at + 1) % way.length]!, way[(at + way.length - 1) % way.length]!];
+      const joined = fans.filter((fan) => ends.some((end) => fan.ends.has(end)));
+      fans = fans.filter((fan) => !joined.includes(fan));
+      fans.push({ faces: [f, ...joined.flatMap((fan) => fan.faces)], ends: new Set([...ends, ...joined.flatMap((fan) => [...fan.ends])]) });
+    }
+    return fans.map((fan) => fan.faces);
+  }
   /** The other corners of the faces at a point. */
   neighbours(p: number): number[] {
     const found = new Set<number>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh on the stage: its surface, its edges, the findings of each rule as a layer, and what is selected.
-import { Box3, BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Raycaster, Sphere, Vector3 } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Raycaster, Sphere, Vector3 } from 'three';
 import type { Element3, Issue } from './data';
 import { DetailedSurface, restingLines } from './detail';
 import { clearGroup, FILLED, type Marks, marked } from './highlight';
@@ -31,6 +31,8 @@ export class MeshView {
   private readonly painted = new Map<'patches' | 'materials', { surface: DetailedSurface; count: number }>();
   private colors: 'patches' | 'materials' | undefined;
   private showsWinding = true;
+  /** Of the vertex that is selected. */
+  fanCount = 0;
 
   constructor(
     private readonly stage: Stage,
@@ -150,6 +152,7 @@ export class MeshView {
 
   select(element: Element3 | undefined, fly = true): void {
     clearGroup(this.selection);
+    this.fanCount = 0;
     this.material.setFocus(undefined);
     this.stage.invalidate();
     // faces of a whole rule would hide the one that is looked at
@@ -163,11 +166,24 @@ export class MeshView {
     // a face without area is seen by its outline alone
     const isFlat = !isOfEdges && marks.polygons.every((outline) => newell(outline).lengthSq() < FLAT ** 2);
     if (outlines.length > 0) this.selection.add(marked({ lines: outlines }, { color: themeColor('glow'), width: isFlat ? 5 : 1.5, onTop: true }));
+    this.fanCount = this.showFans(element);
     const ball = this.ballOf(marks);
     if (ball === undefined) return;
     const normal = (element.faces ?? []).reduce((sum, f) => sum.add(this.model.faceNormal(f)), new Vector3());
     this.material.setFocus(ball.center, ball.radius * AROUND);
     if (fly) this.stage.flyTo(ball.center, ball.radius * AROUND, this.clearSide(ball.center, ball.radius, normal));
+  }
+
+  /** Where a vertex alone is found: the fans of faces at it in colours of their own, if there are several. Their number. */
+  private showFans(element: Element3): number {
+    const vertex = element.vertices?.length === 1 && (element.faces ?? []).length === 0 ? element.vertices[0] : undefined;
+    const fans = vertex === undefined ? [] : this.model.fans(vertex);
+    if (fans.length < 2) return fans.length;
+    fans.forEach((faces, k) => {
+      const polygons = faces.map((f) => this.model.outline(f)).filter((outline) => outline.length >= 3);
+      this.selection.add(marked({ polygons }, { color: new Color(...colorOfNumber(k)), opacity: 0.7, onTop: true }));
+    });
+    return fans.length;
   }
 
   /** Of both sides that from which the place is seen: a face that is wound wrongly has its normal inside. */
