@@ -108,7 +108,7 @@ class Layers(BrowserCase):
         for rule in rules:
             with self.subTest(rule):
                 self.find("item").send_keys(rule)
-                self.wait_for(lambda s, rule=rule: s["item"].endswith(f"{rule}.off") and not s["flying"])
+                self.wait_for(lambda s, rule=rule: s["item"].endswith(f"{rule}.off") and s.get("tab") and not s["flying"])
                 group = self.browser.find_element(By.CSS_SELECTOR, f".rule[data-rule={rule}]")
                 if group.get_attribute("open") is None:
                     group.find_element(By.TAG_NAME, "summary").click()
