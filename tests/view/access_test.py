@@ -10,6 +10,7 @@ from pages import NON_MANIFOLD, ROOT, sphere
 try:
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import Select
 except ImportError:
     pass
 
@@ -105,10 +106,11 @@ class Layers(BrowserCase):
         rules = ("boundary-edge", "non-manifold-edge", "non-manifold-vertex", "self-intersection", "winding-inconsistent", "duplicate-face")
         bad = ROOT / "testdata" / "meshes" / "bad"
         self.open(self.view(*(str(bad / f"{rule}.off") for rule in rules), "--no-touch"))
-        for rule in rules:
+        for index, rule in enumerate(rules):
             with self.subTest(rule):
-                self.find("item").send_keys(rule)
-                self.wait_for(lambda s, rule=rule: s["item"].endswith(f"{rule}.off") and s.get("tab") and not s["flying"])
+                Select(self.find("item")).select_by_index(index)
+                self.wait_for(lambda s, rule=rule: s["item"].endswith(f"{rule}.off") and s.get("tab") and not s["flying"] and
+                              self.browser.find_elements(By.CSS_SELECTOR, f".rule[data-rule={rule}]"))
                 group = self.browser.find_element(By.CSS_SELECTOR, f".rule[data-rule={rule}]")
                 if group.get_attribute("open") is None:
                     group.find_element(By.TAG_NAME, "summary").click()
@@ -120,6 +122,16 @@ class Layers(BrowserCase):
                     self.browser.execute_script("arguments[0].click()", box)
                 self.assertEqual({True, False}, set(pictures))
                 self.assertNotEqual(pictures[True], pictures[False])
+        self.assert_quiet()
+
+    def test_files_chosen_faster_than_they_are_read_end_at_the_last(self):
+        bad = ROOT / "testdata" / "meshes" / "bad"
+        self.open(self.view(*(str(bad / f"{rule}.off") for rule in ("boundary-edge", "non-manifold-edge", "self-intersection")), "--no-touch"))
+        choose = "const c = document.getElementById('item'); for (const i of arguments[0]) { c.value = i; c.dispatchEvent(new Event('change')); }"
+        self.browser.execute_script(choose, [1, 2, 0, 2, 1])
+        self.wait_for(lambda s: self.browser.find_elements(By.CSS_SELECTOR, ".rule[data-rule=non-manifold-edge]"))
+        self.assertTrue(self.state()["item"].endswith("non-manifold-edge.off"))
+        self.assertEqual(["findings"], self.state()["tabs"])  # not one for each that was asked for
         self.assert_quiet()
 
     def test_fans_at_a_vertex_have_a_colour_each(self):
@@ -146,7 +158,7 @@ class Layers(BrowserCase):
         self.assertEqual(2, self.state()["busy"])  # the poles: 48 edges each
         before = self.picture()
         self.find("show-busy").click()
-        self.assertNotEqual(before, self.picture())
+        self.wait_for(lambda _: self.picture() != before)
 
 
 class Names(BrowserCase):

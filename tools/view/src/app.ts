@@ -39,6 +39,8 @@ class App {
   private mesh: MeshView | undefined;
   private down: { x: number; y: number } | undefined;
   private item: Item | undefined;
+  private chosen = 0;
+  private showing: Promise<void> = Promise.resolve();
 
   constructor(page: Page, wasm: Uint8Array<ArrayBuffer>) {
     this.help = makeHelp(page.version);
@@ -106,7 +108,16 @@ class App {
 
   // ---- items
 
-  async show(index: number): Promise<void> {
+  // Shows the file chosen last, once the one before it stands: keys choose faster than a file is read.
+  choose(index: number): Promise<void> {
+    this.chosen = index;
+    this.showing = this.showing
+      .catch(() => undefined)
+      .then(() => (this.chosen === index ? this.show(index) : undefined));
+    return this.showing;
+  }
+
+  private async show(index: number): Promise<void> {
     this.active?.deactivate();
     this.context.dock(null);
     for (const tab of this.tabs) if (tab instanceof TouchTab) tab.dispose();
@@ -177,7 +188,7 @@ class App {
 
   private showFacts(item: Item, index: number): void {
     const count = itemCount();
-    const choose = h('select', { id: 'item', 'aria-label': 'File', onchange: () => void this.show(Number(choose.value)) });
+    const choose = h('select', { id: 'item', 'aria-label': 'File', onchange: () => void this.choose(Number(choose.value)) });
     if (count > 1) void this.fillItems(choose, count, index);
     const report = item.report;
     const parts: string[] = [];
@@ -327,6 +338,6 @@ export async function start(): Promise<void> {
   const app = new App(page, await readWasm());
   Object.defineProperty(window, 'fdcgView', { value: { state: () => app.state(), draw: () => app.draw(), times: () => app.times() } });
   if (itemCount() === 0) throw new Error('it holds no file');
-  await app.show(0);
+  await app.choose(0);
   performance.mark('shown'); // for measurements
 }
