@@ -10,7 +10,7 @@
 
 using namespace fdcg;
 using namespace fdcg::test;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -91,7 +91,7 @@ TEST_CASE("tables come and go, and each object keeps its own") {
   const fdcg_params another = params_of(one_more);
   const fdcg_pose away = posed({0, 20, 0});
   CHECK(fdcg_scene_add_object(rig.get(), &cube.graph, &another, &away, &none, &error) == FDCG_E_ARGUMENT);
-  CHECK_THAT(error.message, Contains("config.material_capacity"));
+  CHECK_THAT(error.message, ContainsSubstring("config.material_capacity"));
   const std::vector<fdcg_material> longer(3, fdcg_material{0, 0, 50});
   const fdcg_params too_many = params_of(longer);
   CHECK(fdcg_scene_set_params(rig.get(), objects[1], &too_many, &error) == FDCG_E_ARGUMENT);

@@ -10,7 +10,7 @@
 
 using namespace fdcg;
 using namespace fdcg::test;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -92,7 +92,7 @@ TEST_CASE("only a graph's object is given another graph") {
   fdcg_error error;
   REQUIRE(fdcg_scene_add_surface(rig.get(), &ball, &params, &pose, &object, &error) == FDCG_OK);
   CHECK(fdcg_scene_replace_graph(rig.get(), object, &box.graph, &error) == FDCG_E_ARGUMENT);
-  CHECK_THAT(error.message, Contains("surface"));
+  CHECK_THAT(error.message, ContainsSubstring("surface"));
   const fdcg_graph closed = {};
   const fdcg_object_id cube_id = rig.add(box.graph, params, pose);
   CHECK(fdcg_scene_replace_graph(rig.get(), cube_id, &closed, &error) == FDCG_E_ARGUMENT);

@@ -208,7 +208,7 @@ TEST_CASE("a finger's material is combined with what it touches: geometric mean,
       REQUIRE(fdcg_scene_add_finger(scene, start, &id, &error) == FDCG_OK);
       const fdcg_material bad = {0.1, 0.2, 100};
       CHECK(fdcg_scene_set_finger_material(scene, id, &bad, &error) == FDCG_E_ARGUMENT);
-      CHECK_THAT(error.message, Catch::Contains("material.mu_static is"));
+      CHECK_THAT(error.message, Catch::Matchers::ContainsSubstring("material.mu_static is"));
       REQUIRE(fdcg_scene_set_finger_material(scene, id, &finger, &error) == FDCG_OK);
       fdcg_scene_step(scene);
       for (int tick = 0; tick < 100; ++tick) {
@@ -264,10 +264,10 @@ TEST_CASE("an invalid material table is refused with the row") {
   params.material_count = 2;
   fdcg_error error = {};
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  CHECK_THAT(error.message, Catch::Contains("params.materials[1].mu_static is 0.2"));
+  CHECK_THAT(error.message, Catch::Matchers::ContainsSubstring("params.materials[1].mu_static is 0.2"));
   table[1] = {0.2, 0.1, std::nan("")};
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
-  CHECK_THAT(error.message, Catch::Contains("params.materials[1].stiffness_n_per_m"));
+  CHECK_THAT(error.message, Catch::Matchers::ContainsSubstring("params.materials[1].stiffness_n_per_m"));
   params.materials = nullptr;
   CHECK(fdcg_check_params(&params, &error) == FDCG_E_ARGUMENT);
   table[1].stiffness_n_per_m = 500;

@@ -45,7 +45,7 @@ TEST_CASE("a mesh without materials has no section of them; faces before the fir
       imported("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nusemtl  felt, grey \nf 2 3 4\nusemtl\nf 1 4 3\n");
   const CompiledMesh mesh(soup);
   REQUIRE(mesh.view().material_count == 1);
-  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 0), Catch::Equals("felt, grey"));
+  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 0), Catch::Matchers::Equals("felt, grey"));
   const std::uint32_t expected[] = {FDCG_NONE, FDCG_NONE, 0, FDCG_NONE};
   for (std::uint32_t f = 0; f < 4; ++f)
     CHECK(fdcg_get_node_material(&mesh.view(), mesh.view().source_map[f]) == expected[f]);
@@ -139,8 +139,8 @@ TEST_CASE("long and non-UTF-8 names stay distinct in 63 bytes") {
   for (std::uint32_t i = 0; i < 4; ++i)
     ++names[fdcg_get_material_name(&mesh.view(), i)];
   CHECK(names.size() == 4);
-  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 0), Catch::Equals(stem + "one"));
-  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 1), Catch::StartsWith(stem.substr(0, 54) + "~"));
+  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 0), Catch::Matchers::Equals(stem + "one"));
+  CHECK_THAT(fdcg_get_material_name(&mesh.view(), 1), Catch::Matchers::StartsWith(stem.substr(0, 54) + "~"));
 }
 
 TEST_CASE("a file with materials out of range is refused by name") {
@@ -167,7 +167,7 @@ TEST_CASE("a file with materials out of range is refused by name") {
     fdcg_graph graph;
     fdcg_error error = {};
     CHECK(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_GRAPH);
-    CHECK_THAT(error.message, Catch::Contains(damage.message));
+    CHECK_THAT(error.message, Catch::Matchers::ContainsSubstring(damage.message));
   }
   AlignedBytes file(compiled->bytes);
   auto* const sections = reinterpret_cast<fdcg_section*>(file.data() + sizeof(fdcg_header));
@@ -176,5 +176,5 @@ TEST_CASE("a file with materials out of range is refused by name") {
   fdcg_graph graph;
   fdcg_error error = {};
   CHECK(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_TRUSTED, &graph, &error) == FDCG_E_LAYOUT);
-  CHECK_THAT(error.message, Catch::Contains("go together"));
+  CHECK_THAT(error.message, Catch::Matchers::ContainsSubstring("go together"));
 }

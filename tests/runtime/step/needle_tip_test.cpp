@@ -200,6 +200,6 @@ TEST_CASE("a file with fan runs out of range is refused by name") {
     fdcg_error error = {};
     INFO("byte " << damage.byte);
     CHECK(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_E_GRAPH);
-    CHECK_THAT(error.message, Catch::Contains("fan run 0"));
+    CHECK_THAT(error.message, Catch::Matchers::ContainsSubstring("fan run 0"));
   }
 }
