@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tick that slides over the edge of its face onto the next, and there to its end, or over a few faces so: what a moving hand
-// meets most. The same numbers, to the bit, as the rules of face.hpp and edge.hpp one after the other, without what serves
-// other ends of theirs. Whatever is not plain is left to them: corners, borders, doubtful signs, two faces that both pull, a
-// face that is met again, friction that holds, graphs that are not plain.
+// A tick that slides over edges from face to face: what a moving hand meets most. The same numbers, to the bit, as the rules of
+// face.hpp and edge.hpp one after the other, without what serves other ends of theirs. Whatever is not plain is left to them,
+// from where the hops end: corners, borders, doubtful signs, two faces that both pull, a place that is no nearer to the HIP,
+// friction that holds. Graphs that are not plain have no hops.
 #pragma once
 
 #include "step/face.hpp"
 
 namespace fdcg {
 
-inline constexpr uint32_t kMostHops = 4;       // far within the work of a tick
-inline constexpr uint32_t kMostHopSides = 16;  // of each face
+// From face to edge to face: a change of state, the edge's rule, a change of state.
+inline constexpr uint32_t kHopWork = 2 * kTransitionWork + kEdgeWork;
 
 // A god-object on its way over faces.
 template <class Real>
 struct Hop {
   uint32_t node;
-  uint32_t transitions;
+  uint32_t edge;         // the last that it went over
+  uint32_t transitions;  // 0: none yet
+  uint32_t work_left;    // as the rules would have it
+  Real gap2;             // squared distance from the HIP
   Vec3<Real> god_object;
   Vec3<Real> rounding_residual;  // contact-model FACE-7
   QuickFriction<Real> friction;
@@ -24,7 +27,7 @@ struct Hop {
 };
 
 // Goes over the side that the move on its face meets (contact-model FACE-6, EDGE-1), and looks at the face beyond. False: not
-// plainly so.
+// plainly so, and nothing has changed.
 template <class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bound, Hop<Real>* hop) {
   const NodeRef<Geometry> here = graph.node(hop->node);
@@ -43,31 +46,32 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   const Vec3<Real> direction = vec(edge.direction);
   const Real u = dot((from + ahead) - start, direction), end_tolerance = edge_end_tolerance(start, edge.length);
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return false;
-  hop->god_object = start + direction * u;
-  hop->rounding_residual = (from - hop->god_object) + ahead;
+  const Vec3<Real> god_object = start + direction * u, gap = god_object - hip;
+  const Real gap2 = dot(gap, gap);
+  if (!(gap2 < hop->gap2)) return false;
+  hop->god_object = god_object;
+  hop->gap2 = gap2;
+  hop->rounding_residual = (from - god_object) + ahead;
   hop->node = crossed.across;
+  hop->edge = crossed.link >> 1;
   hop->transitions += 2;
-  const Vec3<Real> reach = (hop->god_object - hip) + hop->rounding_residual;
+  spend(&hop->work_left, kHopWork + kSideWork * there.side_count());
+  const Vec3<Real> reach = gap + hop->rounding_residual;
   hop->move = move_on_face(there, hop->friction, hip, bound, side, hop->god_object, reach);
   return true;
 }
 
-// From the face of *hop, whose move meets a side, to where a move ends on its face. False: there is no such end near, and *hop
-// is of no use.
+// From the face of *hop, whose move meets a side, as far as it is plain: to where a move ends on its face, or to where the
+// rules go on.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool hop_to_hip(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bound, Hop<Real>* hop) {
+[[gnu::noinline]] void hop_to_hip(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bound, Hop<Real>* hop) {
   using Kind = typename FaceMove<Real>::Kind;
-  if (!graph.is_plain()) return false;
-  uint32_t visited[kMostHops], hops = 0;
-  do {
-    if (hops == kMostHops || graph.node(hop->node).side_count() > kMostHopSides) return false;
-    visited[hops++] = hop->node;
-    if (!hop_over(graph, hip, bound, hop)) return false;
-    for (uint32_t i = 0; i < hops; ++i) {
-      if (visited[i] == hop->node) return false;
-    }
-  } while (hop->move.kind == Kind::crosses);
-  return hop->move.kind == Kind::slides;
+  if (!graph.is_plain()) return;
+  const Vec3<Real> gap = hop->god_object - hip;
+  hop->gap2 = dot(gap, gap);
+  while (hop->move.kind == Kind::crosses && hop->work_left > kHopWork) {
+    if (!hop_over(graph, hip, bound, hop)) return;
+  }
 }
 
 }  // namespace fdcg

@@ -54,7 +54,10 @@ class NodeEntry {
     if (!clip_to(node, rounding + off, &begin, &end) &&
         !clip_to(node, kSharpSides * rounding + off, &widest_begin, &widest_end))
       return kNever;
-    if (fraction > end) fraction = end;
+    if (fraction > end) {  // come in after the way has left the node: where it surely is still over it
+      Real sharp_begin = least, sharp_end = 1;
+      fraction = clip_to(node, 0, &sharp_begin, &sharp_end) ? sharp_end : end;
+    }
     return fraction < begin ? begin : fraction;
   }
 
@@ -178,7 +181,10 @@ class NodeEntry {
   [[gnu::noinline, gnu::cold]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
     const Plane<Real> plane = node.plane();
-    if (plane.distance(from_) < -own_plane_rounding(plane, from_)) return;  // of a flat or a long body much less than the bound
+    const auto is_behind = [&](Vec3<Real> x) {  // of a flat or a long body the rounding is much less than the bound
+      return plane.distance(x) < -own_plane_rounding(plane, x);
+    };
+    if (is_behind(from_) && is_behind(stood_)) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, wherever the HIP is
       if (node.voronoi_plane(k).distance(from_) > side_rounding(from_bound_, Real(0))) return;
     }

@@ -64,6 +64,11 @@ class Trail {
     return false;
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
+  // Where hops have led to the start, over this edge, which was nearer than all before.
+  void begin_nearer(Feature edge) {
+    visited_[count_++] = key(edge);
+    has_come_nearer_ = true;
+  }
 
   // Called where the step would rest (contact-model TICK-6). Walk::rounding_residual is not kept between ticks, so a rest must
   // hold without it: it is set to zero and the step continues as the next tick would; once for each time that the god-object
@@ -102,9 +107,10 @@ Decision apply_rule(Walk<Geometry>& walk) {
 }
 
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
-// decided. It stood on `start` then, `start_gap` away from the HIP.
+// decided. It stood on `start` then, `start_gap` away from the HIP; `hopped`: the edge over which hops led there, or kFree.
 template <class Geometry, class Real = typename Geometry::Real>
-Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_gap, const Decision* decided, FreeSpace* space) {
+Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_gap, Feature hopped, const Decision* decided,
+                         FreeSpace* space) {
   Progress progress = {0, 0};
   if (walk.active == kFree) {
     if (FDCG_MUTANT("last-tick-segment")) walk.god_object = walk.hip;
@@ -115,6 +121,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     start_gap = walk.god_object - walk.hip;
   }
   Trail<Geometry> trail(start, start_gap);
+  if (!(hopped == kFree)) trail.begin_nearer(hopped);
   while (true) {
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
@@ -258,17 +265,18 @@ template <class Geometry>
   spring_damper_force(*walk.graph.header(), params, *contact, stiffness, hip, spring, result);
 }
 
-// The long way: drives the rules from where the contact stands. `move` is null, or what its face has already made of it.
+// The long way: drives the rules from where the contact stands, or where hops have led, in so many transitions. `move` is null,
+// or what its face has already made of it.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] void walk_to_hip(Walk<Geometry>& walk, const FaceMove<Real>* move, const fdcg_params& params,
-                                              fdcg_contact* contact, fdcg_result* result) {
+[[gnu::noinline, gnu::cold]] void walk_to_hip(Walk<Geometry>& walk, const FaceMove<Real>* move, uint32_t transitions,
+                                              const fdcg_params& params, fdcg_contact* contact, fdcg_result* result) {
   const Vec3<Real> start_gap = walk.god_object - walk.hip;
-  const Feature start = walk.active;
+  const Feature start = walk.active, hopped = transitions != 0 ? walk.seat : kFree;
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
   FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
                      kSweepWork};
-  const Progress progress = move_god_object(walk, start, start_gap, move != nullptr ? &decided : nullptr, &space);
+  const Progress progress = move_god_object(walk, start, start_gap, hopped, move != nullptr ? &decided : nullptr, &space);
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
   // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).
   if (!(walk.active == kFree) && !is_usable(walk.god_object)) {
@@ -279,7 +287,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
   contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
   result->flags = progress.flags;
-  result->transitions = progress.transitions;
+  result->transitions = transitions + progress.transitions;
   const bool is_free = walk.active == kFree;
   if (walk.friction.terms == nullptr) {
     if (!is_free) respond(*walk.graph.header(), params, *contact, walk.hip, walk.god_object, result);
@@ -309,7 +317,7 @@ template <class Geometry, class Real = typename Geometry::Real>
                          {contact->state, contact->feature},
                          {contact->seat_state, contact->seat_feature},
                          kRuleWork};
-  walk_to_hip<Geometry, Real>(walk, nullptr, params, contact, result);
+  walk_to_hip<Geometry, Real>(walk, nullptr, 0, params, contact, result);
   store(hip, contact->hip);
   write_position(*raw.header, *contact, result);
   store(vec(result->god_object_m) + terms.yielded * raw.header->metres_per_unit, result->god_object_m);
@@ -354,38 +362,50 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     const Real bound = plane_rounding_bound(graph, hip);
     const Vec3<Real> god_object = narrow<Real>(contact->god_object);
     const bool is_on_face = contact->state == FDCG_FACE;
-    QuickFriction<Real> friction = {friction_of<Real>(params, *contact)};
-    FaceMove<Real> move;
+    Hop<Real> hop;
+    hop.friction = {friction_of<Real>(params, *contact)};
+    hop.transitions = 0;
+    Real side = 0;
     if (is_on_face) {
       const NodeRef<Geometry> node = graph.node(contact->feature);
-      move = move_on_face(node, friction, hip, bound, side_of(graph, node, hip, bound, nullptr), god_object, god_object - hip);
+      side = side_of(graph, node, hip, bound, nullptr);
+      hop.move = move_on_face(node, hop.friction, hip, bound, side, god_object, god_object - hip);
     }
-    if (kHasHops<Geometry> && is_on_face && move.kind == Kind::crosses &&
+    if (kHasHops<Geometry> && is_on_face && hop.move.kind == Kind::crosses && side < -bound &&
         (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0) {
-      Hop<Real> hop = {contact->feature, 0, god_object, {0, 0, 0}, friction, move};
-      if (hop_to_hip(graph, hip, bound, &hop) && !is_far(graph, hip)) {
-        contact->feature = hop.node;
-        result->transitions = hop.transitions;
-        friction = hop.friction;
-        move = hop.move;
-      }
+      hop.node = contact->feature;
+      hop.work_left = kRuleWork;
+      hop.god_object = god_object;
+      hop.rounding_residual = {0, 0, 0};
+      hop_to_hip(graph, hip, bound, &hop);
+      contact->feature = hop.node;
     }
-    if (is_on_face && (move.kind == Kind::rests || (move.kind == Kind::slides && !is_far(graph, hip)))) {
-      if (move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
-      contact->slipping = friction.is_slipping ? 1 : 0;
+    const bool has_hopped = hop.transitions != 0;
+    const bool is_at_end =
+        is_on_face && (hop.move.kind == Kind::slides ? !is_far(graph, hip) : hop.move.kind == Kind::rests && !has_hopped);
+    if (is_at_end) {
+      if (hop.move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
+      contact->slipping = hop.friction.is_slipping ? 1 : 0;
       contact->sweep.stalled_sweeps = 0;
-      respond(header, params, *contact, hip, move.target, result);
-      store(move.target, contact->god_object);
+      result->transitions = hop.transitions;
+      respond(header, params, *contact, hip, hop.move.target, result);
+      store(hop.move.target, contact->god_object);
     } else {
       Walk<Geometry> walk = {graph,
-                             {static_cast<const PlainFriction<Real>&>(friction), nullptr},
+                             {static_cast<const PlainFriction<Real>&>(hop.friction), nullptr},
                              hip,
                              bound,
                              god_object,
                              {contact->state, contact->feature},
                              {contact->seat_state, contact->seat_feature},
                              kRuleWork};
-      walk_to_hip<Geometry, Real>(walk, is_on_face ? &move : nullptr, params, contact, result);
+      if (has_hopped) {
+        walk.god_object = hop.god_object;
+        walk.rounding_residual = hop.rounding_residual;
+        walk.seat = {FDCG_EDGE, hop.edge};
+        walk.work_left = hop.work_left;
+      }
+      walk_to_hip<Geometry, Real>(walk, is_on_face ? &hop.move : nullptr, hop.transitions, params, contact, result);
     }
     store(hip, contact->hip);
   }
