@@ -174,6 +174,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
     const MergeOptions how{options.merge && !options.triangles, options.coplanar, quantum,
                            keeps_polygons ? &cut.polygon : nullptr};
     faces = merge_regions(std::move(cut.mesh), std::move(cut.topology), std::move(faces.edges), std::move(faces.regions), how);
+    if (input.mass) input.mass->deviation = std::max(input.mass->deviation, faces.removed_distance);
   }
   input.face_of_source = trace_sources(soup.face_count(), source_face, cut.polygon, faces.face_of_triangle);
   compiled.merged_faces = count_sharing(input.face_of_source, faces.mesh.face_count());

@@ -41,7 +41,8 @@ Frame fitted_frame(std::span<const FanDirection> fan) {
   const Vec3 out = direction_or(turning, perpendicular_to(fan[0].edge));
   const Vec3 chord = fan.back().edge - fan.front().edge;
   const Vec3 along = direction_or(chord - dot(chord, out) * out, perpendicular_to(out));
-  return {along, cross(out, along), out};
+  const Vec3 across_out = direction_or(along - dot(along, out) * out, along);  // again: of a chord along `out` little was left
+  return {across_out, cross(out, across_out), out};
 }
 
 // The largest a.u over the directions u of one entry: its edge, the next, and the arc between them in the face's plane.

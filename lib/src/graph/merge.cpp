@@ -42,7 +42,11 @@ class Merger {
     for (const Region& region : regions_.list)
       views_.emplace_back(region.plane.normal);
     find_centres();
-    if (options_.across_faces) VertexRemover(mesh_, topology_, edges_, regions_, views_, options_).run();
+    if (options_.across_faces) {
+      VertexRemover remover(mesh_, topology_, edges_, regions_, views_, options_);
+      remover.run();
+      out_.removed_distance = remover.largest_distance();
+    }
     drop_diagonals();
     collect();
     locate_triangles();

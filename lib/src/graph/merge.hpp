@@ -26,6 +26,7 @@ struct Merged {
   std::vector<EdgeClass> edges;
   Regions regions;
   std::vector<std::uint32_t> face_of_triangle;  // of each triangle given: the polygon where its centre now lies; empty: itself
+  double removed_distance = 0;  // the largest of a vertex that was removed between collinear edges from the edge in their place
 };
 
 // For each region, exactly, in its projection along one axis:

@@ -228,6 +228,7 @@ VertexRemover::Outcome VertexRemover::try_border(std::uint32_t vertex, std::uint
     next_swallowed_.set(vertex, list);
     list = vertex;
   }
+  measure(left, right, list);
   const std::uint32_t left_slot = replace(left_star_);
   edges_[left_slot] = border;
   swallowed_.set(left_slot, list);
@@ -277,6 +278,12 @@ bool VertexRemover::all_near(const Vec3& from, const Vec3& to, std::uint32_t lis
     if (!is_near(from, to, point(list))) return false;
   }
   return true;
+}
+
+void VertexRemover::measure(std::uint32_t from, std::uint32_t to, std::uint32_t list) {
+  const Vec3 &a = point(from), edge = point(to) - a;
+  for (; list != kNone; list = next_swallowed_[list])
+    largest_distance_ = std::max(largest_distance_, length(cross(edge, point(list) - a)) / length(edge));
 }
 
 bool VertexRemover::is_straight(std::uint32_t from, std::uint32_t vertex, std::uint32_t to, std::uint32_t list_in,

@@ -24,6 +24,8 @@ class VertexRemover {
   VertexRemover(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, const Regions& regions,
                 const std::vector<Projection>& views, const MergeOptions& options);
   void run();
+  // Of a removed vertex from the edge that now passes it by.
+  [[nodiscard]] double largest_distance() const { return largest_distance_; }
 
  private:
   struct RingEdge {
@@ -65,6 +67,7 @@ class VertexRemover {
   [[nodiscard]] bool is_straight(std::uint32_t from, std::uint32_t vertex, std::uint32_t to, std::uint32_t list_in,
                                  std::uint32_t list_out, bool& is_exact) const;
   std::uint32_t join_lists(std::uint32_t a, std::uint32_t b);
+  void measure(std::uint32_t from, std::uint32_t to, std::uint32_t list);
 
   Mesh& mesh_;
   Topology& topology_;
@@ -76,6 +79,7 @@ class VertexRemover {
   // Removed vertices that a border edge replaces without passing through them exactly, as linked lists: the first by slot (the
   // same for both halves of an edge), the next by vertex.
   LazyArray<NoneYet> swallowed_, next_swallowed_;
+  double largest_distance_ = 0;
   std::vector<std::uint32_t> fan_;
   Star left_star_, right_star_;
   PolygonCutter cutter_;

@@ -282,7 +282,8 @@ typedef struct fdcg_mass_record {
                                xy is minus the integral of x y */
   double density_kg_per_m3; /**< 0, and so is the next: not known */
   double mass_kg;           /**< density times volume, to rounding: one of them was given */
-  double deviation; /**< largest distance of a source corner from the plane of a node that took its face in, source units */
+  double deviation; /**< largest distance of a source corner from the plane of a node that took its face in, or of one left out
+                       from the edge that passes it by, source units */
 } fdcg_mass_record;
 
 /** A material of the mesh file: UTF-8, zero-terminated and filled up with zeros. Names are compared by all their bytes: of
