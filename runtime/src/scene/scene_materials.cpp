@@ -6,13 +6,10 @@
 #include "scene/scene_memory.hpp"
 
 namespace fdcg {
-namespace {
 
 uint32_t rows_of(const fdcg_params& params) {
   return FDCG_WITH_FRICTION_TERMS && (params.friction_flags & FDCG_FRICTION_MATERIALS) != 0 ? params.material_count : 0;
 }
-
-}  // namespace
 
 void drop_materials(fdcg_scene* scene, Object* object) {
   settle_place(scene);

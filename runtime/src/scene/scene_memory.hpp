@@ -94,6 +94,7 @@ struct fdcg_scene {
   fdcg::SoftStep* step_soft;  // null: no finger was ever soft
   uint64_t soft_fingers_at, soft_touches_at;
   uint64_t materials_at;
+  uint32_t salt, reserved;                     // where the numbers of ids begin
   uint32_t material_capacity, material_count;  // rows of materials, those in use first
   const fdcg_scene* place;                     // where the materials' pointers lead
   fdcg::DeformStart* start_on_deforms;         // null: no deformable mesh was ever added
@@ -114,8 +115,14 @@ struct fdcg_scene {
   fdcg::Slot* slots(uint32_t finger) {
     return fdcg::part_at<fdcg::Slot>(this, slots_at) + finger * uint64_t{config.touches_per_finger};
   }
+  const fdcg::Slot* slots(uint32_t finger) const {
+    return fdcg::part_at<fdcg::Slot>(this, slots_at) + finger * uint64_t{config.touches_per_finger};
+  }
   // A slot's is contact_bytes behind that of the slot before it.
   fdcg_contact* first_contact(uint32_t finger) {
+    return fdcg::part_at<fdcg_contact>(this, contacts_at + finger * config.touches_per_finger * uint64_t{contact_bytes});
+  }
+  const fdcg_contact* first_contact(uint32_t finger) const {
     return fdcg::part_at<fdcg_contact>(this, contacts_at + finger * config.touches_per_finger * uint64_t{contact_bytes});
   }
   fdcg_touch* touches(uint32_t finger) {
@@ -128,6 +135,7 @@ struct fdcg_scene {
   fdcg_material* materials() { return fdcg::part_at<fdcg_material>(this, materials_at); }
   // Present if config.has_soft_fingers.
   fdcg::SoftFinger* soft_fingers() { return fdcg::part_at<fdcg::SoftFinger>(this, soft_fingers_at); }
+  const fdcg::SoftFinger* soft_fingers() const { return fdcg::part_at<fdcg::SoftFinger>(this, soft_fingers_at); }
   fdcg::SoftTouch* soft_touches(uint32_t finger) {
     return fdcg::part_at<fdcg::SoftTouch>(this, soft_touches_at) + finger * uint64_t{config.touches_per_finger};
   }
@@ -141,6 +149,8 @@ namespace fdcg {
 // scene_advance.cpp: applies an object's latest pose. Its last pose becomes the present one or, where it is placed without a
 // motion, the latest too.
 void settle_object(fdcg_scene& scene, uint32_t object, bool has_way);
+// ... what the broad phase knows of an object, from its present pose and its last.
+void scan_object(fdcg_scene& scene, uint32_t object);
 
 // Steps an object's contact to a place in its frame.
 inline void step_object(const Object& object, const fdcg_params* params, fdcg_contact* contact, World at, fdcg_result* result) {
@@ -166,6 +176,7 @@ fdcg_status add_object(fdcg_scene* scene, const Object& shape, const fdcg_params
 // scene_materials.cpp: copies the table of new parameters into the scene, in place of the object's own, which goes. A refusal,
 // where the rows do not suffice, leaves all as it was.
 fdcg_status take_params(fdcg_scene* scene, Object* object, const fdcg_params& params, fdcg_error* error);
+uint32_t rows_of(const fdcg_params& params);  // of materials, that the scene keeps
 void drop_materials(fdcg_scene* scene, Object* object);
 
 // scene_materials.cpp: after the scene was copied to another place.
@@ -186,7 +197,7 @@ Finger* find_finger(fdcg_scene* scene, fdcg_finger_id id, fdcg_error* error);
 inline const SoftTouch* soft_touch(const fdcg_scene& scene, uint32_t finger, uint32_t slot) {
   if (scene.step_soft == nullptr || (scene.fingers()[finger].flags & FDCG_FINGER_NON_FINITE) != 0) return nullptr;
   const SoftTouch* const touch = scene.soft_touches(finger) + slot;
-  const Slot& held = part_at<Slot>(&scene, scene.slots_at)[finger * uint64_t{scene.config.touches_per_finger} + slot];
+  const Slot& held = scene.slots(finger)[slot];
   return touch->is_on != 0 && held.is_held != 0 && held.object == touch->object.index ? touch : nullptr;
 }
 

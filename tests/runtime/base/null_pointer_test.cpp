@@ -8,6 +8,7 @@
 #include "compiled.hpp"
 #include "fdcg/deform.h"
 #include "fdcg/pile.h"
+#include "fdcg/scene_state.h"
 #include "fdcg/soft_finger.h"
 #include "fdcg/surface.h"
 #include "meshes.hpp"
@@ -15,7 +16,7 @@
 
 using namespace fdcg;
 using namespace fdcg::test;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -120,6 +121,10 @@ const std::vector<Call> kObjectsAndFingers = {
        return fdcg_scene_get_result(nullptr, w.finger, &r, e);
      }},
     {"result", [](World& w, fdcg_error* e) { return fdcg_scene_get_result(w.scene(), w.finger, nullptr, e); }},
+    {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_save(nullptr, w.place, 8, e); }},
+    {"state", [](World& w, fdcg_error* e) { return fdcg_scene_save(w.scene(), nullptr, 8, e); }},
+    {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_restore(nullptr, w.place, 8, e); }},
+    {"state", [](World& w, fdcg_error* e) { return fdcg_scene_restore(w.scene(), nullptr, 8, e); }},
     {"scene", [](World& w, fdcg_error* e) { return fdcg_scene_set_finger_radius(nullptr, w.finger, 0, e); }},
     {"scene",
      [](World& w, fdcg_error* e) { return fdcg_scene_set_finger_rotation(nullptr, w.finger, w.pose.rotation_xyzw, e); }},
@@ -221,7 +226,7 @@ TEST_CASE("null pointers: refused by name in every call with a status, with and 
       fdcg_error error = {};
       CHECK(call.make(world, &error) == FDCG_E_ARGUMENT);
       CHECK(error.status == FDCG_E_ARGUMENT);
-      CHECK_THAT(error.message, Contains(call.null_one) && Contains("null pointer"));
+      CHECK_THAT(error.message, ContainsSubstring(call.null_one) && ContainsSubstring("null pointer"));
       CHECK(call.make(world, nullptr) == FDCG_E_ARGUMENT);
     }
   }
