@@ -159,7 +159,7 @@ class Container(unittest.TestCase):
         self.assertEqual([], [word for word in words if word not in {"FROM", "COPY", "RUN", "WORKDIR", "ENTRYPOINT"}])
         script, what = re.search(r"^RUN /fdcg/(\S+) (\w+)", text, re.M).groups()
         self.assertTrue(os.access(ROOT / script, os.X_OK))
-        self.assertRegex((ROOT / script).read_text(), rf"\b{what} \| archive\)")
+        self.assertRegex((ROOT / script).read_text(), rf"(?m)^ *{what} \| .*\) what=")
         package = re.search(r"/packages/(\w+)_\*\.deb", text)[1]
         self.assertIn(package, paragraphs())
         self.assertIn("usr/bin\n", (DEBIAN / f"{package}.install").read_text())

@@ -19,7 +19,7 @@
 // fdcg_open_file: needs a system with memory-mapped files. Without it the function returns an error; fdcg_open_memory is always
 // available.
 #ifndef FDCG_WITH_FILES
-#if defined(__unix__) || defined(__APPLE__)
+#if defined(__unix__) || defined(__APPLE__) || defined(_WIN32)
 #define FDCG_WITH_FILES 1
 #else
 #define FDCG_WITH_FILES 0

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one call to the platform that loading needs. map_file_posix.cpp implements it; another system needs another such file.
+// The one call to the platform that loading needs: map_file_posix.cpp, map_file_windows.cpp, map_file_none.cpp.
 #pragma once
 
 #include "fdcg/fdcg.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/config.hpp"
-#if FDCG_WITH_FILES
+#if FDCG_WITH_FILES && !defined(_WIN32)
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -124,4 +124,4 @@ void unmap_file(const MappedFile& file) {
 
 }  // namespace fdcg
 
-#endif  // FDCG_WITH_FILES
+#endif  // FDCG_WITH_FILES && !defined(_WIN32)

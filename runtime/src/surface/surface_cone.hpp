@@ -168,7 +168,9 @@ struct ConeSurface {
     *next = rim_feature(end);
     return true;
   }
-  [[nodiscard]] Feature rim_feature(uint32_t end) const { return {radius[end] > 0 ? FDCG_EDGE : FDCG_VERTEX, end}; }
+  [[nodiscard]] Feature rim_feature(uint32_t end) const {
+    return {static_cast<uint32_t>(radius[end] > 0 ? FDCG_EDGE : FDCG_VERTEX), end};
+  }
 
   // ---- rules
 
