@@ -108,7 +108,7 @@ class Touch(TouchCase):
         self.wait_for(lambda s: s["contact"] == "free" and s["seen"]["hip"])
         self.assertIn("touching", self.canvas().get_attribute("class"))  # the pointer is drawn at the god-object
         self.hand().click_and_hold().perform()
-        state = self.wait_for(lambda s: s["contact"] == "face" and s["force"] > 1 and s["seen"]["cone"])
+        state = self.wait_for(lambda s: s["contact"] == "face" and s["force"] > 1 and s["seen"]["cone"] and s["seen"]["spring"])
         self.assertEqual({"hip": True, "godObject": True, "spring": True, "force": True, "cone": True}, state["seen"])
         # the god-object stays on the ball, the hand is inside
         self.assertLess(math.hypot(*state["hip"]), math.hypot(*state["godObject"]))

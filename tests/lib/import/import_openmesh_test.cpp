@@ -103,7 +103,10 @@ TEST_CASE("OpenMesh reads no more faces from real meshes, and the same ones wher
   for (const auto& path : meshes) {
     INFO(path);
     const Result<PolygonSoup> soup = import_mesh(path);
-    REQUIRE(soup);
+    if (!soup) {  // a file of CGAL 6 has a face more than its header says: OpenMesh leaves it out without a word
+      CHECK(soup.error().message.find("but data follows them") != std::string::npos);
+      continue;
+    }
     Mesh mesh;
     omerr().disable();
     if (!OpenMesh::IO::read_mesh(mesh, path.string())) continue;
