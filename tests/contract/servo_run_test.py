@@ -171,6 +171,64 @@ class Run(ServoCase):
                            (scene, ("would overwrite the scene",)), (self.path("cube.fdcg"), ("graph of 'cube'",))):
             self.assert_one_line(self.run_scene(scene, "--log", log, codes=(3,)), *words)
 
+    def test_what_is_no_log_is_not_overwritten_and_a_log_not_without_a_word(self):
+        text = self.write("notes.txt", "mine")
+        os.symlink("session.fdcglog", self.path("link"))
+        for log, words in ((text, "no session's log"), (self.path("link"), "symbolic link")):
+            for how in ((), ("--fast",)):
+                self.assert_one_line(self.run_scene(self.scene(), "--for", "0.1", "--log", log, *how, codes=(3,)), words)
+        self.assertEqual("mine", pathlib.Path(text).read_text())
+        log = self.session("0.2")
+        self.assertFalse((self.folder / "link.fdcglog").exists())
+        done = self.run_scene(self.scene(), "--for", "0.2", "--log", log, "-q")
+        self.assertIn(b"is a session's log, and is overwritten", done.stderr)
+        checked = self.servo("check", self.scene("logs.json", log={"file": os.path.basename(log)}))
+        self.assertIn(b"a session's log that a run overwrites", checked.stdout)
+
+    def test_a_graph_that_is_cut_short_or_written_anew_meanwhile_changes_nothing(self):
+        graph = self.folder / "cube.fdcg"
+        whole = graph.read_bytes()
+        for change in (lambda: os.truncate(graph, 0), lambda: graph.write_bytes(b"x" * len(whole)), graph.unlink):
+            log = self.path("session.fdcglog")
+            process = self.started(self.scene(), "--arm", "--for", "1.5", "--log", log, "--status", "none")
+            time.sleep(0.5)
+            change()
+            self.assertIn(process.wait(timeout=30), (0, 1))
+            graph.write_bytes(whole)
+            self.assertIn(b"every output the same", self.servo("replay", log).stdout)  # it names what was stepped on
+
+    def test_a_device_that_is_not_there_at_the_start_is_not_armed_by_the_option(self):
+        scene = self.scene(devices=[{"name": "hand", "profile": "fdcg-reference", "serial": "no such device"}])
+        done = self.run_scene(scene, "--arm", "--no-log", "--for", "0.4", codes=(1,))
+        self.assertIn(b"hand: not there at the start; when it is, type arm and Enter", done.stdout)
+
+    def test_a_loop_that_shakes_calms_down_within_three_tenths_of_a_second_and_says_so(self):
+        cube = {"name": "cube", "file": "cube.fdcg", "stiffness_n_per_m": 5000,
+                "pose": {"scale": 0.1, "translation_m": [-0.05, -0.05, -0.1]}}
+        hand = {"name": "hand", "source": "simulated",
+                "simulation": {"mass_kg": 0.1, "damping_n_s_per_m": 0.5, "hand_stiffness_n_per_m": 300, "hand_damping_n_s_per_m": 1,
+                               "script": [{"at_s": at, "place_m": [0, 0, z]} for at, z in ((0, 0.01), (1, 0.01), (2, -0.005), (100, -0.005))]}}
+        scene = self.scene(objects=[cube], devices=[hand], limits={"force_n": 5})
+        out = self.run_scene(scene, "--arm", "--no-log", "--for", "4").stdout
+        self.assertRegex(out, rb"hand: (it shakes: the scene's forces are cut to 10 %|disarmed: the loop of hand, device and scene shakes)")
+        log = self.path("shaking.fdcglog")
+        self.run_scene(scene, "--arm", "--log", log, "--for", "4", "--fast")
+        self.servo("replay", log, "-o", self.path("shaking.csv"))
+        rows = list(csv.DictReader(io.StringIO((self.folder / "shaking.csv").read_text())))
+        force = [(float(row["t"]), float(row["sent_fz"])) for row in rows]
+        touched = next(t for t, f in force if f > 0.25)
+        late = [f for t, f in force if t > touched + 0.5]  # the hand still comes down, and has come
+        steps = [abs(a - b) for a, b in zip(late, late[4:])]
+        self.assertLess(max(steps), 0.25)  # 5 % of the limit
+
+    def test_the_round_trip_is_measured_and_shown(self):
+        done = self.run_scene(str(EXAMPLE), "--arm", "--for", "1", "--no-log", "--status", "json", "--fast")
+        times = lines_of(done.stdout)[-1]["devices"][0]["round_trip_us"]
+        self.assertGreater(times["count"], 900)
+        self.assertLess(900, times["p50"])
+        self.assertLess(times["p50"], 2500)
+        self.assertIn(b"round trip     p50 ", self.run_scene(str(EXAMPLE), "--for", "1", "--no-log", "--fast").stdout)
+
     def test_a_device_that_is_unplugged_is_told_and_costs_the_code(self):
         simulation = {"start_m": [0, 0, 0.03], "amplitude_m": [0, 0, 0], "faults": [{"kind": "unplug", "at_s": 0.8}]}
         scene = self.scene(devices=[{"name": "hand", "source": "simulated", "simulation": simulation}])
@@ -265,13 +323,33 @@ class Run(ServoCase):
             self.assert_one_line(self.servo("run", name, code=3), *words)
 
 
+class Latency(ServoCase):
+    def test_the_round_trip_is_told_with_what_the_gate_makes_of_it(self):
+        done = self.servo("latency", self.scene(), "--for", "1.5", "-o", self.path("latency.csv"))
+        self.assertRegex(done.stdout, rb"round trip     p50 [\d.]+, p99 ")
+        self.assertIn(b"arming         allowed: the quickest is below 4000 us", done.stdout)
+        self.assertRegex(done.stdout, rb"us +[\d,]+  #")
+        rows = list(csv.DictReader(io.StringIO((self.folder / "latency.csv").read_text())))
+        trips = [row for row in rows if row["measure"] == "round_trip"]
+        self.assertGreater(sum(int(row["count"]) for row in trips), 1000)
+        for row in rows:
+            self.assertLess(float(row["from_us"]), float(row["to_us"]))
+        (device,) = json.loads(self.servo("latency", self.scene(), "--for", "0.5", "--json").stdout)["devices"]
+        self.assertEqual(("fits", 1000), (device["arming"], device["stated_rate_hz"]))
+
+    def test_a_device_that_is_not_there_is_told(self):
+        scene = self.scene(devices=[{"name": "hand", "profile": "fdcg-reference", "serial": "no such device"}])
+        self.assertIn(b"never there: ", self.servo("latency", scene, "--for", "0.3", code=1).stdout)
+        self.assertIn(b'"arming": "absent"', self.servo("latency", scene, "--for", "0.3", "--json", code=1).stdout)
+
+
 class Replay(ServoCase):
     def records(self, log):
         """[(offset, length)] of a log's records, and its bytes, as schemas/session-log.md has them."""
         data = pathlib.Path(log).read_bytes()
         self.assertEqual(b"\x89FLOG\r\n\x1a", data[:8])
         version, size = struct.unpack_from("<II", data, 8)
-        self.assertEqual(1, version)
+        self.assertEqual(2, version)
         at = 16 + size + 8
         self.assertEqual(checksum(data[:at - 8]), struct.unpack_from("<Q", data, at - 8)[0])
         records = []
@@ -307,15 +385,15 @@ class Replay(ServoCase):
             self.assertEqual((1, 0, number), (kind, device, tick))
             self.assertEqual(checksum(data[at:at + length - 8]), struct.unpack_from("<Q", data, at + length - 8)[0])
             p = at + 16
-            _, _, read, flags, poses, reports = struct.unpack_from("<QQBBBB", data, p)
+            read, flags, poses, reports = struct.unpack_from("<QQQQIBBBB", data, p)[5:]
             self.assertLessEqual(read, 2)
-            self.assertEqual(0, flags & ~15)
-            p += 20 + 64 * poses
+            self.assertEqual(0, flags & ~31)
+            p += 40 + 64 * poses
             for _ in range(reports):
                 p += 10 + min(128, struct.unpack_from("<H", data, p + 8)[0])
             parts = data[p]
             sample += data[p + 5]
-            p += 6 + sum(size for bit, size in ((1, 48), (2, 28), (4, 24), (8, 49)) if parts & bit)
+            p += 6 + sum(size for bit, size in ((1, 48), (2, 28), (4, 24), (8, 58), (16, 17)) if parts & bit)
             self.assertEqual(at + length - 8, p)
         self.assertGreater(sample, 100)
         at, length = records[-1]
@@ -327,10 +405,10 @@ class Replay(ServoCase):
         records, data = self.records(log)
         at, length = records[len(records) // 2]
         changed = bytearray(data)
-        changed[at + length - 9] ^= 1  # the last byte before the checksum: of the sequence that the force answers
+        changed[at + length - 9] ^= 1  # the last byte before the checksum: of the round trip
         struct.pack_into("<Q", changed, at + length - 8, checksum(bytes(changed[at:at + length - 8])))
         done = self.servo("replay", self.write("changed.fdcglog", bytes(changed)), code=1)
-        self.assertIn(f"tick {len(records) // 2}: echo: ".encode(), done.stdout)
+        self.assertIn(f"tick {len(records) // 2}: round_trip_s: ".encode(), done.stdout)
         self.assertIn(b" in the log, ", done.stdout)
 
     def test_a_lost_tick_ends_the_replay(self):
@@ -430,6 +508,11 @@ class Check(ServoCase):
             ("c.json", {"devices": [{"name": "hand", "profile": "fdcg-referense"}]}, ("did you mean 'fdcg-reference'?",)),
             ("d.json", {"log": {"file": "d.json"}}, ("d.json: cannot write the log", "would overwrite the scene")),
             ("e.json", {"log": {"file": "nowhere/e.fdcglog"}}, ("cannot write the log", "folder does not exist")),
+            ("f.json", {"log": {"file": "cube.fdcg"}, "objects": []}, ("would overwrite a file that is no session's log",)),
+            ("g.json", {"devices": [{"name": name, "profile": "fdcg-reference"} for name in "ab"]},
+             ("devices[1]", "finds the same device as that of 'a'", "\"serial\"")),
+            ("h.json", {"devices": [{"name": name, "profile": "fdcg-reference", "serial": "1", "path": "/dev/hidraw7"} for name in "ab"]},
+             ("path is that of device 'a' too", "one owner")),
         ):
             done = self.servo("check", self.scene(name, **changes), code=1)
             for word in words:
@@ -443,13 +526,32 @@ class Check(ServoCase):
                      self.scene(devices=[{"name": "hand", "profile": "device.json"}])):
             done = self.servo("check", path)
             self.assertIn(b": ok\n", done.stdout)
-            self.assertEqual(1, done.stdout.count(b"warning: "), done.stdout)
+            self.assertEqual(1, done.stdout.count(b"rate_hz is"), done.stdout)
             self.assertIn(b"rate_hz is 10, a report every 100 ms, and the gate disarms after 10 ms", done.stdout)
             self.assertIn(b"above 100 Hz", done.stdout)
         for rate_hz, is_armed in ((10, False), (110, True)):  # as the warning says
             slow[0]["simulation"] = {"rate_hz": rate_hz, "start_m": [0, 0, 0.03], "amplitude_m": [0, 0, 0]}
             done = self.run_scene(self.scene(devices=slow), "--arm", "--for", "3", "--fast", "--no-log")
             self.assertEqual(is_armed, b"disarmed       never" in done.stdout, done.stdout)
+
+    def test_a_stiffness_that_the_device_does_not_bear_is_a_warning_with_the_largest_that_it_does(self):
+        cube = {"name": "cube", "file": "cube.fdcg", "stiffness_n_per_m": 5000}
+        hand = {"name": "hand", "source": "simulated", "simulation": {"damping_n_s_per_m": 0.5}}
+        for mapping, felt in (({}, "5000"), ({"scale": 0.5}, "2500")):
+            done = self.servo("check", self.scene(objects=[cube], devices=[{**hand, "mapping": mapping}])).stdout.decode()
+            self.assertIn(f"object 'cube': its stiffness is felt as {felt} N/m; the device's own damping of 0.5 N s/m bears 1000 N/m at 1000 Hz", done)
+        cube["stiffness_n_per_m"] = 1000
+        self.assertNotIn(b"warning", self.servo("check", self.scene(objects=[cube], devices=[hand])).stdout)
+        profile = json.loads((ROOT / "runtime/device/profiles/fdcg-reference.json").read_text())
+        profile["limits"]["stiffness_n_per_m"] = 800
+        done = self.servo("check", self.scene(objects=[cube], devices=[{"name": "hand", "profile": profile}]), code=1)
+        self.assertIn(b"the profile allows 800: lower it", done.stdout)
+
+    def test_parts_that_are_switched_off_are_told(self):
+        for part in ("passivity", "calming"):
+            done = self.servo("check", self.scene(stability={part: False}))
+            self.assertIn(f"stability.{part} is switched off".encode(), done.stdout)
+            self.assertIn(b"is switched off", self.run_scene(self.scene(stability={part: False}), "--fast", "--for", "0.1", "--no-log").stderr)
 
     def test_unknown_limits_are_a_warning_that_says_what_follows(self):
         profile = json.loads((ROOT / "runtime/device/profiles/fdcg-reference.json").read_text())

@@ -19,6 +19,8 @@ int run_scene(const RunArguments& arguments) {
   if (const std::string problem = scene.read(arguments.scene, &warnings); !problem.empty()) return fail(kFile, problem);
   if (!arguments.log.empty() || arguments.no_log) scene.set_log_file(arguments.no_log ? "" : arguments.log);
   if (!arguments.hid.empty()) scene.set_backend(arguments.hid);
+  if (const std::string& log = scene.log_file(); !log.empty() && dev::is_session_log(log))
+    tools::warn("'" + log + "' is a session's log, and is overwritten");
   const StatusKind says = arguments.quiet ? StatusKind::kNone : arguments.status;
   if (arguments.fast) {
     if (!(arguments.for_s > 0) && scene.has_simulated_device())
@@ -29,6 +31,7 @@ int run_scene(const RunArguments& arguments) {
   const std::string log_file = scene.log_file();
   dev::SceneRun host;
   if (const std::string problem = host.open(std::move(scene)); !problem.empty()) return fail(kFile, problem);
+  if (arguments.plugins) host.allow_plugins();
   Signals signals(&host);
   if (const std::string problem = host.start(); !problem.empty()) return fail(kFile, problem);
   for (const std::vector<std::string>& list : {warnings, host.warnings()})
@@ -55,17 +58,20 @@ Command add_run(CLI::App& app) {
 
 Commands on standard input, one on each line: arm, disarm, quit. The end of standard input does not end the run; Ctrl-C does,
 with zero force. Any other signal that ends the program leaves zero force too (not kill -9); Ctrl-Z disarms before it stops. No
-force is sent before a device is armed, nor after a fault until it is armed again. An existing log file is overwritten.
+force is sent before a device is armed, nor after a fault until it is armed again. A session's log that is there is
+overwritten, and that is said; no other file is.
 
 )" + tools::exit_codes("success (a recording that has ended is no fault)",
                        "a device ended disarmed by a fault, or was never there"));
   const auto arguments = std::make_shared<RunArguments>();
   tools::required_argument(*command, "scene", "SCENE", arguments->scene, "Scene file (schemas/servo-scene.schema.json).");
   const tools::OptionGroup devices(*command, "Devices"), output(*command, "Output");
-  devices.flag("--arm", arguments->arm, "Arm each device once, as soon as it is there and free of force.");
+  devices.flag("--arm", arguments->arm, "Arm each device that is there at the start, once, as soon as it is free of force.");
   devices.flag(
       "--fast", arguments->fast,
       "Run simulated and recorded devices without waiting, each on a clock of its own. The log is the same every time.");
+  devices.flag("--plugins", arguments->plugins,
+               "Load the plugins that the scene names. They are code, and run as this program.");
   devices.number("--for", "SECONDS", arguments->for_s, {0.001, 1e9, " seconds"}, "Stop after this time, in seconds.", "no end");
   add_hid_option(devices, arguments->hid, "the scene's");
   CLI::Option* const log = output.text("--log", "FILE", arguments->log, "Write the session's log to FILE.", "the scene's");

@@ -108,11 +108,16 @@ void RunSession::show_status() {
   std::fflush(stdout);
 }
 
-// Only from the start to the gate's first yes: after a fault or a re-plug arming is the user's to ask for again.
+// Only of what is there at the start, and to the gate's first yes: after a fault, or of a device that is plugged in later,
+// arming is the user's to ask for.
 void RunSession::arm_where_wanted(std::size_t device) {
   Seen& seen = seen_[device];
   const DeviceLook& last = looks_[device];
   const bool is_there = last.is_open && last.counters.ticks > 0;
+  if (seen.wants_arming && last.opened == 0 && !last.problem.empty()) {
+    seen.wants_arming = false;
+    say(last.name + ": not there at the start; when it is, type arm and Enter");
+  }
   if (!seen.wants_arming || !is_there) return;
   if (!seen.was_asked) seen.asked_s = seconds();
   seen.was_asked = true;
@@ -137,6 +142,19 @@ void RunSession::notice_connection(std::size_t device) {
     seen.problem = look.problem;
     if (!seen.problem.empty()) say(look.name + ": " + seen.problem);
   }
+}
+
+void RunSession::notice_stability(std::size_t device) {
+  Seen& seen = seen_[device];
+  const DeviceLook& look = looks_[device];
+  if (look.calmed > seen.calmed) {
+    char share[16];
+    std::snprintf(share, sizeof share, "%.3g", 100 * (1 - look.calmed));
+    say(look.name + ": it shakes: the scene's forces are cut to " + share + " % until it is armed again; lower the stiffness");
+  }
+  if (look.is_hot && !seen.is_hot) say(look.name + ": the motors are warm: the force is cut to what they stand");
+  seen.calmed = look.calmed;
+  seen.is_hot = look.is_hot;
 }
 
 // Tells what has changed since the last look.
@@ -170,6 +188,7 @@ void RunSession::look() {
     looks_[i] = host_.look(static_cast<int>(i));
     looks_[i].rate_hz = rate_hz;
     notice_connection(i);
+    notice_stability(i);
     notice(i);
     arm_where_wanted(i);
   }

@@ -17,7 +17,7 @@ enum class StatusKind { kText, kJson, kNone };
 
 struct RunArguments {
   std::string scene, log, hid;
-  bool no_log = false, arm = false, quiet = false, fast = false;
+  bool no_log = false, arm = false, quiet = false, fast = false, plugins = false;
   double for_s = 0;           // 0: no end
   double status_every_s = 0;  // 0: the default
   StatusKind status = StatusKind::kText;
@@ -36,6 +36,8 @@ class RunSession {
     std::string problem;
     std::uint64_t disarmed[dev::kFaults] = {};
     dev::Phase phase = dev::Phase::kDisarmed;
+    double calmed = 0;
+    bool is_hot = false;
     bool wants_arming = false;  // --arm: until the gate has granted it once
     bool was_asked = false;     // to arm
     double asked_s = -1;        // when; -1: granted, or its refusal was printed
@@ -51,6 +53,7 @@ class RunSession {
   void look();
   void notice(std::size_t device);
   void notice_connection(std::size_t device);
+  void notice_stability(std::size_t device);
   void arm_where_wanted(std::size_t device);
   void say(const std::string& line);
   void show_status();

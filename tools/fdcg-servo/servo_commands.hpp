@@ -21,5 +21,6 @@ Command add_replay(CLI::App& app);
 Command add_run(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_check(CLI::App& app);
+Command add_latency(CLI::App& app);
 
 }  // namespace fdcg::servo

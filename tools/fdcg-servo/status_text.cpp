@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "../common/terminal.hpp"
 
@@ -26,17 +25,6 @@ double norm(const double* x) {
 
 const char* phase_name(dev::Phase phase) {
   return kPhases[static_cast<int>(phase)];
-}
-
-Json times_json(const dev::TimeHistogram& histogram) {
-  constexpr double kMicro = 1e-3;
-  Json json;
-  json["count"] = histogram.total;
-  json["p50"] = static_cast<double>(histogram.quantile(0.5)) * kMicro;
-  json["p99"] = static_cast<double>(histogram.quantile(0.99)) * kMicro;
-  json["p99.9"] = static_cast<double>(histogram.quantile(0.999)) * kMicro;
-  json["max"] = static_cast<double>(histogram.largest_ns) * kMicro;
-  return json;
 }
 
 // NaN and infinities become null.
@@ -65,6 +53,9 @@ Json device_json(const DeviceLook& look) {
   for (const fdcg_pose& body : look.bodies)
     json["bodies_m"].push_back(vector_json(body.translation_m));
   if (counters.bodies_lost != 0) json["bodies_lost"] = true;
+  json["calmed"] = look.calmed;
+  json["damping_n_s_per_m"] = look.damping_n_s_per_m;
+  json["hot"] = look.is_hot;
   json["ticks"] = counters.ticks;
   json["late"] = counters.late;
   json["lost"] = counters.lost;
@@ -82,6 +73,7 @@ Json device_json(const DeviceLook& look) {
   json["interval_us"] = times_json(look.interval);
   json["work_us"] = times_json(look.work);
   json["write_us"] = times_json(look.write);
+  json["round_trip_us"] = times_json(look.round_trip);
   return json;
 }
 
@@ -89,12 +81,6 @@ std::string microseconds(std::uint64_t ns) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", static_cast<double>(ns) * 1e-3);
   return text;
-}
-
-std::string times_text(const dev::TimeHistogram& histogram) {
-  if (histogram.total == 0) return "-\n";
-  return "p50 " + microseconds(histogram.quantile(0.5)) + ", p99 " + microseconds(histogram.quantile(0.99)) + ", p99.9 " +
-         microseconds(histogram.quantile(0.999)) + ", max " + microseconds(histogram.largest_ns) + " us\n";
 }
 
 // "; 3 rejected (2 crc, 1 stale)"
@@ -122,6 +108,23 @@ std::string disarmed_text(const dev::TickCounters& counters, bool is_over) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json times_json(const dev::TimeHistogram& histogram) {
+  constexpr double kMicro = 1e-3;
+  Json json;
+  json["count"] = histogram.total;
+  json["p50"] = static_cast<double>(histogram.quantile(0.5)) * kMicro;
+  json["p99"] = static_cast<double>(histogram.quantile(0.99)) * kMicro;
+  json["p99.9"] = static_cast<double>(histogram.quantile(0.999)) * kMicro;
+  json["max"] = static_cast<double>(histogram.largest_ns) * kMicro;
+  return json;
+}
+
+std::string times_text(const dev::TimeHistogram& histogram) {
+  if (histogram.total == 0) return "-\n";
+  return "p50 " + microseconds(histogram.quantile(0.5)) + ", p99 " + microseconds(histogram.quantile(0.99)) + ", p99.9 " +
+         microseconds(histogram.quantile(0.999)) + ", max " + microseconds(histogram.largest_ns) + " us\n";
+}
 
 bool is_trouble(dev::Fault fault) {
   return fault != dev::Fault::kNone && fault != dev::Fault::kCommanded;
@@ -184,6 +187,7 @@ std::string summary_text(const std::vector<DeviceLook>& looks) {
     text += "  interval       " + times_text(look.interval);
     text += "  work           " + times_text(look.work);
     text += "  write          " + times_text(look.write);
+    if (look.round_trip.total != 0) text += "  round trip     " + times_text(look.round_trip);
     if (look.write_failures != 0) text += "  writes failed  " + grouped(look.write_failures) + "\n";
     if (look.log_dropped != 0) text += "  not logged     " + grouped(look.log_dropped) + " ticks\n";
     if (counters.bodies_lost != 0) text += "  bodies         lost: one flew beyond all bounds, and all stand still since\n";

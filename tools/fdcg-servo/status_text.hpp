@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ using dev::DeviceLook;
 
 // Of an fdcg_state: "face".
 const char* state_name(std::uint32_t state);
+// Quantiles in microseconds: as an object, and as "p50 1, p99 2, p99.9 3, max 4 us\n" ("-\n": none).
+nlohmann::ordered_json times_json(const dev::TimeHistogram& histogram);
+std::string times_text(const dev::TimeHistogram& histogram);
 // "right hand   armed       1000/s  face    1.23 N  lost 0, rejected 0, late 0"; no line end. `name_width`: of the column.
 std::string status_line(const DeviceLook& look, std::size_t name_width);
 // One object; no line end. `event`: "status" or "end".

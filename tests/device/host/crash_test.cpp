@@ -86,7 +86,9 @@ void check_reports_after_crash(const std::function<void()>& crash, int number) {
   CHECK(WTERMSIG(status) == number);
   const Profile profile = fake_profile();
   const auto bytes = static_cast<std::size_t>(profile.output.bytes), stop_bytes = std::size_t{profile.safe_stop[0].bytes};
-  REQUIRE((data.size() == bytes + stop_bytes || data.size() == 2 * bytes + stop_bytes));
+  // before them one for each time that the writer of a busy machine was not run for 5 ms
+  REQUIRE(data.size() >= bytes + stop_bytes);
+  REQUIRE((data.size() - stop_bytes) % bytes == 0);
   std::uint32_t sequence = 100;  // goes on from the writer's, so that the device takes it
   for (std::size_t at = 0; at + stop_bytes < data.size(); at += bytes) {
     Command command;

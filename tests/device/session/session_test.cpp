@@ -187,9 +187,9 @@ TEST_CASE("log: other files and trailing bytes are refused by name") {
   REQUIRE(appended.open(folder.file("appended")).empty());
   read_ticks(appended);
   CHECK(appended.ending() == Ending::kDamaged);
-  bytes[8] = 2;
+  bytes[8] = 3;
   write_bytes(folder.file("newer"), bytes);
-  CHECK(newer.open(folder.file("newer")).find("version 2") != std::string::npos);
+  CHECK(newer.open(folder.file("newer")).find("version 3") != std::string::npos);
 }
 
 TEST_CASE("log: a full ring drops and counts ticks, and tick numbers show which") {

@@ -82,7 +82,7 @@ struct Hosted {
     const std::uint64_t until_ns = monotonic_ns() + kPatienceNs;
     while (monotonic_ns() < until_ns) {
       device(index).tip_z_m = 0.01;
-      sleep_ms(30);
+      sleep_ms(120);  // no hand taps faster: forces that swing so are calmed
       host.arm(index);
       sleep_ms(60);
       within_ms(3000, [&] { return phase(index) == Phase::kArmed || phase(index) == Phase::kDisarmed; });

@@ -38,6 +38,8 @@ inline void fill(Random& random, TickInput* input) {
   input->begins = random() % 2;
   input->write_failed = random() % 2;
   input->write_busy_ns = random() % 2 * random();
+  input->slept_ns = random() % 2 * random();
+  input->sent = {random() % 2 * random(), static_cast<std::uint32_t>(random()), random() % 2 != 0};
   input->pose_count = static_cast<std::uint32_t>(random() % 3 == 0 ? random() % (kMaxDriven + 1) : 0);
   input->report_count = static_cast<std::uint32_t>(random() % 8 == 0 ? random() % (kMaxDrain + 1) : random() % 3);
   for (std::uint32_t i = 0; i < input->pose_count; ++i) {

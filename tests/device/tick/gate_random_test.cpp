@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate's guarantees under random input.
+// The gate's guarantees under random input, with the stage of stability before it.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -9,6 +9,7 @@
 #include "gate_limits.hpp"
 #include "random.hpp"
 #include "tick/gate.hpp"
+#include "tick/stability.hpp"
 
 using namespace fdcg::dev;
 using fdcg::test::norm;
@@ -83,6 +84,11 @@ void run_random(std::uint64_t ticks, std::uint64_t seed, Promise& promise, std::
   fdcg::test::Random random(seed);
   Gate gate;
   gate.begin(promise.limits, 3, kRateHz, 0);
+  Stability stage;
+  DeviceLimits heated = promise.limits;
+  heated.continuous_force_n = heated.force_n / 2;
+  heated.heat_s = 1;
+  stage.begin({true, true, 1000}, heated, kRateHz);
   GateInput input;
   double place = 0;
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
@@ -110,7 +116,16 @@ void run_random(std::uint64_t ticks, std::uint64_t seed, Promise& promise, std::
         if (random.below(100) == 0) input.tip.jacobian[i][axis] = (random.unit() - 0.5) * 4;
       }
     }
-    const GatedForce force = gate.step(input);
+    GateInput steadied = input;
+    const double round_trip_s = random.below(1000) == 0 ? any_number(random) : 0.002 * random.unit();
+    if (input.has_sample)
+      stage.step(input.tip.position_m, input.now_ns, gate.last_force_n(), round_trip_s, random.below(2) == 0,
+                 steadied.wanted_force_n);
+    if (stage.shakes()) steadied.link_fault = Fault::kShaking;
+    const bool was_disarmed = gate.phase() == Phase::kDisarmed;
+    const GatedForce force = gate.step(steadied);
+    if (was_disarmed && gate.phase() != Phase::kDisarmed) stage.reset();
+    if (stage.shakes() && was_disarmed) stage.reset();
     const double step_s = input.now_ns > before_ns ? static_cast<double>(input.now_ns - before_ns) * 1e-9 : 0;
     promise.check(force, step_s, tick);
     *with_force += norm(force.force_n()) > 0;

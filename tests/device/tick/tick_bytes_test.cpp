@@ -112,7 +112,7 @@ TEST_CASE("invalid tick bytes are refused without reading beyond the end") {
   CHECK(crowded_bytes <= kMostOutputBytes);
   bytes[6] = kMaxBodies + 1;  // the first of the only part
   CHECK(decode_tick_output(bytes, kMostTickBytes, &output) == 0);
-  for (const std::size_t place : {16u, 17u, 18u, 19u}) {  // read, flags, poses, reports
+  for (const std::size_t place : {36u, 37u, 38u, 39u}) {  // read, flags, poses, reports
     input = TickInput{};
     const std::size_t count = encode_tick_input(input, bytes);
     bytes[place] = 200;

@@ -113,6 +113,13 @@ int hid_send_feature_report(hid_device* device, const unsigned char* data, size_
   return (int)write(device->node, data, bytes);
 }
 
+int hid_get_feature_report(hid_device* device, unsigned char* data, size_t capacity) {
+  (void)device;
+  (void)data;
+  (void)capacity;
+  return -1;
+}
+
 const wchar_t* hid_error(hid_device* device) {
   (void)device;
   return L"";

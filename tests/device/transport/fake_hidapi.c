@@ -91,6 +91,13 @@ int hid_send_feature_report(hid_device* device, const unsigned char* data, size_
   return take(device, data, bytes);
 }
 
+int hid_get_feature_report(hid_device* device, unsigned char* data, size_t capacity) {
+  (void)device;
+  if (state.feature_bytes <= 0 || (size_t)state.feature_bytes > capacity || data[0] != 3) return -1;
+  memcpy(data, state.feature, (size_t)state.feature_bytes);
+  return state.feature_bytes;
+}
+
 const wchar_t* hid_error(hid_device* device) {
   (void)device;
   return L"";

@@ -22,6 +22,8 @@ typedef struct fake_hidapi {
   void* last_write_handle;
   unsigned char last[256]; /* report written last, as it was given */
   int last_bytes;
+  unsigned char feature[256]; /* what feature report 3 is; 0 bytes: it is refused */
+  int feature_bytes;
   unsigned char input[256]; /* what a read gives; 0 bytes: a time-out */
   int input_bytes;
 } fake_hidapi;

@@ -2,6 +2,8 @@
 // Devices over hidapi: selection, reports, and messages on failure. hidapi is a fake library, found before the real one on this
 // program's run path (tests/device/vm tests the real one on a real kernel).
 #include <dlfcn.h>
+#include <signal.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,7 +14,10 @@
 
 #include "catch.hpp"
 #include "fake_hidapi.h"
+#include "fdcg_firmware.h"
 #include "host/make_transport.hpp"
+#include "profile/profile_json.hpp"
+#include "transport/device_identity.hpp"
 #include "transport/hid_devices.hpp"
 
 using namespace fdcg::dev;
@@ -267,4 +272,124 @@ TEST_CASE("hid: a device in use, or one that cannot be opened, gives that reason
   CHECK(transport->open().find("cannot be opened") != std::string::npos);
   CHECK(fake.opened == fake.closed);
   std::remove(fake.path);
+}
+
+TEST_CASE("hid: a device node has one owner, who is named") {
+  fake_hidapi& fake = fresh(HidBackend::kHidraw);
+  char node[] = "/tmp/fdcg-hid-node-XXXXXX";
+  const int file = mkstemp(node);
+  REQUIRE(file >= 0);
+  close(file);
+  std::snprintf(fake.path, sizeof fake.path, "%s", node);
+  const auto first = make_hid_transport(config_with_ids(true), loop_with(HidBackend::kAny));
+  const auto second = make_hid_transport(config_with_ids(true), loop_with(HidBackend::kAny));
+  REQUIRE(first->open() == "");
+  const int opened = fake.opened;
+  const std::string problem = second->open();
+  CHECK(problem.find(node) != std::string::npos);
+  CHECK(problem.find("another device of this scene") != std::string::npos);
+  CHECK(fake.opened == opened);  // not touched, by libusb neither
+  first->close();
+  // another process
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    const auto other = make_hid_transport(config_with_ids(true), loop_with(HidBackend::kHidraw));
+    const bool is_open = other->open().empty();
+    if (write(ends[1], is_open ? "y" : "n", 1) != 1) _exit(1);
+    pause();
+    _exit(0);
+  }
+  char answer = 0;
+  REQUIRE(read(ends[0], &answer, 1) == 1);
+  CHECK(answer == 'y');
+  CHECK(second->open().find("process " + std::to_string(child)) != std::string::npos);
+  kill(child, SIGKILL);  // and its claim is gone with it
+  waitpid(child, nullptr, 0);
+  CHECK(second->open() == "");
+  second->close();
+  close(ends[0]);
+  close(ends[1]);
+  std::remove(node);
+}
+
+namespace {
+
+// The feature report of the protocol's own example, as its reference profile has it.
+struct Identity {
+  Profile profile;
+  fdcg_fw_config config{};
+  std::uint8_t report[FDCG_FW_FEATURE_BYTES] = {};
+
+  Identity() {
+    REQUIRE(parse_profile(find_builtin_profile("fdcg-reference")->text, "it", &profile, nullptr) == "");
+    config.counts_per_unit = 1'000'000;
+    const std::int16_t box[3] = {80, 60, 50};
+    for (int i = 0; i < 3; ++i) {
+      config.workspace_max_mm[i] = box[i];
+      config.workspace_min_mm[i] = static_cast<std::int16_t>(-box[i]);
+    }
+    config.peak_force_n = 3.3f;
+    config.continuous_force_n = 0.9f;
+    config.rate_hz = 1000;
+    config.watchdog_ms = 20;
+    config.dof = 3;
+  }
+  std::string problem() {
+    fdcg_fw firmware;
+    REQUIRE(fdcg_fw_init(&firmware, &config));
+    fdcg_fw_feature(&firmware, report);
+    return identity_problem(profile, report, sizeof report);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("hid: what a device says of itself is compared with the profile") {
+  Identity it;
+  REQUIRE(describes_itself(it.profile));
+  CHECK(it.problem() == "");
+  CHECK(identity_problem(it.profile, it.report, 20).find("48 expected") != std::string::npos);
+  it.report[7] ^= 1;
+  CHECK(identity_problem(it.profile, it.report, sizeof it.report).find("CRC") != std::string::npos);
+  const auto refused = [](const char* words, const auto& change) {
+    Identity changed;
+    change(changed.config);
+    const std::string problem = changed.problem();
+    INFO(problem);
+    CHECK(problem.find(words) != std::string::npos);
+  };
+  refused("counts_per_unit 2000000, the profile 1000000", [](fdcg_fw_config& c) { c.counts_per_unit = 2'000'000; });
+  refused("dof 2, the profile 3", [](fdcg_fw_config& c) { c.dof = 2; });
+  refused("measures angles", [](fdcg_fw_config& c) { c.axes = FDCG_FW_ANGLES; });
+  refused("rate 4000 Hz, the profile 1000 Hz", [](fdcg_fw_config& c) { c.rate_hz = 4000; });
+  refused("peak_force 2 N, the profile 3.3 N", [](fdcg_fw_config& c) { c.peak_force_n = 2; });
+  refused("workspace_min -0.04 m", [](fdcg_fw_config& c) { c.workspace_min_mm[1] = -40; });
+  refused("workspace_max 0.04 m", [](fdcg_fw_config& c) { c.workspace_max_mm[2] = 40; });
+  refused("watchdog 0.5 s", [](fdcg_fw_config& c) { c.watchdog_ms = 500; });
+}
+
+TEST_CASE("hid: a device that is not what the profile says is not opened, by no back end") {
+  Identity it;
+  DeviceConfig config;
+  config.profile = it.profile;
+  config.profile.match = {0x1209, 0xf001, 0xFF48, 1, -1};
+  fake_hidapi& fake = fresh(HidBackend::kHidraw);
+  fake_hidapi& other = fresh(HidBackend::kLibusb);
+  fake.usage_page = 0xFF48;
+  const auto transport = make_hid_transport(config, loop_with(HidBackend::kAny));
+  CHECK(transport->open().find("does not answer GET_REPORT") != std::string::npos);
+  REQUIRE(it.problem() == "");
+  std::memcpy(fake.feature, it.report, sizeof it.report);
+  fake.feature_bytes = sizeof it.report;
+  CHECK(transport->open() == "");
+  transport->close();
+  it.config.counts_per_unit = 1000;
+  REQUIRE(it.problem() != "");
+  std::memcpy(fake.feature, it.report, sizeof it.report);
+  CHECK(transport->open().find("counts_per_unit 1000") != std::string::npos);
+  CHECK(fake.opened == fake.closed);
+  CHECK(other.opened == 0);
 }

@@ -76,6 +76,18 @@ void Device::receive() {
   port_->receive(*this);
 }
 
+void Device::hear_another(std::uint32_t ahead) {
+  Bytes report(FDCG_FW_OUTPUT_BYTES);
+  report[0] = FDCG_FW_OUTPUT_ID;
+  const std::uint32_t sequence = firmware_.echo + ahead;
+  for (std::size_t i = 0; i < 4; ++i)
+    report[1 + i] = static_cast<std::uint8_t>(sequence >> 8 * i);
+  const std::uint16_t crc = fdcg_fw_crc16(report.data(), report.size() - 2);
+  report[report.size() - 2] = static_cast<std::uint8_t>(crc);
+  report[report.size() - 1] = static_cast<std::uint8_t>(crc >> 8);
+  on_output(report.data(), static_cast<int>(report.size()));
+}
+
 void Device::take_output(bool takes) {
   port_->take_output(takes);
   if (takes) receive();  // what has waited

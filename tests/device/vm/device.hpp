@@ -59,6 +59,9 @@ class Device final : public PortUser {
   // As after a loss of power, or (false) with its motors' supply, its clock and its counters kept.
   void plug(bool is_power_cycled);
   void unplug();
+  void restart() { power_up(); }  // without anybody being told
+  // An output report of another program: no force, and a number that this host has not come to.
+  void hear_another(std::uint32_t ahead);
   int fd() const { return port_->fd(); }
   void receive();
   // Makes a report of this moment and gives it to the wire.

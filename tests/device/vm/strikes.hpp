@@ -35,10 +35,13 @@ Expectation strike_out_of_order(Rig& rig);
 Expectation strike_stale(Rig& rig);
 Expectation strike_nan(Rig& rig);
 Expectation strike_stalled(Rig& rig);
+Expectation strike_half_lost(Rig& rig);
 
 // On the device or the host: strikes_ends.cpp.
 Expectation strike_unplugged(Rig& rig);
 Expectation strike_no_output(Rig& rig);
+Expectation strike_restarted(Rig& rig);
+Expectation strike_other_host(Rig& rig);
 Expectation strike_asleep(Rig& rig);
 Expectation strike_killed(Rig& rig);
 Expectation strike_disk_full(Rig& rig);

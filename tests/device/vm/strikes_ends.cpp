@@ -59,6 +59,28 @@ Expectation strike_no_output(Rig& rig) {
   return expected;
 }
 
+// Its firmware begins anew between two reports: its sequence, clock and echo too.
+Expectation strike_restarted(Rig& rig) {
+  Expectation expected;
+  rig.device.restart();
+  expected.known = now_ns();
+  expected.disarms = true;
+  rig.device.record.watch(expected.known);
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
+// What it sends is zero; what must not come back by itself is the force of this host.
+Expectation strike_other_host(Rig& rig) {
+  Expectation expected;
+  expected.known = now_ns();
+  expected.disarms = true;
+  rig.device.record.watch(expected.known);
+  rig.device.hear_another(static_cast<std::uint32_t>(rig.random_between(100, 1'000'000)));
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
 // The device's watchdog takes the force away; from the moment that the host runs again it is the host's.
 Expectation strike_asleep(Rig& rig) {
   Expectation expected;

@@ -205,4 +205,22 @@ Expectation strike_stalled(Rig& rig) {
   return burst(rig, burst_length(rig, 300), [](const Bytes&) {});
 }
 
+// Every second report, for as long as the host may take to notice and some more.
+Expectation strike_half_lost(Rig& rig) {
+  constexpr Nanoseconds kCounted = kSecond / 10;
+  Expectation expected;
+  expected.known = now_ns() + kCounted;
+  expected.disarms = true;
+  rig.device.record.watch(expected.known);
+  bool is_lost = false;
+  rig.device.set_wire([&](const Bytes& report) {
+    is_lost = !is_lost;
+    if (!is_lost) rig.device.send(report);
+  });
+  rig.run_for(2 * kCounted);
+  rig.device.clear_wire();
+  rig.run_for(kAfterwards);
+  return expected;
+}
+
 }  // namespace fdcg::vm

@@ -20,8 +20,8 @@ CUBE = ROOT / "testdata" / "meshes" / "good" / "cube_quads.off"
 PROFILE = ROOT / "runtime" / "device" / "profiles" / "fdcg-reference.json"
 LIMIT_S = 560  # a boot: a test counts as hung after ten minutes
 
-REPORTS = "short long garbled repeated out-of-order stale nan stalled".split()
-ENDS = "unplugged no-output asleep killed disk-full".split()
+REPORTS = "short long garbled repeated out-of-order stale nan stalled half-lost".split()
+ENDS = "unplugged no-output restarted other-host asleep killed disk-full".split()
 
 
 @contextlib.contextmanager

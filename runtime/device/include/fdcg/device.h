@@ -36,6 +36,7 @@
 #define FDCG_DEVICE_H
 
 #include "fdcg/scene.h"
+#include "fdcg/transport.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -43,11 +44,6 @@ extern "C" {
 
 /** The devices of a scene, their threads and their log. */
 typedef struct fdcg_host fdcg_host;
-
-/** One line for the user: what is wrong, where, and what to do. Empty where there is nothing to say. */
-typedef struct fdcg_host_message {
-  char text[1024]; /**< zero-terminated */
-} fdcg_host_message;
 
 /* ---- open, start, stop ------------------------------------------------------------------------------------------------- */
 
@@ -57,6 +53,13 @@ fdcg_status fdcg_host_open(const char* scene_file, fdcg_host** host, fdcg_host_m
 /** Does the same for a scene in memory. `name` stands for the file's in messages, and files are named from its folder. */
 fdcg_status fdcg_host_open_text(const char* scene, uint64_t bytes, const char* name, fdcg_host** host,
                                 fdcg_host_message* message);
+/** Before fdcg_host_start: a device whose source in the scene is "plugin" without a file. The table is copied, what it points
+ * to must outlive the host. FDCG_E_ARGUMENT with the message: no such device, another source, a table that lacks a function. */
+fdcg_status fdcg_host_set_transport(fdcg_host* host, int32_t device, const fdcg_transport* transport,
+                                    fdcg_host_message* message);
+/** Before fdcg_host_start: lets the host load the plugins that the scene names. They are code, and run as the program itself.
+ */
+void fdcg_host_allow_plugins(fdcg_host* host);
 /** Starts the threads. A device that is not there is no error: it is opened when it appears. */
 fdcg_status fdcg_host_start(fdcg_host* host, fdcg_host_message* message);
 /** Stops: zero force, then each profile's safe-stop reports, threads ended, devices closed, log written. FDCG_E_IO with the
@@ -125,6 +128,8 @@ typedef struct fdcg_device_status {
   double work_p50_s;         /**< work of a tick: median */
   double work_p999_s;        /**< work of a tick: exceeded by one in a thousand */
   fdcg_host_message problem; /**< why it is not open; empty: it is open, or no attempt was made yet */
+  double round_trip_p50_s;   /**< from a write to its echo: median; 0: the device does not echo */
+  double round_trip_p999_s;  /**< from a write to its echo: exceeded by one in a thousand */
 } fdcg_device_status;
 
 /** Reads a device's status, some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, a null pointer,

@@ -39,8 +39,15 @@ enum class Fault : std::uint8_t {
   kDeviceFault = 10,  // the device says so itself
   kCommanded = 11,    // disarmed by the user
   kClock = 12,        // the host's clock went back
+  kSlept = 13,        // the whole computer was suspended
+  kNotTaken = 14,     // the device does not take what the host sends, or does not apply it
+  kOtherHost = 15,    // it answers what somebody else sends
+  kRestarted = 16,    // the device began anew
+  kReportsLost = 17,  // too many of its reports do not arrive
+  kLag = 18,          // asked to arm: what is sent comes back too late
+  kShaking = 19,      // and softer forces have not ended it
 };
-inline constexpr int kFaults = 13;
+inline constexpr int kFaults = 20;
 const char* fault_name(Fault fault);  // "silence"
 const char* fault_text(Fault fault);  // one line: what happened and what to do
 
@@ -64,8 +71,12 @@ struct TimeHistogram {
   std::uint64_t counts[kBins] = {};
   std::uint64_t total = 0, largest_ns = 0;
   void add(std::uint64_t ns);
+  static std::uint64_t upper_end_ns(int bin);  // a time that is equal to it belongs to the next bin
   std::uint64_t quantile(double share) const;  // upper end of the bin, in ns; 0 where nothing was counted
 };
+
+// The longest round trip with which a device is armed, from a write to its echo.
+double most_round_trip_s(double rate_hz);
 
 enum class Connection : std::uint8_t { kAbsent = 0, kOpen = 1 };
 

@@ -70,11 +70,14 @@ struct DeviceLook {
   double tip_m[3] = {}, wanted_force_n[3] = {};  // world; the force before the gate
   double force_n[3] = {};                        // device's frame, as it was sent
   std::vector<fdcg_pose> bodies;                 // world
+  double calmed = 0, damping_n_s_per_m = 0;      // by the stage of stability: share of the force cut away; damping added
+  bool is_hot = false;                           // the force is cut to what the motors stand
   TickCounters counters;
   std::uint64_t opened = 0, writes = 0, write_failures = 0, log_dropped = 0;
   double elapsed_s = 0;
-  TimeHistogram interval, work, write;
-  double rate_hz = 0;  // the caller's to fill in
+  TimeHistogram interval, work, write, round_trip;
+  double rate_hz = 0;         // the caller's to fill in
+  double stated_rate_hz = 0;  // the profile's
 };
 
 // A scene file, and what the command line changes of it.
@@ -107,6 +110,7 @@ class SceneRun {
   SceneRun& operator=(const SceneRun&) = delete;
 
   std::string open(Scene scene);  // graphs opened and verified; no thread yet
+  void allow_plugins();           // the scene's plugins may be loaded: they are code
   std::string start();            // threads run; devices are opened as they appear
   // What the system did not grant (real-time priority, locked memory, a cpu): worse timing, nothing more.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
@@ -151,7 +155,7 @@ class LogReplay {
 
   // graph_folder: where the graphs are now; empty: where they were, or beside the log.
   std::string open(const std::string& path, const std::string& graph_folder);
-  bool next();  // the next tick; false: the log has ended
+  bool next();                            // the next tick; false: the log has ended
   [[nodiscard]] double fraction() const;  // of the log's bytes that was read, 0 to 1
 
   // The tick as rows of CSV (schemas/session-log.md), with line ends; "" where it has no good report.

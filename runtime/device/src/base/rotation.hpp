@@ -2,7 +2,13 @@
 // Scalar products, and rotations by unit quaternions, real part last.
 #pragma once
 
+#include <cmath>
+
 namespace fdcg::dev {
+
+inline bool is_finite(const double v[3]) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
 
 inline double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -12,6 +12,7 @@
 namespace fdcg::dev {
 
 std::uint64_t monotonic_ns();
+std::uint64_t slept_ns();  // for which the computer has been suspended since it was started
 
 // A signal is kept until a wait takes it; several before it are one. One thread waits, any number signal. No lock, no heap.
 class Event {

@@ -27,10 +27,28 @@ static_assert(std::atomic<std::uint32_t>::is_always_lock_free && sizeof(std::ato
 
 }  // namespace
 
-std::uint64_t monotonic_ns() {
+namespace {
+
+std::uint64_t now_of(clockid_t clock) {
   timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return static_cast<std::uint64_t>(now.tv_sec) * kNsPerS + static_cast<std::uint64_t>(now.tv_nsec);
+}
+
+}  // namespace
+
+std::uint64_t monotonic_ns() {
+  return now_of(CLOCK_MONOTONIC);
+}
+
+// What the one clock has counted and the other has not; without such a clock a suspended machine shows as a late host.
+std::uint64_t slept_ns() {
+#ifdef CLOCK_BOOTTIME
+  const std::uint64_t awake_ns = monotonic_ns(), all_ns = now_of(CLOCK_BOOTTIME);
+  return all_ns > awake_ns ? all_ns - awake_ns : 0;
+#else
+  return 0;
+#endif
 }
 
 void Event::signal() noexcept {

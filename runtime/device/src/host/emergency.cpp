@@ -128,6 +128,12 @@ void remove_emergency_exit(EmergencyExit* exit) {
   }
 }
 
+void send_zero(const EmergencyExit& exit) {
+  const int descriptor = exit.descriptor.load();
+  if (void (*const call)(void*) = exit.call.load(); call != nullptr) call(exit.self.load());
+  if (descriptor >= 0) send_zero(descriptor, *exit.profile, exit.writer->take_sequence());
+}
+
 void send_emergency_zeros() noexcept {
   int descriptors[kMaxEmergencyExits];
   bool was_sending[kMaxEmergencyExits] = {};
@@ -139,6 +145,7 @@ void send_emergency_zeros() noexcept {
     const std::uint32_t sequence = exit->writer->mute();
     was_sending[i] = exit->writer->is_sending();
     descriptors[i] = exit->descriptor.exchange(-1);
+    if (void (*const call)(void*) = exit->call.load(); call != nullptr) call(exit->self.load());
     if (descriptors[i] >= 0) send_zero(descriptors[i], *exit->profile, sequence);
   }
   // A force in transmission may have arrived after that zero. If the interrupted thread is the writer itself, the wait runs

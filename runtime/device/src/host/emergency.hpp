@@ -15,7 +15,9 @@
 namespace fdcg::dev {
 
 struct EmergencyExit {
-  std::atomic<int> descriptor{-1};  // -1: none, now
+  std::atomic<int> descriptor{-1};             // -1: none, now
+  std::atomic<void (*)(void*)> call{nullptr};  // null: none, now
+  std::atomic<void*> self{nullptr};            // of the call; set before it
   const Profile* profile = nullptr;
   Writer* writer = nullptr;
 };
@@ -31,6 +33,9 @@ void remove_emergency_exit(EmergencyExit* exit);
 // default, those that are neither handled nor ignored at the time of the call. A host does not install them by itself, since
 // signal handlers belong to the program (fdcg-servo run installs them).
 void install_crash_handlers();
+
+// One report of zero force on the device's emergency descriptor, if it has one. May block as a write does.
+void send_zero(const EmergencyExit& exit);
 
 // The action of the handlers; async-signal-safe. Descriptors are used once. A report that a writer was sending meanwhile is
 // followed by a second zero report.

@@ -74,8 +74,9 @@ FastRun::~FastRun() = default;
 
 std::string FastRun::open(HostConfig config) {
   for (DeviceConfig& device : config.devices) {
-    if (device.source == DeviceSource::kHid) {
-      return "device '" + device.name + "': a hid device lives in real time; run it without --fast";
+    if (device.source == DeviceSource::kHid || device.source == DeviceSource::kPlugin) {
+      return "device '" + device.name +
+             "': a device that is not simulated or recorded lives in real time; run it without --fast";
     }
     device.simulation.is_real_time = device.is_recording_in_real_time = false;
   }
@@ -115,7 +116,7 @@ std::string FastRun::Impl::start_log() {
   const auto count = static_cast<std::uint32_t>(units.size());
   ring = std::make_unique<LogRing>(LogRing::kUsualBytes * std::bit_ceil(count), static_cast<int>(count));
   LogRing* const rings[] = {ring.get()};
-  std::string problem = log.start(config, rings, 1);
+  std::string problem = log.start(config, rings, 1, &graphs);
   has_failed_file = !problem.empty();
   return problem;
 }
@@ -239,6 +240,7 @@ void FastRun::Impl::send(FastUnit& unit, const GatedForce& force, std::uint32_t 
   std::uint8_t report[kMaxReportBytes] = {};
   encode_output(profile, command, report);
   unit.has_write_failed = !unit.transport->write(report, profile.output.bytes);
+  if (!unit.has_write_failed) unit.input.sent = {kOriginNs + unit.transport->clock_ns(), command.sequence, command.is_enabled};
   ++unit.status.writes;
   unit.status.write_failures += unit.has_write_failed;
 }
@@ -301,6 +303,7 @@ void FastRun::Impl::note_tick(std::size_t index) {
   if (unit.output.has_sample) {
     if (unit.last_good_ns != 0) unit.status.interval.add(unit.input.now_ns - unit.last_good_ns);
     unit.last_good_ns = unit.input.now_ns;
+    if (unit.output.round_trip_s > 0) unit.status.round_trip.add(static_cast<std::uint64_t>(unit.output.round_trip_s * 1e9));
   }
   unit.status.last = unit.output;
   unit.status.counters = unit.device.counters;

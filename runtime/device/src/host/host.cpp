@@ -14,6 +14,7 @@
 #include "recording/session_log.hpp"
 #include "scene/scene_build.hpp"
 #include "tick/link.hpp"
+#include "transport/plugin_transport.hpp"
 
 namespace fdcg::dev {
 
@@ -179,7 +180,7 @@ std::string Host::Impl::start_log() {
   std::vector<LogRing*> rings;
   for (const auto& group : shared->groups)
     rings.push_back(group->log.get());
-  std::string problem = shared->log.start(shared->config, rings.data(), static_cast<int>(rings.size()));
+  std::string problem = shared->log.start(shared->config, rings.data(), static_cast<int>(rings.size()), &shared->graphs);
   has_log = problem.empty();
   return problem;
 }
@@ -243,6 +244,28 @@ int Host::device_count() const {
 
 const DeviceConfig& Host::device(int index) const {
   return impl_->shared->config.devices[static_cast<std::size_t>(index)];
+}
+
+std::string Host::set_transport(int device, const fdcg_transport& transport) {
+  if (device < 0 || device >= device_count()) return "the scene has no device " + std::to_string(device);
+  if (impl_->is_running) return "the host is running; hand transports over before it is started";
+  const DeviceConfig& config = this->device(device);
+  auto* const plugin = dynamic_cast<PluginTransport*>(impl_->shared->units[static_cast<std::size_t>(device)]->transport.get());
+  if (plugin == nullptr || !config.plugin.empty())
+    return "device '" + config.name + "': its source is not \"plugin\" without a file";
+  if (transport.struct_bytes < sizeof transport)
+    return "device '" + config.name + "': struct_bytes of the transport is too small";
+  if (transport.open == nullptr || transport.close == nullptr || transport.read == nullptr || transport.write == nullptr)
+    return "device '" + config.name + "': the transport lacks open, close, read or write";
+  plugin->set(transport);
+  return {};
+}
+
+void Host::allow_plugins() {
+  for (int i = 0; i < device_count(); ++i) {
+    auto* const plugin = dynamic_cast<PluginTransport*>(impl_->shared->units[static_cast<std::size_t>(i)]->transport.get());
+    if (plugin != nullptr) plugin->allow();
+  }
 }
 
 void Host::arm(int device) {
@@ -363,6 +386,7 @@ std::string Host::Impl::end_threads() {
     const bool has_writer_ended = join(writers[i]), has_servo_ended = have_servos_ended[i];
     unit.link.close();
     unit.emergency.descriptor.store(-1);
+    unit.emergency.call.store(nullptr);
     const bool has_ended = has_writer_ended && has_servo_ended && has_supervisor_ended;
     if (has_ended) unit.transport->close();
     if (has_ended && unit.writer.has_left_zero()) continue;

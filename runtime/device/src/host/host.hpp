@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "fdcg/transport.h"
 #include "host/make_transport.hpp"
 #include "host/status.hpp"
 #include "scene/host_config.hpp"
@@ -48,6 +49,9 @@ class Host {
 
   int device_count() const;
   const DeviceConfig& device(int index) const;
+  // Before start. A table for a device of DeviceSource::kPlugin without a file; whether files that the scene names are loaded.
+  std::string set_transport(int device, const fdcg_transport& transport);
+  void allow_plugins();
   // A request; the gate grants it in a later tick, or status().last says arming_refused or the fault.
   void arm(int device);
   void disarm(int device);

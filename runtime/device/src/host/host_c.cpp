@@ -84,6 +84,8 @@ void fill_status(const DeviceStatus& from, const ConnectionReport& connection, f
   to->work_p50_s = static_cast<double>(from.work.quantile(0.5)) * 1e-9;
   to->work_p999_s = static_cast<double>(from.work.quantile(0.999)) * 1e-9;
   say(&to->problem, connection.problem);
+  to->round_trip_p50_s = static_cast<double>(from.round_trip.quantile(0.5)) * 1e-9;
+  to->round_trip_p999_s = static_cast<double>(from.round_trip.quantile(0.999)) * 1e-9;
 }
 
 const std::vector<std::string>& profile_names() {
@@ -115,6 +117,18 @@ fdcg_status fdcg_host_open_text(const char* scene, uint64_t bytes, const char* n
     if (scene == nullptr || name == nullptr) return std::string("scene or name is NULL");
     return parse_scene(std::string_view(scene, bytes), name, config);
   });
+}
+
+fdcg_status fdcg_host_set_transport(fdcg_host* host, int32_t device, const fdcg_transport* transport,
+                                    fdcg_host_message* message) {
+  return guarded(FDCG_E_ARGUMENT, message, [&]() -> std::string {
+    if (host == nullptr || transport == nullptr) return host == nullptr ? "host is NULL" : "transport is NULL";
+    return host->host.set_transport(device, *transport);
+  });
+}
+
+void fdcg_host_allow_plugins(fdcg_host* host) {
+  if (host != nullptr) host->host.allow_plugins();
 }
 
 fdcg_status fdcg_host_start(fdcg_host* host, fdcg_host_message* message) {

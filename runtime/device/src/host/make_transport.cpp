@@ -2,6 +2,7 @@
 #include "host/make_transport.hpp"
 
 #include "recording/recorded_transport.hpp"
+#include "transport/plugin_transport.hpp"
 #include "transport/transports.hpp"
 
 namespace fdcg::dev {
@@ -13,6 +14,8 @@ std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const 
 std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop) {
   if (config.source == DeviceSource::kHid) return make_hid_transport(config, loop);
   if (config.source == DeviceSource::kSimulated) return make_simulated_transport(config.simulation);
+  if (config.source == DeviceSource::kPlugin)
+    return make_plugin_transport(config.profile, config.plugin, config.plugin_settings);
   return make_recorded_transport(config);
 }
 

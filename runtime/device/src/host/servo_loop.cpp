@@ -89,10 +89,12 @@ void ServoLoop::gather(bool waits) {
   input_.begins = begins_;
   begins_ = false;
   input_.now_ns = monotonic_ns();
+  input_.slept_ns = slept_ns();
   input_.disarm = disarm_.exchange(false, std::memory_order_acq_rel);
   input_.arm = arm_.exchange(false, std::memory_order_acq_rel) && !input_.disarm;
   input_.write_busy_ns = parts_.writer->busy_ns(input_.now_ns);  // before has_failed: a write that ends between is seen there
   input_.write_failed = parts_.writer->has_failed();
+  parts_.writer->take_sent(&input_.sent);
   set_poses();
 }
 
@@ -136,6 +138,8 @@ void ServoLoop::set_poses() {
 void ServoLoop::send_force() {
   done_ns_ = monotonic_ns();
   parts_.writer->wake();
+  if (parts_.writer->is_stalled() && !was_stalled_) parts_.lost->signal();  // it sends the zero that the writer does not
+  was_stalled_ = parts_.writer->is_stalled();
   // The supervisor is notified only now, after the zero force of this tick has been handed to the writer.
   if (input_.read == ReadStatus::kLost && !is_lost_ && was_inside_) {
     is_lost_ = true;
@@ -150,6 +154,7 @@ void ServoLoop::note_tick() {
   if (output_.has_sample) {
     if (last_good_ns_ != 0) status_now_.interval.add(input_.now_ns - last_good_ns_);
     last_good_ns_ = input_.now_ns;
+    if (output_.round_trip_s > 0) status_now_.round_trip.add(static_cast<std::uint64_t>(output_.round_trip_s * 1e9));
   }
   if (done_ns_ - published_ns_ >= kPublishNs) publish(done_ns_);
 }

@@ -33,7 +33,7 @@ struct ServoParts {
   Writer* writer = nullptr;
   LogRing* log = nullptr;                   // may be null
   int log_place = 0;                        // among the ring's devices
-  Event* lost = nullptr;                    // signalled when the reader finds the device gone
+  Event* lost = nullptr;                    // signalled when the reader finds the device gone, or the writer hangs
   std::vector<const ObjectConfig*> moving;  // in the order of DeviceSetup::driven
   std::uint64_t start_ns = 0;               // the motions' time 0
 };
@@ -83,7 +83,7 @@ class ServoLoop {
   std::atomic<bool> is_stopping_{false}, arm_{false}, disarm_{false};
   std::atomic<std::uint64_t> lost_opening_{0};
   std::uint64_t seen_opened_ = 0;  // Link::opened() at the last look
-  bool begins_ = false, is_lost_ = true, was_inside_ = false;
+  bool begins_ = false, is_lost_ = true, was_inside_ = false, was_stalled_ = false;
   std::uint64_t last_good_ns_ = 0, published_ns_ = 0, done_ns_ = 0;
   std::uint8_t scratch_[kMaxReportBytes + 1] = {};  // one more, so that a report that is too long shows
 };

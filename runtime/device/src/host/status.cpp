@@ -33,6 +33,10 @@ static_assert(TimeHistogram::kBins % kBinsADoubling == 0 && kFirstDoubling + Tim
 
 }  // namespace
 
+std::uint64_t TimeHistogram::upper_end_ns(int bin) {
+  return upper_end(bin);
+}
+
 void TimeHistogram::add(std::uint64_t ns) {
   ++counts[bin_of(ns)];
   ++total;

@@ -18,6 +18,7 @@ struct DeviceStatus {
   std::uint64_t writes = 0, write_failures = 0;
   double elapsed_s = 0;
   TimeHistogram interval, work, write;  // between good reports; of a tick, from drain to mailbox; of a write call
+  TimeHistogram round_trip;             // from the write of an output to its echo
 };
 
 }  // namespace fdcg::dev

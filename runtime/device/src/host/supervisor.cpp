@@ -48,9 +48,17 @@ void Supervisor::run() {
 
 void Supervisor::look_after(Watched& device) {
   if (device.state == State::kOpen && device.parts.servo->lost_opening() == device.parts.link->opened()) begin_closing(device);
+  if (device.state == State::kOpen) stand_in(device);
   const std::uint64_t now_ns = monotonic_ns();
   if (device.state == State::kClosing) try_to_close(device, now_ns);
   if (device.state == State::kAbsent && now_ns >= device.next_try_ns) try_to_open(device, now_ns);
+}
+
+// A writer that hangs between two writes: the gate has disarmed, and this thread sends the zero, once.
+void Supervisor::stand_in(Watched& device) {
+  const bool is_stalled = device.parts.writer->is_stalled();
+  if (is_stalled && !device.was_stalled) send_zero(*device.parts.emergency);
+  device.was_stalled = is_stalled;
 }
 
 void Supervisor::begin_closing(Watched& device) {
@@ -62,6 +70,7 @@ void Supervisor::begin_closing(Watched& device) {
 void Supervisor::try_to_close(Watched& device, std::uint64_t now_ns) {
   if (!device.parts.link->is_empty()) return;
   device.parts.emergency->descriptor.store(-1);
+  device.parts.emergency->call.store(nullptr);
   device.parts.transport->close();
   device.absent_since_ns = now_ns;
   device.next_try_ns = now_ns - device.opened_ns < kSoonForNs ? now_ns + kSoonNs : now_ns;  // delays repeated failures
@@ -79,6 +88,9 @@ void Supervisor::try_to_open(Watched& device, std::uint64_t now_ns) {
     device.state = State::kOpen;
     device.opened_ns = monotonic_ns();
     device.parts.emergency->descriptor.store(device.parts.transport->emergency_descriptor());
+    const EmergencyCall last = device.parts.transport->emergency_call();
+    device.parts.emergency->self.store(last.self);
+    device.parts.emergency->call.store(last.call);
     device.parts.link->open();
   } else {
     const std::uint64_t pause_ns = now_ns - device.absent_since_ns < kSoonForNs ? kSoonNs : kLaterNs;

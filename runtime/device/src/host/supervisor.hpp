@@ -49,9 +49,11 @@ class Supervisor {
     State state = State::kAbsent;
     std::uint64_t opened_ns = 0, absent_since_ns = 0, next_try_ns = 0;
     std::atomic<bool> is_over{false};
-    std::string problem;  // under problem_mutex_
+    bool was_stalled = false;  // its writer
+    std::string problem;       // under problem_mutex_
   };
   void look_after(Watched& device);
+  void stand_in(Watched& device);
   void try_to_open(Watched& device, std::uint64_t now_ns);
   void begin_closing(Watched& device);
   void try_to_close(Watched& device, std::uint64_t now_ns);

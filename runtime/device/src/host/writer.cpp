@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/writer.hpp"
 
+#include <algorithm>
+
 #include "profile/report_codec.hpp"
 
 namespace fdcg::dev {
@@ -8,6 +10,7 @@ namespace fdcg::dev {
 namespace {
 
 constexpr std::uint64_t kSilenceNs = static_cast<std::uint64_t>(kSilenceS * 1e9);
+constexpr std::uint64_t kStalledNs = static_cast<std::uint64_t>(kWriterStuckS * 1e9);
 constexpr std::uint64_t kAwakeNs = 100'000'000;  // with nothing to do: often enough to see a stop, even if its wake were lost
 // A write may block the thread for 5.1 s, and a host must stop within 6 s: after a failed write there is no other attempt.
 constexpr std::uint64_t kGoodbyeNs = 800'000'000;
@@ -26,9 +29,18 @@ void Writer::put(const GatedForce& force, std::uint32_t echo) {
   put_.store(put_number_, std::memory_order_release);
 }
 
-std::uint64_t Writer::busy_ns(std::uint64_t now_ns) const {
+std::uint64_t Writer::busy_ns(std::uint64_t now_ns) {
   const std::uint64_t began_ns = began_ns_.load(std::memory_order_acquire);
-  return began_ns == 0 || now_ns < began_ns ? 0 : now_ns - began_ns;
+  const std::uint64_t done = done_.load(std::memory_order_acquire);
+  if (done != seen_done_ || done >= put_number_) {
+    seen_done_ = done;
+    progress_ns_ = now_ns;
+  }
+  const std::uint64_t writing_ns = began_ns == 0 || now_ns < began_ns ? 0 : now_ns - began_ns;
+  const std::uint64_t waiting_ns = now_ns - progress_ns_;
+  const bool is_idle = began_ns == 0 && waiting_ns >= kStalledNs;
+  is_stalled_.store(is_idle && is_pushing_.load(std::memory_order_acquire), std::memory_order_release);
+  return std::max(writing_ns, waiting_ns);
 }
 
 void Writer::request_stop() {
@@ -75,7 +87,10 @@ bool Writer::send(const GatedForce& force, std::uint32_t echo) {
   return timed([&] {
     command.sequence = sequence_.fetch_add(1, std::memory_order_relaxed);
     encode_output(profile_, command, report_);
-    return transport_.write(report_, profile_.output.bytes);
+    const bool is_taken = transport_.write(report_, profile_.output.bytes);
+    is_pushing_.store(command.is_enabled, std::memory_order_release);
+    if (is_taken) sent_.put({began_ns_.load(std::memory_order_relaxed), command.sequence, command.is_enabled});
+    return is_taken;
   });
 }
 

@@ -12,6 +12,7 @@
 #include "profile/profile.hpp"
 #include "tick/gate.hpp"
 #include "tick/link.hpp"
+#include "tick/link_watch.hpp"
 #include "tick/transport.hpp"
 
 namespace fdcg::dev {
@@ -32,7 +33,9 @@ class Writer {
   // starts that iteration now (a system call of some microseconds if the thread sleeps).
   void put(const GatedForce& force, std::uint32_t echo);
   void wake() { wake_.signal(); }
-  std::uint64_t busy_ns(std::uint64_t now_ns) const;  // for how long the write in progress has been going on; 0: there is none
+  // For how long the write in progress has been going on, or the thread has left a stored force where it was; 0: neither.
+  std::uint64_t busy_ns(std::uint64_t now_ns);
+  bool take_sent(SentReport* sent) { return sent_.take(sent); }  // the newest output report; false: nothing new
   bool has_failed() const { return has_failed_.load(std::memory_order_acquire); }  // the last write
 
   // The thread's body, until request_stop: then zero force and the profile's safe-stop reports, and out.
@@ -41,6 +44,11 @@ class Writer {
   // After run: false where a device that is there did not take its zero force.
   bool has_left_zero() const { return has_left_zero_.load(std::memory_order_acquire); }
 
+  // For the supervisor: the thread hangs with a force sent, and not in a write: a zero force by another way would arrive
+  // (emergency.hpp).
+  bool is_stalled() const { return is_stalled_.load(std::memory_order_acquire); }
+  // The number of a report that somebody else sends in its place; a new one each time.
+  std::uint32_t take_sequence() { return sequence_.fetch_add(1); }
   // For the supervisor: waits until the force stored last has been sent, or for that long.
   void flush_within(std::uint64_t timeout_ns);
   void forget_failure() { has_failed_.store(false, std::memory_order_release); }  // the device has been opened anew
@@ -49,7 +57,7 @@ class Writer {
   // (is_sending). Returns the sequence number of the next report, a new one each time.
   std::uint32_t mute() {
     is_muted_.store(true);
-    return sequence_.fetch_add(1);
+    return take_sequence();
   }
   bool is_sending() const { return began_ns_.load() != 0; }
   // One thread's at a time. False: nothing new.
@@ -73,13 +81,15 @@ class Writer {
   Link& link_;
   Mailbox<Letter> letters_;
   Mailbox<WriterStatus> status_;
+  Mailbox<SentReport> sent_;
   Event wake_;
-  std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false}, has_left_zero_{true};
+  std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false}, has_left_zero_{true}, is_stalled_{false},
+      is_pushing_{false};                   // the last: what was sent last enables the device
   std::atomic<std::uint64_t> stop_ns_{0};   // when the stop was asked for
   std::atomic<std::uint64_t> began_ns_{0};  // of the write in progress
   std::atomic<std::uint64_t> put_{0}, done_{0};
   std::atomic<std::uint32_t> sequence_{1};
-  std::uint64_t put_number_ = 0;  // the servo thread's
+  std::uint64_t put_number_ = 0, seen_done_ = 0, progress_ns_ = 0;  // the servo thread's
   WriterStatus counts_;
   std::uint64_t published_ns_ = 0;
   std::uint8_t report_[kMaxReportBytes] = {};

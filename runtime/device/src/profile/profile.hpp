@@ -33,6 +33,7 @@ struct Field {
   double bias = 0;
   std::uint32_t constant = 0;  // kConstant: the raw value; kEnable: the raw value while armed (0 otherwise); kStatus: mask of
                                // the bits that say that the device has a fault
+  std::uint32_t enabled = 0;   // kStatus: mask of the bits that say that the device applies the force; 0: it does not tell
 };
 
 enum class CrcKind : std::uint8_t { kNone, kCrc16CcittFalse, kCrc16Modbus, kCrc32, kCrc8, kSum8, kXor8 };
@@ -81,6 +82,11 @@ struct DeviceLimits {
   double velocity_m_per_s = 0;
   double workspace_min_m[3] = {}, workspace_max_m[3] = {};  // of the tip
   double device_watchdog_s = 0;                             // the device drops its force by itself after this; 0: it has none
+  // Known of some; 0: not known, and not judged.
+  double continuous_force_n = 0;  // that the motors stand for hours
+  double heat_s = 0;              // time constant of their heat, with continuous_force_n
+  double damping_n_s_per_m = 0;   // of the mechanism: what a stiffness may rest on (K T / 2 <= b)
+  double stiffness_n_per_m = 0;   // the largest that the maker allows
 };
 
 struct Profile {

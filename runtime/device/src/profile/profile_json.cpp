@@ -18,6 +18,10 @@ constexpr json::NumberRange kEffort{0, 1000, false, "N or N m"};
 constexpr json::NumberRange kSlew{0, 1e8, false, "N/s"};
 constexpr json::NumberRange kVelocity{0, 1000, false, "m/s"};
 constexpr json::NumberRange kPlace{-100, 100, true, "m"};
+constexpr json::NumberRange kHeat{0.01, 10000, true, "s"};
+constexpr json::NumberRange kDamping{0, 1000, true, "N s/m"};
+constexpr json::NumberRange kStiffness{0, 1e7, false, "N/m"};
+constexpr double kUsualHeatS = 5;  // of small motors
 constexpr json::NumberRange kWatchdog{0, 10, true, "s"};
 constexpr json::NumberRange kRate{1, 100000, true, "Hz"};
 constexpr std::size_t kLongestText = 1000;
@@ -55,15 +59,33 @@ void read_workspace(const json::Value& json, DeviceLimits* limits) {
   }
 }
 
+}  // namespace
+
 void read_limits(const json::Value& json, int axis_count, DeviceLimits* limits) {
-  json.allow_only({"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m", "device_watchdog_s"});
+  json.allow_only({"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m", "device_watchdog_s",
+                   "continuous_force_n", "heat_s", "damping_n_s_per_m", "stiffness_n_per_m"});
   if (json["force_n"]) limits->force_n = json["force_n"].number(kForce);
   if (json["effort"]) json["effort"].numbers(limits->effort, axis_count, kEffort);
   if (json["slew_n_per_s"]) limits->slew_n_per_s = json["slew_n_per_s"].number(kSlew);
   if (json["velocity_m_per_s"]) limits->velocity_m_per_s = json["velocity_m_per_s"].number(kVelocity);
   if (json["workspace_m"]) read_workspace(json["workspace_m"].object({"min", "max"}), limits);
   limits->device_watchdog_s = json["device_watchdog_s"].number_or(0, kWatchdog);
+  if (json["continuous_force_n"]) {
+    limits->continuous_force_n = json["continuous_force_n"].number(kForce);
+    limits->heat_s = json["heat_s"].number_or(kUsualHeatS, kHeat);
+  } else if (json["heat_s"]) {
+    json["heat_s"].fail("stands without continuous_force_n, of which it is the time; give both");
+  }
+  if (json["damping_n_s_per_m"]) limits->damping_n_s_per_m = json["damping_n_s_per_m"].number(kDamping);
+  if (json["stiffness_n_per_m"]) limits->stiffness_n_per_m = json["stiffness_n_per_m"].number(kStiffness);
 }
+
+bool are_known(const DeviceLimits& limits) {
+  return limits.force_n > 0 && limits.effort[0] > 0 && limits.slew_n_per_s > 0 && limits.velocity_m_per_s > 0 &&
+         limits.workspace_min_m[0] < limits.workspace_max_m[0];
+}
+
+namespace {
 
 // Warnings: limits that are not known, for a device that could push, and a rate that is too low.
 void warn(const json::Value& limits, double rate_hz, const std::string& file_name, std::vector<std::string>* warnings) {

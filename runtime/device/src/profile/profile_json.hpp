@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "profile/profile.hpp"
+#include "shared/json/reader.hpp"
 
 namespace fdcg::dev {
 
@@ -15,6 +16,11 @@ namespace fdcg::dev {
 // not known, since it is then read but never pushes, and one for a rate at which it would not stay armed.
 std::string parse_profile(std::string_view text, const std::string& file_name, Profile* profile,
                           std::vector<std::string>* warnings = nullptr);
+
+// "limits" of a profile, or of a device of a scene. Throws json::Refusal.
+void read_limits(const json::Value& json, int axis_count, DeviceLimits* limits);
+// All that force needs, the watchdog apart.
+bool are_known(const DeviceLimits& limits);
 
 // A warning for a device that reports so seldom that the gate counts it as silent; empty: none.
 std::string rate_warning(double rate_hz);

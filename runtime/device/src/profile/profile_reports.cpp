@@ -69,8 +69,8 @@ class Report {
   }
 
  private:
-  static constexpr json::Keys kFieldKeys{"role",  "axis", "offset", "type",       "endian",
-                                         "scale", "bias", "unit",   "fault_mask", "value"};
+  static constexpr json::Keys kFieldKeys{"role", "axis", "offset",     "type",         "endian", "scale",
+                                         "bias", "unit", "fault_mask", "enabled_mask", "value"};
 
   // The bytes are within the report, and no other field uses them.
   void claim(const json::Value& json, const char* key, int offset, int bytes) {
@@ -107,8 +107,9 @@ class Report {
         read_time(json, field);
         break;
       case Role::kStatus:
-        allow(json, role, {"role", "offset", "type", "endian", "fault_mask"});
+        allow(json, role, {"role", "offset", "type", "endian", "fault_mask", "enabled_mask"});
         field->constant = json["fault_mask"].id(largest(field->type));
+        field->enabled = json["enabled_mask"] ? json["enabled_mask"].id(largest(field->type)) : 0;
         if (field->constant == 0) json["fault_mask"].fail("is 0; set the bits that say that the device has a fault");
         break;
       case Role::kEnable:

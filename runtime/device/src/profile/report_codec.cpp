@@ -45,8 +45,8 @@ constexpr TypeInfo info_of() {
   return {sizeof(Number), std::numeric_limits<Number>::lowest(), std::numeric_limits<Number>::max()};
 }
 constexpr TypeInfo kTypeInfos[] = {info_of<std::uint8_t>(), info_of<std::int8_t>(),   info_of<std::uint16_t>(),
-                               info_of<std::int16_t>(), info_of<std::uint32_t>(), info_of<std::int32_t>(),
-                               info_of<float>()};
+                                   info_of<std::int16_t>(), info_of<std::uint32_t>(), info_of<std::int32_t>(),
+                                   info_of<float>()};
 
 const TypeInfo& info_of(NumberType type) {
   return kTypeInfos[static_cast<int>(type)];
@@ -120,7 +120,10 @@ void read_into(const Field& field, std::uint32_t raw, Sample* sample) {
   if (field.role == Role::kEcho) sample->echo = raw;
   if (field.role == Role::kTime) sample->time_s = number_of(field.type, raw) * field.scale;
   if (field.role == Role::kButtons) sample->buttons = raw;
-  if (field.role == Role::kStatus) sample->has_fault = sample->has_fault || (raw & field.constant) != 0;
+  if (field.role == Role::kStatus) {
+    sample->has_fault = sample->has_fault || (raw & field.constant) != 0;
+    sample->is_enabled = sample->is_enabled || (raw & field.enabled) != 0;
+  }
 }
 
 }  // namespace
@@ -158,7 +161,8 @@ void encode_input(const Profile& profile, const Sample& sample, std::uint8_t* da
     if (field.role == Role::kEcho) return sample.echo;
     if (field.role == Role::kTime) return raw_of_time(field, sample.time_s);
     if (field.role == Role::kButtons) return sample.buttons;
-    return field.role == Role::kStatus && sample.has_fault ? field.constant : 0;
+    if (field.role != Role::kStatus) return 0;
+    return (sample.has_fault ? field.constant : 0) | (sample.is_enabled ? field.enabled : 0);
   });
 }
 

@@ -16,7 +16,8 @@ struct Sample {
   std::uint32_t echo = 0;      // the sequence number of the last output report that the device took
   double time_s = 0;           // of the device's clock; wraps with its field
   std::uint32_t buttons = 0;
-  bool has_fault = false;  // a bit of the status mask is set
+  bool has_fault = false;   // a bit of the status mask is set
+  bool is_enabled = false;  // the device says that it applies the force
 };
 
 // Length, id, CRC, constants and finiteness; *sample is only good with kGood.
@@ -36,7 +37,8 @@ struct ReportJudge {
   int outsiders = 0;          // reports in a row that are out of order, but in order among themselves
   std::uint32_t outsider_sequence = 0;
   double outsider_raw_time_s = 0;
-  std::uint64_t lost = 0;  // gaps in the sequence, in reports
+  std::uint64_t lost = 0;      // gaps in the sequence, in reports
+  std::uint64_t restarts = 0;  // of the device
 };
 // host_s: when the report was read, on the host's clock, never falling. A field that the profile lacks is not judged: without a
 // sequence, a report whose time is that of the one before is repeated; without a time, none is stale; with neither, all is

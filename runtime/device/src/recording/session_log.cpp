@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -34,20 +35,30 @@ bool is_same_file(const struct stat& a, const std::string& path) {
   return stat(path.c_str(), &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-// Empty, or which file of the session the log would overwrite.
+// It begins as one, or is empty.
+bool is_log_or_empty(const std::string& path) {
+  char begin[sizeof kSessionMagic] = {};
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin, sizeof begin);
+  return file.gcount() == 0 || std::memcmp(begin, kSessionMagic, sizeof begin) == 0;
+}
+
+// Empty, or what the log would overwrite.
 std::string overwritten(const HostConfig& config) {
   struct stat log {};
-  if (stat(config.log_file.c_str(), &log) != 0) return {};
+  if (lstat(config.log_file.c_str(), &log) != 0) return {};
+  if (S_ISLNK(log.st_mode)) return "is a symbolic link";
   if (S_ISDIR(log.st_mode)) return "is a folder";
   if (is_same_file(log, config.scene_file)) return "would overwrite the scene";
   for (const ObjectConfig& object : config.objects)
     if (!object.is_surface && is_same_file(log, object.file)) return "would overwrite the graph of '" + object.name + "'";
   for (const DeviceConfig& device : config.devices)
     if (is_same_file(log, device.recording)) return "would overwrite the recording that '" + device.name + "' plays";
+  if (S_ISREG(log.st_mode) && !is_log_or_empty(config.log_file)) return "would overwrite a file that is no session's log";
   return {};
 }
 
-std::string describe(const HostConfig& config, SessionHeader* header) {
+std::string describe(const HostConfig& config, const SceneGraphs* graphs, SessionHeader* header) {
   header->program = FDCG_VERSION_STRING;
   header->scene_file = config.scene_file;
   header->scene = write_scene(config);
@@ -56,9 +67,15 @@ std::string describe(const HostConfig& config, SessionHeader* header) {
   if (const std::string problem = parse_scene(header->scene, "its scene", &back, nullptr, {.shares_soft = false});
       !problem.empty())
     return problem;
-  for (const ObjectConfig& object : config.objects) {
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    const ObjectConfig& object = config.objects[i];
     if (object.is_surface) {
       header->graphs.push_back({});
+      continue;
+    }
+    if (graphs != nullptr) {
+      const fdcg_graph& graph = graphs->of_object(i);
+      header->graphs.push_back({object.file, graph.mapping_bytes, fdcg_checksum(graph.mapping, graph.mapping_bytes)});
       continue;
     }
     fdcg_graph graph{};
@@ -75,23 +92,27 @@ std::string cannot_write(const HostConfig& config) {
 }
 
 // *header is then filled in.
-std::string begin_log(const HostConfig& config, SessionHeader* header) {
+std::string begin_log(const HostConfig& config, const SceneGraphs* graphs, SessionHeader* header) {
   if (const std::string problem = overwritten(config); !problem.empty())
     return cannot_write(config) + "it " + problem + "; give another name (log.file, --log)";
-  const std::string problem = describe(config, header);
+  const std::string problem = describe(config, graphs, header);
   return problem.empty() ? problem : cannot_write(config) + problem;
 }
 
 }  // namespace
 
-std::string log_problem(const HostConfig& config) {
+std::string log_problem(const HostConfig& config, std::vector<std::string>* warnings) {
   if (config.log_file.empty()) return {};
   const std::filesystem::path folder = std::filesystem::path(config.log_file).parent_path();
   std::error_code ignored;
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
     return cannot_write(config) + "its folder does not exist; make it, or give another name (log.file, --log)";
   SessionHeader header;
-  return begin_log(config, &header);
+  if (std::string problem = begin_log(config, nullptr, &header); !problem.empty()) return problem;
+  struct stat log {};
+  if (warnings != nullptr && lstat(config.log_file.c_str(), &log) == 0 && S_ISREG(log.st_mode) && log.st_size > 0)
+    warnings->push_back("'" + config.log_file + "' is there already: a session's log that a run overwrites");
+  return {};
 }
 
 // ---- ring -----------------------------------------------------------------------------------------------------------------
@@ -319,9 +340,9 @@ SessionLog::~SessionLog() {
   delete impl_;
 }
 
-std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, int ring_count) {
+std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, int ring_count, const SceneGraphs* graphs) {
   SessionHeader header;
-  if (std::string problem = begin_log(config, &header); !problem.empty()) return problem;
+  if (std::string problem = begin_log(config, graphs, &header); !problem.empty()) return problem;
   impl_->path = config.log_file;
   impl_->rings.assign(rings, rings + ring_count);
   std::size_t devices = 0;
@@ -335,7 +356,7 @@ std::string SessionLog::start(const HostConfig& config, LogRing* const* rings, i
   impl_->chunk.reserve(2 * kChunkBytes);
 
   // A crash must leave a log that can be read: it is written in place as the session goes, unlike other outputs.
-  impl_->descriptor = ::open(config.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  impl_->descriptor = ::open(config.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644);
   if (impl_->descriptor < 0) return cannot_write(config) + std::strerror(errno);
   // The thread takes no signals but of its own crash: the process' belong to others, and SIGXFSZ becomes an error of write.
   sigset_t all{}, before{};

@@ -8,8 +8,10 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scene/host_config.hpp"
+#include "scene/scene_build.hpp"
 #include "tick/device_tick.hpp"
 
 namespace fdcg::dev {
@@ -57,8 +59,8 @@ class LogRing {
 
 // Checks without touching the file whether a session of this scene can be logged to config.log_file. Empty: it can, or there is
 // no log. Otherwise the reason: the name is that of an input or a folder, its folder does not exist, or the scene could not be
-// read back.
-std::string log_problem(const HostConfig& config);
+// read back. A session's log that would be overwritten goes to *warnings (may be null).
+std::string log_problem(const HostConfig& config, std::vector<std::string>* warnings);
 
 // The file and its thread.
 class SessionLog {
@@ -68,8 +70,9 @@ class SessionLog {
   SessionLog(const SessionLog&) = delete;
   SessionLog& operator=(const SessionLog&) = delete;
   // Writes the header (the scene, the profiles, the graphs' checksums) and starts the thread. Rings: their devices are the
-  // scene's, in order. They must live until stop. Empty: fine. Otherwise why not.
-  std::string start(const HostConfig& config, LogRing* const* rings, int ring_count);
+  // scene's, in order. They must live until stop. graphs: those that the devices feel; null: the files as they are now. Empty:
+  // fine. Otherwise why not. Refused is a file that is there and no session's log, and a symbolic link.
+  std::string start(const HostConfig& config, LogRing* const* rings, int ring_count, const SceneGraphs* graphs = nullptr);
   // After the servo threads have put their last tick. Writes what is left, closes the file. Empty, or what went wrong since the
   // start ("disk full"). A log that has come to its limit is well.
   std::string stop();

@@ -55,7 +55,7 @@ struct GroundConfig {
   fdcg_params params = fdcg_make_params();
 };
 
-enum class DeviceSource { kHid, kSimulated, kRecorded };
+enum class DeviceSource { kHid, kSimulated, kRecorded, kPlugin };
 
 struct DeviceConfig {
   std::string name;
@@ -63,6 +63,8 @@ struct DeviceConfig {
   Profile profile;
   std::string profile_text;               // its JSON, for the log
   std::string serial, path;               // of the HID device; empty: the first that matches
+  std::string plugin, plugin_settings;    // kPlugin: its file, empty where the program hands it over; JSON
+  std::string limits_text;                // kPlugin: its limits as JSON, for the log
   std::string recording;                  // kRecorded: a session's log
   bool is_recording_in_real_time = true;  // false: as fast as it is read (FastRun)
   SimulationConfig simulation;            // kSimulated
@@ -79,6 +81,13 @@ struct LoopConfig {
   int cpu = -1;                                   // -1: any
   bool lock_memory = true;
   HidBackend backend = HidBackend::kAny;
+  bool maps_graphs = false;  // false: a copy in memory of our own, which nobody can change once it is verified
+};
+
+// Parts of the stage of stability (stability.hpp).
+struct StabilityConfig {
+  bool has_passivity = true;  // where nothing in the scene moves by itself; else what it gives is not the springs'
+  bool has_calming = true;
 };
 
 struct HostConfig {
@@ -89,6 +98,7 @@ struct HostConfig {
   double gravity_m_per_s2[3] = {0, 0, -9.80665};
   GroundConfig ground;
   LoopConfig loop;
+  StabilityConfig stability;
   std::string log_file;      // empty: none
   double log_megabytes = 0;  // the log ends there; 0: no limit
 };

@@ -84,7 +84,16 @@ fdcg_scene_config capacities_for(const HostConfig& config, const SceneLoad& load
 }
 
 // The device's own part of its setup.
-void add_device(const DeviceConfig& from, DeviceSetup* setup) {
+double least_stiffness(const HostConfig& config) {
+  double least = 0;
+  for (const ObjectConfig& object : config.objects) {
+    const double stiffness = object.params.stiffness_n_per_m;
+    if (stiffness > 0 && (least == 0 || stiffness < least)) least = stiffness;
+  }
+  return least;
+}
+
+void add_device(const DeviceConfig& from, const HostConfig& config, DeviceSetup* setup) {
   setup->profile = from.profile;
   setup->mapping = from.mapping;
   setup->contact_count = from.contact_count;
@@ -92,6 +101,13 @@ void add_device(const DeviceConfig& from, DeviceSetup* setup) {
   std::copy_n(from.pads_m, kMaxContacts, setup->pads_m);
   setup->grip = from.grip;
   setup->most_force_n = from.most_force_n;
+  setup->is_played = from.source == DeviceSource::kRecorded;
+  // of a recording the hand does not feel the force: there is no loop
+  setup->stability.has_passivity = config.stability.has_passivity && !setup->is_played;
+  setup->stability.has_calming = config.stability.has_calming && !setup->is_played;
+  setup->has_friction = std::any_of(config.objects.begin(), config.objects.end(),
+                                    [](const ObjectConfig& object) { return object.params.mu_static > 0; });
+  setup->stability.stiffness_n_per_m = least_stiffness(config) * from.mapping.scale;
 }
 
 }  // namespace
@@ -112,7 +128,10 @@ std::string SceneGraphs::open(const HostConfig& config) {
     }
     graph_of_object_.push_back(graphs_.size());
     fdcg_error error{};
-    if (fdcg_open_file(config.objects[i].file.c_str(), FDCG_VERIFY_SAFE, &graphs_.emplace_back(), &error) != FDCG_OK) {
+    fdcg_open_options options = fdcg_make_open_options();
+    options.verify = FDCG_VERIFY_SAFE;
+    options.huge_pages = !config.loop.maps_graphs;  // a copy
+    if (fdcg_open_file_with(config.objects[i].file.c_str(), &options, &graphs_.emplace_back(), &error) != FDCG_OK) {
       close();
       return place_of(config, i) + error.message;
     }
@@ -178,7 +197,7 @@ std::string build_device_scene(const HostConfig& config, const DeviceRange& devi
   if (std::string problem = build_bodies(config, load, graphs, objects, scene, &setup); !problem.empty()) return problem;
   scene->setups.assign(devices.count, setup);
   for (std::size_t i = 0; i < devices.count; ++i)
-    add_device(config.devices[devices.first + i], &scene->setups[i]);
+    add_device(config.devices[devices.first + i], config, &scene->setups[i]);
   return {};
 }
 

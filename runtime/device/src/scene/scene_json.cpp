@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -11,13 +12,13 @@ namespace {
 
 constexpr int kMostObjects = 1000;
 constexpr std::size_t kMostSceneBytes = json::Limits{}.bytes;
-constexpr json::Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices", "loop", "log",
-                                   "limits",     "gravity_m_per_s2", "ground", "shared"};
+constexpr json::Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices",  "loop", "log",
+                                   "limits",     "gravity_m_per_s2", "ground", "shared",  "stability"};
 constexpr json::Keys kObjectKeys = {
     "name",       "file",          "surface", "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static",
     "mu_dynamic", "edge_friction", "motion",  "notes"};
 constexpr json::Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
-constexpr json::Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend"};
+constexpr json::Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend", "graphs"};
 constexpr json::Keys kLogKeys = {"file", "limit_mb"};
 
 }  // namespace
@@ -58,6 +59,8 @@ void SceneParser::parse(std::string_view text) {
   if (scene["ground"]) read_ground(scene["ground"].object(kGroundKeys));
   read_shared(scene);
   if (scene["loop"]) read_loop(scene["loop"].object(kLoopKeys));
+  read_stability(scene);
+  judge_stiffness(scene);
   if (scene["log"]) read_log(scene["log"].object(kLogKeys));
 }
 
@@ -69,6 +72,36 @@ void SceneParser::read_loop(const json::Value& from) {
   loop.cpu = static_cast<int>(from["cpu"].integer_or(loop.cpu, -1, 1023));
   loop.lock_memory = from["lock_memory"].boolean_or(loop.lock_memory);
   loop.backend = static_cast<HidBackend>(from["backend"].choice_or(0, {"any", "hidraw", "libusb"}));
+  loop.maps_graphs = from["graphs"].choice_or(0, {"copy", "map"}) == 1;
+}
+
+// No more than a device's maker allows. Lengths are scaled by the mapping, forces are not.
+void SceneParser::judge_stiffness(const json::Value& scene) {
+  for (const DeviceConfig& device : config_.devices) {
+    const double allowed = device.profile.limits.stiffness_n_per_m;
+    for (const ObjectConfig& object : config_.objects) {
+      const double felt = object.params.stiffness_n_per_m * device.mapping.scale;
+      if (allowed <= 0 || felt <= allowed) continue;
+      scene["devices"].fail(": device " + in_quotes(device.name) + ": object " + in_quotes(object.name) +
+                            ": its stiffness is felt as " + shown_number(felt) + " N/m; the profile allows " +
+                            shown_number(allowed) + ": lower it, or the mapping's scale");
+    }
+  }
+}
+
+// Called after the objects are known.
+void SceneParser::read_stability(const json::Value& scene) {
+  StabilityConfig& stability = config_.stability;
+  stability.has_passivity = std::all_of(config_.objects.begin(), config_.objects.end(),
+                                        [](const ObjectConfig& object) { return object.motion.kind == MotionKind::kFixed; });
+  if (!scene["stability"]) return;
+  const json::Value from = scene["stability"].object({"passivity", "calming"});
+  stability.has_passivity = from["passivity"].boolean_or(stability.has_passivity);
+  stability.has_calming = from["calming"].boolean_or(stability.has_calming);
+  if (warnings_ == nullptr) return;
+  if (from["passivity"] && !stability.has_passivity)
+    warnings_->push_back("stability.passivity is switched off: what the scene gives out is not damped");
+  if (!stability.has_calming) warnings_->push_back("stability.calming is switched off: a loop that shakes goes on shaking");
 }
 
 void SceneParser::read_log(const json::Value& from) {

@@ -6,6 +6,7 @@
 #include "profile/profile_json.hpp"
 #include "scene/scene_parser.hpp"
 #include "session/session_reader.hpp"
+#include "transport/plugin_transport.hpp"
 #include "transport/simulated_device.hpp"
 
 namespace fdcg::dev {
@@ -41,9 +42,12 @@ void allow_keys(const json::Value& device, DeviceSource source) {
                                       "force_limit_n", "notes",  "profile", "serial",   "path"};
   static constexpr json::Keys kSimulated = {"name", "source",        "mapping", "contacts",  "grip",
                                             "turn", "force_limit_n", "notes",   "simulation"};
-  static constexpr json::Keys kRecorded = {"name",          "source", "mapping", "contacts",  "grip",      "turn",
-                                           "force_limit_n", "notes",  "profile", "recording", "simulation"};
+  static constexpr json::Keys kRecorded = {"name",  "source",  "mapping",   "contacts",   "grip",    "turn",  "force_limit_n",
+                                           "notes", "profile", "recording", "simulation", "rate_hz", "limits"};
   if (source == DeviceSource::kHid) return device.allow_only(kHid, " of a hid device");
+  static constexpr json::Keys kPlugin = {"name",          "source", "mapping", "contacts", "grip",    "turn",
+                                         "force_limit_n", "notes",  "plugin",  "settings", "rate_hz", "limits"};
+  if (source == DeviceSource::kPlugin) return device.allow_only(kPlugin, " of a plugin's device");
   if (source == DeviceSource::kSimulated) return device.allow_only(kSimulated, " of a simulated device");
   device.allow_only(kRecorded, " of a recorded device");
 }
@@ -52,7 +56,7 @@ void allow_keys(const json::Value& device, DeviceSource source) {
 
 void SceneParser::read_device(const json::Value& from) {
   DeviceConfig device;
-  device.source = static_cast<DeviceSource>(from["source"].choice_or(0, {"hid", "simulated", "recorded"}));
+  device.source = static_cast<DeviceSource>(from["source"].choice_or(0, {"hid", "simulated", "recorded", "plugin"}));
   allow_keys(from, device.source);
   device.name = from["name"].text(kLongestName);
   refuse_twins(from, config_.devices, device.name);
@@ -60,6 +64,8 @@ void SceneParser::read_device(const json::Value& from) {
     read_profile(from, &device);
     device.serial = from["serial"].text_or("", kLongestName);
     device.path = from["path"].text_or("", kLongestPath);
+  } else if (device.source == DeviceSource::kPlugin) {
+    read_plugin(from, &device);
   } else if (device.source == DeviceSource::kSimulated) {
     if (from["simulation"]) read_simulation(from["simulation"].object(kSimulationKeys), &device.simulation);
     device.profile = simulated_profile(device.simulation);
@@ -74,7 +80,44 @@ void SceneParser::read_device(const json::Value& from) {
     const double own = from["force_limit_n"].number(above_0(kMostForce, "N"));
     device.most_force_n = scene_force_n_ > 0 ? std::min(own, scene_force_n_) : own;
   }
+  if (device.source == DeviceSource::kHid) refuse_same_node(from, device);
   config_.devices.push_back(std::move(device));
+}
+
+// Its limits are those of a profile; how its reports are laid out is ours.
+void SceneParser::read_plugin(const json::Value& from, DeviceConfig* device) {
+  if (from["plugin"]) device->plugin = beside(file_name_, from["plugin"].text(kLongestPath));
+  // never from where the system looks for libraries
+  if (!device->plugin.empty() && device->plugin.find('/') == std::string::npos) device->plugin.insert(0, "./");
+  device->plugin_settings = from["settings"] ? from["settings"].dump() : "{}";
+  if (from["settings"] && !from["settings"].is_object()) from["settings"].fail("is no object");
+  read_plugin_profile(from, device);
+}
+
+void SceneParser::read_plugin_profile(const json::Value& from, DeviceConfig* device) {
+  DeviceLimits limits;
+  constexpr int kAxes = 3;
+  if (from["limits"]) read_limits(from["limits"], kAxes, &limits);
+  device->limits_text = from["limits"] ? from["limits"].dump() : "{}";
+  device->profile = plugin_profile(from["rate_hz"].number({1, 20000, true, "Hz"}), limits);
+  warn_of_rate(*device);
+  if (!are_known(limits) && warnings_ != nullptr)
+    warnings_->push_back("device " + in_quotes(device->name) + ": a limit is not known: the device is read but gives no force");
+}
+
+// Two devices of a scene that could not but open the same node.
+void SceneParser::refuse_same_node(const json::Value& from, const DeviceConfig& device) const {
+  for (const DeviceConfig& other : config_.devices) {
+    if (other.source != DeviceSource::kHid) continue;
+    if (!device.path.empty() && device.path == other.path)
+      return from["path"].fail("is that of device " + in_quotes(other.name) + " too; a device node has one owner");
+    const Match &a = device.profile.match, &b = other.profile.match;
+    const bool is_same_match = a.vendor == b.vendor && a.product == b.product && a.usage_page == b.usage_page &&
+                               a.usage == b.usage && a.interface_number == b.interface_number;
+    if (is_same_match && device.path.empty() && other.path.empty() && device.serial == other.serial)
+      return from["profile"].fail("finds the same device as that of " + in_quotes(other.name) +
+                                  "; give each a \"serial\" or a \"path\" of its own (fdcg-servo devices)");
+  }
 }
 
 void SceneParser::read_button(const json::Value& from, HeldButton* button) {
@@ -157,6 +200,7 @@ void SceneParser::read_profile(const json::Value& from, DeviceConfig* device) {
 void SceneParser::read_recording(const json::Value& from, DeviceConfig* device) {
   device->recording = beside(file_name_, from["recording"].text(kLongestPath));
   if (from["profile"]) return read_profile(from, device);
+  if (from["rate_hz"]) return read_plugin_profile(from, device);  // of a plugin's device, as in a log of its recording
   if (from["simulation"]) {  // of a device that was simulated when it was recorded: so a log of its recording says all
     read_simulation(from["simulation"].object(kSimulationKeys), &device->simulation);
     device->profile = simulated_profile(device->simulation);
@@ -181,6 +225,7 @@ void SceneParser::read_recording(const json::Value& from, DeviceConfig* device) 
   device->profile = recorded.devices[index].profile;
   device->profile_text = recorded.devices[index].profile_text;
   device->simulation = recorded.devices[index].simulation;
+  device->limits_text = recorded.devices[index].limits_text;
   warn_of_rate(*device);
 }
 

@@ -51,6 +51,9 @@ class SceneParser {
   void read_ground(const json::Value& from);
   void read_shared(const json::Value& scene);
   void read_contacts(const json::Value& from, DeviceConfig* device);
+  void read_plugin_profile(const json::Value& from, DeviceConfig* device);
+  void read_plugin(const json::Value& from, DeviceConfig* device);
+  void refuse_same_node(const json::Value& from, const DeviceConfig& device) const;
   void read_button(const json::Value& from, HeldButton* button);
   void read_script(const json::Value& from, SimulationConfig* simulation);
   void read_device(const json::Value& from);
@@ -59,6 +62,8 @@ class SceneParser {
   void read_recording(const json::Value& from, DeviceConfig* device);
   void read_mapping(const json::Value& from, Mapping* mapping);
   void read_simulation(const json::Value& from, SimulationConfig* simulation);
+  void read_stability(const json::Value& scene);
+  void judge_stiffness(const json::Value& scene);
   void read_loop(const json::Value& from);
   void read_log(const json::Value& from);
   void parse_profile_of(const json::Value& from, const std::string& text, const std::string& name, DeviceConfig* device);

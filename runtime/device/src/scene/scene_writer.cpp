@@ -105,14 +105,21 @@ Json button_json(const HeldButton& button) {
 }
 
 Json device_json(const DeviceConfig& device) {
-  constexpr const char* kSources[] = {"hid", "simulated", "recorded"};
+  constexpr const char* kSources[] = {"hid", "simulated", "recorded", "plugin"};
   Json json;
   json["name"] = device.name;
   json["source"] = kSources[static_cast<int>(device.source)];
-  if (device.profile_text.empty()) {  // the simulation names the profile
+  if (device.source == DeviceSource::kPlugin) {
+    if (!device.plugin.empty()) json["plugin"] = device.plugin;
+    json["settings"] = nlohmann::json::parse(device.plugin_settings, nullptr, false);
+  } else if (device.profile_text.empty() && device.limits_text.empty()) {  // the simulation names the profile
     json["simulation"] = simulation_json(device.simulation);
-  } else {
+  } else if (!device.profile_text.empty()) {
     json["profile"] = nlohmann::json::parse(device.profile_text, nullptr, false);  // its keys sorted: always the same text
+  }
+  if (!device.limits_text.empty()) {
+    json["rate_hz"] = device.profile.rate_hz;
+    json["limits"] = nlohmann::json::parse(device.limits_text, nullptr, false);
   }
   if (!device.serial.empty()) json["serial"] = device.serial;
   if (!device.path.empty()) json["path"] = device.path;
@@ -161,6 +168,9 @@ std::string write_scene(const HostConfig& config) {
   scene["loop"]["cpu"] = config.loop.cpu;
   scene["loop"]["lock_memory"] = config.loop.lock_memory;
   scene["loop"]["backend"] = kBackends[static_cast<int>(config.loop.backend)];
+  scene["stability"]["passivity"] = config.stability.has_passivity;
+  scene["stability"]["calming"] = config.stability.has_calming;
+  scene["loop"]["graphs"] = config.loop.maps_graphs ? "map" : "copy";
   if (!config.log_file.empty()) {
     scene["log"]["file"] = config.log_file;
     scene["log"]["limit_mb"] = config.log_megabytes;

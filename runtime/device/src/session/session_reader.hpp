@@ -14,7 +14,7 @@
 namespace fdcg::dev {
 
 inline constexpr char kSessionMagic[8] = {'\x89', 'F', 'L', 'O', 'G', '\r', '\n', '\x1a'};
-inline constexpr std::uint32_t kSessionVersion = 1;
+inline constexpr std::uint32_t kSessionVersion = 2;
 
 // Whether a file begins like a session's log. False where it cannot be read.
 bool is_session_log(const std::string& path);

@@ -21,11 +21,13 @@ bool newest_good(DeviceState& device, const TickInput& input, Sample* sample) {
   const Profile& profile = device.setup.profile;
   TickCounters& counters = device.counters;
   const std::uint64_t lost_before = device.judge.lost;
+  device.link.note_sent(input.sent);
   bool has_sample = false;
   for (std::uint32_t i = 0; i < std::min<std::uint32_t>(input.report_count, kMaxDrain); ++i) {
     const RawReport& report = input.reports[i];
     Sample read;
     Verdict verdict = decode_input(profile, report.data, report.bytes, &read);
+    const std::uint64_t restarts = device.judge.restarts;
     if (verdict == Verdict::kGood) {
       verdict = judge_report(profile, read, static_cast<double>(report.host_ns) * 1e-9, &device.judge);
     }
@@ -33,6 +35,8 @@ bool newest_good(DeviceState& device, const TickInput& input, Sample* sample) {
       ++counters.rejected[static_cast<int>(verdict)];
       continue;
     }
+    if (device.judge.restarts != restarts) device.link.open(report.host_ns);
+    device.link.note_report(read, report.host_ns);
     counters.superseded += has_sample;
     has_sample = true;
     *sample = read;
@@ -59,12 +63,15 @@ bool take_reports(const Member& member) {
   *member.output = TickOutput();
   if (member.input->begins) {
     device.judge = ReportJudge();
+    device.link.open(member.input->now_ns);
     device.samples = 0;
     device.has_place = false;
     device.last_good_ns = 0;
   }
   Sample sample;
+  const std::uint64_t restarts = device.judge.restarts;
   const bool has_sample = newest_good(device, *member.input, &sample);
+  gate->link_fault = device.judge.restarts != restarts ? Fault::kRestarted : Fault::kNone;
   member.output->has_sample = has_sample;
   count_tick(device, *member.input, has_sample);
   if (!has_sample) return false;  // the last state is kept; the gate checks its age
@@ -92,22 +99,42 @@ void tell(const DeviceState& device, TickOutput* output) {
     output->bodies[i] = fdcg_body_get_pose(&device.setup.bodies[i].body);
 }
 
+// What was wanted, in the device's frame, through the stage of stability. Without a report the force stays.
+void steady(DeviceState& device, const TickInput& input) {
+  if (!device.to_gate.has_sample) return;
+  force_to_device(device.setup.mapping, device.wanted_n, device.steadied_n);
+  if (device.gate.phase() == Phase::kDisarmed && input.arm) device.stability.reset();
+  device.stability.step(device.tip_m, input.now_ns, device.gate.last_force_n(), device.link.round_trip_s(), device.rubs,
+                        device.steadied_n);
+}
+
 void pass_gate(const Member& member) {
   DeviceState& device = *member.device;
   GateInput* const gate = &device.to_gate;
   const TickInput& input = *member.input;
   TickOutput& output = *member.output;
+  const bool wants_force = device.gate.phase() != Phase::kDisarmed || input.arm;
   gate->now_ns = input.now_ns;
+  gate->slept_ns = input.slept_ns;
+  if (gate->link_fault == Fault::kNone) gate->link_fault = device.link.fault(input.now_ns, wants_force);
+  gate->lags = device.link.lags();
   gate->arm = input.arm && device.samples == kSamplesToArm;
   gate->disarm = input.disarm;
   gate->read_failed = input.read == ReadStatus::kLost;
   gate->write_failed = input.write_failed;
   gate->write_busy_ns = input.write_busy_ns;
-  force_to_device(device.setup.mapping, device.wanted_n, gate->wanted_force_n);
+  steady(device, input);
+  if (gate->link_fault == Fault::kNone && device.stability.shakes()) gate->link_fault = Fault::kShaking;
+  std::copy_n(device.steadied_n, 3, gate->wanted_force_n);
   const Phase phase_before = device.gate.phase();
   output.force = device.gate.step(*gate);
   output.phase = device.gate.phase();
   output.fault = device.gate.fault();
+  if (phase_before == Phase::kDisarmed && output.phase != Phase::kDisarmed) device.stability.reset();
+  output.calmed = 1 - device.stability.share();
+  output.damping_n_s_per_m = device.stability.damping();
+  output.is_hot = device.stability.is_hot();
+  output.round_trip_s = device.link.round_trip_s();
   output.arming_refused = device.gate.arming_refused() || (input.arm && !gate->arm);
   if (phase_before != Phase::kDisarmed && output.phase == Phase::kDisarmed) {
     ++device.counters.disarmed[static_cast<int>(output.fault)];
@@ -119,7 +146,9 @@ void pass_gate(const Member& member) {
 bool begin_device(const DeviceSetup& setup, DeviceState* device, fdcg_error* error) {
   *device = DeviceState();
   device->setup = setup;
+  device->link.begin(setup.profile, !setup.is_played);
   device->gate.begin(setup.profile.limits, setup.profile.axis_count, setup.profile.rate_hz, setup.most_force_n);
+  device->stability.begin(setup.stability, device->gate.limits(), setup.profile.rate_hz);
   return begin_fingers(device, error);
 }
 

@@ -19,7 +19,9 @@
 #include "profile/report_codec.hpp"
 #include "tick/gate.hpp"
 #include "tick/grip.hpp"
+#include "tick/link_watch.hpp"
 #include "tick/soft.hpp"
+#include "tick/stability.hpp"
 #include "tick/transport.hpp"
 
 namespace fdcg::dev {
@@ -39,12 +41,14 @@ struct RawReport {
 };
 
 struct TickInput {
-  std::uint64_t now_ns = 0;  // after the drain
+  std::uint64_t now_ns = 0;    // after the drain
+  std::uint64_t slept_ns = 0;  // for which the computer has been suspended since it was started
   ReadStatus read = ReadStatus::kTimeout;
   bool arm = false, disarm = false;
   bool begins = false;  // the device has just been opened (again): nothing is known of its sequence and clock
   bool write_failed = false;
   std::uint64_t write_busy_ns = 0;
+  SentReport sent;  // the newest output that the device has been handed
   std::uint32_t report_count = 0;
   std::uint32_t pose_count = 0;  // of driven objects, in the order of DeviceSetup::driven
   fdcg_pose poses[kMaxDriven];
@@ -57,6 +61,10 @@ struct TickOutput {
   Phase phase = Phase::kDisarmed;
   Fault fault = Fault::kNone;
   bool arming_refused = false;
+  double round_trip_s = 0;       // from a write to its echo, newest; 0: not known
+  double calmed = 0;             // share of the scene's force that is cut away, since it shook: 0 to 1
+  double damping_n_s_per_m = 0;  // of the passivity controller
+  bool is_hot = false;           // the force is cut to what the motors stand
   bool has_sample = false;
   std::uint32_t state = 0;        // of the contact with the largest force: fdcg_state
   double hip_world_m[3] = {};     // of the tip
@@ -90,6 +98,9 @@ struct DeviceSetup {
   fdcg_scene_body* bodies = nullptr;
   std::uint32_t body_count = 0;
   std::uint32_t substeps = 1;  // of a tick at scene_rate_hz, 1 to FDCG_BODY_MAX_SUBSTEPS
+  StabilitySetup stability;    // stiffness: felt at this device
+  bool has_friction = false;   // of an object
+  bool is_played = false;      // a recording: it answers nothing that is sent now
   double scene_rate_hz = 0;    // of the fastest device that shares the scene; 0: this one's
   fdcg_pile* pile = nullptr;   // with the ground and all objects; null where there are no bodies
   fdcg_reaction* reactions = nullptr;
@@ -105,6 +116,9 @@ struct DeviceState {
   Gate gate;
   GateInput to_gate;  // of the tick that is going on
   ReportJudge judge;
+  LinkWatch link;
+  Stability stability;
+  double steadied_n[3] = {};  // device's frame, of the last good report: what the stage of stability has made of wanted_n
   TickCounters counters;
   int samples = 0;          // good reports since the device was opened, up to kSamplesToArm
   bool has_place = false;   // fingers stand where the tip was last seen
@@ -120,6 +134,7 @@ struct DeviceState {
   double tip_world_m[3] = {};
   double wanted_n[3] = {};  // world
   std::uint32_t state = 0;
+  bool rubs = false;  // a touch slides with friction
 };
 
 // setup.scene's fingers are added here. False with *error where the scene refuses them.

@@ -31,10 +31,6 @@ bool are_known(const DeviceLimits& limits, int axis_count, double rate_hz) {
   return known && axis_count >= 1 && axis_count <= kMaxAxes;
 }
 
-bool is_finite(const double v[3]) {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
 // Also for numbers whose squares are none.
 double norm(const double v[3]) {
   return std::hypot(v[0], v[1], v[2]);
@@ -84,6 +80,14 @@ constexpr FaultWords kWords[kFaults] = {
     {"device-fault", "the device reports a fault of its own; clear it there, then arm again"},
     {"not-armed", "not armed, or disarmed by command; arm when the hand is free"},
     {"clock", "this computer's clock went backwards; arm again"},
+    {"slept", "this computer was suspended; look at the device, then arm again"},
+    {"not-taken", "the device took no force for 10 ms, or does not apply what it takes; look at the device, then arm again"},
+    {"other-host", "the device answers what another program sends; end that program, then arm again"},
+    {"restarted", "the device began anew; look at it, then arm again"},
+    {"reports-lost", "too many of the device's reports are lost; look at the cable and the hub, then arm again"},
+    {"lag", "what is sent to the device comes back too late for stable contact; look for a slow hub or driver, then arm again"},
+    {"shaking",
+     "the loop of hand, device and scene shakes; lower the scene's stiffness or raise the device's rate, then arm again"},
 };
 
 }  // namespace
@@ -113,9 +117,12 @@ void Gate::begin(const DeviceLimits& limits, int axis_count, double rate_hz, dou
 GatedForce Gate::step(const GateInput& input) {
   const bool goes_back = has_stepped_ && input.now_ns < last_step_ns_;
   const double since_step_s = has_stepped_ && !goes_back ? static_cast<double>(input.now_ns - last_step_ns_) * 1e-9 : 0;
-  const Fault fault = goes_back ? Fault::kClock : fault_of(input, since_step_s);
+  const bool has_slept =
+      has_stepped_ && static_cast<double>(input.slept_ns) - static_cast<double>(last_slept_ns_) >= kSilenceS * 1e9;
+  const Fault fault = has_slept ? Fault::kSlept : goes_back ? Fault::kClock : fault_of(input, since_step_s);
   has_stepped_ = true;
   last_step_ns_ = input.now_ns;
+  last_slept_ns_ = input.slept_ns;
   const bool takes_sample = input.has_sample && input.is_tip_valid && is_finite(input.tip.position_m);
   if (takes_sample) {
     has_sample_ = true;
@@ -125,7 +132,9 @@ GatedForce Gate::step(const GateInput& input) {
   arming_refused_ = false;
   if (phase_ != Phase::kDisarmed && fault != Fault::kNone) disarm(fault);
   if (phase_ == Phase::kDisarmed && input.arm) {
-    arming_refused_ = fault != Fault::kNone || !may_arm(input);
+    arming_refused_ = fault != Fault::kNone || input.lags || !may_arm(input);
+    const bool is_of_link = input.link_fault != Fault::kNone && fault == input.link_fault;
+    if (arming_refused_ && knows_limits_ && (is_of_link || input.lags)) fault_ = is_of_link ? fault : Fault::kLag;
     if (arming_refused_) return GatedForce();
     phase_ = Phase::kRamping;
     fault_ = Fault::kNone;
@@ -143,6 +152,7 @@ Fault Gate::fault_of(const GateInput& input, double since_step_s) const {
   if (static_cast<double>(input.write_busy_ns) * 1e-9 >= kWriterStuckS) return Fault::kWriterStuck;
   if (since_step_s >= kSilenceS) return Fault::kHostLate;
   if (input.device_fault) return Fault::kDeviceFault;
+  if (input.link_fault != Fault::kNone) return input.link_fault;
   if (input.has_sample) {
     const Fault fault = fault_of_tip(input);
     if (fault != Fault::kNone) return fault;

@@ -43,12 +43,15 @@ class GatedForce {
 
 struct GateInput {
   std::uint64_t now_ns = 0;
-  bool has_sample = false;  // a good report came in this tick; tip is of it
+  std::uint64_t slept_ns = 0;  // for which the computer has been suspended since it was started
+  bool has_sample = false;     // a good report came in this tick; tip is of it
   TipPose tip;
   bool is_tip_valid = true;
   double wanted_force_n[3] = {};     // device's frame
   bool arm = false, disarm = false;  // commands
   bool device_fault = false;
+  Fault link_fault = Fault::kNone;  // of LinkWatch
+  bool lags = false;                // of LinkWatch: no arming
   bool read_failed = false, write_failed = false;
   std::uint64_t write_busy_ns = 0;  // for how long the write in progress has been going on
 };
@@ -60,9 +63,10 @@ class Gate {
   GatedForce step(const GateInput& input);
 
   Phase phase() const { return phase_; }
-  Fault fault() const { return fault_; }                   // of the last disarming, until armed again
-  bool arming_refused() const { return arming_refused_; }  // in this step: pressed against something
-  const DeviceLimits& limits() const { return limits_; }   // those in force
+  Fault fault() const { return fault_; }                        // of the last disarming, until armed again
+  bool arming_refused() const { return arming_refused_; }       // in this step: pressed against something
+  const DeviceLimits& limits() const { return limits_; }        // those in force
+  const double* last_force_n() const { return last_force_n_; }  // 3: let through in the last step
 
  private:
   Fault fault_of(const GateInput& input, double since_step_s) const;
@@ -80,7 +84,7 @@ class Gate {
   Fault fault_ = Fault::kCommanded;
   bool arming_refused_ = false;
   bool has_stepped_ = false, has_sample_ = false;
-  std::uint64_t last_step_ns_ = 0, last_sample_ns_ = 0;
+  std::uint64_t last_step_ns_ = 0, last_slept_ns_ = 0, last_sample_ns_ = 0;
   TipPose tip_;       // of the last sample
   double share_ = 0;  // of the wanted force: 0 to 1
   double last_force_n_[3] = {};

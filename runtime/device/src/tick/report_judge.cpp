@@ -114,6 +114,7 @@ Verdict judge_report(const Profile& profile, const Sample& sample, double host_s
   if (verdict == Verdict::kRepeated) return verdict;
   if (verdict == Verdict::kOutOfOrder) {
     if (!is_restart(counters, sample, judge)) return verdict;
+    ++judge->restarts;
     adopt(sample, host_s, judge);
     return Verdict::kGood;
   }

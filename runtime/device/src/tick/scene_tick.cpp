@@ -149,6 +149,7 @@ void sum_touches(DeviceState& device) {
   double largest = 0;
   std::fill_n(device.wanted_n, 3, 0.0);
   device.state = 0;
+  device.rubs = false;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result felt;
     if (fdcg_scene_get_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
@@ -157,6 +158,7 @@ void sum_touches(DeviceState& device) {
     for (std::uint32_t t = 0; t < felt.touch_count; ++t) {
       const double* const f = felt.touches[t].force_n;
       const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+      device.rubs = device.rubs || (setup.has_friction && felt.touches[t].slipping != 0);
       if (square < largest) continue;
       largest = square;
       device.state = felt.touches[t].state;

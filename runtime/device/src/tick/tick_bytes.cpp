@@ -136,7 +136,9 @@ void visit_sample(Archive& archive, Output& output) {
   archive("sample.time_s", sample.time_s);
   archive("sample.buttons", sample.buttons);
   archive("sample.has_fault", sample.has_fault);
+  archive("sample.is_enabled", sample.is_enabled);
   archive("echo", output.echo);
+  archive("round_trip_s", output.round_trip_s);
 }
 
 template <class Archive, class Output>
@@ -163,7 +165,14 @@ void visit_bodies(Archive& archive, Output& output) {
   }
 }
 
-enum Part : std::uint8_t { kForce = 1, kContact = 2, kPlace = 4, kSample = 8, kBodies = 16, kAllParts = 31 };
+template <class Archive, class Output>
+void visit_stability(Archive& archive, Output& output) {
+  archive("calmed", output.calmed);
+  archive("damping_n_s_per_m", output.damping_n_s_per_m);
+  archive("is_hot", output.is_hot);
+}
+
+enum Part : std::uint8_t { kForce = 1, kContact = 2, kPlace = 4, kSample = 8, kStability = 16, kBodies = 32, kAllParts = 63 };
 
 template <class Archive, class Output>
 void visit_part(Archive& archive, Output& output, Part part) {
@@ -171,11 +180,12 @@ void visit_part(Archive& archive, Output& output, Part part) {
   if (part == kContact) visit_contact(archive, output);
   if (part == kPlace) visit_place(archive, output);
   if (part == kSample) visit_sample(archive, output);
+  if (part == kStability) visit_stability(archive, output);
   if (part == kBodies) visit_bodies(archive, output);
 }
-constexpr Part kParts[] = {kForce, kContact, kPlace, kSample, kBodies};
+constexpr Part kParts[] = {kForce, kContact, kPlace, kSample, kStability, kBodies};
 
-enum InputFlag : std::uint8_t { kArm = 1, kDisarm = 2, kBegins = 4, kWriteFailed = 8, kAllFlags = 15 };
+enum InputFlag : std::uint8_t { kArm = 1, kDisarm = 2, kBegins = 4, kWriteFailed = 8, kSentEnabled = 16, kAllFlags = 31 };
 
 template <class Archive>
 void visit_pose(Archive& archive, std::conditional_t<Archive::kReads, fdcg_pose, const fdcg_pose>& pose) {
@@ -206,6 +216,10 @@ LoggedOutput logged(const TickOutput& output) {
   plain.phase = static_cast<std::uint8_t>(output.phase);
   plain.fault = static_cast<std::uint8_t>(output.fault);
   plain.echo = output.echo;
+  plain.round_trip_s = output.round_trip_s;
+  plain.calmed = output.calmed;
+  plain.damping_n_s_per_m = output.damping_n_s_per_m;
+  plain.is_hot = output.is_hot;
   plain.state = output.state;
   std::copy(output.hip_world_m, output.hip_world_m + 3, plain.hip_world_m);
   std::copy(output.wanted_force_n, output.wanted_force_n + 3, plain.wanted_force_n);
@@ -219,9 +233,12 @@ LoggedOutput logged(const TickOutput& output) {
 std::size_t encode_tick_input(const TickInput& input, std::uint8_t* to) {
   TickWriter writer(to);
   const int flags = (input.arm ? kArm : 0) | (input.disarm ? kDisarm : 0) | (input.begins ? kBegins : 0) |
-                    (input.write_failed ? kWriteFailed : 0);
+                    (input.write_failed ? kWriteFailed : 0) | (input.sent.is_enabled ? kSentEnabled : 0);
   writer("", input.now_ns);
+  writer("", input.slept_ns);
   writer("", input.write_busy_ns);
+  writer("", input.sent.ns);
+  writer("", input.sent.sequence);
   writer("", static_cast<std::uint8_t>(input.read));
   writer("", static_cast<std::uint8_t>(flags));
   writer("", static_cast<std::uint8_t>(input.pose_count));
@@ -237,7 +254,10 @@ std::size_t decode_tick_input(const std::uint8_t* from, std::size_t bytes, TickI
   Reader reader(from, bytes);
   std::uint8_t read = 0, flags = 0, poses = 0, reports = 0;
   reader("", input->now_ns);
+  reader("", input->slept_ns);
   reader("", input->write_busy_ns);
+  reader("", input->sent.ns);
+  reader("", input->sent.sequence);
   reader("", read);
   reader("", flags);
   reader("", poses);
@@ -251,6 +271,7 @@ std::size_t decode_tick_input(const std::uint8_t* from, std::size_t bytes, TickI
   input->disarm = (flags & kDisarm) != 0;
   input->begins = (flags & kBegins) != 0;
   input->write_failed = (flags & kWriteFailed) != 0;
+  input->sent.is_enabled = (flags & kSentEnabled) != 0;
   input->pose_count = poses;
   input->report_count = reports;
   for (std::uint32_t i = 0; i < poses; ++i)

@@ -11,9 +11,9 @@
 
 namespace fdcg::dev {
 
-inline constexpr std::size_t kMostInputBytes = 32 + kMaxDriven * sizeof(fdcg_pose) + kMaxDrain * (10 + kMaxReportBytes);
+inline constexpr std::size_t kMostInputBytes = 56 + kMaxDriven * sizeof(fdcg_pose) + kMaxDrain * (10 + kMaxReportBytes);
 inline constexpr std::size_t kBodyBytes = 56;  // rotation and translation
-inline constexpr std::size_t kMostOutputBytes = 192 + 1 + kMaxBodies * kBodyBytes;
+inline constexpr std::size_t kMostOutputBytes = 232 + 1 + kMaxBodies * kBodyBytes;
 inline constexpr std::size_t kMostTickBytes = kMostInputBytes + kMostOutputBytes;
 
 // A TickOutput read from a log: only the gate creates a GatedForce, so this has plain numbers.
@@ -26,6 +26,8 @@ struct LoggedOutput {
   double hip_world_m[3] = {};
   double wanted_force_n[3] = {};
   Sample sample;
+  double round_trip_s = 0, calmed = 0, damping_n_s_per_m = 0;
+  bool is_hot = false;
   std::uint8_t body_count = 0;
   fdcg_pose bodies[kMaxBodies] = {};  // but for their scales, which the scene has
 };

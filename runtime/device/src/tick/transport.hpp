@@ -19,6 +19,12 @@ struct ReadResult {
   int bytes = 0;
 };
 
+// Zero force in a process that is ending: async-signal-safe. Null: there is none.
+struct EmergencyCall {
+  void (*call)(void*) = nullptr;
+  void* self = nullptr;
+};
+
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -39,6 +45,8 @@ class Transport {
   // Any thread's while it is open: a file descriptor that accepts output reports by write(2), for crash handlers
   // (emergency.hpp); -1: there is none.
   virtual int emergency_descriptor() const { return -1; }
+  // The same by a function of the device's own.
+  virtual EmergencyCall emergency_call() const { return {}; }
 };
 
 }  // namespace fdcg::dev

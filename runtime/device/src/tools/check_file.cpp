@@ -7,6 +7,7 @@
 #include "recording/session_log.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"
+#include "scene/stiffness.hpp"
 #include "shared/json/reader.hpp"
 
 namespace fdcg::dev {
@@ -40,11 +41,12 @@ FileCheck check_scene(const std::string& file, const std::string& text) {
   if (!check.problem.empty()) return check;
   check.what = "scene: " + counted(config.objects.size(), "object") + ", " + counted(config.devices.size(), "device") +
                (config.is_shared ? " that share it" : "");
+  warn_of_stiffness(config, &check.warnings);
   SceneGraphs graphs;
   check.problem = graphs.open(config);
   for (const DeviceRange& devices : device_ranges(config))
     if (check.problem.empty()) check.problem = problem_of(config, devices, graphs);
-  if (check.problem.empty()) check.problem = log_problem(config);
+  if (check.problem.empty()) check.problem = log_problem(config, &check.warnings);
   if (!check.problem.empty() && check.problem.rfind(file, 0) != 0) check.problem.insert(0, file + ": ");
   return check;
 }

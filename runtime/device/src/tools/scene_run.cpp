@@ -13,11 +13,15 @@ DeviceLook look_at(const DeviceConfig& device, const DeviceStatus& status) {
   DeviceLook look;
   look.name = device.name;
   look.is_recorded = device.source == DeviceSource::kRecorded;
+  look.stated_rate_hz = device.profile.rate_hz;
   look.takes_output = device.profile.has_output;
   look.is_open = status.connection == Connection::kOpen;
   look.phase = status.last.phase;
   look.fault = status.last.fault;
   look.state = status.last.state;
+  look.calmed = status.last.calmed;
+  look.damping_n_s_per_m = status.last.damping_n_s_per_m;
+  look.is_hot = status.last.is_hot;
   for (int i = 0; i < 3; ++i) {
     look.tip_m[i] = status.last.hip_world_m[i];
     look.wanted_force_n[i] = status.last.wanted_force_n[i];
@@ -33,6 +37,7 @@ DeviceLook look_at(const DeviceConfig& device, const DeviceStatus& status) {
   look.interval = status.interval;
   look.work = status.work;
   look.write = status.write;
+  look.round_trip = status.round_trip;
   return look;
 }
 
@@ -76,6 +81,9 @@ SceneRun::~SceneRun() = default;
 
 std::string SceneRun::open(Scene scene) {
   return impl_->host.open(std::move(scene.impl_->config));
+}
+void SceneRun::allow_plugins() {
+  impl_->host.allow_plugins();
 }
 std::string SceneRun::start() {
   return impl_->host.start();

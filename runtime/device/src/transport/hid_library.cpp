@@ -27,12 +27,12 @@ std::string load(bool is_libusb, HidLibrary* library) {
   found.name = is_libusb ? "libusb" : "hidraw";
   found.is_libusb = is_libusb;
   decltype(&::hid_init) init = nullptr;
-  const bool is_whole = find(file, "hid_init", &init) && find(file, "hid_enumerate", &found.enumerate) &&
-                        find(file, "hid_free_enumeration", &found.free_enumeration) &&
-                        find(file, "hid_open_path", &found.open_path) && find(file, "hid_close", &found.close) &&
-                        find(file, "hid_read_timeout", &found.read_timeout) && find(file, "hid_write", &found.write) &&
-                        find(file, "hid_send_feature_report", &found.send_feature_report) &&
-                        find(file, "hid_error", &found.error);
+  const bool is_whole =
+      find(file, "hid_init", &init) && find(file, "hid_enumerate", &found.enumerate) &&
+      find(file, "hid_free_enumeration", &found.free_enumeration) && find(file, "hid_open_path", &found.open_path) &&
+      find(file, "hid_close", &found.close) && find(file, "hid_read_timeout", &found.read_timeout) &&
+      find(file, "hid_write", &found.write) && find(file, "hid_send_feature_report", &found.send_feature_report) &&
+      find(file, "hid_get_feature_report", &found.get_feature_report) && find(file, "hid_error", &found.error);
   if (!is_whole || init() != 0) {
     const std::string what = is_whole ? ": cannot be initialised" : ": lacks a function of hidapi 0.12";
     dlclose(file);

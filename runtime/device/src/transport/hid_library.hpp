@@ -22,6 +22,7 @@ struct HidLibrary {
   decltype(&::hid_read_timeout) read_timeout = nullptr;
   decltype(&::hid_write) write = nullptr;
   decltype(&::hid_send_feature_report) send_feature_report = nullptr;
+  decltype(&::hid_get_feature_report) get_feature_report = nullptr;
   decltype(&::hid_error) error = nullptr;
 };
 

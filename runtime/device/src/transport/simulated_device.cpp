@@ -109,6 +109,7 @@ Profile simulated_profile(const SimulationConfig& config) {
   add(&p.input, field(Role::kEcho, NumberType::kU32, 21));
   add(&p.input, field(Role::kButtons, NumberType::kU8, 25));
   add(&p.input, field(Role::kStatus, NumberType::kU8, 26, 1, kFaultBits));
+  p.input.fields[p.input.field_count - 1].enabled = FDCG_FW_ENABLED;
   finish(&p.input, FDCG_FW_INPUT_ID, FDCG_FW_INPUT_BYTES);
   p.has_output = true;
   add(&p.output, field(Role::kSequence, NumberType::kU32, 1));

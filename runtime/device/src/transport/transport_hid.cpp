@@ -3,7 +3,7 @@
 //
 // hidraw: three descriptors on one path. hidapi keeps a handle's last error as a string in the heap, which read and write both
 // free and set: two threads on ONE handle corrupt it when a device is pulled out. So reader and writer have a handle each, and
-// a third descriptor, of our own, is kept for a crash (emergency.hpp).
+// a third descriptor, of our own, holds the claim (device_claim.hpp) and is kept for a crash (emergency.hpp).
 //
 // libusb: an interface can be claimed once only, so there is ONE handle. That is safe: its hid_error is a constant, the handle
 // keeps no string, reads take reports from a queue under a mutex of the handle's, and writes are libusb transfers, which any
@@ -11,12 +11,12 @@
 // are received by a thread of hidapi, which inherits the servo thread's priority because it is started with it; otherwise a
 // busy machine would delay every report. A read's time-out uses the wall clock: if that is set back, a read of a silent device
 // lasts longer by as much; the writer's own limit of 10 ms then removes the force.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cstring>
 
 #include "base/real_time.hpp"
+#include "fdcg_firmware.h"
+#include "transport/device_claim.hpp"
+#include "transport/device_identity.hpp"
 #include "transport/hid_devices.hpp"
 #include "transport/hid_library.hpp"
 #include "transport/transports.hpp"
@@ -35,11 +35,12 @@ class HidTransport final : public Transport {
   ReadResult read(std::uint8_t* data, int capacity, int timeout_ms) override;
   bool write(const std::uint8_t* data, int bytes) override;
   bool write_feature(const std::uint8_t* data, int bytes) override;
-  int emergency_descriptor() const override { return emergency_; }
+  int emergency_descriptor() const override { return library_->is_libusb ? -1 : claim_.descriptor(); }
 
  private:
   std::string open_with(HidBackend backend);
   std::string open_handles(const HidDevice& device);
+  std::string check_identity() const;
   std::string send_init();
   template <class Send>
   bool with_id(const std::uint8_t* data, int bytes, const Send& send);
@@ -49,13 +50,14 @@ class HidTransport final : public Transport {
   const HidLibrary* library_ = nullptr;
   hid_device* reader_ = nullptr;
   hid_device* writer_ = nullptr;  // the same on libusb
-  int emergency_ = -1;
+  DeviceClaim claim_;
+  bool must_stay_away_ = false;  // the device was found, and must not be tried by another back end
 };
 
 std::string HidTransport::open() {
   if (access_.backend != HidBackend::kAny) return open_with(access_.backend);
   const std::string hidraw_problem = open_with(HidBackend::kHidraw);
-  if (hidraw_problem.empty()) return {};
+  if (hidraw_problem.empty() || must_stay_away_) return hidraw_problem;
   const std::string libusb_problem = open_with(HidBackend::kLibusb);
   if (libusb_problem.empty()) return {};
   return "hidraw: " + hidraw_problem + "; libusb: " + libusb_problem;
@@ -63,6 +65,7 @@ std::string HidTransport::open() {
 
 std::string HidTransport::open_with(HidBackend backend) {
   std::string problem;
+  must_stay_away_ = false;
   library_ = hid_library(backend, &problem);
   if (library_ == nullptr) return problem;
   // hidraw's list is read from the kernel's, so it can tell all that is there.
@@ -71,7 +74,14 @@ std::string HidTransport::open_with(HidBackend backend) {
       library_->is_libusb ? list_hid_devices(*library_, match.vendor, match.product) : list_hid_devices(*library_);
   const HidDevice* const device = choose_hid_device(devices, match, access_.serial, access_.path, &problem);
   if (device == nullptr) return problem;
+  problem = claim_.take(device_node(*device));
+  must_stay_away_ = !problem.empty();
+  if (must_stay_away_) return problem;
   problem = open_handles(*device);
+  if (problem.empty()) {
+    problem = check_identity();
+    must_stay_away_ = !problem.empty();
+  }
   if (problem.empty()) problem = send_init();
   if (!problem.empty()) close();
   return problem.empty() ? problem : describe(*device) + ": " + problem;
@@ -86,8 +96,15 @@ std::string HidTransport::open_handles(const HidDevice& device) {
     const std::string permission = permission_problem(device);
     return permission.empty() ? "cannot be opened; does another program use it?" : permission;
   }
-  if (!library_->is_libusb) emergency_ = ::open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   return {};
+}
+
+std::string HidTransport::check_identity() const {
+  if (!describes_itself(profile_)) return {};
+  std::uint8_t report[kMaxReportBytes] = {FDCG_FW_FEATURE_ID};
+  const int bytes = library_->get_feature_report(writer_, report, FDCG_FW_FEATURE_BYTES + 1);
+  if (bytes < 0) return "does not answer GET_REPORT of feature report 3, which tells what it is (schemas/fdcg-hid.md)";
+  return identity_problem(profile_, report, bytes);
 }
 
 std::string HidTransport::send_init() {
@@ -101,11 +118,10 @@ std::string HidTransport::send_init() {
 }
 
 void HidTransport::close() {
-  if (emergency_ >= 0) ::close(emergency_);
-  emergency_ = -1;
   if (writer_ != nullptr && writer_ != reader_) library_->close(writer_);
   if (reader_ != nullptr) library_->close(reader_);
   reader_ = writer_ = nullptr;
+  claim_.release();
 }
 
 ReadResult HidTransport::read(std::uint8_t* data, int capacity, int timeout_ms) {

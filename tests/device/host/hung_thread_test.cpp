@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// A thread of the host that hangs where it is, as a debugger or a fault of the system may leave it: the other threads take the
+// force away.
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "catch.hpp"
+#include "hosted.hpp"
+
+using namespace fdcg::dev;
+using namespace fdcg::dev::test;
+
+namespace {
+
+std::atomic<bool> is_held{false};
+
+void hold(int) {
+  const timespec pause{0, 100'000};
+  while (is_held.load())
+    nanosleep(&pause, nullptr);
+}
+
+// Of this process, by its name; 0: none.
+int thread_named(const std::string& name) {
+  int found = 0;
+  DIR* const folder = opendir("/proc/self/task");
+  REQUIRE(folder != nullptr);
+  while (const dirent* const entry = readdir(folder)) {
+    std::string text;
+    std::ifstream(std::string("/proc/self/task/") + entry->d_name + "/comm") >> text;
+    if (text == name) found = std::atoi(entry->d_name);
+  }
+  closedir(folder);
+  return found;
+}
+
+// A crash signal is the one kind that these threads do not block.
+class Hold {
+ public:
+  explicit Hold(const std::string& name) {
+    struct sigaction action {};
+    action.sa_handler = hold;
+    sigaction(SIGTRAP, &action, &before_);
+    is_held = true;
+    const int thread = thread_named(name);
+    REQUIRE(thread != 0);
+    REQUIRE(syscall(SYS_tgkill, getpid(), thread, SIGTRAP) == 0);
+  }
+  ~Hold() {
+    is_held = false;
+    sleep_ms(5);
+    sigaction(SIGTRAP, &before_, nullptr);
+  }
+
+ private:
+  struct sigaction before_ {};
+};
+
+}  // namespace
+
+TEST_CASE("host: a servo thread that hangs leaves no force, and comes back disarmed") {
+  for (int round = 0; round < 5; ++round) {
+    Hosted hosted;
+    hosted.start();
+    hosted.press();
+    {
+      const Hold held("fdcg-servo");
+      CHECK(within_ms(1000, [&] { return hosted.device().force_n == 0; }));
+      sleep_ms(30);
+      CHECK(hosted.device().force_n == 0);
+    }
+    CHECK(within_ms(1000, [&] { return hosted.phase() == Phase::kDisarmed; }));
+    CHECK(hosted.fault() == Fault::kHostLate);
+    CHECK(hosted.host.stop() == "");
+  }
+}
+
+namespace {
+
+// One time; false: the writer was held within a write, or this machine was too busy to say.
+bool holds_a_writer() {
+  Hosted hosted;
+  int ends[2];
+  REQUIRE(pipe2(ends, O_NONBLOCK) == 0);
+  hosted.device().emergency = ends[1];
+  hosted.start();
+  hosted.press();
+  ssize_t bytes = -1;
+  std::uint8_t report[kMaxReportBytes];
+  Fault fault{};
+  {
+    const Hold held("fdcg-writer");
+    REQUIRE(within_ms(1000, [&] { return hosted.phase() == Phase::kDisarmed; }));
+    fault = hosted.fault();
+    within_ms(300, [&] { return (bytes = read(ends[0], report, sizeof report)) > 0; });
+  }
+  CHECK(within_ms(1000, [&] { return hosted.device().force_n == 0; }));
+  hosted.device().emergency = -1;
+  CHECK(hosted.host.stop() == "");
+  close(ends[0]);
+  close(ends[1]);
+  if (bytes <= 0 || fault != Fault::kWriterStuck) return false;
+  Command zero;
+  REQUIRE(decode_output(fake_profile(), report, static_cast<int>(bytes), &zero));
+  CHECK_FALSE(zero.is_enabled);
+  CHECK(zero.effort[2] == 0);
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("host: a writer thread that hangs is disarmed, and another thread sends the zero") {
+  int held = 0;
+  for (int round = 0; round < 30 && held < 5; ++round)
+    held += holds_a_writer();
+  CHECK(held == 5);
+}
