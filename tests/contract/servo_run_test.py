@@ -337,6 +337,23 @@ class Latency(ServoCase):
         (device,) = json.loads(self.servo("latency", self.scene(), "--for", "0.5", "--json").stdout)["devices"]
         self.assertEqual(("fits", 1000), (device["arming"], device["stated_rate_hz"]))
 
+    def test_a_round_trip_that_is_too_long_is_told_before_and_at_arming(self):
+        late = {"kind": "stale", "at_s": 0, "for_s": 100, "delay_s": 0.009}
+        simulation = {"start_m": [0, 0, 0.03], "amplitude_m": [0, 0, 0], "faults": [late]}
+        scene = self.scene(devices=[{"name": "hand", "source": "simulated", "simulation": simulation}])
+        done = self.servo("latency", scene, "--for", "0.5", code=1)
+        self.assertIn(b"arming         refused: what is sent to the device comes back too late", done.stdout)
+        self.assertIn(b'"arming": "too-long"', self.servo("latency", scene, "--for", "0.5", "--json", code=1).stdout)
+        done = self.run_scene(scene, "--arm", "--no-log", "--for", "1", codes=(1,))
+        self.assertIn(b"hand: not armed: what is sent to the device comes back too late", done.stdout)
+
+    def test_the_histograms_overwrite_no_scene_and_stand_alone_on_standard_output(self):
+        scene = self.scene()
+        self.assertIn(b"would overwrite the scene", self.servo("latency", scene, "-o", scene, code=2).stderr)
+        self.assertIn(b"no/a.csv", self.servo("latency", scene, "-o", self.path("no") + "/a.csv", code=3).stderr)
+        rows = list(csv.DictReader(io.StringIO(self.servo("latency", scene, "--for", "0.3", "-o", "-").stdout.decode())))
+        self.assertEqual({"round_trip", "interval", "work", "write"}, {row["measure"] for row in rows})
+
     def test_a_device_that_is_not_there_is_told(self):
         scene = self.scene(devices=[{"name": "hand", "profile": "fdcg-reference", "serial": "no such device"}])
         self.assertIn(b"never there: ", self.servo("latency", scene, "--for", "0.3", code=1).stdout)

@@ -66,6 +66,7 @@ class Session(SessionBrowserCase):
         self.wait_for(lambda s: s["playing"] and s["t"] < 1.0)  # begun again
         self.press(" ")
         self.assertFalse(self.state()["playing"])
+        self.seek(1.0)
         at = self.state()["at"]
         self.press(".")
         self.assertEqual(at + 1, self.state()["at"])

@@ -173,9 +173,9 @@ void RunSession::notice(std::size_t device) {
   }
   if (look.phase != dev::Phase::kDisarmed || has_disarmed) seen.asked_s = -1;
   if (seen.asked_s >= 0 && seconds() - seen.asked_s > kRefusedAfterS) {
-    const bool is_unknown = look.fault == dev::Fault::kUnknownLimit;
+    const bool has_cause = look.fault != dev::Fault::kNone && look.fault != dev::Fault::kCommanded;
     say(look.name + ": not armed: " +
-        (is_unknown ? dev::fault_text(dev::Fault::kUnknownLimit) : "the tip is pressed against something, or does not report"));
+        (has_cause ? dev::fault_text(look.fault) : "the tip is pressed against something, or does not report"));
     seen.asked_s = -1;
   }
   if (look.phase == dev::Phase::kRamping && seen.phase == dev::Phase::kDisarmed) say(look.name + ": armed");

@@ -45,7 +45,7 @@ enum {
 
 /** What a device says once a period. All zeros before read is called. */
 typedef struct fdcg_transport_sample {
-  double position_m[3];       /**< of the tip, within 2 m of the origin */
+  double position_m[3];       /**< of the tip, within 2 m of the origin: farther, or NaN, is a fault of the device */
   double orientation_xyzw[4]; /**< of the handle, real part last; zeros: not measured. Kept for later: not used yet */
   double time_s;              /**< of the device's own clock, for the age of samples */
   uint32_t sequence;          /**< one more with every sample that the device makes, sent or not; wraps */
@@ -82,8 +82,8 @@ typedef struct fdcg_transport {
   int (*read)(void* self, int32_t timeout_ms, fdcg_transport_sample* sample);
   /** May block; after 5 ms in it the gate disarms. */
   int (*write)(void* self, const fdcg_transport_force* force);
-  /** May be NULL. Zero force as the last act of a process that dies of a signal: async-signal-safe, from any thread, at any
-   * moment while the device is open. */
+  /** May be NULL. Zero force as the last act of a process that dies of a signal, and where the thread that writes hangs:
+   * async-signal-safe, from any thread, at any moment while the device is open. */
   void (*emergency)(void* self);
   /** May be NULL. After the last call of any other. */
   void (*destroy)(void* self);

@@ -12,7 +12,8 @@
 namespace fdcg::dev {
 
 std::uint64_t monotonic_ns();
-std::uint64_t slept_ns();  // for which the computer has been suspended since it was started
+// For which the computer has been suspended since it was started, and what this call takes. now_ns: monotonic, just read.
+std::uint64_t slept_ns(std::uint64_t now_ns);
 
 // A signal is kept until a wait takes it; several before it are one. One thread waits, any number signal. No lock, no heap.
 class Event {

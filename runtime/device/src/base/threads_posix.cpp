@@ -25,10 +25,6 @@ constexpr std::size_t kCrashStackBytes = 64 * 1024;
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free && sizeof(std::atomic<std::uint32_t>) == 4, "the kernel's futex");
 
-}  // namespace
-
-namespace {
-
 std::uint64_t now_of(clockid_t clock) {
   timespec now;
   clock_gettime(clock, &now);
@@ -42,11 +38,12 @@ std::uint64_t monotonic_ns() {
 }
 
 // What the one clock has counted and the other has not; without such a clock a suspended machine shows as a late host.
-std::uint64_t slept_ns() {
+std::uint64_t slept_ns(std::uint64_t now_ns) {
 #ifdef CLOCK_BOOTTIME
-  const std::uint64_t awake_ns = monotonic_ns(), all_ns = now_of(CLOCK_BOOTTIME);
-  return all_ns > awake_ns ? all_ns - awake_ns : 0;
+  const std::uint64_t all_ns = now_of(CLOCK_BOOTTIME);
+  return all_ns > now_ns ? all_ns - now_ns : 0;
 #else
+  (void)now_ns;
   return 0;
 #endif
 }

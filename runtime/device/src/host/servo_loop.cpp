@@ -89,7 +89,7 @@ void ServoLoop::gather(bool waits) {
   input_.begins = begins_;
   begins_ = false;
   input_.now_ns = monotonic_ns();
-  input_.slept_ns = slept_ns();
+  input_.slept_ns = slept_ns(input_.now_ns);
   input_.disarm = disarm_.exchange(false, std::memory_order_acq_rel);
   input_.arm = arm_.exchange(false, std::memory_order_acq_rel) && !input_.disarm;
   input_.write_busy_ns = parts_.writer->busy_ns(input_.now_ns);  // before has_failed: a write that ends between is seen there

@@ -80,11 +80,6 @@ void read_limits(const json::Value& json, int axis_count, DeviceLimits* limits) 
   if (json["stiffness_n_per_m"]) limits->stiffness_n_per_m = json["stiffness_n_per_m"].number(kStiffness);
 }
 
-bool are_known(const DeviceLimits& limits) {
-  return limits.force_n > 0 && limits.effort[0] > 0 && limits.slew_n_per_s > 0 && limits.velocity_m_per_s > 0 &&
-         limits.workspace_min_m[0] < limits.workspace_max_m[0];
-}
-
 namespace {
 
 // Warnings: limits that are not known, for a device that could push, and a rate that is too low.

@@ -19,8 +19,6 @@ std::string parse_profile(std::string_view text, const std::string& file_name, P
 
 // "limits" of a profile, or of a device of a scene. Throws json::Refusal.
 void read_limits(const json::Value& json, int axis_count, DeviceLimits* limits);
-// All that force needs, the watchdog apart.
-bool are_known(const DeviceLimits& limits);
 
 // A warning for a device that reports so seldom that the gate counts it as silent; empty: none.
 std::string rate_warning(double rate_hz);

@@ -39,7 +39,7 @@ bool is_same_file(const struct stat& a, const std::string& path) {
 bool is_log_or_empty(const std::string& path) {
   char begin[sizeof kSessionMagic] = {};
   std::ifstream file(path, std::ios::binary);
-  file.read(begin, sizeof begin);
+  if (!file.read(begin, sizeof begin) && !file.eof()) return false;  // may not be read
   return file.gcount() == 0 || std::memcmp(begin, kSessionMagic, sizeof begin) == 0;
 }
 

@@ -6,6 +6,7 @@
 #include "profile/profile_json.hpp"
 #include "scene/scene_parser.hpp"
 #include "session/session_reader.hpp"
+#include "tick/gate.hpp"
 #include "transport/plugin_transport.hpp"
 #include "transport/simulated_device.hpp"
 
@@ -101,7 +102,7 @@ void SceneParser::read_plugin_profile(const json::Value& from, DeviceConfig* dev
   device->limits_text = from["limits"] ? from["limits"].dump() : "{}";
   device->profile = plugin_profile(from["rate_hz"].number({1, 20000, true, "Hz"}), limits);
   warn_of_rate(*device);
-  if (!are_known(limits) && warnings_ != nullptr)
+  if (!are_known(limits, kAxes, device->profile.rate_hz) && warnings_ != nullptr)
     warnings_->push_back("device " + in_quotes(device->name) + ": a limit is not known: the device is read but gives no force");
 }
 

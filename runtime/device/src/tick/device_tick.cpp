@@ -101,9 +101,9 @@ void tell(const DeviceState& device, TickOutput* output) {
 
 // What was wanted, in the device's frame, through the stage of stability. Without a report the force stays.
 void steady(DeviceState& device, const TickInput& input) {
+  if (device.gate.phase() == Phase::kDisarmed && input.arm) device.stability.reset();
   if (!device.to_gate.has_sample) return;
   force_to_device(device.setup.mapping, device.wanted_n, device.steadied_n);
-  if (device.gate.phase() == Phase::kDisarmed && input.arm) device.stability.reset();
   device.stability.step(device.tip_m, input.now_ns, device.gate.last_force_n(), device.link.round_trip_s(), device.rubs,
                         device.steadied_n);
 }
@@ -130,7 +130,6 @@ void pass_gate(const Member& member) {
   output.force = device.gate.step(*gate);
   output.phase = device.gate.phase();
   output.fault = device.gate.fault();
-  if (phase_before == Phase::kDisarmed && output.phase != Phase::kDisarmed) device.stability.reset();
   output.calmed = 1 - device.stability.share();
   output.damping_n_s_per_m = device.stability.damping();
   output.is_hot = device.stability.is_hot();

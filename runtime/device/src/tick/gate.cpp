@@ -19,18 +19,6 @@ bool is_known(double limit) {
   return limit > 0 && limit <= kAbsurd;
 }
 
-bool are_known(const DeviceLimits& limits, int axis_count, double rate_hz) {
-  bool known =
-      is_known(rate_hz) && is_known(limits.force_n) && is_known(limits.slew_n_per_s) && is_known(limits.velocity_m_per_s);
-  for (int i = 0; i < 3; ++i) {
-    known = known && std::isfinite(limits.workspace_min_m[i]) && std::isfinite(limits.workspace_max_m[i]) &&
-            limits.workspace_min_m[i] < limits.workspace_max_m[i];
-  }
-  for (int axis = 0; axis < axis_count; ++axis)
-    known = known && is_known(limits.effort[axis]);
-  return known && axis_count >= 1 && axis_count <= kMaxAxes;
-}
-
 // Also for numbers whose squares are none.
 double norm(const double v[3]) {
   return std::hypot(v[0], v[1], v[2]);
@@ -99,6 +87,18 @@ const char* fault_text(Fault fault) {
   return kWords[static_cast<int>(fault)].text;
 }
 
+bool are_known(const DeviceLimits& limits, int axis_count, double rate_hz) {
+  bool known =
+      is_known(rate_hz) && is_known(limits.force_n) && is_known(limits.slew_n_per_s) && is_known(limits.velocity_m_per_s);
+  for (int i = 0; i < 3; ++i) {
+    known = known && std::isfinite(limits.workspace_min_m[i]) && std::isfinite(limits.workspace_max_m[i]) &&
+            limits.workspace_min_m[i] < limits.workspace_max_m[i];
+  }
+  for (int axis = 0; axis < axis_count; ++axis)
+    known = known && is_known(limits.effort[axis]);
+  return known && axis_count >= 1 && axis_count <= kMaxAxes;
+}
+
 void Gate::begin(const DeviceLimits& limits, int axis_count, double rate_hz, double most_force_n) {
   *this = Gate();
   limits_ = limits;
@@ -133,8 +133,7 @@ GatedForce Gate::step(const GateInput& input) {
   if (phase_ != Phase::kDisarmed && fault != Fault::kNone) disarm(fault);
   if (phase_ == Phase::kDisarmed && input.arm) {
     arming_refused_ = fault != Fault::kNone || input.lags || !may_arm(input);
-    const bool is_of_link = input.link_fault != Fault::kNone && fault == input.link_fault;
-    if (arming_refused_ && knows_limits_ && (is_of_link || input.lags)) fault_ = is_of_link ? fault : Fault::kLag;
+    if (arming_refused_ && knows_limits_) fault_ = fault != Fault::kNone ? fault : input.lags ? Fault::kLag : Fault::kCommanded;
     if (arming_refused_) return GatedForce();
     phase_ = Phase::kRamping;
     fault_ = Fault::kNone;

@@ -26,6 +26,9 @@ inline constexpr double kArmForceShare = 0.05;       // of force_n: arming is gr
 inline constexpr double kForceWithoutWatchdogN = 1;  // the most for a device that does not drop its force by itself ...
 inline constexpr double kLongestWatchdogS = 0.1;     // ... within this
 
+// Whether no limit is missing: where one is, the gate gives no force.
+bool are_known(const DeviceLimits& limits, int axis_count, double rate_hz);
+
 // Zero, or what the gate has let through.
 class GatedForce {
  public:
@@ -63,8 +66,8 @@ class Gate {
   GatedForce step(const GateInput& input);
 
   Phase phase() const { return phase_; }
-  Fault fault() const { return fault_; }                        // of the last disarming, until armed again
-  bool arming_refused() const { return arming_refused_; }       // in this step: pressed against something
+  Fault fault() const { return fault_; }                        // of the last disarming or refusal, until armed
+  bool arming_refused() const { return arming_refused_; }       // in this step; with kCommanded for a fault: pressed
   const DeviceLimits& limits() const { return limits_; }        // those in force
   const double* last_force_n() const { return last_force_n_; }  // 3: let through in the last step
 

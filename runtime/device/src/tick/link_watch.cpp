@@ -40,6 +40,7 @@ void LinkWatch::begin(const Profile& profile, bool has_echo) {
 
 void LinkWatch::open(std::uint64_t now_ns) {
   sent_count_ = trip_count_ = 0;
+  report_ns_ = 0;
   is_heard_ = false;
   round_trip_s_ = 0;
   unapplied_ns_ = foreign_ns_ = 0;
@@ -71,6 +72,7 @@ const SentReport* LinkWatch::find_sent(std::uint32_t sequence) const {
 void LinkWatch::note_report(const Sample& sample, std::uint64_t host_ns) {
   if (opened_ns_ == 0) opened_ns_ = host_ns;
   count(host_ns);
+  report_ns_ = host_ns;
   if (mask_ != 0 && sent_count_ > 0) take_echo(sample, host_ns);
 }
 
@@ -106,15 +108,16 @@ void LinkWatch::count(std::uint64_t now_ns) {
   ++counts_[slot % kSlots];
 }
 
-// Of the outputs that the device has not echoed, the oldest was sent too long ago, or it took one and does not apply it.
-bool LinkWatch::is_untaken(std::uint64_t now_ns) const {
+// As of the newest report: of the outputs that the device had not echoed the oldest was sent too long before, or it took one
+// and did not apply it. That no reports come any more is the gate's to see (Fault::kSilence).
+bool LinkWatch::is_untaken() const {
   if (mask_ == 0 || sent_count_ == 0) return false;
-  if (unapplied_ns_ != 0 && seconds(unapplied_ns_, now_ns) >= kTakenS) return true;
+  if (unapplied_ns_ != 0 && seconds(unapplied_ns_, report_ns_) >= kTakenS) return true;
   const std::uint32_t known = std::min<std::uint32_t>(sent_count_, kSent);
   for (std::uint32_t i = known; i >= 1; --i) {
     const SentReport& sent = sent_[(sent_count_ - i) % kSent];
     const bool is_taken = is_heard_ && is_ahead(sent.sequence & mask_, echo_);
-    if (!is_taken) return seconds(sent.ns, now_ns) >= kTakenS;
+    if (!is_taken) return seconds(sent.ns, report_ns_) >= kTakenS;
   }
   return false;
 }
@@ -131,7 +134,7 @@ bool LinkWatch::is_sparse(std::uint64_t now_ns) const {
 
 Fault LinkWatch::fault(std::uint64_t now_ns, bool wants_force) const {
   if (foreign_ns_ != 0 && seconds(foreign_ns_, now_ns) < kOtherHostS) return Fault::kOtherHost;
-  if (wants_force && is_untaken(now_ns)) return Fault::kNotTaken;
+  if (wants_force && is_untaken()) return Fault::kNotTaken;
   return wants_force && is_sparse(now_ns) ? Fault::kReportsLost : Fault::kNone;
 }
 

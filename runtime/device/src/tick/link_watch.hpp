@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a device's reports say of the link between the two: whether it takes what the host sends, how long that is under way,
-// whether somebody else sends to it, and how many of its reports arrive. A pure function of
-// reports and times, as the gate is. No heap, no lock; the work of a report is bounded.
+// whether somebody else sends to it, and how many of its reports arrive. A pure function of reports and times, as the gate is.
+// No heap, no lock; the work of a report is bounded.
 //
 // A device that does not echo output sequences is not watched for the first three of these.
 #pragma once
@@ -52,7 +52,7 @@ class LinkWatch {
   const SentReport* find_sent(std::uint32_t sequence) const;
   void take_echo(const Sample& sample, std::uint64_t host_ns);
   void count(std::uint64_t now_ns);
-  bool is_untaken(std::uint64_t now_ns) const;
+  bool is_untaken() const;
   bool is_sparse(std::uint64_t now_ns) const;
 
   std::uint32_t mask_ = 0;  // of an echo's bits; 0: the device has none
@@ -62,7 +62,8 @@ class LinkWatch {
 
   SentReport sent_[kSent];  // a ring
   std::uint32_t sent_count_ = 0;
-  bool is_heard_ = false;  // one of ours has come back since the device was opened
+  std::uint64_t report_ns_ = 0;  // of the newest report
+  bool is_heard_ = false;        // one of ours has come back since the device was opened
   std::uint32_t echo_ = 0;
   double round_trip_s_ = 0;
   double trips_s_[kTrips] = {};

@@ -9,8 +9,8 @@
 namespace fdcg::dev {
 namespace {
 
-constexpr double kGapPeriods = 2.5;
-constexpr double kWarm = 0.8;  // of the heat that is allowed: from here on the force limit comes down
+constexpr double kGapPeriods = 2.5;  // between two reports: more was lost than one
+constexpr double kWarm = 0.8;        // of the heat that is allowed: from here on the force limit comes down
 
 double square(const double v[3]) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -22,21 +22,16 @@ void Stability::begin(const StabilitySetup& setup, const DeviceLimits& limits, d
   *this = Stability();
   setup_ = setup;
   period_s_ = rate_hz > 0 ? 1 / rate_hz : 0;
-  force_limit_n_ = limits.force_n;
-  continuous_n_ = limits.continuous_force_n;
-  heat_s_ = limits.heat_s;
+  limits_ = limits;
 }
 
 void Stability::reset() {
-  const double heat_n2 = heat_n2_;
   Stability fresh;
   fresh.setup_ = setup_;
+  fresh.limits_ = limits_;
   fresh.period_s_ = period_s_;
-  fresh.force_limit_n_ = force_limit_n_;
-  fresh.continuous_n_ = continuous_n_;
-  fresh.heat_s_ = heat_s_;
+  fresh.heat_n2_ = heat_n2_;
   *this = fresh;
-  heat_n2_ = heat_n2;
 }
 
 void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double sent_n[3], double round_trip_s, bool rubs,
@@ -57,7 +52,7 @@ void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double s
   damping_n_s_per_m_ = 0;
   if (setup_.has_passivity && has_last_) damp(way_m, seconds, force_n);
   if (setup_.has_calming) look_for_shaking(force_n, tip_m, now_ns);
-  if (continuous_n_ > 0) cool(sent_n, seconds, force_n);
+  if (limits_.continuous_force_n > 0) cool(sent_n, seconds, force_n);
   std::copy_n(tip_m, 3, last_m_);
   last_ns_ = now_ns;
   has_last_ = true;
@@ -82,7 +77,7 @@ void Stability::observe(const double way_m[3], double round_trip_s) {
 
 // Swings smaller than kSwingShare are none.
 bool Stability::has_reversed(Axis& axis, double force_n, const double tip_m[3], std::uint64_t now_ns) const {
-  const double least_n = kSwingShare * force_limit_n_;
+  const double least_n = kSwingShare * limits_.force_n;
   if (axis.direction == 0) {
     if (std::fabs(force_n - axis.turned_n) < least_n) return false;
     axis.direction = force_n > axis.turned_n ? 1 : -1;
@@ -117,18 +112,17 @@ bool Stability::is_shaking(const Axis& axis) {
 
 // What is wanted, as far as it may be felt: the gate's own fading is no shaking.
 void Stability::look_for_shaking(const double force_n[3], const double tip_m[3], std::uint64_t now_ns) {
-  const double length = std::sqrt(square(force_n)), felt = length > force_limit_n_ ? force_limit_n_ / length : 1;
+  const double length = std::sqrt(square(force_n)), felt = length > limits_.force_n ? limits_.force_n / length : 1;
   for (int i = 0; i < 3; ++i)
     if (has_reversed(axes_[i], felt * force_n[i], tip_m, now_ns) && is_shaking(axes_[i])) return calm(axes_[i], now_ns);
 }
 
-// The count of swings begins anew, the time of shaking does not.
+// The count of swings begins anew, the time of shaking only where the last calming had ended it.
 void Stability::calm(const Axis& axis, std::uint64_t now_ns) {
-  const std::uint64_t since_ns = first_calmed_ns_ != 0 ? first_calmed_ns_ : axis.since_ns;
-  const bool is_new = first_calmed_ns_ == 0 || static_cast<double>(now_ns - last_calmed_ns_) * 1e-9 > 2 * kShakeS;
-  first_calmed_ns_ = is_new ? axis.since_ns : since_ns;
+  const bool is_new = calmings_ == 0 || static_cast<double>(now_ns - last_calmed_ns_) * 1e-9 > 2 * kShakeS;
+  if (is_new) shakes_since_ns_ = axis.since_ns;
   last_calmed_ns_ = now_ns;
-  shakes_ = calmings_ == kMostCalmings || static_cast<double>(now_ns - first_calmed_ns_) * 1e-9 > kLongestShakeS;
+  shakes_ = calmings_ == kMostCalmings || static_cast<double>(now_ns - shakes_since_ns_) * 1e-9 > kLongestShakeS;
   ++calmings_;
   share_ *= kCalmingShare;
   forget_swings();
@@ -145,12 +139,12 @@ void Stability::damp(const double way_m[3], double seconds, double force_n[3]) {
 }
 
 void Stability::cool(const double sent_n[3], double seconds, double force_n[3]) {
-  const double allowed = continuous_n_ * continuous_n_;
-  heat_n2_ += (square(sent_n) - heat_n2_) * (1 - std::exp(-seconds / heat_s_));
+  const double continuous_n = limits_.continuous_force_n, allowed = continuous_n * continuous_n;
+  heat_n2_ += (square(sent_n) - heat_n2_) * (1 - std::exp(-seconds / limits_.heat_s));
   const double room = std::clamp((allowed - heat_n2_) / (allowed * (1 - kWarm)), 0.0, 1.0);
-  const double limit = continuous_n_ + (force_limit_n_ - continuous_n_) * room;
+  const double limit = continuous_n + (limits_.force_n - continuous_n) * room;
   const double length = std::sqrt(square(force_n));
-  is_hot_ = limit < force_limit_n_ && length > limit;
+  is_hot_ = limit < limits_.force_n && length > limit;
   for (int i = 0; is_hot_ && i < 3; ++i)
     force_n[i] *= limit / length;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stage before the gate: it keeps a loop that is stiffer than its device allows from shaking, and the motors from heat. A
-// pure function of places, forces and times, as the gate is. No heap, no lock, bounded work. Three parts, each of which a scene
-// may switch off (schemas/servo-scene.schema.json, "stability"):
+// pure function of places, forces and times, as the gate is. No heap, no lock, bounded work. Three parts; a scene may switch
+// the first two off (schemas/servo-scene.schema.json, "stability"), and the third needs a continuous force in the device's
+// profile:
 //
 //   passivity    An observer adds up the energy that the device was given, force times way; what it may give back is what is
 //                stored in the touched springs. Where more comes out, a controller damps the hand until that is made good
@@ -45,16 +46,15 @@ class Stability {
   // Nothing is known of the past: armed anew.
   void reset();
   // A tick with a good report. tip_m and force_n: device's frame; the force is changed in place. sent_n: what the gate let
-  // through in the tick before. round_trip_s: 0 where it is not known. rubs: a touch slides
-  // with friction, whose turns are the hand's.
+  // through in the tick before. round_trip_s: 0 where it is not known. rubs: a touch slides with friction, whose turns are the
+  // hand's.
   void step(const double tip_m[3], std::uint64_t now_ns, const double sent_n[3], double round_trip_s, bool rubs,
             double force_n[3]);
 
   double share() const { return share_; }                // of the scene's force
   double damping() const { return damping_n_s_per_m_; }  // of the passivity controller, in this tick
-  double owed_j() const { return stored_j_ < 0 ? -stored_j_ : 0; }
-  bool shakes() const { return shakes_; }  // calming has not helped
-  bool is_hot() const { return is_hot_; }  // the force is cut to what the motors stand
+  bool shakes() const { return shakes_; }                // calming has not helped
+  bool is_hot() const { return is_hot_; }                // the force is cut to what the motors stand
 
  private:
   static constexpr int kSent = 64;
@@ -80,7 +80,8 @@ class Stability {
   void cool(const double sent_n[3], double seconds, double force_n[3]);
 
   StabilitySetup setup_;
-  double period_s_ = 0, force_limit_n_ = 0, continuous_n_ = 0, heat_s_ = 0;
+  DeviceLimits limits_;
+  double period_s_ = 0;
   bool has_last_ = false, shakes_ = false, is_hot_ = false;
   double last_m_[3] = {};
   std::uint64_t last_ns_ = 0;
@@ -89,7 +90,7 @@ class Stability {
   double stored_j_ = 0, given_j_ = 0, moved_j_ = 0, path_m_ = 0, damping_n_s_per_m_ = 0;
   double share_ = 1;
   int calmings_ = 0;
-  std::uint64_t first_calmed_ns_ = 0, last_calmed_ns_ = 0;  // of the shaking that is going on
+  std::uint64_t shakes_since_ns_ = 0, last_calmed_ns_ = 0;  // of the shaking that was calmed last
   Axis axes_[3];
   double heat_n2_ = 0;  // mean square of the force; kept by reset: motors stay hot
 };

@@ -14,6 +14,7 @@ namespace fdcg::dev {
 namespace {
 
 constexpr double kMetresPerCount = 1e-9, kSecondsPerCount = 1e-6;
+constexpr double kFarthest_m = 2;  // what a count of 32 bits holds
 constexpr std::uint8_t kInputId = 1, kOutputId = 2;
 
 class Plugin final : public PluginTransport {
@@ -101,9 +102,8 @@ ReadResult Plugin::read(std::uint8_t* data, int capacity, int timeout_ms) {
   sample.echo = from.echo;
   sample.time_s = std::isfinite(from.time_s) ? from.time_s : 0;
   sample.buttons = from.buttons;
-  // a count holds no NaN: a place that is none is a fault of the device
-  const bool is_place =
-      std::isfinite(from.position_m[0]) && std::isfinite(from.position_m[1]) && std::isfinite(from.position_m[2]);
+  // a count holds neither NaN nor more than so much: such a place is a fault of the device
+  const bool is_place = std::all_of(from.position_m, from.position_m + 3, [](double p) { return std::fabs(p) <= kFarthest_m; });
   sample.has_fault = (from.flags & FDCG_TRANSPORT_FAULT) != 0 || !is_place;
   sample.is_enabled = (from.flags & FDCG_TRANSPORT_ENABLED) != 0;
   encode_input(profile_, sample, data);
