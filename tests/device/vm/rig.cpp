@@ -66,6 +66,7 @@ void Rig::run_until(Nanoseconds moment) {
     if (ready[1].revents != 0) {
       const std::uint64_t ticks = expirations(ticker_);
       missed_ticks += ticks > 1 ? ticks - 1 : 0;
+      late_ticks += ticks > 0 && now_ns() % period() > period() / 4;  // the rhythm is in step with the clock
       if (ticks > 0) device.tick();
     }
     if (ready[0].revents != 0) device.receive();

@@ -53,6 +53,7 @@ class Rig {
   Device device;
   HostProcess host;
   std::uint64_t missed_ticks = 0;     // of the device's own timer
+  std::uint64_t late_ticks = 0;       // of them by more than a quarter of a period
   Nanoseconds longest_reopening = 0;  // from a plug to the first report answered
 
  private:
