@@ -70,6 +70,7 @@ class Value {
   [[nodiscard]] std::vector<std::string> keys() const;
   // Refuses members that are not among the keys and names the nearest of them. `of` ends the message: " of a rotary device".
   void allow_only(Keys keys, const char* of = "") const;
+  void allow_only(const std::vector<std::string>& keys, const char* of) const;
   // This value, which must be an object of such keys.
   [[nodiscard]] Value object(Keys keys) const;
 

@@ -141,7 +141,10 @@ std::vector<std::string> Value::keys() const {
 }
 
 void Value::allow_only(Keys keys, const char* of) const {
-  const std::vector<std::string> known(keys.begin(), keys.end());
+  allow_only(std::vector<std::string>(keys.begin(), keys.end()), of);
+}
+
+void Value::allow_only(const std::vector<std::string>& known, const char* of) const {
   for (const std::string& key : this->keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const bool is_whole = path().empty();

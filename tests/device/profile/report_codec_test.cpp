@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "catch.hpp"
@@ -58,14 +59,11 @@ double half_count(const Field& field, double value) {
 
 // A value in the middle half of the field's range.
 double value_within(const Field& field, std::mt19937_64& random) {
-  const double most = field.type == NumberType::kF32 ? 1000 : std::ldexp(1.0, 8 * bytes_of(field.type) - 1) - 1;
-  const bool is_signed = field.type != NumberType::kU8 && field.type != NumberType::kU16 && field.type != NumberType::kU32;
+  const double most = field.type == NumberType::kF32 ? 1000 : mask_of(field) / 2;
+  const bool is_signed = field.type != NumberType::kU8 && field.type != NumberType::kU16 && field.type != NumberType::kU24 &&
+                         field.type != NumberType::kU32;
   const double raw = std::uniform_real_distribution<double>(is_signed ? -most : 0, most)(random);
   return raw * field.scale + field.bias;
-}
-
-std::uint32_t mask_of(const Field& field) {
-  return 0xFFFFFFFFU >> (32 - 8 * bytes_of(field.type));
 }
 
 const Field* field_of(const ReportLayout& layout, Role role) {
@@ -111,6 +109,134 @@ TEST_CASE("report codec: numbers are encoded by type and byte order") {
   CHECK(encoded(single(NumberType::kU32, false, 1e-3, 0), 4294967.295) == Bytes{7, 0xFF, 0xFF, 0xFF, 0xFF});
   CHECK(encoded(single(NumberType::kF32, false, 1, 0), -1.25) == Bytes{7, 0, 0, 0xA0, 0xBF});
   CHECK(encoded(single(NumberType::kF32, true, 2, 1), -1.5) == Bytes{7, 0xBF, 0xA0, 0, 0});
+}
+
+TEST_CASE("report codec: numbers of 24 bits, and of bits between others") {
+  CHECK(encoded(single(NumberType::kU24, false, 1, 0), 0x123456) == Bytes{7, 0x56, 0x34, 0x12});
+  CHECK(encoded(single(NumberType::kI24, true, 1, 0), -2) == Bytes{7, 0xFF, 0xFF, 0xFE});
+  CHECK(encoded(single(NumberType::kI24, false, 1, 0), 1e9) == Bytes{7, 0xFF, 0xFF, 0x7F});
+  Profile profile = single(NumberType::kI16, false, 1, 0);
+  Field& field = profile.output.fields[0];
+  field.bit = 4;
+  field.bits = 12;
+  CHECK(encoded(profile, 1) == Bytes{7, 0x10, 0});
+  CHECK(encoded(profile, -1) == Bytes{7, 0xF0, 0xFF});
+  CHECK(encoded(profile, 5000) == Bytes{7, 0xF0, 0x7F});   // 2047
+  CHECK(encoded(profile, -5000) == Bytes{7, 0x00, 0x80});  // -2048
+  Field second = field;                                    // the four bits before it
+  second.role = Role::kSequence;
+  second.type = NumberType::kU8;
+  second.bit = 0;
+  second.bits = 4;
+  profile.output.fields[profile.output.field_count++] = second;
+  Command command;
+  command.effort[0] = -3;
+  command.sequence = 0x1F;  // its least four
+  Bytes data(3);
+  encode_output(profile, command, data.data());
+  CHECK(data == Bytes{7, 0xDF, 0xFF});
+  Command back;
+  REQUIRE(decode_output(profile, data.data(), 3, &back));
+  CHECK((back.effort[0] == -3 && back.sequence == 0xF));
+}
+
+namespace {
+
+// "P <sequence> <x> <y> <z> <buttons>" and "F,<sequence>,<x>,<y>,<z>,<enable>".
+Profile text_profile() {
+  Profile profile;
+  profile.axis_count = 3;
+  profile.rate_hz = 1000;
+  profile.has_output = true;
+  const auto add = [](ReportLayout* layout, Role role, int column, double scale, std::uint32_t constant, int axis) {
+    Field& field = layout->fields[layout->field_count++];
+    field.role = role;
+    field.type = NumberType::kU32;
+    field.offset = static_cast<std::uint16_t>(column);
+    field.scale = scale;
+    field.constant = constant;
+    field.axis = static_cast<std::uint8_t>(axis);
+  };
+  ReportLayout &in = profile.input, &out = profile.output;
+  in.columns = out.columns = 6;
+  in.bytes = out.bytes = kMaxReportBytes;
+  out.separator = ',';
+  add(&in, Role::kConstant, 0, 1, 'P', 0);
+  add(&in, Role::kSequence, 1, 1, 0, 0);
+  add(&out, Role::kConstant, 0, 1, 'F' | 'o' << 8, 0);
+  add(&out, Role::kSequence, 1, 1, 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    add(&in, Role::kAxis, 2 + axis, 1e-3, 0, axis);
+    add(&out, Role::kEffort, 2 + axis, 1, 0, axis);
+  }
+  add(&in, Role::kButtons, 5, 1, 0, 0);
+  add(&out, Role::kEnable, 5, 1, 1, 0);
+  return profile;
+}
+
+Verdict read_line(const Profile& profile, const std::string& line, Sample* sample) {
+  return decode_input(profile, reinterpret_cast<const std::uint8_t*>(line.data()), static_cast<int>(line.size()), sample);
+}
+
+}  // namespace
+
+TEST_CASE("report codec: lines of text") {
+  const Profile profile = text_profile();
+  Sample sample;
+  for (const char* line : {"P 17 1.5 -2 +3e1 5\n", "P 17 1.5 -2 30 5\r\n", "  P\t17  1.5 -2 30 5  "}) {
+    REQUIRE(read_line(profile, line, &sample) == Verdict::kGood);
+    CHECK((sample.sequence == 17 && sample.buttons == 5));
+    CHECK((sample.axis[0] == 0.0015 && sample.axis[1] == -0.002 && sample.axis[2] == Approx(0.03)));
+  }
+  CHECK(read_line(profile, "", &sample) == Verdict::kLength);
+  CHECK(read_line(profile, "\n", &sample) == Verdict::kLength);
+  CHECK(read_line(profile, "P 17 1 2 3", &sample) == Verdict::kLength);
+  CHECK(read_line(profile, "P 17 1 2 3 4 5", &sample) == Verdict::kLength);
+  CHECK(read_line(profile, "P 17 1 2 3 4" + std::string(200, ' '), &sample) == Verdict::kLength);
+  CHECK(read_line(profile, "Q 17 1 2 3 4", &sample) == Verdict::kConstant);
+  CHECK(read_line(profile, "PPPPP 17 1 2 3 4", &sample) == Verdict::kConstant);
+  CHECK(read_line(profile, std::string("P\0\0 17 1 2 3 4", 15), &sample) == Verdict::kConstant);
+  for (const char* line : {"P 17 nan 2 3 4", "P 17 inf 2 3 4", "P 17 1e999 2 3 4", "P 17 1,5 2 3 4", "P 17 0x1 2 3 4",
+                           "P -1 1 2 3 4", "P 1.0 1 2 3 4", "P 4294967296 1 2 3 4", "P 17 1 2 - 4", "P 17 1 2 + 4"})
+    CHECK(read_line(profile, line, &sample) == Verdict::kNotFinite);
+
+  Command command;
+  command.effort[0] = 0.1;
+  command.effort[1] = -1.0 / 3;
+  command.effort[2] = kNan;
+  command.sequence = 4294967295U;
+  command.is_enabled = true;
+  std::uint8_t data[kMaxReportBytes];
+  const int bytes = encode_output(profile, command, data);
+  CHECK(std::string(data, data + bytes) == "Fo,4294967295,0.1,-0.333333333,0,1\n");
+  Command back;
+  REQUIRE(decode_output(profile, data, bytes, &back));
+  CHECK((back.sequence == command.sequence && back.is_enabled && back.effort[0] == 0.1));
+  const std::string empty_column = "Fo,1,0.1,,0,1";
+  CHECK_FALSE(decode_output(profile, reinterpret_cast<const std::uint8_t*>(empty_column.data()), 13, &back));
+}
+
+TEST_CASE("report codec: a random line is read, or refused, and a written one is read back") {
+  const Profile profile = text_profile();
+  std::mt19937_64 random(11);
+  constexpr char kLetters[] = "P 0123456789.-+e,\n\r\tinfa";
+  for (int i = 0; i < 20'000; ++i) {
+    std::string line;
+    for (auto length = random() % 140; length > 0; --length)
+      line += kLetters[random() % (sizeof kLetters - 1)];
+    Sample sample;
+    if (read_line(profile, line, &sample) == Verdict::kGood) CHECK(std::isfinite(sample.axis[0]));
+    for (double& axis : sample.axis)
+      axis = std::ldexp(static_cast<double>(random()) - 9e18, -60 - static_cast<int>(random() % 20));
+    sample.sequence = static_cast<std::uint32_t>(random());
+    std::uint8_t data[kMaxReportBytes];
+    const int bytes = encode_input(profile, sample, data);
+    Sample back;
+    REQUIRE(decode_input(profile, data, bytes, &back) == Verdict::kGood);
+    CHECK(back.sequence == sample.sequence);
+    for (int axis = 0; axis < 3; ++axis)
+      REQUIRE(std::fabs(back.axis[axis] - sample.axis[axis]) <= 1e-8 * std::fabs(sample.axis[axis]));
+  }
 }
 
 TEST_CASE("an effort is rounded to the nearest count and held in the range of its field") {
@@ -233,7 +359,7 @@ TEST_CASE("report codec: random profiles decode what they encode, and fields do 
     check_counter(profile.input, Role::kButtons, sample.buttons, read.buttons);
     CHECK(read.has_fault == (sample.has_fault && field_of(profile.input, Role::kStatus) != nullptr));
     if (const Field* time = field_of(profile.input, Role::kTime)) {
-      const double round_s = std::ldexp(time->scale, 8 * bytes_of(time->type));
+      const double round_s = time->scale * (mask_of(*time) + 1.0);
       const double off = std::remainder(read.time_s - sample.time_s, round_s);
       CHECK(std::fabs(off) <= time->scale * 0.5 + 1e-8);
     }

@@ -16,27 +16,36 @@ namespace fdcg::dev {
 inline const char* trouble_of(const ReportLayout& layout, Role numbers, int axis_count) {
   if (layout.bytes < 1 || layout.bytes > kMaxReportBytes) return "length of a report";
   if (layout.field_count > kMaxFields) return "number of fields";
-  int owners[kMaxReportBytes] = {};
-  const auto claim = [&owners, &layout](int offset, int bytes) {
-    for (int i = offset; i < offset + bytes && i < layout.bytes; ++i)
+  const int places = layout.is_text() ? layout.columns : 8 * layout.bytes;  // columns, or bits
+  if (places > 8 * kMaxReportBytes || layout.columns > 32) return "number of columns";
+  int owners[8 * kMaxReportBytes] = {};
+  const auto claim = [&owners, places](int first, int count) {
+    for (int i = first; i < first + count && i < places; ++i)
       ++owners[i];
-    return offset + bytes <= layout.bytes;
+    return first + count <= places;
   };
-  if (layout.id != 0) ++owners[0];
+  const auto claim_field = [&](const Field& field) {
+    if (layout.is_text()) return claim(field.offset, 1);
+    const int bits = 8 * bytes_of(field.type);
+    if (field.bits > bits || field.bit > 7 || (field.bits != 0 && field.is_big_endian)) return false;
+    return field.bits != 0 ? claim(8 * field.offset + field.bit, field.bits) : claim(8 * field.offset, bits);
+  };
+  if (layout.is_text() && (layout.id != 0 || layout.crc.kind != CrcKind::kNone)) return "an id or a checksum of text";
+  if (layout.id != 0) claim(0, 8);
   int axes[kMaxAxes] = {};
   for (int i = 0; i < layout.field_count; ++i) {
     const Field& field = layout.fields[i];
-    if (!claim(field.offset, bytes_of(field.type))) return "a field beyond the report";
+    if (!claim_field(field)) return "a field beyond the report";
     if (!std::isfinite(1 / field.scale) || !std::isfinite(field.bias)) return "a field's scale or bias";
     if (field.axis >= kMaxAxes) return "a field's axis";
     if (field.role == numbers) ++axes[field.axis];
     const bool is_number = field.role == Role::kAxis || field.role == Role::kEffort;
-    if (!is_number && bytes_of(field.type) < 4 && field.constant >> 8 * bytes_of(field.type) != 0) return "a field's value";
+    if (!is_number && (field.constant & ~mask_of(field)) != 0) return "a field's value";
   }
   const Crc& crc = layout.crc;
-  if (crc.kind != CrcKind::kNone && (!claim(crc.offset, bytes_of(crc.kind)) || crc.first + crc.bytes > layout.bytes))
+  if (crc.kind != CrcKind::kNone && (!claim(8 * crc.offset, 8 * bytes_of(crc.kind)) || crc.first + crc.bytes > layout.bytes))
     return "a checksum beyond the report";
-  if (*std::max_element(owners, owners + layout.bytes) > 1) return "fields that overlap";
+  if (*std::max_element(owners, owners + places) > 1) return "fields that overlap";
   for (int axis = 0; axis < kMaxAxes; ++axis) {
     if (axes[axis] != (axis < axis_count ? 1 : 0)) return "axes that are missing or stand twice";
   }
@@ -57,7 +66,6 @@ inline const char* trouble_of(const DeviceLimits& limits) {
 
 inline const char* trouble_of(const Profile& profile) {
   if (std::memchr(profile.name, '\0', kProfileNameBytes) == nullptr) return "a name without end";
-  if (profile.match.vendor == 0) return "no vendor";
   if (!(profile.rate_hz >= 1 && profile.rate_hz <= 100000)) return "the rate";
   if (!axis_count_fits(profile.kinematics.kind, profile.axis_count)) return "the number of axes";
   if (profile.init_count > kMaxFixedReports || profile.safe_stop_count > kMaxFixedReports) return "too many fixed reports";

@@ -37,20 +37,28 @@ class RandomProfile {
     Field field;
     field.role = role;
     field.axis = static_cast<std::uint8_t>(axis);
-    field.type = static_cast<NumberType>(below(7));
+    field.type = static_cast<NumberType>(below(9));
     field.scale = std::pow(10.0, -8 + below(9)) * (1 + below(9)) * (below(2) == 0 ? 1 : -1);
     field.bias = below(2) == 0 ? 0 : (below(2001) - 1000) * 1e-3;
     return field;
   }
 
   Field counter(Role role) {
-    constexpr NumberType kTypes[] = {NumberType::kU8, NumberType::kU16, NumberType::kU32};
+    constexpr NumberType kTypes[] = {NumberType::kU8, NumberType::kU16, NumberType::kU24, NumberType::kU32};
     Field field;
     field.role = role;
-    field.type = kTypes[below(3)];
+    field.type = kTypes[below(4)];
     if (role == Role::kTime) field.scale = 1e-3;
     field.constant = 1 + below(255);
     return field;
+  }
+
+  // Some of the type's bits, enough for a constant and a clock.
+  void pack(Field* field) {
+    const int width = 8 * bytes_of(field->type);
+    field->is_big_endian = false;
+    field->bit = static_cast<std::uint8_t>(below(8));
+    field->bits = static_cast<std::uint8_t>(8 + below(width - 7));
   }
 
   void lay_out(const std::vector<Role>& counters, Role numbers, int axis_count, ReportLayout* layout) {
@@ -69,7 +77,8 @@ class RandomProfile {
       end += below(5) == 0 ? below(6) : 0;
       field.offset = static_cast<std::uint16_t>(end);
       field.is_big_endian = below(2) == 0;
-      end += bytes_of(field.type);
+      if (below(5) == 0 && field.type != NumberType::kF32) pack(&field);
+      end += field.bits != 0 ? (field.bit + field.bits + 7) / 8 : bytes_of(field.type);
       layout->fields[layout->field_count++] = field;
     }
     Crc& crc = layout->crc;

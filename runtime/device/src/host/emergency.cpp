@@ -39,35 +39,43 @@ constexpr std::uint64_t kInFlightNs = 20'000'000;  // wait for a write in progre
 enum class EmergencyState : int { kIdle, kSending, kSent };
 std::atomic<EmergencyState> emergency_state{EmergencyState::kIdle};
 
+// What a device is reached by.
+struct Way {
+  int descriptor = -1;
+  void (*call)(void*, const std::uint8_t*, int) = nullptr;
+  void* self = nullptr;
+
+  bool is_there() const { return descriptor >= 0 || call != nullptr; }
+};
+
 // hidraw wants the report id first, 0 where the device has none, as hid_write does.
-void write_report(int descriptor, const std::uint8_t* report, int bytes, bool has_id) {
+void write_report(const Way& way, const std::uint8_t* report, int bytes, bool has_id) {
+  if (bytes < 0 || bytes > kMaxReportBytes) return;
+  if (way.call != nullptr) return way.call(way.self, report, bytes);
   std::uint8_t data[kMaxReportBytes + 1] = {};
   const int skipped = has_id ? 0 : 1;
-  if (bytes < 0 || bytes > kMaxReportBytes) return;
   std::memcpy(data + skipped, report, static_cast<std::size_t>(bytes));
-  const ssize_t ignored = write(descriptor, data, static_cast<std::size_t>(bytes + skipped));
+  const ssize_t ignored = write(way.descriptor, data, static_cast<std::size_t>(bytes + skipped));
   static_cast<void>(ignored);  // the process is ending
 }
 
-void write_fixed(int descriptor, const FixedReport& report) {
-  if (!report.is_feature) {
-    write_report(descriptor, report.data, report.bytes, true);
-    return;
-  }
+void write_fixed(const Way& way, const FixedReport& report) {
+  const int skipped = way.call != nullptr && report.data[0] == 0 ? 1 : 0;
+  if (!report.is_feature) return write_report(way, report.data + skipped, report.bytes - skipped, true);
 #ifdef __linux__
   std::uint8_t data[kMaxReportBytes];
   std::memcpy(data, report.data, sizeof data);
-  ioctl(descriptor, HIDIOCSFEATURE(report.bytes), data);
+  if (way.descriptor >= 0) ioctl(way.descriptor, HIDIOCSFEATURE(report.bytes), data);
 #endif
 }
 
-void send_zero(int descriptor, const Profile& profile, std::uint32_t sequence) {
+void send_zero(const Way& way, const Profile& profile, std::uint32_t sequence) {
   if (!profile.has_output) return;
   Command zero;
   zero.sequence = sequence;
   std::uint8_t report[kMaxReportBytes] = {};
-  encode_output(profile, zero, report);
-  write_report(descriptor, report, profile.output.bytes, profile.output.id != 0);
+  const int bytes = encode_output(profile, zero, report);
+  write_report(way, report, bytes, profile.output.id != 0);
 }
 
 // Several threads may crash at once: the first sends the reports, the others must not end the process meanwhile. A fault within
@@ -129,40 +137,37 @@ void remove_emergency_exit(EmergencyExit* exit) {
 }
 
 void send_zero(const EmergencyExit& exit) {
-  const int descriptor = exit.descriptor.load();
-  if (void (*const call)(void*) = exit.call.load(); call != nullptr) call(exit.self.load());
-  if (descriptor >= 0) send_zero(descriptor, *exit.profile, exit.writer->take_sequence());
+  const Way way{exit.descriptor.load(), exit.call.load(), exit.self.load()};
+  if (way.is_there()) send_zero(way, *exit.profile, exit.writer->take_sequence());
 }
 
 void send_emergency_zeros() noexcept {
-  int descriptors[kMaxEmergencyExits];
+  Way ways[kMaxEmergencyExits];
   bool was_sending[kMaxEmergencyExits] = {};
   // Zero force on all devices first: safe-stop reports may take longer.
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
-    descriptors[i] = -1;
     EmergencyExit* const exit = exits[i].load();
     if (exit == nullptr) continue;
     const std::uint32_t sequence = exit->writer->mute();
     was_sending[i] = exit->writer->is_sending();
-    descriptors[i] = exit->descriptor.exchange(-1);
-    if (void (*const call)(void*) = exit->call.load(); call != nullptr) call(exit->self.load());
-    if (descriptors[i] >= 0) send_zero(descriptors[i], *exit->profile, sequence);
+    ways[i] = {exit->descriptor.exchange(-1), exit->call.exchange(nullptr), exit->self.load()};
+    if (ways[i].is_there()) send_zero(ways[i], *exit->profile, sequence);
   }
   // A force in transmission may have arrived after that zero. If the interrupted thread is the writer itself, the wait runs
   // into its limit, once.
   const std::uint64_t until_ns = monotonic_ns() + kInFlightNs;
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
     EmergencyExit* const exit = exits[i].load();
-    if (exit == nullptr || descriptors[i] < 0 || !was_sending[i]) continue;
+    if (exit == nullptr || !ways[i].is_there() || !was_sending[i]) continue;
     while (exit->writer->is_sending() && monotonic_ns() < until_ns)
       poll(nullptr, 0, 1);
-    send_zero(descriptors[i], *exit->profile, exit->writer->mute());
+    send_zero(ways[i], *exit->profile, exit->writer->mute());
   }
   for (int i = 0; i < kMaxEmergencyExits; ++i) {
     EmergencyExit* const exit = exits[i].load();
-    if (exit == nullptr || descriptors[i] < 0) continue;
+    if (exit == nullptr || !ways[i].is_there()) continue;
     for (int k = 0; k < exit->profile->safe_stop_count; ++k)
-      write_fixed(descriptors[i], exit->profile->safe_stop[k]);
+      write_fixed(ways[i], exit->profile->safe_stop[k]);
   }
 }
 

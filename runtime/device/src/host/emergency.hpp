@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Zero force when a signal ends the process: a crash (crash_signals.hpp, and std::terminate, which aborts), or a signal whose
 // default action is termination. For each open device the writer is muted, then a report of zero force and the profile's
-// safe-stop reports are sent by write(2) on a file descriptor that was opened beforehand; then the process ends by its signal.
+// safe-stop reports are sent, by write(2) on a file descriptor that was opened beforehand, or by a call of the transport's own
+// (serial lines, plugins); then the process ends by its signal.
 // hidapi does not expose its descriptor; hidraw can be opened a second time, libusb cannot: there, and after kill -9, only the
 // device's watchdog removes the force, which is why a device without one gets little force (gate.hpp). A device that takes no
 // output may delay the end of the process by 5 s per report.
@@ -15,9 +16,9 @@
 namespace fdcg::dev {
 
 struct EmergencyExit {
-  std::atomic<int> descriptor{-1};             // -1: none, now
-  std::atomic<void (*)(void*)> call{nullptr};  // null: none, now
-  std::atomic<void*> self{nullptr};            // of the call; set before it
+  std::atomic<int> descriptor{-1};                                       // -1: none, now
+  std::atomic<void (*)(void*, const std::uint8_t*, int)> call{nullptr};  // null: none, now
+  std::atomic<void*> self{nullptr};                                      // of the call; set before it
   const Profile* profile = nullptr;
   Writer* writer = nullptr;
 };
@@ -34,7 +35,7 @@ void remove_emergency_exit(EmergencyExit* exit);
 // signal handlers belong to the program (fdcg-servo run installs them).
 void install_crash_handlers();
 
-// One report of zero force on the device's emergency descriptor, if it has one. May block as a write does.
+// One report of zero force by the device's emergency descriptor or call, if it has one. May block as a write does.
 void send_zero(const EmergencyExit& exit);
 
 // The action of the handlers; async-signal-safe. Descriptors are used once. A report that a writer was sending meanwhile is

@@ -74,7 +74,8 @@ FastRun::~FastRun() = default;
 
 std::string FastRun::open(HostConfig config) {
   for (DeviceConfig& device : config.devices) {
-    if (device.source == DeviceSource::kHid || device.source == DeviceSource::kPlugin) {
+    if (device.source == DeviceSource::kHid || device.source == DeviceSource::kPlugin ||
+        device.source == DeviceSource::kSerial) {
       return "device '" + device.name +
              "': a device that is not simulated or recorded lives in real time; run it without --fast";
     }
@@ -238,8 +239,7 @@ void FastRun::Impl::send(FastUnit& unit, const GatedForce& force, std::uint32_t 
   command.echo = echo;
   command.sequence = unit.sequence++;
   std::uint8_t report[kMaxReportBytes] = {};
-  encode_output(profile, command, report);
-  unit.has_write_failed = !unit.transport->write(report, profile.output.bytes);
+  unit.has_write_failed = !unit.transport->write(report, encode_output(profile, command, report));
   if (!unit.has_write_failed) unit.input.sent = {kOriginNs + unit.transport->clock_ns(), command.sequence, command.is_enabled};
   ++unit.status.writes;
   unit.status.write_failures += unit.has_write_failed;

@@ -14,6 +14,7 @@ std::unique_ptr<Transport> make_hid_transport(const DeviceConfig& config, const 
 std::unique_ptr<Transport> make_transport(const DeviceConfig& config, const LoopConfig& loop) {
   if (config.source == DeviceSource::kHid) return make_hid_transport(config, loop);
   if (config.source == DeviceSource::kSimulated) return make_simulated_transport(config.simulation);
+  if (config.source == DeviceSource::kSerial) return make_serial_transport(config.profile, config.serial_access);
   if (config.source == DeviceSource::kPlugin)
     return make_plugin_transport(config.profile, config.plugin, config.plugin_settings);
   return make_recorded_transport(config);

@@ -86,8 +86,7 @@ bool Writer::send(const GatedForce& force, std::uint32_t echo) {
   command.echo = echo;
   return timed([&] {
     command.sequence = sequence_.fetch_add(1, std::memory_order_relaxed);
-    encode_output(profile_, command, report_);
-    const bool is_taken = transport_.write(report_, profile_.output.bytes);
+    const bool is_taken = transport_.write(report_, encode_output(profile_, command, report_));
     is_pushing_.store(command.is_enabled, std::memory_order_release);
     if (is_taken) sent_.put({began_ns_.load(std::memory_order_relaxed), command.sequence, command.is_enabled});
     return is_taken;

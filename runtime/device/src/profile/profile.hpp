@@ -16,7 +16,7 @@ inline constexpr int kMaxFixedReports = 8;  // init, and as many to stop safely
 inline constexpr int kProfileNameBytes = 64;
 inline constexpr double kSilenceS = 0.010;  // without a good report: the gate disarms
 
-enum class NumberType : std::uint8_t { kU8, kI8, kU16, kI16, kU32, kI32, kF32 };
+enum class NumberType : std::uint8_t { kU8, kI8, kU16, kI16, kU32, kI32, kF32, kU24, kI24 };
 int bytes_of(NumberType type);
 
 // What a field is. Input: axis, sequence, time, echo, buttons, status, constant. Output: effort, sequence, echo, enable,
@@ -28,13 +28,18 @@ struct Field {
   NumberType type = NumberType::kU8;
   bool is_big_endian = false;
   std::uint8_t axis = 0;     // of kAxis and kEffort
-  std::uint16_t offset = 0;  // bytes
+  std::uint16_t offset = 0;  // bytes; in a line of text the column
   double scale = 1;  // value = raw * scale + bias; kEffort: raw = (value - bias) / scale, rounded to nearest, held in range
   double bias = 0;
   std::uint32_t constant = 0;  // kConstant: the raw value; kEnable: the raw value while armed (0 otherwise); kStatus: mask of
                                // the bits that say that the device has a fault
   std::uint32_t enabled = 0;   // kStatus: mask of the bits that say that the device applies the force; 0: it does not tell
+  std::uint8_t bits = 0;  // so many from `bit` of the byte at offset on, upwards, the least bit being 0; 0: whole bytes
+  std::uint8_t bit = 0;
 };
+
+// All bits of a field's raw value.
+std::uint32_t mask_of(const Field& field);
 
 enum class CrcKind : std::uint8_t { kNone, kCrc16CcittFalse, kCrc16Modbus, kCrc32, kCrc8, kSum8, kXor8 };
 
@@ -45,12 +50,17 @@ struct Crc {
   std::uint16_t first = 0, bytes = 0;  // what it covers
 };
 
+// Bytes, or a line of text: numbers in columns, apart by the separator, a line's end after them (text_report.hpp).
 struct ReportLayout {
-  std::uint8_t id = 0;
-  std::uint16_t bytes = 0;  // exact length of a valid report, id included where it is not 0
+  std::uint8_t id = 0;       // 0 of text
+  std::uint16_t bytes = 0;   // exact length of a valid report, id included where it is not 0; of text the longest
+  std::uint8_t columns = 0;  // of text; 0: bytes
+  char separator = ' ';      // of text; ' ' stands for any number of spaces and tabs
   std::uint8_t field_count = 0;
   Field fields[kMaxFields];
   Crc crc;
+
+  bool is_text() const { return columns != 0; }
 };
 
 // A report sent as it stands: to initialise the device, or to make it safe.
@@ -60,6 +70,7 @@ struct FixedReport {
   std::uint8_t data[kMaxReportBytes] = {};
 };
 
+// Of a HID device; vendor 0: the profile is of a device on a serial line.
 struct Match {
   std::uint16_t vendor = 0, product = 0;
   std::int32_t usage_page = -1, usage = -1, interface_number = -1;  // -1: any

@@ -26,7 +26,7 @@ constexpr json::NumberRange kWatchdog{0, 10, true, "s"};
 constexpr json::NumberRange kRate{1, 100000, true, "Hz"};
 constexpr std::size_t kLongestText = 1000;
 
-constexpr json::Keys kReportKeys{"report_id", "bytes", "fields", "crc"};
+constexpr json::Keys kReportKeys{"format", "columns", "separator", "report_id", "bytes", "fields", "crc"};
 
 void read_match(const json::Value& json, Match* match) {
   match->vendor = static_cast<std::uint16_t>(json["vendor_id"].id(0xFFFF));
@@ -103,7 +103,8 @@ void read_profile(const json::Value& json, const std::string& file_name, Profile
   std::memcpy(profile->name, name.data(), name.size());
   if (json["source"]) (void)json["source"].text(kLongestText);
   if (json["notes"]) (void)json["notes"].texts(0, 100, kLongestText);
-  read_match(json["match"].object({"vendor_id", "product_id", "usage_page", "usage", "interface"}), &profile->match);
+  if (json["match"])
+    read_match(json["match"].object({"vendor_id", "product_id", "usage_page", "usage", "interface"}), &profile->match);
   profile->rate_hz = json["rate_hz"].number(kRate);
   const json::Value kinematics = json["kinematics"].object(kKinematicsKeys);
   read_kinematics(kinematics, &profile->kinematics);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "profile/report_codec.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "profile/crc.hpp"
+#include "profile/text_report.hpp"
 
 namespace fdcg::dev {
 namespace {
@@ -25,63 +27,74 @@ void store(std::uint32_t raw, int bytes, bool is_big_endian, std::uint8_t* data)
     data[i] = static_cast<std::uint8_t>(raw >> 8 * (is_big_endian ? bytes - 1 - i : i));
 }
 
+// Up to 32 bits from a byte's bit on, upwards.
+std::uint32_t load_bits(const Field& field, const std::uint8_t* data) {
+  std::uint64_t raw = 0;
+  for (int i = 0; i < (field.bit + field.bits + 7) / 8; ++i)
+    raw |= std::uint64_t{data[i]} << 8 * i;
+  return static_cast<std::uint32_t>(raw >> field.bit) & mask_of(field);
+}
+
+// The bytes are 0 there.
+void store_bits(const Field& field, std::uint32_t raw, std::uint8_t* data) {
+  const std::uint64_t bits = std::uint64_t{raw & mask_of(field)} << field.bit;
+  for (int i = 0; i < (field.bit + field.bits + 7) / 8; ++i)
+    data[i] = static_cast<std::uint8_t>(data[i] | bits >> 8 * i);
+}
+
 std::uint32_t load(const Field& field, const std::uint8_t* report) {
+  if (field.bits != 0) return load_bits(field, report + field.offset);
   return load(report + field.offset, bytes_of(field.type), field.is_big_endian);
 }
 
 void store(const Field& field, std::uint32_t raw, std::uint8_t* report) {
+  if (field.bits != 0) return store_bits(field, raw, report + field.offset);
   store(raw, bytes_of(field.type), field.is_big_endian, report + field.offset);
 }
 
 // ---- Raw bits and numbers
 
-// By NumberType.
-struct TypeInfo {
-  int bytes;
-  double least, most;
-};
-template <class Number>
-constexpr TypeInfo info_of() {
-  return {sizeof(Number), std::numeric_limits<Number>::lowest(), std::numeric_limits<Number>::max()};
-}
-constexpr TypeInfo kTypeInfos[] = {info_of<std::uint8_t>(), info_of<std::int8_t>(),   info_of<std::uint16_t>(),
-                                   info_of<std::int16_t>(), info_of<std::uint32_t>(), info_of<std::int32_t>(),
-                                   info_of<float>()};
-
-const TypeInfo& info_of(NumberType type) {
-  return kTypeInfos[static_cast<int>(type)];
+bool is_signed(NumberType type) {
+  return type == NumberType::kI8 || type == NumberType::kI16 || type == NumberType::kI24 || type == NumberType::kI32;
 }
 
-// `raw` has no bits beyond the type's own.
-double number_of(NumberType type, std::uint32_t raw) {
-  if (type == NumberType::kF32) return static_cast<double>(std::bit_cast<float>(raw));
-  const TypeInfo& info = info_of(type);
-  return raw > info.most ? raw - std::ldexp(1.0, 8 * info.bytes) : raw;
+// `raw` has no bits beyond the field's own.
+double number_of(const Field& field, std::uint32_t raw) {
+  if (field.type == NumberType::kF32) return static_cast<double>(std::bit_cast<float>(raw));
+  const std::uint32_t mask = mask_of(field);
+  return is_signed(field.type) && raw > mask / 2 ? raw - (mask + 1.0) : raw;
 }
 
-// Clamped to the type's range. Never NaN: that is 0.
-std::uint32_t raw_of(NumberType type, double number) {
-  const TypeInfo& range = info_of(type);
+// Clamped to the field's range. Never NaN: that is 0.
+std::uint32_t raw_of(const Field& field, double number) {
   if (std::isnan(number)) number = 0;
-  number = number < range.least ? range.least : number > range.most ? range.most : number;
-  if (type == NumberType::kF32) return std::bit_cast<std::uint32_t>(static_cast<float>(number));
+  if (field.type == NumberType::kF32) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return std::bit_cast<std::uint32_t>(static_cast<float>(std::clamp(number, -kMost, kMost)));
+  }
+  const double all = mask_of(field), half = (all + 1) / 2;
+  number = is_signed(field.type) ? std::clamp(number, -half, half - 1) : std::clamp(number, 0.0, all);
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::nearbyint(number)));
 }
 
 double value_of(const Field& field, std::uint32_t raw) {
-  return number_of(field.type, raw) * field.scale + field.bias;
+  return number_of(field, raw) * field.scale + field.bias;
 }
 
-// Of a value that is not a number: the raw value of 0.
+// In counts, not rounded; of a value that is not a number, those of 0.
+double count_of_value(const Field& field, double value) {
+  return ((std::isnan(value) ? 0 : value) - field.bias) / field.scale;
+}
+
 std::uint32_t raw_of_value(const Field& field, double value) {
-  return raw_of(field.type, ((std::isnan(value) ? 0 : value) - field.bias) / field.scale);
+  return raw_of(field, count_of_value(field, value));
 }
 
 // The device's clock wraps.
 std::uint32_t raw_of_time(const Field& field, double time_s) {
-  const double round = std::ldexp(1.0, 8 * bytes_of(field.type));
+  const double round = mask_of(field) + 1.0;
   const double ticks = std::fmod(std::nearbyint(time_s / field.scale), round);
-  return raw_of(NumberType::kU32, ticks < 0 ? ticks + round : ticks);
+  return raw_of(field, ticks < 0 ? ticks + round : ticks);
 }
 
 // ---- Whole reports
@@ -105,20 +118,17 @@ template <class RawOf>
 void write_frame(const ReportLayout& layout, std::uint8_t* data, RawOf raw_of_field) {
   std::memset(data, 0, layout.bytes);
   if (layout.id != 0) data[0] = layout.id;
-  for (int i = 0; i < layout.field_count; ++i) {
-    const Field& field = layout.fields[i];
-    store(field, field.role == Role::kConstant ? field.constant : raw_of_field(field), data);
-  }
+  for (int i = 0; i < layout.field_count; ++i)
+    store(layout.fields[i], raw_of_field(layout.fields[i]), data);
   const Crc& crc = layout.crc;
   if (crc.kind != CrcKind::kNone)
     store(crc_of(crc.kind, data + crc.first, crc.bytes), bytes_of(crc.kind), crc.is_big_endian, data + crc.offset);
 }
 
 void read_into(const Field& field, std::uint32_t raw, Sample* sample) {
-  if (field.role == Role::kAxis) sample->axis[field.axis] = value_of(field, raw);
   if (field.role == Role::kSequence) sample->sequence = raw;
   if (field.role == Role::kEcho) sample->echo = raw;
-  if (field.role == Role::kTime) sample->time_s = number_of(field.type, raw) * field.scale;
+  if (field.role == Role::kTime) sample->time_s = raw * field.scale;
   if (field.role == Role::kButtons) sample->buttons = raw;
   if (field.role == Role::kStatus) {
     sample->has_fault = sample->has_fault || (raw & field.constant) != 0;
@@ -126,63 +136,130 @@ void read_into(const Field& field, std::uint32_t raw, Sample* sample) {
   }
 }
 
-}  // namespace
-
-int bytes_of(NumberType type) {
-  return info_of(type).bytes;
+void read_into(const Field& field, std::uint32_t raw, Command* command) {
+  if (field.role == Role::kSequence) command->sequence = raw;
+  if (field.role == Role::kEcho) command->echo = raw;
+  if (field.role == Role::kEnable && raw != field.constant) command->is_enabled = false;
 }
 
-Verdict decode_input(const Profile& profile, const std::uint8_t* data, int bytes, Sample* sample) {
-  const ReportLayout& layout = profile.input;
-  *sample = {};
+// What stands in a field that is no number with a fraction.
+std::uint32_t raw_of(const Field& field, const Sample& sample) {
+  if (field.role == Role::kSequence) return sample.sequence;
+  if (field.role == Role::kEcho) return sample.echo;
+  if (field.role == Role::kTime) return raw_of_time(field, sample.time_s);
+  if (field.role == Role::kButtons) return sample.buttons;
+  if (field.role == Role::kStatus) return (sample.has_fault ? field.constant : 0) | (sample.is_enabled ? field.enabled : 0);
+  return field.role == Role::kConstant ? field.constant : 0;
+}
+
+std::uint32_t raw_of(const Field& field, const Command& command) {
+  if (field.role == Role::kSequence) return command.sequence;
+  if (field.role == Role::kEcho) return command.echo;
+  if (field.role == Role::kEnable) return command.is_enabled ? field.constant : 0;
+  return field.role == Role::kConstant ? field.constant : 0;
+}
+
+bool is_number(const Field& field) {
+  return field.role == Role::kAxis || field.role == Role::kEffort;
+}
+
+bool are_finite(const double* values) {
+  return std::all_of(values, values + kMaxAxes, [](double value) { return std::isfinite(value); });
+}
+
+// To a Sample and its axes, or to a Command and its efforts.
+template <class Content>
+Verdict read_text(const ReportLayout& layout, const std::uint8_t* data, int bytes, double* values, Content* content) {
+  TextColumns columns(layout, data, bytes);
+  if (!columns.are_as_laid_out()) return Verdict::kLength;
+  for (int i = 0; i < layout.field_count; ++i) {
+    const Field& field = layout.fields[i];
+    std::uint32_t raw = 0;
+    if (field.role == Role::kConstant) {
+      if (!columns.is_word(field)) return Verdict::kConstant;
+    } else if (is_number(field)) {
+      double number = 0;
+      if (!columns.number(field, &number)) return Verdict::kNotFinite;
+      values[field.axis] = number * field.scale + field.bias;
+    } else if (columns.count(field, &raw)) {
+      read_into(field, raw & mask_of(field), content);
+    } else {
+      return Verdict::kNotFinite;
+    }
+  }
+  return are_finite(values) ? Verdict::kGood : Verdict::kNotFinite;
+}
+
+template <class Content>
+Verdict read_bytes(const ReportLayout& layout, const std::uint8_t* data, int bytes, double* values, Content* content) {
   const Verdict verdict = check_frame(layout, data, bytes);
   if (verdict != Verdict::kGood) return verdict;
-  for (int i = 0; i < layout.field_count; ++i)
-    read_into(layout.fields[i], load(layout.fields[i], data), sample);
-  for (const double value : sample->axis) {
-    if (!std::isfinite(value)) return Verdict::kNotFinite;
-  }
-  return Verdict::kGood;
-}
-
-void encode_output(const Profile& profile, const Command& command, std::uint8_t* data) {
-  write_frame(profile.output, data, [&command](const Field& field) -> std::uint32_t {
-    if (field.role == Role::kEffort) return raw_of_value(field, command.effort[field.axis]);
-    if (field.role == Role::kSequence) return command.sequence;
-    if (field.role == Role::kEcho) return command.echo;
-    return field.role == Role::kEnable && command.is_enabled ? field.constant : 0;
-  });
-}
-
-void encode_input(const Profile& profile, const Sample& sample, std::uint8_t* data) {
-  write_frame(profile.input, data, [&sample](const Field& field) -> std::uint32_t {
-    if (field.role == Role::kAxis) return raw_of_value(field, sample.axis[field.axis]);
-    if (field.role == Role::kSequence) return sample.sequence;
-    if (field.role == Role::kEcho) return sample.echo;
-    if (field.role == Role::kTime) return raw_of_time(field, sample.time_s);
-    if (field.role == Role::kButtons) return sample.buttons;
-    if (field.role != Role::kStatus) return 0;
-    return (sample.has_fault ? field.constant : 0) | (sample.is_enabled ? field.enabled : 0);
-  });
-}
-
-bool decode_output(const Profile& profile, const std::uint8_t* data, int bytes, Command* command) {
-  const ReportLayout& layout = profile.output;
-  *command = {};
-  if (check_frame(layout, data, bytes) != Verdict::kGood) return false;
-  command->is_enabled = true;  // unless a field says otherwise
   for (int i = 0; i < layout.field_count; ++i) {
     const Field& field = layout.fields[i];
     const std::uint32_t raw = load(field, data);
-    if (field.role == Role::kEffort) command->effort[field.axis] = value_of(field, raw);
-    if (field.role == Role::kSequence) command->sequence = raw;
-    if (field.role == Role::kEcho) command->echo = raw;
-    if (field.role == Role::kEnable && raw != field.constant) command->is_enabled = false;
+    if (is_number(field)) values[field.axis] = value_of(field, raw);
+    read_into(field, raw, content);
   }
-  for (const double effort : command->effort) {
-    if (!std::isfinite(effort)) return false;
+  return are_finite(values) ? Verdict::kGood : Verdict::kNotFinite;
+}
+
+template <class Content>
+Verdict read_report(const ReportLayout& layout, const std::uint8_t* data, int bytes, double* values, Content* content) {
+  return layout.is_text() ? read_text(layout, data, bytes, values, content) : read_bytes(layout, data, bytes, values, content);
+}
+
+template <class Content>
+int write_report(const ReportLayout& layout, const double* values, const Content& content, std::uint8_t* data) {
+  if (!layout.is_text()) {
+    write_frame(layout, data, [&](const Field& field) {
+      return is_number(field) ? raw_of_value(field, values[field.axis]) : raw_of(field, content);
+    });
+    return layout.bytes;
   }
-  return true;
+  TextLine line(layout, data);
+  for (int column = 0; column < layout.columns; ++column) {
+    const Field* const field = field_at(layout, column);
+    if (field == nullptr) {
+      line.add(0U);
+    } else if (field->role == Role::kConstant) {
+      line.add_word(*field);
+    } else if (is_number(*field)) {
+      line.add(count_of_value(*field, values[field->axis]));
+    } else {
+      line.add(raw_of(*field, content) & mask_of(*field));
+    }
+  }
+  return line.end();
+}
+
+}  // namespace
+
+int bytes_of(NumberType type) {
+  constexpr int kBytes[] = {1, 1, 2, 2, 4, 4, 4, 3, 3};
+  return kBytes[static_cast<int>(type)];
+}
+
+std::uint32_t mask_of(const Field& field) {
+  return 0xFFFFFFFFU >> (32 - (field.bits != 0 ? field.bits : 8 * bytes_of(field.type)));
+}
+
+Verdict decode_input(const Profile& profile, const std::uint8_t* data, int bytes, Sample* sample) {
+  *sample = {};
+  return read_report(profile.input, data, bytes, sample->axis, sample);
+}
+
+int encode_output(const Profile& profile, const Command& command, std::uint8_t* data) {
+  return write_report(profile.output, command.effort, command, data);
+}
+
+int encode_input(const Profile& profile, const Sample& sample, std::uint8_t* data) {
+  return write_report(profile.input, sample.axis, sample, data);
+}
+
+bool decode_output(const Profile& profile, const std::uint8_t* data, int bytes, Command* command) {
+  *command = {};
+  command->is_enabled = true;  // unless a field says otherwise
+  return read_report(profile.output, data, bytes, command->effort, command) == Verdict::kGood;
 }
 
 }  // namespace fdcg::dev

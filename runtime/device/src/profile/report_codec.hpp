@@ -59,11 +59,12 @@ struct Command {
   std::uint32_t sequence = 0, echo = 0;
   bool is_enabled = false;
 };
-// Writes profile.output.bytes bytes. Only ever called with efforts that have left the gate.
-void encode_output(const Profile& profile, const Command& command, std::uint8_t* data);
+// Returns how many bytes it has written: profile.output.bytes, of text at most so many. Only ever called with efforts that have
+// left the gate.
+int encode_output(const Profile& profile, const Command& command, std::uint8_t* data);
 
 // The other direction, for simulated devices and tests: an input report from a sample, an output report's content.
-void encode_input(const Profile& profile, const Sample& sample, std::uint8_t* data);
+int encode_input(const Profile& profile, const Sample& sample, std::uint8_t* data);
 bool decode_output(const Profile& profile, const std::uint8_t* data, int bytes, Command* command);
 
 }  // namespace fdcg::dev

@@ -55,7 +55,7 @@ struct GroundConfig {
   fdcg_params params = fdcg_make_params();
 };
 
-enum class DeviceSource { kHid, kSimulated, kRecorded, kPlugin };
+enum class DeviceSource { kHid, kSimulated, kRecorded, kPlugin, kSerial };
 
 struct DeviceConfig {
   std::string name;
@@ -65,6 +65,7 @@ struct DeviceConfig {
   std::string serial, path;               // of the HID device; empty: the first that matches
   std::string plugin, plugin_settings;    // kPlugin: its file, empty where the program hands it over; JSON
   std::string limits_text;                // kPlugin: its limits as JSON, for the log
+  SerialAccess serial_access;             // kSerial
   std::string recording;                  // kRecorded: a session's log
   bool is_recording_in_real_time = true;  // false: as fast as it is read (FastRun)
   SimulationConfig simulation;            // kSimulated

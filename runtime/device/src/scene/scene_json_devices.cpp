@@ -46,6 +46,9 @@ void allow_keys(const json::Value& device, DeviceSource source) {
   static constexpr json::Keys kRecorded = {"name",  "source",  "mapping",   "contacts",   "grip",    "turn",  "force_limit_n",
                                            "notes", "profile", "recording", "simulation", "rate_hz", "limits"};
   if (source == DeviceSource::kHid) return device.allow_only(kHid, " of a hid device");
+  static constexpr json::Keys kSerial = {"name",          "source", "mapping", "contacts", "grip", "turn",
+                                         "force_limit_n", "notes",  "profile", "port",     "baud"};
+  if (source == DeviceSource::kSerial) return device.allow_only(kSerial, " of a serial device");
   static constexpr json::Keys kPlugin = {"name",          "source", "mapping", "contacts", "grip",    "turn",
                                          "force_limit_n", "notes",  "plugin",  "settings", "rate_hz", "limits"};
   if (source == DeviceSource::kPlugin) return device.allow_only(kPlugin, " of a plugin's device");
@@ -57,14 +60,19 @@ void allow_keys(const json::Value& device, DeviceSource source) {
 
 void SceneParser::read_device(const json::Value& from) {
   DeviceConfig device;
-  device.source = static_cast<DeviceSource>(from["source"].choice_or(0, {"hid", "simulated", "recorded", "plugin"}));
+  device.source = static_cast<DeviceSource>(from["source"].choice_or(0, {"hid", "simulated", "recorded", "plugin", "serial"}));
   allow_keys(from, device.source);
   device.name = from["name"].text(kLongestName);
   refuse_twins(from, config_.devices, device.name);
   if (device.source == DeviceSource::kHid) {
     read_profile(from, &device);
+    if (device.profile.match.vendor == 0) from["profile"].fail("has no \"match\", by which a HID device is found");
+    if (device.profile.input.is_text()) from["profile"].fail("has reports of text, which a HID device does not send");
     device.serial = from["serial"].text_or("", kLongestName);
     device.path = from["path"].text_or("", kLongestPath);
+  } else if (device.source == DeviceSource::kSerial) {
+    read_profile(from, &device);
+    read_serial(from, &device);
   } else if (device.source == DeviceSource::kPlugin) {
     read_plugin(from, &device);
   } else if (device.source == DeviceSource::kSimulated) {
@@ -83,6 +91,23 @@ void SceneParser::read_device(const json::Value& from) {
   }
   if (device.source == DeviceSource::kHid) refuse_same_node(from, device);
   config_.devices.push_back(std::move(device));
+}
+
+void SceneParser::read_serial(const json::Value& from, DeviceConfig* device) const {
+  SerialAccess& access = device->serial_access;
+  access.port = from["port"].text(kLongestPath);
+  access.baud = static_cast<int>(from["baud"].integer_or(access.baud, 1, 100'000'000));
+  const std::vector<int> speeds = serial_speeds();
+  if (std::find(speeds.begin(), speeds.end(), access.baud) == speeds.end()) {
+    std::vector<std::string> texts;
+    for (const int speed : speeds)
+      texts.push_back(std::to_string(speed));
+    from["baud"].must_be("one of " + listed(texts));
+  }
+  for (const DeviceConfig& other : config_.devices) {
+    if (other.source == DeviceSource::kSerial && other.serial_access.port == access.port)
+      from["port"].fail("is that of device " + in_quotes(other.name) + " too; a port has one owner");
+  }
 }
 
 // Its limits are those of a profile; how its reports are laid out is ours.

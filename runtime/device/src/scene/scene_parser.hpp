@@ -53,6 +53,7 @@ class SceneParser {
   void read_contacts(const json::Value& from, DeviceConfig* device);
   void read_plugin_profile(const json::Value& from, DeviceConfig* device);
   void read_plugin(const json::Value& from, DeviceConfig* device);
+  void read_serial(const json::Value& from, DeviceConfig* device) const;
   void refuse_same_node(const json::Value& from, const DeviceConfig& device) const;
   void read_button(const json::Value& from, HeldButton* button);
   void read_script(const json::Value& from, SimulationConfig* simulation);

@@ -105,7 +105,7 @@ Json button_json(const HeldButton& button) {
 }
 
 Json device_json(const DeviceConfig& device) {
-  constexpr const char* kSources[] = {"hid", "simulated", "recorded", "plugin"};
+  constexpr const char* kSources[] = {"hid", "simulated", "recorded", "plugin", "serial"};
   Json json;
   json["name"] = device.name;
   json["source"] = kSources[static_cast<int>(device.source)];
@@ -120,6 +120,10 @@ Json device_json(const DeviceConfig& device) {
   if (!device.limits_text.empty()) {
     json["rate_hz"] = device.profile.rate_hz;
     json["limits"] = nlohmann::json::parse(device.limits_text, nullptr, false);
+  }
+  if (device.source == DeviceSource::kSerial) {
+    json["port"] = device.serial_access.port;
+    json["baud"] = device.serial_access.baud;
   }
   if (!device.serial.empty()) json["serial"] = device.serial;
   if (!device.path.empty()) json["path"] = device.path;

@@ -33,7 +33,7 @@ void LinkWatch::begin(const Profile& profile, bool has_echo) {
     sends_sequence = sends_sequence || profile.output.fields[i].role == Role::kSequence;
   for (int i = 0; i < profile.input.field_count; ++i) {
     const Field& field = profile.input.fields[i];
-    if (field.role == Role::kEcho && sends_sequence && has_echo) mask_ = 0xFFFFFFFFU >> (32 - 8 * bytes_of(field.type));
+    if (field.role == Role::kEcho && sends_sequence && has_echo) mask_ = mask_of(field);
     if (field.role == Role::kStatus && field.enabled != 0) tells_enabled_ = true;
   }
 }

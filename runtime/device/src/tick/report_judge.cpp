@@ -32,8 +32,8 @@ struct Counters {
   double round_s = 0;
 
   explicit Counters(const ReportLayout& layout) : sequence(find(layout, Role::kSequence)), time(find(layout, Role::kTime)) {
-    if (sequence != nullptr) sequence_mask = 0xFFFFFFFFU >> (32 - 8 * bytes_of(sequence->type));
-    if (time != nullptr) round_s = std::ldexp(time->scale, 8 * bytes_of(time->type));
+    if (sequence != nullptr) sequence_mask = mask_of(*sequence);
+    if (time != nullptr) round_s = time->scale * (mask_of(*time) + 1.0);
   }
   std::uint32_t steps(std::uint32_t from, std::uint32_t to) const { return (to - from) & sequence_mask; }
   bool is_ahead(std::uint32_t step) const { return step <= sequence_mask / 2; }

@@ -19,9 +19,10 @@ struct ReadResult {
   int bytes = 0;
 };
 
-// Zero force in a process that is ending: async-signal-safe. Null: there is none.
+// Zero force where a thread hangs, and in a process that is ending: async-signal-safe. It is given an output report, of zero
+// force or of the profile's safe stop. Null: there is none.
 struct EmergencyCall {
-  void (*call)(void*) = nullptr;
+  void (*call)(void* self, const std::uint8_t* report, int bytes) = nullptr;
   void* self = nullptr;
 };
 

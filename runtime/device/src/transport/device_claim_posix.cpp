@@ -54,7 +54,7 @@ std::string owner_text(long process) {
 std::string DeviceClaim::take(const std::string& node) {
   release();
   if (node.empty()) return {};
-  const int descriptor = open(node.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  const int descriptor = open(node.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return {};
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     std::string problem = node + ": " + owner_text(owner_of(descriptor));

@@ -37,11 +37,15 @@ class Plugin final : public PluginTransport {
   bool write(const std::uint8_t* data, int bytes) override;
   bool write_feature(const std::uint8_t*, int) override { return false; }
   EmergencyCall emergency_call() const override {
-    return is_open_ ? EmergencyCall{device_.emergency, device_.self} : EmergencyCall{};
+    return device_.emergency != nullptr ? EmergencyCall{send_emergency, const_cast<Plugin*>(this)} : EmergencyCall{};
   }
 
  private:
   std::string load();
+  static void send_emergency(void* self, const std::uint8_t*, int) {
+    const fdcg_transport& device = static_cast<Plugin*>(self)->device_;
+    device.emergency(device.self);
+  }
 
   const Profile profile_;
   const std::string file_, settings_;

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tick/transport.hpp"
 #include "transport/simulated_device.hpp"
@@ -20,6 +21,14 @@ struct HidAccess {
   int servo_priority = 0;  // of the thread that reads: libusb's own thread is given the same
 };
 std::unique_ptr<Transport> make_hid_transport(const Profile& profile, const HidAccess& access);
+
+struct SerialAccess {
+  std::string port;
+  int baud = 115200;  // of serial_speeds()
+};
+std::vector<int> serial_speeds();
+std::unique_ptr<Transport> make_serial_transport(const Profile& profile, const SerialAccess& access);
+
 std::unique_ptr<Transport> make_simulated_transport(const SimulationConfig& config);
 
 }  // namespace fdcg::dev

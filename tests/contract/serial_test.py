@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Devices on a serial line: fdcg-servo against a simulated one behind a pseudo-terminal (pty_device), in frames of bytes and in
+lines of text. In real time, on a machine that may be busy."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import time
+import unittest
+
+from servo_run_test import ROOT, ServoCase, lines_of
+
+PTY_DEVICE = os.environ["FDCG_PTY_DEVICE"]
+PROFILES = {"bytes": ROOT / "runtime/device/profiles/fdcg-reference.json", "text": ROOT / "testdata/profiles/serial_text.json"}
+# from above into the cube, which has its top at z = 0
+DOWN = [{"at_s": at, "place_m": [0, 0, z]} for at, z in ((0, 0.01), (0.9, 0.01), (1.1, -0.004), (100, -0.004))]
+
+
+class SerialCase(ServoCase):
+    def plug(self, kind="bytes", **simulation):
+        """A device that is pressed into the cube after a second. Returns its process, and the scene that names its port."""
+        simulated = {"name": "hand", "source": "simulated", "simulation": {"watchdog_s": 0.05, "script": DOWN, **simulation}}
+        port = self.path("port")
+        process = subprocess.Popen([PTY_DEVICE, self.scene("device.json", devices=[simulated]), str(PROFILES[kind]), port],
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        for stream in (process.stdout, process.stdin):
+            self.addCleanup(stream.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        self.assertEqual("ready\n", process.stdout.readline())
+        return process, self.serial_scene(port=port, profile=str(PROFILES[kind]))
+
+    def serial_scene(self, **device):
+        return self.scene(loop={"lock_memory": False}, devices=[{"name": "hand", "source": "serial", **device}])
+
+    def asked(self, process):
+        """(force, enabled, outputs) of what the device was asked for last."""
+        process.stdin.write("?\n")
+        process.stdin.flush()
+        _, force, _, enabled, _, outputs = process.stdout.readline().split()
+        return float(force), int(enabled), int(outputs)
+
+
+class Lines(SerialCase):
+    def test_a_session_over_bytes_and_over_text(self):
+        for kind in PROFILES:
+            with self.subTest(kind):
+                device, scene = self.plug(kind)
+                log = self.path(f"{kind}.fdcglog")
+                done = self.run_scene(scene, "--arm", "--for", "2.5", "--log", log, "--status", "json")
+                hand = lines_of(done.stdout)[-1]["devices"][0]
+                self.assertGreater(hand["ticks"], 2000)
+                self.assertLess(sum(hand["rejected"].values()), 20)  # what was under way as it was opened
+                self.assertLess(hand["lost"], 20)
+                self.assertGreater(hand["round_trip_us"]["count"], 1500)
+                self.assertEqual((0, 0), self.asked(device)[:2])
+                self.assertGreater(self.asked(device)[2], 2000)
+                self.assertIn(b"every output the same", self.servo("replay", log, "-o", self.path("log.csv")).stdout)
+                felt = [float(line.split(",")[18 + 2]) for line in (self.folder / "log.csv").read_text().splitlines()[1:]]
+                if not hand["disarmed"]:
+                    self.assertGreater(max(felt), 0.1)
+
+    def test_latency_is_measured(self):
+        _, scene = self.plug()
+        done = self.servo("latency", scene, "--for", "1", "--json")
+        self.assertEqual("fits", json.loads(done.stdout)["devices"][0]["arming"])
+
+    def test_two_thousand_a_second(self):
+        _, scene = self.plug(rate_hz=2000)
+        scene = json.loads(pathlib.Path(scene).read_text())
+        profile = json.loads(PROFILES["bytes"].read_text())
+        profile["rate_hz"] = 2000
+        scene["devices"][0]["profile"] = profile
+        done = self.run_scene(self.write("fast.json", json.dumps(scene)), "--for", "1.5", "--no-log", "--status", "json")
+        self.assertGreater(lines_of(done.stdout)[-1]["devices"][0]["ticks"], 2000)
+
+
+class Faults(SerialCase):
+    # of the simulated device, and what the host may say of it
+    FAULTS = {"short": ("silence",), "long": ("silence",), "garbled": ("silence",), "unknown-id": ("silence",),
+              "repeated": ("silence",), "out-of-order": ("silence", "reports-lost"), "stall": ("silence",), "restart": ("restarted", "silence"),
+              "stale": ("silence", "not-taken"), "no-output": ("not-taken", "writer-stuck"), "device-fault": ("device-fault",),
+              "unplug": ("read-failed", "silence")}
+
+    def test_each_fault_takes_the_force_away_for_good(self):
+        for kind, said in self.FAULTS.items():
+            fault = {"kind": kind, "at_s": 1.6, "for_s": 0.1, "delay_s": 0.05, "reports": 300}
+            for attempt in range(4):
+                device, scene = self.plug(faults=[fault])
+                done = self.run_scene(scene, "--arm", "--no-log", "--for", "2.4", "--status", "json")
+                hand = lines_of(done.stdout)[-1]["devices"][0]
+                device.kill()
+                if set(hand["disarmed"]) & set(said):
+                    break  # else the machine was too busy for the hand to be armed so long
+            with self.subTest(kind):
+                self.assertTrue(set(hand["disarmed"]) & set(said), (hand["disarmed"], attempt))
+                self.assertEqual("disarmed", hand["phase"])
+
+    def test_what_is_unplugged_is_opened_again_and_not_armed(self):
+        device, scene = self.plug(faults=[{"kind": "unplug", "at_s": 1.0, "for_s": 0.3}])
+        done = self.run_scene(scene, "--arm", "--no-log", "--for", "2.5", "--status", "json", codes=(1,))
+        hand = lines_of(done.stdout)[-1]["devices"][0]
+        self.assertEqual((2, "disarmed", "open"), (hand["opened"], hand["phase"], hand["connection"]))
+        self.assertEqual((0, 0), self.asked(device)[:2])
+
+    def test_every_signal_leaves_zero(self):
+        for kind in PROFILES:
+            for number in (signal.SIGSEGV, signal.SIGABRT, signal.SIGTERM, signal.SIGUSR1):
+                with self.subTest(f"{kind} {number.name}"):
+                    for _ in range(4):
+                        device, scene = self.plug(kind)
+                        host = self.started(scene, "--arm", "--no-log", "-q")
+                        until = time.monotonic() + 5
+                        while self.asked(device)[0] < 0.1 and time.monotonic() < until:
+                            time.sleep(0.01)
+                        was_felt = self.asked(device)[0] > 0
+                        host.send_signal(number)
+                        host.wait()
+                        time.sleep(0.01)
+                        self.assertEqual((0, 0), self.asked(device)[:2])
+                        device.kill()
+                        if was_felt:
+                            break
+                    self.assertTrue(was_felt)
+
+
+class Refusals(SerialCase):
+    def port(self, **device):
+        return self.serial_scene(profile="fdcg-reference", **device)
+
+    def test_a_second_host_is_told_of_the_first(self):
+        device, scene = self.plug()
+        host = self.started(scene, "--no-log", "-q")
+        until = time.monotonic() + 5
+        while self.asked(device)[2] < 10 and time.monotonic() < until:
+            time.sleep(0.02)
+        done = self.run_scene(scene, "--no-log", "--for", "0.3")
+        self.assertIn(f"process {host.pid} (fdcg-servo) drives this device".encode(), done.stdout)
+
+    def test_what_is_no_port(self):
+        for port, words in ((self.path("none"), b"cannot be opened: No such file"), (self.write("file", ""), b"is no serial line")):
+            self.assertIn(words, self.run_scene(self.port(port=port), "--no-log", "--for", "0.3", codes=(1,)).stdout)
+
+    def refused(self, scene, *words):
+        done = self.servo("check", scene, code=1)
+        for word in words:
+            self.assertIn(word, done.stdout.decode())
+
+    def test_wrong_scenes(self):
+        self.refused(self.port(), "devices[0].port is missing")
+        self.refused(self.port(port="/dev/x", baud=110), "devices[0].baud is 110; it must be one of 9600, ")
+        self.refused(self.port(port="/dev/x", path="/dev/y"), "no key of a serial device")
+        twice = [{"name": name, "source": "serial", "profile": "fdcg-reference", "port": "/dev/x"} for name in "ab"]
+        self.refused(self.scene(devices=twice), "is that of device 'a' too")
+        text = [{"name": "hand", "profile": str(PROFILES["text"])}]
+        self.refused(self.scene(devices=text), 'has no "match"')
+        self.servo("check", self.port(port="/dev/x"))
+
+
+if __name__ == "__main__":
+    unittest.main()
