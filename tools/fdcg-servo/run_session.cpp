@@ -24,9 +24,11 @@ constexpr double kNewStatusS = 0.05;    // after a command, until no status is f
 constexpr double kStopS = 1;            // that devices get to take their zero before the process is stopped
 constexpr std::size_t kLongestCommand = 200;
 
-// Commands on standard input, a line each. Its end ends nothing.
+// Commands on standard input, a line each; on a terminal a space too. Its end ends nothing.
 class CommandInput {
  public:
+  TerminalKeys keys;
+
   // Waits up to that long. False: standard input has ended (and nothing was waited for).
   bool wait(int milliseconds, std::vector<std::string>* commands) {
     if (has_ended_) return false;
@@ -36,6 +38,10 @@ class CommandInput {
     const ssize_t got = read(STDIN_FILENO, bytes, sizeof bytes);
     if (got <= 0) {
       has_ended_ = got == 0 || errno != EINTR;
+      return true;
+    }
+    if (keys.is_on()) {
+      keys.type(bytes, static_cast<std::size_t>(got), commands);
       return true;
     }
     text_.append(bytes, static_cast<std::size_t>(got));
@@ -54,10 +60,11 @@ class CommandInput {
 
 }  // namespace
 
-RunSession::RunSession(const RunArguments& arguments, dev::SceneRun& host, Signals& signals, std::string log_file)
+RunSession::RunSession(const RunArguments& arguments, dev::SceneRun& host, Signals& signals, std::string log_file, RunTap* tap)
     : arguments_(arguments),
       host_(host),
       signals_(signals),
+      tap_(tap),
       log_file_(std::move(log_file)),
       is_terminal_(tools::wants_colour(tools::Stream::standard_output)) {
   const auto count = static_cast<std::size_t>(host.device_count());
@@ -79,6 +86,7 @@ void RunSession::wipe() {
 
 // What happened, above the status on a terminal.
 void RunSession::say(const std::string& line) {
+  if (tap_ != nullptr) tap_->say(seconds(), line);
   if (!says_text()) return;
   wipe();
   std::printf("%8.2f s  %s\n", seconds(), line.c_str());
@@ -218,9 +226,12 @@ void RunSession::obey(const std::string& line) {
     disarm();
   } else if (command == "quit") {
     host_.request_stop();
+  } else if (tap_ != nullptr && (command == "record" || command == "pause")) {
+    say(tap_->set_recording(command == "record"));
   } else if (!command.empty()) {
     wipe();
-    std::fprintf(stderr, "fdcg-servo: no such command; one of arm, disarm, quit, and Enter\n");
+    std::fprintf(stderr, "fdcg-servo: no such command; one of arm, disarm, quit%s, and Enter\n",
+                 tap_ != nullptr ? ", record, pause" : "");
   }
 }
 
@@ -241,7 +252,7 @@ bool RunSession::has_left_zero(std::size_t device, std::uint64_t* first_zero) {
 }
 
 // A stopped process sends nothing: what its devices took last is what they would go on pushing with.
-void RunSession::stop_disarmed(int signal) {
+void RunSession::stop_disarmed(int signal, TerminalKeys& keys) {
   disarm();
   const double asked_s = seconds();
   std::vector<std::uint64_t> first_zeros(looks_.size());
@@ -255,7 +266,9 @@ void RunSession::stop_disarmed(int signal) {
     if (host_.wait_ms(1)) return;  // it is to end
   }
   say("disarmed and stopped by a signal");
+  keys.suspend();
   signals_.stop_process(signal);
+  keys.resume();
   say("continued: there is no force until you type arm and Enter");
 }
 
@@ -265,16 +278,18 @@ void RunSession::run() {
   while (!host_.is_stopping()) {
     if (arguments_.for_s > 0 && seconds() >= arguments_.for_s) break;
     const double left_s = arguments_.for_s > 0 ? arguments_.for_s - seconds() : 1;
-    const int wait_ms = std::clamp(static_cast<int>(std::ceil(left_s * 1000)), 0, kLookMs);
+    const int wait_ms = std::clamp(static_cast<int>(std::ceil(left_s * 1000)), 0, tap_ != nullptr ? RunTap::kLookMs : kLookMs);
     commands.clear();
     const bool has_waited = input.wait(wait_ms, &commands);
     // what is typed on the terminal that shows the status takes a line below it
     if (lines_drawn_ > 0 && isatty(STDIN_FILENO) != 0) lines_drawn_ += commands.size();
+    if (tap_ != nullptr) tap_->take_commands(&commands);
     for (const std::string& command : commands)
       obey(command);
     if (host_.wait_ms(has_waited ? 0 : wait_ms)) break;
-    if (const int signal = signals_.take_stop(); signal != 0) stop_disarmed(signal);
+    if (const int signal = signals_.take_stop(); signal != 0) stop_disarmed(signal, input.keys);
     look();
+    if (tap_ != nullptr) tap_->look(seconds());
   }
 }
 

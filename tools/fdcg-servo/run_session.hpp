@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "fdcg/device_tools.hpp"
+#include "run_tap.hpp"
 #include "signals.hpp"
+#include "terminal_keys.hpp"
 
 namespace fdcg::servo {
 
@@ -18,6 +20,7 @@ enum class StatusKind { kText, kJson, kNone };
 struct RunArguments {
   std::string scene, log, hid;
   bool no_log = false, arm = false, quiet = false, fast = false, plugins = false;
+  TapArguments tap;
   double for_s = 0;           // 0: no end
   double status_every_s = 0;  // 0: the default
   StatusKind status = StatusKind::kText;
@@ -26,7 +29,8 @@ struct RunArguments {
 // One run of a scene whose devices have been started.
 class RunSession {
  public:
-  RunSession(const RunArguments& arguments, dev::SceneRun& host, Signals& signals, std::string log_file);  // empty: no log
+  // log_file: empty, no log. tap: null, none.
+  RunSession(const RunArguments& arguments, dev::SceneRun& host, Signals& signals, std::string log_file, RunTap* tap);
   void run();                                // until a signal, quit, the end of the time or of every device
   int end(const std::string& stop_problem);  // prints the summary; the exit code
 
@@ -49,7 +53,7 @@ class RunSession {
   void obey(const std::string& command);
   void disarm();
   bool has_left_zero(std::size_t device, std::uint64_t* first_zero);
-  void stop_disarmed(int signal);
+  void stop_disarmed(int signal, TerminalKeys& keys);
   void look();
   void notice(std::size_t device);
   void notice_connection(std::size_t device);
@@ -62,6 +66,7 @@ class RunSession {
   const RunArguments& arguments_;
   dev::SceneRun& host_;
   Signals& signals_;
+  RunTap* const tap_;
   const std::string log_file_;  // empty: none
   const bool is_terminal_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

@@ -24,6 +24,9 @@ int refuses_from_c(void) {
   if (!fails_with(fdcg_host_set_pose(NULL, "cube", NULL, &message), &message, "host is NULL")) return 22;
   if (fdcg_host_get_status(NULL, 0, NULL) != FDCG_E_ARGUMENT || fdcg_host_wait(NULL, 1) != 1) return 23;
   if (fdcg_host_get_device_count(NULL) != 0 || fdcg_host_get_device_name(NULL, 0) != NULL) return 24;
+  fdcg_snapshot snapshot;
+  if (!fails_with(fdcg_host_keep_snapshots(NULL, 8, &message), &message, "host is NULL")) return 25;
+  if (fdcg_host_take_snapshots(NULL, 0, &snapshot, 1) != 0 || fdcg_host_get_dropped_snapshots(NULL, 0) != 0) return 26;
   fdcg_host_arm(NULL, 0);
   fdcg_host_disarm(NULL, 0);
   fdcg_host_request_stop(NULL);

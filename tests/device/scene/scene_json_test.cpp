@@ -59,7 +59,7 @@ constexpr const char* kGrasp = R"({
   "devices": [
     {"name": "left", "source": "simulated",
      "contacts": [{"offset_m": [0.03, 0, 0], "closed_m": [0.01, 0.001, 0], "pad_radius_m": 0.004}, {"offset_m": [-0.03, 0, 0]}],
-     "grip": {"button": 3, "seconds": 0.25}, "turn": {"button": 31, "seconds": 2, "rotation_xyzw": [0, 0, -0.6, -0.8]},
+     "grip": {"button": 3, "seconds": 0.25}, "dead_man": {"button": 31}, "turn": {"button": 31, "seconds": 2, "rotation_xyzw": [0, 0, -0.6, -0.8]},
      "simulation": {"script": [{"at_s": 0.5, "place_m": [0.1, 0, 0.2]}, {"at_s": 1, "place_m": [0, 0, 0.3], "buttons": [0, 7]}]}}]
 })";
 

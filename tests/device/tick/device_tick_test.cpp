@@ -268,3 +268,36 @@ TEST_CASE("device tick: the same inputs give the same bits, whatever the unused 
   CHECK(std::memcmp(seen[0].data(), seen[1].data(), seen[0].size() * sizeof(double)) == 0);
   CHECK(std::count(seen[0].begin(), seen[0].end(), 0.0) < static_cast<long>(seen[0].size()));
 }
+
+TEST_CASE("device tick: without the dead-man button there is no force, and letting it go takes it away in that tick") {
+  constexpr std::uint8_t kHeld = 2;
+  Rig rig;
+  Profile& profile = rig.device.setup.profile;
+  Field& buttons = profile.input.fields[profile.input.field_count++];
+  buttons.role = Role::kButtons;
+  buttons.offset = 21;  // of the status too
+  rig.device.setup.dead_man_mask = kHeld;
+  const auto step = [&](double z, std::uint8_t held, bool arm = false) -> const TickOutput& {
+    rig.report(0, 0, z, held);
+    rig.input.arm = arm;
+    return rig.tick();
+  };
+  for (int i = 0; i < 20; ++i)
+    step(0.6, 0);
+  CHECK(step(0.6, 0, true).arming_refused);
+  CHECK(rig.output.fault == Fault::kReleased);
+  step(0.6, kHeld, true);
+  CHECK(rig.output.phase == Phase::kRamping);
+  for (int i = 0; i < 600; ++i)
+    step(0.6 - 0.0002 * i, kHeld);
+  REQUIRE(rig.output.phase == Phase::kArmed);
+  for (int i = 0; i < 600 && rig.output.force.force_n()[2] < 0.5; ++i)
+    step(0.499, kHeld);
+  REQUIRE(rig.output.force.force_n()[2] > 0.5);
+  step(0.499, 0);
+  CHECK(rig.output.force.force_n()[2] == 0);
+  CHECK_FALSE(rig.output.force.is_enabled());
+  CHECK(rig.output.fault == Fault::kReleased);
+  for (int i = 0; i < 100; ++i)
+    CHECK(step(0.6, kHeld).phase == Phase::kDisarmed);  // not by itself
+}

@@ -135,6 +135,48 @@ typedef struct fdcg_device_status {
 /** Reads a device's status, some 20 ms old at most. Set struct_bytes before. FDCG_E_ARGUMENT: no such device, a null pointer,
  * or struct_bytes is no multiple of 8. */
 fdcg_status fdcg_host_get_status(fdcg_host* host, int32_t device, fdcg_device_status* status);
+#define FDCG_SNAPSHOT_CONTACTS 8 /**< contacts of a device, at most */
+#define FDCG_SNAPSHOT_BODIES 16  /**< bodies of a scene, at most */
+
+/** A contact in a tick. World, metres and newtons. */
+typedef struct fdcg_snapshot_contact {
+  uint32_t state;         /**< fdcg_state */
+  uint32_t is_slipping;   /**< 1: dynamic friction holds */
+  int32_t object;         /**< in the scene's order: what it touches, and of several what pushes most; -1: nothing */
+  uint32_t feature;       /**< of the object, as in fdcg_touch */
+  double hip_m[3];        /**< where the hand is */
+  double god_object_m[3]; /**< where it would be, were nothing passed through */
+  double force_n[3];      /**< of all that it touches, on the hand */
+} fdcg_snapshot_contact;
+
+/** A tick of a device. */
+typedef struct fdcg_snapshot {
+  uint64_t tick;            /**< since the start, with a report or without; one more each time */
+  double time_s;            /**< since the start */
+  uint32_t phase;           /**< fdcg_device_phase */
+  uint32_t fault;           /**< why it was disarmed last; 0: armed */
+  uint32_t buttons;         /**< a bit each */
+  uint32_t has_report;      /**< 1: a good report came in this tick */
+  uint32_t contact_count;   /**< of contacts */
+  uint32_t body_count;      /**< of bodies */
+  double tip_world_m[3];    /**< the haptic interface point */
+  double wanted_force_n[3]; /**< world, before the gate */
+  double force_n[3];        /**< device's frame, as it was sent */
+  double given_j;           /**< energy that the hand was given since the device was armed, joules; falls where it gives back */
+  double round_trip_s;      /**< newest, from a write to its echo; 0: not known */
+  fdcg_snapshot_contact contacts[FDCG_SNAPSHOT_CONTACTS];
+  fdcg_pose bodies[FDCG_SNAPSHOT_BODIES]; /**< world, after the tick; in the scene's order */
+} fdcg_snapshot;
+
+/** Before fdcg_host_start: so many ticks of each device are kept until they are taken; 0, the default: none, at no cost. A tick
+ * takes 2 KB. */
+fdcg_status fdcg_host_keep_snapshots(fdcg_host* host, uint32_t ticks, fdcg_host_message* message);
+/** Takes the oldest ticks that were not taken yet, up to `most`; returns how many. The servo thread never waits for it: what
+ * finds no room is dropped, and the ticks' numbers show where. */
+uint32_t fdcg_host_take_snapshots(fdcg_host* host, int32_t device, fdcg_snapshot* snapshots, uint32_t most);
+/** Ticks of a device that were dropped since the start. */
+uint64_t fdcg_host_get_dropped_snapshots(const fdcg_host* host, int32_t device);
+
 /** A fault in words; static text, one line: what happened and what to do. Never NULL. */
 const char* fdcg_fault_text(uint32_t fault);
 

@@ -46,8 +46,9 @@ enum class Fault : std::uint8_t {
   kReportsLost = 17,  // too many of its reports do not arrive
   kLag = 18,          // asked to arm: what is sent comes back too late
   kShaking = 19,      // and softer forces have not ended it
+  kReleased = 20,     // the dead-man button is not held
 };
-inline constexpr int kFaults = 20;
+inline constexpr int kFaults = 21;
 const char* fault_name(Fault fault);  // "silence"
 const char* fault_text(Fault fault);  // one line: what happened and what to do
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "fdcg/device.h"
 #include "fdcg/device_status.hpp"
 #include "fdcg/scene.h"
 #include "fdcg/session_view.hpp"
@@ -118,6 +119,13 @@ class SceneRun {
   void arm(int device);  // a request: the safety gate decides. kAllDevices: each
   void disarm(int device);
   DeviceLook look(int device);  // some 20 ms old at most
+  // Before start: so many ticks of each device are kept for take_snapshots; 0: none.
+  void keep_snapshots(std::size_t ticks);
+  std::size_t take_snapshots(int device, fdcg_snapshot* snapshots, std::size_t most);
+  [[nodiscard]] std::uint64_t dropped_snapshots(int device) const;
+  // In the order in which snapshots number them.
+  [[nodiscard]] std::vector<std::string> object_names() const;
+  [[nodiscard]] std::vector<std::string> body_names() const;
   [[nodiscard]] std::string log_failure() const;
   void request_stop() noexcept;  // async-signal-safe
   [[nodiscard]] bool is_stopping() const noexcept;

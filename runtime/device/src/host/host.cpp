@@ -238,12 +238,20 @@ const std::vector<std::string>& Host::warnings() const {
   return impl_->warnings;
 }
 
+bool Host::has_started() const {
+  return impl_->has_run;
+}
+
 int Host::device_count() const {
   return impl_->shared ? static_cast<int>(impl_->shared->units.size()) : 0;
 }
 
 const DeviceConfig& Host::device(int index) const {
   return impl_->shared->config.devices[static_cast<std::size_t>(index)];
+}
+
+const std::vector<ObjectConfig>& Host::objects() const {
+  return impl_->shared->config.objects;
 }
 
 std::string Host::set_transport(int device, const fdcg_transport& transport) {
@@ -266,6 +274,22 @@ void Host::allow_plugins() {
     auto* const plugin = dynamic_cast<PluginTransport*>(impl_->shared->units[static_cast<std::size_t>(i)]->transport.get());
     if (plugin != nullptr) plugin->allow();
   }
+}
+
+void Host::keep_snapshots(std::size_t ticks) {
+  if (impl_->is_running) return;
+  for (int i = 0; i < device_count(); ++i)
+    impl_->shared->units[static_cast<std::size_t>(i)]->servo.keep_snapshots(ticks);
+}
+
+std::size_t Host::take_snapshots(int device, fdcg_snapshot* snapshots, std::size_t most) {
+  if (device < 0 || device >= device_count()) return 0;
+  return impl_->shared->units[static_cast<std::size_t>(device)]->servo.snapshots().take(snapshots, most);
+}
+
+std::uint64_t Host::dropped_snapshots(int device) const {
+  if (device < 0 || device >= device_count()) return 0;
+  return impl_->shared->units[static_cast<std::size_t>(device)]->servo.snapshots().dropped();
 }
 
 void Host::arm(int device) {

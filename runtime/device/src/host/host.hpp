@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "fdcg/device.h"
 #include "fdcg/transport.h"
 #include "host/make_transport.hpp"
 #include "host/status.hpp"
@@ -47,11 +48,18 @@ class Host {
   // What the system did not grant (real-time priority, locked memory, a cpu), a line each: worse timing, nothing more.
   const std::vector<std::string>& warnings() const;
 
+  bool has_started() const;
   int device_count() const;
   const DeviceConfig& device(int index) const;
+  const std::vector<ObjectConfig>& objects() const;  // of an open scene
   // Before start. A table for a device of DeviceSource::kPlugin without a file; whether files that the scene names are loaded.
   std::string set_transport(int device, const fdcg_transport& transport);
   void allow_plugins();
+  // Before start: so many ticks of each device are kept for take_snapshots; 0, the default: none, at no cost.
+  void keep_snapshots(std::size_t ticks);
+  // The oldest that were not taken yet, up to `most`; how many. What there was no room for is dropped, and counted.
+  std::size_t take_snapshots(int device, fdcg_snapshot* snapshots, std::size_t most);
+  std::uint64_t dropped_snapshots(int device) const;
   // A request; the gate grants it in a later tick, or status().last says arming_refused or the fault.
   void arm(int device);
   void disarm(int device);

@@ -165,6 +165,24 @@ const char* fdcg_host_get_device_name(const fdcg_host* host, int32_t device) {
   return device < 0 || device >= fdcg_host_get_device_count(host) ? nullptr : host->host.device(device).name.c_str();
 }
 
+fdcg_status fdcg_host_keep_snapshots(fdcg_host* host, uint32_t ticks, fdcg_host_message* message) {
+  if (host == nullptr) return guarded(FDCG_E_ARGUMENT, message, no_host);
+  return guarded(FDCG_E_ARGUMENT, message, [&]() -> std::string {
+    if (host->host.has_started()) return "the host has been started; ask for snapshots before";
+    host->host.keep_snapshots(ticks);
+    return {};
+  });
+}
+
+uint32_t fdcg_host_take_snapshots(fdcg_host* host, int32_t device, fdcg_snapshot* snapshots, uint32_t most) {
+  if (host == nullptr || snapshots == nullptr) return 0;
+  return static_cast<uint32_t>(host->host.take_snapshots(device, snapshots, most));
+}
+
+uint64_t fdcg_host_get_dropped_snapshots(const fdcg_host* host, int32_t device) {
+  return host == nullptr ? 0 : host->host.dropped_snapshots(device);
+}
+
 void fdcg_host_arm(fdcg_host* host, int32_t device) {
   if (host != nullptr) host->host.arm(device);
 }

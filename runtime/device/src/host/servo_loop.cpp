@@ -156,7 +156,16 @@ void ServoLoop::note_tick() {
     last_good_ns_ = input_.now_ns;
     if (output_.round_trip_s > 0) status_now_.round_trip.add(static_cast<std::uint64_t>(output_.round_trip_s * 1e9));
   }
+  put_snapshot();
   if (done_ns_ - published_ns_ >= kPublishNs) publish(done_ns_);
+}
+
+void ServoLoop::put_snapshot() {
+  const std::uint64_t tick = ticks_++;
+  fdcg_snapshot* const snapshot = snapshots_.next();
+  if (snapshot == nullptr) return;
+  take_snapshot(device_, output_, tick, static_cast<double>(input_.now_ns - parts_.start_ns) * 1e-9, snapshot);
+  snapshots_.put();
 }
 
 void ServoLoop::publish(std::uint64_t now_ns) {

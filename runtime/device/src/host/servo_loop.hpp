@@ -14,12 +14,14 @@
 #include <vector>
 
 #include "base/mailbox.hpp"
+#include "base/ring.hpp"
 #include "base/threads.hpp"
 #include "host/status.hpp"
 #include "host/writer.hpp"
 #include "recording/session_log.hpp"
 #include "tick/device_tick.hpp"
 #include "tick/link.hpp"
+#include "tick/snapshot.hpp"
 #include "tick/transport.hpp"
 
 namespace fdcg::dev {
@@ -61,6 +63,9 @@ class ServoLoop {
   // For one thread at a time. `moving`: index in ServoParts::moving; has an effect only on objects with MotionKind::kDriven.
   void set_pose(int moving, const fdcg_pose& pose) { driven_poses_[moving].put(pose); }
   bool take_status(DeviceStatus* status) { return status_.take(status); }
+  // Before the thread runs: how many ticks are kept for take_snapshots; 0, the default: none.
+  void keep_snapshots(std::size_t ticks) { snapshots_.resize(ticks); }
+  Ring<fdcg_snapshot>& snapshots() { return snapshots_; }
 
  private:
   void gather(bool waits);
@@ -69,6 +74,7 @@ class ServoLoop {
   void set_poses();
   void send_force();
   void note_tick();
+  void put_snapshot();
   bool is_open() const { return !is_lost_ || parts_.link->opened() != seen_opened_; }
   void publish(std::uint64_t now_ns);
 
@@ -78,6 +84,8 @@ class ServoLoop {
   TickOutput output_;
   DeviceStatus status_now_;
   Mailbox<DeviceStatus> status_;
+  Ring<fdcg_snapshot> snapshots_;
+  std::uint64_t ticks_ = 0;
   Mailbox<fdcg_pose> driven_poses_[kMaxDriven];
   Event stop_;
   std::atomic<bool> is_stopping_{false}, arm_{false}, disarm_{false};

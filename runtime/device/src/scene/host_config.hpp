@@ -74,6 +74,7 @@ struct DeviceConfig {
   double contacts_m[kMaxContacts][3] = {};
   double pads_m[kMaxContacts] = {};  // radius of each contact's pad; 0: a point
   Grip grip;
+  std::uint32_t dead_man_mask = 0;  // of the button without which there is no force; 0: none
   double most_force_n = 0;
 };
 

@@ -100,6 +100,7 @@ void add_device(const DeviceConfig& from, const HostConfig& config, DeviceSetup*
   std::copy(&from.contacts_m[0][0], &from.contacts_m[0][0] + kMaxContacts * 3, &setup->contacts_m[0][0]);
   std::copy_n(from.pads_m, kMaxContacts, setup->pads_m);
   setup->grip = from.grip;
+  setup->dead_man_mask = from.dead_man_mask;
   setup->most_force_n = from.most_force_n;
   setup->is_played = from.source == DeviceSource::kRecorded;
   // of a recording the hand does not feel the force: there is no loop

@@ -38,22 +38,21 @@ constexpr json::Keys kSimulationKeys = {"rate_hz",
                                         "faults"};
 constexpr json::Keys kFaultKeys = {"kind", "at_s", "for_s", "delay_s", "reports"};
 
+// What every device may have, and what only those of its source.
 void allow_keys(const json::Value& device, DeviceSource source) {
-  static constexpr json::Keys kHid = {"name",          "source", "mapping", "contacts", "grip", "turn",
-                                      "force_limit_n", "notes",  "profile", "serial",   "path"};
-  static constexpr json::Keys kSimulated = {"name", "source",        "mapping", "contacts",  "grip",
-                                            "turn", "force_limit_n", "notes",   "simulation"};
-  static constexpr json::Keys kRecorded = {"name",  "source",  "mapping",   "contacts",   "grip",    "turn",  "force_limit_n",
-                                           "notes", "profile", "recording", "simulation", "rate_hz", "limits"};
-  if (source == DeviceSource::kHid) return device.allow_only(kHid, " of a hid device");
-  static constexpr json::Keys kSerial = {"name",          "source", "mapping", "contacts", "grip", "turn",
-                                         "force_limit_n", "notes",  "profile", "port",     "baud"};
-  if (source == DeviceSource::kSerial) return device.allow_only(kSerial, " of a serial device");
-  static constexpr json::Keys kPlugin = {"name",          "source", "mapping", "contacts", "grip",    "turn",
-                                         "force_limit_n", "notes",  "plugin",  "settings", "rate_hz", "limits"};
-  if (source == DeviceSource::kPlugin) return device.allow_only(kPlugin, " of a plugin's device");
-  if (source == DeviceSource::kSimulated) return device.allow_only(kSimulated, " of a simulated device");
-  device.allow_only(kRecorded, " of a recorded device");
+  struct Own {
+    json::Keys keys;
+    const char* of;
+  };
+  static constexpr Own kOwn[] = {{{"profile", "serial", "path"}, " of a hid device"},
+                                 {{"simulation"}, " of a simulated device"},
+                                 {{"profile", "recording", "simulation", "rate_hz", "limits"}, " of a recorded device"},
+                                 {{"plugin", "settings", "rate_hz", "limits"}, " of a plugin's device"},
+                                 {{"profile", "port", "baud"}, " of a serial device"}};
+  const Own& own = kOwn[static_cast<int>(source)];
+  std::vector<std::string> keys{"name", "source", "mapping", "contacts", "grip", "turn", "dead_man", "force_limit_n", "notes"};
+  keys.insert(keys.end(), own.keys.begin(), own.keys.end());
+  device.allow_only(keys, own.of);
 }
 
 }  // namespace
@@ -153,6 +152,10 @@ void SceneParser::read_button(const json::Value& from, HeldButton* button) {
 
 void SceneParser::read_contacts(const json::Value& from, DeviceConfig* device) {
   Grip& grip = device->grip;
+  if (from["dead_man"]) {
+    const json::Value dead_man = from["dead_man"].object({"button"});
+    device->dead_man_mask = std::uint32_t{1} << dead_man["button"].integer(0, kMaxButtons - 1);
+  }
   if (from["grip"]) read_button(from["grip"].object(kGripKeys), &grip.close);
   if (from["turn"]) {
     const json::Value turn = from["turn"].object(kTurnKeys);

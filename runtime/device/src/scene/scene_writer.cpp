@@ -142,6 +142,7 @@ Json device_json(const DeviceConfig& device) {
     json["turn"] = button_json(grip.turn);
     json["turn"]["rotation_xyzw"] = list(grip.turn_xyzw);
   }
+  if (device.dead_man_mask != 0) json["dead_man"]["button"] = std::countr_zero(device.dead_man_mask);
   if (device.most_force_n > 0) json["force_limit_n"] = device.most_force_n;
   return json;
 }

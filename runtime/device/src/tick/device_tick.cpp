@@ -125,6 +125,8 @@ void pass_gate(const Member& member) {
   gate->write_busy_ns = input.write_busy_ns;
   steady(device, input);
   if (gate->link_fault == Fault::kNone && device.stability.shakes()) gate->link_fault = Fault::kShaking;
+  const bool is_released = device.setup.dead_man_mask != 0 && (device.sample.buttons & device.setup.dead_man_mask) == 0;
+  if (gate->link_fault == Fault::kNone && is_released && wants_force) gate->link_fault = Fault::kReleased;
   std::copy_n(device.steadied_n, 3, gate->wanted_force_n);
   const Phase phase_before = device.gate.phase();
   output.force = device.gate.step(*gate);

@@ -94,6 +94,7 @@ struct DeviceSetup {
   int driven_count = 0;
   fdcg_object_id driven[kMaxDriven] = {};
   Grip grip;
+  std::uint32_t dead_man_mask = 0;  // of the button without which there is no force; 0: none
   // Bodies: all of it in the DeviceScene's memory, which changes with every tick as the scene's does.
   fdcg_scene_body* bodies = nullptr;
   std::uint32_t body_count = 0;

@@ -76,6 +76,7 @@ constexpr FaultWords kWords[kFaults] = {
     {"lag", "what is sent to the device comes back too late for stable contact; look for a slow hub or driver, then arm again"},
     {"shaking",
      "the loop of hand, device and scene shakes; lower the scene's stiffness or raise the device's rate, then arm again"},
+    {"released", "the dead-man button is not held; hold it, then arm again"},
 };
 
 }  // namespace

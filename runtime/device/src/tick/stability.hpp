@@ -53,6 +53,7 @@ class Stability {
 
   double share() const { return share_; }                // of the scene's force
   double damping() const { return damping_n_s_per_m_; }  // of the passivity controller, in this tick
+  double given_j() const { return given_j_; }            // to the hand, since it was armed
   bool shakes() const { return shakes_; }                // calming has not helped
   bool is_hot() const { return is_hot_; }                // the force is cut to what the motors stand
 

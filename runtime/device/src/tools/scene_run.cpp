@@ -108,6 +108,27 @@ DeviceLook SceneRun::look(int device) {
   look.problem = connection.problem;
   return look;
 }
+void SceneRun::keep_snapshots(std::size_t ticks) {
+  impl_->host.keep_snapshots(ticks);
+}
+std::size_t SceneRun::take_snapshots(int device, fdcg_snapshot* snapshots, std::size_t most) {
+  return impl_->host.take_snapshots(device, snapshots, most);
+}
+std::uint64_t SceneRun::dropped_snapshots(int device) const {
+  return impl_->host.dropped_snapshots(device);
+}
+std::vector<std::string> SceneRun::object_names() const {
+  std::vector<std::string> names;
+  for (const ObjectConfig& object : impl_->host.objects())
+    names.push_back(object.name);
+  return names;
+}
+std::vector<std::string> SceneRun::body_names() const {
+  std::vector<std::string> names;
+  for (const ObjectConfig& object : impl_->host.objects())
+    if (object.motion.kind == MotionKind::kBody) names.push_back(object.name);
+  return names;
+}
 std::string SceneRun::log_failure() const {
   return impl_->host.log_failure();
 }
