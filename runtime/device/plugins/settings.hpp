@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// A plugin's settings: an object of JSON, as the scene has it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "fdcg/transport.h"
+
+namespace fdcg::plugin {
+
+class Settings {
+ public:
+  // Throws std::runtime_error with one line.
+  Settings(const char* text, std::initializer_list<const char*> keys) : json_(nlohmann::json::parse(text)) {
+    for (const auto& [key, value] : json_.items()) {
+      bool is_known = false;
+      std::string all;
+      for (const char* const one : keys) {
+        is_known = is_known || key == one;
+        all += (all.empty() ? "" : ", ") + std::string(one);
+      }
+      if (!is_known) throw std::runtime_error("settings have \"" + key + "\", which is no key (the keys are " + all + ")");
+    }
+  }
+  [[nodiscard]] double number(const char* key, double fallback, double least, double most) const {
+    const nlohmann::json value = json_.value(key, nlohmann::json(fallback));
+    if (!value.is_number() || value.get<double>() < least || value.get<double>() > most)
+      throw std::runtime_error(std::string("settings.") + key + " must be a number from " + std::to_string(least) + " to " +
+                               std::to_string(most));
+    return value.get<double>();
+  }
+  [[nodiscard]] std::string text(const char* key, const char* fallback) const {
+    const nlohmann::json value = json_.value(key, nlohmann::json(fallback));
+    if (!value.is_string()) throw std::runtime_error(std::string("settings.") + key + " must be a text");
+    return value.get<std::string>();
+  }
+
+ private:
+  nlohmann::json json_;
+};
+
+// What every plugin's one function does: `make` returns the device from the settings' text.
+template <class Make>
+int create_device(std::uint32_t abi, const char* settings, fdcg_transport* transport, fdcg_host_message* why,
+                  const Make& make) {
+  if (abi != FDCG_TRANSPORT_ABI || transport->struct_bytes < sizeof *transport) return FDCG_TRANSPORT_FAILED;
+  try {
+    make(settings, transport);
+    return FDCG_TRANSPORT_OK;
+  } catch (const std::exception& error) {
+    std::snprintf(why->text, sizeof why->text, "%s", error.what());
+    return FDCG_TRANSPORT_FAILED;
+  }
+}
+
+}  // namespace fdcg::plugin

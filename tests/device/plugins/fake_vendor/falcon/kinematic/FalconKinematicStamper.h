@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "../core/FalconDevice.h"
+
+namespace libnifalcon {
+struct FalconKinematicStamper {};
+}  // namespace libnifalcon
