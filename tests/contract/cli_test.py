@@ -34,7 +34,7 @@ def inside_out(off):
 class Usage(Case):
     def test_help_names_examples_and_version_names_the_format(self):
         for program, commands in ((FDCG, ("compile", "validate", "repair", "inspect", "explain", "grasp")),
-                                  (SERVO, ("run", "devices", "check", "latency", "replay"))):
+                                  (SERVO, ("run", "devices", "check", "latency", "calibrate", "replay"))):
             self.assertIn(b"Examples:", self.run_program(program, "--help").stdout)
             self.assertRegex(self.run_program(program, "--version").stdout, rb"^fdcg(-servo)? \d+\.\d+\.\d+ \(file format 1\)\n$")
             for command in commands:

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from servo_run_test import ROOT, ServoCase, lines_of
+from servo_run_test import ROOT, SERVO, ServoCase, lines_of
 
 PTY_DEVICE = os.environ["FDCG_PTY_DEVICE"]
 PROFILES = {"bytes": ROOT / "runtime/device/profiles/fdcg-reference.json", "text": ROOT / "testdata/profiles/serial_text.json"}
@@ -20,7 +20,7 @@ DOWN = [{"at_s": at, "place_m": [0, 0, z]} for at, z in ((0, 0.01), (0.9, 0.01),
 class SerialCase(ServoCase):
     def plug(self, kind="bytes", **simulation):
         """A device that is pressed into the cube after a second. Returns its process, and the scene that names its port."""
-        simulated = {"name": "hand", "source": "simulated", "simulation": {"watchdog_s": 0.05, "script": DOWN, **simulation}}
+        simulated = {"name": "hand", "source": "simulated", "simulation": {"quantum_m": 1e-6, "watchdog_s": 0.05, "script": DOWN, **simulation}}
         port = self.path("port")
         process = subprocess.Popen([PTY_DEVICE, self.scene("device.json", devices=[simulated]), str(PROFILES[kind]), port],
                                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -123,6 +123,70 @@ class Faults(SerialCase):
                         if was_felt:
                             break
                     self.assertTrue(was_felt)
+
+
+class Calibrate(SerialCase):
+    # two seconds at each place, axis by axis
+    PLACES = [[-0.05, 0, 0], [0.05, 0, 0], [0, -0.05, 0], [0, 0.05, 0], [0, 0, -0.05], [0, 0, 0.05]]
+
+    def moved(self, kind, profile):
+        script = [{"at_s": 0, "place_m": self.PLACES[0]}]
+        for i, place in enumerate(self.PLACES):
+            script += [{"at_s": 2 * i + 0.3, "place_m": place}, {"at_s": 2 * i + 2, "place_m": place}]
+        process, scene = self.plug(kind, script=script, hand_stiffness_n_per_m=500, hand_damping_n_s_per_m=14)
+        scene = json.loads(pathlib.Path(scene).read_text())
+        scene["devices"][0]["profile"] = profile
+        return process, self.write("calibrate.json", json.dumps(scene))
+
+    def test_wrong_scales_and_signs_are_put_right(self):
+        for kind, unit in (("bytes", 1e-6), ("text", 1e-3)):
+            with self.subTest(kind):
+                profile = json.loads(PROFILES[kind].read_text())
+                for field in profile["input"]["fields"]:
+                    if field["role"] == "axis":
+                        field["scale"] = -2 * unit if field["axis"] == 1 else 3 * unit
+                        field["bias"] = 0.01
+                _, scene = self.moved(kind, profile)
+                out = self.path(f"{kind}.json")
+                began = time.monotonic()
+                process = subprocess.Popen([SERVO, "calibrate", scene, "-o", out], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+                for i in range(6):
+                    time.sleep(max(0, began + 2 * i + 1.0 - time.monotonic()))
+                    process.stdin.write(b"\n")
+                    process.stdin.flush()
+                said = process.communicate(timeout=30)[0].decode()
+                self.assertEqual(0, process.returncode, said)
+                found = json.loads(pathlib.Path(out).read_text())
+                for field in found["input"]["fields"]:
+                    if field["role"] == "axis":
+                        self.assertAlmostEqual(unit, field["scale"], delta=0.01 * unit)
+                        self.assertAlmostEqual(0, field["bias"], delta=0.0005)
+                efforts = {field["axis"]: field["scale"] for field in found["output"]["fields"] if field["role"] == "effort"}
+                self.assertEqual({0: 1, 1: -1, 2: 1}, efforts)
+                self.assertEqual({k: v for k, v in profile.items() if k not in ("input", "output")},
+                                 {k: v for k, v in found.items() if k not in ("input", "output")})
+                self.assertIn(b"ok", self.servo("check", out).stdout)
+
+    def test_what_goes_wrong(self):
+        _, scene = self.plug()
+        out = self.path("out.json")
+
+        def calibrate(*arguments, code, text=b"\n" * 40):
+            done = subprocess.run([SERVO, "calibrate", *arguments], input=text, capture_output=True, timeout=60, check=False)
+            self.assertEqual(code, done.returncode, done.stdout[-500:] + done.stderr)
+            return done
+
+        self.assertIn(b"axis 0 did not move", calibrate(scene, "-o", out, code=1).stderr)
+        self.assertIn(b"ended before", calibrate(scene, "-o", out, code=1, text=b"").stderr)
+        self.assertFalse(pathlib.Path(out).exists())
+        self.assertIn(b"would overwrite the scene", calibrate(scene, "-o", scene, code=2).stderr)
+        self.assertIn(b"one place", calibrate(scene, "--from", "0.1", "--to", "0.1", "-o", out, code=1).stderr)
+        self.assertIn(b"has no device 'x'", calibrate(scene, "--device", "x", "-o", out, code=3).stderr)
+        self.assertIn(b"cannot be opened", calibrate(self.serial_scene(port="/dev/none", profile="fdcg-reference"), "-o", out, code=3).stderr)
+        simulated = self.scene(devices=[{"name": "hand", "source": "simulated"}])
+        self.assertIn(b"has no profile of its own", calibrate(simulated, "-o", out, code=3).stderr)
+        text = self.serial_scene(port=self.path("port"), profile=str(PROFILES["text"]))
+        self.assertIn(b"is it the right profile?", calibrate(text, "-o", out, code=1).stderr)
 
 
 class Refusals(SerialCase):

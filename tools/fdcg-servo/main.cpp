@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   fdcg-servo check scene.json
   fdcg-servo run scene.json --arm
   fdcg-servo latency scene.json
+  fdcg-servo calibrate scene.json -o my-device.json
   fdcg-servo help run
 
 )";
@@ -21,6 +22,6 @@ int main(int argc, char** argv) {
        "Run the servo step on Face Directed Connection Graphs (.fdcg): with devices, or on recorded paths.",
        "fdcg-servo " FDCG_VERSION_STRING " (file format 1)",
        examples + fdcg::tools::exit_codes("success", "findings (each command says which)"),
-       {add_run, add_devices, add_check, add_latency, add_replay}},
+       {add_run, add_devices, add_check, add_latency, add_calibrate, add_replay}},
       argc, argv);
 }

@@ -22,5 +22,6 @@ Command add_run(CLI::App& app);
 Command add_devices(CLI::App& app);
 Command add_check(CLI::App& app);
 Command add_latency(CLI::App& app);
+Command add_calibrate(CLI::App& app);
 
 }  // namespace fdcg::servo

@@ -55,6 +55,47 @@ std::string find_devices(const DeviceSearch& search, std::vector<FoundDevice>* d
 // udev rules that let users open the devices of the built-in profiles and of these files.
 std::string make_udev_rules(const std::vector<std::string>& profile_files, std::string* rules);
 
+// ---- calibrate: a device's axes, read without force
+// ---------------------------------------------------------------------------
+
+// What the axes were over a time.
+struct AxisMeasure {
+  int axis_count = 0;
+  std::uint64_t reports = 0;
+  double mean[3] = {}, least[3] = {}, most[3] = {};  // in counts, or the raw numbers of a line of text
+  double tip_least_m[3] = {}, tip_most_m[3] = {};    // by the profile's kinematics and the scales in use
+};
+
+// One device of a scene, of HID or on a serial line. What is sent to it asks for no force.
+class AxisReader {
+ public:
+  AxisReader();
+  ~AxisReader();
+  AxisReader(const AxisReader&) = delete;
+  AxisReader& operator=(const AxisReader&) = delete;
+
+  // device: its name in the scene; empty: the only one.
+  std::string open(const std::string& scene_file, const std::string& device);
+  [[nodiscard]] int axis_count() const;
+  [[nodiscard]] const char* unit() const;  // "m" or "rad"
+  [[nodiscard]] std::string profile_text() const;
+  std::string measure(double seconds, AxisMeasure* measure);
+  // Of an axis, for the measures that follow: value = raw * scale + bias.
+  void set_scale(int axis, double scale, double bias);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// The profile with these scales and offsets of its axes, as JSON. Where an axis changes its sign so does its effort. workspace:
+// may be null.
+struct AxisScale {
+  double scale = 1, bias = 0;
+};
+std::string calibrated_profile(const std::string& profile_text, const std::vector<AxisScale>& axes,
+                               const AxisMeasure* workspace, std::string* json);
+
 // ---- run: a scene -----------------------------------------------------------------------------------------------------------
 
 // One device at one moment.
