@@ -8,6 +8,7 @@ import os
 import pathlib
 import pty
 import re
+import select
 import socket
 import struct
 import subprocess
@@ -187,11 +188,15 @@ class Keys(DashboardCase):
         self.addCleanup(process.kill)
         shown = b""
 
-        def wait_for(words):
+        def look():
             nonlocal shown
+            if select.select([ours], [], [], 0.1)[0]:
+                shown += os.read(ours, 4096)
+
+        def wait_for(words):
             until = time.monotonic() + 15
             while words not in shown and time.monotonic() < until:
-                shown += os.read(ours, 4096)
+                look()
             self.assertIn(words, shown)
 
         wait_for(b"Not armed")
@@ -202,14 +207,9 @@ class Keys(DashboardCase):
         os.write(ours, b" ")
         wait_for(b"disarmed: not armed, or disarmed by command")
         os.write(ours, b"quit\n")
-        while True:  # or it would wait for its output to be read
-            try:
-                if not os.read(ours, 4096):
-                    break
-            except OSError:
-                break
-            if process.poll() is not None:
-                break
+        until = time.monotonic() + 15
+        while process.poll() is None and time.monotonic() < until:
+            look()  # or it would wait for its output to be read
         process.wait(timeout=10)
         self.assertTrue(termios.tcgetattr(theirs)[3] & termios.ICANON)
         os.close(ours)

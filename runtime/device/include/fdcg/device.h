@@ -164,8 +164,8 @@ typedef struct fdcg_snapshot {
   double force_n[3];        /**< device's frame, as it was sent */
   double given_j;           /**< energy that the hand was given since the device was armed, joules; falls where it gives back */
   double round_trip_s;      /**< newest, from a write to its echo; 0: not known */
-  fdcg_snapshot_contact contacts[FDCG_SNAPSHOT_CONTACTS];
-  fdcg_pose bodies[FDCG_SNAPSHOT_BODIES]; /**< world, after the tick; in the scene's order */
+  fdcg_snapshot_contact contacts[FDCG_SNAPSHOT_CONTACTS]; /**< of the device, in the scene's order */
+  fdcg_pose bodies[FDCG_SNAPSHOT_BODIES];                 /**< world, after the tick; in the scene's order */
 } fdcg_snapshot;
 
 /** Before fdcg_host_start: so many ticks of each device are kept until they are taken; 0, the default: none, at no cost. A tick
