@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "dashboard_page.hpp"
+#include "visitors.hpp"
 
 namespace fdcg::tools {
 namespace {
@@ -30,22 +31,9 @@ constexpr std::size_t kMostClients = 16, kMostEvents = 64, kMostCommands = 256;
 constexpr std::size_t kLongestCommand = 200, kLongestRequest = 8192;  // bytes
 constexpr auto kPatience = 5s;                                        // for a request
 
-// "localhost:8080", "127.0.0.1", "[::1]:9": what a browser asks for where it means this computer. A name of another site that
-// is made to lead here (DNS rebinding) is none of these.
-bool is_of_this_computer(std::string_view host) {
-  const std::size_t colon = host.rfind(':'), bracket = host.rfind(']');
-  if (colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket)) host = host.substr(0, colon);
-  return host == "localhost" || host == "127.0.0.1" || host == "[::1]";
-}
-
-bool may_come(const http::request<http::string_body>& request) {
-  const std::string_view host(request[http::field::host].data(), request[http::field::host].size());
-  if (!is_of_this_computer(host)) return false;
-  const auto origin = request.find(http::field::origin);
-  if (origin == request.end()) return true;  // no web page
-  std::string_view from(origin->value().data(), origin->value().size());
-  constexpr std::string_view kHttp = "http://";
-  return from.starts_with(kHttp) && is_of_this_computer(from.substr(kHttp.size()));
+std::string_view field_of(const http::request<http::string_body>& request, http::field name) {
+  const auto found = request.find(name);
+  return found == request.end() ? std::string_view() : std::string_view(found->value().data(), found->value().size());
 }
 
 }  // namespace
@@ -91,7 +79,8 @@ class DashboardServer::Impl::Client : public std::enable_shared_from_this<Client
 
   void take_request() {
     const auto& request = parser_.get();
-    if (!may_come(request)) return answer(http::status::forbidden, "text/plain", "not from another site\n");
+    if (!may_come(field_of(request, http::field::host), field_of(request, http::field::origin)))
+      return answer(http::status::forbidden, "text/plain", "not from another site\n");
     if (!websocket::is_upgrade(request)) return answer(http::status::ok, "text/html; charset=utf-8", kDashboardPage);
     beast::get_lowest_layer(stream_).expires_never();
     stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));

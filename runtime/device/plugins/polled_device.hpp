@@ -68,13 +68,17 @@ class PolledDevice {
     fdcg_transport_sample old;
     while (samples_.take(&old, 1) > 0) {
     }
-    is_lost_ = is_stopping_ = false;
+    is_lost_ = is_stopping_ = has_ended_ = false;
     thread_ = std::thread([this] { run(); });
     return FDCG_TRANSPORT_OK;
   }
 
+  // The thread's last exchange sends zero; one that hangs is ended.
   void close() {
     is_stopping_ = true;
+    const auto until = std::chrono::steady_clock::now() + std::chrono::nanoseconds(2 * period_) + kGoodbye;
+    while (!has_ended_ && std::chrono::steady_clock::now() < until)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     stop_at_once();
     if (thread_.joinable()) thread_.join();
     disconnect();
@@ -133,6 +137,9 @@ class PolledDevice {
     }
     is_lost_ = !is_stopping_;
     wake_reader();
+    fdcg_transport_sample unread{};
+    if (!is_lost_) exchange({}, &unread);
+    has_ended_ = true;
   }
 
   void wake_reader() {
@@ -140,10 +147,11 @@ class PolledDevice {
     static_cast<void>(::write(wake_, &one, sizeof one) < 0);
   }
 
-  const std::int64_t period_;  // ns
+  static constexpr std::chrono::milliseconds kGoodbye{50};  // for the last exchange
+  const std::int64_t period_;                               // ns
   dev::Ring<fdcg_transport_sample> samples_;
   dev::Mailbox<fdcg_transport_force> forces_;
-  std::atomic<bool> is_lost_{false}, is_stopping_{false}, is_muted_{false};
+  std::atomic<bool> is_lost_{false}, is_stopping_{false}, is_muted_{false}, has_ended_{true};
   std::thread thread_;
   int wake_ = -1;
 };
