@@ -11,9 +11,9 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
+#include <nlohmann/json.hpp>
 
 #include "polled_device.hpp"
-#include "settings.hpp"
 
 namespace fdcg::plugin {
 namespace {
@@ -159,9 +159,6 @@ class HaplyInverse final : public PolledDevice {
 
 extern "C" int fdcg_transport_create(std::uint32_t abi, const char* settings, fdcg_transport* transport,
                                      fdcg_host_message* why) {
-  using namespace fdcg::plugin;
-  return create_device(abi, settings, transport, why, [](const char* text, fdcg_transport* to) {
-    PolledDevice::hand_over(std::make_unique<HaplyInverse>(Settings(text, {"host", "port", "device", "rate_hz", "force_key"})),
-                            to);
-  });
+  return fdcg::plugin::create_device<fdcg::plugin::HaplyInverse>(
+      abi, settings, {"host", "port", "device", "rate_hz", "force_key"}, transport, why);
 }

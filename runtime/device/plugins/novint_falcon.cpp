@@ -11,7 +11,6 @@
 #include <falcon/util/FalconFirmwareBinaryNvent.h>
 
 #include "polled_device.hpp"
-#include "settings.hpp"
 
 namespace fdcg::plugin {
 namespace {
@@ -77,8 +76,5 @@ class NovintFalcon final : public PolledDevice {
 
 extern "C" int fdcg_transport_create(std::uint32_t abi, const char* settings, fdcg_transport* transport,
                                      fdcg_host_message* why) {
-  using namespace fdcg::plugin;
-  return create_device(abi, settings, transport, why, [](const char* text, fdcg_transport* to) {
-    PolledDevice::hand_over(std::make_unique<NovintFalcon>(Settings(text, {"device", "rate_hz"})), to);
-  });
+  return fdcg::plugin::create_device<fdcg::plugin::NovintFalcon>(abi, settings, {"device", "rate_hz"}, transport, why);
 }

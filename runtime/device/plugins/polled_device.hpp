@@ -19,6 +19,7 @@
 #include "base/mailbox.hpp"
 #include "base/ring.hpp"
 #include "fdcg/transport.h"
+#include "settings.hpp"
 
 namespace fdcg::plugin {
 
@@ -155,5 +156,19 @@ class PolledDevice {
   std::thread thread_;
   int wake_ = -1;
 };
+
+// What every plugin's one function does: `Device` is made from its settings, of such keys.
+template <class Device>
+int create_device(std::uint32_t abi, const char* settings, std::initializer_list<const char*> keys, fdcg_transport* transport,
+                  fdcg_host_message* why) {
+  if (abi != FDCG_TRANSPORT_ABI || transport->struct_bytes < sizeof *transport) return FDCG_TRANSPORT_FAILED;
+  try {
+    PolledDevice::hand_over(std::make_unique<Device>(Settings(settings, keys)), transport);
+    return FDCG_TRANSPORT_OK;
+  } catch (const std::exception& error) {
+    std::snprintf(why->text, sizeof why->text, "%s", error.what());
+    return FDCG_TRANSPORT_FAILED;
+  }
+}
 
 }  // namespace fdcg::plugin

@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "fdcg/transport.h"
-
 namespace fdcg::plugin {
 
 class Settings {
@@ -40,19 +38,5 @@ class Settings {
  private:
   nlohmann::json json_;
 };
-
-// What every plugin's one function does: `make` returns the device from the settings' text.
-template <class Make>
-int create_device(std::uint32_t abi, const char* settings, fdcg_transport* transport, fdcg_host_message* why,
-                  const Make& make) {
-  if (abi != FDCG_TRANSPORT_ABI || transport->struct_bytes < sizeof *transport) return FDCG_TRANSPORT_FAILED;
-  try {
-    make(settings, transport);
-    return FDCG_TRANSPORT_OK;
-  } catch (const std::exception& error) {
-    std::snprintf(why->text, sizeof why->text, "%s", error.what());
-    return FDCG_TRANSPORT_FAILED;
-  }
-}
 
 }  // namespace fdcg::plugin
