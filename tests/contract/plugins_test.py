@@ -72,7 +72,7 @@ class InverseService:
                 return  # hangs up
             if count > self.silent_after:
                 continue
-            await link.send(self.garbage if self.garbage is not None and count > 400 else self.state())
+            await link.send(self.garbage if self.garbage is not None and count > 200 else self.state())
 
     async def serve(self):
         async with websockets.serve(self.talk, "127.0.0.1", 0) as server:
@@ -104,10 +104,10 @@ class Libraries(PluginCase):
         for plugin in ("force_dimension", "novint_falcon"):
             with self.subTest(plugin):
                 hand, ticks = self.felt(self.scene_of(plugin), f"{plugin}.jsonl")
-                self.assertGreater(hand["ticks"], 2000)
+                self.assertGreater(hand["ticks"], 1000)
                 self.assertGreater(max(tick["force_n"][2] for tick in ticks), 0.2)
                 self.assertEqual(2, ticks[-1]["buttons"])
-                self.assertGreater(hand["round_trip_us"]["count"], 1000)
+                self.assertGreater(hand["round_trip_us"]["count"], 500)
 
     def test_what_is_missing_is_told(self):
         done = self.run_scene(self.scene_of("force_dimension", device=3), "--plugins", "--no-log", "--for", "0.3", codes=(1,))
@@ -127,15 +127,15 @@ class Haply(PluginCase):
         self.assertGreater(max(tick["force_n"][2] for tick in ticks), 0.2)
         self.assertGreater(max(service.forces), 0.2)
         self.assertEqual(5, ticks[-1]["buttons"])
-        self.assertGreater(hand["ticks"], 400)
+        self.assertGreater(hand["ticks"], 200)
         self.assertEqual(0.0, service.forces[-1])
 
     def test_a_service_that_goes_away_or_talks_nonsense_disarms_and_is_tried_again(self):
-        for kind in ({"answers": 400}, {"garbage": "}{"}, {"garbage": "[]"}, {"garbage": '{"inverse3": [{"device_id": "049D", "state": 7}]}'},
-                     {"garbage": '{"inverse3": []}'}, {"silent_after": 400}):
+        for kind in ({"answers": 200}, {"garbage": "}{"}, {"garbage": "[]"}, {"garbage": '{"inverse3": [{"device_id": "049D", "state": 7}]}'},
+                     {"garbage": '{"inverse3": []}'}, {"silent_after": 200}):
             with self.subTest(kind):
                 service = InverseService(**kind)
-                done = self.run_scene(self.scene_of("haply_inverse", port=service.port), "--arm", "--plugins", "--no-log", "--for", "3.5",
+                done = self.run_scene(self.scene_of("haply_inverse", port=service.port), "--arm", "--plugins", "--no-log", "--for", "5",
                                       "--status", "json", codes=(1,))
                 hand = lines_of(done.stdout)[-1]["devices"][0]
                 self.assertEqual("disarmed", hand["phase"])
