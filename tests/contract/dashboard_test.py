@@ -9,6 +9,7 @@ import pathlib
 import pty
 import re
 import select
+import signal
 import socket
 import struct
 import subprocess
@@ -180,40 +181,56 @@ class Recordings(DashboardCase):
 
 
 class Keys(DashboardCase):
-    def test_space_disarms_at_once_and_the_terminal_is_left_as_it_was(self):
-        ours, theirs = pty.openpty()
+    def setUp(self):
+        super().setUp()
+        self.ours, self.theirs = pty.openpty()
+        self.addCleanup(os.close, self.ours)
+        self.addCleanup(os.close, self.theirs)
+        self.shown = b""
         command = [SERVO, "run", str(LIFT), "--no-log", "--for", "20"]
-        process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True,
-                                   preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
-        self.addCleanup(process.kill)
-        shown = b""
+        self.process = subprocess.Popen(command, stdin=self.theirs, stdout=self.theirs, stderr=self.theirs, start_new_session=True,
+                                        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
+        self.addCleanup(self.process.wait)
+        self.addCleanup(self.process.kill)
 
-        def look():
-            nonlocal shown
-            if select.select([ours], [], [], 0.1)[0]:
-                shown += os.read(ours, 4096)
+    def look(self):
+        if select.select([self.ours], [], [], 0.1)[0]:
+            self.shown += os.read(self.ours, 4096)
 
-        def wait_for(words):
-            until = time.monotonic() + 15
-            while words not in shown and time.monotonic() < until:
-                look()
-            self.assertIn(words, shown)
-
-        wait_for(b"Not armed")
-        time.sleep(0.3)
-        os.write(ours, b"arx\x7fm\n")  # with a mistake that is taken back
-        wait_for(b"gripper: armed")
-        shown = b""
-        os.write(ours, b" ")
-        wait_for(b"disarmed: not armed, or disarmed by command")
-        os.write(ours, b"quit\n")
+    def wait_for(self, words):
         until = time.monotonic() + 15
-        while process.poll() is None and time.monotonic() < until:
-            look()  # or it would wait for its output to be read
-        process.wait(timeout=10)
-        self.assertTrue(termios.tcgetattr(theirs)[3] & termios.ICANON)
-        os.close(ours)
-        os.close(theirs)
+        while words not in self.shown and time.monotonic() < until:
+            self.look()
+        self.assertIn(words, self.shown)
+
+    def ends(self):
+        until = time.monotonic() + 15
+        while self.process.poll() is None and time.monotonic() < until:
+            self.look()  # or it would wait for its output to be read
+        return self.process.wait(timeout=10)
+
+    def edits_lines(self):
+        return bool(termios.tcgetattr(self.theirs)[3] & termios.ICANON)
+
+    def test_space_disarms_at_once_and_the_terminal_is_left_as_it_was(self):
+        self.wait_for(b"Not armed")
+        time.sleep(0.3)
+        self.assertFalse(self.edits_lines())
+        os.write(self.ours, b"arx\x7fm\n")  # with a mistake that is taken back
+        self.wait_for(b"gripper: armed")
+        self.shown = b""
+        os.write(self.ours, b" ")
+        self.wait_for(b"disarmed: not armed, or disarmed by command")
+        os.write(self.ours, b"quit\n")
+        self.ends()
+        self.assertTrue(self.edits_lines())
+
+    def test_a_crash_leaves_the_terminal_as_it_was(self):
+        self.wait_for(b"Not armed")
+        time.sleep(0.3)
+        self.process.send_signal(signal.SIGSEGV)
+        self.assertEqual(-signal.SIGSEGV, self.ends())
+        self.assertTrue(self.edits_lines())
 
 
 if __name__ == "__main__":

@@ -6,12 +6,18 @@
 
 #include <cstdio>
 
+#include "fdcg/device_tools.hpp"
+
 namespace fdcg::servo {
 namespace {
 
 constexpr char kBackspace = 8, kDelete = 127;
 constexpr std::size_t kLongestLine = 200;
 termios as_it_was;
+
+void restore() {
+  tcsetattr(STDIN_FILENO, TCSANOW, &as_it_was);
+}
 
 }  // namespace
 
@@ -31,10 +37,12 @@ void TerminalKeys::resume() {
   keys.c_cc[VMIN] = 1;
   keys.c_cc[VTIME] = 0;
   is_on_ = tcsetattr(STDIN_FILENO, TCSANOW, &keys) == 0;
+  if (is_on_) dev::set_last_act(restore);
 }
 
 void TerminalKeys::suspend() {
-  if (is_on_) tcsetattr(STDIN_FILENO, TCSANOW, &as_it_was);
+  dev::set_last_act(nullptr);
+  if (is_on_) restore();
   is_on_ = false;
 }
 

@@ -178,6 +178,9 @@ class SceneRun {
   std::unique_ptr<Impl> impl_;
 };
 
+// What is called when a signal ends the process and every device has its zero: async-signal-safe. Null: nothing.
+void set_last_act(void (*act)());
+
 // Simulated and recorded devices without waiting, each on a clock of its own.
 struct FastSceneRun {
   double for_s = 0;  // of the devices' time; 0: until every recording has ended

@@ -22,6 +22,7 @@ namespace fdcg::dev {
 namespace {
 
 std::atomic<EmergencyExit*> exits[kMaxEmergencyExits];
+std::atomic<void (*)()> last_act{nullptr};
 
 // Others that end a process by default. SIGKILL cannot be handled.
 constexpr int kEndings[] = {
@@ -84,6 +85,7 @@ void on_fatal_signal(int signal) {
   EmergencyState expected = EmergencyState::kIdle;
   if (emergency_state.compare_exchange_strong(expected, EmergencyState::kSending)) {
     send_emergency_zeros();
+    if (void (*const act)() = last_act.load(); act != nullptr) act();
     emergency_state.store(EmergencyState::kSent);
   }
   while (emergency_state.load() != EmergencyState::kSent)
@@ -134,6 +136,10 @@ void remove_emergency_exit(EmergencyExit* exit) {
     EmergencyExit* own = exit;
     if (slot.compare_exchange_strong(own, nullptr)) return;
   }
+}
+
+void set_last_act(void (*act)()) {
+  last_act.store(act);
 }
 
 void send_zero(const EmergencyExit& exit) {

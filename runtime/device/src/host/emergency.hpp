@@ -35,6 +35,9 @@ void remove_emergency_exit(EmergencyExit* exit);
 // signal handlers belong to the program (fdcg-servo run installs them).
 void install_crash_handlers();
 
+// Called once by the handlers when every device has its zero, before the process dies: async-signal-safe. Null: nothing is.
+void set_last_act(void (*act)());
+
 // One report of zero force by the device's emergency descriptor or call, if it has one. May block as a write does.
 void send_zero(const EmergencyExit& exit);
 
