@@ -8,6 +8,7 @@ import os
 import pathlib
 import pty
 import re
+import resource
 import select
 import signal
 import socket
@@ -178,6 +179,18 @@ class Recordings(DashboardCase):
     def test_a_full_disk_is_told(self):
         done = self.run_scene(str(LIFT), "--no-log", "--for", "1", "--record", "/dev/full", "-q", codes=(3,))
         self.assertIn(b"/dev/full: is there already", done.stderr)
+        file = self.path("ticks.jsonl")
+        limited = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))}
+        done = self.run_scene(str(LIFT), "--no-log", "--for", "1", "--record", file, "-q", codes=(3,), **limited)
+        self.assertIn(b"ticks.jsonl: not whole: File too large", done.stderr)
+
+    def test_a_run_that_does_not_begin_leaves_no_file(self):
+        file = self.path("ticks.jsonl")
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            self.servo("run", str(LIFT), "--record", file, "--no-log", "--listen", str(taken.getsockname()[1]), code=3)
+        self.assertFalse(pathlib.Path(file).exists())
+        self.servo("run", str(LIFT), "--record", file, "--log", self.path("no") + "/a.fdcglog", code=3)
+        self.assertFalse(pathlib.Path(file).exists())
 
 
 class Keys(DashboardCase):

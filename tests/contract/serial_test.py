@@ -221,6 +221,9 @@ class Refusals(SerialCase):
         text = [{"name": "hand", "profile": str(PROFILES["text"])}]
         self.refused(self.scene(devices=text), 'has no "match"')
         self.servo("check", self.port(port="/dev/x"))
+        no_button = json.loads(PROFILES["text"].read_text())
+        no_button["input"]["fields"] = [field for field in no_button["input"]["fields"] if field["role"] != "buttons"]
+        self.refused(self.serial_scene(port="/dev/x", profile=no_button, dead_man={"button": 0}), "asks for a button")
 
 
 if __name__ == "__main__":

@@ -16,7 +16,9 @@ constexpr std::size_t kAtOnce = 64;
 RunTap::RunTap(const TapArguments& arguments, dev::SceneRun& host) : arguments_(arguments), host_(host) {}
 
 RunTap::~RunTap() {
-  if (file_ != nullptr) std::fclose(file_);
+  if (file_ == nullptr) return;
+  std::fclose(file_);
+  std::remove(arguments_.record.c_str());  // nothing has run: it is empty
 }
 
 std::string RunTap::open() {
@@ -27,16 +29,16 @@ std::string RunTap::open() {
   newest_.resize(names_.devices.size());
   has_newest_.resize(names_.devices.size());
   some_.resize(kAtOnce);
+  if (arguments_.listen >= 0) {
+    if (std::string problem = server_.start(static_cast<std::uint16_t>(arguments_.listen)); !problem.empty()) return problem;
+    is_listening_ = true;
+  }
   if (!arguments_.record.empty()) {
     file_ = std::fopen(arguments_.record.c_str(), "wx");
     if (file_ == nullptr)
       return arguments_.record + ": " +
              (errno == EEXIST ? "is there already, and a recording overwrites nothing" : std::strerror(errno));
     is_recording_ = true;
-  }
-  if (arguments_.listen >= 0) {
-    if (std::string problem = server_.start(static_cast<std::uint16_t>(arguments_.listen)); !problem.empty()) return problem;
-    is_listening_ = true;
   }
   // a recording wants every tick, a dashboard the newest
   host_.keep_snapshots(file_ != nullptr ? static_cast<std::size_t>(kKeptS * kFastestRateHz) : 4 * kAtOnce);
@@ -50,9 +52,9 @@ int RunTap::port() const {
 void RunTap::take(std::size_t device) {
   for (std::size_t count = kAtOnce; count == kAtOnce;) {
     count = host_.take_snapshots(static_cast<int>(device), some_.data(), kAtOnce);
-    for (std::size_t i = 0; i < count && is_recording_ && !has_failed_; ++i) {
+    for (std::size_t i = 0; i < count && is_recording_ && failure_.empty(); ++i) {
       const std::string line = tick_json(names_, device, some_[i]) + "\n";
-      has_failed_ = std::fwrite(line.data(), 1, line.size(), file_) != line.size();
+      if (std::fwrite(line.data(), 1, line.size(), file_) != line.size()) failure_ = std::strerror(errno);
     }
     if (count == 0) return;
     newest_[device] = some_[count - 1];
@@ -85,14 +87,15 @@ std::string RunTap::set_recording(bool is_on) {
 }
 
 std::string RunTap::close() {
-  look(0);  // the last ticks
   std::uint64_t dropped = 0;
-  for (std::size_t i = 0; i < names_.devices.size(); ++i)
+  for (std::size_t i = 0; i < names_.devices.size(); ++i) {
+    take(i);  // the last ticks
     dropped += host_.dropped_snapshots(static_cast<int>(i));
+  }
   if (file_ == nullptr) return {};
-  const bool is_written = std::fclose(file_) == 0 && !has_failed_;
+  if (std::fclose(file_) != 0 && failure_.empty()) failure_ = std::strerror(errno);
   file_ = nullptr;
-  if (!is_written) return arguments_.record + ": not whole: " + std::strerror(errno);
+  if (!failure_.empty()) return arguments_.record + ": not whole: " + failure_;
   return dropped == 0 ? ""
                       : arguments_.record + ": lacks " + std::to_string(dropped) + " ticks: this program had no time for them";
 }

@@ -44,7 +44,8 @@ class RunTap {
   dev::SceneRun& host_;
   tools::DashboardServer server_;
   std::FILE* file_ = nullptr;
-  bool is_listening_ = false, is_recording_ = false, has_failed_ = false;
+  bool is_listening_ = false, is_recording_ = false;
+  std::string failure_;  // of the file; empty: it is well
   SnapshotNames names_;
   std::vector<fdcg_snapshot> some_, newest_;
   std::vector<char> has_newest_;

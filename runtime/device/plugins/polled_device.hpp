@@ -69,8 +69,14 @@ class PolledDevice {
     fdcg_transport_sample old;
     while (samples_.take(&old, 1) > 0) {
     }
-    is_lost_ = is_stopping_ = has_ended_ = false;
-    thread_ = std::thread([this] { run(); });
+    is_lost_ = is_stopping_ = has_ended_ = is_muted_ = false;
+    try {
+      thread_ = std::thread([this] { run(); });
+    } catch (const std::exception& error) {
+      disconnect();
+      std::snprintf(why->text, sizeof why->text, "its thread cannot be started: %s", error.what());
+      return FDCG_TRANSPORT_FAILED;
+    }
     return FDCG_TRANSPORT_OK;
   }
 
@@ -97,6 +103,7 @@ class PolledDevice {
   }
 
   int write(const fdcg_transport_force& force) {
+    if (force.is_enabled == 0) is_muted_ = false;  // the host's own zero: it goes on
     forces_.put(force);
     return is_lost_ ? FDCG_TRANSPORT_FAILED : FDCG_TRANSPORT_OK;
   }

@@ -154,6 +154,10 @@ void SceneParser::read_contacts(const json::Value& from, DeviceConfig* device) {
   Grip& grip = device->grip;
   if (from["dead_man"]) {
     const json::Value dead_man = from["dead_man"].object({"button"});
+    const ReportLayout& input = device->profile.input;
+    const bool has_buttons = std::any_of(input.fields, input.fields + input.field_count,
+                                         [](const Field& field) { return field.role == Role::kButtons; });
+    if (!has_buttons) from["dead_man"].fail("asks for a button, and the device's profile has none");
     device->dead_man_mask = std::uint32_t{1} << dead_man["button"].integer(0, kMaxButtons - 1);
   }
   if (from["grip"]) read_button(from["grip"].object(kGripKeys), &grip.close);

@@ -3,7 +3,6 @@
 // and writes of a terminal do not hinder each other.
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -22,6 +21,7 @@ namespace fdcg::dev {
 namespace {
 
 constexpr std::uint64_t kMs = 1'000'000;
+constexpr int kMostReads = 16;  // of bytes that make no report, in one call: noise holds nobody up
 constexpr std::uint64_t kLongestWriteNs = 5000 * kMs;
 
 struct Speed {
@@ -109,11 +109,12 @@ void SerialTransport::close() {
 ReadResult SerialTransport::read(std::uint8_t* data, int capacity, int timeout_ms) {
   const int descriptor = descriptor_.load();
   const std::uint64_t until_ns = timeout_ms > 0 ? monotonic_ns() + static_cast<std::uint64_t>(timeout_ms) * kMs : 0;
-  for (int bytes = 0;;) {
+  for (int bytes = 0, reads = 0;;) {
     if (frames_.next(data, capacity, &bytes)) return {ReadStatus::kReport, bytes};
     const ssize_t got = ::read(descriptor, frames_.room(), static_cast<std::size_t>(frames_.room_bytes()));
     if (got > 0) {
       frames_.added(static_cast<int>(got));
+      if (++reads == kMostReads) return {};
       continue;
     }
     if (got == 0 || (errno != EAGAIN && errno != EINTR)) return {ReadStatus::kLost, 0};
