@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "step/contact_internals.hpp"
+
 namespace fdcg::test {
 namespace {
 
@@ -77,8 +79,8 @@ void ReferenceWalker<Real>::resynchronise(const fdcg_contact& other) {
   contact.is_started = other.started != 0;
   contact.state = other.state;
   contact.feature = other.feature;
-  contact.seat_state = other.seat_state;
-  contact.seat_feature = other.seat_feature;
+  contact.seat_state = internals_of(other).seat_state;
+  contact.seat_feature = internals_of(other).seat_feature;
   contact.is_slipping = other.slipping != 0;
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "fp_trap.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg::test {
 namespace {
@@ -35,10 +36,10 @@ bool agree(const ReferenceContact<Real>& a, const fdcg_contact& b) {
 std::string describe(const fdcg_contact& c) {
   static const char* const names[] = {"free", "face", "edge", "vertex"};
   std::ostringstream text;
-  text << names[c.state] << ' ' << static_cast<std::int32_t>(c.feature) << " seat " << names[c.seat_state] << ' '
-       << static_cast<std::int32_t>(c.seat_feature) << (c.slipping ? " slips" : " sticks") << std::hexfloat << " GO "
-       << c.god_object[0] << ' ' << c.god_object[1] << ' ' << c.god_object[2] << " last HIP " << c.hip[0] << ' ' << c.hip[1]
-       << ' ' << c.hip[2];
+  text << names[c.state] << ' ' << static_cast<std::int32_t>(c.feature) << " seat " << names[internals_of(c).seat_state] << ' '
+       << static_cast<std::int32_t>(internals_of(c).seat_feature) << (c.slipping ? " slips" : " sticks") << std::hexfloat
+       << " GO " << c.god_object[0] << ' ' << c.god_object[1] << ' ' << c.god_object[2] << " last HIP " << c.hip[0] << ' '
+       << c.hip[1] << ' ' << c.hip[2];
   return text.str();
 }
 

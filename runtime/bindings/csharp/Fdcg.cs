@@ -242,45 +242,17 @@ namespace Fdcg {
   }
 
   [StructLayout(LayoutKind.Sequential)]
-  public unsafe struct fdcg_carried_sweep {
-    public fixed double target[3];
-    public double fraction;
-    public uint state;
-    public uint feature;
-    public uint node;
-    public uint left_state;
-    public uint left_feature;
-    public uint next_leaf;
-    public uint is_carried;
-    public uint stalled_sweeps;
-  }
-
-  [StructLayout(LayoutKind.Sequential)]
-  public unsafe struct fdcg_clear_ball {
-    public fixed double centre[3];
-    public double radius2;
-    public uint wait;
-    public uint next_wait;
-  }
-
-  [StructLayout(LayoutKind.Sequential)]
   public unsafe struct fdcg_contact {
     public fixed double god_object[3];
     public fixed double hip[3];
     public uint started;
     public uint state;
     public uint feature;
-    public uint seat_state;
-    public uint seat_feature;
     public uint slipping;
     public ulong non_finite_ticks;
     public ulong transition_bound_ticks;
     public ulong sweep_bound_ticks;
-    public fdcg_carried_sweep sweep;
-    public fdcg_clear_ball clear_ball;
-    public double slip_m_per_s;
-    public double stiffness_n_per_m;
-    public ulong on;
+    public fixed byte internals[136];
   }
 
   [StructLayout(LayoutKind.Sequential)]

@@ -434,50 +434,23 @@ FDCG_INLINE fdcg_params fdcg_make_params(void) {
  * stiffness and damping (FDCG_RESULT_BAD_PARAMS); the rest it does not check. */
 FDCG_API fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
 
-/** A sweep through free space that one tick could not finish. The path is frozen: from the god-object, which stays where it is,
- * to `target`. Later ticks test the faces in index order, from `next_leaf` on, until all that the path may meet are done. Then
- * the contact is placed on what was met first, or at the target, and goes on from there to the newest HIP. */
-typedef struct fdcg_carried_sweep {
-  double target[3];        /**< local */
-  double fraction;         /**< of the path: where the first feature met so far is entered */
-  uint32_t state;          /**< that feature: FDCG_FREE if nothing is met so far */
-  uint32_t feature;        /**< ... node or connection */
-  uint32_t node;           /**< ... the node through which it was met */
-  uint32_t left_state;     /**< the feature that the path starts on; FDCG_FREE: none */
-  uint32_t left_feature;   /**< its number */
-  uint32_t next_leaf;      /**< leaf of the hierarchy, or node where there is none */
-  uint32_t is_carried;     /**< 0: there is no such sweep */
-  uint32_t stalled_sweeps; /**< consecutive sweeps, each over several ticks, that ended where they began */
-} fdcg_carried_sweep;
-
-/** A ball in free space that no face touches; if there is one, the last HIP is in it. */
-typedef struct fdcg_clear_ball {
-  double centre[3];   /**< local */
-  double radius2;     /**< squared; 0: there is none */
-  uint32_t wait;      /**< ticks until the next search for one */
-  uint32_t next_wait; /**< how long to wait if that search finds none */
-} fdcg_clear_ball;
+/** Bytes of a contact that are the step's own. */
+#define FDCG_CONTACT_INTERNAL_BYTES 136
 
 /** One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Read its fields, do
  * not write them. Positions are local to the graph (format.h), so that no digits are lost far from the world's origin. */
 typedef struct fdcg_contact {
-  double god_object[3];  /**< without presliding's displacement. In free space: the HIP, or while a sweep is carried over the
-                            point where it started */
-  double hip[3];         /**< of the last tick with a finite HIP */
-  uint32_t started;      /**< 0 before the first tick */
-  uint32_t state;        /**< fdcg_state */
-  uint32_t feature;      /**< node, connection or corner, by state; FDCG_NONE in free space */
-  uint32_t seat_state;   /**< FDCG_EDGE or FDCG_VERTEX: where the god-object was placed and still is; else FDCG_FREE */
-  uint32_t seat_feature; /**< its number */
-  uint32_t slipping;     /**< 1: dynamic friction holds */
-  uint64_t non_finite_ticks;       /**< ticks whose HIP was no usable number */
-  uint64_t transition_bound_ticks; /**< ticks that carried work over because of FDCG_RULE_WORK */
-  uint64_t sweep_bound_ticks;      /**< ... because of FDCG_SWEEP_WORK */
-  fdcg_carried_sweep sweep;        /**< what the last tick left to do */
-  fdcg_clear_ball clear_ball;      /**< where no sweep is needed */
-  double slip_m_per_s;             /**< the speed that friction has followed to, where it lags; else 0 */
-  double stiffness_n_per_m;        /**< current stiffness, where materials or presliding count. 0: a new contact */
-  uint64_t on; /**< marks the graph, deformable mesh or kind of surface that it is on: on another it is refused. 0: not yet */
+  double god_object[3]; /**< without presliding's displacement. In free space: the HIP, or while a sweep is carried over the
+                           point where it started */
+  double hip[3];        /**< of the last tick with a finite HIP */
+  uint32_t started;     /**< 0 before the first tick */
+  uint32_t state;       /**< fdcg_state */
+  uint32_t feature;     /**< node, connection or corner, by state; FDCG_NONE in free space */
+  uint32_t slipping;    /**< 1: dynamic friction holds */
+  uint64_t non_finite_ticks;                      /**< ticks whose HIP was no usable number */
+  uint64_t transition_bound_ticks;                /**< ticks that carried work over because of FDCG_RULE_WORK */
+  uint64_t sweep_bound_ticks;                     /**< ... because of FDCG_SWEEP_WORK */
+  uint8_t internals[FDCG_CONTACT_INTERNAL_BYTES]; /**< what else the step keeps from tick to tick; its layout may change */
 } fdcg_contact;
 
 /** What was special about a tick. */

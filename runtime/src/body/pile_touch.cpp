@@ -2,6 +2,7 @@
 // One touch of a pile: the god-object's step, and the spring between it and the point.
 #include "body/pile_memory.hpp"
 #include "scene/finger_tick.hpp"
+#include "step/contact_internals.hpp"
 #include "step/friction.hpp"
 
 namespace fdcg {
@@ -70,7 +71,7 @@ World slide_by_curve(const Meeting& meeting, const fdcg_material& own, Friction<
   friction.terms = &terms;
   const World to = slide(friction, step);
   terms.go_on_to(to);
-  contact->slip_m_per_s = terms.has(FDCG_FRICTION_LAG) ? terms.lagged + terms.per_way * terms.way : 0;
+  internals_of(*contact).slip_m_per_s = terms.has(FDCG_FRICTION_LAG) ? terms.lagged + terms.per_way * terms.way : 0;
   return to;
 }
 
@@ -96,7 +97,7 @@ fdcg_material pair_by_faces(const Object& on, const fdcg_params& params, const f
     fdcg_get_fan(on.graph(), result.feature, &entry, 1);
     terms.select_material_of_face(fdcg_get_connection(on.graph(), entry >> 1).node[0]);
   }
-  terms.material.stiffness_n_per_m = touch.contact.stiffness_n_per_m;
+  terms.material.stiffness_n_per_m = internals_of(touch.contact).stiffness_n_per_m;
   return terms.material;
 }
 #endif

@@ -5,6 +5,7 @@
 
 #include "deform/deform_upkeep.hpp"
 #include "step/clear_ball.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 
@@ -54,7 +55,7 @@ template <class Real>
 template <class Real>
 bool find_quiet_ball(const Upkeep<Real>& upkeep, Vec3<double> hip, fdcg_deform_contact* contact) {
   fdcg_deform& deform = upkeep.deform();
-  fdcg_clear_ball& ball = contact->contact.clear_ball;
+  ClearBall& ball = internals_of(contact->contact).clear_ball;
   if (deform.watched.holds(contact->ball, ball)) deform.watched.remove(contact->ball);
   double reach2;
   const double radius = quiet_radius(upkeep, hip, norm(hip - vec(contact->contact.god_object)), &reach2);

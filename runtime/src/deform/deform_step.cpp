@@ -6,6 +6,7 @@
 #include "deform/deform_motion.hpp"
 #include "deform/deformable_geometry.hpp"
 #include "step/admit.hpp"
+#include "step/contact_internals.hpp"
 #include "step/servo_step.hpp"
 
 namespace fdcg {
@@ -74,9 +75,10 @@ template <class Real>
     if (!(dot(out, normal[i]) > length / 4)) return;
   if (count == 0) return;
   const double lift = 16 * double{RealLimits<Real>::kEpsilon} * upkeep.deform().header.extent / length;
-  contact->state = contact->seat_state = FDCG_FREE;
-  contact->feature = contact->seat_feature = FDCG_NONE;
-  contact->clear_ball.radius2 = 0;
+  ContactInternals& inner = internals_of(*contact);
+  contact->state = inner.seat_state = FDCG_FREE;
+  contact->feature = inner.seat_feature = FDCG_NONE;
+  inner.clear_ball.radius2 = 0;
   place_god_object<Real>(contact, place_of(*contact) + out * lift);
 }
 
@@ -100,7 +102,7 @@ void ride_on_face(const Upkeep<Real>& upkeep, uint32_t n, bool saw_before, fdcg_
 template <class Real>
 void ride(const Upkeep<Real>& upkeep, bool saw_before, fdcg_contact* contact) {
   Feature on = {contact->state, contact->feature};
-  const Feature seat = {contact->seat_state, contact->seat_feature};
+  const Feature seat = {internals_of(*contact).seat_state, internals_of(*contact).seat_feature};
   if (on.state == FDCG_FACE && is_on_rim(upkeep, on.index, seat)) on = seat;
   if (on.state == FDCG_EDGE && seat.state == FDCG_VERTEX && is_end(upkeep, on.index, seat.index)) on = seat;
   if (on.state == FDCG_FACE) {
@@ -121,14 +123,14 @@ void leave_sliver(const Upkeep<Real>& upkeep, fdcg_contact* contact) {
   Vec3<double> end[2];
   ends_of(upkeep, connection, false, end);
   const double share = share_along(end, place_of(*contact));
-  contact->state = contact->seat_state = FDCG_EDGE;
-  contact->feature = contact->seat_feature = connection;
+  contact->state = internals_of(*contact).seat_state = FDCG_EDGE;
+  contact->feature = internals_of(*contact).seat_feature = connection;
   place_god_object<Real>(contact, point_along(end, share));
 }
 
 // What is left of a clear ball when no face has come nearer than `travel`. False: the god-object is not in it any more.
 inline bool keep_ball(double travel, fdcg_contact* contact) {
-  fdcg_clear_ball& ball = contact->clear_ball;
+  ClearBall& ball = internals_of(*contact).clear_ball;
   constexpr double kKept = 1 - 16 * RealLimits<double>::kEpsilon;
   const double radius = ball.radius2 > 0 ? root(ball.radius2) * kKept - travel : 0;
   const Vec3<double> gap = place_of(*contact) - vec(ball.centre);
@@ -141,7 +143,7 @@ inline bool keep_ball(double travel, fdcg_contact* contact) {
 enum class Clear { no, at_god_object, all_the_way };
 template <class Real>
 Clear clear_of_faces(const Upkeep<Real>& upkeep, double travel, const Vec3<double>* hip, fdcg_deform_contact* contact) {
-  const fdcg_clear_ball& ball = contact->contact.clear_ball;
+  const ClearBall& ball = internals_of(contact->contact).clear_ball;
   if (!upkeep.deform().watched.holds(contact->ball, ball) && !keep_ball(travel, &contact->contact)) return Clear::no;
   return hip != nullptr && is_in_clear_ball(ball, *hip) ? Clear::all_the_way : Clear::at_god_object;
 }
@@ -149,11 +151,12 @@ Clear clear_of_faces(const Upkeep<Real>& upkeep, double travel, const Vec3<doubl
 inline void seat_on(uint32_t n, fdcg_contact* contact) {
   contact->state = FDCG_FACE;
   contact->feature = n;
-  contact->seat_state = FDCG_FREE;
-  contact->seat_feature = FDCG_NONE;
   contact->slipping = 0;
-  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
-  contact->sweep.stalled_sweeps = 0;
+  ContactInternals& inner = internals_of(*contact);
+  inner.seat_state = FDCG_FREE;
+  inner.seat_feature = FDCG_NONE;
+  inner.slip_m_per_s = inner.stiffness_n_per_m = 0;
+  inner.sweep.stalled_sweeps = 0;
 }
 
 // A sweep that ran out of work restarts, on the present mesh, and goes half as far (shorten): from the feature that the
@@ -161,7 +164,7 @@ inline void seat_on(uint32_t n, fdcg_contact* contact) {
 // Returns whether it went back to a feature.
 inline bool begin_sweep_anew(fdcg_deform_contact* contact) {
   constexpr uint32_t kMostHalvings = 24;
-  fdcg_carried_sweep& sweep = contact->contact.sweep;
+  CarriedSweep& sweep = internals_of(contact->contact).sweep;
   if (sweep.is_carried == 0) {
     if (contact->halvings > 0) --contact->halvings;
     return false;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "deform/deform_boxes.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 
@@ -21,7 +22,7 @@ struct WatchedBalls {
   WatchedBall ball[kWatchedBalls];
   uint32_t used, next;
 
-  [[nodiscard]] bool holds(uint32_t place, const fdcg_clear_ball& of_contact) const {
+  [[nodiscard]] bool holds(uint32_t place, const ClearBall& of_contact) const {
     const WatchedBall& here = ball[place % kWatchedBalls];
     return of_contact.radius2 > 0 && here.radius2 == of_contact.radius2 && here.centre[0] == of_contact.centre[0] &&
            here.centre[1] == of_contact.centre[1] && here.centre[2] == of_contact.centre[2];

@@ -5,6 +5,7 @@
 #include "fdcg/query.h"
 #include "scene/scene_memory.hpp"
 #include "step/admit.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 namespace {
@@ -33,14 +34,15 @@ bool rebind(const fdcg_header& before, const fdcg_graph& graph, fdcg_contact* co
   if (fdcg_find_nearest(&graph, at, HUGE_VAL, &hit, nullptr) != FDCG_OK) return false;
   fdcg_contact moved = {};
   moved.started = 1;
-  moved.on = mark_of(*graph.header);
+  ContactInternals& inner = internals_of(moved);
+  inner.on = mark_of(*graph.header);
   moved.state = hit.state;
   moved.feature = hit.feature;
-  moved.seat_state = FDCG_FREE;
-  moved.seat_feature = FDCG_NONE;
+  inner.seat_state = FDCG_FREE;
+  inner.seat_feature = FDCG_NONE;
   moved.slipping = contact->slipping;
-  moved.slip_m_per_s = contact->slip_m_per_s;
-  moved.stiffness_n_per_m = contact->stiffness_n_per_m;
+  inner.slip_m_per_s = internals_of(*contact).slip_m_per_s;
+  inner.stiffness_n_per_m = internals_of(*contact).stiffness_n_per_m;
   moved.non_finite_ticks = contact->non_finite_ticks;
   moved.transition_bound_ticks = contact->transition_bound_ticks;
   moved.sweep_bound_ticks = contact->sweep_bound_ticks;

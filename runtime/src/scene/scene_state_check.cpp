@@ -6,6 +6,7 @@
 #include "graph/material_section.hpp"
 #include "scene/state_records.hpp"
 #include "step/admit.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 namespace {
@@ -158,17 +159,18 @@ struct FeatureCounts {
 
 bool is_sound(const fdcg_contact& contact, const Object& object) {
   const FeatureCounts features(object);
-  const fdcg_carried_sweep& sweep = contact.sweep;
-  const bool has_features = features.have(contact.state, contact.feature) && contact.seat_state != FDCG_FACE &&
-                            features.have(contact.seat_state, contact.seat_feature) &&
-                            features.have(sweep.state, sweep.feature) && features.have(sweep.left_state, sweep.left_feature);
+  const ContactInternals& inner = internals_of(contact);
+  const CarriedSweep& sweep = inner.sweep;
+  const bool has_features = features.have(contact.state, contact.feature) && inner.seat_state != FDCG_FACE &&
+                            features.have(inner.seat_state, inner.seat_feature) && features.have(sweep.state, sweep.feature) &&
+                            features.have(sweep.left_state, sweep.left_feature);
   const bool is_swept = sweep.state == FDCG_FREE || sweep.node == FDCG_NONE || sweep.node < features.of[FDCG_FACE];
   const bool has_flags = contact.started == 1 && contact.slipping <= 1 && sweep.is_carried <= 1;
   const bool has_numbers = are_within(contact.god_object, kFarthestLocal) && are_within(contact.hip, kFarthestLocal) &&
                            are_within(sweep.target, kFarthestLocal) && absolute(sweep.fraction) <= 2 &&
-                           are_within(contact.clear_ball.centre, kFarthestLocal) && contact.clear_ball.radius2 >= 0 &&
-                           contact.slip_m_per_s >= 0 && contact.slip_m_per_s <= kFarthestLocal &&
-                           contact.stiffness_n_per_m >= 0 && contact.stiffness_n_per_m <= kFarthestLocal;
+                           are_within(inner.clear_ball.centre, kFarthestLocal) && inner.clear_ball.radius2 >= 0 &&
+                           inner.slip_m_per_s >= 0 && inner.slip_m_per_s <= kFarthestLocal && inner.stiffness_n_per_m >= 0 &&
+                           inner.stiffness_n_per_m <= kFarthestLocal;
   return has_features && is_swept && has_flags && has_numbers;
 }
 
@@ -183,7 +185,7 @@ fdcg_status check_held(const fdcg_scene& scene, const HeldState& held, uint64_t 
   if (held.object >= object_count || objects[held.object].kind == kStateEmpty || objects[held.object].is_enabled == 0)
     return bad(error, "contact", index, "with an object that is not there");
   const Object& object = scene.objects()[held.object];
-  if (!is_sound(held.contact, object) || held.contact.on != mark_on(object))
+  if (!is_sound(held.contact, object) || internals_of(held.contact).on != mark_on(object))
     return bad(error, "contact", index, "a feature or a number is out of range");
   const bool has_pad = held.is_pad_on <= 1 && held.is_pad_slipping <= 1 && is_unit(held.pad_reference) &&
                        are_within(held.pad_god_object_m, kFarthestPlace_m) && are_within(held.pad_normal, 2) &&

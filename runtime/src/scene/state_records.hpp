@@ -14,7 +14,7 @@ namespace fdcg {
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the form is little-endian and read in place");
 
 inline constexpr uint64_t kStateMagic = 0x5441'5453'4743'4446;  // "FDCGSTAT"
-inline constexpr uint32_t kStateVersion = 1;
+inline constexpr uint32_t kStateVersion = 2;
 
 struct StateHeader {
   uint64_t magic;

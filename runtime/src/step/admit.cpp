@@ -18,8 +18,8 @@ const fdcg_params* admit(uint64_t mark, const fdcg_params& params, fdcg_params* 
     return nullptr;
   }
   const fdcg_params& whole = in_full(params, room, fdcg_params_init);
-  if (contact->on == mark) return &whole;
-  if (contact->on != 0) {
+  if (internals_of(*contact).on == mark) return &whole;
+  if (internals_of(*contact).on != 0) {
     refuse_step(FDCG_RESULT_OTHER_CONTACT, result);
     return nullptr;
   }
@@ -28,7 +28,7 @@ const fdcg_params* admit(uint64_t mark, const fdcg_params& params, fdcg_params* 
     refuse_step(FDCG_RESULT_BAD_PARAMS, result);
     return nullptr;
   }
-  contact->on = mark;
+  internals_of(*contact).on = mark;
   return &whole;
 }
 

@@ -5,10 +5,11 @@
 
 #include "base/struct_bytes.hpp"
 #include "fdcg/fdcg.h"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 
-// What a contact is on (fdcg_contact.on). Odd, so that none is 0; a deformable mesh has another than its graph. Kinds of
+// What a contact is on (ContactInternals::on). Odd, so that none is 0; a deformable mesh has another than its graph. Kinds of
 // surfaces have small ones.
 inline uint64_t mark_of(const fdcg_header& header) {
   return header.header_checksum | 1;
@@ -32,7 +33,7 @@ inline bool is_params_size(uint32_t struct_bytes) {
 // The same, at the cost of two comparisons for a contact that goes on and whole params.
 inline const fdcg_params* admitted(uint64_t mark, const fdcg_params& params, fdcg_params* room, fdcg_contact* contact,
                                    fdcg_result* result) {
-  if (contact->on == mark && params.struct_bytes == sizeof(fdcg_params)) [[likely]]
+  if (internals_of(*contact).on == mark && params.struct_bytes == sizeof(fdcg_params)) [[likely]]
     return &params;
   return admit(mark, params, room, contact, result);
 }

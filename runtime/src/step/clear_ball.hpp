@@ -7,6 +7,7 @@
 #include "graph/box_tree.hpp"
 #include "graph/graph_view.hpp"
 #include "graph/tolerances.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 
@@ -15,7 +16,7 @@ inline constexpr int kMostClearVisits = 24;
 
 // `hip`: in double whatever the graph's reals, which is at hand sooner. Rounding it to them moves it by far less than
 // clear_radius leaves as a margin.
-inline bool is_in_clear_ball(const fdcg_clear_ball& ball, Vec3<double> hip) {
+inline bool is_in_clear_ball(const ClearBall& ball, Vec3<double> hip) {
   const Vec3<double> gap = hip - vec(ball.centre);
   return dot(gap, gap) < ball.radius2;  // false where there is none
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "step/clear_ball.hpp"
+#include "step/contact_internals.hpp"
 #include "step/sweep.hpp"
 
 namespace fdcg {
@@ -39,7 +40,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // contact-model FREE-2, BOUND-2: goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has
 // not moved.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool finish_carried_sweep(Walk<Geometry>& walk, fdcg_carried_sweep* carried, uint32_t* work_left) {
+[[gnu::noinline, gnu::cold]] bool finish_carried_sweep(Walk<Geometry>& walk, CarriedSweep* carried, uint32_t* work_left) {
   const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
   Sweep<Geometry> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature},
@@ -61,8 +62,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // Work and state of free space carried over between ticks; all but the work is part of the contact.
 struct FreeSpace {
-  fdcg_carried_sweep* carried;
-  fdcg_clear_ball* ball;
+  CarriedSweep* carried;
+  ClearBall* ball;
   bool looks_for_balls;
   uint32_t work_left;
 };
@@ -70,7 +71,7 @@ struct FreeSpace {
 // Whether a ball that no face touches holds the whole way; it is kept. Where there was none, the next looks wait for longer and
 // longer: near the surface a sweep is cheaper.
 template <class Geometry, class Real = typename Geometry::Real>
-inline bool is_in_new_ball(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to, fdcg_clear_ball* ball) {
+inline bool is_in_new_ball(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to, ClearBall* ball) {
   constexpr uint32_t kLongestWait = 15;
   if (ball->wait > 0) {
     --ball->wait;
@@ -113,7 +114,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // ran out, else 0.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::hot]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
-  fdcg_carried_sweep* carried = space->carried;
+  CarriedSweep* carried = space->carried;
   space->ball->radius2 = 0;
   if (carried->is_carried != 0) {
     if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;

@@ -10,6 +10,7 @@
 #include "step/friction_terms.hpp"
 
 #include "base/config.hpp"
+#include "step/contact_internals.hpp"
 
 #if FDCG_WITH_FRICTION_TERMS
 namespace fdcg {
@@ -38,10 +39,10 @@ FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph* graph, const
   terms.unit_m = graph != nullptr ? graph->header->metres_per_unit : 1;
   terms.material = own_material(params);
   if (terms.has(FDCG_FRICTION_FINGER)) terms.material = fdcg_combine_materials(&terms.material, &params.finger);
-  if (terms.has_springs()) terms.held_stiffness = contact.stiffness_n_per_m;
+  if (terms.has_springs()) terms.held_stiffness = internals_of(contact).stiffness_n_per_m;
   const double share = terms.has(FDCG_FRICTION_LAG) ? params.tick_s / (params.tick_s + params.friction_lag_s) : 1;
   terms.per_way = share / params.tick_s;
-  terms.lagged = terms.has(FDCG_FRICTION_LAG) ? (1 - share) * contact.slip_m_per_s / terms.unit_m : 0;
+  terms.lagged = terms.has(FDCG_FRICTION_LAG) ? (1 - share) * internals_of(contact).slip_m_per_s / terms.unit_m : 0;
   return terms;
 }
 

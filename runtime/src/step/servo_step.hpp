@@ -18,6 +18,7 @@
 
 #include "base/config.hpp"
 #include "base/hooks.hpp"
+#include "step/contact_internals.hpp"
 #include "step/corner.hpp"
 #include "step/edge.hpp"
 #include "step/face.hpp"
@@ -212,19 +213,26 @@ inline void write_position(const fdcg_header& header, const fdcg_contact& contac
   result->slipping = contact.slipping;
 }
 
+inline Feature seat_of(const fdcg_contact& contact) {
+  return {internals_of(contact).seat_state, internals_of(contact).seat_feature};
+}
+
 // First tick: free, with the god-object at the HIP (contact-model TICK-3).
 template <class Real>
 inline void start(Vec3<Real> hip, fdcg_contact* contact) {
   store(hip, contact->hip);
   store(hip, contact->god_object);
   contact->started = 1;
-  contact->state = contact->seat_state = FDCG_FREE;
-  contact->feature = contact->seat_feature = FDCG_NONE;
+  contact->state = FDCG_FREE;
+  contact->feature = FDCG_NONE;
   contact->slipping = 0;
-  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
-  contact->sweep.is_carried = 0;
-  contact->clear_ball.radius2 = 0;
-  contact->clear_ball.wait = contact->clear_ball.next_wait = 0;
+  ContactInternals& inner = internals_of(*contact);
+  inner.seat_state = FDCG_FREE;
+  inner.seat_feature = FDCG_NONE;
+  inner.slip_m_per_s = inner.stiffness_n_per_m = 0;
+  inner.sweep.is_carried = 0;
+  inner.clear_ball.radius2 = 0;
+  inner.clear_ball.wait = inner.clear_ball.next_wait = 0;
 }
 
 template <class Real>
@@ -255,12 +263,13 @@ template <class Geometry>
 [[gnu::noinline, gnu::cold]] void respond_with_terms(const Walk<Geometry>& walk, fdcg_contact* contact, fdcg_result* result) {
   FrictionTerms& terms = *walk.friction.terms;
   const fdcg_params& params = *terms.params;
-  contact->slip_m_per_s = contact->stiffness_n_per_m = 0;
+  ContactInternals& inner = internals_of(*contact);
+  inner.slip_m_per_s = inner.stiffness_n_per_m = 0;
   if (walk.active == kFree) return;
   if (terms.has_last) terms.go_on_to(widen(walk.god_object));
-  if (terms.has(FDCG_FRICTION_LAG)) contact->slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
+  if (terms.has(FDCG_FRICTION_LAG)) inner.slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
   const double stiffness = settle(walk, {contact->state, contact->feature}, vec(contact->god_object));
-  if (terms.has_springs()) contact->stiffness_n_per_m = stiffness;
+  if (terms.has_springs()) inner.stiffness_n_per_m = stiffness;
   const Vec3<double> hip = widen(walk.hip), spring = widen(walk.god_object) - hip + terms.yielded;
   spring_damper_force(*walk.graph.header(), params, *contact, stiffness, hip, spring, result);
 }
@@ -274,7 +283,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Feature start = walk.active, hopped = transitions != 0 ? walk.seat : kFree;
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
-  FreeSpace space = {&contact->sweep, &contact->clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
+  ContactInternals& inner = internals_of(*contact);
+  FreeSpace space = {&inner.sweep, &inner.clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
                      kSweepWork};
   const Progress progress = move_god_object(walk, start, start_gap, hopped, move != nullptr ? &decided : nullptr, &space);
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
@@ -297,9 +307,9 @@ template <class Geometry, class Real = typename Geometry::Real>
   store(walk.god_object, contact->god_object);
   contact->state = walk.active.state;
   contact->feature = walk.active.index;
-  contact->seat_state = walk.seat.state;
-  contact->seat_feature = walk.seat.index;
-  const bool is_undecided = contact->sweep.is_carried != 0;  // contact may be regained
+  inner.seat_state = walk.seat.state;
+  inner.seat_feature = walk.seat.index;
+  const bool is_undecided = inner.sweep.is_carried != 0;  // contact may be regained
   contact->slipping = (!is_free || is_undecided || FDCG_MUTANT("slip-flag-free")) && walk.friction.is_slipping ? 1 : 0;
 }
 
@@ -315,7 +325,7 @@ template <class Geometry, class Real = typename Geometry::Real>
                          plane_rounding_bound(graph, hip),
                          narrow<Real>(contact->god_object),
                          {contact->state, contact->feature},
-                         {contact->seat_state, contact->seat_feature},
+                         seat_of(*contact),
                          kRuleWork};
   walk_to_hip<Geometry, Real>(walk, nullptr, 0, params, contact, result);
   store(hip, contact->hip);
@@ -351,7 +361,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   round_to(local_hip, &hip);
   if (contact->started == 0) {
     start(hip, contact);
-  } else if (contact->state == FDCG_FREE && is_in_clear_ball(contact->clear_ball, local_hip) &&
+  } else if (contact->state == FDCG_FREE && is_in_clear_ball(internals_of(*contact).clear_ball, local_hip) &&
              (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0) {
     store(hip, contact->god_object);
     store(hip, contact->hip);
@@ -384,9 +394,10 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     const bool is_at_end =
         is_on_face && (hop.move.kind == Kind::slides ? !is_far(graph, hip) : hop.move.kind == Kind::rests && !has_hopped);
     if (is_at_end) {
-      if (hop.move.kind == Kind::slides) contact->seat_state = FDCG_FREE, contact->seat_feature = FDCG_NONE;
+      ContactInternals& inner = internals_of(*contact);
+      if (hop.move.kind == Kind::slides) inner.seat_state = FDCG_FREE, inner.seat_feature = FDCG_NONE;
       contact->slipping = hop.friction.is_slipping ? 1 : 0;
-      contact->sweep.stalled_sweeps = 0;
+      inner.sweep.stalled_sweeps = 0;
       result->transitions = hop.transitions;
       respond(header, params, *contact, hip, hop.move.target, result);
       store(hop.move.target, contact->god_object);
@@ -397,7 +408,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
                              bound,
                              god_object,
                              {contact->state, contact->feature},
-                             {contact->seat_state, contact->seat_feature},
+                             seat_of(*contact),
                              kRuleWork};
       if (has_hopped) {
         walk.god_object = hop.god_object;

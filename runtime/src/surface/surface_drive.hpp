@@ -3,6 +3,7 @@
 // graph's features. Each kind's source makes its two functions of surface_kinds.hpp from step_on() and normal_on().
 #pragma once
 
+#include "step/contact_internals.hpp"
 #include "step/near_zero.hpp"
 #include "step/response.hpp"
 #include "surface/surface.hpp"
@@ -76,8 +77,8 @@ inline void start(Point hip, fdcg_contact* contact) {
   store(hip, contact->hip);
   store(hip, contact->god_object);
   contact->started = 1;
-  contact->state = contact->seat_state = FDCG_FREE;
-  contact->feature = contact->seat_feature = FDCG_NONE;
+  contact->state = internals_of(*contact).seat_state = FDCG_FREE;
+  contact->feature = internals_of(*contact).seat_feature = FDCG_NONE;
   contact->slipping = 0;
 }
 

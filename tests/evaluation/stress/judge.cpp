@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "step/contact_internals.hpp"
+
 namespace fdcg::test {
 namespace {
 
@@ -76,7 +78,7 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after
   if ((result.flags & FDCG_RESULT_NON_FINITE) == 0 && tick.faults == 0) {
     if ((result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0) tick.faults |= bit(Fault::rule_bound);
     if ((result.flags & FDCG_RESULT_SWEEP_BOUND) != 0) tick.faults |= bit(Fault::sweep_bound);
-    if (before.started != 0 && before.sweep.is_carried == 0) {
+    if (before.started != 0 && internals_of(before).sweep.is_carried == 0) {
       if (after.state != FDCG_FREE) look_at_growth(tick, v);
       if (is_same(before.hip, after.hip)) look_at_rest(tick, v);
       if (before.state == FDCG_FREE) look_at_way(tick);
@@ -298,7 +300,8 @@ bool Judge::is_let_off(const Hip& point) {
 // Where work is carried over: the god-object stays where its way began, the HIP may be inside.
 void Judge::look_at_owed_force(Tick& tick) {
   const double* force = tick.result.force_n;
-  if (force[0] != 0 || force[1] != 0 || force[2] != 0 || !is_known_outside_ || tick.after.sweep.is_carried == 0) return;
+  if (force[0] != 0 || force[1] != 0 || force[2] != 0 || !is_known_outside_ || internals_of(tick.after).sweep.is_carried == 0)
+    return;
   if (specimen_.inside->where(tick.hip) != InsideGrid::Where::inside) return;
   const double depth = specimen_.inside->distance_to_surface(tick.hip) - deviation_;
   if (depth > kShallow_eps * epsilon_ * specimen_.inside->size()) tick.faults |= bit(Fault::no_force);
@@ -319,8 +322,8 @@ void Judge::look_inside(Tick& tick, Verdicts& v) {
   is_outside_ = where == InsideGrid::Where::outside;
   if (is_outside_) is_known_outside_ = true;
   if (where != InsideGrid::Where::inside || !is_known_outside_) return;
-  const bool is_on_its_way = tick.after.sweep.is_carried != 0;  // may start on the surface
-  is_known_outside_ = is_on_its_way;                            // once is enough
+  const bool is_on_its_way = internals_of(tick.after).sweep.is_carried != 0;  // may start on the surface
+  is_known_outside_ = is_on_its_way;                                          // once is enough
   const double size = specimen_.inside->size();
   const double depth = specimen_.inside->distance_to_surface(tick.god_object) - deviation_;
   v.worst_inside_eps = std::max(v.worst_inside_eps, depth / (epsilon_ * size));

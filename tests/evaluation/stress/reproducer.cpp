@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "meshes.hpp"
+#include "step/contact_internals.hpp"
 #include "stress_run.hpp"
 
 namespace fdcg::test {
@@ -63,9 +64,9 @@ std::string described(const fdcg_contact& c, const fdcg_result& out, std::uint32
   std::ostringstream text;
   text.precision(17);
   text << kStates[c.state] << ' ' << static_cast<std::int32_t>(c.feature) << (out.slipping ? " slips" : " sticks") << ", seat "
-       << kStates[c.seat_state] << ' ' << static_cast<std::int32_t>(c.seat_feature) << ", transitions " << out.transitions
-       << ", flags " << out.flags << ", HIP " << c.hip[0] << ' ' << c.hip[1] << ' ' << c.hip[2] << ", GO " << c.god_object[0]
-       << ' ' << c.god_object[1] << ' ' << c.god_object[2] << " (local)";
+       << kStates[internals_of(c).seat_state] << ' ' << static_cast<std::int32_t>(internals_of(c).seat_feature)
+       << ", transitions " << out.transitions << ", flags " << out.flags << ", HIP " << c.hip[0] << ' ' << c.hip[1] << ' '
+       << c.hip[2] << ", GO " << c.god_object[0] << ' ' << c.god_object[1] << ' ' << c.god_object[2] << " (local)";
   for (std::size_t i = 0; i < kFaults; ++i) {
     if ((faults >> i & 1) != 0) text << "; " << name_of(static_cast<Fault>(i));
   }

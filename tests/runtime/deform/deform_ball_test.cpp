@@ -10,6 +10,7 @@
 #include "fp_trap.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
+#include "step/contact_internals.hpp"
 
 using namespace fdcg;
 using namespace fdcg::test;
@@ -81,7 +82,7 @@ TEST_CASE("clear balls over a moving sheet do not change any force") {
         INFO("step " << i << " state " << felt.state << " against " << looked.state << " flags " << felt.flags << " against "
                      << looked.flags << " at " << finger.hip[0] << " " << finger.hip[1] << " " << finger.hip[2]);
         REQUIRE(std::memcmp(&felt, &looked, sizeof felt) == 0);
-        in_ball += finger.contact.contact.clear_ball.radius2 > 0;
+        in_ball += internals_of(finger.contact.contact).clear_ball.radius2 > 0;
         caught += (felt.flags & FDCG_DEFORM_CAUGHT) != 0;
         missed += (felt.flags & FDCG_DEFORM_MISSED) != 0;
         touched += felt.state != FDCG_FREE;

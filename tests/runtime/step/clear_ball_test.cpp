@@ -8,7 +8,9 @@
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
+#include "step/contact_internals.hpp"
 
+using fdcg::internals_of;
 using namespace fdcg::test;
 using fdcg::bake::CompileOptions;
 using fdcg::bake::Precision;
@@ -67,18 +69,18 @@ Tally compare(const PolygonSoup& soup, Precision precision, std::uint64_t seed) 
   Tally tally;
   for (int i = 0; i < ticks(); ++i) {
     const Hip hip = drift.next(surface);
-    const bool was_in_ball = with.state.clear_ball.radius2 > 0;
+    const bool was_in_ball = internals_of(with.state).clear_ball.radius2 > 0;
     with.step(hip);
     without.step(hip);
     INFO(soup.name << ", seed " << seed << ", tick " << i << ": " << with.describe() << "; without: " << without.describe());
     REQUIRE(std::memcmp(&with.result, &without.result, sizeof with.result) == 0);
-    REQUIRE(without.state.clear_ball.radius2 == 0);
+    REQUIRE(internals_of(without.state).clear_ball.radius2 == 0);
     const bool is_free = with.result.state == FDCG_FREE;
-    if (!is_free) REQUIRE(with.state.clear_ball.radius2 == 0);
+    if (!is_free) REQUIRE(internals_of(with.state).clear_ball.radius2 == 0);
     if (!is_free) surface = with.god_object();
     tally.free += is_free;
     tally.touching += !is_free;
-    tally.in_ball += was_in_ball && with.state.clear_ball.radius2 > 0;
+    tally.in_ball += was_in_ball && internals_of(with.state).clear_ball.radius2 > 0;
   }
   return tally;
 }
@@ -122,8 +124,9 @@ TEST_CASE("no face reaches into a clear ball") {
         contact.step(radius * d.x, radius * d.y, radius * d.z);
         const Hip hip = {radius * d.x + step, radius * d.y, radius * d.z};
         contact.step(hip);
-        if (!(contact.state.clear_ball.radius2 > 0)) continue;
-        const double ball = std::sqrt(contact.state.clear_ball.radius2), surface = distance(closest_point(stored, hip), hip);
+        if (!(internals_of(contact.state).clear_ball.radius2 > 0)) continue;
+        const double ball = std::sqrt(internals_of(contact.state).clear_ball.radius2),
+                     surface = distance(closest_point(stored, hip), hip);
         ++balls;
         near_balls += ball > surface / 2;
         INFO(soup.name << ", f" << 8 * mesh.view().header->real_bytes << ", direction " << i);
@@ -143,18 +146,18 @@ TEST_CASE("copied and reset contacts are independent, with their clear ball") {
   Contact contact(mesh.view(), with_skips(0));
   contact.step(0.01, 0.02, 1.5);
   contact.step(0.01, 0.02, 1.499);
-  REQUIRE(contact.state.clear_ball.radius2 > 0);
+  REQUIRE(internals_of(contact.state).clear_ball.radius2 > 0);
   Contact copy = contact;
   copy.step(0.01, 0.02, 0.9);
   CHECK(copy.result.state != FDCG_FREE);
   contact.step(0.01, 0.02, 1.49);
   CHECK(contact.result.state == FDCG_FREE);
-  CHECK(contact.state.clear_ball.radius2 > 0);
+  CHECK(internals_of(contact.state).clear_ball.radius2 > 0);
   contact.step(NAN, 0, 0);
   CHECK(contact.result.flags == FDCG_RESULT_NON_FINITE);
   contact.state.started = 0;
   contact.step(0.01, 0.02, 0.5);  // starts inside
-  CHECK(contact.state.clear_ball.radius2 == 0);
+  CHECK(internals_of(contact.state).clear_ball.radius2 == 0);
   contact.step(0.01, 0.02, 1.5);
   contact.step(0.01, 0.02, 0.9);
   CHECK(contact.result.state != FDCG_FREE);

@@ -12,7 +12,9 @@
 #include "plain_graph.hpp"
 #include "random.hpp"
 #include "reference_walker.hpp"
+#include "step/contact_internals.hpp"
 
+using fdcg::internals_of;
 using namespace fdcg::test;
 using fdcg::bake::Precision;
 namespace bake = fdcg::bake;
@@ -55,8 +57,8 @@ fdcg_contact placed(std::uint32_t state, std::uint32_t feature, const Hip& god_o
   c.started = 1;
   c.state = state;
   c.feature = feature;
-  c.seat_state = FDCG_FREE;
-  c.seat_feature = FDCG_NONE;
+  internals_of(c).seat_state = FDCG_FREE;
+  internals_of(c).seat_feature = FDCG_NONE;
   return c;
 }
 
@@ -554,8 +556,8 @@ TEST_CASE("open corners: free beyond the border, in contact beneath the patch", 
     for (const auto& c : cases) {
       Contact contact(graph.view(), contact_params(mu, mu));
       contact.state = placed(FDCG_VERTEX, corner, {0.5, 0.5, 0}, {0.5, 0.5, -0.1});
-      contact.state.seat_state = FDCG_VERTEX;
-      contact.state.seat_feature = corner;
+      internals_of(contact.state).seat_state = FDCG_VERTEX;
+      internals_of(contact.state).seat_feature = corner;
       contact.step(c.hip);
       INFO("mu " << mu << ": " << contact.describe());
       CHECK(contact.result.state == c.state);

@@ -14,7 +14,9 @@
 #include "meshes.hpp"
 #include "plain_graph.hpp"
 #include "random.hpp"
+#include "step/contact_internals.hpp"
 
+using fdcg::internals_of;
 using namespace fdcg::test;
 using fdcg::bake::Precision;
 
@@ -326,7 +328,7 @@ TEST_CASE("the energy of both springs grows by at most the hand's work in each t
         const double gap = distance(contact.god_object(), at), yielded = distance(contact.god_object(), anchor);
         return contact.result.state == FDCG_FREE
                    ? 0.0
-                   : contact.state.stiffness_n_per_m / k * (k * gap * gap + kp * yielded * yielded) / 2;
+                   : internals_of(contact.state).stiffness_n_per_m / k * (k * gap * gap + kp * yielded * yielded) / 2;
       };
       double before = 0;
       int touched = 0;
@@ -395,10 +397,10 @@ TEST_CASE("friction terms with zero effect give the result of the step without t
     other.state.god_object[0] = one.state.god_object[0];  // two paths may part at a tie: each tick begins as one
     other.state.god_object[1] = one.state.god_object[1];
     other.state.god_object[2] = one.state.god_object[2];
-    const double slip = other.state.slip_m_per_s, stiffness = other.state.stiffness_n_per_m;
+    const double slip = internals_of(other.state).slip_m_per_s, stiffness = internals_of(other.state).stiffness_n_per_m;
     other.state = one.state;
-    other.state.slip_m_per_s = slip;
-    other.state.stiffness_n_per_m = stiffness;
+    internals_of(other.state).slip_m_per_s = slip;
+    internals_of(other.state).stiffness_n_per_m = stiffness;
   }
   CHECK(touched > 500);
 }

@@ -10,7 +10,9 @@
 #include "fdcg/scene.h"
 #include "materials_rig.hpp"
 #include "random.hpp"
+#include "step/contact_internals.hpp"
 
+using fdcg::internals_of;
 using namespace fdcg::test;
 namespace bake = fdcg::bake;
 
@@ -129,7 +131,7 @@ TEST_CASE("with any materials and terms, stored energy grows by at most the hand
         if (contact.result.state == FDCG_FREE) return 0.0;
         const Hip anchor = {contact.state.god_object[0], contact.state.god_object[1], contact.state.god_object[2]};
         const double gap = distance(contact.god_object(), at), yielded = distance(contact.god_object(), anchor);
-        const double k = gap > 0 ? norm(contact.force()) / gap : contact.state.stiffness_n_per_m;
+        const double k = gap > 0 ? norm(contact.force()) / gap : internals_of(contact.state).stiffness_n_per_m;
         double whole = k;  // of the material
         if ((terms & FDCG_FRICTION_PRESLIDING) != 0 && yielded > 0) {
           if (contact.result.state == FDCG_FACE) {
@@ -158,7 +160,7 @@ TEST_CASE("with any materials and terms, stored energy grows by at most the hand
         hip = walk.next(contact.god_object());
         const bool was_free = contact.result.state == FDCG_FREE;
         const Hip way = difference(hip, last_hip);
-        const double k = contact.state.stiffness_n_per_m;
+        const double k = internals_of(contact.state).stiffness_n_per_m;
         const double allowed = before - dot(contact.force(), way) + k * dot(way, way) / 2;
         contact.step(hip);
         const double now = stored(hip);

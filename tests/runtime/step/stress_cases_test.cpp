@@ -9,7 +9,9 @@
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "plain_graph.hpp"
+#include "step/contact_internals.hpp"
 
+using fdcg::internals_of;
 using namespace fdcg::test;
 using fdcg::bake::Precision;
 
@@ -161,7 +163,7 @@ TEST_CASE("a corner of 10,000 faces behaves like any other") {
     on_tip.state.started = 1;
     on_tip.state.state = FDCG_VERTEX;
     on_tip.state.feature = apex;
-    on_tip.state.seat_feature = FDCG_NONE;
+    internals_of(on_tip.state).seat_feature = FDCG_NONE;
     on_tip.state.god_object[2] = on_tip.state.hip[2] = 0.6;
     const Hip hip = {0.1 * std::cos(a), 0.1 * std::sin(a), 0.5};
     on_tip.step(hip);

@@ -7,7 +7,9 @@
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
+#include "step/contact_internals.hpp"
 
+using fdcg::internals_of;
 using namespace fdcg::test;
 using fdcg::bake::CompileOptions;
 using fdcg::bake::Precision;
@@ -36,13 +38,14 @@ Arrival arrive(const fdcg_graph& graph, const Hip& from, const Hip& to) {
     if ((contact.result.flags & FDCG_RESULT_SWEEP_BOUND) == 0) break;
     REQUIRE(contact.result.state == FDCG_FREE);
     REQUIRE(norm(contact.force()) == 0);
-    REQUIRE(contact.state.sweep.is_carried == 1);
+    REQUIRE(internals_of(contact.state).sweep.is_carried == 1);
     // The god-object stays where its way begins, unless that way is done and the next begins.
     const Hip stood = {before.god_object[0], before.god_object[1], before.god_object[2]};
     const bool is_same_way = distance(stood, contact.god_object()) == 0;
-    if (before.sweep.is_carried != 0 && is_same_way) REQUIRE(contact.state.sweep.next_leaf > before.sweep.next_leaf);
+    if (internals_of(before).sweep.is_carried != 0 && is_same_way)
+      REQUIRE(internals_of(contact.state).sweep.next_leaf > internals_of(before).sweep.next_leaf);
   } while (true);
-  REQUIRE(contact.state.sweep.is_carried == 0);
+  REQUIRE(internals_of(contact.state).sweep.is_carried == 0);
   REQUIRE(contact.state.sweep_bound_ticks == static_cast<std::uint64_t>(arrival.ticks - 1));
   arrival.result = contact.result;
   return arrival;
