@@ -141,10 +141,14 @@ inline constexpr Real kLaterEntry = Real(1) / 256;
 inline constexpr double kStickAgainShare = 1 - 0x1p-20;
 
 // FRIC-4: a slipping god-object so near to its circle stays: half a unit of its place, and the circle's own rounding.
+// `epsilon`: of the graph's numbers, where friction is computed in double.
 template <class Real>
-inline Real circle_rounding(Vec3<Real> god_object, Real gap) {
-  return RealLimits<Real>::kEpsilon * (norm1(god_object) / 2 + 4 * gap);
+inline Real circle_rounding(Vec3<Real> god_object, Real gap, Real epsilon = RealLimits<Real>::kEpsilon) {
+  return epsilon * (norm1(god_object) / 2 + 4 * gap);
 }
+
+// CURVE-2: a slip that the next step of Newton's changes by no more than this share of the gap is the solution.
+inline constexpr double kSlipSolved = 2 * RealLimits<double>::kEpsilon;
 
 // EDGE-4: in a groove the two faces together press harder than the distance from the edge says, by 1 / sin(opening / 2). At
 // most this factor is allowed: an opening of 0.11 degrees.

@@ -88,7 +88,6 @@ double FrictionTerms::fall(double speed, double stribeck) const {
 // Newton's steps, kept between bounds that hold the solution; should they ever be slow, every other step halves these.
 double FrictionTerms::solve(double gap, double reach, double from, double stribeck) const {
   constexpr int kPlainSteps = 8;
-  constexpr double kEnough = 2 * RealLimits<double>::kEpsilon;
   double low = 0, high = gap, s = larger(0, smaller(gap, gap - reach * mu(from, stribeck)));
   for (int step = 0; step < kMostSolveSteps; ++step) {
     const double speed = from + per_way * s;
@@ -97,7 +96,7 @@ double FrictionTerms::solve(double gap, double reach, double from, double stribe
     const double slope = 1 - reach * per_way * fall(speed, stribeck);
     double next = s + over / slope;
     if (!(next >= low && next <= high) || (step > kPlainSteps && step % 2 == 0)) next = low + (high - low) / 2;
-    const bool is_there = absolute(next - s) <= kEnough * gap;
+    const bool is_there = absolute(next - s) <= kSlipSolved * gap;
     s = next;
     if (is_there) break;
   }
@@ -132,7 +131,7 @@ TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, 
   bool is_rest = !*is_slipping;
   if (*is_slipping) {
     left = reach * mu(from + per_way * solve(gap, reach, from, stribeck), stribeck);
-    is_rest = gap <= left + epsilon * (norm1(god_object) / 2 + 4 * left);
+    is_rest = gap <= left + circle_rounding(god_object, left, epsilon);
   }
   if (has(FDCG_FRICTION_STRIBECK) && way > 0) *is_slipping = true;
   return {is_rest, left};

@@ -79,11 +79,6 @@ inline Decision go_to(Feature next) {
   return Decision::go_to(next);
 }
 
-template <class Real>
-inline Real edge_end_tolerance(Vec3<Real> start, Real length) {
-  return 8 * RealLimits<Real>::kEpsilon * (norm1(start) + length);
-}
-
 // A connection's line, and how near to an end the vertex is meant (contact-model FACE-6).
 template <class Real>
 struct EdgeLine : Edge<Real> {
