@@ -15,6 +15,7 @@
 #include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/quantum.hpp"
+#include "base/release.hpp"
 #include "base/vec3.hpp"
 #include "fdcg/format.h"
 #include "graph/classify.hpp"
@@ -68,8 +69,8 @@ double header_quantum(const PolygonSoup& soup, const Mesh& mesh) {
 // The node of each face of the soup: by way of the mesh, the triangles it was cut into, and the polygons they were merged into.
 std::vector<std::uint32_t> trace_sources(std::size_t source_faces, const std::vector<std::uint32_t>& source_face,
                                          const std::vector<std::uint32_t>& polygon,
-                                         const std::vector<std::uint32_t>& face_of_triangle) {
-  if (source_face.empty() && polygon.empty() && face_of_triangle.empty()) return {};
+                                         std::vector<std::uint32_t> face_of_triangle) {
+  if (source_face.empty() && polygon.empty()) return face_of_triangle;
   std::vector<std::uint32_t> face_of_source(source_faces, kNone);
   const std::size_t mesh_faces = source_face.empty() ? source_faces : source_face.size();
   const std::size_t triangles = polygon.empty() ? std::max(mesh_faces, face_of_triangle.size()) : polygon.size();
@@ -146,10 +147,17 @@ std::span<std::byte> allocate_in(std::vector<std::byte>& bytes, std::size_t coun
   return bytes;
 }
 
-// The bytes of a file from a mesh that has passed the checks.
+void free_geometry(PolygonSoup& soup) {
+  release(soup.points);
+  release(soup.corners);
+  if (soup.materials.empty()) release(soup.face_first);
+}
+
+// The bytes of a file from a mesh that has passed the checks. `spare` as compile_by has it.
 Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
-                                   unsigned jobs, Compiled& compiled) {
+                                   unsigned jobs, Compiled& compiled, PolygonSoup* spare) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
+  if (spare != nullptr) free_geometry(*spare);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
@@ -176,13 +184,14 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
     faces = merge_regions(std::move(cut.mesh), std::move(cut.topology), std::move(faces.edges), std::move(faces.regions), how);
     if (input.mass) input.mass->deviation = std::max(input.mass->deviation, faces.removed_distance);
   }
-  input.face_of_source = trace_sources(soup.face_count(), source_face, cut.polygon, faces.face_of_triangle);
+  input.face_of_source = trace_sources(input.source_face_count, source_face, cut.polygon, std::move(faces.face_of_triangle));
   compiled.merged_faces = count_sharing(input.face_of_source, faces.mesh.face_count());
   if (has_materials) {
     input.materials = soup.materials;
     input.material_of_face = material_of_faces(soup, faces, input.face_of_source);
   }
-  if (!options.without.contains("info")) input.info = info_json(soup, options, compiled);
+  if (!options.without.contains("info"))
+    input.info = info_json(soup, input.source_vertex_count, input.source_face_count, options, compiled);
   const Graph graph =
       order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
   if (std::string reason = out_of_range(graph, input); !reason.empty()) return Failure{3, soup.name + ": " + reason};
@@ -218,7 +227,7 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
   return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side;
 }
 
-Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair) {
+Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare) {
   if (std::string reason = check_options(options); !reason.empty()) return Failure{2, std::move(reason)};
   const unsigned jobs = resolve_jobs(options.jobs);
   const auto stage = [&](std::string_view name, double fraction) {
@@ -234,7 +243,7 @@ Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& optio
   if (options.repair && repair != nullptr) repair(soup, options, how, compiled, ready);
   if (!compiled.report.passes()) return compiled;
   stage("graph", 0.5);
-  const auto file = build(soup, std::move(ready.mesh), std::move(ready.topology), options, jobs, compiled);
+  const auto file = build(soup, std::move(ready.mesh), std::move(ready.topology), options, jobs, compiled, spare);
   if (!file) return file.error();
   if (options.allocate) compiled.placed = *file;
   stage("graph", 1);

@@ -11,7 +11,7 @@ namespace fdcg::bake {
 using RepairStage = void(const PolygonSoup& soup, const CompileOptions& options, const CheckOptions& how, Compiled& compiled,
                          Prepared& ready);
 
-// Null: options.repair does not count.
-Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair);
+// `repair` null: options.repair does not count. `spare`, the soup itself or null: what may be freed once it has served.
+Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare);
 
 }  // namespace fdcg::bake

@@ -79,7 +79,11 @@ void repair_first(const PolygonSoup& soup, const CompileOptions& options, const 
 }  // namespace
 
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options) {
-  return compile_by(soup, options, repair_first);
+  return compile_by(soup, options, repair_first, nullptr);
+}
+
+Result<Compiled> compile(PolygonSoup&& soup, const CompileOptions& options) {
+  return compile_by(soup, options, repair_first, &soup);
 }
 
 }  // namespace fdcg::bake

@@ -14,9 +14,10 @@ namespace fdcg::tools {
 
 void keep_large_arrays() {
 #if defined(__GLIBC__) && defined(__linux__)
+  mallopt(M_ARENA_MAX, 1);  // what one thread frees serves all
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-  mallopt(M_TOP_PAD, 64 << 20);
+  mallopt(M_TOP_PAD, 16 << 20);
   constexpr std::size_t kReach = std::size_t{512} << 20;  // of address space; memory is taken as it is used
   void* const heap = std::malloc(kReach);
   if (heap == nullptr) return;

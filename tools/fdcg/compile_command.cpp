@@ -101,7 +101,8 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
     size += (axis == 0 ? "" : " x ") + short_number((header.bounds_max[axis] - header.bounds_min[axis]) * scale);
   }
   const std::uint32_t* const types = header.connection_type_count;
-  std::string text = soup.name + ": " + counted(soup.points.size(), "point") + ", " + counted(soup.face_count(), "face") + "\n";
+  std::string text =
+      soup.name + ": " + counted(header.source_vertex_count, "point") + ", " + counted(header.source_face_count, "face") + "\n";
   text += "units: " + arguments.unit_text + ", so the object measures " + size + " m\n";
   const auto changed = [&text](std::uint64_t count, const std::string& what) {
     if (count != 0) text += counted(count, "face") + " " + what + "\n";
@@ -238,7 +239,7 @@ int compile_mesh(CompileArguments& arguments) {
   bake::ImportOptions import_options{arguments.input_format, {}};
   import_options.progress =
       arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
-  const auto soup = import_input(arguments.mesh, import_options);
+  auto soup = import_input(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
   for (const std::string& file : soup->other_files) {
@@ -252,7 +253,7 @@ int compile_mesh(CompileArguments& arguments) {
   out.expect(bake::likely_file_bytes(*soup, arguments.options));
   std::vector<std::byte> buffer;
   arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };
-  const auto compiled = bake::compile(*soup, arguments.options);
+  const auto compiled = bake::compile(std::move(*soup), arguments.options);
   bar.wipe();
   if (!out.ok()) return fail(kFile, out.error());
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);

@@ -143,7 +143,8 @@ fdcg_status compile_for_c(const Input& input, const fdcg_bake_options& given, fd
     std::memset(bytes, 0, count);
     return {static_cast<std::byte*>(bytes), count};
   };
-  const Result<Compiled> compiled = compile_by(soup_of(input, given.quantum), options, nullptr);
+  PolygonSoup soup = soup_of(input, given.quantum);
+  const Result<Compiled> compiled = compile_by(soup, options, nullptr, &soup);
   if (!has_memory)
     return refuse(error, FDCG_E_MEMORY, bytes == nullptr ? "allocate: there is no memory" : "allocate: not a multiple of 64");
   if (!compiled) return refuse(error, FDCG_E_ARGUMENT, compiled.error().message);

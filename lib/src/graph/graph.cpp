@@ -9,6 +9,7 @@
 
 #include "base/hilbert.hpp"
 #include "base/parallel.hpp"
+#include "base/release.hpp"
 #include "base/vec3.hpp"
 #include "exact/projection.hpp"
 
@@ -120,7 +121,7 @@ class Orderer {
       radix_sort(ranked, 3 * bits);
       std::vector<std::uint32_t> faces(ranked.size());
       std::transform(ranked.begin(), ranked.end(), faces.begin(), [](const Ranked& item) { return item.face; });
-      ranked = {};
+      release(ranked);
       graph_.fan_runs = gather_fans(mesh_, topology_, faces);
       place_nodes(faces);
     }
@@ -159,24 +160,30 @@ class Orderer {
     });
   }
 
-  void copy_sides() {
-    graph_.twin.resize(mesh_.corners.size());
-    graph_.corner.resize(mesh_.corners.size());
-    graph_.edges.resize(mesh_.corners.size());
-    parallel_for(jobs_, mesh_.corners.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t slot = begin; slot < end; ++slot) {
-        const std::uint32_t side = side_of_slot_[slot];
-        const HalfedgeId twin = topology_.twin[slot];
-        graph_.twin[side] = twin == Topology::kBoundary ? kNone : side_of_slot_[+twin];
-        graph_.corner[side] = +mesh_.corners[slot];
-        graph_.edges[side] = edges_[slot];
-      }
+  template <class Value, class OfSlot>
+  void copy_to_sides(std::vector<Value>& of_side, const OfSlot& of_slot) {
+    of_side.resize(side_of_slot_.size());
+    parallel_for(jobs_, side_of_slot_.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t slot = begin; slot < end; ++slot)
+        of_side[side_of_slot_[slot]] = of_slot(slot);
     });
-    side_of_slot_ = {};
+  }
+
+  // One array after the other, each freed at once: together they would be the most that a compilation holds.
+  void copy_sides() {
+    release(topology_.face_of);
+    release(mesh_.face_first);
+    regions_ = {};
+    copy_to_sides(graph_.twin, [&](std::size_t slot) {
+      const HalfedgeId twin = topology_.twin[slot];
+      return twin == Topology::kBoundary ? kNone : side_of_slot_[+twin];
+    });
     topology_ = {};
-    edges_ = {};
-    mesh_.corners = {};
-    mesh_.face_first = {};
+    copy_to_sides(graph_.corner, [&](std::size_t slot) { return +mesh_.corners[slot]; });
+    release(mesh_.corners);
+    copy_to_sides(graph_.edges, [&](std::size_t slot) { return edges_[slot]; });
+    release(edges_);
+    release(side_of_slot_);
   }
 
   // By first use; a boundary side always starts its corner's fan.
@@ -204,6 +211,7 @@ class Orderer {
     }
     for (FanRun& run : graph_.fan_runs)
       run.vertex = corner_of[run.vertex];
+    release(mesh_.points);
     fan.push_back(0);
     std::uint32_t sum = 0;
     for (std::uint32_t& entry : fan) {

@@ -98,13 +98,14 @@ Json physics_info(const StatedPhysics& physics) {
 
 }  // namespace
 
-std::string info_json(const PolygonSoup& soup, const CompileOptions& options, const Compiled& compiled) {
+std::string info_json(const PolygonSoup& soup, std::uint32_t vertices, std::uint32_t faces, const CompileOptions& options,
+                      const Compiled& compiled) {
   Json json;
   json["tool"] = "fdcg " FDCG_VERSION_STRING;
   json["source"] = {{"file_sha256", soup.sha256},
                     {"format", kFormats[static_cast<int>(soup.format)]},
-                    {"vertices", soup.points.size()},
-                    {"faces", soup.face_count()}};
+                    {"vertices", vertices},
+                    {"faces", faces}};
   json["options"] = options_json(options);
   const Report& report = compiled.report;
   json["verdict"] = report.passes() ? "pass" : "fail";

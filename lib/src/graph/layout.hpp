@@ -67,15 +67,20 @@ class Blocks {
     }
     offsets_.reserve(nodes);
     for (std::uint32_t n = 0; n < nodes; ++n) {
-      offsets_.push_back(bytes_);
+      offsets_.push_back(static_cast<std::uint32_t>(bytes_ / real_));
       bytes_ += size(sides(n));
     }
   }
   [[nodiscard]] std::uint32_t uniform_bytes() const { return uniform_; }  // 0: they differ
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  [[nodiscard]] std::uint64_t at(std::uint32_t n) const { return uniform_ != 0 ? n * std::uint64_t{uniform_} : offsets_[n]; }
+  [[nodiscard]] std::uint64_t at(std::uint32_t n) const {
+    return uniform_ != 0 ? n * std::uint64_t{uniform_} : offsets_[n] * std::uint64_t{real_};
+  }
+  [[nodiscard]] std::uint32_t sides_end(std::uint32_t sides) const {
+    return static_cast<std::uint32_t>(node_ + sides * sizeof(fdcg_side));
+  }
   [[nodiscard]] std::uint32_t planes_at(std::uint32_t sides) const {
-    return static_cast<std::uint32_t>((node_ + sides * sizeof(fdcg_side) + real_ - 1) / real_ * real_);
+    return static_cast<std::uint32_t>((sides_end(sides) + real_ - 1) / real_ * real_);
   }
 
  private:
@@ -94,7 +99,7 @@ class Blocks {
   std::size_t node_, real_, plane_;
   std::uint32_t uniform_ = 0;
   std::uint64_t bytes_ = 0;
-  std::vector<std::uint64_t> offsets_;
+  std::vector<std::uint32_t> offsets_;  // in numbers of real_ bytes, as the file has them: bytes() tells whether they fit
 };
 
 }  // namespace fdcg::bake

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/lazy_array.hpp"
+#include "base/release.hpp"
 #include "base/vec3.hpp"
 #include "graph/remove_vertices.hpp"
 
@@ -215,16 +216,32 @@ class Merger {
     previous_.set(after, slot);
   }
 
+  // values[slots[0]], values[slots[1]], ...; frees `values`.
+  template <class Value>
+  static std::vector<Value> moved_to(std::vector<Value>& values, const std::vector<std::uint32_t>& slots) {
+    std::vector<Value> result;
+    result.reserve(slots.size());
+    for (const std::uint32_t slot : slots)
+      result.push_back(values[slot]);
+    release(values);
+    return result;
+  }
+
   // The polygons as a mesh of their own, in the order of their first half-edges.
   void collect() {
+    previous_ = {};  // arrays are freed as soon as they have served: this is where a compilation needs the most memory
+    parent_ = {};
+    sides_ = {};
+    release(mesh_.face_first);
     std::vector<std::uint32_t> slot_now(mesh_.corners.size(), kNone);
     Mesh& mesh = out_.mesh;
     mesh.face_first.push_back(0);
-    face_of_loner_.assign(mesh_.face_count(), kNone);
+    const auto triangles = static_cast<std::uint32_t>(mesh_.corners.size() / 3);
+    face_of_loner_.assign(triangles, kNone);
     std::vector<std::uint32_t> source;  // slots, in their new order
     source.reserve(mesh_.corners.size());
-    mesh.face_first.reserve(mesh_.face_count() + 1);
-    out_.regions.of_face.reserve(mesh_.face_count());
+    mesh.face_first.reserve(triangles + 1);
+    out_.regions.of_face.reserve(triangles);
     for (std::uint32_t first = 0; first < slot_now.size(); ++first) {
       if (!is_alive(first / 3) || next_[first] == kNone || slot_now[first] != kNone) continue;
       std::uint32_t slot = first;
@@ -237,18 +254,20 @@ class Merger {
       out_.regions.of_face.push_back(region(first));
       mesh.face_first.push_back(static_cast<std::uint32_t>(source.size()));
     }
-    out_.topology.face_of.reserve(source.size());
-    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
-      out_.topology.face_of.insert(out_.topology.face_of.end(), mesh.face_first[f + 1] - mesh.face_first[f], FaceId{f});
-    mesh.corners.reserve(source.size());
+    next_ = {};
     out_.topology.twin.reserve(source.size());
-    out_.edges.reserve(source.size());
     for (const std::uint32_t slot : source) {
       const HalfedgeId twin = topology_.twin[slot];
-      mesh.corners.push_back(mesh_.corners[slot]);
       out_.topology.twin.push_back(twin == Topology::kBoundary ? twin : HalfedgeId{slot_now[+twin]});
-      out_.edges.push_back(edges_[slot]);
     }
+    topology_ = {};
+    release(slot_now);
+    mesh.corners = moved_to(mesh_.corners, source);
+    out_.edges = moved_to(edges_, source);
+    release(source);
+    out_.topology.face_of.reserve(mesh.corners.size());
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+      out_.topology.face_of.insert(out_.topology.face_of.end(), mesh.face_first[f + 1] - mesh.face_first[f], FaceId{f});
     mesh.points = std::move(mesh_.points);
     mesh.origin = mesh_.origin;
     mesh.source_point = std::move(mesh_.source_point);
@@ -335,9 +354,10 @@ void Merger::locate_triangles() {
   std::vector<std::uint32_t> last_found(regions_.list.size());
   for (std::size_t r = 0; r < last_found.size(); ++r)
     last_found[r] = faces[first[r]];
-  out_.face_of_triangle.resize(mesh_.face_count());
+  const auto triangles = static_cast<std::uint32_t>(face_of_loner_.size());
+  out_.face_of_triangle.resize(triangles);
   std::size_t of_regions = 0;  // triangles so far, as find_centres counted them
-  for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) {
+  for (std::uint32_t f = 0; f < triangles; ++f) {
     const std::uint32_t r = regions_.of_face[f];
     if (r == kNone) {
       out_.face_of_triangle[f] = face_of_loner_[f];

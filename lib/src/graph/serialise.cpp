@@ -20,6 +20,7 @@
 #include "graph/hierarchy.hpp"
 #include "graph/layout.hpp"
 #include "shared/derive.hpp"  // stored bits are those that the runtime derives
+#include "shared/face_plane.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -71,6 +72,7 @@ class Writer {
     plan();
     file_ = allocate(layout_.bytes());
     if (file_.empty()) return Failure{3, "no memory for a file of " + std::to_string(layout_.bytes()) + " bytes", {}};
+    clear_padding();
     node_blocks_ = layout_.records<std::byte>(file_, FDCG_SECTION_NODES);
     edges_ = layout_.records<typename Records::Edge>(file_, FDCG_SECTION_EDGES);
     connections_ = layout_.records<fdcg_connection>(file_, FDCG_SECTION_CONNECTIONS);
@@ -129,6 +131,15 @@ class Writer {
     layout_.place();
   }
 
+  // What lies between sections. Inside them every byte is written with its record.
+  void clear_padding() {
+    std::memset(file_.data(), 0, layout_.table_end());
+    for (const fdcg_section& section : layout_.sections()) {
+      const std::uint64_t bytes = section.record_bytes * section.record_count;
+      std::memset(file_.data() + section.offset + bytes, 0, padded(bytes) - bytes);
+    }
+  }
+
   void find_busy_corners() {
     for (std::uint32_t c = 0; c < graph_.corner_count(); ++c) {
       const std::uint32_t entries = graph_.first_fan[c + 1] - graph_.first_fan[c], boxes = fan_box_count(entries);
@@ -169,12 +180,20 @@ class Writer {
 
   [[nodiscard]] const Vec3& start(std::uint32_t side) const { return graph_.points[graph_.corner[side]]; }
 
+  [[nodiscard]] fdcg::Vec3<double> exact_corner(std::uint32_t side) const {
+    const Vec3& p = start(side);
+    return {p.x, p.y, p.z};
+  }
+
   // The plane as it is stored. For a face in no region the offset is computed for the rounded normal.
   [[nodiscard]] Plane plane_of(std::uint32_t node) const {
     const std::uint32_t region = graph_.region_of(node), first = graph_.first_side[node];
     if (region != kNone) return graph_.regions[region].plane;
-    const std::array<Vec3, 3> corners{start(first), start(first + 1), start(first + 2)};
-    return stored_plane(unit_normal(corners[0], corners[1], corners[2]), corners, input_.precision);
+    const fdcg::Vec3<double> a = exact_corner(first), b = exact_corner(first + 1), c = exact_corner(first + 2);
+    fdcg::Vec3<double> unit;
+    if (!quick_normal_of(a, b, c, &unit, Real{})) unit = unit_normal_of(a, b, c);
+    const fdcg::Plane<Real> plane = plane_with_normal<Real>(unit, a, b, c);
+    return {{plane.normal.x, plane.normal.y, plane.normal.z}, plane.offset};
   }
 
   void write_nodes() {
@@ -203,7 +222,9 @@ class Writer {
     record.flags = is_exact ? 0 : FDCG_NODE_INEXACT;
     auto* const block = reinterpret_cast<std::byte*>(&record);
     auto* const sides = reinterpret_cast<fdcg_side*>(block + offsetof(Node, sides));
-    auto* const planes = reinterpret_cast<StoredPlane*>(block + blocks_.planes_at(end - first));
+    const std::uint32_t sides_end = blocks_.sides_end(end - first), planes_at = blocks_.planes_at(end - first);
+    std::memset(block + sides_end, 0, planes_at - sides_end);
+    auto* const planes = reinterpret_cast<StoredPlane*>(block + planes_at);
     for (std::uint32_t side = first; side < end; ++side) {
       const std::uint32_t link = graph_.connection[side], twin = graph_.twin[side];
       sides[side - first] = {link, graph_.corner[side], twin == kNone ? FDCG_NONE : graph_.node(twin)};
@@ -255,6 +276,7 @@ class Writer {
 
   void write_corner(std::uint32_t c) {
     typename Records::Corner& corner = corners_[c];
+    corner = {};
     const Vec3& point = graph_.points[c];
     corner.point[0] = static_cast<Real>(point.x);
     corner.point[1] = static_cast<Real>(point.y);
@@ -266,11 +288,14 @@ class Writer {
     corner.fan = static_cast<std::uint8_t>((is_busy ? 0 : entries) | (is_open ? FDCG_CORNER_OPEN : 0));
     Vec3 sum;
     std::uint32_t side = first;
+    Vec3 along = leaving(side);
     for (std::uint32_t faces = entries - (is_open ? 1 : 0); faces > 0; --faces) {
       const std::uint32_t incoming = graph_.previous(side);
-      const double angle = angle_between(leaving(side), -leaving(incoming));
+      const Vec3 next_along = -leaving(incoming);  // the way in which the twin leaves
+      const double angle = angle_of({along.x, along.y, along.z}, {next_along.x, next_along.y, next_along.z});
       sum = sum + angle * normal_of(graph_.node(side));
       side = graph_.twin[incoming];
+      along = next_along;
     }
     const Vec3 normal = unit(sum);
     for (int k = 0; k < 3; ++k)
@@ -350,9 +375,16 @@ class Writer {
 
   // The direction in which a side leaves its corner.
   [[nodiscard]] Vec3 leaving(std::uint32_t side) const {
-    const fdcg::Vec3<Real> e = edge_of(side).direction;
-    const Vec3 along{e.x, e.y, e.z};
-    return (graph_.connection[side] & 1u) == 0 ? along : -along;
+    const std::uint32_t link = graph_.connection[side];
+    Vec3 along;
+    if (input_.with_planes) {
+      const Real(&e)[3] = edges_[link >> 1].direction;  // written with the nodes
+      along = {e[0], e[1], e[2]};
+    } else {
+      const fdcg::Vec3<Real> e = edge_of(side).direction;
+      along = {e.x, e.y, e.z};
+    }
+    return (link & 1u) == 0 ? along : -along;
   }
 
   void write_node_offsets() {

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "catch.hpp"
 #include "compiled.hpp"
@@ -168,6 +173,32 @@ TEST_CASE("INFO has source, options and verdict, but no path, time or threads") 
   CHECK(info["merged_faces"] == 12);
   CHECK(info.dump().find("secret") == std::string::npos);
   CHECK(!info["options"].contains("jobs"));
+}
+
+TEST_CASE("the bytes do not depend on what the memory held before, nor on whether the mesh may be consumed") {
+  CompileOptions derived, floats, bare;
+  derived.store_planes = false;
+  floats.precision = Precision::f32;
+  bare.without = {"hierarchy", "source-map", "info", "mass"};
+  std::vector<std::uint64_t> memory;
+  for (const PolygonSoup& soup : all_generated()) {
+    for (CompileOptions options : {CompileOptions{}, derived, floats, bare}) {
+      CAPTURE(soup.name);
+      const Compiled fresh = compile_whole(soup, options);
+      options.allocate = [&](std::size_t bytes) {
+        constexpr std::size_t kAlignment = 64;
+        memory.assign((bytes + kAlignment) / sizeof(std::uint64_t) + 1, 0xA5A5A5A5A5A5A5A5u);
+        void* start = memory.data();
+        std::size_t space = memory.size() * sizeof(std::uint64_t);
+        return std::span(static_cast<std::byte*>(std::align(kAlignment, bytes, start, space)), bytes);
+      };
+      PolygonSoup consumed = soup;
+      const auto again = compile(std::move(consumed), options);
+      REQUIRE(again.has_value());
+      CHECK(std::equal(fresh.bytes.begin(), fresh.bytes.end(), again->placed.begin(), again->placed.end()));
+      CHECK(consumed.points.capacity() == 0);  // NOLINT(bugprone-use-after-move): what the call says of it
+    }
+  }
 }
 
 TEST_CASE("the bytes do not depend on the number of threads") {

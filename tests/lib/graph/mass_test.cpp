@@ -321,6 +321,21 @@ TEST_CASE("coordinates that span hundreds of bits are summed exactly") {
   CHECK(mass_of(scaled(cube(), 1e50)).inertia_per_density_m5[0] == Approx(1e250 / 6).epsilon(kBar));
 }
 
+TEST_CASE("triangles with lower bits than others are summed as exactly") {
+  for (const double small : {0x1p-12, 0x1p-60, 0x1p-400}) {  // beside coordinates near one: on each of the three grids
+    PolygonSoup soup = triangulated(star_sphere(4, 0.3, 1), 1);
+    int moved_points = 0;
+    for (Vec3& p : soup.points) {
+      if (std::abs(p.y) > 0.05) continue;
+      p.y *= small;
+      ++moved_points;
+    }
+    CAPTURE(small);
+    REQUIRE(moved_points > 10);
+    check_close(mass_of(soup), by_rationals(soup), 1, 1e-15);
+  }
+}
+
 TEST_CASE("density and mass determine each other, and the given one is stored exactly") {
   bake::CompileOptions options;
   CHECK(mass_of(cube()).mass_kg == 0);
