@@ -16,6 +16,7 @@
 #include "topology/face_triangles.hpp"
 #include "validate/box_pairs.hpp"
 #include "validate/hub_boxes.hpp"
+#include "validate/simple_stars.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -95,6 +96,8 @@ class Search {
       const FaceId f = triangles_.face(t);
       if (geometry.is_finite(f) && !geometry.is_degenerate(f)) taking_part_.push_back(t);
     }
+    if (options.topology != nullptr && triangles_.is_plain())
+      is_simple_ = find_simple_stars(mesh, *options.topology, options.jobs);
   }
 
   SelfIntersections run() {
@@ -224,11 +227,17 @@ class Search {
       if (found.is_full() || is_over.load(std::memory_order_relaxed)) return false;
       const std::uint32_t s = triangles[i], t = triangles[j];
       const FaceId a = triangles_.face(s), b = triangles_.face(t);
-      if (a == b) return true;
+      if (a == b || (!is_simple_.empty() && share_simple_star(s, t))) return true;
       const Contact contact = judge(triangles_[s], triangles_[t]);
       if (contact != Contact::none) found.add(a, b, contact);
       return true;
     });
+  }
+  [[nodiscard]] bool share_simple_star(std::uint32_t s, std::uint32_t t) const {
+    const VertexId *const a = triangles_.corners(s), *const b = triangles_.corners(t);
+    for (std::size_t i = 0; i < 3; ++i)
+      if ((a[i] == b[0] || a[i] == b[1] || a[i] == b[2]) && is_simple_[+a[i]] != 0) return true;
+    return false;
   }
   [[nodiscard]] Contact judge(const ContactTriangle& s, const ContactTriangle& t) const {
     const auto is_corner_of_t = [&t](const Vec3* p) { return p == t.corner[0] || p == t.corner[1] || p == t.corner[2]; };
@@ -266,7 +275,8 @@ class Search {
   const Mesh& mesh_;
   const SelfIntersectionOptions& options_;
   FaceTriangles triangles_;
-  Numbers taking_part_;  // ascending; of cut polygons all
+  Numbers taking_part_;                  // ascending; of cut polygons all
+  std::vector<std::uint8_t> is_simple_;  // of each vertex, find_simple_stars(); empty: not asked
   bool is_filtered_ = true;
   Gathered all_;
 };

@@ -30,8 +30,9 @@ inline constexpr std::uint64_t kMostMeetingPairs = 1'000'000;
 
 struct SelfIntersectionOptions {
   std::size_t max_listed = kListedElements;
-  unsigned jobs = 1;  // threads; the outcome does not depend on it
-  Progress progress;  // called from one thread at a time
+  unsigned jobs = 1;                   // threads; the outcome does not depend on it
+  Progress progress;                   // called from one thread at a time
+  const Topology* topology = nullptr;  // of the mesh: with it neighbours are told apart sooner; the outcome is the same
 };
 
 // Faces that are degenerate or not finite are ignored. A polygon is tested as the triangulation that compile uses, whose

@@ -50,11 +50,19 @@ std::uint64_t setting(const char* name, std::uint64_t otherwise) {
 struct Subject {
   Mesh mesh;
   FaceGeometry geometry;
+  Topology topology;
   explicit Subject(const PolygonSoup& soup, Weld weld = {})
-      : mesh(weld_points(soup, weld, Precision::f64, 1)), geometry(mesh, face_states(mesh)) {}
+      : mesh(weld_points(soup, weld, Precision::f64, 1)), geometry(mesh, face_states(mesh)), topology(pair_halfedges(mesh)) {}
 
   [[nodiscard]] SelfIntersections found(unsigned jobs = 2) const {
-    return find_self_intersections(mesh, geometry, {kAllElements, jobs, {}});
+    const SelfIntersections plain = find_self_intersections(mesh, geometry, {kAllElements, jobs, {}});
+    SelfIntersections found = find_self_intersections(mesh, geometry, {kAllElements, jobs, {}, &topology});
+    const auto is_same = [](const MeetingFaces& p, const MeetingFaces& q) {
+      return p.a == q.a && p.b == q.b && p.contact == q.contact;
+    };
+    CHECK(std::equal(plain.listed.begin(), plain.listed.end(), found.listed.begin(), found.listed.end(), is_same));
+    CHECK(std::pair(plain.crossing, plain.touching) == std::pair(found.crossing, found.touching));
+    return found;
   }
   [[nodiscard]] bool takes_part(std::uint32_t f) const {
     return geometry.is_finite(FaceId{f}) && !geometry.is_degenerate(FaceId{f});

@@ -16,6 +16,7 @@
 #include "soups.hpp"
 #include "topology/topology.hpp"
 #include "topology/weld.hpp"
+#include "validate/simple_stars.hpp"
 
 using namespace fdcg::bake;
 using fdcg::test::bumpy_sphere;
@@ -33,10 +34,18 @@ using Contacts = std::map<Pair, Contact>;
 struct Subject {
   Mesh mesh;
   FaceGeometry geometry;
+  Topology topology;
   explicit Subject(const PolygonSoup& soup)
-      : mesh(weld_points(soup, {}, Precision::f64, 1)), geometry(mesh, face_states(mesh)) {}
+      : mesh(weld_points(soup, {}, Precision::f64, 1)), geometry(mesh, face_states(mesh)), topology(pair_halfedges(mesh)) {}
   [[nodiscard]] SelfIntersections found(std::size_t most = kAllElements, unsigned jobs = 2) const {
-    return find_self_intersections(mesh, geometry, {most, jobs, {}});
+    const SelfIntersections plain = find_self_intersections(mesh, geometry, {most, jobs, {}});
+    SelfIntersections found = find_self_intersections(mesh, geometry, {most, jobs, {}, &topology});
+    const auto is_same = [](const MeetingFaces& p, const MeetingFaces& q) {
+      return p.a == q.a && p.b == q.b && p.contact == q.contact;
+    };
+    CHECK(std::equal(plain.listed.begin(), plain.listed.end(), found.listed.begin(), found.listed.end(), is_same));
+    CHECK(std::pair(plain.crossing, plain.touching) == std::pair(found.crossing, found.touching));
+    return found;
   }
 };
 
@@ -62,6 +71,22 @@ Contacts contacts_one_by_one(const Subject& subject) {
     }
   }
   return contacts;
+}
+
+// Triangles all around the first point, `turns` times, with a brim of uneven height; far ones hide nothing.
+PolygonSoup fan_around(std::uint32_t count, int turns, double height, Random& random) {
+  std::vector<Vec3> points{{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}};
+  const Vec3 u = random.direction(), w = random.direction();
+  const Vec3 v{u.y * w.z - u.z * w.y, u.z * w.x - u.x * w.z, u.x * w.y - u.y * w.x};
+  Faces faces;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double angle = 6.283185307179586 * turns * (i + random.uniform(-0.3, 0.3)) / count, r = random.uniform(0.3, 1);
+    const double x = r * std::cos(angle), y = r * std::sin(angle), z = height * random.uniform(-1, 1);
+    points.push_back({points[0].x + x * u.x + y * v.x + z * w.x, points[0].y + x * u.y + y * v.y + z * w.y,
+                      points[0].z + x * u.z + y * v.z + z * w.z});
+    faces.push_back({0, 1 + i, 1 + (i + 1) % count});
+  }
+  return make_soup(points, faces);
 }
 
 // An axis-parallel rectangle between whole coordinates: what it has in common with another needs no geometry.
@@ -273,5 +298,34 @@ TEST_CASE("self-intersection: outliers and distant parts make the search neither
     const SelfIntersections found = subject.found();
     CHECK(found.crossing + found.touching >= (far < 1e20 ? 27u : 9u));
     CHECK(std::clock() - start < 20 * CLOCKS_PER_SEC);
+  }
+}
+
+TEST_CASE("faces around a vertex meet as pairs of them do, however often they turn around it") {
+  Random random(11);
+  std::size_t with_none = 0, with_some = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const std::uint32_t count = 3 + random.below(16);
+    const int turns = 1 + static_cast<int>(random.below(3));
+    const double heights[] = {0, 1e-17, 1e-9, 0.1, 1, 5};
+    CAPTURE(round, count, turns);
+    const Subject subject(fan_around(count, turns, heights[random.below(6)], random));
+    const Contacts found = contacts_of(subject.found());
+    CHECK(found == contacts_one_by_one(subject));
+    ++(found.empty() ? with_none : with_some);
+  }
+  CHECK(with_none > 300);
+  CHECK(with_some > 300);
+}
+
+TEST_CASE("a vertex is decided where its faces lie around it once, and not where they lie so twice or fold") {
+  const auto simple_at_first = [](const PolygonSoup& soup) {
+    const Subject subject(soup);
+    return find_simple_stars(subject.mesh, subject.topology, 1).front() != 0;
+  };
+  Random random(3);
+  for (int round = 0; round < 200; ++round) {
+    CHECK(simple_at_first(fan_around(8, 1, 0.05, random)));
+    CHECK(!simple_at_first(fan_around(12, 2, 0.05, random)));
   }
 }
