@@ -23,6 +23,7 @@ void Stability::begin(const StabilitySetup& setup, const DeviceLimits& limits, d
   setup_ = setup;
   period_s_ = rate_hz > 0 ? 1 / rate_hz : 0;
   limits_ = limits;
+  bounces_.begin(period_s_);
 }
 
 void Stability::reset() {
@@ -31,6 +32,7 @@ void Stability::reset() {
   fresh.limits_ = limits_;
   fresh.period_s_ = period_s_;
   fresh.heat_n2_ = heat_n2_;
+  fresh.bounces_.begin(period_s_);
   *this = fresh;
 }
 
@@ -39,6 +41,7 @@ void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double s
   if (!is_finite(tip_m) || !is_finite(force_n)) return;  // the gate's to disarm for
   const double seconds = has_last_ && now_ns > last_ns_ ? static_cast<double>(now_ns - last_ns_) * 1e-9 : 0;
   std::copy_n(sent_n, 3, sent_n_[sent_count_++ % kSent]);
+  const bool is_thrown = bounces_.step(tip_m, now_ns, force_n, share_ < 1 ? kCalmedBounces : kBounces);
   double way_m[3] = {};
   for (int i = 0; has_last_ && i < 3; ++i)
     way_m[i] = tip_m[i] - last_m_[i];
@@ -51,6 +54,7 @@ void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double s
   if (rubs || seconds > kGapPeriods * period_s_) forget_swings();  // in a gap what moved was not seen
   damping_n_s_per_m_ = 0;
   if (setup_.has_passivity && has_last_) damp(way_m, seconds, force_n);
+  if (is_thrown && setup_.has_calming && setup_.has_passivity) calm(bounces_.since_ns(), now_ns);
   if (setup_.has_calming) look_for_shaking(force_n, tip_m, now_ns);
   if (limits_.continuous_force_n > 0) cool(sent_n, seconds, force_n);
   std::copy_n(tip_m, 3, last_m_);
@@ -114,13 +118,14 @@ bool Stability::is_shaking(const Axis& axis) {
 void Stability::look_for_shaking(const double force_n[3], const double tip_m[3], std::uint64_t now_ns) {
   const double length = std::sqrt(square(force_n)), felt = length > limits_.force_n ? limits_.force_n / length : 1;
   for (int i = 0; i < 3; ++i)
-    if (has_reversed(axes_[i], felt * force_n[i], tip_m, now_ns) && is_shaking(axes_[i])) return calm(axes_[i], now_ns);
+    if (has_reversed(axes_[i], felt * force_n[i], tip_m, now_ns) && is_shaking(axes_[i]))
+      return calm(axes_[i].since_ns, now_ns);
 }
 
 // The count of swings begins anew, the time of shaking only where the last calming had ended it.
-void Stability::calm(const Axis& axis, std::uint64_t now_ns) {
+void Stability::calm(std::uint64_t since_ns, std::uint64_t now_ns) {
   const bool is_new = calmings_ == 0 || static_cast<double>(now_ns - last_calmed_ns_) * 1e-9 > 2 * kShakeS;
-  if (is_new) shakes_since_ns_ = axis.since_ns;
+  if (is_new) shakes_since_ns_ = since_ns;
   last_calmed_ns_ = now_ns;
   shakes_ = calmings_ == kMostCalmings || static_cast<double>(now_ns - shakes_since_ns_) * 1e-9 > kLongestShakeS;
   ++calmings_;

@@ -11,13 +11,15 @@
 //                old as the link's round trip.
 //   calming      Force that goes to and fro faster than a hand can, in place, without fading and without rubbing: all
 //                forces of the scene are cut to a tenth, for as long as the device is armed. Where that does not end it, the
-//                gate disarms.
+//                gate disarms. The same for bounces that feed themselves (bounce_watch.hpp), where passivity is on too: what
+//                moves by itself may throw a hand.
 //   heat         The mean square of the force, with the motors' time constant, stays below the square of the continuous force.
 #pragma once
 
 #include <cstdint>
 
 #include "profile/profile.hpp"
+#include "tick/bounce_watch.hpp"
 
 namespace fdcg::dev {
 
@@ -76,7 +78,7 @@ class Stability {
   bool has_reversed(Axis& axis, double force_n, const double tip_m[3], std::uint64_t now_ns) const;
   static bool is_shaking(const Axis& axis);
   void forget_swings();
-  void calm(const Axis& axis, std::uint64_t now_ns);
+  void calm(std::uint64_t since_ns, std::uint64_t now_ns);
   void damp(const double way_m[3], double seconds, double force_n[3]);
   void cool(const double sent_n[3], double seconds, double force_n[3]);
 
@@ -93,6 +95,7 @@ class Stability {
   int calmings_ = 0;
   std::uint64_t shakes_since_ns_ = 0, last_calmed_ns_ = 0;  // of the shaking that was calmed last
   Axis axes_[3];
+  BounceWatch bounces_;
   double heat_n2_ = 0;  // mean square of the force; kept by reset: motors stay hot
 };
 
