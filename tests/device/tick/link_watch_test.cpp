@@ -106,6 +106,24 @@ TEST_CASE("link: a constant lag is seen before there is force") {
   }
 }
 
+TEST_CASE("link: a lag that begins while there is force is a fault within sixteen outputs") {
+  for (const int lag : {5, 8, 15, 30}) {
+    Rig rig;
+    rig.run(200);
+    REQUIRE(rig.fault() == Fault::kNone);
+    rig.lag = lag;
+    int ticks = 0;
+    for (; rig.fault() == Fault::kNone && ticks < 100; ++ticks)
+      rig.tick();
+    CHECK(rig.fault() == (lag > 10 ? Fault::kNotTaken : Fault::kLag));
+    CHECK(ticks <= (lag > 10 ? 11 : 16 + lag));
+    CHECK(rig.watch.fault(rig.now_ns, false) == Fault::kNone);
+    rig.lag = 1;
+    rig.run(20);
+    CHECK(rig.fault() == Fault::kNone);
+  }
+}
+
 TEST_CASE("link: jitter of the reports is not taken for lag") {
   std::mt19937_64 random(4);
   Rig rig;

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 
+#include "base/time.hpp"
+
 namespace fdcg::dev {
 namespace {
 
 constexpr std::uint32_t kUnheard = 64;  // outputs that may have been taken before the servo thread hears of the write
 constexpr double kFewest = 4;           // reports that kCountedS must hold at the profile's rate to be judged
-
-double seconds(std::uint64_t from_ns, std::uint64_t to_ns) {
-  return to_ns > from_ns ? static_cast<double>(to_ns - from_ns) * 1e-9 : 0;
-}
 
 std::uint64_t slot_of(std::uint64_t now_ns, int slots) {
   return now_ns / static_cast<std::uint64_t>(kCountedS * 1e9 / slots);
@@ -135,6 +133,7 @@ bool LinkWatch::is_sparse(std::uint64_t now_ns) const {
 Fault LinkWatch::fault(std::uint64_t now_ns, bool wants_force) const {
   if (foreign_ns_ != 0 && seconds(foreign_ns_, now_ns) < kOtherHostS) return Fault::kOtherHost;
   if (wants_force && is_untaken()) return Fault::kNotTaken;
+  if (wants_force && trip_count_ >= kTrips && lags()) return Fault::kLag;
   return wants_force && is_sparse(now_ns) ? Fault::kReportsLost : Fault::kNone;
 }
 

@@ -18,7 +18,7 @@ inline constexpr double kTakenS = 0.010;            // an output that is not ech
 inline constexpr double kOtherHostS = 0.5;          // for so long a foreign echo is held against the device
 inline constexpr double kCountedS = 0.1;            // the time in which reports are counted ...
 inline constexpr double kLeastShare = 0.6;          // ... and the share of the profile's rate that must arrive in it
-inline constexpr double kMostRoundTripS = 0.004;    // to arm: from a write to its echo, in the quickest of the last 16 ...
+inline constexpr double kMostRoundTripS = 0.004;    // from a write to its echo, in the quickest of the last 16 ...
 inline constexpr double kMostRoundTripPeriods = 4;  // ... or so many periods, where those are longer
 
 // An output report that the device has been handed.
@@ -40,7 +40,7 @@ class LinkWatch {
   void note_report(const Sample& sample, std::uint64_t host_ns);
   // After the reports of a tick. wants_force: armed, or asked to arm.
   Fault fault(std::uint64_t now_ns, bool wants_force) const;
-  // Too slow for force to be given: what arming waits for.
+  // Too slow for force to be given: what arming waits for, and of kTrips in a row a fault.
   bool lags() const;
   // From the write to the echo of the newest output that has come back; 0: not known.
   double round_trip_s() const { return round_trip_s_; }
