@@ -534,6 +534,8 @@ class Check(ServoCase):
             done = self.servo("check", self.scene(name, **changes), code=1)
             for word in words:
                 self.assertIn(word, done.stdout.decode())
+        for name, word in (("g.json", "finds the same device as that of 'a'"), ("h.json", "path is that of device 'a' too")):
+            self.assert_one_line(self.servo("run", self.path(name), code=3), name, word)  # one node twice
 
     def test_a_rate_at_which_nothing_stays_armed_is_a_warning_that_says_which_does(self):
         profile = json.loads((ROOT / "runtime/device/profiles/fdcg-reference.json").read_text())

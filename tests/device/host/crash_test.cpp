@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <functional>
 #include <thread>
 
@@ -43,7 +44,8 @@ void crash_with_force(int descriptor, const std::function<void()>& crash) try {
     signal(one, SIG_DFL);  // the test framework has its own
   stack_t none{};
   none.ss_flags = SS_DISABLE;
-  sigaltstack(&none, nullptr);  // and a stack
+  sigaltstack(&none, nullptr);    // and a stack
+  std::atexit([] { _exit(7); });  // after the handlers': what follows is the test framework's
   const rlimit no_core{};
   setrlimit(RLIMIT_CORE, &no_core);
   Hosted hosted;
@@ -79,11 +81,7 @@ std::vector<std::uint8_t> reports_after_crash(const std::function<void()>& crash
 }
 
 // Zero force, twice where the writer was sending meanwhile, then the safe stop.
-void check_reports_after_crash(const std::function<void()>& crash, int number) {
-  int status = 0;
-  const std::vector<std::uint8_t> data = reports_after_crash(crash, &status);
-  CHECK(WIFSIGNALED(status));
-  CHECK(WTERMSIG(status) == number);
+void check_reports(const std::vector<std::uint8_t>& data) {
   const Profile profile = fake_profile();
   const auto bytes = static_cast<std::size_t>(profile.output.bytes), stop_bytes = std::size_t{profile.safe_stop[0].bytes};
   // before them one for each time that the writer of a busy machine was not run for 5 ms
@@ -101,11 +99,28 @@ void check_reports_after_crash(const std::function<void()>& crash, int number) {
   CHECK(data[data.size() - stop_bytes] == 9);
 }
 
+void check_reports_after_crash(const std::function<void()>& crash, int number) {
+  int status = 0;
+  check_reports(reports_after_crash(crash, &status));
+  CHECK(WIFSIGNALED(status));
+  CHECK(WTERMSIG(status) == number);
+}
+
 }  // namespace
 
 TEST_CASE("crash handler: sends zero force and the safe stop, then the process ends by its signal") {
   for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGUSR1})
     check_reports_after_crash([crash] { raise(crash); }, crash);
+}
+
+TEST_CASE("crash handler: who calls exit() with a device open leaves zero force and the safe stop") {
+  for (const bool is_of_main : {true, false}) {
+    int status = 0;
+    check_reports(
+        reports_after_crash([is_of_main] { is_of_main ? std::exit(1) : std::thread([] { std::exit(1); }).join(); }, &status));
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 7);
+  }
 }
 
 TEST_CASE("crash handler: stack overflow and simultaneous crashes leave zero force") {

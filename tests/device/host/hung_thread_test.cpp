@@ -74,6 +74,8 @@ TEST_CASE("host: a servo thread that hangs leaves no force, and comes back disar
       CHECK(within_ms(1000, [&] { return hosted.device().force_n == 0; }));
       sleep_ms(30);
       CHECK(hosted.device().force_n == 0);
+      CHECK(within_ms(1000, [&] { return hosted.phase() == Phase::kDisarmed; }));  // as it is told
+      CHECK(hosted.fault() == Fault::kHostLate);
     }
     CHECK(within_ms(1000, [&] { return hosted.phase() == Phase::kDisarmed; }));
     CHECK(hosted.fault() == Fault::kHostLate);

@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <iterator>
 
 #ifdef __linux__
 #include <linux/hidraw.h>
@@ -98,6 +100,16 @@ void on_fatal_signal(int signal) {
   raise(signal);
 }
 
+// A plugin, or a library, has called exit() with devices open; a host that was stopped has none left.
+void on_exit() {
+  const bool is_open = std::any_of(std::begin(exits), std::end(exits), [](const auto& slot) { return slot.load() != nullptr; });
+  EmergencyState expected = EmergencyState::kIdle;
+  if (!is_open || !emergency_state.compare_exchange_strong(expected, EmergencyState::kSending)) return;
+  send_emergency_zeros();
+  if (void (*const act)() = last_act.load(); act != nullptr) act();
+  emergency_state.store(EmergencyState::kSent);
+}
+
 void install(int signal, bool is_crash) {
   struct sigaction& before = handled_before[signal];
   if (sigaction(signal, nullptr, &before) != 0) return;  // the system's own
@@ -181,6 +193,7 @@ void install_crash_handlers() {
   static std::atomic<bool> is_installed{false};
   if (is_installed.exchange(true)) return;
   give_handler_stack();
+  std::atexit(on_exit);
   for (const int signal : kCrashSignals)
     install(signal, true);
   for (const int signal : kEndings)

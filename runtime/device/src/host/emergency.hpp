@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Zero force when a signal ends the process: a crash (crash_signals.hpp, and std::terminate, which aborts), or a signal whose
-// default action is termination. For each open device the writer is muted, then a report of zero force and the profile's
-// safe-stop reports are sent, by write(2) on a file descriptor that was opened beforehand, or by a call of the transport's own
-// (serial lines, plugins); then the process ends by its signal.
+// default action is termination; and when somebody calls exit() while devices are open. For each open device the writer is
+// muted, then a report of zero force and the profile's safe-stop reports are sent, by write(2) on a file descriptor that was
+// opened beforehand, or by a call of the transport's own (serial lines, plugins); then the process ends as it would have.
 // hidapi does not expose its descriptor; hidraw can be opened a second time, libusb cannot: there, and after kill -9, only the
 // device's watchdog removes the force, which is why a device without one gets little force (gate.hpp). A device that takes no
 // output may delay the end of the process by 5 s per report.

@@ -38,6 +38,7 @@ struct Unit {
   // The latest status from the threads.
   DeviceStatus status;
   WriterStatus writes;
+  bool is_left = false;  // its servo thread has not ended
 };
 
 // A scene and the devices that feel it: one servo thread.
@@ -332,7 +333,10 @@ DeviceStatus Host::status(int device) {
   if (device < 0 || device >= device_count()) return DeviceStatus();
   Unit& unit = *impl_->shared->units[static_cast<std::size_t>(device)];
   impl_->read_status(unit);
-  return unit.status;
+  DeviceStatus status = unit.status;
+  if (impl_->is_running || unit.is_left)
+    tell_standstill(static_cast<double>(monotonic_ns() - impl_->shared->start_ns) * 1e-9, &status);
+  return status;
 }
 
 ConnectionReport Host::connection(int device) {
@@ -411,6 +415,7 @@ std::string Host::Impl::end_threads() {
     unit.link.close();
     unit.emergency.descriptor.store(-1);
     unit.emergency.call.store(nullptr);
+    unit.is_left = !has_servo_ended;
     const bool has_ended = has_writer_ended && has_servo_ended && has_supervisor_ended;
     if (has_ended) unit.transport->close();
     if (has_ended && unit.writer.has_left_zero()) continue;

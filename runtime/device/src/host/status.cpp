@@ -54,4 +54,14 @@ std::uint64_t TimeHistogram::quantile(double share) const {
   return largest_ns;
 }
 
+void tell_standstill(double now_s, DeviceStatus* status) {
+  if (now_s - status->elapsed_s < kStandstillS) return;
+  if (status->last.phase != Phase::kDisarmed) {
+    status->last.fault = Fault::kHostLate;
+    ++status->counters.disarmed[static_cast<int>(Fault::kHostLate)];
+  }
+  status->last.phase = Phase::kDisarmed;
+  status->last.force = GatedForce();
+}
+
 }  // namespace fdcg::dev

@@ -21,4 +21,9 @@ struct DeviceStatus {
   TimeHistogram round_trip;             // from the write of an output to its echo
 };
 
+// A servo thread that hangs says nothing any more. What a status of so long ago stands for now_s after the start: no force,
+// since the writer sends zero by itself, and disarmed as it will be when the thread comes back.
+inline constexpr double kStandstillS = 0.25;
+void tell_standstill(double now_s, DeviceStatus* status);
+
 }  // namespace fdcg::dev

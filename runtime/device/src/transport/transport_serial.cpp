@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A device on a serial line: its profile's reports in frames, or as lines of text (serial_frames.hpp). One descriptor: reads
-// and writes of a terminal do not hinder each other.
+// and writes of a terminal do not hinder each other. By termios: libserialport does not open a pseudo-terminal, which is what
+// firmware on a computer, and the tests, stand behind.
 #include <fcntl.h>
 #include <poll.h>
 #include <termios.h>
