@@ -13,38 +13,99 @@ namespace fdcg {
 namespace {
 
 // Its passes are functions of their own: inlined into one, they would take longer for want of registers. They may follow any
-// index: SAFE has found all of them in range.
+// index: SAFE has found all of them in range. Nodes come before corners, in order: so the walks find most of theirs in the
+// cache.
 template <class Real>
 class FullChunk {
  public:
   FullChunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error)
-      : graph_(graph), header_(*graph.header), raw_(graph), chunk_(chunk), part_(part), error_(error) {}
+      : graph_(graph), header_(*graph.header), raw_(graph), chunk_(chunk), part_(part), error_(error) {
+    are_triangles_ = header_.node_bytes != 0 && header_.side_count == header_.node_count * uint64_t{kSides};
+  }
 
   fdcg_status run() {
     fdcg_status status = raw_.hierarchy != nullptr ? hierarchy() : FDCG_OK;
-    if (status == FDCG_OK) status = raw_.hierarchy != nullptr ? nodes_in_boxes() : FDCG_OK;
-    if (status == FDCG_OK) status = connections();
-    if (status == FDCG_OK) status = corners();
-    return status;
+    if (status == FDCG_OK && !(are_triangles_ && are_sound_triangles())) status = nodes();
+    return status == FDCG_OK ? corners() : status;
   }
 
  private:
   using Node = NodeRef<RigidGeometry<Real>>;
+  static constexpr uint32_t kSides = 3;  // of a triangle
 
   template <class Look>
   fdcg_status for_mine(uint64_t things, const char* noun, Look look) {
     return for_all(chunk_.first_of(things), chunk_.end_of(things), noun, error_, look);
   }
 
-  [[gnu::noinline]] fdcg_status connections() {
-    return for_mine(header_.connection_count, "connection", [&](uint32_t c, auto* faults) {
-      const fdcg_connection& connection = graph_.connections()[c];
-      const Node node = graph_.node(connection.node);
-      const uint32_t k = connection.side[0], across = node.across(k);
-      faults->note(node.corner(k) == node.corner(node.next(k)), "both its corners are one");
-      faults->note(across <= connection.node, "its second node does not come after its first");
-      faults->note((across == FDCG_NONE) & (connection.side[1] != 0), "side of a missing node");
+  // A leaf's box, in tree units; without a hierarchy all of space. No rounding: a float of at most 24 bits and eight bits of
+  // cells.
+  struct LeafBox {
+    double low[3], high[3];
+  };
+  LeafBox box_of(uint32_t leaf) const {
+    LeafBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = -DBL_MAX, box.high[axis] = DBL_MAX;
+      if (raw_.hierarchy == nullptr) continue;
+      const fdcg_box8& boxes = raw_.hierarchy[first_leaf_record_ + leaf / FDCG_TREE_WAYS];
+      box.low[axis] = low_of(boxes, axis, leaf % FDCG_TREE_WAYS);
+      box.high[axis] = high_of(boxes, axis, leaf % FDCG_TREE_WAYS);
+    }
+    return box;
+  }
+
+  // Of each node: the leaf's box holds its corners. Of each connection, in the node that it runs along: two corners, the second
+  // node after the first.
+  [[gnu::noinline]] fdcg_status nodes() {
+    uint32_t leaf = FDCG_NONE;
+    LeafBox box = {};
+    return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
+      if (n / FDCG_LEAF_NODES != leaf) box = box_of(leaf = n / FDCG_LEAF_NODES);
+      const Node node = graph_.node(n);
+      bool is_inside = true;
+      for (uint32_t k = 0; k < node.side_count(); ++k) {
+        const Vec3<double> p = widen(graph_.corner_point(node.corner(k))) * per_unit_;
+        is_inside &= (box.low[0] <= p.x) & (p.x <= box.high[0]) & (box.low[1] <= p.y) & (p.y <= box.high[1]) &
+                     (box.low[2] <= p.z) & (p.z <= box.high[2]);
+        faults->note(node.corner(k) == node.corner(node.next(k)), "both corners of a side are one");
+        const uint32_t across = node.across(k);
+        faults->note((node.which(k) == 0) & (across <= n), "the second node of a connection does not come after its first");
+        faults->note(across == FDCG_NONE && graph_.connections()[node.connection(k)].side[1] != 0, "side of a missing node");
+      }
+      faults->note(!is_inside, "sticks out of its box");
     });
+  }
+
+  // The same of triangles of one size, a leaf at a time. False: something is wrong, and nodes() is to say what.
+  [[gnu::noinline]] bool are_sound_triangles() const {
+    const uint64_t end = chunk_.end_of(header_.node_count);
+    const size_t bytes = graph_.block_bytes();
+    bool is_wrong = false;
+    for (uint64_t n = chunk_.first_of(header_.node_count); n < end;) {
+      const auto leaf = static_cast<uint32_t>(n / FDCG_LEAF_NODES);
+      const uint64_t leaf_end = (uint64_t{leaf} + 1) * FDCG_LEAF_NODES, last = leaf_end < end ? leaf_end : end;
+      Vec3<Real> low = graph_.corner_point(sides_of(n, bytes)[0].corner), high = low;
+      for (; n < last; ++n) {
+        const fdcg_side* const sides = sides_of(n, bytes);
+        for (uint32_t k = 0; k < kSides; ++k) {
+          const Vec3<Real> p = graph_.corner_point(sides[k].corner);
+          low = {p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y, p.z < low.z ? p.z : low.z};
+          high = {p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y, p.z > high.z ? p.z : high.z};
+          is_wrong |= (sides[k].corner == sides[k + 1 < kSides ? k + 1 : 0].corner) |
+                      (((sides[k].link & 1) == 0) & (sides[k].across <= n));
+          if (sides[k].across == FDCG_NONE) is_wrong |= graph_.connections()[sides[k].link >> 1].side[1] != 0;
+        }
+      }
+      const LeafBox box = box_of(leaf);
+      const Vec3<double> l = widen(low) * per_unit_, h = widen(high) * per_unit_;
+      is_wrong |= !((box.low[0] <= l.x) & (h.x <= box.high[0]) & (box.low[1] <= l.y) & (h.y <= box.high[1]) &
+                    (box.low[2] <= l.z) & (h.z <= box.high[2]));
+    }
+    return !is_wrong;
+  }
+  const fdcg_side* sides_of(uint64_t n, size_t block_bytes) const {
+    return reinterpret_cast<const typename Records<Real>::Node*>(graph_.nodes() + n * block_bytes)->sides;
   }
 
   // Around an ordinary corner, as the step will go.
@@ -71,7 +132,11 @@ class FullChunk {
         }
         if (what != nullptr) return refuse_record(error_, "corner", v, what);
       }
-      walk_all(walks, count);
+      if (are_triangles_) {
+        walk_all<true>(walks, count);
+      } else {
+        walk_all<false>(walks, count);
+      }
       for (uint32_t i = 0; i < count; ++i) {
         const auto corner = graph_.corner(walks[i].corner);
         const bool is_right = walks[i].is_done && !walks[i].is_wrong && walks[i].is_open == corner.is_open() &&
@@ -93,21 +158,35 @@ class FullChunk {
     return nullptr;
   }
 
+  template <bool kAreTriangles>
+  const fdcg_side* sides_of(uint32_t n) const {
+    if constexpr (kAreTriangles) return sides_of(n, graph_.block_bytes());
+    return &graph_.node(n).side(0);
+  }
+  // The side that comes in to where side k starts.
+  template <bool kAreTriangles>
+  uint32_t before(uint32_t n, uint32_t k) const {
+    if constexpr (kAreTriangles) return 0x010002u >> (8 * k) & 0xFF;  // 2, 0, 1: a branch could not be predicted
+    return graph_.node(n).previous(k);
+  }
+
   // From side to side: back to the start, or to the border.
+  template <bool kAreTriangles>
   [[gnu::noinline]] void walk_all(FanWalk* walks, uint32_t count) const {
     uint32_t walking = count;
     for (uint32_t step = 0; walking > 0 && step < FDCG_BUSY_FAN; ++step) {
       for (uint32_t i = 0; i < count; ++i) {
         FanWalk& walk = walks[i];
         if (walk.is_done) continue;
-        const Node node = graph_.node(walk.node);
-        const fdcg_side& incoming = node.side(node.previous(walk.side));
+        const fdcg_side& incoming = sides_of<kAreTriangles>(walk.node)[before<kAreTriangles>(walk.node, walk.side)];
         const uint32_t from = walk.node;
         walk.node = incoming.across;
         walk.is_open = walk.node == FDCG_NONE;
         if (!walk.is_open) {
+          const fdcg_side* const sides = sides_of<kAreTriangles>(walk.node);
+          __builtin_prefetch(sides);
           walk.side = graph_.connections()[incoming.link >> 1].side[1 - (incoming.link & 1)];
-          const fdcg_side& twin = graph_.node(walk.node).side(walk.side);
+          const fdcg_side& twin = sides[walk.side];
           walk.is_wrong |= (twin.link != (incoming.link ^ 1u)) | (twin.across != from) | (twin.corner != walk.corner);
         }
         walk.is_done = walk.is_open || walk.is_wrong || (walk.node == walk.first_node && walk.side == walk.first_side);
@@ -173,38 +252,15 @@ class FullChunk {
     return true;
   }
 
-  // The leaf's box holds the node's corners.
-  [[gnu::noinline]] fdcg_status nodes_in_boxes() {
-    const uint32_t first_leaf_record = BoxTree(header_.node_count).first[0];
-    const double per_unit = 1 / tree_unit(header_.extent);
-    uint32_t leaf = FDCG_NONE;
-    double low[3] = {}, high[3] = {};
-    return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
-      if (n / FDCG_LEAF_NODES != leaf) {
-        leaf = n / FDCG_LEAF_NODES;
-        const fdcg_box8& boxes = raw_.hierarchy[first_leaf_record + leaf / FDCG_TREE_WAYS];
-        for (int axis = 0; axis < 3; ++axis) {
-          low[axis] = low_of(boxes, axis, leaf % FDCG_TREE_WAYS);
-          high[axis] = high_of(boxes, axis, leaf % FDCG_TREE_WAYS);
-        }
-      }
-      const Node node = graph_.node(n);
-      bool is_inside = true;
-      for (uint32_t k = 0; k < node.side_count(); ++k) {
-        const Vec3<double> p = widen(graph_.corner_point(node.corner(k))) * per_unit;
-        is_inside &=
-            (low[0] <= p.x) & (p.x <= high[0]) & (low[1] <= p.y) & (p.y <= high[1]) & (low[2] <= p.z) & (p.z <= high[2]);
-      }
-      faults->note(!is_inside, "sticks out of its box");
-    });
-  }
-
   const RigidView<Real> graph_;
   const fdcg_header& header_;
   const fdcg_graph& raw_;
   const Chunk chunk_;
   fdcg_verification* part_;
   fdcg_error* error_;
+  const uint32_t first_leaf_record_ = BoxTree(header_.node_count).first[0];
+  const double per_unit_ = 1 / tree_unit(header_.extent);
+  bool are_triangles_;
 };
 
 }  // namespace

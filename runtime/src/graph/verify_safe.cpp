@@ -125,9 +125,10 @@ class SafeChunk {
         const uint64_t link = side.link >> 1, which = side.link & 1;
         const uint64_t word = word_of(connections[link <= last_connection ? link : 0]);
         over |= (last_connection - link) | (last_corner - side.corner) | (nodes - (side.across + 1));
-        const uint64_t as_first = (word ^ (k << kSide0At | n)) & (kByte << kSide0At | kNode);
-        const uint64_t as_second = (word ^ (k << kSide1At | side.across)) & (kByte << kSide1At | kNode);
-        wrong |= which == 0 ? as_first : as_second;
+        // As its first side, the connection's first node is this one, else the one across. No branch: it could not be
+        // predicted.
+        const uint64_t first = n ^ ((n ^ side.across) & (0 - which)), side_at = kSide0At + which * (kSide1At - kSide0At);
+        wrong |= (word ^ (k << side_at | first)) & (kByte << side_at | kNode);
         wrong |= uint64_t{(word >> kTypeAt & kByte) == FDCG_BOUNDARY} ^ uint64_t { side.across == FDCG_NONE };
         seconds += which;
       }
