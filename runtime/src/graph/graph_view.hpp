@@ -55,6 +55,19 @@ class NodeRef {
   [[nodiscard]] uint32_t corner(uint32_t k) const { return side(k).corner; }
   // The node beyond side k, or FDCG_NONE.
   [[nodiscard]] uint32_t across(uint32_t k) const { return side(k).across; }
+  // The side with this link, or side_count(): what the connection's record says, without its cache line. Of the first three
+  // without a branch, which could not be predicted.
+  [[nodiscard]] uint32_t side_of_link(uint32_t link) const {
+    const auto differs = [&](uint32_t k) {
+      const uint32_t other = side(k).link ^ link;
+      return (other | (0u - other)) >> 31;
+    };
+    uint32_t k = (1 - differs(1)) + 2 * (1 - differs(2));
+    if (side(k).link == link) return k;
+    for (k = 3; k < side_count() && side(k).link != link; ++k) {
+    }
+    return k;
+  }
   [[nodiscard]] uint32_t previous(uint32_t k) const { return (k == 0 ? side_count() : k) - 1; }
   [[nodiscard]] uint32_t next(uint32_t k) const { return k + 1 < side_count() ? k + 1 : 0; }
 
@@ -216,22 +229,16 @@ struct GraphView : Geometry {
   [[nodiscard]] bool is_plain() const {
     return this->node_offsets() == nullptr && this->edges() != nullptr && this->has_planes();
   }
-  // The same in a plain graph, without a branch: what lies across a border is node 0 here.
-  FDCG_HOT void prefetch_plainly_around(NodeRef<Geometry> here) const {
+  // The same of one side in a plain graph, without a branch: what lies across a border is node 0 here.
+  FDCG_HOT void prefetch_plainly(const fdcg_side& side) const {
     constexpr uint32_t kBytes = node_bytes<Real>(kPrefetchedSides, true);
-    const unsigned char* const nodes = this->nodes();
-    const size_t bytes = this->block_bytes();
-#pragma GCC unroll 3
-    for (uint32_t k = 0; k < kPrefetchedSides; ++k) {
-      const fdcg_side& side = here.side(k);
-      __builtin_prefetch(&this->connections()[side.link >> 1]);
-      __builtin_prefetch(&this->corners()[side.corner]);
-      __builtin_prefetch(&this->edges()[side.link >> 1]);
-      const unsigned char* const block = nodes + size_t{side.across == FDCG_NONE ? 0 : side.across} * bytes;
+    __builtin_prefetch(&this->corners()[side.corner]);
+    __builtin_prefetch(&this->edges()[side.link >> 1]);
+    const unsigned char* const block = this->nodes() + size_t{side.across == FDCG_NONE ? 0 : side.across} * this->block_bytes();
 #pragma GCC unroll 8
-      for (uint32_t at = 0; at < kBytes; at += kLineBytes)
-        __builtin_prefetch(block + at);
-    }
+    for (uint32_t at = 0; at < kBytes; at += kLineBytes)
+      __builtin_prefetch(block + at);
+    __builtin_prefetch(block + kBytes - 1);
   }
 
   // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.

@@ -35,9 +35,12 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   const fdcg_side& crossed = here.side(k);
   if (crossed.across == FDCG_NONE) return false;
   const NodeRef<Geometry> there = graph.node(crossed.across);
-  graph.prefetch_plainly_around(there);
   const Real side = there.plane().distance(hip);
-  const uint32_t back = graph.connections()[crossed.link >> 1].side[1 - (crossed.link & 1)];
+  const uint32_t back = there.side_of_link(crossed.link ^ 1u);
+  if (back >= there.side_count()) return false;
+  graph.prefetch_plainly(
+      there.side(there.next(back)));  // for the next crossing, of a triangle: the third is where this one began
+  graph.prefetch_plainly(there.side(there.previous(back)));
   if (!(side < -bound && there.voronoi_plane(back).distance(hip) < 0 && here.voronoi_plane(k).distance(hip) >= 0)) return false;
   const Vec3<Real> from = hop->god_object, way = (hop->move.target - from) - hop->rounding_residual;
   const Vec3<Real> ahead = hop->rounding_residual + way * hop->move.crossing.fraction;
