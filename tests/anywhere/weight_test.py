@@ -26,8 +26,8 @@ SUPPORT = {"body", "body_scene", "body_symbols", "contact_info", "deform_share",
 # does not hold yet.
 KB = 1024
 X86_BOTH = {"bar": 48 * KB, "limit": 141 * KB}
-X86_F64 = {"bar": 48 * KB, "limit": 86 * KB}
-M7_F32 = {"bar": 20 * KB, "limit": 47_000}
+X86_F64 = {"bar": 48 * KB, "limit": 80_500}
+M7_F32 = {"bar": 20 * KB, "limit": 45_300}
 M7_F32_TERMS = {"bar": 20 * KB, "limit": 51 * KB}
 
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
@@ -93,12 +93,13 @@ class Parts(WeightCase):
     M7 = {"one_sphere": 12 * KB}
     NO_WORDS = ("-DFDCG_WITH_MESSAGES=OFF",)
     F64, F32 = (*NO_WORDS, "-DFDCG_WITH_F32=OFF"), (*NO_WORDS, "-DFDCG_WITH_F64=OFF")
-    PLAIN = ("-DFDCG_WITH_FRICTION_TERMS=OFF", "-DFDCG_WITH_BUSY_CORNERS=OFF", "-DFDCG_WITH_INEXACT_NODES=OFF")
+    PLAIN = ("-DFDCG_WITH_FRICTION_TERMS=OFF", "-DFDCG_WITH_BUSY_CORNERS=OFF", "-DFDCG_WITH_INEXACT_NODES=OFF",
+             "-DFDCG_WITH_CLEAR_BALLS=OFF")
     # program, what it is built with: the bar, and the limit, which a change may not pass
-    X86_GRAPHS = (("one_graph", "f64", F64, 64 * KB, 72_500), ("one_graph", "both", NO_WORDS, 96 * KB, 125_000))
-    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 39_000),
-                 ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 32_500),
-                 ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 43_500))
+    X86_GRAPHS = (("one_graph", "f64", F64, 64 * KB, 64 * KB), ("one_graph", "both", NO_WORDS, 96 * KB, 112_600))
+    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 36_900),
+                 ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 28_200),
+                 ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 38_600))
 
     def embedded(self, precision="f32"):
         """The folder with the embedded graph, its array and its header."""

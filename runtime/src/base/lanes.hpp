@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight floats at once: two SIMD vectors of four where the processor has them, else scalar code. Every operation is the IEEE
+// Eight floats at once: two SIMD vectors of four, where the processor has them (FDCG_HAS_VECTORS). Every operation is the IEEE
 // one on each lane, so that the bits do not depend on the implementation.
 #pragma once
 
@@ -74,49 +74,6 @@ struct Lanes {
     const Words bits = (low_words & Words{1, 2, 4, 8}) | (high_words & Words{16, 32, 64, 128});
     return static_cast<uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 #endif
-  }
-};
-
-#else
-
-struct Lanes {
-  float lane[kLanes];
-
-  template <class Operation>
-  static Lanes each(Operation operation) {
-    Lanes r;
-    for (uint32_t j = 0; j < kLanes; ++j)
-      r.lane[j] = operation(j);
-    return r;
-  }
-  static Lanes all(float x) {
-    return each([x](uint32_t) { return x; });
-  }
-  static Lanes of(const uint8_t (&numbers)[kLanes]) {
-    return each([&numbers](uint32_t j) { return static_cast<float>(numbers[j]); });
-  }
-  void store(float (&to)[kLanes]) const { memcpy(to, lane, sizeof to); }
-
-  friend Lanes operator+(const Lanes& a, const Lanes& b) {
-    return each([&](uint32_t j) { return a.lane[j] + b.lane[j]; });
-  }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) {
-    return each([&](uint32_t j) { return a.lane[j] * b.lane[j]; });
-  }
-  friend Lanes operator-(const Lanes& a) {
-    return each([&](uint32_t j) { return -a.lane[j]; });
-  }
-  friend Lanes greater(const Lanes& a, const Lanes& b) {
-    return each([&](uint32_t j) { return a.lane[j] > b.lane[j] ? a.lane[j] : b.lane[j]; });
-  }
-  friend Lanes lesser(const Lanes& a, const Lanes& b) {
-    return each([&](uint32_t j) { return a.lane[j] < b.lane[j] ? a.lane[j] : b.lane[j]; });
-  }
-  friend uint32_t where_at_most(const Lanes& a, const Lanes& b) {
-    uint32_t bits = 0;
-    for (uint32_t j = 0; j < kLanes; ++j)
-      bits |= uint32_t{a.lane[j] <= b.lane[j]} << j;
-    return bits;
   }
 };
 

@@ -235,7 +235,7 @@ constexpr int kWordBits = 60;
 }
 
 // The determinant, with an error of at most 2^-98 of the size of its products.
-[[gnu::noinline]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
+[[gnu::noinline, gnu::cold]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
   Split edge[3][3];
   for (int p = 0; p < 3; ++p) {
     const Vec3<double>&to = point[p + 1], &from = point[0];
@@ -269,7 +269,7 @@ inline bool is_plainly_flat(const Vec3<double> (&point)[4]) {
 }
 
 // `bound`: of the filter, 4 epsilons of the products' size.
-[[gnu::noinline]] int exact_sign(const Vec3<double> (&point)[4], double bound, uint32_t* work_left) {
+[[gnu::noinline, gnu::cold]] int exact_sign(const Vec3<double> (&point)[4], double bound, uint32_t* work_left) {
   if (is_plainly_flat(point)) return 0;
   if (work_left != nullptr) spend(work_left, kPairsWork);
   constexpr double kOfFilter = 0x1p-48;  // 2^-98 of the size

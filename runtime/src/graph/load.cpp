@@ -45,7 +45,10 @@ fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
         .say("the file has ", bytes, " bytes, an FDCG header alone has 256; it is truncated or not an FDCG file");
   }
   const auto& header = *static_cast<const fdcg_header*>(data);
-  if (memcmp(header.magic, FDCG_MAGIC, sizeof header.magic) != 0) {
+  uint64_t magic, expected;  // as words: one comparison, where memcmp is a function of the C library
+  memcpy(&magic, header.magic, sizeof magic);
+  memcpy(&expected, FDCG_MAGIC, sizeof expected);
+  if (magic != expected) {
     return Message(error, FDCG_E_MAGIC)
         .text("the first 8 bytes are not those of an FDCG file; compile the mesh with fdcg compile");
   }
@@ -126,35 +129,45 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
   return FDCG_OK;
 }
 
-enum class Presence { required, optional, of_mixed_nodes, of_busy_corners };
+enum class Presence : uint8_t { required, optional, of_mixed_nodes, of_busy_corners };
+
+constexpr uint16_t kNowhere = 0xFFFF;
 
 struct SectionRule {
-  uint32_t id;
-  uint32_t record_f64, record_f32;  // bytes; 0: see record_bytes
+  uint8_t id;
+  uint8_t record_f64, record_f32;  // bytes; 0: see record_bytes
   Presence presence;
-  uint32_t fdcg_header::*count;  // of records; null: see expected_records
+  uint16_t count;    // field of the header that says how many records; kNowhere: see expected_records
+  uint16_t pointer;  // field of fdcg_graph that leads to them; kNowhere: none
 };
+#define COUNT(field) offsetof(fdcg_header, field)
+#define POINTER(field) offsetof(fdcg_graph, field)
 constexpr SectionRule kSectionRules[] = {
-    {FDCG_SECTION_NODES, 0, 0, Presence::required, nullptr},
-    {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes, &fdcg_header::node_count},
+    {FDCG_SECTION_NODES, 0, 0, Presence::required, kNowhere, POINTER(nodes)},
+    {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes, COUNT(node_count), POINTER(node_offsets)},
     {FDCG_SECTION_EDGES, sizeof(fdcg_connection_geometry_f64), sizeof(fdcg_connection_geometry_f32), Presence::optional,
-     &fdcg_header::connection_count},
-    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required,
-     &fdcg_header::connection_count},
-    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required, &fdcg_header::corner_count},
-    {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners, &fdcg_header::fan_count},
-    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), Presence::optional, nullptr},
-    {FDCG_SECTION_SOURCE_MAP, 4, 4, Presence::optional, &fdcg_header::source_face_count},
-    {FDCG_SECTION_INFO, 1, 1, Presence::optional, nullptr},
+     COUNT(connection_count), POINTER(edges)},
+    {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required, COUNT(connection_count),
+     POINTER(connections)},
+    {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required, COUNT(corner_count),
+     POINTER(corners)},
+    {FDCG_SECTION_FANS, 4, 4, Presence::of_busy_corners, COUNT(fan_count), POINTER(fans)},
+    {FDCG_SECTION_HIERARCHY, sizeof(fdcg_box8), sizeof(fdcg_box8), Presence::optional, kNowhere, POINTER(hierarchy)},
+    {FDCG_SECTION_SOURCE_MAP, 4, 4, Presence::optional, COUNT(source_face_count), POINTER(source_map)},
+    {FDCG_SECTION_INFO, 1, 1, Presence::optional, kNowhere, POINTER(info)},
     {FDCG_SECTION_FAN_BOXES, sizeof(fdcg_fan_box_f64), sizeof(fdcg_fan_box_f32), Presence::of_busy_corners,
-     &fdcg_header::fan_box_count},
+     COUNT(fan_box_count), POINTER(fan_boxes)},
     {FDCG_SECTION_BUSY_CORNERS, sizeof(fdcg_busy_corner), sizeof(fdcg_busy_corner), Presence::of_busy_corners,
-     &fdcg_header::busy_count},
-    {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional, nullptr},
-    {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional, &fdcg_header::node_count},
-    {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional, nullptr},
-    {FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), sizeof(fdcg_fan_run), Presence::optional, nullptr},
+     COUNT(busy_count), POINTER(busy_corners)},
+    {FDCG_SECTION_MASS, sizeof(fdcg_mass_record), sizeof(fdcg_mass_record), Presence::optional, kNowhere, kNowhere},
+    {FDCG_SECTION_MATERIALS, sizeof(uint16_t), sizeof(uint16_t), Presence::optional, COUNT(node_count),
+     POINTER(node_materials)},
+    {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional, kNowhere,
+     POINTER(materials)},
+    {FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), sizeof(fdcg_fan_run), Presence::optional, kNowhere, POINTER(fan_runs)},
 };
+#undef COUNT
+#undef POINTER
 
 uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
   if (rule.id == FDCG_SECTION_NODES) return header.node_bytes != 0 ? header.node_bytes : header.real_bytes;
@@ -162,7 +175,11 @@ uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
 }
 
 uint64_t expected_records(const SectionRule& rule, const fdcg_header& header, uint64_t found) {
-  if (rule.count != nullptr) return header.*rule.count;
+  if (rule.count != kNowhere) {
+    uint32_t count;
+    memcpy(&count, reinterpret_cast<const unsigned char*>(&header) + rule.count, sizeof count);
+    return count;
+  }
   if (rule.id == FDCG_SECTION_HIERARCHY) return BoxTree(header.node_count).records;
   if (rule.id == FDCG_SECTION_MASS) return 1;
   if (rule.id == FDCG_SECTION_MATERIAL_NAMES && found > FDCG_NO_MATERIAL) return FDCG_NO_MATERIAL;
@@ -215,33 +232,18 @@ fdcg_status check_table(const void* data, const fdcg_header& header, fdcg_error*
   return check_sections(reinterpret_cast<const fdcg_section*>(table), header, error);
 }
 
-fdcg_graph view(const void* data, const fdcg_header& header) {
-  fdcg_graph graph = {};
-  const auto section = [&](uint32_t id) -> const void* {
-    const fdcg_section* found = find_section(header, id);
-    return found == nullptr ? nullptr : static_cast<const unsigned char*>(data) + found->offset;
-  };
-  graph.header = &header;
-  graph.nodes = section(FDCG_SECTION_NODES);
-  graph.node_offsets = static_cast<const uint32_t*>(section(FDCG_SECTION_NODE_OFFSETS));
-  graph.connections = static_cast<const fdcg_connection*>(section(FDCG_SECTION_CONNECTIONS));
-  graph.edges = section(FDCG_SECTION_EDGES);
-  graph.corners = section(FDCG_SECTION_CORNERS);
-  graph.busy_corners = static_cast<const fdcg_busy_corner*>(section(FDCG_SECTION_BUSY_CORNERS));
-  graph.fans = static_cast<const uint32_t*>(section(FDCG_SECTION_FANS));
-  graph.fan_boxes = section(FDCG_SECTION_FAN_BOXES);
-  graph.hierarchy = static_cast<const fdcg_box8*>(section(FDCG_SECTION_HIERARCHY));
-  graph.source_map = static_cast<const uint32_t*>(section(FDCG_SECTION_SOURCE_MAP));
-  graph.info = static_cast<const char*>(section(FDCG_SECTION_INFO));
-  graph.node_materials = static_cast<const uint16_t*>(section(FDCG_SECTION_MATERIALS));
-  graph.materials = static_cast<const fdcg_material_record*>(section(FDCG_SECTION_MATERIAL_NAMES));
-  if (graph.materials != nullptr)
-    graph.material_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_MATERIAL_NAMES)->record_count);
-  graph.fan_runs = static_cast<const fdcg_fan_run*>(section(FDCG_SECTION_FAN_RUNS));
-  if (graph.fan_runs != nullptr)
-    graph.fan_run_count = static_cast<uint32_t>(find_section(header, FDCG_SECTION_FAN_RUNS)->record_count);
-  if (graph.info != nullptr) graph.info_bytes = find_section(header, FDCG_SECTION_INFO)->record_count;
-  return graph;
+void view(const void* data, const fdcg_header& header, fdcg_graph* graph) {
+  graph->header = &header;
+  for (const SectionRule& rule : kSectionRules) {
+    const fdcg_section* const found = find_section(header, rule.id);
+    if (found == nullptr) continue;
+    const unsigned char* const records = static_cast<const unsigned char*>(data) + found->offset;
+    if (rule.pointer != kNowhere) memcpy(reinterpret_cast<unsigned char*>(graph) + rule.pointer, &records, sizeof records);
+    const auto count = static_cast<uint32_t>(found->record_count);
+    if (rule.id == FDCG_SECTION_MATERIAL_NAMES) graph->material_count = count;
+    if (rule.id == FDCG_SECTION_FAN_RUNS) graph->fan_run_count = count;
+    if (rule.id == FDCG_SECTION_INFO) graph->info_bytes = found->record_count;
+  }
 }
 
 bool is_needed(Presence presence, const fdcg_header& header) {
@@ -286,7 +288,7 @@ fdcg_status open_trusted(const void* data, uint64_t bytes, fdcg_graph* graph, fd
   status = check_header_values(header, error);
   if (status == FDCG_OK) status = check_table(data, header, error);
   if (status == FDCG_OK) status = check_presence(header, error);
-  if (status == FDCG_OK) *graph = view(data, header);
+  if (status == FDCG_OK) view(data, header, graph);
   return status;
 }
 

@@ -64,7 +64,7 @@ inline uint32_t nearer_boxes(const fdcg_box8& boxes, const float (&point)[3], fl
 // finds nothing. 0 where it would be below `way`. Cost: at most kMostClearVisits records and leaves, a handful where nothing is
 // near.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way) {
+[[gnu::noinline, gnu::cold]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way) {
   constexpr Real kWaysAhead = 12;              // what a look is to pay for, in ways of this tick
   constexpr Real kLeastReach = Real(1) / 256;  // ... and tree units
   constexpr Real kFar = 64, kTreeReach = 16;   // tree units: no box reaches further than 8

@@ -15,7 +15,7 @@ struct EdgeSides {
 
 // Not as a return value: four floats would come back two to a register, by way of memory, and wait there for one another.
 template <class Geometry, class Real = typename Geometry::Real>
-inline void look_at_sides(Walk<Geometry>& walk, ConnectionRef<Geometry> connection, EdgeSides<Real>* sides) {
+[[gnu::noinline]] void look_at_sides(Walk<Geometry>& walk, ConnectionRef<Geometry> connection, EdgeSides<Real>* sides) {
   walk.spend(kEdgeWork);
   *sides = {};
   const int faces = connection.type() == FDCG_BOUNDARY ? 1 : 2;
@@ -73,7 +73,7 @@ inline uint32_t face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geo
 
 // Cost: two face planes, two Voronoi planes.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] Decision edge_rule(Walk<Geometry>& walk) {
+[[gnu::noinline, gnu::cold]] Decision edge_rule(Walk<Geometry>& walk) {
   const uint32_t index = walk.active.index;
   const ConnectionRef<Geometry> connection = walk.graph.connection(index);
   EdgeSides<Real> s;

@@ -33,7 +33,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // Whether a place is between the ends of a side, up to rounding.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, Vec3<Real> x) {
+[[gnu::noinline, gnu::cold]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, Vec3<Real> x) {
   const EdgeLine<Real> line(node.graph(), node, k);
   const Real u = line.parameter(x);
   return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
@@ -121,7 +121,8 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 // one plane but for rounding: beyond the end of one the point is on the next. Where the next one turns away, however little, it
 // is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side, Vec3<Real> point) {
+[[gnu::noinline, gnu::cold]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side,
+                                                  Vec3<Real> point) {
   const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.max_deviation());
   const Plane<Real> plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
@@ -166,7 +167,7 @@ template <class Geometry>
 
 // Places the god-object where the move says. Returns what comes next.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
+[[gnu::noinline, gnu::cold]] Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
   using Kind = typename FaceMove<Real>::Kind;
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   if (move.kind == Kind::leaves) return go_to(FDCG_MUTANT("seat") ? kFree : leave_face(walk, node));
@@ -185,7 +186,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 }
 
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] Decision face_rule(Walk<Geometry>& walk) {
+[[gnu::noinline, gnu::cold]] Decision face_rule(Walk<Geometry>& walk) {
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
   if constexpr (FDCG_WITH_FRICTION_TERMS) {

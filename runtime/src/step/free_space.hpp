@@ -19,7 +19,8 @@ inline Vec3<Real> onto_slab(const Walk<Geometry>& walk, Vec3<Real> point, uint32
 
 // Places the contact at the first collision on the way, or at its end.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real> to, const FirstHit<Real>& first) {
+[[gnu::noinline, gnu::cold]] void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real> to,
+                                         const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
   const Real over = FDCG_MUTANT("grazing") && is_on_face ? first.fraction + Real(0.01)
                     : is_on_face                         ? sweep.part_over(first.feature.index, first.fraction, 0)
@@ -113,7 +114,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // to the HIP meets, or at the HIP. A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work
 // ran out, else 0.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
   CarriedSweep* carried = space->carried;
   space->ball->radius2 = 0;
   if (carried->is_carried != 0) {
@@ -130,7 +131,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   }
   const Vec3<Real> to = walk.hip, from = left == kFree ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
-  const bool may_look = space->looks_for_balls && left == kFree && walk.graph.hierarchy() != nullptr;
+  const bool may_look = FDCG_WITH_CLEAR_BALLS && space->looks_for_balls && left == kFree && walk.graph.hierarchy() != nullptr;
   if (is_still || (may_look && is_in_new_ball(walk.graph, from, to, space->ball))) {
     walk.place(to, kFree);
     carried->stalled_sweeps = 0;

@@ -26,8 +26,8 @@ class NodeEntry {
   using Real = typename Geometry::Real;
 
  public:
-  NodeEntry(const GraphView<Geometry>& graph, Vec3<Real> stood, Vec3<Real> from, Vec3<Real> to, Feature left,
-            uint32_t* work_left)
+  [[gnu::noinline]] NodeEntry(const GraphView<Geometry>& graph, Vec3<Real> stood, Vec3<Real> from, Vec3<Real> to, Feature left,
+                              uint32_t* work_left)
       : graph_(graph),
         stood_(stood),
         from_(from),
@@ -256,7 +256,7 @@ class NodeEntry {
 
   // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
   // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
-  [[nodiscard, gnu::noinline]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
     const int sign = sure_orientation(start, end);
     return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }

@@ -219,7 +219,7 @@ inline Feature seat_of(const fdcg_contact& contact) {
 
 // First tick: free, with the god-object at the HIP (contact-model TICK-3).
 template <class Real>
-inline void start(Vec3<Real> hip, fdcg_contact* contact) {
+[[gnu::noinline, gnu::cold]] void start(Vec3<Real> hip, fdcg_contact* contact) {
   store(hip, contact->hip);
   store(hip, contact->god_object);
   contact->started = 1;
@@ -343,6 +343,13 @@ template <class Geometry>
 inline constexpr bool kHasHops = Geometry::kKeepsDirections;
 #endif
 
+// A HIP that is no number, or too far away for the step's arithmetic.
+[[gnu::noinline, gnu::cold]] inline void refuse_hip(const fdcg_header& header, fdcg_contact* contact, fdcg_result* result) {
+  ++contact->non_finite_ticks;
+  result->flags = FDCG_RESULT_NON_FINITE;
+  write_position(header, *contact, result);
+}
+
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7).
 template <class Geometry, class Real = typename Geometry::Real>
 void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
@@ -351,17 +358,13 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   const fdcg_header& header = *raw.header;
   Vec3<double> local_hip;
   *result = {};
-  if (!to_local(header, hip_object_m, RealLimits<Real>::kFar, &local_hip)) {
-    ++contact->non_finite_ticks;
-    result->flags = FDCG_RESULT_NON_FINITE;
-    write_position(header, *contact, result);
-    return;
-  }
+  if (!to_local(header, hip_object_m, RealLimits<Real>::kFar, &local_hip)) return refuse_hip(header, contact, result);
   Vec3<Real> hip;
   round_to(local_hip, &hip);
   if (contact->started == 0) {
     start(hip, contact);
-  } else if (contact->state == FDCG_FREE && is_in_clear_ball(internals_of(*contact).clear_ball, local_hip) &&
+  } else if (FDCG_WITH_CLEAR_BALLS && contact->state == FDCG_FREE &&
+             is_in_clear_ball(internals_of(*contact).clear_ball, local_hip) &&
              (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0) {
     store(hip, contact->god_object);
     store(hip, contact->hip);

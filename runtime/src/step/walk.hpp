@@ -98,8 +98,8 @@ struct EdgeLine : Edge<Real> {
 // god-object there would increase the distance by more than a step may; it stays at u, but the corner's rule decides, since two
 // edges of a needle's tip would pass it to each other.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line, uint32_t end,
-                                                   Real from_end) {
+[[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line,
+                                                              uint32_t end, Real from_end) {
   if (from_end <= snap_growth(static_cast<Real>(walk.graph.header()->extent))) return false;
   const Real foot = line.parameter(walk.hip);
   return 2 * (end == 0 ? foot : line.length - foot) > from_end;
@@ -107,8 +107,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] Feature place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line,
-                                                  Real u) {
+[[gnu::noinline, gnu::cold]] Feature place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line,
+                                                   Real u) {
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
     if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;
