@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
-#include <numbers>
 
 #include "../common/atomic_file.hpp"
 #include "../common/heap.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
+#include "compile_settings.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
 #include "fdcg_commands.hpp"
@@ -20,21 +20,13 @@
 namespace fdcg::tools {
 namespace {
 
-constexpr const char* kDefaultUnit = "metres (the default)";
-
-struct CompileArguments {
+struct CompileArguments : CompileSettings {
   std::string mesh;
   std::string output;
   std::string depfile;
   std::string report;
-  std::string repair;  // a level; empty: none
-  std::string unit_text = kDefaultUnit;
-  std::optional<bake::Format> input_format;
-  bake::CompileOptions options;
   bool quiet = false;
   bool verbose = false;
-
-  [[nodiscard]] bool has_default_unit() const { return unit_text == kDefaultUnit; }
 };
 
 // Spaces, # and $ as Make and Ninja want them in a file name.
@@ -207,15 +199,6 @@ int check_paths(const CompileArguments& arguments) {
   return kClean;
 }
 
-// What was asked for may be more than the runtime accepts (a large graph without its hierarchy): better known now than there.
-int check_loads(const bake::Compiled& compiled) {
-  fdcg_graph graph{};
-  fdcg_error error{};
-  if (fdcg_open_memory(compiled.file().data(), compiled.file().size(), FDCG_VERIFY_TRUSTED, &graph, &error) == FDCG_OK)
-    return kClean;
-  return fail(kUsage, std::string("these options make a file that the runtime refuses: ") + error.message);
-}
-
 // The output file itself where it can be mapped; else a buffer, to be written at the end.
 std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<std::byte>& buffer) {
   const std::span<std::byte> mapped = out.map(bytes);
@@ -226,12 +209,7 @@ std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<
 
 int compile_mesh(CompileArguments& arguments) {
   if (const int code = check_paths(arguments); code != kClean) return code;
-  if (!arguments.repair.empty()) {
-    for (const bake::RepairLevel level : {bake::RepairLevel::safe, bake::RepairLevel::full, bake::RepairLevel::solid})
-      if (arguments.repair == bake::level_name(level)) arguments.options.repair = level;
-    if (!arguments.options.repair)
-      return fail(kUsage, "--repair: '" + arguments.repair + "' is no level; there are safe, full and solid");
-  }
+  if (const std::string wrong = settle(arguments); !wrong.empty()) return fail(kUsage, wrong);
   AtomicFile out(arguments.output);
   if (!out.ok()) return fail(kFile, out.error());
   keep_large_arrays();
@@ -246,10 +224,7 @@ int compile_mesh(CompileArguments& arguments) {
     if (is_same_file(file, arguments.output))
       return fail(kUsage, "'" + arguments.output + "' would overwrite a part of the mesh");
   }
-  if (arguments.has_default_unit() && soup->metres_per_unit > 0) {
-    arguments.options.metres_per_unit = soup->metres_per_unit;
-    arguments.unit_text = "1 unit = " + short_number(soup->metres_per_unit) + " m (the file's own)";
-  }
+  take_unit(*soup, arguments);
   out.expect(bake::likely_file_bytes(*soup, arguments.options));
   std::vector<std::byte> buffer;
   arguments.options.allocate = [&](std::size_t bytes) { return memory_for(out, bytes, buffer); };
@@ -258,7 +233,7 @@ int compile_mesh(CompileArguments& arguments) {
   if (!out.ok()) return fail(kFile, out.error());
   if (!compiled) return fail(compiled.error().exit_code, compiled.error().message);
   if (compiled->file().empty()) return refuse(arguments, *compiled);
-  if (const int code = check_loads(*compiled); code != kClean) return code;
+  if (const std::string reason = refused_by_runtime(*compiled); !reason.empty()) return fail(kUsage, reason);
   const bool is_streamed = is_stream(arguments.output) || is_stream(arguments.report);
   const std::string what_was_written = summary(arguments, *soup, *compiled);  // reads the file, which commit() unmaps
   const std::string warnings[] = {deviation_warning(*compiled), size_warning(arguments, *compiled)};
@@ -287,59 +262,6 @@ int run_compile(CompileArguments& arguments) {
   }
 }
 
-void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
-  const OptionGroup graph(command, "Graph");
-  add_precision_option(graph, options.precision, "Precision of the numbers in the file.");
-  const auto parse_coplanar = [&options](const std::string& text) {
-    if (text == "exact" || text == "quantum") {
-      options.coplanar = {text == "exact" ? bake::Coplanar::Kind::exact : bake::Coplanar::Kind::quantum, 0};
-      return;
-    }
-    const double degrees =
-        number_between("--coplanar", text, 0, 90, "none of exact, quantum, or an angle between 0 and 90 degrees");
-    options.coplanar = {bake::Coplanar::Kind::angle, degrees * std::numbers::pi / 180};
-  };
-  graph.parsed("--coplanar", "ANGLE", parse_coplanar,
-               offering("Which edges count as flat: exact, those of coplanar faces; quantum, those flat within the rounding of "
-                        "the input; a number, those within that angle in degrees.",
-                        {"exact", "quantum"}),
-               "quantum");
-  CLI::Option* const merge =
-      graph.flag("--merge,!--no-merge", options.merge, "Merge coplanar faces into convex polygons, or keep each face.");
-  merge->default_str("--merge");
-  graph
-      .flag("--triangles", options.triangles,
-            "Split every face into triangles and merge none: for a mesh that the program deforms (fdcg/deform.h).")
-      ->excludes("--coplanar");
-  command.final_callback([&options, merge] {
-    if (options.triangles && merge->count() > 0 && options.merge) throw CLI::ExcludesError("--triangles", "--merge");
-  });
-  graph.choice<bool>(
-      "--planes", "PLANES", {{"stored", true}, {"derived", false}}, options.store_planes,
-      "Edge vectors, end planes and Voronoi planes: stored in the file, or derived in the step, with a smaller file.");
-  const std::vector<std::string> sections{"hierarchy", "source-map", "info", "mass", "materials"};
-  const auto leave_out = [&options, sections](const std::string& name) {
-    require_choice("--without", name, sections);
-    options.without.insert(name);
-  };
-  graph.repeated("--without", "SECTION", leave_out, one_of("Leave a section out of the file. May be repeated.", sections));
-}
-
-void add_mass_options(CLI::App& command, bake::CompileOptions& options) {
-  const OptionGroup group(command, "Mass");
-  const auto positive = [](const char* name, double& value, const std::string& wrong) {
-    return [&value, name, wrong](const std::string& text) { value = positive_number(name, text, wrong); };
-  };
-  CLI::Option* const density =
-      group.parsed("--density", "DENSITY",
-                   positive("--density", options.density_kg_per_m3, "no number above 0 (kilograms for a cubic metre)"),
-                   "Density of the body, in kg per cubic metre; its mesh must be closed.", "unknown");
-  group
-      .parsed("--mass", "KG", positive("--mass", options.mass_kg, "no number above 0 (kilograms)"),
-              "Mass of the body in kg, instead of --density.")
-      ->excludes(density);
-}
-
 }  // namespace
 
 Command add_compile(CLI::App& app) {
@@ -356,32 +278,16 @@ give the same bytes.
 
 )" + exit_codes("the file is written", "the mesh has errors; no file is written"));
   const auto arguments = std::make_shared<CompileArguments>();
-  bake::CompileOptions& options = arguments->options;
   add_mesh_argument(*command, arguments->mesh);
-  add_input_format_option(*command, arguments->input_format);
-  add_unit_options(*command, options.metres_per_unit, arguments->unit_text);
-  const OptionGroup output(*command, "Output"), checks(*command, "Mesh checks");
+  add_compile_input(*command, *arguments);
+  const OptionGroup output(*command, "Output");
   output.text("-o,--output", "FILE", arguments->output, "File to write. - is standard output.")->required();
   output.text("--report", "FILE", arguments->report, "Write the JSON report to FILE.");
   output.text("--depfile", "FILE", arguments->depfile, "Write the dependencies for Make and Ninja to FILE.");
   CLI::Option* const quiet = output.flag("-q,--quiet", arguments->quiet, "Print errors only.");
   output.flag("-v,--verbose", arguments->verbose, "Print the whole report.")->excludes(quiet);
-  add_weld_option(checks, options.weld);
-  checks.flag("--orient", options.orient, "Make the winding consistent and outward, and report the faces that were turned.");
-  checks.flag("--self-intersections", options.self_intersections,
-              "Also find faces that cross or touch others, and report them as warnings.");
-  command
-      ->add_flag(
-          "--repair{full}", arguments->repair,
-          "Where the mesh has errors, repair it first; what was done is measured and stored in the file. --repair=safe: no "
-          "point of the surface moves; --repair or --repair=full: also unfolds slivers, triangulates polygons that cross "
-          "themselves, and drops what no graph can have. --repair=solid: any mesh, also one without errors, becomes the outer "
-          "surface of what it encloses, with its holes closed.")
-      ->group("Mesh checks");
-  add_allow_option(checks, options.allow, Allowable::errors_the_graph_stands);
-  add_graph_options(*command, options);
-  add_mass_options(*command, options);
-  OptionGroup(*command, "General").jobs(options.jobs, "The output does not depend on it.");
+  add_compile_settings(*command, *arguments);
+  OptionGroup(*command, "General").jobs(arguments->options.jobs, "The output does not depend on it.");
   return {command, [arguments] { return run_compile(*arguments); }};
 }
 
