@@ -8,7 +8,7 @@ import unittest
 
 from support import CUBE, FDCG, SERVO, Case
 
-PROGRAMS = {"fdcg": (FDCG, ("compile", "validate", "repair", "inspect", "explain", "grasp", "view", "help")),
+PROGRAMS = {"fdcg": (FDCG, ("compile", "validate", "repair", "batch", "inspect", "explain", "grasp", "view", "help")),
             "fdcg-servo": (SERVO, ("run", "devices", "check", "latency", "calibrate", "replay", "help"))}
 
 

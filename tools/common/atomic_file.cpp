@@ -79,7 +79,7 @@ bool is_standard_output(const struct stat& status) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+AtomicFile::AtomicFile(std::string path, std::string unfinished) : path_(std::move(path)), unfinished_(std::move(unfinished)) {
   if (const int error_number = open_target(); error_number != 0) fail(error_number);
 }
 
@@ -115,7 +115,7 @@ int AtomicFile::open_target() {
 }
 
 int AtomicFile::open_beside() {
-  const std::string stem = target_ + ".part-" + std::to_string(getpid());
+  const std::string stem = unfinished_.empty() ? target_ + ".part-" + std::to_string(getpid()) : unfinished_;
   for (int attempt = 0;; ++attempt) {  // a leftover of a killed program with our number may be in the way
     beside_ = stem + (attempt == 0 ? "" : "-" + std::to_string(attempt));
     cleanup_slot_ = arm_cleanup(beside_);
@@ -235,6 +235,11 @@ void AtomicFile::discard() {
   beside_.clear();
   disarm_cleanup(cleanup_slot_);
   cleanup_slot_ = -1;
+}
+
+void forget_unfinished_files() {
+  for (CleanupSlot& slot : cleanup_slots)
+    slot.armed = slot.taken = false;
 }
 
 bool is_stream(const std::string& path) {

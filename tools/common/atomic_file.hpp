@@ -18,7 +18,9 @@ namespace fdcg::tools {
 // there is no output: what is written is dropped, and commit() succeeds.
 class AtomicFile {
  public:
-  explicit AtomicFile(std::string path);  // opens now, so that an unwritable target is known before the work is done
+  // Opens now, so that an unwritable target is known before the work is done. `unfinished`: the name, on the same file system,
+  // that a new file has until commit(); default: the target's, with .part- and the process behind it.
+  explicit AtomicFile(std::string path, std::string unfinished = {});
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -43,6 +45,7 @@ class AtomicFile {
   void unmap();
 
   std::string path_;    // as the user gave it
+  std::string unfinished_;
   std::string target_;  // what is renamed onto; empty where the output is written straight
   std::string beside_;
   std::string error_;
@@ -55,6 +58,9 @@ class AtomicFile {
   int descriptor_ = -1;
   int cleanup_slot_ = -1;
 };
+
+// In a process that was forked: a signal that ends it leaves the other's unfinished files alone.
+void forget_unfinished_files();
 
 // What is written under this name comes out where another program reads it as it comes: "-", standard output under another
 // name, a pipe, a device. Nothing else may be printed there.

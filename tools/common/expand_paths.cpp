@@ -177,6 +177,17 @@ std::vector<NamedFile> expand(const std::string& argument, const Wanted& wanted,
   return files;
 }
 
+// ** stands for any number of names. Takes time by the product of the lengths for each ** but the last.
+bool matches_components(const std::vector<std::string>& names, std::size_t n, const std::vector<std::string>& patterns,
+                        std::size_t p) {
+  for (; p < patterns.size() && patterns[p] != "**"; ++n, ++p)
+    if (n == names.size() || !matches_pattern(names[n], patterns[p])) return false;
+  if (p == patterns.size()) return n == names.size();
+  for (; n <= names.size(); ++n)
+    if (matches_components(names, n, patterns, p + 1)) return true;
+  return false;
+}
+
 }  // namespace
 
 const std::vector<std::string>& mesh_endings() {
@@ -212,6 +223,16 @@ bool matches_pattern(std::string_view name, std::string_view pattern) {
     }
   }
   return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+bool matches_path(const std::string& path, const std::string& pattern) {
+  std::vector<std::string> alternatives;
+  expand_braces(pattern, 0, alternatives);
+  const std::vector<std::string> names = components_of(path);
+  return std::any_of(alternatives.begin(), alternatives.end(), [&](const std::string& one) {
+    if (one.find('/') == std::string::npos && one != "**") return !names.empty() && matches_pattern(names.back(), one);
+    return path.starts_with('/') == one.starts_with('/') && matches_components(names, 0, components_of(one), 0);
+  });
 }
 
 std::vector<NamedFile> expand_paths(const std::vector<std::string>& arguments, const std::vector<std::string>& endings) {

@@ -31,5 +31,7 @@ std::vector<NamedFile> expand_paths(const std::vector<std::string>& arguments, c
 
 // Whether the whole of `name`, one component of a path, matches a pattern without {} and **, whatever the case of its letters.
 bool matches_pattern(std::string_view name, std::string_view pattern);
+// Whether a path, as it stands, matches a whole pattern; one without / matches the last component.
+bool matches_path(const std::string& path, const std::string& pattern);
 
 }  // namespace fdcg::tools

@@ -50,11 +50,7 @@ int usage_error(const CLI::ParseError& error, const CLI::App& app) {
   for (const CLI::App* chosen : app.get_subcommands())
     command = chosen;
   invocation().command = full_name(*command);
-  std::string message = error.what();
-  message = message.substr(0, message.find('\n'));
-  if (message == "A subcommand is required") message = "a command is required";
-  const std::string unknown = unknown_word(app, *command);
-  return fail(kUsage, unknown.empty() ? message : unknown);
+  return fail(kUsage, complaint(error, app, *command));
 }
 
 // `fdcg help`, `fdcg help compile`.
@@ -116,6 +112,14 @@ int run_program(const Program& program, int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(kInternal, std::string("internal error: ") + error.what());
   }
+}
+
+std::string complaint(const CLI::ParseError& error, const CLI::App& app, const CLI::App& command) {
+  std::string message = error.what();
+  message = message.substr(0, message.find('\n'));
+  if (message == "A subcommand is required") message = "a command is required";
+  const std::string unknown = unknown_word(app, command);
+  return unknown.empty() ? message : unknown;
 }
 
 int fail(int exit_code, std::string_view message) {

@@ -33,6 +33,9 @@ struct Program {
 // code 4.
 int run_program(const Program& program, int argc, char** argv);
 
+// What is wrong with a command line, in one line: of `app`, or of `command`, its subcommand, or the same.
+std::string complaint(const CLI::ParseError& error, const CLI::App& app, const CLI::App& command);
+
 // "PROGRAM: message" on standard error; returns the code. After wrong usage it names the help of the command that runs.
 int fail(int exit_code, std::string_view message);
 // Gives the outputs their names, in this order, once all of them are sound: `exit_code`, or what fail(kFile, ...) returns.

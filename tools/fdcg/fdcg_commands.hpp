@@ -9,6 +9,7 @@ namespace fdcg::tools {
 Command add_compile(CLI::App& app);
 Command add_validate(CLI::App& app);
 Command add_repair(CLI::App& app);
+Command add_batch(CLI::App& app);
 Command add_inspect(CLI::App& app);
 Command add_explain(CLI::App& app);
 Command add_grasp(CLI::App& app);

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   fdcg validate bunny.off
   fdcg compile bunny.off -o bunny.fdcg --units mm
   fdcg repair bunny.off -o clean.off --all
+  fdcg batch --manifest meshes.txt -o out
   fdcg inspect bunny.fdcg
   fdcg explain non-manifold-edge
   fdcg grasp cube.fdcg --contacts fingers.csv --mu 0.5 --grip 10
@@ -20,6 +21,6 @@ int main(int argc, char** argv) {
                       "Compile polygon meshes into Face Directed Connection Graphs (.fdcg) for haptic rendering.",
                       "fdcg " FDCG_VERSION_STRING " (file format 1)",
                       examples + exit_codes("success", "findings (each command says which)"),
-                      {add_compile, add_validate, add_repair, add_inspect, add_explain, add_grasp, add_view}},
+                      {add_compile, add_validate, add_repair, add_batch, add_inspect, add_explain, add_grasp, add_view}},
                      argc, argv);
 }

@@ -14,10 +14,9 @@
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
 #include "mesh_list.hpp"
-#include "mesh_options.hpp"
+#include "validate_choices.hpp"
 #include "validate_config.hpp"
 #include "validate_run.hpp"
-#include "validate_settings.hpp"
 #include "view_mesh.hpp"
 
 namespace fdcg::tools {
@@ -28,7 +27,7 @@ struct Output {
   std::string path;
 };
 
-struct ValidateArguments {
+struct ValidateArguments : ValidateChoices {
   std::vector<std::string> meshes;
   std::optional<Output> output_format;  // of -o: its path is not set
   std::vector<Output> files;            // FORMAT=FILE
@@ -36,10 +35,6 @@ struct ValidateArguments {
   std::string full;
   std::string config;
   bool no_config = false;
-  ValidateSettings settings;
-  std::optional<bake::Format> input_format;
-  bake::Precision precision = bake::Precision::f64;
-  bool is_oriented = false;
   bool sarif_each = false;
   unsigned jobs = 0;
   bool quiet = false;
@@ -98,6 +93,7 @@ int check_paths(const ValidateArguments& arguments, const std::vector<ListedMesh
 bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& arguments, const std::vector<ListedMesh>& meshes,
                                                  std::vector<std::string>& baselines) {
   ConfigFinder finder;
+  std::set<std::string> told;
   std::vector<ValidateTask> tasks;
   for (const ListedMesh& mesh : meshes) {
     bake::Result<ValidateConfig> config = ValidateConfig{};
@@ -108,17 +104,13 @@ bake::Result<std::vector<ValidateTask>> tasks_of(const ValidateArguments& argume
     }
     if (!config) return config.error();
     const ValidateSettings settings = combined(config->settings, arguments.settings);
+    if (const std::string word = lowered_errors(settings); !word.empty() && told.insert(word).second) warn(word);
     ValidateTask task;
     task.mesh = mesh.path;
     task.problem = mesh.problem;
     task.scale = mesh.scale;
     task.config = config->path;
-    task.options.weld = settings.weld.value_or(bake::Weld{});
-    task.options.precision = arguments.precision;
-    task.options.orient = arguments.is_oriented;
-    task.options.allow = settings.allow;
-    task.options.severities = settings.severities;
-    if (settings.fail_on) task.options.fail_on = *settings.fail_on;
+    task.options = validate_options(arguments, settings);
     task.has_baseline = settings.baseline.has_value();
     tasks.push_back(std::move(task));
     baselines.push_back(settings.baseline.value_or(""));
@@ -301,27 +293,7 @@ void add_verdict_options(CLI::App& command, ValidateArguments& arguments) {
   ValidateSettings& settings = arguments.settings;
   const auto set_baseline = [&settings](const std::string& path) { settings.baseline = path; };
   verdict.parsed("--baseline", "FILE", set_baseline, "Findings that are in FILE (from --full) are known; only new ones fail.");
-  const auto set_fail_on = [&settings](const std::string& value) {
-    const auto level = parse_fail_on(value);
-    if (!level) throw CLI::ValidationError("--fail-on", level.error().message);
-    settings.fail_on = *level;
-  };
-  verdict.parsed(
-      "--fail-on", "SEVERITY", set_fail_on,
-      one_of("Exit with code 1 for findings of this severity or a higher one.", {"error", "warning", "note", "never"}),
-      "error");
-  const auto set_severity = [&settings](const std::string& value) {
-    const std::size_t equals = value.find('=');
-    if (equals == std::string::npos)
-      throw CLI::ValidationError("--severity", "'" + value + "' is no RULE=LEVEL; write boundary-edge=error, say");
-    const std::string rule = value.substr(0, equals);
-    const auto level = parse_severity(rule, value.substr(equals + 1));
-    if (!level) throw CLI::ValidationError("--severity", level.error().message);
-    settings.severities[rule] = *level;
-  };
-  verdict.repeated("--severity", "RULE=LEVEL", set_severity,
-                   "Severity of the findings of a rule: error, warning, note or off. May be repeated.");
-  add_allow_option(OptionGroup(command, "Mesh checks"), settings.allow, Allowable::also_warnings_and_notes);
+  add_validate_verdict(command, arguments);
   const std::string name = kConfigName;
   CLI::Option* const config =
       verdict.text("--config", "FILE", arguments.config, "Read settings from FILE instead of " + name + ".");
@@ -353,11 +325,7 @@ Settings may stand in a file .fdcg-validate.json in the mesh's folder or one abo
                     "meshes that they name, patterns, or folders to search. - is standard input.");
   add_report_options(*command, *arguments);
   add_verdict_options(*command, *arguments);
-  const OptionGroup checks(*command, "Mesh checks");
-  add_weld_option(checks, arguments->settings.weld);
-  add_precision_option(checks, arguments->precision, "Check the mesh as a graph of this precision stores it.");
-  checks.flag("--orient", arguments->is_oriented, "Check the mesh as 'fdcg compile --orient' leaves it.");
-  add_input_format_option(*command, arguments->input_format);
+  add_validate_checks(*command, *arguments);
   OptionGroup(*command, "General").jobs(arguments->jobs, "The report does not depend on it.");
   OptionGroup(*command, "Output")
       .flag("-q,--quiet", arguments->quiet, "Text report: list only files that fail. No progress bar.");

@@ -61,6 +61,18 @@ bake::Result<Level> parse_severity(const std::string& rule, const std::string& t
   return wrong("'" + text + "' is none of error, warning, note, off" + did_you_mean(text, {"error", "warning", "note", "off"}));
 }
 
+std::string lowered_errors(const ValidateSettings& settings) {
+  std::vector<std::string> names;
+  for (const auto& [name, level] : settings.severities) {
+    const bake::Rule* const rule = bake::find_rule(name);
+    const bool is_lowered = !level || *level < bake::Severity::error;
+    if (rule != nullptr && is_lowered && rule->severity == bake::Severity::error && !rule->can_be_allowed) names.push_back(name);
+  }
+  if (names.empty()) return {};
+  return listed(names) + (names.size() == 1 ? " is" : " are") +
+         " no error here by its severity; 'fdcg compile' refuses meshes with it all the same";
+}
+
 std::optional<bake::Failure> check_allowed_rule(const std::string& name) {
   const bake::Rule* const rule = bake::find_rule(name);
   if (rule == nullptr) return no_rule(name);

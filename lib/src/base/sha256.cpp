@@ -8,7 +8,20 @@
 #include <memory>
 #include <system_error>
 
+#include "base/file_bytes.hpp"
+#include "fdcg/results.hpp"
+
 namespace fdcg::bake {
+
+std::string sha256_of(std::string_view bytes) {
+  return Sha256Task(bytes).finish();
+}
+
+Result<std::string> sha256_of_file(const std::filesystem::path& path) {
+  const Result<FileBytes> file = FileBytes::open(path);
+  if (!file) return file.error();
+  return sha256_of(file->bytes());
+}
 
 Sha256Task::Sha256Task(std::string_view bytes) : bytes_(bytes) {
   constexpr std::size_t kWorthAThread = std::size_t{1} << 18;  // some 0.2 ms; a thread costs a tenth of that

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fdcg/fdcg.h"
+#include "fdcg/results.hpp"
 #include "report/report_parts.hpp"
 
 namespace fdcg::bake {
@@ -32,6 +33,37 @@ void write_issue(JsonWriter& json, const Issue& issue, const std::function<void(
   elements(issue);
   json.end_array();
   json.end_object();
+}
+
+// All but the file's name.
+void write_members(JsonWriter& json, const Report& report, const std::function<void(const Issue&)>& elements) {
+  json.member("verdict", report.passes() ? "pass" : "fail");
+  json.member("vertices", report.vertices);
+  json.member("faces", report.faces);
+  json.member("kept_faces", report.kept_faces);
+  json.member("components", report.components);
+  json.begin_array("ignored");
+  for (const Ignored& ignored : report.ignored) {
+    json.begin_object(one_line);
+    json.member("what", ignored.what);
+    json.member("count", ignored.count);
+    json.end_object();
+  }
+  json.end_array();
+  json.begin_array("issues");
+  for (const Issue& issue : report.issues)
+    write_issue(json, issue, elements);
+  json.end_array();
+  write_list(json, "checks", report.checks);
+  write_list(json, "allowed", report.allowed);
+  json.member("fail_on", report.fail_on ? name_of(*report.fail_on) : "never");
+  if (!report.config.empty()) json.member("config", report.config);
+  if (report.has_baseline) {
+    json.begin_object("resolved", one_line);
+    for (const auto& [rule, total] : report.resolved)
+      json.member(rule, total);
+    json.end_object();
+  }
 }
 
 class JsonReportWriter final : public ReportWriter {
@@ -110,34 +142,20 @@ void write_json_element(JsonWriter& json, const Element& element) {
 void write_json_file(JsonWriter& json, const Report& report, const std::function<void(const Issue&)>& elements) {
   json.begin_object();
   json.member("file", report.file);
-  json.member("verdict", report.passes() ? "pass" : "fail");
-  json.member("vertices", report.vertices);
-  json.member("faces", report.faces);
-  json.member("kept_faces", report.kept_faces);
-  json.member("components", report.components);
-  json.begin_array("ignored");
-  for (const Ignored& ignored : report.ignored) {
-    json.begin_object(one_line);
-    json.member("what", ignored.what);
-    json.member("count", ignored.count);
-    json.end_object();
-  }
-  json.end_array();
-  json.begin_array("issues");
-  for (const Issue& issue : report.issues)
-    write_issue(json, issue, elements);
-  json.end_array();
-  write_list(json, "checks", report.checks);
-  write_list(json, "allowed", report.allowed);
-  json.member("fail_on", report.fail_on ? name_of(*report.fail_on) : "never");
-  if (!report.config.empty()) json.member("config", report.config);
-  if (report.has_baseline) {
-    json.begin_object("resolved", one_line);
-    for (const auto& [rule, total] : report.resolved)
-      json.member(rule, total);
-    json.end_object();
-  }
+  write_members(json, report, elements);
   json.end_object();
+}
+
+std::string report_line(const Report& report) {
+  std::string out;
+  JsonWriter json(out);
+  json.begin_object(one_line);
+  write_members(json, report, [&](const Issue& issue) {
+    for (const Element& element : issue.elements)
+      write_json_element(json, element);
+  });
+  json.end_object();
+  return out;
 }
 
 std::unique_ptr<ReportWriter> make_json_writer(Write write, const ReportOptions& options) {
