@@ -9,6 +9,7 @@ import pty
 import random
 import resource
 import shutil
+import struct
 import subprocess
 import unittest
 import xml.etree.ElementTree
@@ -95,8 +96,8 @@ class Formats(ValidateCase):
         self.assertEqual(wanted, found)
         issues = [issue for file in report["files"] for issue in file["issues"]]
         for issue, result in zip(issues, run["results"]):
-            lines = [element.get("line") for element in issue["elements"]] or [None]
-            self.assertEqual(lines, [location["physicalLocation"].get("region", {}).get("startLine") for location in result["locations"]])
+            lines = [element.get("line", 1) for element in issue["elements"]] or [1]
+            self.assertEqual(lines, [location["physicalLocation"]["region"]["startLine"] for location in result["locations"]])
             self.assertEqual(issue["rule"], run["tool"]["driver"]["rules"][result["ruleIndex"]]["id"])
 
     def check_junit(self, report):
@@ -124,8 +125,8 @@ class Formats(ValidateCase):
         results = [result for result in sarif["runs"][0]["results"] if result["ruleId"] == "boundary-edge"]
         self.assertEqual(402, sum(result["occurrenceCount"] for result in results))
         self.assertEqual(101, len(results))
-        lines = [result["locations"][0]["physicalLocation"].get("region", {}).get("startLine") for result in results]
-        self.assertEqual([element["line"] for element in self.issues(mesh)["boundary-edge"]["elements"]] + [None], lines)
+        lines = [result["locations"][0]["physicalLocation"]["region"]["startLine"] for result in results]
+        self.assertEqual([element["line"] for element in self.issues(mesh)["boundary-edge"]["elements"]] + [1], lines)
 
     def test_a_report_of_very_many_findings_stays_small_and_the_full_one_has_them_all(self):
         quads = int(os.environ.get("FDCG_TEST_FINDINGS", "40000")) // 4
@@ -204,6 +205,26 @@ class Baselines(ValidateCase):
         self.write("strip.obj", "\n".join([points[i] for i in order] + faces) + "\n")
         edges = self.issues(mesh, "--baseline", base, "--fail-on", "warning")["boundary-edge"]
         self.assertEqual((102, 102), (edges["total"], edges["known"]))
+
+    def test_another_format_leaves_every_finding_known(self):
+        """Decimals in text, floats in binary: the same mesh."""
+        points = [(x / 10, y / 7, 0.1 * x * y) for x in range(6) for y in range(2)]
+        faces = [face for a in range(0, 10, 2) for face in ((a, a + 2, a + 1), (a + 1, a + 2, a + 3))]
+        (self.folder / "before").mkdir()
+        (self.folder / "after").mkdir()
+        for name in ("a", "b"):
+            self.write(f"before/{name}.obj", "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in points) +
+                       "".join("f " + " ".join(str(v + 1) for v in face) + "\n" for face in faces))
+            header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\n"
+                      f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+            self.write(f"after/{name}.ply", header.encode() + b"".join(struct.pack("<3f", *point) for point in points) +
+                       b"".join(struct.pack("<B3i", 3, *face) for face in faces))
+        base = self.path("base.json")
+        self.validate(self.path("before"), "--full", base)
+        self.validate(self.path("after"), "--baseline", base, "--fail-on", "note")
+        for file in self.report(self.path("after"), "--baseline", base)["files"]:
+            self.assertEqual([issue["total"] for issue in file["issues"]], [issue["known"] for issue in file["issues"]])
+            self.assertEqual({}, file["resolved"])
 
     def test_copies_of_one_finding_are_counted(self):
         triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -333,6 +354,17 @@ class Settings(ValidateCase):
         self.validate(mesh, "--severity", "boundary-edge=error", "--format", "sarif", "-o", self.path("r.sarif"), code=1)
         self.assertEqual("error", self.read_json("r.sarif")["runs"][0]["results"][0]["level"])
         self.assertNotIn("boundary-edge", self.report(mesh, "--severity", "boundary-edge=off")["files"][0]["checks"])
+
+    def test_an_error_that_no_graph_can_stand_is_not_lowered_without_a_word(self):
+        fan = self.write("fan.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n3 0 1 2\n3 1 0 3\n3 0 1 4\n")
+        self.fdcg("compile", fan, "-o", self.path("fan.fdcg"), code=1)
+        off = ("--severity", "non-manifold-edge=off", "--severity", "winding-inconsistent=off")
+        for more in ((), ("-q",)):
+            done = self.validate(fan, *off, *more)
+            self.assert_one_line(done, "non-manifold-edge, winding-inconsistent are no error", "'fdcg compile' refuses")
+        self.assertEqual(b"", self.validate(fan, "--severity", "boundary-edge=off", code=1).stderr)
+        self.write(CONFIG, '{"severity": {"non-manifold-edge": "note"}}')
+        self.assert_one_line(self.validate(fan, fan), "non-manifold-edge is no error")
 
 
 class ManyFiles(ValidateCase):

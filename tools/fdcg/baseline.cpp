@@ -114,6 +114,30 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+std::string stem(const std::string& path) {
+  return std::filesystem::path(path).stem().string();
+}
+
+using FilesByPath = std::map<std::string, const BaselineFile*>;
+
+// Gives each mesh without a file the one of `by_path` with the same name, where that is the only one on both sides, and takes it
+// out.
+void match_by(std::string (*name_of)(const std::string&), const std::vector<std::string>& meshes, FilesByPath& by_path,
+              std::vector<const BaselineFile*>& found) {
+  std::map<std::string, std::vector<std::size_t>> left;
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    if (found[i] == nullptr) left[name_of(meshes[i])].push_back(i);
+  std::map<std::string, std::vector<FilesByPath::iterator>> files;
+  for (auto file = by_path.begin(); file != by_path.end(); ++file)
+    files[name_of(file->first)].push_back(file);
+  for (const auto& [name, indices] : left) {
+    const auto same = files.find(name);
+    if (indices.size() != 1 || same == files.end() || same->second.size() != 1) continue;
+    found[indices[0]] = same->second[0]->second;
+    by_path.erase(same->second[0]);
+  }
+}
+
 }  // namespace
 
 bake::Result<Baseline> Baseline::read(const std::string& path) {
@@ -140,7 +164,7 @@ bake::Result<Baseline> Baseline::read(const std::string& path) {
 
 std::vector<const BaselineFile*> Baseline::files_for(const std::vector<std::string>& meshes) const {
   std::vector<const BaselineFile*> found(meshes.size(), nullptr);
-  std::map<std::string, const BaselineFile*> by_path;
+  FilesByPath by_path;
   for (const BaselineFile& file : files_)
     by_path.emplace(plain_path(file.path), &file);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
@@ -149,23 +173,12 @@ std::vector<const BaselineFile*> Baseline::files_for(const std::vector<std::stri
     found[i] = same->second;
     by_path.erase(same);
   }
-  // Renamed folders: the file's own name leads back where it is the only one of that name on both sides.
-  std::map<std::string, std::pair<std::size_t, const BaselineFile*>> by_name;  // how many in the baseline, the last
-  for (const auto& [path, file] : by_path) {
-    auto& entry = by_name[file_name(path)];
-    entry = {entry.first + 1, file};
-  }
-  std::map<std::string, std::vector<std::size_t>> left;
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    if (found[i] == nullptr) left[file_name(meshes[i])].push_back(i);
-  }
-  for (const auto& [name, indices] : left) {
-    const auto entry = by_name.find(name);
-    if (indices.size() == 1 && entry != by_name.end() && entry->second.first == 1) found[indices[0]] = entry->second.second;
-  }
-  if (left.size() == 1 && left.begin()->second.size() == 1 && by_path.size() == 1) {
-    found[left.begin()->second[0]] = by_path.begin()->second;
-  }
+  // Renamed folders: the file's own name leads back where it is the only one of that name on both sides; then the name without
+  // its ending, of a mesh that was saved in another format.
+  match_by(file_name, meshes, by_path, found);
+  match_by(stem, meshes, by_path, found);
+  const auto left = std::count(found.begin(), found.end(), nullptr);
+  if (left == 1 && by_path.size() == 1) *std::find(found.begin(), found.end(), nullptr) = by_path.begin()->second;
   return found;
 }
 

@@ -27,7 +27,7 @@ class Baseline {
   static bake::Result<Baseline> read(const std::string& path);
 
   // For each mesh of a run its file of the baseline, or null: the one of the same path; of those left over the one of the same
-  // file name, if there is but one; then, if one mesh and one file are left, these.
+  // file name, if there is but one; then of the same name without its ending; then, if one mesh and one file are left, these.
   [[nodiscard]] std::vector<const BaselineFile*> files_for(const std::vector<std::string>& meshes) const;
 
   [[nodiscard]] const std::vector<BaselineFile>& files() const { return files_; }

@@ -179,7 +179,7 @@ struct Element {
   std::optional<Vec3> point;                        ///< source units
   std::optional<std::uint32_t> line;                ///< text formats
   std::string part;                                 ///< the name of the Part that the first face belongs to, if any
-  /// Of the rule and the exact coordinates of what was found (a patch: of its least corner), not of their numbers: stays when
+  /// Of the rule and the coordinates, as floats, of what was found (a patch: of its least corner), not of their numbers: stays when
   /// the file is renumbered or changed elsewhere. Several findings may share one, so compare as multisets.
   std::uint64_t fingerprint = 0;
   bool is_known = false;  ///< a baseline has it

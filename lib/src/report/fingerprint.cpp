@@ -17,7 +17,7 @@ std::uint64_t mixed(std::uint64_t x) {
 
 std::uint64_t canonical_bits(double x) {
   constexpr std::uint64_t kNan = 0x7FF8000000000000ULL;
-  return std::isnan(x) ? kNan : std::bit_cast<std::uint64_t>(x + 0.0);  // -0 + 0 = 0
+  return std::isnan(x) ? kNan : std::bit_cast<std::uint64_t>(static_cast<float>(x) + 0.0);  // -0 + 0 = 0
 }
 
 }  // namespace

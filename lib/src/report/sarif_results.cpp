@@ -156,7 +156,14 @@ class ResultWriter {
     json_.begin_object(one_line);
     json_.begin_object("physicalLocation");
     write_artifact();
+    write_region(1);
     json_.end_object();
+    json_.end_object();
+  }
+  // Code scanning shows no result without a line: of binary files, and of what has no line, it is the first.
+  void write_region(std::uint32_t line) {
+    json_.begin_object("region");
+    json_.member("startLine", line);
     json_.end_object();
   }
 
@@ -165,11 +172,7 @@ class ResultWriter {
     if (id) json_.member("id", *id);
     json_.begin_object("physicalLocation");
     write_artifact();
-    if (element.line) {
-      json_.begin_object("region");
-      json_.member("startLine", *element.line);
-      json_.end_object();
-    }
+    write_region(element.line.value_or(1));
     json_.end_object();
     if (id) {
       json_.end_object();

@@ -109,7 +109,7 @@ TEST_CASE("fingerprints do not change when a file changes elsewhere, and disting
   CHECK(after == before);
   PolygonSoup moved = defective();
   for (Vec3& p : moved.points)
-    p.y += 0x1p-20;
+    p.y += 0x1p-10;
   for (const auto& [rule, prints] : fingerprints(full(moved))) {
     CAPTURE(rule);
     for (const std::uint64_t print : prints)
