@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The recipes of docs/ci.md, run as they stand there: nobody else does, until a pipeline breaks."""
+import hashlib
+import io
 import json
 import os
 import pathlib
 import re
-import shlex
 import subprocess
+import tarfile
 import textwrap
 import unittest
 
@@ -26,7 +28,7 @@ def blocks(heading, language):
 
 
 def environment(**more):
-    return os.environ | {"PATH": f"{pathlib.Path(FDCG).parent}:{os.environ['PATH']}"} | more
+    return os.environ | {"PATH": f"{pathlib.Path(FDCG).parent}:{os.environ['PATH']}"} | more  # `more` may have a PATH
 
 
 class Recipes(Case):
@@ -69,6 +71,15 @@ class Recipes(Case):
         for name in kept:
             self.assertGreater((self.folder / name).stat().st_size, 0)
 
+    def test_jenkins(self):
+        recipe = blocks("Jenkins", "groovy")[0]
+        self.assertEqual(recipe.count("{"), recipe.count("}"))
+        script = re.search(r"^ *sh '(.*)'$", recipe, flags=re.M)[1]
+        self.write("meshes/fan.off", THREE_ON_AN_EDGE)
+        self.shell(script, code=1)
+        for name in re.findall(r"(?:junit|artifacts:) '(.*?)'", recipe):
+            self.assertGreater((self.folder / name).stat().st_size, 0)
+
     def test_baseline(self):
         self.write("meshes/open.off", MISSING_FACE)
         accept, compare = blocks("Meshes that have findings already", "sh")[0].splitlines()
@@ -91,8 +102,7 @@ class Recipes(Case):
 
     def test_github_action(self):
         action = (ROOT / "tools/ci/action.yml").read_text()
-        step = re.search(r"^      run: \|\n((?:        .*\n)+)", action, flags=re.M)
-        script = textwrap.dedent(step[1])
+        script = textwrap.dedent(re.findall(r"^      run: \|\n((?:        .*\n)+)", action, flags=re.M)[1])
         self.assertIn("steps.validate.outputs.report", action)
         self.write("meshes/fan with blank.off", THREE_ON_AN_EDGE)
         output = self.write("output", "")
@@ -111,10 +121,46 @@ class Recipes(Case):
         self.shell(script, code=2, MESHES="meshes", ARGUMENTS="--nonsense", **variables)
         self.assertEqual("", pathlib.Path(output).read_text())
 
+    def test_github_action_installs_what_is_not_there_and_the_hook_too(self):
+        action = (ROOT / "tools/ci/action.yml").read_text()
+        steps = [textwrap.dedent(step) for step in re.findall(r"^      run: \|\n((?:        .*\n)+)", action, flags=re.M)]
+        self.shell(steps[0], ACTION="/nowhere", PACKAGE="/nowhere", SHA256="", RELEASE="")  # fdcg is on the PATH
+        archive = self.archive("bin/fdcg", f'#!/bin/sh\nexec "{FDCG}" "$@"\n')
+        bare = {"PATH": self.without_fdcg(), "HOME": str(self.folder)}
+        variables = bare | {"ACTION": str(ROOT / "tools/ci"), "RELEASE": "/nowhere", "GITHUB_PATH": self.path("path")}
+        wrong = self.shell(steps[0], code=3, PACKAGE=str(archive), SHA256="0" * 64, **variables)
+        self.assertIn(b"nothing was installed", wrong.stderr)
+        self.assertIn(b"cannot read", self.shell(steps[0], code=3, PACKAGE=str(archive), SHA256="", **variables).stderr)  # no SHA256SUMS
+        self.assertFalse((self.folder / ".local").exists())
+        self.assertIn(b"/nowhere/fdcg_", self.shell(steps[0], code=3, PACKAGE="", SHA256="", **variables).stderr)
+        self.write("SHA256SUMS", f"{hashlib.sha256(archive.read_bytes()).hexdigest()}  {archive.name}\n")
+        self.shell(steps[0], PACKAGE=str(archive), SHA256="", **variables)
+        self.assertEqual(f"{self.folder}/.local/bin\n", (self.folder / "path").read_text())
+        self.assertTrue((self.folder / ".local/bin/fdcg").is_file())
+        hook = str(ROOT / "tools/ci/hook")
+        self.assertIn(b"FDCG_PACKAGE", self.shell(f"{hook} meshes/part.off", code=3, **bare).stderr)
+        for _ in range(2):
+            self.shell(f"{hook} meshes/part.off", **bare, FDCG_PACKAGE=str(archive))
+            archive.unlink(missing_ok=True)  # the second time it is there
+
+    def archive(self, name, content):
+        path = self.folder / "fdcg-0.1.0-linux.tar.gz"
+        with tarfile.open(path, "w:gz") as files:
+            entry = tarfile.TarInfo(f"fdcg-0.1.0-linux/{name}")
+            entry.size, entry.mode = len(content), 0o755
+            files.addfile(entry, io.BytesIO(content.encode()))
+        return path
+
+    @staticmethod
+    def without_fdcg():
+        folders = os.environ["PATH"].split(":")
+        return ":".join(folder for folder in folders if not (pathlib.Path(folder) / "fdcg").exists())
+
     def test_github_workflow_uses_inputs_that_the_action_has(self):
         action = (ROOT / "tools/ci/action.yml").read_text()
         used = re.findall(r"^    (\w+):", blocks("GitHub", "yaml")[0], flags=re.M)
-        self.assertEqual(["meshes", "arguments"], used)
+        used += re.findall(r"^    (\w+):", blocks("GitHub", "yaml")[1], flags=re.M)
+        self.assertEqual(["meshes", "arguments", "arguments"], used)
         for name in used:
             self.assertRegex(action, rf"(?m)^  {name}:$")
 
@@ -127,7 +173,8 @@ class Recipes(Case):
         chosen = [path for path in staged if re.search(hook["files"], path)]
         self.assertEqual(["meshes/Open.OFF", "meshes/part.off"], chosen)
         arguments = re.search(r"args: \[(.*)\]", blocks("pre-commit", "yaml")[0])[1].split(", ")
-        command = [*shlex.split(hook["entry"]), *arguments, *chosen]
+        self.assertEqual("script", hook["language"])  # the entry is a path in the hook's repository
+        command = [str(ROOT / hook["entry"]), *arguments, *chosen]
         done = subprocess.run(command, cwd=self.folder, env=environment(), capture_output=True, check=False, timeout=60)
         self.assertEqual(1, done.returncode)
         self.assertIn(b"Open.OFF: fail", done.stdout)
