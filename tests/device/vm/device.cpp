@@ -93,8 +93,25 @@ void Device::take_output(bool takes) {
   if (takes) receive();  // what has waited
 }
 
+void Device::lag(Nanoseconds on_reports, Nanoseconds on_outputs) {
+  lag_of_reports_ = on_reports;
+  lag_of_outputs_ = on_outputs;
+  reports_.clear();
+  outputs_.clear();
+}
+
+// What is due, but for the jitter of the ticks.
+void Device::arrive(Nanoseconds now) {
+  now += kSecond / rate_hz_ / 4;
+  for (; !outputs_.empty() && outputs_.front().due <= now; outputs_.pop_front())
+    take(outputs_.front().bytes.data(), static_cast<int>(outputs_.front().bytes.size()));
+  for (; !reports_.empty() && reports_.front().due <= now; reports_.pop_front())
+    send(reports_.front().bytes);
+}
+
 void Device::tick() {
-  const Nanoseconds now = now_ns();
+  arrive(now_ns());
+  const Nanoseconds now = now_ns();  // no earlier than what has arrived: the firmware's time does not go back
   note_force(now);
   const std::array<double, 3> place_m = hand.at(now);
   std::int32_t counts[3];
@@ -107,10 +124,16 @@ void Device::tick() {
   sent_[firmware_.sequence % kRemembered] = {firmware_.sequence, is_bad_, false, now};
   ++record.sent;
   if (wire_) return wire_(report);
-  send(report);
+  if (lag_of_reports_ == 0) return send(report);
+  reports_.push_back({now + lag_of_reports_, report});
 }
 
 void Device::on_output(const std::uint8_t* data, int bytes) {
+  if (lag_of_outputs_ == 0) return take(data, bytes);
+  outputs_.push_back({now_ns() + lag_of_outputs_, Bytes(data, data + bytes)});
+}
+
+void Device::take(const std::uint8_t* data, int bytes) {
   const Nanoseconds now = now_ns();
   ++record.outputs;
   const fdcg_fw_verdict verdict = fdcg_fw_take_output(&firmware_, device_us(now), data, static_cast<std::size_t>(bytes));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <functional>
 #include <memory>
 
@@ -68,6 +69,8 @@ class Device final : public PortUser {
   void tick();
   void send(const Bytes& report) { port_->send(report); }
   void take_output(bool takes);
+  // From now on reports, or outputs, are so long under way, to the next tick; 0, 0: none, and what was under way is lost.
+  void lag(Nanoseconds on_reports, Nanoseconds on_outputs);
 
   void set_wire(Wire wire) { wire_ = std::move(wire); }
   void clear_wire() { wire_ = nullptr; }
@@ -88,7 +91,13 @@ class Device final : public PortUser {
   };
   static constexpr std::size_t kRemembered = 1 << 17;
 
+  struct UnderWay {
+    Nanoseconds due = 0;
+    Bytes bytes;
+  };
   void power_up();
+  void take(const std::uint8_t* data, int bytes);
+  void arrive(Nanoseconds now);
   void note_force(Nanoseconds now);
   std::uint32_t device_us(Nanoseconds now) const { return static_cast<std::uint32_t>((now - born_) / kMicrosecond); }
 
@@ -98,6 +107,8 @@ class Device final : public PortUser {
   bool has_float_axes_, is_bad_ = false, was_tripped_ = false;
   Nanoseconds born_ = 0;
   Wire wire_;
+  Nanoseconds lag_of_reports_ = 0, lag_of_outputs_ = 0;
+  std::deque<UnderWay> reports_, outputs_;
   std::vector<Sent> sent_ = std::vector<Sent>(kRemembered);
 };
 

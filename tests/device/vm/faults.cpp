@@ -9,26 +9,28 @@ namespace {
 
 // The bar: no force 2 ms after the host could first know.
 constexpr Nanoseconds kZeroLimit = 2 * kMillisecond;
-// No force that answers a report older than the gate's silence.
-constexpr Nanoseconds kOldestAnswer = 10 * kMillisecond;
 
 constexpr StrikeKind kStrikes[] = {
     {"short", strike_short},
     {"long", strike_long},
-    {"garbled", strike_garbled, "crc"},
-    {"repeated", strike_repeated, "repeated"},
-    {"out-of-order", strike_out_of_order, "out-of-order"},
-    {"stale", strike_stale, "stale"},
-    {"nan", strike_nan, "not-finite", true},
+    {"garbled", strike_garbled, nullptr, "crc"},
+    {"repeated", strike_repeated, nullptr, "repeated"},
+    {"out-of-order", strike_out_of_order, nullptr, "out-of-order"},
+    {"stale", strike_stale, nullptr, "stale"},
+    {"nan", strike_nan, nullptr, "not-finite", true},
     {"stalled", strike_stalled},
     {"half-lost", strike_half_lost},
+    {"lag-5", strike_lag_5, "lag"},
+    {"lag-15", strike_lag_15, "silence,not-taken"},
+    {"lag-30", strike_lag_30, "silence,not-taken"},
     {"unplugged", strike_unplugged},
     {"no-output", strike_no_output},
     {"restarted", strike_restarted},
     {"other-host", strike_other_host},
     {"asleep", strike_asleep},
+    {"clock-jump", strike_clock_jump, "slept", nullptr, false, false, true},
     {"killed", strike_killed},
-    {"disk-full", strike_disk_full, nullptr, false, true},
+    {"disk-full", strike_disk_full, nullptr, nullptr, false, true},
 };
 
 double ms(Nanoseconds time) {
@@ -64,7 +66,7 @@ std::string judge(const Rig& rig, const Expectation& expected, Tally& tally) {
   if (!expected.broken.empty()) return expected.broken;
   if (!rig.host.is_running()) return words("the host has ended by itself with %d", rig.host.ending());
   if (record.misled > 0) return "a force answered a report that must not be used";
-  if (rig.options.is_timed && record.oldest_answer > kOldestAnswer)
+  if (rig.options.is_timed && record.oldest_answer > expected.oldest_answer)
     return words("a force answered a report %.3f ms old", ms(record.oldest_answer));
   if (expected.known > 0) {
     const std::string late = judge_zero(rig, expected, tally);
@@ -86,6 +88,28 @@ std::string numbers_of(const Rig& rig, const Tally& tally) {
   return numbers + words("; oldest answer %.3f ms", ms(rig.device.record.oldest_answer));
 }
 
+// Of the words of `list`, how often the host says that it disarmed for one.
+std::uint64_t told(const Rig& rig, const std::string& list) {
+  std::uint64_t times = 0;
+  for (std::size_t from = 0, to; from <= list.size(); from = to + 1) {
+    to = std::min(list.find(',', from), list.size());
+    times += count_of_reason(rig.host.status_line(), list.substr(from, to - from));
+  }
+  return times;
+}
+
+// Empty, or what the host should have said and has not.
+std::string judge_words(Rig& rig, const StrikeKind& kind, const Tally& tally) {
+  if (kind.told_as == nullptr && kind.rejected_as == nullptr) return {};
+  if (!rig.refresh_status()) return "the host's status does not come";
+  if (kind.rejected_as && count_of(rig.host.status_line(), std::string("rejected/") + kind.rejected_as) == 0)
+    return std::string("the host has rejected no report as ") + kind.rejected_as;
+  const std::uint64_t times = kind.told_as ? told(rig, kind.told_as) : 0;
+  if (kind.told_as && times < static_cast<std::uint64_t>(tally.disarmed))
+    return words("the host says only %d times that it disarmed for %s", static_cast<int>(times), kind.told_as);
+  return {};
+}
+
 // Empty, or what is wrong. *done: how often it was struck.
 std::string strike_often(Rig& rig, const StrikeKind& kind, int times, Tally& tally, int* done) {
   const bool is_timed = rig.options.is_timed;
@@ -99,11 +123,8 @@ std::string strike_often(Rig& rig, const StrikeKind& kind, int times, Tally& tal
     if (!wrong.empty()) return wrong;
   }
   if (is_timed && !rig.feel()) return "no force after it was armed again";
-  if (is_timed && kind.rejected_as) {
-    if (!rig.refresh_status()) return "the host's status does not come";
-    if (count_of(rig.host.status_line(), std::string("rejected/") + kind.rejected_as) == 0)
-      return std::string("the host has rejected no report as ") + kind.rejected_as;
-  }
+  const std::string untold = is_timed ? judge_words(rig, kind, tally) : "";
+  if (!untold.empty()) return untold;
   if (!rig.end_host() || rig.host.ending() >= 128) return words("the host ends with %d", rig.host.ending());
   return {};
 }
@@ -111,6 +132,7 @@ std::string strike_often(Rig& rig, const StrikeKind& kind, int times, Tally& tal
 void run_strike(RigOptions options, const StrikeKind& kind, int times, Verdicts& verdicts) {
   options.has_float_axes = kind.has_float_axes;
   options.has_log = options.is_log_small = kind.is_log_small;
+  options.has_clock_shim = kind.has_clock_shim;
   for (const char* letter = kind.name; *letter != 0; ++letter)  // other moments for each kind
     options.seed = options.seed * 31 + static_cast<unsigned char>(*letter);
   Rig rig(options);

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -16,9 +17,10 @@ namespace {
 
 constexpr std::size_t kKeptWords = 40;
 
-[[noreturn]] void become(const std::vector<std::string>& command, int input, int output) {
+[[noreturn]] void become(const std::vector<std::string>& command, const char* preload, int input, int output) {
   sched_param ordinary{};  // not the rig's own priority
   sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  if (preload != nullptr) setenv("LD_PRELOAD", preload, 1);
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
@@ -38,7 +40,7 @@ HostProcess::~HostProcess() {
   waitpid(pid_, nullptr, 0);
 }
 
-void HostProcess::start(const std::vector<std::string>& command) {
+void HostProcess::start(const std::vector<std::string>& command, const char* preload) {
   int input[2], output[2];
   if (pipe2(input, O_CLOEXEC) || pipe2(output, O_CLOEXEC)) throw std::runtime_error("no pipe to the host program");
   status_line_ = "null";
@@ -46,7 +48,7 @@ void HostProcess::start(const std::vector<std::string>& command) {
   words_.clear();
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork fails");
-  if (pid_ == 0) become(command, input[0], output[1]);
+  if (pid_ == 0) become(command, preload, input[0], output[1]);
   close(input[0]);
   close(output[1]);
   input_ = input[1];
@@ -93,6 +95,10 @@ void HostProcess::take_line(const std::string& line) {
 
 std::uint64_t count_of(const std::string& status_line, const std::string& name) {
   return nlohmann::json::parse(status_line).at(nlohmann::json::json_pointer("/devices/0/" + name)).get<std::uint64_t>();
+}
+
+std::uint64_t count_of_reason(const std::string& status_line, const std::string& reason) {
+  return nlohmann::json::parse(status_line).at("devices").at(0).at("disarmed").value(reason, std::uint64_t{0});
 }
 
 }  // namespace fdcg::vm

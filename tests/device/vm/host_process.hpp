@@ -18,7 +18,8 @@ class HostProcess {
   HostProcess(const HostProcess&) = delete;
   HostProcess& operator=(const HostProcess&) = delete;
 
-  void start(const std::vector<std::string>& command);
+  // preload: a library for it, or null.
+  void start(const std::vector<std::string>& command, const char* preload);
   void say(const std::string& line);  // to its standard input
   void signal(int number);
   bool is_running() const { return pid_ > 0; }
@@ -48,5 +49,7 @@ class HostProcess {
 // A counter of the first device in a status line: "late", "rejected/crc". Throws where there is none. Reading a line takes
 // longer than a tick of the device.
 std::uint64_t count_of(const std::string& status_line, const std::string& name);
+// How often the first device was disarmed for this reason.
+std::uint64_t count_of_reason(const std::string& status_line, const std::string& reason);
 
 }  // namespace fdcg::vm

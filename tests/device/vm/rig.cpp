@@ -8,7 +8,9 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "clock_shim.h"
 #include "host_files.hpp"
+#include "suspend.hpp"
 
 namespace fdcg::vm {
 namespace {
@@ -43,6 +45,7 @@ std::uint64_t expirations(int timer) {
 Rig::Rig(const RigOptions& wanted)
     : options(wanted), device(make_port(wanted), wanted.rate_hz, wanted.has_float_axes), random_(wanted.seed) {
   write_host_files(options);
+  add_to_boot_clock(0);
   ticker_ = make_timer();
   alarm_ = make_timer();
   itimerspec rhythm{};
@@ -83,7 +86,7 @@ bool Rig::run_until(const Condition& condition, Nanoseconds limit) {
 }
 
 void Rig::start_host() {
-  host.start(host_command(options));
+  host.start(host_command(options), options.has_clock_shim ? kClockShim : nullptr);
 }
 
 bool Rig::end_host() {

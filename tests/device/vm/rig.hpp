@@ -18,8 +18,9 @@ struct RigOptions {
   int rate_hz = 1000;
   bool has_float_axes = false;
   bool has_log = false;
-  bool is_log_small = false;  // the log stands on a disk of its own that is soon full
-  bool is_timed = true;       // false: two processors, where no time is judged
+  bool is_log_small = false;    // the log stands on a disk of its own that is soon full
+  bool has_clock_shim = false;  // of the host: add_to_boot_clock moves its clock
+  bool is_timed = true;         // false: two processors, where no time is judged
   std::uint64_t seed = 1;
 };
 

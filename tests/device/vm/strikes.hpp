@@ -16,14 +16,17 @@ struct Expectation {
   bool disarms = false;
   // Neither is asked for.
   bool may_disarm = false;
-  std::string broken;  // what else has gone wrong; empty: nothing
+  Nanoseconds oldest_answer =
+      10 * kMillisecond;  // a force may answer a report so old: the gate's silence, and what the wire adds
+  std::string broken;     // what else has gone wrong; empty: nothing
 };
 
 struct StrikeKind {
   const char* name;
   Expectation (*strike)(Rig&);
+  const char* told_as = nullptr;      // the host's reasons for disarming, comma-separated; null: not asked
   const char* rejected_as = nullptr;  // the host's counter that must grow; null: none must
-  bool has_float_axes = false, is_log_small = false;
+  bool has_float_axes = false, is_log_small = false, has_clock_shim = false;
 };
 
 // On the wire: strikes_wire.cpp.
@@ -36,6 +39,9 @@ Expectation strike_stale(Rig& rig);
 Expectation strike_nan(Rig& rig);
 Expectation strike_stalled(Rig& rig);
 Expectation strike_half_lost(Rig& rig);
+Expectation strike_lag_5(Rig& rig);
+Expectation strike_lag_15(Rig& rig);
+Expectation strike_lag_30(Rig& rig);
 
 // On the device or the host: strikes_ends.cpp.
 Expectation strike_unplugged(Rig& rig);
@@ -43,6 +49,7 @@ Expectation strike_no_output(Rig& rig);
 Expectation strike_restarted(Rig& rig);
 Expectation strike_other_host(Rig& rig);
 Expectation strike_asleep(Rig& rig);
+Expectation strike_clock_jump(Rig& rig);
 Expectation strike_killed(Rig& rig);
 Expectation strike_disk_full(Rig& rig);
 

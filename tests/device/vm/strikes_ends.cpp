@@ -10,6 +10,7 @@
 
 #include "host_files.hpp"
 #include "strikes.hpp"
+#include "suspend.hpp"
 
 namespace fdcg::vm {
 namespace {
@@ -90,6 +91,18 @@ Expectation strike_asleep(Rig& rig) {
   rig.run_for(300 * kMillisecond);
   expected.known = now_ns();
   rig.host.signal(SIGCONT);
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
+// The host's clock that counts suspended time too goes ahead by so much, as after a suspend that its reports hide.
+Expectation strike_clock_jump(Rig& rig) {
+  Expectation expected;
+  expected.disarms = true;
+  const Nanoseconds slept = rig.random_between(20 * kMillisecond, 3600 * kSecond);
+  add_to_boot_clock(slept);
+  expected.known = now_ns();
+  rig.device.record.watch(expected.known);
   rig.run_for(kSecond / 10);
   return expected;
 }

@@ -84,7 +84,55 @@ void set_crc(Bytes& report) {
 constexpr int kLongest = 40;
 constexpr int kLongestWithOldNumbers = 15;  // more than 20 in a row are a device that has begun again: report_codec.hpp
 
+// Arming is asked for while what is sent comes back too late. False: it was granted.
+bool is_refused(Rig& rig) {
+  rig.device.hand.above();
+  rig.run_for(100 * kMillisecond);
+  for (int i = 0; i < 3; ++i) {
+    rig.host.say("arm");
+    if (rig.run_until([&] { return rig.device.record.is_enabled; }, 100 * kMillisecond)) return false;
+  }
+  return true;
+}
+
+// From a random moment on reports, or outputs, are under way for so long. Longer than the gate's silence, or than an output may
+// be without its echo, it is seen as that; else by the round trips of sixteen outputs. Then it cannot be armed until it is
+// over.
+Expectation strike_lag(Rig& rig, Nanoseconds lag) {
+  constexpr int kTrips = 16;
+  const bool is_of_outputs = lag < kSilence || rig.random_between(0, 1) == 1;
+  begin_on_report(rig);
+  Expectation expected;
+  expected.disarms = true;
+  const Nanoseconds wire = is_of_outputs ? lag : 0;  // until the host's word has come
+  if (lag < kSilence)
+    expected.known = now_ns() + lag + (kTrips + 1) * rig.period() + wire;
+  else if (is_of_outputs)
+    expected.known = now_ns() + kSilence + rig.period() + wire;
+  else
+    expected.known = now_ns() + static_cast<Nanoseconds>(kMissedPeriods * static_cast<double>(rig.period()));
+  expected.oldest_answer = kSilence + lag + rig.period();
+  rig.device.record.watch(expected.known);
+  rig.device.lag(is_of_outputs ? 0 : lag, is_of_outputs ? lag : 0);
+  rig.run_until(expected.known + 2 * lag + kAfterwards);
+  const bool is_quiet = rig.device.record.force_n == 0;
+  if (is_quiet && !is_refused(rig)) expected.broken = "it was armed while what is sent comes back too late";
+  rig.device.lag(0, 0);
+  rig.run_for(kAfterwards);
+  return expected;
+}
+
 }  // namespace
+
+Expectation strike_lag_5(Rig& rig) {
+  return strike_lag(rig, 5 * kMillisecond);
+}
+Expectation strike_lag_15(Rig& rig) {
+  return strike_lag(rig, 15 * kMillisecond);
+}
+Expectation strike_lag_30(Rig& rig) {
+  return strike_lag(rig, 30 * kMillisecond);
+}
 
 Expectation strike_short(Rig& rig) {
   return burst(rig, burst_length(rig, kLongest), [&](const Bytes& report) {

@@ -22,6 +22,8 @@ LIMIT_S = 560  # a boot: a test counts as hung after ten minutes
 
 REPORTS = "short long garbled repeated out-of-order stale nan stalled half-lost".split()
 ENDS = "unplugged no-output restarted other-host asleep killed disk-full".split()
+STRIKES = ",".join(REPORTS + ENDS)
+LATE = "lag-5 lag-15 lag-30 clock-jump".split()
 
 
 @contextlib.contextmanager
@@ -46,7 +48,8 @@ class VmCase(unittest.TestCase):
                 self.kernel = image.fetch_kernel(FOLDER / "kernels", self.flavour)
             image.need("qemu-system-x86_64")
             image.run(os.environ["FDCG"], "compile", CUBE, "-o", folder / "cube.fdcg")
-            files = {"etc/cube.fdcg": folder / "cube.fdcg", "etc/fdcg-reference.json": PROFILE}
+            files = {"etc/cube.fdcg": folder / "cube.fdcg", "etc/fdcg-reference.json": PROFILE,
+                     "lib/vm_clock_shim.so": os.environ["FDCG_VM_CLOCK_SHIM"]}
             programs = [os.environ["FDCG_VM_RIG"], os.environ["FDCG_SERVO"]]
             image.build_initramfs(self.kernel, programs, files, INIT, self.initramfs)
         except image.Missing as missing:
@@ -88,13 +91,18 @@ class TimingLibusb(VmCase):
 
 class FaultsUhid(VmCase):
     def test_each_fault_twenty_times(self):
-        self.assert_passes(len(REPORTS + ENDS), self.boot("faults"))
+        self.assert_passes(len(REPORTS + ENDS), self.boot(f"faults only={STRIKES}"))
 
 
 class FaultsUsb(VmCase):
     def test_each_fault_twenty_times(self):
-        console = self.boot("faults way=usb", "faults way=usb backend=libusb only=unplugged,no-output")
+        console = self.boot(f"faults way=usb only={STRIKES}", "faults way=usb backend=libusb only=unplugged,no-output")
         self.assert_passes(len(REPORTS + ENDS) + 2, console)
+
+
+class LateUhid(VmCase):
+    def test_lag_and_a_clock_that_leaps_twenty_times(self):
+        self.assert_passes(len(LATE), self.boot(f"faults only={','.join(LATE)}"))
 
 
 def behaviour(console):
@@ -117,7 +125,7 @@ class Races(VmCase):
 
     def test_faults(self):
         over_usb = "short long garbled repeated out-of-order stale unplugged killed".split()
-        console = self.boot("faults timed=0 times=2", f"faults way=usb timed=0 times=2 only={','.join(over_usb)}")
+        console = self.boot(f"faults timed=0 times=2 only={STRIKES}", f"faults way=usb timed=0 times=2 only={','.join(over_usb)}")
         self.assert_passes(len(REPORTS + ENDS + over_usb), console)
 
 
