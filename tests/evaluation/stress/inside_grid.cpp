@@ -58,11 +58,12 @@ Wide distance_to_triangle(const Vector<Wide>& x, const Vector<Wide> (&corners)[3
   return nearest;
 }
 
-// Of two segments, neither of which is a point.
+// Of two segments, neither of which is a point. By the cross product: of nearly parallel ones the difference of products loses
+// all its digits.
 Wide distance_between(const Vector<Wide>& a, const Vector<Wide>& b, const Vector<Wide>& c, const Vector<Wide>& d) {
-  const Vector<Wide> u = b - a, v = d - c, w = c - a;
-  const Wide uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), det = uu * vv - uv * uv;
-  Wide s = det > 0 ? std::clamp<Wide>((dot(u, w) * vv - dot(v, w) * uv) / det, 0, 1) : 0;
+  const Vector<Wide> u = b - a, v = d - c, w = c - a, across = cross(u, v);
+  const Wide uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), det = dot(across, across);
+  Wide s = det > 0 ? std::clamp<Wide>(dot(cross(w, v), across) / det, 0, 1) : 0;
   const Wide t = std::clamp<Wide>((s * uv - dot(v, w)) / vv, 0, 1);
   s = std::clamp<Wide>((t * uv + dot(u, w)) / uu, 0, 1);
   return length((a + u * s) - (c + v * t));

@@ -97,6 +97,7 @@ class Judge {
   void look_at_rest(Tick& tick, Verdicts& v) const;
   [[nodiscard]] double descent_from(const Tick& tick) const;
   void look_at_descent(Tick& tick, Verdicts& v) const;
+  [[nodiscard]] double turned(double edge_length, double depth) const;
   [[nodiscard]] double merged_descent_from(const Tick& tick) const;
   [[nodiscard]] Hip outwards(const Tick& tick) const;
   [[nodiscard]] bool is_in_merged_air(const Tick& tick) const;

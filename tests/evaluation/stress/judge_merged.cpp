@@ -28,7 +28,11 @@ void Judge::look_at_merged_way(Tick& tick) const {
   const InsideGrid::Crossing way = solid.crossing(from, tick.hip);
   const bool is_stopped = tick.result.transitions > 0;
   tick.is_way_clear = !way.is_through && !way.touches && !solid.comes_near(from, tick.hip, moved_);
-  if (tick.is_way_clear && is_stopped) tick.faults |= bit(Fault::thin_air);
+  // Faces are slabs: their planes lie off the mesh by the deviation, and they are met from as far in front of their planes. But
+  // what is held is below a plane.
+  const bool is_held = tick.after.state != FDCG_FREE;
+  if (tick.is_way_clear && is_stopped && (is_held || !solid.comes_near(from, tick.hip, 2 * moved_)))
+    tick.faults |= bit(Fault::thin_air);
   if (!way.is_through || is_stopped) return;
   for (int i = 1; i <= kPlaces; ++i) {
     const Hip x = place_between(from, tick.hip, static_cast<double>(i) / kPlaces);
@@ -36,9 +40,17 @@ void Judge::look_at_merged_way(Tick& tick) const {
   }
 }
 
+// By how much a corner off its place by the deviation moves the foot of a HIP so deep below, on an edge so long or a face with
+// such an edge.
+double Judge::turned(double edge_length, double depth) const {
+  return deviation_ * depth / edge_length;
+}
+
 // How far a face or an edge of the graph at the god-object, of those that hold it, leads towards the HIP.
 double Judge::merged_descent_from(const Tick& tick) const {
-  if (tick.after.state != FDCG_VERTEX) return descent_from(tick);
+  if (tick.after.state == FDCG_FACE) return descent_from(tick);
+  const double depth = distance(tick.god_object, tick.hip);
+  if (tick.after.state == FDCG_EDGE) return descent_from(tick) - turned(specimen_.edges[tick.after.feature].length, depth);
   const Hip t = difference(tick.hip, specimen_.corners[tick.after.feature].point);
   const fdcg_graph& graph = specimen_.graph();
   std::vector<std::uint32_t> fan(fdcg_get_fan(&graph, tick.after.feature, nullptr, 0));
@@ -50,15 +62,17 @@ double Judge::merged_descent_from(const Tick& tick) const {
   double most = 0;
   for (std::size_t i = 0; i < fan.size(); ++i) {
     const EdgeShape& edge = specimen_.edges[fan[i] >> 1];
+    const EdgeShape& next_edge = specimen_.edges[fan[i + 1 < fan.size() ? i + 1 : 0] >> 1];
     const Hip along = direction_of(fan[i]), next = direction_of(fan[i + 1 < fan.size() ? i + 1 : 0]);
-    if (in_front_of_edge(edge, tick.hip) < 0) most = std::max(most, dot(t, along));
+    const double noise = turned(std::min(edge.length, next_edge.length), depth);
+    if (in_front_of_edge(edge, tick.hip) < 0) most = std::max(most, dot(t, along) - noise);
     const std::uint32_t n = edge.node[fan[i] & 1];
     if (!(in_front_of_node(n, tick.hip) < 0)) continue;
     const Hip& normal = specimen_.nodes[n].normal;
     const double height = dot(t, normal);
     const Hip flat = {t[0] - height * normal[0], t[1] - height * normal[1], t[2] - height * normal[2]};
     const bool is_over = dot(cross_product(along, flat), normal) > 0 && dot(cross_product(flat, next), normal) > 0;
-    if (is_over) most = std::max(most, norm(flat));
+    if (is_over) most = std::max(most, norm(flat) - noise);
   }
   return most;
 }
