@@ -43,6 +43,7 @@ struct Options {
   std::string only, mesh;
   std::string precision;
   std::int64_t block = -1;
+  Variation variation;
   std::string minimise, replay;
   bool lists = false;
 };
@@ -68,7 +69,11 @@ double seconds_since(Clock::time_point begin) {
 class Findings {
  public:
   Findings(const Options& options, std::string program)
-      : folder_(options.output), mesh_(options.mesh), program_(std::move(program)) {}
+      : folder_(options.output), mesh_(options.mesh), program_(std::move(program)) {
+    const Variation& v = options.variation;
+    if (v.is_frictionless) variation_ += " --frictionless";
+    if (v.stretch != 1) variation_ += " --stretch " + std::to_string(v.stretch) + " --axis " + std::to_string(v.axis);
+  }
 
   void add(const Finding& f) {
     const std::lock_guard lock(mutex_);
@@ -80,7 +85,7 @@ class Findings {
     const std::string file = folder_ + "/" + kind + "-" + std::to_string(count) + ".obj";
     const std::string what = mesh_.empty() ? " --case " + std::string(f.name.stress_case->name) : " --mesh " + mesh_;
     const std::string command = program_ + " --seed " + std::to_string(f.name.seed) + what + " --precision " +
-                                name_of(f.name.precision) + " --block " + std::to_string(f.name.block);
+                                name_of(f.name.precision) + " --block " + std::to_string(f.name.block) + variation_;
     std::printf("FOUND %s at tick %llu of %s, extent %g\n      repeat: %s\n      file: %s\n", kind.c_str(), n(f.tick),
                 f.specimen->body.description.c_str(), f.specimen->header().extent, command.c_str(), file.c_str());
     std::fflush(stdout);
@@ -89,7 +94,7 @@ class Findings {
 
  private:
   std::mutex mutex_;
-  std::string folder_, mesh_, program_;
+  std::string folder_, mesh_, program_, variation_;
   std::map<std::string, int> written_;
 };
 
@@ -157,8 +162,9 @@ class Workers {
     const Row& row = rows_[turn.row];
     SpecimenShelf shelf;
     for (std::uint64_t block = turn.begin; block < turn.end; ++block) {
-      const BlockName name = {row.stress_case, row.precision, block, options_.seed};
+      const BlockName name = {row.stress_case, row.precision, block, options_.seed, options_.variation};
       const auto specimen = shelf.get(name);
+      if (specimen == nullptr) continue;
       results_[turn.row][block - row.first_block] = run_block(name, *specimen, [&](const Finding& f) { findings_.add(f); });
     }
     const std::lock_guard lock(mutex_);
@@ -397,6 +403,10 @@ int main(int argc, char** argv) {
   program.option("--mesh", options.mesh, "this mesh file, compiled as by default, in place of the cases");
   program.choice("--precision", options.precision, "f64 or f32 alone", {"f64", "f32"});
   program.option("--block", options.block, "this block of each case alone");
+  program.option("--stretch", options.variation.stretch,
+                 "every body along an axis; those that the compiler then refuses are left out");
+  program.option("--axis", options.variation.axis, "of --stretch: 0, 1 or 2", 0, 2);
+  program.flag("--frictionless", options.variation.is_frictionless, "every contact");
   program.option("--minimise", options.minimise, "cut this reproducer down; writes FILE.small.obj and FILE.test.cpp");
   program.option("--replay", options.replay, "step this reproducer; exit code 1 if it still fails");
   program.flag("--list", options.lists, "the cases");

@@ -3,6 +3,9 @@
 
 #include <bit>
 #include <cstring>
+#include <stdexcept>
+
+#include "squashed.hpp"
 
 // servo_step.cpp, compiled with step_watch.hpp
 extern "C" void fdcg_step_watched(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
@@ -52,7 +55,8 @@ class Block {
   void episode() {
     const auto& motions = name_.stress_case->motions;
     const std::uint32_t ticks = hand_.begin(motions[random_.below(static_cast<std::uint32_t>(motions.size()))]);
-    const auto& mu = kFrictionPairs[random_.below(std::size(kFrictionPairs))];
+    const auto& drawn = kFrictionPairs[random_.below(std::size(kFrictionPairs))];
+    const auto& mu = name_.variation.is_frictionless ? kFrictionPairs[0] : drawn;
     params_ = contact_params(mu[0], mu[1], random_.chance(0.8) ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER);
     contact_ = {};
     path_.clear();
@@ -136,11 +140,22 @@ void BlockResult::add(const BlockResult& other) {
 
 std::shared_ptr<const Specimen> SpecimenShelf::get(const BlockName& name) {
   const std::uint64_t key = seed_of(name, ~(name.block / name.stress_case->blocks_per_body));
-  if (last_ == nullptr || key != key_) {
+  if (!has_made_ || key != key_) {
     Random random(key);
     last_.reset();
-    last_ = std::make_shared<const Specimen>(name.stress_case->make(random, name.precision));
+    has_made_ = true;
     key_ = key;
+    Body body = name.stress_case->make(random, name.precision);
+    const Variation& v = name.variation;
+    if (v.stretch != 1) {
+      body.soup = stretched(body.soup, v.axis, v.stretch);
+      body.description += ", axis " + std::to_string(v.axis) + " times " + std::to_string(v.stretch);
+    }
+    try {
+      last_ = std::make_shared<const Specimen>(std::move(body));
+    } catch (const std::runtime_error&) {
+      if (v.stretch == 1) throw;
+    }
   }
   return last_;
 }

@@ -14,11 +14,19 @@ namespace fdcg::test {
 
 inline constexpr std::uint32_t kBlockTicks = 20'000;
 
+// What is made of every case's bodies and hands.
+struct Variation {
+  double stretch = 1;  // of the body, along one of its axes
+  int axis = 0;
+  bool is_frictionless = false;
+};
+
 struct BlockName {
   const StressCase* stress_case = nullptr;
   bake::Precision precision = bake::Precision::f64;
   std::uint64_t block = 0;
   std::uint64_t seed = 1;
+  Variation variation = {};
 };
 
 struct BlockResult {
@@ -43,10 +51,12 @@ using OnFinding = std::function<void(const Finding&)>;
 // Makes specimens, and keeps the last: large ones serve many blocks.
 class SpecimenShelf {
  public:
+  // Null where the compiler refuses the body, stretched as it is.
   std::shared_ptr<const Specimen> get(const BlockName& name);
 
  private:
   std::uint64_t key_ = 0;
+  bool has_made_ = false;
   std::shared_ptr<const Specimen> last_;
 };
 
