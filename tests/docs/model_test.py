@@ -130,7 +130,7 @@ class Model(unittest.TestCase):
 
     def test_a_step_that_departs_from_the_page_is_told_apart(self):
         class AnyChangeOfSign(Walker):  # the paper's test: contact-model PAPER-4
-            def is_crossed(self, s0, s1):
+            def may_cross(self, s0, s1):
                 return s0 * s1 < 0
 
         class EdgesLetGoTogether(Walker):  # contact-model EDGE-1

@@ -180,7 +180,7 @@ class Walker:
     # ---- the tick
 
     def tick(self, hip):
-        self.hip, is_first, self.residual, self.transitions = hip, self.hip is None, (0.0, 0.0, 0.0), 0
+        self.hip, is_first, self.residual, self.transitions, self.rim = hip, self.hip is None, (0.0, 0.0, 0.0), 0, None
         if is_first:  # contact-model TICK-3
             self.god_object = hip
         else:
@@ -208,9 +208,7 @@ class Walker:
             before = self.at
             after = (None, self.on_face, self.on_edge, self.on_vertex)[before[0]](before[1])
             if after is None:
-                if is_rest():
-                    return
-                continue
+                return
             self.at = after
             self.transitions += 1
             if after == NOWHERE:
@@ -222,10 +220,34 @@ class Walker:
             if self.gap2() < nearest:
                 nearest, visited, has_retried = self.gap2(), [], False
             if self.at in visited or len(visited) == 32:  # contact-model TICK-5
-                if is_rest():
+                if is_rest() and not self.goes_on_at_corner(visited):
                     return
             else:
                 visited.append(self.at)
+
+    def goes_on_at_corner(self, visited):
+        graph = self.graph
+        if self.rim is None or len(visited) == 32:
+            return False
+        edge = graph.edge[self.rim]
+        if self.at[0] == VERTEX:
+            after, point = (EDGE, self.rim), self.god_object
+            if self.at[1] not in edge.corner:
+                return False
+        else:
+            after = (VERTEX, edge.corner[0 if 2 * edge.parameter(self.god_object) < edge.length else 1])
+            point = graph.point[after[1]]
+            growth = norm(minus(point, self.hip)) - norm(minus(self.god_object, self.hip))
+            is_near = norm(minus(self.god_object, point)) <= 2 * graph.rounding(self.hip)
+            if not is_near or growth > 8 * EPS * graph.extent:
+                return False
+        if after in visited:
+            return False
+        if after[0] == VERTEX:
+            self.place(point, after)
+        self.at = after
+        visited.append(after)
+        return True
 
     def gap2(self):
         gap = minus(self.god_object, self.hip)
@@ -310,12 +332,16 @@ class Walker:
         if depth <= 0:
             return self.leave_face(face)
         n = graph.normal[face]
-        reach = plus(minus(self.god_object, hip), self.residual)
-        q = minus(reach, times(n, dot(n, reach)))
-        radius = self.slip(dot(q, q), depth)
+
+        def in_plane(a):
+            return minus(a, times(n, dot(n, a)))
+
+        stands = in_plane(minus(self.god_object, hip))
+        radius = self.slip(dot(stands, stands), depth)
         if radius is None:  # contact-model FACE-3
             return None
-        target = plus(plus(hip, times(n, depth)), times(q, radius / norm(q) if radius > 0 else 0.0))  # contact-model FACE-4
+        q = in_plane(plus(minus(self.god_object, hip), self.residual))  # contact-model FACE-7
+        target = plus(plus(hip, times(n, depth)), times(q, radius / norm(q) if radius > 0 and norm(q) > 0 else 0.0))  # contact-model FACE-4
         crossing = self.first_crossing(face, target)
         if crossing is None:
             off = graph.distance(face, target) if norm1(hip) > 16 * graph.extent else 0.0
@@ -344,41 +370,28 @@ class Walker:
         edge = self.graph.edge[self.graph.side[face][k][0]]
         return -edge.end_tolerance <= edge.parameter(x) <= edge.length + edge.end_tolerance
 
-    def is_crossed(self, s0, s1):
-        return s1 >= 0 and s1 > s0
-
     def first_crossing(self, face, target):  # contact-model FACE-5
         rounding, best = 4 * EPS * (norm1(target) + self.graph.extent), None
         for k in range(3):
             s0, s1 = (beyond(self.graph.voronoi(face, k), x) for x in (self.god_object, target))
-            if s1 < 0:
-                is_near = s1 >= -self.graph.rounding(self.hip) and best is None
-                if is_near and any(self.is_past(face, j, target, rounding) for j in (k, (k + 1) % 3)):
-                    best = (1.0, k)
-            elif self.is_crossed(s0, s1):
-                fraction = 1.0 if s1 <= rounding else 0.0 if s0 >= 0 else -s0 / (s1 - s0)
-                is_tie = best is not None and fraction == best[0] == 1.0
-                is_better = is_tie and not self.is_between_ends(face, best[1], target) and self.is_between_ends(face, k, target)
-                if best is None or fraction < best[0] or is_better:
-                    best = (fraction, k)
+            if s1 < -rounding or not self.may_cross(s0, s1):
+                continue
+            fraction = 1.0 if s1 <= rounding or s1 <= s0 else 0.0 if s0 >= 0 else -s0 / (s1 - s0)
+            is_tie = best is not None and fraction == best[0] == 1.0
+            is_better = is_tie and not self.is_between_ends(face, best[1], target) and self.is_between_ends(face, k, target)
+            if best is None or fraction < best[0] or is_better:
+                best = (fraction, k)
         return best
 
-    def is_past(self, face, k, target, rounding):  # contact-model FACE-8
-        from_corner = minus(target, self.graph.point[self.graph.face[face][k]])
-
-        def ahead(side):
-            edge, which = self.graph.side[face][side]
-            along = dot(from_corner, self.graph.edge[edge].direction)
-            return along if which == 0 else -along
-
-        return -ahead(k) > rounding and ahead((k - 1) % 3) > rounding
+    def may_cross(self, _s0, _s1):
+        return True
 
     def place_on_rim(self, face, k, point):
         edge = self.graph.side[face][k][0]
         return self.place_on_edge(edge, self.graph.edge[edge].parameter(point))
 
     def place_on_edge(self, index, u):  # contact-model FACE-6
-        graph, edge = self.graph, self.graph.edge[index]
+        graph, edge, self.rim = self.graph, self.graph.edge[index], index
         for end, from_end in enumerate((u, edge.length - u)):
             if from_end > edge.end_tolerance:
                 continue

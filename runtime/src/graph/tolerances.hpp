@@ -29,7 +29,7 @@ inline Real own_plane_rounding(const Plane& plane, Vec3<Real> x) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(terms) + absolute(plane.offset));
 }
 
-// FACE-5, FACE-6, FACE-8: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
+// FACE-5, FACE-6: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
 // to 0, and then is good to a unit of the extent's last place, not of its own.
 template <class Real>
 inline Real on_plane_rounding(Vec3<Real> x, Real extent) {
@@ -68,6 +68,12 @@ inline Real end_rounding(Vec3<Real> start, Real length) {
 template <class Real>
 inline Real snap_growth(Real extent) {
   return 8 * RealLimits<Real>::kEpsilon * extent;
+}
+
+// TICK-5: a god-object that goes in a circle this near to a corner is on it. `bound`: plane_rounding_bound.
+template <class Real>
+inline Real corner_rounding(Real bound, Real deviation) {
+  return 2 * (bound + deviation);
 }
 
 // ---- A way

@@ -34,7 +34,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   EdgeSides<Real> s;
   look_at_sides(walk, connection, &s);
   if (connection.type() == FDCG_BOUNDARY) return s.side[0] < 0 && s.voronoi[0] < 0;
-  return !is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0);
+  return !lets_go(walk, connection, s);
 }
 
 // The search around a corner. Where the HIP is known to be inside only what holds the god-object counts.

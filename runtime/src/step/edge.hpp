@@ -56,19 +56,18 @@ template <class Geometry, class Real = typename Geometry::Real>
   walk.friction.terms->select_material_of_edge(a, b, share);
 }
 
-// contact-model EDGE-7: over one face of an edge and not over the other, and on another side of the two planes: that is no
-// place, but for corners off a small face's plane, which far from it is anywhere. The face below decides. Of a convex edge:
-// whether it holds a HIP that the other face is said to let go; of a concave one, whether it lets go one that the other is said
-// to hold.
+// contact-model EDGE-1, EDGE-7: whether an edge with two faces lets the HIP go. Where corners lie off their planes the signs
+// may contradict each other: far from a small face its plane is anywhere. Then a face that the HIP is clearly over, and not
+// over the other, decides alone; and behind both faces of an edge that is not concave, clearly over neither, is no place.
 template <class Geometry, class Real = typename Geometry::Real>
-inline uint32_t face_despite_noise(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
-  if (!walk.graph.has_inexact_nodes()) return FDCG_NONE;
-  const bool is_concave = connection.type() == FDCG_CONCAVE;
-  for (uint32_t k = 0; k < 2; ++k) {
-    const bool is_over = s.voronoi[k] < 0 && s.voronoi[1 - k] > 0, is_behind = s.side[k] < 0;
-    if (is_over && is_behind != is_concave) return connection.node(k);
-  }
-  return FDCG_NONE;
+inline bool lets_go(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
+  const bool is_free = is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0);
+  if (!walk.graph.has_inexact_nodes()) return is_free;
+  const Real noise = slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound);
+  const bool is_beyond_a = s.voronoi[0] > noise, is_beyond_b = s.voronoi[1] > noise;
+  if (is_beyond_b && s.voronoi[0] < -noise) return !(s.side[0] < 0);
+  if (is_beyond_a && s.voronoi[1] < -noise) return !(s.side[1] < 0);
+  return is_free || (is_beyond_a && is_beyond_b && connection.type() != FDCG_CONCAVE);
 }
 
 // Cost: two face planes, two Voronoi planes.
@@ -80,11 +79,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   look_at_sides(walk, connection, &s);
   const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
   if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
-  const uint32_t over = face_despite_noise(walk, connection, s);
-  const bool is_concave = connection.type() == FDCG_CONCAVE;
-  if (is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0))
-    return go_to(over == FDCG_NONE || is_concave ? kFree : Feature{FDCG_FACE, over});
-  if (over != FDCG_NONE && is_concave) return go_to(kFree);
+  if (lets_go(walk, connection, s)) return go_to(kFree);
   const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
   if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0] && !FDCG_MUTANT("steeper-face")))
     return go_to({FDCG_FACE, connection.node(0)});

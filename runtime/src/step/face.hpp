@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The god-object on a face (contact-model FACE-1 to FACE-8; Melder 2004, sections 2, 5b and 5c).
+// The god-object on a face (contact-model FACE-1 to FACE-7; Melder 2004, sections 2, 5b and 5c).
 #pragma once
 
 #include "step/walk.hpp"
@@ -7,29 +7,16 @@
 namespace fdcg {
 
 // contact-model FACE-5: the first of the node's Voronoi planes that a move crosses; local_side is FDCG_NONE if there is none.
-// GO sits on such planes all the time, so a crossing is "ends on or beyond, and further out than it began", not a change of
-// sign.
+// GO sits on such planes all the time, so a crossing is "ends beyond, and further out than it began", not a change of sign.
 //
-// A move that ends on a plane up to rounding error has crossed it, if at all, anywhere on its way: one along a side from a
-// corner might be stopped in that corner, for ever. It crosses where it ends, unless it crosses another side before.
+// A move that ends on a plane up to rounding error is on that side, wherever it began: by which of the two features it goes on
+// must not depend on the last digits of the god-object's place, or the next tick would choose the other. It crosses where it
+// ends, unless it crosses another side before: cut to its start, one along a side would be stopped for ever.
 template <class Real>
 struct Crossing {
   uint32_t local_side = FDCG_NONE;
   Real fraction = 1;
 };
-
-// contact-model FACE-8: whether `to` is past the corner at which side k starts: before that side's start and beyond the end of
-// the side before.
-template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool is_past_corner(NodeRef<Geometry> node, uint32_t k, Vec3<Real> to) {
-  const Real rounding = on_plane_rounding(to, node.extent());
-  const Vec3<Real> from_corner = to - node.graph().corner_point(node.corner(k));
-  const auto is_ahead = [&](uint32_t side, int sign) {  // in winding order
-    const Real along = dot(from_corner, node.graph().edge(node, side).direction);
-    return sign * (node.which(side) == 0 ? along : -along) > rounding;
-  };
-  return is_ahead(k, -1) && is_ahead(node.previous(k), 1);
-}
 
 // Whether a place is between the ends of a side, up to rounding.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -39,26 +26,19 @@ template <class Geometry, class Real = typename Geometry::Real>
   return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
 }
 
-// Looks at the sides from the first on beyond whose plane the move ends. Or near it, by `bound` of rounding: towards the tip of
-// a face like a needle its two planes are one but for that, and a move might slide past the tip between them.
+// Looks at the sides from the first on beyond whose plane the move ends, or near it.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to,
-                                                     Real bound) {
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to) {
+  const Real rounding = FDCG_MUTANT("ends-on-plane") ? Real(0) : on_plane_rounding(to, node.extent());
   Crossing<Real> first;
   for (; k < node.side_count(); ++k) {
     const Plane<Real> plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
-    if (!(s1 >= 0)) {
-      const bool is_near = s1 >= -bound && first.local_side == FDCG_NONE;
-      if (is_near && (is_past_corner(node, k, to) || is_past_corner(node, node.next(k), to))) first = {k, 1};
-      continue;
-    }
+    if (!(s1 >= -rounding)) continue;
     const Real s0 = plane.distance(from);
-    if (FDCG_MUTANT("crossing-sign") ? !(s1 * s0 < 0) : FDCG_MUTANT("crossing-onto") ? !(s0 <= 0 && s1 > 0) : !(s1 > s0)) {
-      continue;
-    }
-    const bool ends_on_plane = s1 <= on_plane_rounding(to, node.extent());
-    const Real fraction = ends_on_plane && !FDCG_MUTANT("along-side") ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
+    if ((FDCG_MUTANT("crossing-sign") && !(s1 * s0 < 0)) || (FDCG_MUTANT("crossing-onto") && !(s0 <= 0 && s1 > 0))) continue;
+    const bool ends_there = (s1 <= rounding || s1 <= s0) && !FDCG_MUTANT("along-side");
+    const Real fraction = ends_there ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
     // A face like a needle may be narrower than rounding: of two sides that the move ends on, the one that reaches there
     // counts.
     const bool is_tie = fraction == 1 && first.fraction == 1 && first.local_side != FDCG_NONE;
@@ -73,7 +53,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 template <class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT Crossing<Real> first_crossing(NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
   for (uint32_t k = node.first_doubtful(to, bound); k < node.side_count(); ++k) {
-    if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to, bound);
+    if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to);
   }
   return {};
 }
@@ -91,20 +71,23 @@ struct FaceMove {
   Crossing<Real> crossing;
 };
 
-// `bound`: plane_rounding_bound of the HIP. `reach`: from the HIP to the god-object, more exactly than the two can say.
+// `bound`: plane_rounding_bound of the HIP. `stands`: from the HIP to the god-object; `reach`: to where it would be without
+// rounding (contact-model FACE-7). Whether friction holds it is asked of its place: the next tick has no other.
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
 template <class Geometry, class Laws, class Real = typename Geometry::Real>
 FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
-                                     Vec3<Real> god_object, Vec3<Real> reach) {
+                                     Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
   if (FDCG_MUTANT("on-plane") ? side > 0 : !(side < 0)) return {Kind::leaves, god_object, {}};
   const Vec3<Real> normal = node.normal();
-  const Vec3<Real> offset = reach - normal * dot(normal, reach);  // its part in the plane: from the surface point
-  const Real gap2 = dot(offset, offset), depth = -side;
-  const Slip<Real> slip = friction.slip(god_object, gap2, depth);
+  const Vec3<Real> off = stands - normal * dot(normal, stands);  // its part in the plane: from the surface point
+  const Real depth = -side;
+  const Slip<Real> slip = friction.slip(god_object, dot(off, off), depth);
   if (slip.is_rest) return {Kind::rests, god_object, {}};
-  const Real shrink = slip.gap > 0 ? slip.gap / root(gap2) : Real(0);
+  const Vec3<Real> offset = reach - normal * dot(normal, reach);
+  const Real reach2 = dot(offset, offset);
+  const Real shrink = slip.gap > 0 && reach2 > 0 ? slip.gap / root(reach2) : Real(0);
   const Vec3<Real> surface_point = hip + normal * depth;
   const Vec3<Real> target = surface_point + offset * shrink;
   const Crossing<Real> crossing = first_crossing(node, god_object, target, bound);
@@ -192,8 +175,9 @@ template <class Geometry, class Real = typename Geometry::Real>
   if constexpr (FDCG_WITH_FRICTION_TERMS) {
     if (walk.friction.terms != nullptr) walk.friction.terms->select_material_of_face(walk.active.index);
   }
-  const Vec3<Real> reach = (walk.god_object - walk.hip) + walk.rounding_residual;
-  return carry_out(walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, reach));
+  const Vec3<Real> stands = walk.god_object - walk.hip, reach = stands + walk.rounding_residual;
+  return carry_out(
+      walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, stands, reach));
 }
 
 }  // namespace fdcg

@@ -56,11 +56,13 @@ class FanSweep : public NodeEntry<Geometry> {
  private:
   // The way as seen from a corner: from direction `start` to `end`, along a great circle. A face in a box is passed only where
   // the box meets the circle's plane within `slack`, reaches beyond the start and before the end, and, along each of its own
-  // axes, comes within `padding` of what the arc spans.
+  // axes, comes within `padding` of what the arc spans; or it is so near to the start that a wall there might hold
+  // (contact-model LEAVE-3).
   struct Arc {
     Vec3<Real> start, end;
     Vec3<Real> normal, after_start, before_end;  // of the circle's plane, and of those across it at the arc's ends
     Real slack, padding;
+    Real around_start;            // negative: no wall there holds
     Real start_share, end_share;  // of the distances of the way's start and end from the corner
   };
 
@@ -133,8 +135,6 @@ class FanSweep : public NodeEntry<Geometry> {
     const double nearest = at > 0 && at < length ? off : length_a < length_b ? length_a : length_b;
     const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;  // and may be entered beside the way
     Real beside = is_inexact ? seen(slab_ + from_bound_ + to_bound_, static_cast<Real>(nearest)) : Real(0);
-    // contact-model LEAVE-3: a wall beside the way's start
-    if (!(left_ == kFree)) beside += seen(2 * from_bound_, static_cast<Real>(length_a));
     const double bulge = dot(across, across) * 0.3;  // of an arc below a right angle over its chord, or more
     const Vec3<double> unit = sine > 0 ? normal * (1 / sine) : normal;
     arc->start = narrowed(start);
@@ -143,6 +143,9 @@ class FanSweep : public NodeEntry<Geometry> {
     arc->after_start = narrowed(cross(unit, start));
     arc->before_end = narrowed(cross(end, unit));
     beside += kDirectionRounding<Real>;
+    // A wall there is off the start by its plane's rounding, and by a quarter of that beyond its sides.
+    constexpr Real kOffWall = Real(1.0625);
+    arc->around_start = left_ == kFree ? Real(-1) : beside + seen(kOffWall * from_bound_, static_cast<Real>(length_a));
     arc->slack = sine > kArcRounding ? beside + static_cast<Real>(kArcRounding / sine) : kAnywhere;
     arc->padding = dot(start, end) > 0 ? beside + static_cast<Real>(bulge) : kAnywhere;
     arc->start_share = static_cast<Real>(length_a / (length_a + length_b));
@@ -181,16 +184,21 @@ class FanSweep : public NodeEntry<Geometry> {
     Real off = absolute(dot(arc.normal, centre)) - arc.slack;
     Real after = dot(arc.after_start, centre) - arc.slack, most_after = after + 2 * arc.slack;
     Real before = dot(arc.before_end, centre) + arc.slack;
+    bool is_at_start = arc.around_start >= 0, is_beside = false;
     for (const auto& stored : box.axis) {
       const Vec3<Real> axis = vec(stored);
-      const Real from = dot(axis, start), to = dot(axis, end), half = dot(axis, axis) + arc.padding * norm1(axis);
-      if ((from < to ? from : to) > half || (from < to ? to : from) < -half) return kPassedBy;
+      const Real from = dot(axis, start), to = dot(axis, end), size = norm1(axis), length2 = dot(axis, axis);
+      const Real half = length2 + arc.padding * size;
+      is_at_start = is_at_start && absolute(from) <= length2 + arc.around_start * size;
+      is_beside = is_beside || (from < to ? from : to) > half || (from < to ? to : from) < -half;
+      if (is_beside && !is_at_start) return kPassedBy;
       const Real spread = absolute(dot(arc.after_start, axis));
       off -= absolute(dot(arc.normal, axis));
       after -= spread;
       most_after += spread;
       before += absolute(dot(arc.before_end, axis));
     }
+    if (is_at_start) return 0;
     if (off > 0 || most_after < 0 || before < 0) return kPassedBy;
     if (!(after > 0)) return 0;
     // Where the way has the direction p start + q end it is at q / (p + q).

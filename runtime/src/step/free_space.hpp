@@ -140,7 +140,15 @@ template <class Geometry, class Real = typename Geometry::Real>
   walk.god_object = from;
   Sweep<Geometry> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
-  if (sweep.run(&first)) {
+  // A way that leaves a feature begins beside its neighbours, and the tick may have swept before: the rules lend it half of
+  // what they have left, and get back what it does not need (contact-model BOUND-2).
+  const uint32_t lent = left == kFree ? 0 : walk.work_left / 2;
+  space->work_left += lent;
+  const bool is_done = sweep.run(&first);
+  const uint32_t unspent = lent < space->work_left ? lent : space->work_left;
+  space->work_left -= unspent;
+  walk.spend(lent - unspent);
+  if (is_done) {
     arrive(walk, sweep, to, first);
     if (walk.active == kFree) carried->stalled_sweeps = 0;
     return 0;

@@ -59,8 +59,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   hop->edge = crossed.link >> 1;
   hop->transitions += 2;
   spend(&hop->work_left, kHopWork + kSideWork * there.side_count());
-  const Vec3<Real> reach = gap + hop->rounding_residual;
-  hop->move = move_on_face(there, hop->friction, hip, bound, side, hop->god_object, reach);
+  hop->move = move_on_face(there, hop->friction, hip, bound, side, god_object, gap, gap + hop->rounding_residual);
   return true;
 }
 

@@ -185,8 +185,10 @@ class NodeEntry {
       return plane.distance(x) < -own_plane_rounding(plane, x);
     };
     if (is_behind(from_) && is_behind(stood_)) return;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, wherever the HIP is
-      if (node.voronoi_plane(k).distance(from_) > side_rounding(from_bound_, Real(0))) return;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, and not on its way out
+      const Plane<Real> beside = node.voronoi_plane(k);
+      const Real off = beside.distance(from_);
+      if (off > side_rounding(from_bound_, Real(0)) || (off > 0 && beside.distance(to_) > off)) return;
     }
     if (!was_before_clearing(node) && !faces_what_was_left(node)) return;
     best_.fraction = 0;

@@ -50,19 +50,28 @@ class Trail {
       has_come_nearer_ = true;
       has_begun_again_ = false;
     }
-    const uint64_t here = key(walk.active);
-    for (int i = 0; i < count_; ++i) {
-      if (visited_[i] == here) {
-        FDCG_WATCH(met_again);
-        return true;
-      }
+    if (has_visited(walk.active)) {
+      FDCG_WATCH(met_again);
+      return true;
     }
     if (count_ == kCapacity) {
       FDCG_WATCH(trail_full);
       return true;
     }
-    visited_[count_++] = here;
+    visited_[count_++] = key(walk.active);
     return false;
+  }
+  [[nodiscard]] bool has_visited(Feature feature) const {
+    for (int i = 0; i < count_; ++i) {
+      if (visited_[i] == key(feature)) return true;
+    }
+    return false;
+  }
+  // Another feature at the same place. False: it has been visited, or too many have.
+  bool may_visit(Feature feature) {
+    if (count_ == kCapacity || has_visited(feature)) return false;
+    visited_[count_++] = key(feature);
+    return true;
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
   // Where hops have led to the start, over this edge, which was nearer than all before.
@@ -107,6 +116,32 @@ Decision apply_rule(Walk<Geometry>& walk) {
   }
 }
 
+// contact-model TICK-5: rounding hands the god-object around a corner. The corner, whose rule is exact, decides if it has not
+// been asked. If it has, and sends the god-object to a face that sends it back, the edge is asked by which the face does so.
+// False: neither is left.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
+  if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
+  const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
+  const Feature edge = {FDCG_EDGE, walk.rim};
+  if (walk.active.state == FDCG_VERTEX) {
+    const bool ends_there = connection.corner(0) == walk.active.index || connection.corner(1) == walk.active.index;
+    if (!ends_there || !trail->may_visit(edge)) return false;
+    walk.active = edge;
+    return true;
+  }
+  const EdgeLine<Real> line(walk.graph, walk.rim);
+  const Feature corner = {FDCG_VERTEX, connection.corner(2 * line.parameter(walk.god_object) < line.length ? 0 : 1)};
+  const Vec3<Real> point = walk.graph.corner_point(corner.index);
+  const Real deviation = Real(2 * walk.graph.max_deviation());
+  const Real growth = snap_growth(Real(walk.graph.header()->extent)) + deviation;
+  if (!(norm(walk.god_object - point) <= corner_rounding(walk.hip_bound, deviation))) return false;
+  if (!(norm(point - walk.hip) <= norm(walk.god_object - walk.hip) + growth) || !trail->may_visit(corner)) return false;
+  walk.place(point, corner);
+  walk.active = corner;
+  return true;
+}
+
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
 // decided. It stood on `start` then, `start_gap` away from the HIP; `hopped`: the edge over which hops led there, or kFree.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -128,7 +163,6 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
     if (decision.is_rest()) {
-      if (trail.retry_without_residual(walk)) continue;
       space->carried->stalled_sweeps = 0;
       return progress;
     }
@@ -143,7 +177,10 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       if (walk.active == kFree) return progress;
       ++progress.transitions;
     }
-    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk)) return progress;
+    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk) &&
+        !goes_on_at_corner(walk, &trail)) {
+      return progress;
+    }
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
       progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
@@ -382,7 +419,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     if (is_on_face) {
       const NodeRef<Geometry> node = graph.node(contact->feature);
       side = side_of(graph, node, hip, bound, nullptr);
-      hop.move = move_on_face(node, hop.friction, hip, bound, side, god_object, god_object - hip);
+      const Vec3<Real> stands = god_object - hip;
+      hop.move = move_on_face(node, hop.friction, hip, bound, side, god_object, stands, stands);
     }
     if (kHasHops<Geometry> && is_on_face && hop.move.kind == Kind::crosses && side < -bound &&
         (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0) {

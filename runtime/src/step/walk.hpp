@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
-// contact-model FACE-1 to FACE-8, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
+// contact-model FACE-1 to FACE-7, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
 // servo_step.hpp drives them.
 #pragma once
 
@@ -35,6 +35,7 @@ struct Walk {
   // The way continues from god_object + rounding_residual; otherwise a tick across hundreds of needle faces would accumulate
   // these errors.
   Vec3<Real> rounding_residual = {0, 0, 0};
+  uint32_t rim = FDCG_NONE;  // the connection on which the god-object was last placed in this step
 
   [[nodiscard, gnu::noinline, gnu::hot]] Real side(NodeRef<Geometry> node) {
     return side_of(graph, node, hip, hip_bound, &work_left);
@@ -109,6 +110,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Feature place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line,
                                                    Real u) {
+  walk.rim = connection_index;
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
     if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;

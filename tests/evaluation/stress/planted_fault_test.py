@@ -17,6 +17,12 @@ MUTANTS = [
     ("open-boundaries", "f64", "off-surface", "grazing", "a way that grazes a face ends over it", 4, 6),
 ]
 
+FOUND = pathlib.Path(__file__).parent / "found"
+# (name of the mutant, what is taken out, what it brings back)
+REPLAYED = [
+    ("circle-at-corner", "a circle about a corner is decided by the corner and its edges", "circle_of_slabs_about_a_corner.obj"),
+]
+
 
 def run(*command, mutant=""):
     return subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280,
@@ -46,6 +52,13 @@ class PlantedFault(unittest.TestCase):
                 whole_step = run(os.environ["FDCG_STRESS"], "--replay", small)
                 self.assertEqual(whole_step.returncode, 0, whole_step.stdout)
                 print(cut.stdout.strip())
+
+    def test_what_was_found_comes_back_without_its_rule(self):
+        for mutant, rule, file in REPLAYED:
+            with self.subTest(rule):
+                program = os.environ["FDCG_STRESS_MUTANTS"]
+                self.assertEqual(run(program, "--replay", FOUND / file, mutant=mutant).returncode, 1)
+                self.assertEqual(run(program, "--replay", FOUND / file).returncode, 0)
 
 
 if __name__ == "__main__":

@@ -148,6 +148,40 @@ TEST_CASE("a way along a side is not stopped where it begins", "[along-side]") {
   CHECK(stopped == 0);
 }
 
+// A hand in the plane that stands on an edge: where the god-object ends on the edge's line, the next tick finds it there.
+TEST_CASE("a god-object that slides to a side's plane rests where it does so in one tick", "[ends-on-plane]") {
+  std::uint64_t held = 0, restless = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const PolygonSoup soup = rounded_to_float(tilted(triangulated(saddle_block()), seed));
+    const PlainGraph graph(soup, Precision::f64);
+    Random random(seed);
+    for (std::uint32_t c = 0; c < graph.view().header->connection_count; ++c) {
+      const fdcg_connection_info edge = fdcg_get_connection(&graph.view(), c);
+      if (edge.type == FDCG_BOUNDARY) continue;
+      const fdcg_node_info face = fdcg_get_node(&graph.view(), edge.node[random.below(2)]);
+      const fdcg_corner_info corner = fdcg_get_corner(&graph.view(), edge.corner[0]);
+      const auto beside = [&](double along, double above) {
+        Hip x;
+        for (std::size_t k = 0; k < 3; ++k)
+          x[k] = corner.point[k] + along * edge.length * edge.direction[k] + above * face.normal[k];
+        return x;
+      };
+      for (int i = 0; i < 40; ++i) {
+        Contact contact(graph.view(), contact_params(0.6, 0.4));
+        contact.step(beside(random.uniform(0.1, 0.9), 1e-3));
+        const Hip hip = beside(random.uniform(0.1, 0.9), -random.uniform(0, 0.1));
+        contact.step(hip);
+        const Hip there = contact.god_object();
+        held += contact.result.state != FDCG_FREE;
+        contact.step(hip);
+        restless += distance(there, contact.god_object()) > 1e-9;
+      }
+    }
+  }
+  CHECK(held > 10'000);
+  CHECK(restless == 0);
+}
+
 // A tick that drags the god-object across hundreds of needles places it on as many edges, each time rounded.
 TEST_CASE("rounding errors do not accumulate over a tick across hundreds of faces", "[lost]") {
   const PolygonSoup soup = needle_strip(500, 0.2, 3);

@@ -15,13 +15,14 @@ import subprocess
 import sys
 
 SOURCES = pathlib.Path(__file__).resolve().parents[3] / "runtime" / "src"
-OTHER_TESTS = {"grazing", "slow"}  # mutants of tests/evaluation: planted_fault_test.py, guard_test.py
+OTHER_TESTS = {"circle-at-corner", "grazing", "slow"}  # mutants of tests/evaluation: planted_fault_test.py, guard_test.py
 
 # (tag of the test, name of the mutant, what is taken out)
 MUTANTS = [
     ("met-again", "met-again", "a feature met again is a rest"),
-    ("crossing", "crossing-sign", "crossed means on or beyond, and further out than before: the paper's change of sign instead"),
+    ("crossing", "crossing-sign", "crossed means on or beyond: the paper's change of sign instead"),
     ("crossing", "crossing-onto", "... or from not beyond to beyond instead"),
+    ("ends-on-plane", "ends-on-plane", "a target on a side's plane up to rounding is on the side"),
     ("first-crossing", "last-crossing", "the first crossing, not the last"),
     ("along-side", "along-side", "a way along a side ends where it ends"),
     ("lost", "lost", "what rounding takes at an edge is not lost"),
