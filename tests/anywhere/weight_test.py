@@ -25,10 +25,10 @@ SUPPORT = {"body", "body_scene", "body_symbols", "contact_info", "deform_share",
 # Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
 # does not hold yet.
 KB = 1024
-X86_BOTH = {"bar": 48 * KB, "limit": 141 * KB}
-X86_F64 = {"bar": 48 * KB, "limit": 82_000}
-M7_F32 = {"bar": 20 * KB, "limit": 46_000}
-M7_F32_TERMS = {"bar": 20 * KB, "limit": 51 * KB}
+X86_BOTH = {"bar": 48 * KB, "limit": 133_000}
+X86_F64 = {"bar": 48 * KB, "limit": 80_500}
+M7_F32 = {"bar": 20 * KB, "limit": 45_500}
+M7_F32_TERMS = {"bar": 20 * KB, "limit": 50_800}
 
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
 # the C library's square root, and what GCC calls where the processor has no instruction (64-bit integers, doubles)
@@ -97,8 +97,8 @@ class Parts(WeightCase):
              "-DFDCG_WITH_CLEAR_BALLS=OFF")
     # program, what it is built with: the bar, and the limit, which a change may not pass
     X86_GRAPHS = (("one_graph", "f64", F64, 64 * KB, 64 * KB), ("one_graph", "both", NO_WORDS, 96 * KB, 112_600))
-    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 36_900),
-                 ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 28_200),
+    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 37_500),
+                 ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 28_600),
                  ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 38_600))
 
     def embedded(self, precision="f32"):
