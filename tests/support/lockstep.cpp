@@ -61,6 +61,7 @@ class Pair {
  private:
   void measure(const fdcg_contact& before, const Hip& hip, const fdcg_result& output);
   void judge(const fdcg_contact& before, const Hip& hip, double apart_before);
+  void count_tie(const fdcg_contact& before, bool is_slip_only);
   double conditioning(const fdcg_contact& before, const Hip& hip, const ReferenceContact<HighPrecision>& right) const;
 
   const fdcg_graph& graph_;
@@ -72,6 +73,7 @@ class Pair {
   fdcg_contact contact_{};
   double deviation_;  // exactness holds up to what the merging of near-flat faces moved; part of the extent
   double tolerance_;
+  std::uint64_t last_tie_ = 0;  // the step of the last tie
 };
 
 // Ticks that a sweep over one of the test meshes may be carried over.
@@ -134,6 +136,16 @@ double Pair::conditioning(const fdcg_contact& before, const Hip& hip, const Refe
   return static_cast<double>(length(d)) / surface_.extent / static_cast<double>(std::numeric_limits<Wide>::epsilon());
 }
 
+// A HIP held still, and a contact that rests, are in the tie of the step before.
+void Pair::count_tie(const fdcg_contact& before, bool is_slip_only) {
+  const bool is_held = std::equal(before.hip, before.hip + 3, contact_.hip) &&
+                       std::equal(before.god_object, before.god_object + 3, contact_.god_object) &&
+                       before.state == contact_.state && before.feature == contact_.feature;
+  const bool is_same = is_held && last_tie_ + 1 == result.steps;
+  last_tie_ = result.steps;
+  if (!is_same) ++(is_slip_only ? result.slip_ties : result.ties);
+}
+
 void Pair::judge(const fdcg_contact& before, const Hip& hip, double apart_before) {
   // The same step with all digits, from the runtime's own contact.
   if (!exact_surface_) exact_surface_ = std::make_unique<ReferenceSurface<HighPrecision>>(graph_);
@@ -151,7 +163,7 @@ void Pair::judge(const fdcg_contact& before, const Hip& hip, double apart_before
       agree(right, contact_) && apart <= rounding * std::max<double>(retaken.amplification, conditioning(before, hip, right));
   if (retaken.margin <= rounding || is_magnified) {
     const bool is_slip_only = right.state == contact_.state && right.feature == contact_.feature && apart <= tolerance_;
-    ++(is_slip_only ? result.slip_ties : result.ties);
+    count_tie(before, is_slip_only);
     return;
   }
   if (result.failures++ > 0) return;

@@ -14,7 +14,7 @@ namespace fdcg::test {
 
 struct Lockstep {
   std::uint64_t steps = 0, contact_steps = 0, transitions = 0;
-  // Steps after which the two differ:
+  // Steps after which the two differ (a tie counts once for as long as the HIP is held still and the contact rests):
   std::uint64_t drifts = 0;  // repeated with 150 digits from the runtime's own contact, the reference agrees with the runtime
   std::uint64_t slip_ties = 0;          // a decision was within rounding; only the slip flag differs
   std::uint64_t ties = 0;               // a decision was within rounding
