@@ -41,6 +41,8 @@ void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double s
   if (!is_finite(tip_m) || !is_finite(force_n)) return;  // the gate's to disarm for
   const double seconds = has_last_ && now_ns > last_ns_ ? static_cast<double>(now_ns - last_ns_) * 1e-9 : 0;
   std::copy_n(sent_n, 3, sent_n_[sent_count_++ % kSent]);
+  const bool is_gap = seconds > kGapPeriods * period_s_;
+  if (is_gap) bounces_.begin(period_s_);  // in a gap what moved was not seen
   const bool is_thrown = bounces_.step(tip_m, now_ns, force_n, share_ < 1 ? kCalmedBounces : kBounces);
   double way_m[3] = {};
   for (int i = 0; has_last_ && i < 3; ++i)
@@ -51,7 +53,7 @@ void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double s
   const double in_springs_j = setup_.stiffness_n_per_m > 0 ? square(force_n) / (2 * setup_.stiffness_n_per_m * share_) : 0;
   stored_j_ = std::clamp(stored_j_, -kMostOwed_j, in_springs_j + kFreeEnergy_j);
   path_m_ += std::sqrt(square(way_m));
-  if (rubs || seconds > kGapPeriods * period_s_) forget_swings();  // in a gap what moved was not seen
+  if (rubs || is_gap) forget_swings();
   damping_n_s_per_m_ = 0;
   if (setup_.has_passivity && has_last_) damp(way_m, seconds, force_n);
   if (is_thrown && setup_.has_calming && setup_.has_passivity) calm(bounces_.since_ns(), now_ns);
