@@ -206,6 +206,8 @@ class BadInput(BatchCase):
             self.assertFalse((self.folder / "out").exists(), arguments)
         self.assert_one_line(self.fdcg("batch", "-o", "out", code=2, cwd=self.folder), "--manifest")
         self.assert_one_line(self.fdcg("batch", "--manifest", "empty.txt", "-o", "out", code=2, cwd=self.folder), "names no mesh")
+        (self.folder / "zero.txt").write_bytes(b"a.off\nb.off\0c.off\n")
+        self.assert_one_line(self.fdcg("batch", "--manifest", "zero.txt", "-o", "out", code=3, cwd=self.folder), "line 2 holds a zero byte")
         clash = ("--manifest", "clash.txt", "--manifest", "repair.json")
         self.assert_one_line(self.fdcg("batch", *clash, "-o", "out", code=2, cwd=self.folder), "both be written to 'lib/scan.off.ply'")
         self.assertFalse((self.folder / "out").exists())

@@ -68,6 +68,12 @@ class ManifestReader {
     std::optional<bake::Failure> failure;
     if (fs::path(manifest).extension() == ".json") {
       failure = read_json(manifest, text);
+    } else if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+      return bake::Failure{kFile,
+                           one_line("the manifest " + manifest + ": line " + std::to_string(line) +
+                                    " holds a zero byte, so that it is no text; give one mesh on each line"),
+                           {}};
     } else {
       read_lines(text);
     }
@@ -159,8 +165,8 @@ std::optional<bake::Failure> check_outputs(const BatchPlan& plan) {
     const auto [other, is_new] = writers.emplace(task.output, &task);
     if (is_new) continue;
     return bake::Failure{kUsage,
-                         "'" + printable(other->second->mesh) + "' and '" + printable(task.mesh) + "' would both be written to '" +
-                             printable(task.output) + "'; put them into two manifests",
+                         "'" + printable(other->second->mesh) + "' and '" + printable(task.mesh) +
+                             "' would both be written to '" + printable(task.output) + "'; put them into two manifests",
                          {}};
   }
   return std::nullopt;
