@@ -213,6 +213,36 @@ TEST_CASE("stability: a texture under a hand that travels is no shaking") {
   CHECK(stage.share() < 1);
 }
 
+// Two touches of 30 ms, each left a third faster than it was come to: bounces that feed themselves. Returns the share of the
+// force after them; reports within [lost_from_s, lost_to_s) do not arrive.
+double share_after_two_throws(double lost_from_s, double lost_to_s) {
+  constexpr double kTouch_s = 0.03, kPeriod_s = 0.06, kSpeed_m_per_s = 0.1;
+  Stability stage;
+  stage.begin({true, true, 1000}, limits_of_loop(), 1000);
+  const double none_n[3] = {};
+  for (int tick = 0; tick < 2 * 90; ++tick) {
+    const double time_s = tick * 1e-3, since_s = std::fmod(time_s, kTouch_s + kPeriod_s);
+    if (time_s >= lost_from_s && time_s < lost_to_s) continue;
+    double z_m = -1e-4, force_n[3] = {};
+    if (since_s < kPeriod_s / 2)
+      z_m = kSpeed_m_per_s * (kPeriod_s / 2 - since_s);
+    else if (since_s < kPeriod_s / 2 + kTouch_s)
+      force_n[2] = 1;
+    else
+      z_m = 1.33 * kSpeed_m_per_s * (since_s - kPeriod_s / 2 - kTouch_s);
+    const double tip_m[3] = {0, 0, z_m};
+    stage.step(tip_m, static_cast<std::uint64_t>((1 + time_s) * 1e9), none_n, 0, false, force_n);
+  }
+  return stage.share();
+}
+
+TEST_CASE("stability: a gap in the reports ends a row of bounces") {
+  CHECK(share_after_two_throws(0, 0) == Approx(kCalmingShare));
+  CHECK(share_after_two_throws(0.0595, 0.0605) == Approx(kCalmingShare));  // one report is no gap
+  CHECK(share_after_two_throws(0.125, 0.140) == 1);                        // in the second touch
+  CHECK(share_after_two_throws(0.070, 0.090) == 1);                        // in the flight before it
+}
+
 TEST_CASE("stability: the motors' mean square force comes down to what they stand") {
   DeviceLimits limits = limits_of_loop();
   limits.continuous_force_n = 1;

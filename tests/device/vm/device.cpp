@@ -14,7 +14,7 @@ constexpr int kAnswersOffset = 17;
 constexpr std::uint32_t kCountsPerMetre = 1'000'000;
 constexpr std::uint16_t kWatchdogMs = 20;
 
-// While inside the surface the hand trembles and strokes, so that no force is like the one before.
+// While inside the surface the hand trembles, the more the deeper it is, and strokes, so that no force is like the one before.
 constexpr double kTrembleM = 0.0005, kTrembleHz = 7, kStrokeM = 0.002, kStrokeHz = 3;
 
 std::uint32_t get32(const std::uint8_t* at) {
@@ -28,7 +28,7 @@ std::array<double, 3> Hand::at(Nanoseconds now) {
   const double reach_m = last_ == 0 ? 0 : kSpeedMPerS * static_cast<double>(now - last_) / kSecond;
   last_ = now;
   z_m_ += std::clamp(target_m_ - z_m_, -reach_m, reach_m);
-  const double inside = z_m_ == kBelowM ? 1 : 0;
+  const double inside = std::max(0.0, z_m_ / kBelowM);
   const double turn = 2 * std::numbers::pi * time_s;
   return {kStrokeM * std::sin(turn * kStrokeHz), 0, z_m_ + inside * kTrembleM * std::sin(turn * kTrembleHz)};
 }

@@ -125,6 +125,8 @@ std::string strike_often(Rig& rig, const StrikeKind& kind, int times, Tally& tal
   if (is_timed && !rig.feel()) return "no force after it was armed again";
   const std::string untold = is_timed ? judge_words(rig, kind, tally) : "";
   if (!untold.empty()) return untold;
+  if (is_timed && rig.host.calmings() > 0)
+    return words("the host calmed %d times a hand that does not shake", rig.host.calmings());
   if (!rig.end_host() || rig.host.ending() >= 128) return words("the host ends with %d", rig.host.ending());
   return {};
 }

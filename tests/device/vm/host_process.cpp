@@ -46,6 +46,7 @@ void HostProcess::start(const std::vector<std::string>& command, const char* pre
   status_line_ = "null";
   partial_.clear();
   words_.clear();
+  calmings_ = 0;
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork fails");
   if (pid_ == 0) become(command, preload, input[0], output[1]);
@@ -89,6 +90,7 @@ void HostProcess::take_line(const std::string& line) {
     ++status_count_;
     return;
   }
+  calmings_ += line.find(": it shakes") != std::string::npos;
   words_.push_back(line);
   if (words_.size() > kKeptWords) words_.pop_front();
 }

@@ -34,6 +34,7 @@ class HostProcess {
   const std::string& status_line() const { return status_line_; }
   std::uint64_t status_count() const { return status_count_; }
   const std::deque<std::string>& words() const { return words_; }
+  int calmings() const { return calmings_; }  // how often it said that it shakes
 
  private:
   void take_line(const std::string& line);
@@ -44,6 +45,7 @@ class HostProcess {
   std::string status_line_ = "null";
   std::uint64_t status_count_ = 0;
   std::deque<std::string> words_;
+  int calmings_ = 0;
 };
 
 // A counter of the first device in a status line: "late", "rejected/crc". Throws where there is none. Reading a line takes

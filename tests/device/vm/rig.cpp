@@ -18,6 +18,7 @@ namespace {
 constexpr int kUntimedPatience = 10;  // where the machine around the guest takes the time that it takes
 constexpr double kFeltN = 0.05;       // a force that is surely one
 constexpr Nanoseconds kFeelLimit = 6 * kSecond, kArmPause = 200 * kMillisecond, kEndLimit = 8 * kSecond;
+constexpr Nanoseconds kRest = 150 * kMillisecond;  // above, between two taps: faster ones, in place, are taken for shaking
 
 std::unique_ptr<Port> make_port(const RigOptions& options) {
   PortIdentity identity;
@@ -96,10 +97,14 @@ bool Rig::end_host() {
 
 bool Rig::feel() {
   const Nanoseconds end = now_ns() + kFeelLimit;
-  device.hand.above();
+  if (!device.hand.is_above()) {
+    device.hand.above();
+    run_until([&] { return device.hand.is_above(); }, kSecond);
+    run_for(kRest);
+  }
   const auto is_felt = [&] { return device.record.force_n > kFeltN; };
   const std::uint64_t answered = device.record.answered;
-  run_until([&] { return device.hand.is_above() && device.record.answered > answered; }, kFeelLimit);
+  run_until([&] { return device.record.answered > answered; }, kFeelLimit);
   while (now_ns() < end && host.is_running()) {
     host.say("arm");
     if (!run_until([&] { return device.record.is_enabled; }, kArmPause)) continue;
