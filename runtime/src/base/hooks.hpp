@@ -19,8 +19,3 @@ namespace fdcg {
 #else
 #define FDCG_ASSERT(condition) static_cast<void>(0)
 #endif
-
-// Counters of the stress test, in its own build only (tests/evaluation/stress/step_watch.hpp); empty in the library.
-#ifndef FDCG_WATCH
-#define FDCG_WATCH(event) static_cast<void>(0)
-#endif

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "base/config.hpp"
+#include "base/mutation.hpp"
 #include "exact/exact_orient.hpp"
 #include "fdcg/fdcg.h"
 #include "graph/box_tree.hpp"
@@ -40,6 +41,7 @@ class NodeRef {
   [[nodiscard]] Vec3<Real> normal() const { return vec(up_to_date().plane.normal); }
   [[nodiscard]] Plane<Real> plane() const {
     const Record& record = up_to_date();
+    if (FDCG_MUTANT("planes-shifted")) return {vec(record.plane.normal), record.plane.offset + fault_shift()};
     return {vec(record.plane.normal), record.plane.offset};
   }
   // Of an exactly planar node: the first three span its plane.
@@ -75,6 +77,7 @@ class NodeRef {
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
     if (__builtin_expect(graph_->has_planes(), true)) {
       const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
+      if (FDCG_MUTANT("rims-shifted")) return {vec(stored.normal), stored.offset + fault_shift()};
       return {vec(stored.normal), stored.offset};
     }
     Plane<Real> derived;
@@ -102,6 +105,8 @@ class NodeRef {
     *plane = derive_voronoi_plane(edge.start, edge.direction, normal(), which(k));
   }
   [[nodiscard]] const Record& record() const { return *reinterpret_cast<const Record*>(block_); }
+  // Of faults that tests plant (base/mutation.hpp).
+  [[nodiscard]] Real fault_shift() const { return 512 * RealLimits<Real>::kEpsilon * extent(); }
   // The record with its plane.
   [[nodiscard]] const Record& up_to_date() const {
     graph_->bring_up_to_date(key_);
@@ -120,7 +125,12 @@ class ConnectionRef {
   ConnectionRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.connections()[index]) {}
 
   // fdcg_connection_type
-  [[nodiscard]] uint8_t type() const { return graph_->type_of(*record_); }
+  [[nodiscard]] uint8_t type() const {
+    const uint8_t type = graph_->type_of(*record_);
+    if (FDCG_MUTANT("all-convex") && type == FDCG_CONCAVE) return FDCG_CONVEX;
+    if (FDCG_MUTANT("all-concave") && type == FDCG_CONVEX) return FDCG_CONCAVE;
+    return type;
+  }
   // k = 1: FDCG_NONE on a boundary.
   [[nodiscard]] uint32_t node(uint32_t k) const { return k == 0 ? record_->node : first().across(record_->side[0]); }
   [[nodiscard]] uint32_t side(uint32_t k) const { return record_->side[k]; }  // which side of node(k) this is

@@ -57,12 +57,12 @@ struct FanSearch {
   // One entry of the fan: its edge, and the face to the left of it.
   [[gnu::noinline, gnu::cold]] void look_at(const FanEntry& entry) {
     const Vec3<Real> direction = walk.graph.edge(entry.connection).direction;
-    const Real forward = dot(t, direction);
+    const Real forward = FDCG_MUTANT("corner-sees-no-edge") ? Real(0) : dot(t, direction);
     if (entry.end == 0 ? forward > 0 : forward < 0) {
       const Vec3<Real> off = t - direction * forward;
       offer({{FDCG_EDGE, entry.connection}, square(forward), dot(off, off)});
     }
-    if (entry.node == FDCG_NONE) return;
+    if (entry.node == FDCG_NONE || FDCG_MUTANT("corner-sees-no-face")) return;
     const NodeRef<Geometry> node = walk.graph.node(entry.node);
     if (!(dot(node.voronoi_plane(entry.outgoing).normal, t) < 0)) return;
     if (!(dot(node.voronoi_plane(node.previous(entry.outgoing)).normal, t) < 0)) return;
@@ -208,7 +208,9 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Decision corner_rule(Walk<Geometry>& walk) {
   const CornerRef<Geometry> corner = walk.graph.corner(walk.active.index);
   const Vec3<Real> point = corner.point(), t = walk.hip - point;
-  const Feature next = next_from_corner(walk, corner, t);
+  const Feature next = FDCG_MUTANT("corner-never-left")    ? walk.active
+                       : FDCG_MUTANT("corner-always-free") ? kFree
+                                                           : next_from_corner(walk, corner, t);
   if (next == walk.active) return rest();
   if (norm1(walk.god_object - point) > 0) walk.god_object = moved_beside(walk, next, point, t);
   return go_to(next);

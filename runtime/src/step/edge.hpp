@@ -18,7 +18,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] void look_at_sides(Walk<Geometry>& walk, ConnectionRef<Geometry> connection, EdgeSides<Real>* sides) {
   walk.spend(kEdgeWork);
   *sides = {};
-  const int faces = connection.type() == FDCG_BOUNDARY ? 1 : 2;
+  const int faces = connection.type() == FDCG_BOUNDARY || FDCG_MUTANT("one-sided") ? 1 : 2;
   for (int k = 0; k < faces; ++k) {
     const NodeRef<Geometry> node = walk.graph.node(connection.node(k));
     sides->side[k] = walk.side(node);
@@ -36,12 +36,12 @@ inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
 // off their corners, and a load that is not that of the force then errs by the way along the edge.
 template <class Geometry, class Real = typename Geometry::Real>
 inline Real edge_load(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, Vec3<Real> across) {
-  const Real distance = norm(across);
+  const Real distance = FDCG_MUTANT("edge-load-doubled") ? 2 * norm(across) : norm(across);
   if (!walk.friction.has_wedge || connection.type() == FDCG_BOUNDARY) return distance;
   const Vec3<Real> sum = walk.graph.node(connection.node(0)).normal() + walk.graph.node(connection.node(1)).normal();
   const Real most = Real(kMaxWedgeFactor) * distance;
   const Real sum2 = dot(sum, sum);
-  const Real load = -2 * dot(sum, across);
+  const Real load = FDCG_MUTANT("edge-load-halved") ? -dot(sum, across) : -2 * dot(sum, across);
   if (sum2 > 0 && !(load > 0)) return 0;
   return load < most * sum2 ? load / sum2 : most;  // a closed slit (sum2 = 0) has the most
 }
@@ -79,11 +79,14 @@ template <class Geometry, class Real = typename Geometry::Real>
   look_at_sides(walk, connection, &s);
   const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
   if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
-  if (lets_go(walk, connection, s)) return go_to(kFree);
+  if (lets_go(walk, connection, s) && !FDCG_MUTANT("edge-never-free")) return go_to(kFree);
   const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
-  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0] && !FDCG_MUTANT("steeper-face")))
+  if (FDCG_MUTANT("edge-wrong-face") && (is_candidate_a || is_candidate_b))
+    return go_to({FDCG_FACE, connection.node(is_candidate_a ? 1 : 0)});
+  if (is_candidate_a && !(is_candidate_b && s.voronoi[1] < s.voronoi[0] && !FDCG_MUTANT("steeper-face")) &&
+      !FDCG_MUTANT("edge-never-left"))
     return go_to({FDCG_FACE, connection.node(0)});
-  if (is_candidate_b) return go_to({FDCG_FACE, connection.node(1)});
+  if (is_candidate_b && !FDCG_MUTANT("edge-never-left")) return go_to({FDCG_FACE, connection.node(1)});
 
   const EdgeLine<Real> line(walk.graph, index);
   const Real foot = line.parameter(walk.hip);
@@ -94,7 +97,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   }
   const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, across));
   if (slip.is_rest) return rest();
-  const Feature landed = place_on_edge(walk, index, line, ahead > 0 ? foot + slip.gap : foot - slip.gap);
+  const Feature landed =
+      place_on_edge(walk, index, line, (ahead > 0) != FDCG_MUTANT("edge-slides-past") ? foot + slip.gap : foot - slip.gap);
   return landed == walk.active ? rest() : go_to(landed);
 }
 

@@ -79,6 +79,8 @@ template <class Geometry, class Laws, class Real = typename Geometry::Real>
 FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
                                      Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
+  if (FDCG_MUTANT("leaves-late")) side = side - Real(1e-4) * node.extent();
+  if (FDCG_MUTANT("leaves-early")) side = side + Real(1e-4) * node.extent();
   if (FDCG_MUTANT("on-plane") ? side > 0 : !(side < 0)) return {Kind::leaves, god_object, {}};
   const Vec3<Real> normal = node.normal();
   const Vec3<Real> off = stands - normal * dot(normal, stands);  // its part in the plane: from the surface point
@@ -89,8 +91,10 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec
   const Real reach2 = dot(offset, offset);
   const Real shrink = slip.gap > 0 && reach2 > 0 ? slip.gap / root(reach2) : Real(0);
   const Vec3<Real> surface_point = hip + normal * depth;
-  const Vec3<Real> target = surface_point + offset * shrink;
-  const Crossing<Real> crossing = first_crossing(node, god_object, target, bound);
+  const Real part = FDCG_MUTANT("slides-half") ? (1 + shrink) / 2 : FDCG_MUTANT("slides-past") ? -shrink : shrink;
+  const Vec3<Real> target = surface_point + offset * part;
+  const Crossing<Real> crossing =
+      FDCG_MUTANT("rim-unseen") ? Crossing<Real>{} : first_crossing(node, god_object, target, bound);
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 
@@ -159,7 +163,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (absolute(off) <= kMostOffPlane<Real> * node.extent()) walk.place(move.target - node.normal() * off, kFree);
   }
   if (move.kind != Kind::crosses) return rest();
-  const uint32_t side = move.crossing.local_side;
+  const uint32_t side = FDCG_MUTANT("wrong-side") ? node.next(move.crossing.local_side) : move.crossing.local_side;
   if (node.side_count() > walk.graph.kPrefetchedSides) walk.graph.prefetch_crossing(node, side);  // else it has been
   const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.rounding_residual;
   const Vec3<Real> ahead = walk.rounding_residual + way * move.crossing.fraction;  // from `from` to the crossing

@@ -25,7 +25,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Real over = FDCG_MUTANT("grazing") && is_on_face ? first.fraction + Real(0.01)
                     : is_on_face                         ? sweep.part_over(first.feature.index, first.fraction, 0)
                                                          : first.fraction;
-  Vec3<Real> point = sweep.point_at(over <= 1 ? over : first.fraction);
+  Vec3<Real> point = sweep.point_at(FDCG_MUTANT("arrives-late") ? over + Real(0.01) : over <= 1 ? over : first.fraction);
   if (is_on_face) point = onto_slab(walk, point, first.feature.index);
   walk.active = first.feature;
   if (first.feature.state == FDCG_VERTEX) {
@@ -42,7 +42,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 // not moved.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool finish_carried_sweep(Walk<Geometry>& walk, CarriedSweep* carried, uint32_t* work_left) {
-  const Vec3<Real> to = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
+  const Vec3<Real> target = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
+  const Vec3<Real> to = FDCG_MUTANT("carried-way-to-the-newest-hip") ? walk.hip : target;
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
   Sweep<Geometry> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature},
                         work_left);
@@ -84,7 +85,7 @@ inline bool is_in_new_ball(const GraphView<Geometry>& graph, Vec3<Real> from, Ve
     ball->next_wait = ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait;
     return false;
   }
-  *ball = {{to.x, to.y, to.z}, radius * radius, 0, 0};
+  *ball = {{to.x, to.y, to.z}, FDCG_MUTANT("clear-ball-large") ? 4 * radius * radius : radius * radius, 0, 0};
   return true;
 }
 

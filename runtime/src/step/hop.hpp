@@ -41,7 +41,9 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   graph.prefetch_plainly(
       there.side(there.next(back)));  // for the next crossing, of a triangle: the third is where this one began
   graph.prefetch_plainly(there.side(there.previous(back)));
-  if (!(side < -bound && there.voronoi_plane(back).distance(hip) < 0 && here.voronoi_plane(k).distance(hip) >= 0)) return false;
+  if (!FDCG_MUTANT("hops-anywhere") &&
+      !(side < -bound && there.voronoi_plane(back).distance(hip) < 0 && here.voronoi_plane(k).distance(hip) >= 0))
+    return false;
   const Vec3<Real> from = hop->god_object, way = (hop->move.target - from) - hop->rounding_residual;
   const Vec3<Real> ahead = hop->rounding_residual + way * hop->move.crossing.fraction;
   const auto& edge = graph.edges()[crossed.link >> 1];
@@ -52,10 +54,10 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   const Vec3<Real> god_object = start + direction * u, gap = god_object - hip;
   const Real gap2 = dot(gap, gap);
   if (!(gap2 < hop->gap2)) return false;
-  hop->god_object = god_object;
+  hop->god_object = FDCG_MUTANT("hop-stays") ? from : god_object;
   hop->gap2 = gap2;
-  hop->rounding_residual = (from - god_object) + ahead;
-  hop->node = crossed.across;
+  hop->rounding_residual = FDCG_MUTANT("hop-residual-of-the-way") ? ahead : (from - god_object) + ahead;
+  hop->node = FDCG_MUTANT("hop-keeps-face") ? hop->node : crossed.across;
   hop->edge = crossed.link >> 1;
   hop->transitions += 2;
   spend(&hop->work_left, kHopWork + kSideWork * there.side_count());

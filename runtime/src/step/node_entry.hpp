@@ -74,6 +74,7 @@ class NodeEntry {
   }
 
   [[nodiscard]] bool is_before_best(Real fraction, uint32_t n) const {
+    if (FDCG_MUTANT("sweep-takes-any")) return best_.node == FDCG_NONE;
     return fraction < best_.fraction || (fraction == best_.fraction && n < best_.node);
   }
 
@@ -111,13 +112,14 @@ class NodeEntry {
   [[gnu::noinline]] void try_node(uint32_t n) {
     spend(work_left_, kNodeWork);
     const NodeRef<Geometry> node = graph_.node(n);
+    if (FDCG_MUTANT("sweep-blind") && n % 5 == 3) return;
     if (node.plane().distance(to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
       return;  // before any exact sign is computed
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
     const bool is_slab = graph_.has_inexact_nodes();
-    if (start_side < (is_slab ? -slab_ : Real(0))) {
+    if (start_side < (is_slab ? -slab_ : Real(0)) && !FDCG_MUTANT("enters-from-behind")) {
       if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
       return;
     }

@@ -12,8 +12,8 @@
 // rests (contact-model TICK-1). Every loop is bounded: work left over is carried to the next tick with a valid god-object.
 //
 // A template over the geometry: servo_step.cpp has the step on a graph as it is, deform/deform_step.cpp that on a mesh whose
-// corners move. What is in here is each such source's own, so that a program may hold steps of other bounds (base/work.hpp) or
-// with other watches (base/hooks.hpp) than the library's.
+// corners move. What is in here is each such source's own, so that a program may hold steps of other bounds (base/work.hpp)
+// than the library's.
 #pragma once
 
 #include "base/config.hpp"
@@ -50,16 +50,7 @@ class Trail {
       has_come_nearer_ = true;
       has_begun_again_ = false;
     }
-    if (has_visited(walk.active)) {
-      FDCG_WATCH(met_again);
-      return true;
-    }
-    if (count_ == kCapacity) {
-      FDCG_WATCH(trail_full);
-      return true;
-    }
-    visited_[count_++] = key(walk.active);
-    return false;
+    return !may_visit(walk.active);
   }
   [[nodiscard]] bool has_visited(Feature feature) const {
     for (int i = 0; i < count_; ++i) {
@@ -168,6 +159,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     walk.active = decision.next();
     ++progress.transitions;
+    if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
       if (trail.has_come_nearer()) space->carried->stalled_sweeps = 0;
@@ -203,6 +195,7 @@ inline float rounded(double x) {
 }
 inline void round_to(Vec3<double> from, Vec3<float>* to) {
   *to = {rounded(from.x), rounded(from.y), rounded(from.z)};
+  if (FDCG_MUTANT("float-rounding-lost")) to->x = rounded(from.x * (1 - 0x1p-24));
 }
 inline void round_to(Vec3<double> from, Vec3<double>* to) {
   *to = from;
@@ -372,7 +365,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // Not on a mesh whose corners move, where work is counted as numbers are renewed, nor where a test takes rules out; and a
 // library built for size does without.
-#if defined(__OPTIMIZE_SIZE__) || FDCG_WITH_MUTANTS
+#if defined(__OPTIMIZE_SIZE__) || FDCG_WITH_MUTANTS == 1
 template <class Geometry>
 inline constexpr bool kHasHops = false;
 #else

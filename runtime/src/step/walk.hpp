@@ -114,7 +114,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
     if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;
-    const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(end)};
+    const uint32_t at = FDCG_MUTANT("corners-swapped") ? 1 - end : end;
+    const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(at)};
     walk.place(snapping_increases_distance(walk, line, end, from_end) ? line.start + line.direction * u
                                                                       : walk.graph.corner_point(vertex.index),
                vertex);

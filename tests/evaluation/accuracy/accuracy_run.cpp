@@ -9,6 +9,7 @@
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "replay.hpp"
+#include "result_law.hpp"
 #include "ulp.hpp"
 
 namespace fdcg::test {
@@ -74,6 +75,7 @@ AccuracyOutcome replayed(const AccuracySetting& setting, const bake::PolygonSoup
   out.contact_steps = e.contact_steps;
   out.ties = e.ties;
   out.wrong_features = e.wrong;
+  out.carried = e.carried;
   out.ties_explained = e.ties_explained;
   out.ties_unexplained = e.ties_unexplained;
   out.one_step_ulps = std::move(e.one_step);
@@ -84,21 +86,6 @@ AccuracyOutcome replayed(const AccuracySetting& setting, const bake::PolygonSoup
   out.first_unexplained = e.first_unexplained;
   out.worst = e.worst;
   return out;
-}
-
-// Whether for a HIP next to this one the god-object would be a minimum, up to rounding error: backward error.
-bool holds_nearby(const Certificate& certificate, const fdcg_contact& contact, const Hip& hip, double most, double ulp) {
-  Random random(1);
-  for (double size = 1; size <= most; size *= 2) {
-    for (int i = 0; i < kTriesOfASize; ++i) {
-      Hip moved = hip;
-      for (double& c : moved)
-        c += random.uniform(-size, size) * ulp;
-      const Certificate::Verdict verdict = certificate.check(moved, contact).verdict;
-      if (verdict == Certificate::Verdict::certified || verdict == Certificate::Verdict::tie) return true;
-    }
-  }
-  return false;
 }
 
 AccuracyOutcome certified(const AccuracySetting& setting, const bake::PolygonSoup& soup, const fdcg_graph& graph) {
@@ -115,10 +102,17 @@ AccuracyOutcome certified(const AccuracySetting& setting, const bake::PolygonSou
     if (contact.state.state == FDCG_FREE) return contact.god_object();
     ++out.contact_steps;
     const Hip local = surface.local(hip.data());
+    const ResultLaw law = result_law(*graph.header, contact_params(0, 0), contact.state, hip, contact.result);
+    if ((!law.is_of_contact || !law.is_of_spring) && out.wrong_features++ == 0)
+      out.first_wrong = "result or force: " + contact.describe();
+    if ((contact.result.flags & (FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SWEEP_BOUND)) != 0) {
+      ++out.carried;
+      return contact.god_object();
+    }
     const Certificate::Answer answer = certificate.check(local, contact.state);
     using Verdict = Certificate::Verdict;
     const bool is_doubtful = answer.verdict == Verdict::refused || answer.verdict == Verdict::wrong_feature;
-    const bool is_near = is_doubtful && holds_nearby(certificate, contact.state, local, most_moved, ulp);
+    const bool is_near = is_doubtful && certificate.holds_nearby(local, contact.state, most_moved);
     if (is_doubtful && !is_near) {
       if (out.wrong_features++ == 0) {
         std::ostringstream text;

@@ -32,7 +32,7 @@ struct AccuracySetting {
 };
 
 struct AccuracyOutcome {
-  std::uint64_t steps = 0, contact_steps = 0, ties = 0, wrong_features = 0;
+  std::uint64_t steps = 0, contact_steps = 0, ties = 0, carried = 0, wrong_features = 0;
   std::uint64_t ties_explained = 0, ties_unexplained = 0;
   std::vector<float> one_step_ulps, accumulated_ulps;  // the latter not of a certificate
   std::vector<std::pair<float, float>> error_and_conditioning;

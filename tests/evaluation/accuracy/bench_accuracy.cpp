@@ -303,6 +303,7 @@ void write_errors(const std::string& folder, const Plan& plan, std::vector<Accur
                "ties",
                "ties_explained",
                "ties_unexplained",
+               "carried",
                "worst_conditioning",
                "max_deviation_ulps",
                "reference"});
@@ -313,7 +314,7 @@ void write_errors(const std::string& folder, const Plan& plan, std::vector<Accur
               s.mu_dynamic, s.offset_sizes, o.steps, o.contact_steps, percentile(o.one_step_ulps, 0.5),
               percentile(o.one_step_ulps, 0.99), percentile(o.one_step_ulps, 0.999), percentile(o.one_step_ulps, 1),
               percentile(o.accumulated_ulps, 0.999), percentile(o.accumulated_ulps, 1), o.wrong_features, o.ties,
-              o.ties_explained, o.ties_unexplained, o.worst_conditioning, o.deviation_ulps, name_of(s.judge));
+              o.ties_explained, o.ties_unexplained, o.carried, o.worst_conditioning, o.deviation_ulps, name_of(s.judge));
   }
 }
 

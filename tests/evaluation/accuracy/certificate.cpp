@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "random.hpp"
 #include "ulp.hpp"
 
 namespace fdcg::test {
@@ -66,12 +67,25 @@ void Certificate::read(const fdcg_graph& graph) {
     }
     derive_face(faces_[f], record);
   }
+  for (Edge& edge : edges_)
+    derive_type(edge);
+}
+
+// Of two faces that lie back to back, and of merged faces off their corners, the stored one stands.
+void Certificate::derive_type(Edge& edge) const {
+  if (edge.face[1] == FDCG_NONE) return;
+  const Face &a = faces_[edge.face[0]], &b = faces_[edge.face[1]];
+  if (!a.is_planar || !b.is_planar) return;
+  const int turn = sign(dot(cross(a.normal, b.normal), edge.span));
+  if (turn == 0 && sign(dot(a.normal, b.normal)) < 0) return;
+  edge.type = turn > 0 ? FDCG_CONVEX : turn < 0 ? FDCG_CONCAVE : FDCG_COPLANAR;
 }
 
 void Certificate::derive_face(Face& face, const fdcg_node_info& record) {
   const std::size_t n = face.corners.size();
   const auto at = [&](std::size_t k) -> const Point& { return corners_[face.corners[k % n]].point; };
-  if ((record.flags & FDCG_NODE_INEXACT) != 0) {
+  face.is_planar = (record.flags & FDCG_NODE_INEXACT) == 0;
+  if (!face.is_planar) {
     face.normal = exactly(record.normal);
     face.normal2 = dot(face.normal, face.normal);
     face.through = face.normal * Rational(-Rational(record.offset) / face.normal2);
@@ -222,6 +236,21 @@ Certificate::Answer Certificate::check(const std::array<double, 3>& hip_local, c
     answer = {is_near ? Verdict::tie : Verdict::wrong_feature, other, error_ulps};
   }
   return answer;
+}
+
+bool Certificate::holds_nearby(const std::array<double, 3>& hip_local, const fdcg_contact& contact, double most_ulps) const {
+  constexpr int kTriesOfASize = 12;
+  Random random(1);
+  for (double size = 1; size <= most_ulps; size *= 2) {
+    for (int i = 0; i < kTriesOfASize; ++i) {
+      std::array<double, 3> moved = hip_local;
+      for (double& c : moved)
+        c += random.uniform(-size, size) * ulp_;
+      const Verdict verdict = check(moved, contact).verdict;
+      if (verdict == Verdict::certified || verdict == Verdict::tie) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace fdcg::test

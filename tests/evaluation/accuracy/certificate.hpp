@@ -3,8 +3,9 @@
 // alone: at rest the god-object is a local minimum of |x - HIP| over the closed outside of the solid. No walk is replayed, so
 // no error of a walk can hide in it.
 //
-// Exact are the stored corners, the planes through them and the HIP. Of a node marked FDCG_NODE_INEXACT, whose corners span no
-// plane, the stored plane is taken; header.max_deviation then is the limit of exactness.
+// Exact are the stored corners, the planes through them, which edges are convex, and the HIP. Of a node marked
+// FDCG_NODE_INEXACT, whose corners span no plane, the stored plane is taken; header.max_deviation then is the limit of
+// exactness.
 #pragma once
 
 #include <gmpxx.h>
@@ -45,6 +46,9 @@ class Certificate {
   // the runtime's own does not hold.
   [[nodiscard]] Answer check(const std::array<double, 3>& hip_local, const fdcg_contact& contact) const;
 
+  // Whether check() finds a minimum, or a tie, for a HIP within `most_ulps` of this one, by trial: backward error.
+  [[nodiscard]] bool holds_nearby(const std::array<double, 3>& hip_local, const fdcg_contact& contact, double most_ulps) const;
+
   // Whether |x - hip| has a local minimum over the closed outside at hip's foot on the feature, the foot lies in the closed
   // feature, and hip is not in front of it.
   [[nodiscard]] bool holds(CertifiedFeature feature, const std::array<double, 3>& hip_local) const;
@@ -56,6 +60,7 @@ class Certificate {
     std::vector<Point> outward;                       // of each side: in the face's plane, out of the face
     Point normal, through;
     Rational normal2;
+    bool is_planar = true;
   };
   struct Edge {
     std::array<std::uint32_t, 2> corner{}, face{}, side{};
@@ -71,6 +76,7 @@ class Certificate {
 
   void read(const fdcg_graph& graph);
   void derive_face(Face& face, const fdcg_node_info& record);
+  void derive_type(Edge& edge) const;
   [[nodiscard]] bool feature_holds(CertifiedFeature feature, const Point& hip) const;
   [[nodiscard]] bool face_holds(std::uint32_t f, const Point& hip) const;
   [[nodiscard]] bool edge_holds(std::uint32_t c, const Point& hip) const;

@@ -35,6 +35,7 @@ constexpr double kWorthACloserLook_ulps = 4;
 // All ticks of one way.
 struct ReplayErrors {
   std::uint64_t steps = 0, contact_steps = 0, transitions = 0, ties = 0, wrong = 0;
+  std::uint64_t carried = 0;  // contact ticks that carry work over
   // Of the ties where the two god-objects are apart: those for which inputs a few ulps off were found with which the replay
   // gives the runtime's answer, and those for which none were (of at most kMostTiesLookedAt).
   std::uint64_t ties_explained = 0, ties_unexplained = 0;
@@ -71,6 +72,7 @@ class Replay {
   };
   [[nodiscard]] ReferenceContact<Real> answer(const Tick& tick, ReferenceStep* step) const;
   [[nodiscard]] TickError judge(const Tick& tick) const;
+  void pass_over_carried(std::uint32_t flags);
   void accumulate(const Hip& hip);
   void look_closer(const Tick& tick);
   void explain_tie(const Tick& tick);
@@ -84,6 +86,7 @@ class Replay {
   Random random_{1};
   fdcg_contact contact_{};
   TickError last_;
+  bool is_carried_ = false;  // the last tick left a sweep to do
   double ulp_;
   double rounding_;  // part of the extent: a decision within it is a tie
 };

@@ -5,13 +5,16 @@ from figure import COLOURS, finish, legend, subplots
 
 IDENTITY = "stress"
 TITLE = "Numerical stability under stress"
-INTRODUCTION = """<p>Every case that the contact model says must hold, judged at every step: not-a-number, cycles, work beyond the
+INTRODUCTION = """<p>Every case that the contact model says must hold, judged at every step: not-a-number, work beyond the
 bounds where no case allows it, a distance to the hand that grows within a step, a hand inside that is felt as free, a god-object
 off the surface, a force that pulls inward, a held hand whose god-object moves. The run is cut into blocks, each with a seed of
 its own; the hash over all results is the same on every repetition.</p>"""
 
 # the judges' columns: all must be 0
-COUNTS = ["nan", "cycles", "growths", "push_through", "no_force", "thin_air", "off_surface", "pulls", "restless"]
+COUNTS = ["nan", "growths", "push_through", "no_force", "thin_air", "off_surface", "pulls", "restless", "report", "force", "friction",
+          "wrong_face", "uncertified"]
+# contact ticks whose place is not judged, by why
+UNJUDGED = ["unjudged_carried", "unjudged_slit", "unjudged_other"]
 
 
 def content(run):
@@ -26,9 +29,14 @@ def content(run):
            f"{sum(table.column('transitions')):,} changes of state. Found: " +
            ", ".join(f"{page.escape(c)} {n:,}" for c, n in found.items()) +
            f"; bound hits outside the stated cases {unbounded:,}.</p>")
+    if all(c in table.columns for c in UNJUDGED):
+        contacts = max(1, sum(table.column("contact_steps")))
+        yield ("<p>Share of contact steps whose place is not judged: " +
+               ", ".join(f"{page.escape(c.removeprefix('unjudged_'))} {sum(table.column(c)) / contacts:.2%}" for c in UNJUDGED) +
+               ". Carried ones are judged in all but whether they are at rest.</p>")
     yield margins(table)
     columns = ["case", "precision", "steps", "contact_steps", "transitions", "bound_hits", "growth_worst_eps",
-               "off_surface_worst_eps", *counts]
+               "off_surface_worst_eps", *counts, *UNJUDGED]
     yield page.table([c for c in columns if c in table.columns], table.rows)
     targets = list({r["case"]: r for r in table.rows}.values())
     yield "<h3>What each case is held to</h3>" + page.table(["case", "target"], targets)

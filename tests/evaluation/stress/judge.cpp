@@ -6,14 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "step/contact_internals.hpp"
-
 namespace fdcg::test {
 namespace {
 
-bool is_same(const double (&a)[3], const double (&b)[3]) {
-  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
 // In long double: what is measured are units in the last place.
 long double long_length(const Hip& a, const Hip& b) {
   long double sum = 0;
@@ -33,9 +28,9 @@ constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SW
 }  // namespace
 
 std::string_view name_of(Fault fault) {
-  constexpr std::string_view kNames[] = {"nan",          "cycle",   "rule-bound", "sweep-bound", "growth",
-                                         "push-through", "unseen",  "thin-air",   "off-surface", "pull",
-                                         "restless",     "descent", "free-air",   "no-force"};
+  constexpr std::string_view kNames[] = {"nan",      "rule-bound",  "sweep-bound", "growth",   "push-through", "unseen",
+                                         "thin-air", "off-surface", "pull",        "restless", "descent",      "free-air",
+                                         "no-force", "report",      "force",       "friction", "wrong-face",   "uncertified"};
   static_assert(std::size(kNames) == kFaults);
   return kNames[static_cast<std::size_t>(fault)];
 }
@@ -47,18 +42,21 @@ std::optional<Fault> fault_named(std::string_view name) {
   return std::nullopt;
 }
 
-void Verdicts::add(const Verdicts& other) {
+void Verdicts::add(const Verdicts& more) {
   for (std::size_t i = 0; i < kFaults; ++i)
-    count[i] += other.count[i];
-  shallow += other.shallow;
-  met_again += other.met_again;
-  most_carried = std::max(most_carried, other.most_carried);
-  worst_growth_eps = std::max(worst_growth_eps, other.worst_growth_eps);
-  worst_off_surface_eps = std::max(worst_off_surface_eps, other.worst_off_surface_eps);
-  worst_restless_eps = std::max(worst_restless_eps, other.worst_restless_eps);
-  worst_pull_eps = std::max(worst_pull_eps, other.worst_pull_eps);
-  worst_inside_eps = std::max(worst_inside_eps, other.worst_inside_eps);
-  worst_descent_eps = std::max(worst_descent_eps, other.worst_descent_eps);
+    count[i] += more.count[i];
+  shallow += more.shallow;
+  most_carried = std::max(most_carried, more.most_carried);
+  certified += more.certified;
+  carried += more.carried;
+  slit += more.slit;
+  other += more.other;
+  worst_growth_eps = std::max(worst_growth_eps, more.worst_growth_eps);
+  worst_off_surface_eps = std::max(worst_off_surface_eps, more.worst_off_surface_eps);
+  worst_restless_eps = std::max(worst_restless_eps, more.worst_restless_eps);
+  worst_pull_eps = std::max(worst_pull_eps, more.worst_pull_eps);
+  worst_inside_eps = std::max(worst_inside_eps, more.worst_inside_eps);
+  worst_descent_eps = std::max(worst_descent_eps, more.worst_descent_eps);
 }
 
 Judge::Judge(const Specimen& specimen, bool owes_force)
@@ -69,16 +67,17 @@ Judge::Judge(const Specimen& specimen, bool owes_force)
       moved_(specimen.stated_deviation + kPlaces * kSlab_eps * epsilon_ * specimen.header().extent),
       is_exact_(specimen.stated_deviation == 0 && specimen.body.soup.corners.size() == 3 * specimen.body.soup.face_count()) {}
 
-std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result,
-                           const StepWatch& seen, Verdicts& v) {
+std::uint32_t Judge::judge(const fdcg_contact& before, const Hip& hip_m, const fdcg_contact& after, const fdcg_result& result,
+                           Verdicts& v) {
   Tick tick = {before, after, result, hip_of(after.hip), hip_of(after.god_object), 0, 0, false};
   const double far = std::max({std::abs(tick.hip[0]), std::abs(tick.hip[1]), std::abs(tick.hip[2])});
   tick.rounding = epsilon_ * std::max(far, specimen_.header().extent);
   look_at_numbers(tick);
   if ((result.flags & FDCG_RESULT_NON_FINITE) == 0 && tick.faults == 0) {
+    look_at_result(tick, hip_m);
     if ((result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0) tick.faults |= bit(Fault::rule_bound);
     if ((result.flags & FDCG_RESULT_SWEEP_BOUND) != 0) tick.faults |= bit(Fault::sweep_bound);
-    if (before.started != 0 && internals_of(before).sweep.is_carried == 0) {
+    if (before.started != 0 && (last_flags_ & FDCG_RESULT_SWEEP_BOUND) == 0) {
       if (after.state != FDCG_FREE) look_at_growth(tick, v);
       if (is_same(before.hip, after.hip)) look_at_rest(tick, v);
       if (before.state == FDCG_FREE) look_at_way(tick);
@@ -86,7 +85,11 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after
     if (after.state != FDCG_FREE) {
       look_at_feature(tick, v);
       if ((result.flags & kCarried) == 0) look_at_pull(tick, v);
-      if ((result.flags & kCarried) == 0 && !has_friction_) look_at_descent(tick, v);
+      if ((result.flags & kCarried) == 0) {
+        look_at_place(tick, v);
+      } else {
+        ++v.carried;
+      }
     }
     if (specimen_.inside != nullptr) {
       if (owes_force_) look_at_owed_force(tick);
@@ -95,8 +98,6 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const fdcg_contact& after
   }
   if ((result.flags & FDCG_RESULT_NON_FINITE) == 0) {
     last_flags_ = result.flags;
-    was_met_again_ = seen.met_again + seen.trail_full > 0;
-    v.met_again += was_met_again_;
     carried_ = (result.flags & kCarried) != 0 ? carried_ + 1 : 0;
     v.most_carried = std::max(v.most_carried, carried_);
   }
@@ -140,9 +141,8 @@ double Judge::slab_around(const Hip& x) const {
 
 void Judge::look_at_rest(Tick& tick, Verdicts& v) const {
   if ((last_flags_ & kCarried) != 0) return;  // work in hand is no rest
-  const std::uint32_t faults = bit(Fault::restless) | (was_met_again_ ? bit(Fault::cycle) : 0);
   if ((tick.before.state == FDCG_FREE) != (tick.after.state == FDCG_FREE)) {
-    tick.faults |= faults;
+    tick.faults |= bit(Fault::restless);
     return;
   }
   if (is_same(tick.before.god_object, tick.after.god_object)) return;
@@ -152,7 +152,7 @@ void Judge::look_at_rest(Tick& tick, Verdicts& v) const {
   const double nearer = static_cast<double>(long_length(was, tick.hip) - long_length(tick.god_object, tick.hip));
   v.worst_restless_eps = std::max(v.worst_restless_eps, (nearer - deviation_) / tick.rounding);
   const bool is_moving = distance(was, tick.god_object) > allowed + 2 * std::sqrt(2 * gap * allowed);
-  if (nearer > allowed || is_moving) tick.faults |= faults;
+  if (nearer > allowed || is_moving) tick.faults |= bit(Fault::restless);
 }
 
 void Judge::look_at_feature(Tick& tick, Verdicts& v) const {
@@ -234,11 +234,16 @@ double Judge::descent_from(const Tick& tick) const {
   }
   if (tick.after.state == FDCG_EDGE) {
     const EdgeShape& edge = specimen_.edges[tick.after.feature];
-    double most = std::abs(dot(gap, edge.direction));
+    double most = has_friction_ ? 0 : std::abs(dot(gap, edge.direction));
+    const Hip t = difference(tick.hip, edge.start);
     for (const std::uint32_t n : edge.node) {  // square to the edge, into the face
+      if (n == FDCG_NONE) continue;
+      // On the cone's rim and on the edge but for rounding, which name it gets is open: the face's friction may hold it.
+      const bool may_pull = !has_friction_ || in_front_of_node(n, tick.hip) < -kMostDescent_eps * tick.rounding;
+      if (!may_pull || (has_friction_ && is_held_by_face(tick, n))) continue;
       const Hip& normal = specimen_.nodes[n].normal;
       const Hip across = n == edge.node[0] ? cross_product(normal, edge.direction) : cross_product(edge.direction, normal);
-      most = std::max(most, dot(gap, across));
+      most = std::max(most, dot(has_friction_ ? t : gap, across));
     }
     return most;
   }
@@ -248,14 +253,30 @@ double Judge::descent_from(const Tick& tick) const {
   return distance(corner, tick.hip);
 }
 
-void Judge::look_at_descent(Tick& tick, Verdicts& v) const {
-  if (specimen_.descent == nullptr) return;
-  const double reach = is_exact_ ? descent_from(tick) : merged_descent_from(tick) - deviation_;
+// Where a god-object may be that is at rest.
+void Judge::look_at_place(Tick& tick, Verdicts& v) {
+  const bool is_still_to_judge = !look_at_descent(tick, v);
+  const bool is_rubbing = look_at_friction(tick);
+  look_at_choice(tick);
+  look_at_certificate(tick, v);
+  if (!is_still_to_judge || is_rubbing) return;
+  ++(tick.after.state == FDCG_EDGE ? v.slit : v.other);
+}
+
+bool Judge::look_at_descent(Tick& tick, Verdicts& v) const {
+  const bool is_corner = tick.after.state == FDCG_VERTEX;  // where friction holds nothing
+  const bool is_exact = is_exact_ && specimen_.descent != nullptr;
+  if (specimen_.descent == nullptr && !is_corner) return false;
+  if (has_friction_ && !is_corner && (!is_exact || tick.after.state == FDCG_FACE)) return false;
+  const double reach = is_exact ? descent_from(tick) : merged_descent_from(tick) - deviation_;
   v.worst_descent_eps = std::max(v.worst_descent_eps, reach / tick.rounding);
-  if (!is_exact_ && is_in_merged_air(tick)) tick.faults |= bit(Fault::descent) | bit(Fault::free_air);
-  if (!(reach > kMostDescent_eps * tick.rounding)) return;
+  if (!is_exact && !has_friction_ && specimen_.inside != nullptr && is_in_merged_air(tick))
+    tick.faults |= bit(Fault::descent) | bit(Fault::free_air);
+  if (!(reach > kMostDescent_eps * tick.rounding) || (is_corner && has_friction_ && is_held_at_corner(tick))) return true;
   tick.faults |= bit(Fault::descent);
-  if (specimen_.inside->where(tick.hip) == InsideGrid::Where::outside) tick.faults |= bit(Fault::free_air);
+  const bool is_known = specimen_.inside != nullptr;
+  if (is_known && specimen_.inside->where(tick.hip) == InsideGrid::Where::outside) tick.faults |= bit(Fault::free_air);
+  return true;
 }
 
 // A contact that was free: what its way met.
@@ -300,7 +321,8 @@ bool Judge::is_let_off(const Hip& point) {
 // Where work is carried over: the god-object stays where its way began, the HIP may be inside.
 void Judge::look_at_owed_force(Tick& tick) {
   const double* force = tick.result.force_n;
-  if (force[0] != 0 || force[1] != 0 || force[2] != 0 || !is_known_outside_ || internals_of(tick.after).sweep.is_carried == 0)
+  if (force[0] != 0 || force[1] != 0 || force[2] != 0 || !is_known_outside_ ||
+      (tick.result.flags & FDCG_RESULT_SWEEP_BOUND) == 0)
     return;
   if (specimen_.inside->where(tick.hip) != InsideGrid::Where::inside) return;
   const double depth = specimen_.inside->distance_to_surface(tick.hip) - deviation_;
@@ -322,8 +344,8 @@ void Judge::look_inside(Tick& tick, Verdicts& v) {
   is_outside_ = where == InsideGrid::Where::outside;
   if (is_outside_) is_known_outside_ = true;
   if (where != InsideGrid::Where::inside || !is_known_outside_) return;
-  const bool is_on_its_way = internals_of(tick.after).sweep.is_carried != 0;  // may start on the surface
-  is_known_outside_ = is_on_its_way;                                          // once is enough
+  const bool is_on_its_way = (tick.result.flags & FDCG_RESULT_SWEEP_BOUND) != 0;  // may start on the surface
+  is_known_outside_ = is_on_its_way;                                              // once is enough
   const double size = specimen_.inside->size();
   const double depth = specimen_.inside->distance_to_surface(tick.god_object) - deviation_;
   v.worst_inside_eps = std::max(v.worst_inside_eps, depth / (epsilon_ * size));

@@ -10,13 +10,11 @@
 
 #include "fdcg/fdcg.h"
 #include "specimen.hpp"
-#include "step_watch.hpp"
 
 namespace fdcg::test {
 
 enum class Fault : std::uint8_t {
   not_a_number,  // NaN or infinite output; on a HIP that is not usable: a change of the contact, a force
-  cycle,         // a step stopped where a feature was met again, and that was no rest: GO goes on in the next tick
   rule_bound,    // work on the surface carried over
   sweep_bound,   // work in free space carried over
   growth,        // |GO - HIP| grew by more than 16 eps of the scale; where a merged face is met, that beyond its slab
@@ -30,6 +28,11 @@ enum class Fault : std::uint8_t {
   descent,       // without friction: at rest though a face or an edge there, or the free way itself, leads nearer to the HIP
   free_air,      // ... and the HIP is outside of the solid
   no_force,      // inside by more than 4 eps of the size, after having been outside or held, and no force
+  report,        // result and contact say different things, or the contact's HIP is not this tick's
+  force,         // not k (GO - HIP), or a force in free space
+  friction,      // GO outside of the cone; moved though it holds, held though it does not; a slip flag that is not so
+  wrong_face,    // left an edge for the farther of two faces that pull
+  uncertified,   // without friction: no local minimum of |x - HIP|, nor for any HIP within rounding, by exact rationals
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
@@ -44,21 +47,26 @@ inline constexpr double kMostGrowth_eps = 16;
 inline constexpr double kSlab_eps = 8;  // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostOffSurface_eps = 64;
 inline constexpr double kMostRestless_eps = 16;
-inline constexpr double kMostPull_eps = 32;     // of a plane's distance, as the step bounds its own rounding
-inline constexpr double kMostDescent_eps = 64;  // how far the way down may lead, as GO may be off its feature
-inline constexpr double kShallow_eps = 4;       // of the size: a HIP so near to the surface may be taken for outside
-inline constexpr double kPerDeviation = 4;      // where merging moved faces: so many times the largest deviation as well
-inline constexpr double kAirPerDeviation = 16;  // ... and how far from its feature a hand that is let go would be in free air
+inline constexpr double kMostPull_eps = 32;      // of a plane's distance, as the step bounds its own rounding
+inline constexpr double kMostFriction_eps = 64;  // times 1 + mu: as GO may be off its feature
+inline constexpr double kMostDescent_eps = 64;   // how far the way down may lead, as GO may be off its feature
+inline constexpr double kShallow_eps = 4;        // of the size: a HIP so near to the surface may be taken for outside
+inline constexpr double kPerDeviation = 4;       // where merging moved faces: so many times the largest deviation as well
+inline constexpr double kAirPerDeviation = 16;   // ... and how far from its feature a hand that is let go would be in free air
 
 struct Verdicts {
   std::array<std::uint64_t, kFaults> count{};
   std::uint64_t shallow = 0;       // Free, and inside by less than kShallow_eps
-  std::uint64_t met_again = 0;     // rests where a feature was met again, as contact-model TICK-5 has it
   std::uint64_t most_carried = 0;  // ticks in a row
+  std::uint64_t certified = 0;     // ticks that the exact certificate was asked about
+  // Contact ticks whose place no law of rest or of friction judges, by why; all that holds for them too is still judged:
+  std::uint64_t carried = 0;  // work is carried over
+  std::uint64_t slit = 0;     // an edge whose faces' normals cancel but for rounding: its load is any
+  std::uint64_t other = 0;    // nothing else, but if a judge is changed
   double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0,
          worst_descent_eps = 0;
 
-  void add(const Verdicts& other);
+  void add(const Verdicts& more);
 };
 
 class Judge {
@@ -68,12 +76,13 @@ class Judge {
 
   // A new contact: nothing is known of where its HIP is.
   void begin(const fdcg_params& params) {
-    is_known_outside_ = is_outside_ = false, last_flags_ = 0, was_met_again_ = false, carried_ = 0;
+    is_known_outside_ = is_outside_ = false, last_flags_ = 0, carried_ = 0;
     has_friction_ = params.mu_static > 0 || params.mu_dynamic > 0;
+    params_ = params;
   }
 
   // One tick, which began with `before`. Returns a bit for each fault, 1 << fault, and counts them.
-  std::uint32_t judge(const fdcg_contact& before, const fdcg_contact& after, const fdcg_result& result, const StepWatch& seen,
+  std::uint32_t judge(const fdcg_contact& before, const Hip& hip_m, const fdcg_contact& after, const fdcg_result& result,
                       Verdicts& verdicts);
 
  private:
@@ -86,7 +95,26 @@ class Judge {
     std::uint32_t faults;
     bool is_way_clear;  // the way from the last HIP to this one surely does not meet the surface
   };
+  struct Rubbing {
+    double load = 0, gap = 0;  // what presses; how far GO is from the foot of HIP on its feature
+    double slack = 0;          // rounding
+  };
   void look_at_numbers(Tick& tick) const;
+  void look_at_result(Tick& tick, const Hip& hip_m) const;
+  // False: it has no say there.
+  bool look_at_friction(Tick& tick) const;
+  void look_at_choice(Tick& tick) const;
+  void look_at_certificate(Tick& tick, Verdicts& v);
+  [[nodiscard]] std::optional<Rubbing> rubbing_at(const Tick& tick) const;
+  [[nodiscard]] std::optional<Rubbing> rubbing_on_edge(const Tick& tick, const EdgeShape& edge) const;
+  [[nodiscard]] Rubbing rubbing_on_face(const Tick& tick, std::uint32_t node) const;
+  [[nodiscard]] bool is_held_by_face(const Tick& tick, std::uint32_t node) const;
+  [[nodiscard]] bool is_over_at(std::uint32_t node, const Tick& tick, double sure) const;
+  [[nodiscard]] bool is_held_by_edge(const Tick& tick, const EdgeShape& edge) const;
+  [[nodiscard]] bool is_held_at_corner(const Tick& tick) const;
+  [[nodiscard]] bool is_held_beside(const Tick& tick) const;
+  [[nodiscard]] bool is_on_rim(const Tick& tick) const;
+  [[nodiscard]] bool moves_by_coulomb(const Tick& tick, const Rubbing& rubbing, bool is_still) const;
   void look_at_growth(Tick& tick, Verdicts& v) const;
   [[nodiscard]] double slab_around(const Hip& x) const;
   void look_at_feature(Tick& tick, Verdicts& v) const;
@@ -96,8 +124,9 @@ class Judge {
   void look_at_pull(Tick& tick, Verdicts& v) const;
   void look_at_rest(Tick& tick, Verdicts& v) const;
   [[nodiscard]] double descent_from(const Tick& tick) const;
-  void look_at_descent(Tick& tick, Verdicts& v) const;
+  bool look_at_descent(Tick& tick, Verdicts& v) const;  // false: it has no say there
   [[nodiscard]] double turned(double edge_length, double depth) const;
+  void look_at_place(Tick& tick, Verdicts& v);
   [[nodiscard]] double merged_descent_from(const Tick& tick) const;
   [[nodiscard]] Hip outwards(const Tick& tick) const;
   [[nodiscard]] bool is_in_merged_air(const Tick& tick) const;
@@ -113,12 +142,13 @@ class Judge {
   double epsilon_, deviation_;  // deviation_: allowed on top of rounding
   double moved_;                // how far the graph's surface may be from the mesh's: the file's stated deviation and rounding
   bool is_exact_;               // the graph's faces are the solid's triangles, or unions of them
+  fdcg_params params_{};
   bool has_friction_ = true;
+  std::uint64_t asked_certificates_ = 0;
   bool is_known_outside_ = false;
   bool is_outside_ = false;       // ... and of the last tick's HIP: exactly, in no face's plane
   std::size_t asked_ = 0;         // in crowded cells
   std::uint32_t last_flags_ = 0;  // of the last tick with a finite HIP
-  bool was_met_again_ = false;    // ... stopped where a feature was met again
   std::uint64_t carried_ = 0;     // ticks in a row
 };
 

@@ -59,15 +59,16 @@ double Judge::merged_descent_from(const Tick& tick) const {
     const Hip& d = specimen_.edges[entry >> 1].direction;
     return (entry & 1) == 0 ? d : Hip{-d[0], -d[1], -d[2]};
   };
+  const double sure = kMostPull_eps * tick.rounding;
   double most = 0;
   for (std::size_t i = 0; i < fan.size(); ++i) {
     const EdgeShape& edge = specimen_.edges[fan[i] >> 1];
     const EdgeShape& next_edge = specimen_.edges[fan[i + 1 < fan.size() ? i + 1 : 0] >> 1];
     const Hip along = direction_of(fan[i]), next = direction_of(fan[i + 1 < fan.size() ? i + 1 : 0]);
     const double noise = turned(std::min(edge.length, next_edge.length), depth);
-    if (in_front_of_edge(edge, tick.hip) < 0) most = std::max(most, dot(t, along) - noise);
+    if (edge.node[1] != FDCG_NONE && in_front_of_edge(edge, tick.hip) < -sure) most = std::max(most, dot(t, along) - noise);
     const std::uint32_t n = edge.node[fan[i] & 1];
-    if (!(in_front_of_node(n, tick.hip) < 0)) continue;
+    if (n == FDCG_NONE || !(in_front_of_node(n, tick.hip) < -sure)) continue;
     const Hip& normal = specimen_.nodes[n].normal;
     const double height = dot(t, normal);
     const Hip flat = {t[0] - height * normal[0], t[1] - height * normal[1], t[2] - height * normal[2]};

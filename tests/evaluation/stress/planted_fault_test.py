@@ -3,7 +3,7 @@
 """Takes a rule out of the step, and expects fdcg_stress to find it out, to cut what it found down to a few faces and ticks, and the
 whole step to pass what is left.
 
-Environment: FDCG_STRESS (the program), FDCG_STRESS_MUTANTS (the same on a step built with FDCG_WITH_MUTANTS), FDCG_WORK (a folder).
+Environment: FDCG_STRESS (the program), FDCG_MUTANTS (a library with faults planted in it), FDCG_WORK (a folder).
 """
 import os
 import pathlib
@@ -25,13 +25,14 @@ REPLAYED = [
 
 
 def run(*command, mutant=""):
+    judged = {"FDCG_MUTANT": mutant, "FDCG_JUDGED_LIBRARY": os.environ["FDCG_MUTANTS"]} if mutant else {}
     return subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280,
-                          env={**os.environ, "FDCG_MUTANT": mutant})
+                          env={**os.environ, **judged})
 
 
 class PlantedFault(unittest.TestCase):
     def test_each_is_found_and_cut_down(self):
-        program = os.environ["FDCG_STRESS_MUTANTS"]
+        program = os.environ["FDCG_STRESS"]
         for case, precision, fault, mutant, rule, most_faces, most_ticks in MUTANTS:
             with self.subTest(rule):
                 work = pathlib.Path(os.environ["FDCG_WORK"]) / mutant
@@ -49,14 +50,14 @@ class PlantedFault(unittest.TestCase):
                 self.assertLessEqual(sum(line.startswith("# hip_m ") for line in lines), most_ticks, cut.stdout)
                 self.assertIn("TEST_CASE", whole.with_suffix(".test.cpp").read_text())
                 self.assertEqual(run(program, "--replay", small, mutant=mutant).returncode, 1, "the mutant fails what is left")
-                whole_step = run(os.environ["FDCG_STRESS"], "--replay", small)
+                whole_step = run(program, "--replay", small)
                 self.assertEqual(whole_step.returncode, 0, whole_step.stdout)
                 print(cut.stdout.strip())
 
     def test_what_was_found_comes_back_without_its_rule(self):
         for mutant, rule, file in REPLAYED:
             with self.subTest(rule):
-                program = os.environ["FDCG_STRESS_MUTANTS"]
+                program = os.environ["FDCG_STRESS"]
                 self.assertEqual(run(program, "--replay", FOUND / file, mutant=mutant).returncode, 1)
                 self.assertEqual(run(program, "--replay", FOUND / file).returncode, 0)
 

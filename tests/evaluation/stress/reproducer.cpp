@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "meshes.hpp"
-#include "step/contact_internals.hpp"
 #include "stress_run.hpp"
 
 namespace fdcg::test {
@@ -63,8 +62,7 @@ std::string described(const fdcg_contact& c, const fdcg_result& out, std::uint32
   static const char* const kStates[] = {"free", "face", "edge", "vertex"};
   std::ostringstream text;
   text.precision(17);
-  text << kStates[c.state] << ' ' << static_cast<std::int32_t>(c.feature) << (out.slipping ? " slips" : " sticks") << ", seat "
-       << kStates[internals_of(c).seat_state] << ' ' << static_cast<std::int32_t>(internals_of(c).seat_feature)
+  text << kStates[c.state] << ' ' << static_cast<std::int32_t>(c.feature) << (out.slipping ? " slips" : " sticks")
        << ", transitions " << out.transitions << ", flags " << out.flags << ", HIP " << c.hip[0] << ' ' << c.hip[1] << ' '
        << c.hip[2] << ", GO " << c.god_object[0] << ' ' << c.god_object[1] << ' ' << c.god_object[2] << " (local)";
   for (std::size_t i = 0; i < kFaults; ++i) {
@@ -144,8 +142,8 @@ std::int64_t first_fault(const Specimen& specimen, const Reproducer& r, std::vec
   for (std::size_t i = 0; i < r.path_m.size(); ++i) {
     const fdcg_contact before = contact;
     fdcg_result out;
-    const StepWatch seen = watched_step(specimen.graph(), r.params, contact, r.path_m[i], out);
-    const std::uint32_t found = judge.judge(before, contact, out, seen, verdicts);
+    fdcg_step(&specimen.graph(), &r.params, &contact, r.path_m[i].data(), &out);
+    const std::uint32_t found = judge.judge(before, r.path_m[i], contact, out, verdicts);
     if (log != nullptr) log->push_back(described(contact, out, found));
     if ((found >> static_cast<unsigned>(r.fault) & 1) != 0) return static_cast<std::int64_t>(i);
   }

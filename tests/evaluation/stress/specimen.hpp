@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "certificate.hpp"
 #include "contact_rig.hpp"
 #include "descent.hpp"
 #include "inside_grid.hpp"
@@ -16,6 +17,10 @@ namespace fdcg::test {
 
 inline Hip hip_of(const double (&a)[3]) {
   return {a[0], a[1], a[2]};
+}
+
+inline bool is_same(const double (&a)[3], const double (&b)[3]) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
 // A body as a case makes it.
@@ -27,15 +32,18 @@ struct Body {
   std::string description;
 };
 
-// What a feature is, in double precision.
+// What a feature is, in double precision: derived from the corners, which are the source's points. Only which corners a feature
+// has, and the planes of merged faces whose corners lie off them, are the file's.
 struct NodeShape {
   Hip normal;
   double offset;
   std::uint32_t first_side, side_count;  // in Specimen::rims
+  bool is_planar;                        // exactly: else the file's plane
 };
 struct Rim {  // a Voronoi plane
   Hip normal;
   double offset;
+  std::uint32_t edge;
 };
 struct EdgeShape {
   Hip start, direction;
@@ -63,13 +71,16 @@ class Specimen {
   double stated_deviation = 0;               // how far, by its file, the graph's faces lie from the mesh's
   std::unique_ptr<InsideGrid> inside;        // of closed bodies
   std::unique_ptr<Descent> descent;          // of closed bodies
+  std::unique_ptr<Certificate> certificate;  // of those whose faces are planar exactly
 
   [[nodiscard]] const fdcg_graph& graph() const { return mesh.view(); }
   [[nodiscard]] const fdcg_header& header() const { return *mesh.view().header; }
   [[nodiscard]] double epsilon() const { return header().real_bytes == 8 ? 0x1p-52 : 0x1p-23; }
 
  private:
+  void read_corners();
   void read_shapes();
+  [[nodiscard]] std::uint32_t type_between(std::uint32_t a, std::uint32_t b, std::uint32_t stored) const;
   void read_deviation();
   void find_focus();
 };

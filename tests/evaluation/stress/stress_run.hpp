@@ -32,7 +32,6 @@ struct BlockName {
 struct BlockResult {
   std::uint64_t ticks = 0, contact_ticks = 0, transitions = 0, hash = 0, bounds_allowed = 0;
   Verdicts verdicts;
-  std::uint64_t disagreements = 0;  // ticks in which the step as it ships came to another result; block 0 alone is compared
 
   void add(const BlockResult& other);
 };
@@ -62,10 +61,6 @@ class SpecimenShelf {
 
 // `found` is called for each fault, several times for one tick where it has several.
 BlockResult run_block(const BlockName& name, const Specimen& specimen, const OnFinding& found);
-
-// One tick of the watched step. Returns what was seen in it.
-StepWatch watched_step(const fdcg_graph& graph, const fdcg_params& params, fdcg_contact& contact, const Hip& hip_m,
-                       fdcg_result& result);
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word);
 

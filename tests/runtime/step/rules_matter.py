@@ -8,6 +8,7 @@ PROGRAM is the contact rules' tests on a runtime built with FDCG_WITH_MUTANTS (r
 variable FDCG_MUTANT names the rule that is taken out.
 """
 import concurrent.futures
+import csv
 import os
 import pathlib
 import re
@@ -15,7 +16,8 @@ import subprocess
 import sys
 
 SOURCES = pathlib.Path(__file__).resolve().parents[3] / "runtime" / "src"
-OTHER_TESTS = {"circle-at-corner", "grazing", "slow"}  # mutants of tests/evaluation: planted_fault_test.py, guard_test.py
+OTHER_TESTS = {"circle-at-corner", "slow"}  # tests/evaluation: planted_fault_test.py, guard_test.py
+FAULTS = pathlib.Path(__file__).resolve().parents[2] / "evaluation" / "mutation" / "faults.csv"  # those of the mutation score
 
 # (tag of the test, name of the mutant, what is taken out)
 MUTANTS = [
@@ -62,7 +64,10 @@ def main():
     program = sys.argv[1]
     planted = {name for source in SOURCES.rglob("*.[ch]pp") for name in re.findall(r'FDCG_MUTANT\("([^"]+)"\)', source.read_text())}
     planted.discard("name")  # mutation.hpp's own example
-    listed = {mutant for _, mutant, _ in MUTANTS} | OTHER_TESTS
+    with open(FAULTS, newline="") as file:
+        scored = {row["name"] for row in csv.DictReader(file)}
+    listed = {mutant for _, mutant, _ in MUTANTS} | OTHER_TESTS | scored
+    planted |= scored & set(re.findall(r'FDCG_MUTANT\("([^"]+)"\)', (FAULTS.parent / "outer_faults.cpp").read_text()))
     if planted != listed:
         sys.exit(f"in the sources but not here: {sorted(planted - listed)}; here but not in the sources: {sorted(listed - planted)}")
     with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
