@@ -91,6 +91,7 @@ class BatchWorkers {
   WorkerLimits limits_;
   Work work_;
   std::vector<Worker> workers_;
+  std::string chunk_;  // what one read takes
 };
 
 }  // namespace fdcg::tools

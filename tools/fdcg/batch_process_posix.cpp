@@ -252,13 +252,12 @@ std::vector<WorkerAnswer> BatchWorkers::wait() {
 
 void BatchWorkers::take_answers(Worker& worker, std::vector<WorkerAnswer>& answers) {
   constexpr std::size_t kChunk = std::size_t{1} << 16;
-  const std::size_t before = worker.received.size();
-  worker.received.resize(before + kChunk);
+  chunk_.resize(kChunk);
   ssize_t got = 0;
   do
-    got = ::read(worker.channel, worker.received.data() + before, kChunk);
+    got = ::read(worker.channel, chunk_.data(), kChunk);
   while (got < 0 && errno == EINTR);
-  worker.received.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  worker.received.append(chunk_, 0, static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
   if (got <= 0) {
     int status = 0;
     waitpid(worker.pid, &status, 0);

@@ -46,7 +46,6 @@ class ShardRun {
 
   bake::Result<BatchCounts> run(AtomicFile& results) {
     BatchCache cache(run_.cache);
-    cache.sweep();
     BatchWorkers workers(limits_, [&](std::size_t task) {
       return packed_result(do_batch_task(plan_.tasks[task], plan_, place_, cache));
     });

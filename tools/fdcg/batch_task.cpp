@@ -122,14 +122,11 @@ std::optional<CacheEntry> found(const Keys& keys, const std::string& sha256, con
   return second ? cache.load(*second) : std::nullopt;
 }
 
-// `sha256`: of the file before it was read again. One that changed meanwhile is not remembered.
-void remember(const Keys& keys, const std::string& sha256, const bake::PolygonSoup& soup, const CacheEntry& entry,
-              BatchCache& cache) {
-  if (soup.sha256 != sha256) return;
-  const std::string key = keys.by_file(sha256);
+void remember(const Keys& keys, const bake::PolygonSoup& soup, const CacheEntry& entry, BatchCache& cache) {
+  const std::string key = keys.by_file(soup.sha256);
   if (soup.other_files.empty()) return cache.store(key, entry);
   const std::vector<std::string> files = keys.seen_from_mesh(soup.other_files);
-  const auto second = keys.by_references(sha256, files);
+  const auto second = keys.by_references(soup.sha256, files);
   if (!second) return;
   cache.store(*second, entry);
   cache.store_references(key, files);
@@ -141,20 +138,20 @@ BatchResult done(const BatchTask& task, const BatchPlan& plan, const BatchPlace&
   const fs::file_type type = fs::status(task.mesh, ignored).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found && type != fs::file_type::directory)
     return failed_result(task, plan, {kFile, "is no regular file, and a batch waits for none", "unreadable"});
-  const auto sha256 = bake::sha256_of_file(task.mesh);
-  if (!sha256) return failed_result(task, plan, sha256.error());
+  const auto file = bake::MeshFile::open(task.mesh);
+  if (!file) return failed_result(task, plan, file.error());
   const BatchRule& rule = plan.rules[task.rule];
   const Keys keys(task, rule);
-  auto entry = found(keys, *sha256, cache);
+  auto entry = found(keys, file->sha256(), cache);
   const bool is_cached = entry.has_value();
   if (!is_cached) {
-    auto soup = bake::import_mesh(task.mesh, {input_format(rule), {}});
+    auto soup = file->import({input_format(rule), {}});
     if (!soup) return failed_result(task, plan, soup.error());
     bake::scale_soup(*soup, task.scale);
     auto made = do_batch_work(rule, *soup, place.jobs);
     if (!made) return failed_result(task, plan, made.error());
     entry = std::move(*made);
-    remember(keys, *sha256, *soup, *entry, cache);
+    remember(keys, *soup, *entry, cache);
   }
   if (entry->has_output) {
     if (const std::string trouble = write_output(task, place, entry->output); !trouble.empty()) {

@@ -2,13 +2,13 @@
 // A report from its JSON (schemas/validate-report.schema.json).
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <simdjson.h>
 
 #include "fdcg/bake.hpp"
 
 namespace fdcg::tools {
 
-// As bake::report_line wrote it; the file's name is left empty. Throws nlohmann's exceptions where a member is missing or wrong.
-bake::Report read_report(const nlohmann::ordered_json& json);
+// As bake::report_line wrote it; the file's name is left empty. Throws simdjson::simdjson_error where a member is missing or wrong.
+bake::Report read_report(simdjson::dom::element json);
 
 }  // namespace fdcg::tools

@@ -46,6 +46,19 @@ bool is_endless_device(const struct stat& status) {
   return major(status.st_rdev) == kMemoryDevices;
 }
 
+// 0 or the errno of the failed call. A file of another size than it had is read as it is now.
+int read_small(int fd, std::size_t size, std::string& buffer) {
+  buffer.resize(size);
+  for (std::size_t at = 0; at < size;) {
+    const ssize_t got = ::read(fd, buffer.data() + at, size - at);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno;
+    if (got == 0) buffer.resize(size = at);
+    at += static_cast<std::size_t>(got);
+  }
+  return 0;
+}
+
 // 0 or the errno of the failed call; EFBIG beyond the limit of streams.
 int read_to_end(int fd, std::string& buffer) {
   std::string chunk(std::size_t{1} << 18, '\0');
@@ -71,6 +84,12 @@ Result<FileBytes> FileBytes::open(const std::filesystem::path& path) {
   if (S_ISDIR(status.st_mode)) return unreadable(path, "is a directory; name a mesh file in it");
   if (is_endless_device(status)) return unreadable(path, "is a device, which has no end; name a mesh file");
   FileBytes result;
+  constexpr off_t kSmall = off_t{1} << 17;  // to map it, to fault its pages in and to forget them would cost more
+  if (S_ISREG(status.st_mode) && status.st_size > 0 && status.st_size <= kSmall) {
+    if (const int error = read_small(file.get(), static_cast<std::size_t>(status.st_size), result.buffer_))
+      return unreadable(path, "cannot be read: " + error_text(error));
+    return result;
+  }
   // Files of /proc and /sys report size 0 but have content, so only a positive size is trusted.
   if (S_ISREG(status.st_mode) && status.st_size > 0) {
     int flags = MAP_PRIVATE;

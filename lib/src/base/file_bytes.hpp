@@ -14,7 +14,7 @@ namespace fdcg::bake {
 // What is wrong with a stream of more than kMostStreamBytes: "has more than ..."
 std::string stream_too_long();
 
-// Regular files are mapped read-only, anything else (a pipe, a device) is read to its end. The bytes are valid while the object
+// Regular files are mapped read-only, small ones and anything else (a pipe, a device) are read to their end. The bytes are valid while the object
 // lives; another process that shortens the file meanwhile makes them unreadable, as with every mapping.
 class FileBytes {
  public:

@@ -102,10 +102,17 @@ class JsonWriter {
     char buffer[32];
     out_.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
   }
+  static bool is_plain(char c) { return c >= 0x20 && c < 0x7F && c != '"' && c != '\\'; }
   void quote(std::string_view text) {
     constexpr std::string_view kDigits = "0123456789abcdef";
     out_ += '"';
     for (std::size_t at = 0; at < text.size();) {
+      std::size_t plain = at;
+      while (plain < text.size() && is_plain(text[plain]))
+        ++plain;
+      out_.append(text, at, plain - at);
+      if (plain == text.size()) break;
+      at = plain;
       const CodePoint point = code_point_at(text, at);
       if (point.bytes == 0) {
         out_ += kReplacement;

@@ -8,10 +8,12 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "base/file_bytes.hpp"
 #include "base/sha256.hpp"
 #include "fdcg/bake.hpp"
+#include "fdcg/results.hpp"
 #include "import/soup_reader.hpp"
 
 namespace fdcg::bake {
@@ -128,9 +130,9 @@ double relative_quantum(const std::vector<Vec3>& points) {
   return all_floats ? 0x1p-24 : 0x1p-53;
 }
 
-// `file`: where the bytes are from; null: from memory.
+// `file`: where the bytes are from; null: from memory. `sha256`: their hash; empty: not known.
 Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name, const ImportOptions& options,
-                                 const std::filesystem::path* file) {
+                                 const std::filesystem::path* file, const std::string& sha256) {
   if (bytes.empty()) return refuse(name, "is empty; export the mesh again", "empty-mesh");
   if (starts_with_zeros(bytes)) return refuse(name, "starts with zeros alone, so that it is no mesh; fetch or export it again");
   if (const ForeignKind* const kind = foreign_kind(bytes)) return refuse(name, std::string(kind->remedy));
@@ -153,7 +155,7 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
         "as one of them");
   }
 
-  Sha256Task hash(bytes);
+  Sha256Task hash(sha256.empty() ? bytes : std::string_view());
   Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file});
   if (!soup) return soup;
   if (soup->face_count() == 0) {
@@ -161,16 +163,16 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
                   "empty-mesh");
   }
   if (soup->relative_quantum == 0) soup->relative_quantum = relative_quantum(soup->points);
-  soup->sha256 = hash.finish();
+  soup->sha256 = sha256.empty() ? hash.finish() : sha256;
   if (soup->sha256.empty()) return Failure{4, name + ": OpenSSL computes no SHA-256", {}};
   if (options.progress) options.progress("import", 1.0);
   return soup;
 }
 
 Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& name, const ImportOptions& options,
-                                   const std::filesystem::path* file) {
+                                   const std::filesystem::path* file, const std::string& sha256) {
   try {
-    return import_bytes(bytes, name, options, file);
+    return import_bytes(bytes, name, options, file, sha256);
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
@@ -183,11 +185,25 @@ Result<PolygonSoup> import_guarded(std::string_view bytes, const std::string& na
 Result<PolygonSoup> import_mesh(const std::filesystem::path& path, const ImportOptions& options) {
   const Result<FileBytes> file = FileBytes::open(path);
   if (!file) return file.error();
-  return import_guarded(file->bytes(), path.string(), options, &path);
+  return import_guarded(file->bytes(), path.string(), options, &path, {});
 }
 
 Result<PolygonSoup> import_memory(std::string_view bytes, std::string name, const ImportOptions& options) {
-  return import_guarded(bytes, name, options, nullptr);
+  return import_guarded(bytes, name, options, nullptr, {});
+}
+
+Result<MeshFile> MeshFile::open(const std::filesystem::path& path) {
+  Result<FileBytes> bytes = FileBytes::open(path);
+  if (!bytes) return bytes.error();
+  MeshFile file;
+  file.path_ = path;
+  file.bytes_ = std::make_shared<const FileBytes>(std::move(*bytes));
+  file.sha256_ = sha256_of(file.bytes_->bytes());
+  return file;
+}
+
+Result<PolygonSoup> MeshFile::import(const ImportOptions& options) const {
+  return import_guarded(bytes_->bytes(), path_.string(), options, &path_, sha256_);
 }
 
 }  // namespace fdcg::bake
