@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole host, on devices in memory: start, forces, faults of devices, and zero force at the end.
+#include <fcntl.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include "catch.hpp"
 #include "device_c11.h"
@@ -121,17 +123,29 @@ TEST_CASE("host: a silent device gets zero force and is disarmed") {
 }
 
 TEST_CASE("host: a blocked write does not block the servo loop, disarms, and zero force is sent first afterwards") {
+  int ends[2];
+  REQUIRE(pipe2(ends, O_NONBLOCK) == 0);
   Hosted hosted;
+  hosted.device().emergency = ends[1];
   hosted.start();
   hosted.press();
   hosted.device().holds_writes = true;
   CHECK(within_ms(2000, [&] { return hosted.phase() == Phase::kDisarmed; }));
+  std::uint8_t report[kMaxReportBytes];  // of a third thread, should the device take that
+  ssize_t bytes = -1;
+  CHECK(within_ms(2000, [&] { return (bytes = read(ends[0], report, sizeof report)) > 0; }));
+  Command zero;
+  REQUIRE(decode_output(fake_profile(), report, static_cast<int>(bytes), &zero));
+  CHECK_FALSE(zero.is_enabled);
   CHECK((hosted.fault() == Fault::kWriterStuck || hosted.fault() == Fault::kHostLate));
   const std::uint64_t ticks = hosted.host.status(0).counters.ticks;
   CHECK(within_ms(2000, [&] { return hosted.host.status(0).counters.ticks > ticks + 50; }));
   hosted.device().holds_writes = false;
   CHECK(within_ms(1000, [&] { return hosted.device().force_n == 0; }));
+  hosted.device().emergency = -1;
   CHECK(hosted.host.stop() == "");
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST_CASE("host: stops within 6 s although a device takes no output", "[slow]") {

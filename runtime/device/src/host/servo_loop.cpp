@@ -138,8 +138,10 @@ void ServoLoop::set_poses() {
 void ServoLoop::send_force() {
   done_ns_ = monotonic_ns();
   parts_.writer->wake();
-  if (parts_.writer->is_stalled() && !was_stalled_) parts_.lost->signal();  // it sends the zero that the writer does not
-  was_stalled_ = parts_.writer->is_stalled();
+  if (const std::uint64_t stall = parts_.writer->stall(); stall != seen_stall_) {
+    seen_stall_ = stall;
+    if (stall != 0) parts_.lost->signal();  // it sends the zero that the writer does not
+  }
   // The supervisor is notified only now, after the zero force of this tick has been handed to the writer.
   if (input_.read == ReadStatus::kLost && !is_lost_ && was_inside_) {
     is_lost_ = true;

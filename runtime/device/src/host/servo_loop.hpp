@@ -91,7 +91,8 @@ class ServoLoop {
   std::atomic<bool> is_stopping_{false}, arm_{false}, disarm_{false};
   std::atomic<std::uint64_t> lost_opening_{0};
   std::uint64_t seen_opened_ = 0;  // Link::opened() at the last look
-  bool begins_ = false, is_lost_ = true, was_inside_ = false, was_stalled_ = false;
+  bool begins_ = false, is_lost_ = true, was_inside_ = false;
+  std::uint64_t seen_stall_ = 0;  // of the writer
   std::uint64_t last_good_ns_ = 0, published_ns_ = 0, done_ns_ = 0;
   std::uint8_t scratch_[kMaxReportBytes + 1] = {};  // one more, so that a report that is too long shows
 };

@@ -54,11 +54,13 @@ void Supervisor::look_after(Watched& device) {
   if (device.state == State::kAbsent && now_ns >= device.next_try_ns) try_to_open(device, now_ns);
 }
 
-// A writer that hangs between two writes: the gate has disarmed, and this thread sends the zero, once.
+// A writer that hangs: the gate has disarmed, and this thread sends the zero, once. Where the device takes no output this
+// blocks as long as the writer's own write does.
 void Supervisor::stand_in(Watched& device) {
-  const bool is_stalled = device.parts.writer->is_stalled();
-  if (is_stalled && !device.was_stalled) send_zero(*device.parts.emergency);
-  device.was_stalled = is_stalled;
+  const std::uint64_t stall = device.parts.writer->stall();
+  if (stall == 0 || stall == device.seen_stall) return;
+  device.seen_stall = stall;
+  send_zero(*device.parts.emergency);
 }
 
 void Supervisor::begin_closing(Watched& device) {

@@ -49,8 +49,8 @@ class Supervisor {
     State state = State::kAbsent;
     std::uint64_t opened_ns = 0, absent_since_ns = 0, next_try_ns = 0;
     std::atomic<bool> is_over{false};
-    bool was_stalled = false;  // its writer
-    std::string problem;       // under problem_mutex_
+    std::uint64_t seen_stall = 0;  // of its writer
+    std::string problem;           // under problem_mutex_
   };
   void look_after(Watched& device);
   void stand_in(Watched& device);

@@ -38,9 +38,11 @@ std::uint64_t Writer::busy_ns(std::uint64_t now_ns) {
   }
   const std::uint64_t writing_ns = began_ns == 0 || now_ns < began_ns ? 0 : now_ns - began_ns;
   const std::uint64_t waiting_ns = now_ns - progress_ns_;
-  const bool is_idle = began_ns == 0 && waiting_ns >= kStalledNs;
-  is_stalled_.store(is_idle && is_pushing_.load(std::memory_order_acquire), std::memory_order_release);
-  return std::max(writing_ns, waiting_ns);
+  const std::uint64_t busy_ns = std::max(writing_ns, waiting_ns);
+  const bool was_stalled = stall() != 0;
+  const bool is_stalled = busy_ns >= kStalledNs && is_pushing_.load(std::memory_order_acquire);
+  if (is_stalled != was_stalled) stall_.store(is_stalled ? ++stalls_ : 0, std::memory_order_release);
+  return busy_ns;
 }
 
 void Writer::request_stop() {
@@ -80,9 +82,9 @@ void Writer::run() {
 bool Writer::send(const GatedForce& force, std::uint32_t echo) {
   if (!profile_.has_output) return true;
   Command command;
-  for (int axis = 0; axis < profile_.axis_count; ++axis)
+  command.is_enabled = force.is_enabled() && stall() == 0;  // back from a stall, with a force from before it
+  for (int axis = 0; axis < profile_.axis_count && command.is_enabled; ++axis)
     command.effort[axis] = force.effort()[axis];
-  command.is_enabled = force.is_enabled();
   command.echo = echo;
   return timed([&] {
     command.sequence = sequence_.fetch_add(1, std::memory_order_relaxed);

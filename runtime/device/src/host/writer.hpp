@@ -44,9 +44,9 @@ class Writer {
   // After run: false where a device that is there did not take its zero force.
   bool has_left_zero() const { return has_left_zero_.load(std::memory_order_acquire); }
 
-  // For the supervisor: the thread hangs with a force sent, and not in a write: a zero force by another way would arrive
-  // (emergency.hpp).
-  bool is_stalled() const { return is_stalled_.load(std::memory_order_acquire); }
+  // For the supervisor: 0, or the number of a stall: the thread hangs with a force sent, in a write or between two. A zero
+  // force by another way (emergency.hpp) arrives, or waits beside the write that is blocked.
+  std::uint64_t stall() const { return stall_.load(std::memory_order_acquire); }
   // The number of a report that somebody else sends in its place; a new one each time.
   std::uint32_t take_sequence() { return sequence_.fetch_add(1); }
   // For the supervisor: waits until the force stored last has been sent, or for that long.
@@ -83,13 +83,14 @@ class Writer {
   Mailbox<WriterStatus> status_;
   Mailbox<SentReport> sent_;
   Event wake_;
-  std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false}, has_left_zero_{true}, is_stalled_{false},
-      is_pushing_{false};                   // the last: what was sent last enables the device
+  std::atomic<bool> is_stopping_{false}, is_muted_{false}, has_failed_{false}, has_left_zero_{true},
+      is_pushing_{false};  // the last: what was sent last enables the device
+  std::atomic<std::uint64_t> stall_{0};
   std::atomic<std::uint64_t> stop_ns_{0};   // when the stop was asked for
   std::atomic<std::uint64_t> began_ns_{0};  // of the write in progress
   std::atomic<std::uint64_t> put_{0}, done_{0};
   std::atomic<std::uint32_t> sequence_{1};
-  std::uint64_t put_number_ = 0, seen_done_ = 0, progress_ns_ = 0;  // the servo thread's
+  std::uint64_t put_number_ = 0, seen_done_ = 0, progress_ns_ = 0, stalls_ = 0;  // the servo thread's
   WriterStatus counts_;
   std::uint64_t published_ns_ = 0;
   std::uint8_t report_[kMaxReportBytes] = {};
