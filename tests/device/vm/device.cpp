@@ -12,7 +12,7 @@ namespace {
 // Where an output report has the sequence number of the input report that it answers (schemas/fdcg-hid.md).
 constexpr int kAnswersOffset = 17;
 constexpr std::uint32_t kCountsPerMetre = 1'000'000;
-constexpr std::uint16_t kWatchdogMs = 20;
+constexpr std::uint16_t kWatchdogMs = 20, kNoWatchdogMs = 65'535;  // a minute: none
 
 // While inside the surface the hand trembles, the more the deeper it is, and strokes, so that no force is like the one before.
 constexpr double kTrembleM = 0.0005, kTrembleHz = 7, kStrokeM = 0.002, kStrokeHz = 3;
@@ -22,6 +22,12 @@ std::uint32_t get32(const std::uint8_t* at) {
 }
 
 }  // namespace
+
+void set_crc(Bytes& report) {
+  const std::uint16_t crc = fdcg_fw_crc16(report.data(), report.size() - 2);
+  report[report.size() - 2] = static_cast<std::uint8_t>(crc);
+  report[report.size() - 1] = static_cast<std::uint8_t>(crc >> 8);
+}
 
 std::array<double, 3> Hand::at(Nanoseconds now) {
   const double time_s = static_cast<double>(now) / kSecond;
@@ -40,8 +46,8 @@ void Record::restart() {
   round_trips_ns.clear();
 }
 
-Device::Device(std::unique_ptr<Port> port, int rate_hz, bool has_float_axes)
-    : port_(std::move(port)), rate_hz_(rate_hz), has_float_axes_(has_float_axes) {
+Device::Device(std::unique_ptr<Port> port, int rate_hz, bool has_float_axes, bool has_watchdog)
+    : port_(std::move(port)), rate_hz_(rate_hz), has_float_axes_(has_float_axes), has_watchdog_(has_watchdog) {
   record.round_trips_ns.reserve(kRemembered);
   power_up();
 }
@@ -54,7 +60,7 @@ void Device::power_up() {
   config.peak_force_n = 8;
   config.continuous_force_n = 3;
   config.rate_hz = static_cast<std::uint16_t>(rate_hz_);
-  config.watchdog_ms = kWatchdogMs;
+  config.watchdog_ms = has_watchdog_ ? kWatchdogMs : kNoWatchdogMs;
   config.dof = 3;
   config.axes = FDCG_FW_CARTESIAN;
   fdcg_fw_init(&firmware_, &config);
@@ -82,9 +88,7 @@ void Device::hear_another(std::uint32_t ahead) {
   const std::uint32_t sequence = firmware_.echo + ahead;
   for (std::size_t i = 0; i < 4; ++i)
     report[1 + i] = static_cast<std::uint8_t>(sequence >> 8 * i);
-  const std::uint16_t crc = fdcg_fw_crc16(report.data(), report.size() - 2);
-  report[report.size() - 2] = static_cast<std::uint8_t>(crc);
-  report[report.size() - 1] = static_cast<std::uint8_t>(crc >> 8);
+  set_crc(report);
   on_output(report.data(), static_cast<int>(report.size()));
 }
 
@@ -161,6 +165,10 @@ Bytes Device::on_get_feature(int report_id) {
   if (report_id != static_cast<int>(FDCG_FW_FEATURE_ID)) return {};
   Bytes report(FDCG_FW_FEATURE_BYTES);
   fdcg_fw_feature(&firmware_, report.data());
+  if (wrong_byte_ >= 0) {
+    report[static_cast<std::size_t>(wrong_byte_)] ^= 1;
+    set_crc(report);
+  }
   return report;
 }
 
@@ -177,6 +185,7 @@ void Device::note_force(Nanoseconds now) {
     record.first_zero = now;
     record.output_before_zero = record.last_output;
   }
+  if (record.first_zero == 0) record.most_rise_n = std::max(record.most_rise_n, record.force_n - before_n);
   if (before_n == 0 && record.force_n != 0) record.force_since = now;
 }
 

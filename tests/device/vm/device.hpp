@@ -13,6 +13,9 @@
 
 namespace fdcg::vm {
 
+// The last two bytes: the CRC of those before them.
+void set_crc(Bytes& report);
+
 // Where the hand holds the tip: above the surface (z = 0) or inside it, moving at most kHandSpeed on the way.
 class Hand {
  public:
@@ -42,13 +45,16 @@ struct Record {
   Nanoseconds last_output = 0;
   Nanoseconds watched_from = 0, first_zero = 0;  // the first moment without force since `watch`; 0: none yet
   Nanoseconds output_before_zero = 0;            // last_output at that moment
+  double most_rise_n = 0;                        // of the force in one output, from `watch` to its end
 
   // Counts and worst values begin again; what the motors do now stays.
   void restart();
   void watch(Nanoseconds from) {
     watched_from = from;
     first_zero = 0;
+    most_rise_n = 0;
   }
+  void restart_forces() { most_force_n = force_n; }
 };
 
 class Device final : public PortUser {
@@ -56,11 +62,13 @@ class Device final : public PortUser {
   // A report on its way: kept, altered, doubled, left out.
   using Wire = std::function<void(const Bytes& report)>;
 
-  Device(std::unique_ptr<Port> port, int rate_hz, bool has_float_axes);
+  Device(std::unique_ptr<Port> port, int rate_hz, bool has_float_axes, bool has_watchdog);
   // As after a loss of power, or (false) with its motors' supply, its clock and its counters kept.
   void plug(bool is_power_cycled);
   void unplug();
   void restart() { power_up(); }  // without anybody being told
+  // What its feature report says is not what it is, by the low bit of that byte; -1: it is.
+  void misdescribe(int byte) { wrong_byte_ = byte; }
   // An output report of another program: no force, and a number that this host has not come to.
   void hear_another(std::uint32_t ahead);
   int fd() const { return port_->fd(); }
@@ -103,8 +111,8 @@ class Device final : public PortUser {
 
   std::unique_ptr<Port> port_;
   fdcg_fw firmware_{};
-  int rate_hz_;
-  bool has_float_axes_, is_bad_ = false, was_tripped_ = false;
+  int rate_hz_, wrong_byte_ = -1;
+  bool has_float_axes_, has_watchdog_, is_bad_ = false, was_tripped_ = false;
   Nanoseconds born_ = 0;
   Wire wire_;
   Nanoseconds lag_of_reports_ = 0, lag_of_outputs_ = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <csignal>
 
 #include "scenarios.hpp"
 #include "strikes.hpp"
@@ -9,6 +10,8 @@ namespace {
 
 // The bar: no force 2 ms after the host could first know.
 constexpr Nanoseconds kZeroLimit = 2 * kMillisecond;
+// What the hand's trembling changes in a period, and far below a step: no force grows by more once it must go.
+constexpr double kMostRiseN = 0.1;
 
 constexpr StrikeKind kStrikes[] = {
     {"short", strike_short},
@@ -29,7 +32,28 @@ constexpr StrikeKind kStrikes[] = {
     {"other-host", strike_other_host},
     {"asleep", strike_asleep},
     {"clock-jump", strike_clock_jump, "slept", nullptr, false, false, true},
+    {"suspended", strike_suspended, "slept,host-late,silence", nullptr, false, false, false, false},
+    {"other-description", strike_other_description},
     {"killed", strike_killed},
+    {"killed-unwatched", strike_killed_unwatched, nullptr, nullptr, false, false, false, false},
+    {"segv", strike_crash<SIGSEGV>},
+    {"abrt", strike_crash<SIGABRT>},
+    {"bus", strike_crash<SIGBUS>},
+    {"fpe", strike_crash<SIGFPE>},
+    {"ill", strike_crash<SIGILL>},
+    {"quit", strike_crash<SIGQUIT>},
+    {"xcpu", strike_crash<SIGXCPU>},
+    {"usr1", strike_crash<SIGUSR1>},
+    {"usr2", strike_crash<SIGUSR2>},
+    {"term", strike_end<SIGTERM>},
+    {"int", strike_end<SIGINT>},
+    {"hup", strike_end<SIGHUP>},
+    {"tstp", strike_stopped, "not-armed"},
+    {"servo-thread", strike_servo_thread, "host-late"},
+    {"writer-thread", strike_writer_thread, "writer-stuck"},
+    {"second-program", strike_second_program},
+    {"node-twice", strike_node_twice},
+    {"graph", strike_graph},
     {"disk-full", strike_disk_full, nullptr, nullptr, false, true},
 };
 
@@ -40,6 +64,7 @@ double ms(Nanoseconds time) {
 struct Tally {
   Nanoseconds slowest_zero = 0;      // from when the host could know
   Nanoseconds slowest_watchdog = 0;  // from the last output taken
+  double most_rise_n = 0;
   int felt = 0, zeros = 0, disarmed = 0;
 };
 
@@ -71,6 +96,8 @@ std::string judge(const Rig& rig, const Expectation& expected, Tally& tally) {
   if (expected.known > 0) {
     const std::string late = judge_zero(rig, expected, tally);
     if (!late.empty()) return late;
+    tally.most_rise_n = std::max(tally.most_rise_n, record.most_rise_n);
+    if (expected.disarms && record.most_rise_n > kMostRiseN) return words("the force steps up by %.3f N", record.most_rise_n);
   }
   const bool has_force = record.force_n > 0;
   if (expected.disarms && (has_force || record.force_since > record.first_zero))
@@ -85,6 +112,7 @@ std::string numbers_of(const Rig& rig, const Tally& tally) {
   if (tally.slowest_zero > 0) numbers += words("; zero within %.3f ms of when the host could know", ms(tally.slowest_zero));
   if (tally.slowest_watchdog > 0) numbers += words("; zero within %.3f ms of the last output", ms(tally.slowest_watchdog));
   if (rig.longest_reopening > 0) numbers += words("; answers within %.1f ms of the plug", ms(rig.longest_reopening));
+  if (tally.most_rise_n > 0) numbers += words("; no step above %.3f N", tally.most_rise_n);
   return numbers + words("; oldest answer %.3f ms", ms(rig.device.record.oldest_answer));
 }
 
@@ -135,6 +163,7 @@ void run_strike(RigOptions options, const StrikeKind& kind, int times, Verdicts&
   options.has_float_axes = kind.has_float_axes;
   options.has_log = options.is_log_small = kind.is_log_small;
   options.has_clock_shim = kind.has_clock_shim;
+  options.has_watchdog = kind.has_watchdog;
   for (const char* letter = kind.name; *letter != 0; ++letter)  // other moments for each kind
     options.seed = options.seed * 31 + static_cast<unsigned char>(*letter);
   Rig rig(options);

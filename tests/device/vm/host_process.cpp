@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kKeptWords = 40;
 
 [[noreturn]] void become(const std::vector<std::string>& command, const char* preload, int input, int output) {
+  setpgid(0, 0);           // a group of its own, as a shell's job: one that SIGTSTP stops
   sched_param ordinary{};  // not the rig's own priority
   sched_setscheduler(0, SCHED_OTHER, &ordinary);
   if (preload != nullptr) setenv("LD_PRELOAD", preload, 1);

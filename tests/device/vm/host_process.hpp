@@ -23,6 +23,7 @@ class HostProcess {
   void say(const std::string& line);  // to its standard input
   void signal(int number);
   bool is_running() const { return pid_ > 0; }
+  pid_t pid() const { return pid_; }
   // How it ended: its exit code, or 128 + the signal.
   int ending() const { return ending_; }
 

@@ -16,6 +16,8 @@ TIMED = ["-accel", "tcg,thread=single", "-icount", "shift=1,sleep=off", "-smp", 
 TIMED_FASTER = [word.replace("shift=1", "shift=0") for word in TIMED]
 # two processors that really run at once, in real time: for races, where time says nothing
 RACING = ["-accel", "tcg,thread=multi", "-smp", "2"]
+# its clock of suspended time is this machine's; q35 suspends once only, since what puts it to sleep is not set up again
+SUSPENDING = [*TIMED[:-1], "base=2026-01-01,clock=host", "-M", "pc"]
 MACHINE = ["-M", "q35", "-cpu", "qemu64,+ssse3,+sse4.1,+sse4.2", "-m", "512", "-nodefaults", "-no-reboot", "-display", "none",
            "-serial", "stdio", "-device", f"isa-debug-exit,iobase={EXIT_PORT:#x},iosize=4"]
 # no_timer_check: the kernel's trial of its timer fails where this machine is busy
@@ -31,9 +33,9 @@ class Outcome:
     cpu_s: float
 
 
-def boot(unpacked, initramfs, arguments, limit_s, mode=TIMED):
+def boot(unpacked, initramfs, arguments, limit_s, mode=TIMED, monitor_options=()):
     """Boots, runs the rig with the arguments, returns what it printed. Ends by itself, or by force after limit_s."""
-    command = [need("qemu-system-x86_64"), *MACHINE, *mode, "-kernel", str(kernel_image(unpacked)), "-initrd", str(initramfs),
+    command = [need("qemu-system-x86_64"), *MACHINE, *mode, *monitor_options, "-kernel", str(kernel_image(unpacked)), "-initrd", str(initramfs),
                "-append", f"{KERNEL_OPTIONS} -- rig {' '.join(arguments)}"]
     began, cpu_before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     try:

@@ -44,7 +44,9 @@ std::uint64_t expirations(int timer) {
 }  // namespace
 
 Rig::Rig(const RigOptions& wanted)
-    : options(wanted), device(make_port(wanted), wanted.rate_hz, wanted.has_float_axes), random_(wanted.seed) {
+    : options(wanted),
+      device(make_port(wanted), wanted.rate_hz, wanted.has_float_axes, wanted.has_watchdog),
+      random_(wanted.seed) {
   write_host_files(options);
   add_to_boot_clock(0);
   ticker_ = make_timer();
@@ -65,8 +67,9 @@ void Rig::run_until(Nanoseconds moment) {
   const itimerspec alarm{{}, as_timespec(moment)};
   timerfd_settime(alarm_, TFD_TIMER_ABSTIME, &alarm, nullptr);
   while (now_ns() < moment) {
-    pollfd ready[] = {{device.fd(), POLLIN, 0}, {ticker_, POLLIN, 0}, {host.fd(), POLLIN, 0}, {alarm_, POLLIN, 0}};
-    if (poll(ready, 4, -1) < 0) continue;
+    pollfd ready[] = {
+        {device.fd(), POLLIN, 0}, {ticker_, POLLIN, 0}, {host.fd(), POLLIN, 0}, {alarm_, POLLIN, 0}, {second.fd(), POLLIN, 0}};
+    if (poll(ready, 5, -1) < 0) continue;
     if (ready[1].revents != 0) {
       const std::uint64_t ticks = expirations(ticker_);
       missed_ticks += ticks > 1 ? ticks - 1 : 0;
@@ -76,6 +79,7 @@ void Rig::run_until(Nanoseconds moment) {
     if (ready[0].revents != 0) device.receive();
     if (ready[2].revents != 0) host.receive();
     if (ready[3].revents != 0) expirations(alarm_);
+    if (ready[4].revents != 0) second.receive();
   }
 }
 
@@ -88,6 +92,11 @@ bool Rig::run_until(const Condition& condition, Nanoseconds limit) {
 
 void Rig::start_host() {
   host.start(host_command(options), options.has_clock_shim ? kClockShim : nullptr);
+}
+
+bool Rig::is_answered_again(Nanoseconds limit) {
+  const std::uint64_t answered = device.record.answered;
+  return run_until([&] { return device.record.answered > answered; }, limit);
 }
 
 bool Rig::end_host() {

@@ -20,6 +20,7 @@ struct RigOptions {
   bool has_log = false;
   bool is_log_small = false;    // the log stands on a disk of its own that is soon full
   bool has_clock_shim = false;  // of the host: add_to_boot_clock moves its clock
+  bool has_watchdog = true;     // of the device
   bool is_timed = true;         // false: two processors, where no time is judged
   std::uint64_t seed = 1;
 };
@@ -39,6 +40,9 @@ class Rig {
   bool run_until(const Condition& condition, Nanoseconds limit);
 
   void start_host();
+  void start_second_host(const std::vector<std::string>& command) { second.start(command, nullptr); }
+  // False: no report has been answered within the limit.
+  bool is_answered_again(Nanoseconds limit = 5 * kSecond);
   // True when it has gone on request within the limit (6 s of the host's own, and some).
   bool end_host();
   // Takes the tip out of the surface, asks for force, puts the tip in. False: no force within the limit.
@@ -52,7 +56,7 @@ class Rig {
 
   const RigOptions options;
   Device device;
-  HostProcess host;
+  HostProcess host, second;           // second: another of the same device
   std::uint64_t missed_ticks = 0;     // of the device's own timer
   std::uint64_t late_ticks = 0;       // of them by more than a quarter of a period
   Nanoseconds longest_reopening = 0;  // from a plug to the first report answered

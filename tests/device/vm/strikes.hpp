@@ -26,7 +26,7 @@ struct StrikeKind {
   Expectation (*strike)(Rig&);
   const char* told_as = nullptr;      // the host's reasons for disarming, comma-separated; null: not asked
   const char* rejected_as = nullptr;  // the host's counter that must grow; null: none must
-  bool has_float_axes = false, is_log_small = false, has_clock_shim = false;
+  bool has_float_axes = false, is_log_small = false, has_clock_shim = false, has_watchdog = true;
 };
 
 // On the wire: strikes_wire.cpp.
@@ -45,13 +45,28 @@ Expectation strike_lag_30(Rig& rig);
 
 // On the device or the host: strikes_ends.cpp.
 Expectation strike_unplugged(Rig& rig);
+Expectation strike_other_description(Rig& rig);
 Expectation strike_no_output(Rig& rig);
 Expectation strike_restarted(Rig& rig);
 Expectation strike_other_host(Rig& rig);
 Expectation strike_asleep(Rig& rig);
 Expectation strike_clock_jump(Rig& rig);
+Expectation strike_suspended(Rig& rig);
 Expectation strike_killed(Rig& rig);
 Expectation strike_disk_full(Rig& rig);
+
+// On the host program: strikes_program.cpp. A crash ends it by the signal, an end in order.
+template <int number>
+Expectation strike_crash(Rig& rig);
+template <int number>
+Expectation strike_end(Rig& rig);
+Expectation strike_stopped(Rig& rig);
+Expectation strike_killed_unwatched(Rig& rig);
+Expectation strike_servo_thread(Rig& rig);
+Expectation strike_writer_thread(Rig& rig);
+Expectation strike_second_program(Rig& rig);
+Expectation strike_node_twice(Rig& rig);
+Expectation strike_graph(Rig& rig);
 
 inline constexpr Nanoseconds kWatchdog = 20 * kMillisecond;  // of the device
 

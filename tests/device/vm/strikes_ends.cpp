@@ -19,11 +19,6 @@ constexpr Nanoseconds kReopenLimit = 5 * kSecond;
 constexpr char kFiller[] = "/full/filler";
 constexpr std::size_t kFilledAtOnce = 32 * 1024;
 
-bool is_answered_again(Rig& rig, Nanoseconds limit) {
-  const std::uint64_t answered = rig.device.record.answered;
-  return rig.run_until([&] { return rig.device.record.answered > answered; }, limit);
-}
-
 }  // namespace
 
 // Away for a moment or for a while, with or without its motors' supply. The force dies by the watchdog; after the re-plug there
@@ -38,8 +33,36 @@ Expectation strike_unplugged(Rig& rig) {
   rig.run_for(is_brief ? rig.random_between(0, 2 * kMillisecond) : rig.random_between(30 * kMillisecond, 300 * kMillisecond));
   rig.device.plug(rig.random_between(0, 1) == 0);
   const Nanoseconds plugged = now_ns();
-  if (!is_answered_again(rig, kReopenLimit)) expected.broken = "the host has not opened it again within 5 s";
+  if (!rig.is_answered_again(kReopenLimit)) expected.broken = "the host has not opened it again within 5 s";
   rig.longest_reopening = std::max(rig.longest_reopening, now_ns() - plugged);
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
+// Plugged in again, it says of itself what the profile does not fit: nobody drives it until it is the old one again.
+Expectation strike_other_description(Rig& rig) {
+  // of version, number of axes, what they measure, counts, rate
+  constexpr int kBytes[] = {1, 3, 4, 6, 29};
+  Expectation expected;
+  expected.known = now_ns();
+  expected.is_by_watchdog = expected.disarms = true;
+  rig.device.record.watch(expected.known);
+  rig.device.unplug();
+  rig.device.misdescribe(kBytes[rig.random_between(0, 4)]);
+  rig.device.plug(true);
+  const std::uint64_t answered = rig.device.record.answered;
+  const auto is_told = [&] {
+    const std::string& line = rig.host.status_line();
+    return line.find("feature report says") != std::string::npos || line.find("the device measures") != std::string::npos;
+  };
+  if (!rig.run_until(is_told, 3 * kSecond)) expected.broken = "the host does not say what does not fit";
+  rig.host.say("arm");
+  rig.run_for(kSecond / 2);
+  if (rig.device.record.answered != answered) expected.broken = "a device that does not fit its profile is driven";
+  rig.device.unplug();
+  rig.device.misdescribe(-1);
+  rig.device.plug(true);
+  if (!rig.is_answered_again(kReopenLimit)) expected.broken = "the host has not opened it again within 5 s";
   rig.run_for(kSecond / 10);
   return expected;
 }
@@ -54,8 +77,7 @@ Expectation strike_no_output(Rig& rig) {
   rig.device.take_output(false);
   rig.run_for(7 * kSecond);
   rig.device.take_output(true);
-  if (!is_answered_again(rig, kReopenLimit))
-    expected.broken = "the host writes nothing 5 s after the device takes output again";
+  if (!rig.is_answered_again(kReopenLimit)) expected.broken = "the host writes nothing 5 s after the device takes output again";
   rig.run_for(kSecond / 10);
   return expected;
 }
@@ -107,6 +129,19 @@ Expectation strike_clock_jump(Rig& rig) {
   return expected;
 }
 
+// The whole guest, to memory, until it is woken from outside. The device's time stands still meanwhile, and it has no watchdog:
+// what takes the force away is the host's word after it.
+Expectation strike_suspended(Rig& rig) {
+  Expectation expected;
+  expected.disarms = true;
+  expected.oldest_answer = kSecond;  // a force on its way into the suspend
+  suspend_to_memory();
+  expected.known = now_ns();
+  rig.device.record.watch(expected.known);
+  rig.run_for(kSecond / 10);
+  return expected;
+}
+
 Expectation strike_killed(Rig& rig) {
   Expectation expected;
   expected.known = now_ns();
@@ -116,7 +151,7 @@ Expectation strike_killed(Rig& rig) {
   if (!rig.run_until([&] { return !rig.host.is_running(); }, kSecond)) expected.broken = "the killed host does not end";
   rig.run_for(rig.random_between(0, kSecond / 10));
   rig.start_host();
-  if (!is_answered_again(rig, kReopenLimit)) expected.broken = "a new host has not opened the device within 5 s";
+  if (!rig.is_answered_again(kReopenLimit)) expected.broken = "a new host has not opened the device within 5 s";
   rig.run_for(kSecond / 10);
   return expected;
 }

@@ -75,12 +75,6 @@ void put32(Bytes& report, std::size_t at, std::uint32_t value) {
     report[at + i] = static_cast<std::uint8_t>(value >> 8 * i);
 }
 
-void set_crc(Bytes& report) {
-  const std::uint16_t crc = fdcg_fw_crc16(report.data(), report.size() - 2);
-  report[report.size() - 2] = static_cast<std::uint8_t>(crc);
-  report[report.size() - 1] = static_cast<std::uint8_t>(crc >> 8);
-}
-
 constexpr int kLongest = 40;
 constexpr int kLongestWithOldNumbers = 15;  // more than 20 in a row are a device that has begun again: report_codec.hpp
 

@@ -12,6 +12,7 @@ import unittest
 
 import image
 import machine
+from monitor import Monitor
 
 ROOT = pathlib.Path(os.environ["FDCG_ROOT"])
 FOLDER = pathlib.Path(os.environ["FDCG_VM_FOLDER"])
@@ -23,6 +24,8 @@ LIMIT_S = 560  # a boot: a test counts as hung after ten minutes
 REPORTS = "short long garbled repeated out-of-order stale nan stalled half-lost".split()
 ENDS = "unplugged no-output restarted other-host asleep killed disk-full".split()
 STRIKES = ",".join(REPORTS + ENDS)
+SIGNALS = "segv abrt bus fpe ill quit xcpu usr1 usr2 term int hup tstp".split()
+PROGRAM = "killed-unwatched servo-thread writer-thread second-program node-twice graph other-description".split()
 LATE = "lag-5 lag-15 lag-30 clock-jump".split()
 
 
@@ -42,6 +45,7 @@ class VmCase(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         folder = pathlib.Path(temporary.name)
         self.initramfs = folder / "initramfs"
+        self.socket = folder / "monitor"
         FOLDER.mkdir(parents=True, exist_ok=True)
         try:
             with locked(FOLDER / "lock"):
@@ -57,9 +61,10 @@ class VmCase(unittest.TestCase):
                 self.fail(str(missing))
             self.skipTest(str(missing))
 
-    def boot(self, *scenarios, mode=None):
+    def boot(self, *scenarios, monitor=None):
         """Returns the console of a guest in which every scenario passed."""
-        outcome = machine.boot(self.kernel, self.initramfs, " then ".join(scenarios).split(), LIMIT_S, mode or self.mode)
+        outcome = machine.boot(self.kernel, self.initramfs, " then ".join(scenarios).split(), LIMIT_S, self.mode,
+                               monitor.options() if monitor else ())
         print(f"{outcome.console}{outcome.wall_s:.0f} s of wall time, {outcome.cpu_s:.0f} s of processor time", file=sys.stderr)
         self.assertEqual(0, outcome.code, "see the FAIL lines above, or what the guest said last")
         self.assertNotIn("FAIL", outcome.console)
@@ -105,6 +110,30 @@ class LateUhid(VmCase):
         self.assert_passes(len(LATE), self.boot(f"faults only={','.join(LATE)}"))
 
 
+class SignalsUhid(VmCase):
+    def test_each_signal_twenty_times(self):
+        self.assert_passes(len(SIGNALS), self.boot(f"faults only={','.join(SIGNALS)}"))
+
+
+class ProgramUhid(VmCase):
+    def test_harm_to_the_host_program_twenty_times(self):
+        self.assert_passes(len(PROGRAM), self.boot(f"faults only={','.join(PROGRAM)}"))
+
+
+class RestartedUhid(VmCase):
+    def test_restarts_at_2_4_and_8_khz_twenty_times(self):
+        self.assert_passes(3, self.boot(*(f"faults rate={rate} only=restarted" for rate in (2000, 4000, 8000))))
+
+
+class SuspendedUhid(VmCase):
+    mode = machine.SUSPENDING
+
+    def test_suspend_to_memory_twenty_times(self):
+        monitor = Monitor(self.socket, wakes_after_s=0.3)
+        self.assert_passes(1, self.boot("faults only=suspended", monitor=monitor))
+        self.assertEqual(20, monitor.woken)
+
+
 def behaviour(console):
     """What happened, without the digits of times: a plug that is answered in 537.0 ms once may be in 537.1 the other time."""
     return re.sub(r"\d+\.\d+", "#", console)
@@ -114,7 +143,9 @@ class SameConsole(VmCase):
     def test_two_runs_do_the_same(self):
         scenarios = ["timing rate=1000 seconds=2", "faults way=usb times=2 only=garbled,stalled,unplugged,asleep,killed"]
         first = behaviour(self.boot(*scenarios))
-        self.assertEqual(first, behaviour(self.boot(*scenarios)))
+        monitor = Monitor(self.socket, stops=20)
+        self.assertEqual(first, behaviour(self.boot(*scenarios, monitor=monitor)))
+        self.assertEqual(20, monitor.stopped)
         self.assert_passes(6 + 5, first)
 
 
