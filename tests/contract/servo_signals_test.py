@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """fdcg-servo run under signals, from outside: a device with a force on it gets zero force last, and the program dies of the
 signal. FDCG_FAKE_HID is the folder of a hidapi whose device passes all that it gets on to a FIFO
-(tests/device/transport/fake_hid_node.c)."""
+(tests/device/transport/fake_hid_node.c). FDCG_STRIKES: how often each is done, at random moments."""
+import concurrent.futures
+import itertools
 import json
 import os
+import random
 import resource
 import shutil
 import signal
@@ -17,6 +20,8 @@ from support import ROOT, SERVO, Case
 
 SCENES = ROOT / "testdata" / "scenes"
 PATIENCE_S = 60  # for a machine that is busy with other things
+STRIKES = int(os.environ.get("FDCG_STRIKES", "1"))
+AT_ONCE = 3  # hosts, each with a device of its own
 OUTPUT, SAFE_STOP = 2, 9  # report ids
 SAFE_STOP_REPORT = bytes([SAFE_STOP, 0x5A])
 
@@ -112,14 +117,14 @@ class SignalCase(Case):
         scene["loop"] = {"servo_priority": 0, "writer_priority": 0, "lock_memory": False}
         scene["devices"] = [{"name": "hand", "profile": PROFILE}]
         self.scene = self.write("scene.json", json.dumps(scene))
-        self.count = 0
+        self.count = itertools.count()
 
     def started(self, before=without_core):
-        self.count += 1
-        path = self.path(f"node{self.count}")
+        number = next(self.count)
+        path = self.path(f"node{number}")
         node = Node(path)
         environment = {**os.environ, "LD_LIBRARY_PATH": os.environ["FDCG_FAKE_HID"], "FDCG_FAKE_NODE": path}
-        log = self.path("session.fdcglog")
+        log = self.path(f"session{number}.fdcglog")
         process = subprocess.Popen([SERVO, "run", self.scene, "--hid", "hidraw", "--log", log, "-q"], stdin=subprocess.PIPE,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment,
                                    preexec_fn=before)
@@ -153,15 +158,24 @@ class SignalCase(Case):
 
 
 class Endings(SignalCase):
-    def check_signals(self, *numbers):
-        for number in numbers:
-            with self.subTest(signal=number):
-                process, node = self.started()
-                self.press(process, node)
-                process.send_signal(number)
-                process.wait(timeout=PATIENCE_S)
-                self.assertEqual(-number, process.returncode)
-                self.check_zero_force_sent(node.drain())
+    def end_by(self, number, moment_s, codes):
+        process, node = self.started()
+        self.press(process, node)
+        time.sleep(moment_s)
+        process.send_signal(number)
+        process.wait(timeout=PATIENCE_S)
+        self.assertIn(process.returncode, codes)
+        self.check_zero_force_sent(node.drain())
+
+    def check_signals(self, *numbers, codes=None):
+        moments = random.Random(1)
+        with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
+            for number in numbers:
+                with self.subTest(signal=number):
+                    ends = [pool.submit(self.end_by, number, moments.uniform(0, 0.06), codes or (-number,))
+                            for _ in range(STRIKES)]
+                    for end in ends:
+                        end.result()
 
     def test_a_crash_leaves_zero_force_and_dies_of_its_signal(self):
         self.check_signals(signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL, signal.SIGTRAP,
@@ -172,14 +186,7 @@ class Endings(SignalCase):
                            signal.SIGPROF, signal.SIGIO, signal.SIGRTMIN, signal.SIGRTMAX)
 
     def test_a_stop_that_is_asked_for_leaves_zero_force_in_order(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            with self.subTest(signal=number):
-                process, node = self.started()
-                self.press(process, node)
-                process.send_signal(number)
-                process.wait(timeout=PATIENCE_S)
-                self.assertIn(process.returncode, (0, 1))
-                self.check_zero_force_sent(node.drain())
+        self.check_signals(signal.SIGINT, signal.SIGTERM, signal.SIGHUP, codes=(0, 1))
 
     def test_a_signal_that_was_ignored_before_stays_ignored(self):
         process, node = self.started(ignoring_quit)
@@ -203,8 +210,9 @@ class Stops(SignalCase):
 
     def test_what_is_stopped_was_disarmed_before_and_stays_so_when_continued(self):
         process, node = self.started()
-        for _ in range(3):
+        for _ in range(max(3, STRIKES)):
             self.press(process, node)
+            time.sleep(random.uniform(0, 0.06))
             self.stop(process)
             stopped = len(node.reports)
             self.assertEqual([(0, 0)], list({report[1:] for report in node.reports[-2:]}))
