@@ -13,6 +13,9 @@ namespace fdcg {
 // sides take 100 to 300.
 inline constexpr uint32_t kFanSearchWork = 600;
 
+// So many edges of a busy corner are looked at for one to which a way from the HIP is told by few faces.
+inline constexpr uint32_t kEdgesAround = 4;
+
 // The way from the HIP to a point on one of the corner's edges, and the faces at the corner, each as if it went on for ever.
 // How the way arrives at the edge, out of the solid or through it, is told by the two faces there (EDGE-1). Before, it changes
 // sides with every other face that it crosses.
@@ -169,19 +172,23 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (corner.is_open()) return Beginning::not_told;
   const GraphView<Geometry>& graph = walk.graph;
   const Vec3<Real> t = walk.hip - corner.point();
-  FanEntry edge = {};  // any, but none that points away from the HIP: of two one does not
+  FanEntry edge = {};  // any, but none that points straight away from the HIP
   Real most = 0;
   uint32_t seen = 0;
-  const auto choose = [&](const FanEntry& entry) {
-    const Real along = dot(t, graph.edge(entry.connection).direction), forward = entry.end == 0 ? along : -along;
-    if (seen++ == 0 || forward > most) edge = entry, most = forward;
+  const auto choose = [&](const FanEntry& entry, Real by) {
+    if (seen++ == 0 || by > most) edge = entry, most = by;
   };
   const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
-  if (has_tree) {
-    choose(graph.fan_entry(corner, 0));
-    choose(graph.fan_entry(corner, corner.fan_count() / 2));
+  if (has_tree) {  // ... and in whose faces' planes the HIP is not: hundreds beside them would lie in the plane of the way
+    for (uint32_t i = 0; i < kEdgesAround; ++i) {
+      const FanEntry entry = graph.fan_entry(corner, corner.fan_count() / kEdgesAround * i);
+      choose(entry, entry.node == FDCG_NONE ? Real(-1) : absolute(dot(t, graph.node(entry.node).normal())));
+    }
   } else {
-    graph.for_each_in_fan(corner, choose);
+    graph.for_each_in_fan(corner, [&](const FanEntry& entry) {
+      const Real along = dot(t, graph.edge(entry.connection).direction);
+      choose(entry, entry.end == 0 ? along : -along);
+    });
   }
   // A file that is SAFE, and not FULL, may have a border at a corner that does not say so.
   if (edge.node == FDCG_NONE || graph.connection(edge.connection).type() == FDCG_BOUNDARY) return Beginning::not_told;

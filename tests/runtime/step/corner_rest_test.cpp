@@ -8,6 +8,7 @@
 #include "contact_rig.hpp"
 #include "descent.hpp"
 #include "exact_solid.hpp"
+#include "pointed_bodies.hpp"
 #include "random.hpp"
 #include "squashed.hpp"
 
@@ -51,6 +52,16 @@ void step_about(const PolygonSoup& soup, Precision precision, std::uint64_t seed
   }
 }
 
+// From one to the other corner of a triangle that has the tip as its third; zero of all others.
+Vec3 side_across(const PolygonSoup& soup, std::size_t face, const Hip& tip) {
+  const std::uint32_t* const corners = &soup.corners[3 * face];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &p = soup.points[corners[k]], &a = soup.points[corners[(k + 1) % 3]], &b = soup.points[corners[(k + 2) % 3]];
+    if (p.x == tip[0] && p.y == tip[1] && p.z == tip[2]) return {b.x - a.x, b.y - a.y, b.z - a.z};
+  }
+  return {0, 0, 0};
+}
+
 }  // namespace
 
 TEST_CASE("no rest at a corner of a flat or long body that is no least place") {
@@ -83,4 +94,39 @@ TEST_CASE("no rest at a corner of many walls that is no least place") {
   CHECK(counts.at_vertices > 20);
   CHECK(counts.too_far == 0);
   CHECK(counts.in_free_air == 0);
+}
+
+// Ways through the tip of a cone of thousands of sides, which end beside it in the plane of a face, and so near to the planes of
+// hundreds: whether such a way begins outside has to be told all the same.
+TEST_CASE("no rest at a fine tip with the HIP beside it in the plane of a face") {
+  for (const PointedKind kind : {PointedKind::needle, PointedKind::cone, PointedKind::flat}) {
+    const PointedBody body = pointed_body(kind, 10'000, random_rotation(21));
+    const Hip& tip = body.tips[0].point;
+    fdcg::bake::CompileOptions options;
+    options.precision = Precision::f32;
+    options.coplanar.kind = fdcg::bake::Coplanar::Kind::exact;
+    options.jobs = 1;
+    const CompiledMesh mesh(body.soup, options);
+    const Descent descent(ExactSolid(body.soup, *mesh.view().header).triangles());
+    Contact contact(mesh.view(), contact_params(0, 0));
+    int met = 0, rests = 0;
+    for (std::size_t face = 0; face < body.soup.face_count(); ++face) {
+      const Vec3 side = side_across(body.soup, face, tip);
+      const double length = std::sqrt(side.x * side.x + side.y * side.y + side.z * side.z);
+      if (!(length > 0)) continue;
+      const double off = 5e-5 / length, up = 1e-5 * static_cast<double>(static_cast<int>(face % 11) - 5);
+      const Hip& axis = body.tips[0].outwards;
+      const Hip way = {off * side.x + up * axis[0], off * side.y + up * axis[1], off * side.z + up * axis[2]};
+      contact.step({tip[0] - way[0], tip[1] - way[1], tip[2] - way[2]});
+      contact.step({tip[0] + way[0], tip[1] + way[1], tip[2] + way[2]});
+      met += contact.result.transitions > 0;
+      if (contact.result.state != FDCG_VERTEX) continue;
+      const Hip point = {contact.state.god_object[0], contact.state.god_object[1], contact.state.god_object[2]};
+      const Hip local = {contact.state.hip[0], contact.state.hip[1], contact.state.hip[2]};
+      rests += descent.begins_outside(point, local);
+    }
+    INFO(name_of(kind));
+    CHECK(met > 100);
+    CHECK(rests == 0);
+  }
 }
