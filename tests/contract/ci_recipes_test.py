@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import tarfile
 import textwrap
@@ -66,7 +67,8 @@ class Recipes(Case):
         if not self.has_viewer():
             self.skipTest("this fdcg has no viewer")
         self.write("meshes/fan.off", THREE_ON_AN_EDGE)
-        self.shell(script, code=1)
+        self.shell(script, code=1, **self.to_install())
+        self.assertTrue((self.folder / ".local/bin/fdcg").is_file())
         kept = [re.search(r"paths: \[(.*)\]", recipe)[1], re.search(r"junit: (.*)", recipe.split("reports:")[1])[1]]
         for name in kept:
             self.assertGreater((self.folder / name).stat().st_size, 0)
@@ -76,7 +78,8 @@ class Recipes(Case):
         self.assertEqual(recipe.count("{"), recipe.count("}"))
         script = re.search(r"^ *sh '(.*)'$", recipe, flags=re.M)[1]
         self.write("meshes/fan.off", THREE_ON_AN_EDGE)
-        self.shell(script, code=1)
+        self.shell(script, code=1, **self.to_install())
+        self.assertTrue((self.folder / ".local/bin/fdcg").is_file())
         for name in re.findall(r"(?:junit|artifacts:) '(.*?)'", recipe):
             self.assertGreater((self.folder / name).stat().st_size, 0)
 
@@ -142,6 +145,14 @@ class Recipes(Case):
         for _ in range(2):
             self.shell(f"{hook} meshes/part.off", **bare, FDCG_PACKAGE=str(archive))
             archive.unlink(missing_ok=True)  # the second time it is there
+
+    def to_install(self):
+        """The script in the repository of the meshes, and the environment with a package for it."""
+        (self.folder / "ci").mkdir()
+        shutil.copy(ROOT / "tools/ci/install", self.folder / "ci")
+        archive = self.archive("bin/fdcg", f'#!/bin/sh\nexec "{FDCG}" "$@"\n')
+        self.write("SHA256SUMS", f"{hashlib.sha256(archive.read_bytes()).hexdigest()}  {archive.name}\n")
+        return {"HOME": str(self.folder), "FDCG_PACKAGE": str(archive)}
 
     def archive(self, name, content):
         path = self.folder / "fdcg-0.1.0-linux.tar.gz"
