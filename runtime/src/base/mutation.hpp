@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Places where a test takes a rule out. FDCG_MUTANT("name") is the constant false in what ships; where a test compiles with
-// FDCG_WITH_MUTANTS it is whether the environment's FDCG_MUTANT is that name when it is first asked. FDCG_WITH_MUTANTS 1: the rules
-// alone; 2: with the shortcuts past them that ship too.
+// FDCG_WITH_MUTANTS it is whether the environment's FDCG_MUTANT is that name when it is first asked. FDCG_WITH_MUTANTS 1: the
+// rules alone; 2: with the shortcuts past them that ship too.
 #pragma once
 
 #ifndef FDCG_WITH_MUTANTS

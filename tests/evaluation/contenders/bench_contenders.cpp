@@ -241,10 +241,7 @@ void Evaluation::rank_body(const Body& body, std::vector<Standing> standings, do
   std::string beaten[2];
   for (const Standing& s : standings) {
     pareto_.row(body.name, name_of(body.group), body.faces, s.name, s.family, s.time_ns, s.error_m, s.bytes_per_face, s.bake_s,
-                s.family == "ablation" ? "ablation"
-                : s.is_on_frontier     ? "yes"
-                                       : "no",
-                s.beaten_by, resolution);
+                s.is_on_frontier ? "yes" : "no", s.beaten_by, resolution);
     if (s.family != "fdcg") continue;
     const std::size_t which = s.name.find("f32") != std::string::npos;
     on_frontier[which] += s.is_on_frontier;

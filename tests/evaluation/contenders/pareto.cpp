@@ -10,7 +10,6 @@ void rank(std::vector<Standing>& entries, double resolution, double floor_m) {
   for (Standing& entry : entries) {
     const Standing* fastest = nullptr;
     for (const Standing& other : entries) {
-      if (other.family == "ablation") continue;
       if (std::max(other.error_m, floor_m) > std::max(entry.error_m, floor_m)) continue;
       if (other.time_ns * (1 + resolution) >= entry.time_ns) continue;
       if (fastest == nullptr || other.time_ns < fastest->time_ns) fastest = &other;

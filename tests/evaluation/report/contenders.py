@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run time against error: the contenders on the same bodies and ways."""
+import frontier
 import page
 from figure import COLOURS, finish, legend, style, subplots
 
@@ -12,7 +13,7 @@ model's: it remembers on which side the hand came in, which a closest point does
 FAMILIES = {"fdcg": ("fdcg", "o"), "paper": ("the paper's algorithm", "s"), "ablation": ("corrections added to it one by one", "P"),
             "closest_point": ("closest point by a tree", "^"), "proxy": ("ray proxy", "D"), "distance_grid": ("distance grid", "v")}
 BODIES = {"sphere": "-", "star": "--"}  # each a line of its own: at one size they differ
-LEAST_M = 1e-20  # where an error of exactly 0 is drawn
+LEAST_M = frontier.FLOOR_M  # where smaller errors are drawn
 
 
 def content(run):
@@ -27,7 +28,7 @@ def colour(row):
     return COLOURS[list(FAMILIES).index(row["family"])] if row["family"] in FAMILIES else COLOURS[-1]
 
 
-CHOSEN = ["fdcg_f64_stored", "fdcg_f32_stored", "paper", "ray_proxy", "embree_closest", "cgal_closest", "grid_64"]
+CHOSEN = ["fdcg_f64_stored", "fdcg_f32_stored", "paper", "paper_vertices", "ray_proxy", "embree_closest", "cgal_closest", "grid_64"]
 
 
 def overview(run):
@@ -56,7 +57,7 @@ def overview(run):
         legend(ax, 3)
     yield finish("overview", figure,
                  "Left: time of a step against the god-object's error on the largest body; right: time over the number of faces. "
-                 "fdcg is nearest to the truth and faster than all but the distance grid",
+                 "only the distance grid and the paper's algorithm with its corrections are as fast as fdcg",
                  "A hand presses, slides and lifts at 1 kHz without friction. Right: solid, smooth spheres; dashed, rough stars.")
 
 
@@ -77,9 +78,9 @@ def pareto(run):
             is_f32 = "_f32" in r["contender"]
             ax.scatter(max(r["god_object_rms_m"], LEAST_M), r["mean_ns"], marker=marker, s=42, color=colour(r),
                        facecolors="none" if is_f32 else colour(r), label=name, zorder=3)
-        best = sorted((max(r["god_object_rms_m"], LEAST_M), r["mean_ns"]) for r in rows if r["on_frontier"] == "yes")
+        best = sorted((frontier.error_m(r), r["mean_ns"]) for r in frontier.frontier(rows))
         ax.plot([b[0] for b in best], [b[1] for b in best], color="#000", linewidth=.7, drawstyle="steps-post", zorder=1)
-        for prefix in ("fdcg_f64", "fdcg_f32", "paper", "cgal_closest", "embree_closest", "ray_proxy", "grid_64"):
+        for prefix in ("fdcg_f64", "fdcg_f32", "paper", "paper_vertices", "cgal_closest", "embree_closest", "ray_proxy", "grid_64"):
             named = [r for r in rows if r["contender"] == prefix or (prefix.startswith("fdcg") and r["contender"].startswith(prefix))]
             if named:
                 fastest = min(named, key=lambda r: r["mean_ns"])
@@ -90,8 +91,8 @@ def pareto(run):
     yield finish("pareto", figure,
                  "Time of a step against the god-object's error for every contender, one plot a mesh size; fdcg stands at the "
                  "smallest error",
-                 "Lower left is better; the line joins those that nobody beats in both. Hollow: 32-bit numbers. An error of exactly "
-                 f"0 is drawn at {LEAST_M:g} m; bodies are 0.1 m. " +
+                 "Lower left is better; the line joins those that nobody beats in both. Hollow: 32-bit numbers. Errors below a unit "
+                 f"in the last place of the bodies, which have 0.1 m, are drawn at it, {LEAST_M:.2g} m. " +
                  ", ".join(f"<span style='color:{COLOURS[i]}'>&#9632;</span> {name}" for i, (name, _) in enumerate(FAMILIES.values())))
 
 

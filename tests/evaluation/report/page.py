@@ -61,19 +61,22 @@ def facts_line(facts):
     return " · ".join(f"{escape(k)}: {escape(v)}" for k, v in facts.items())
 
 
-def page(facts, bars, sections):
-    """`sections`: (id, title, introduction as HTML, list of HTML parts)."""
-    failed = [b for b in bars if b["verdict"] == "FAIL"]
+def bars_part(bars):
+    """Those that fail, and the rest folded."""
+    failed, held = [b for b in bars if b["verdict"] == "FAIL"], [b for b in bars if b["verdict"] != "FAIL"]
+    folded = f"<details><summary>{len(held)} bars hold</summary>{bars_table(held)}</details>" if held else ""
+    return (bars_table(failed) if failed else "") + folded
+
+
+def page(facts, bars, summary, sections):
+    """`summary`: sentences, as HTML. `sections`: (id, title, introduction as HTML, list of HTML parts)."""
     out = ["<!doctype html><html lang=en><head><meta charset=utf-8><title>fdcg: run time against error</title>",
            "<meta name=viewport content='width=device-width,initial-scale=1'>",
            f"<style>{STYLE}</style></head><body>",
            "<h1>fdcg: run time against error, and stability under stress</h1>",
-           f"<p class=facts>{facts_line(facts)}</p><nav>",
+           f"<p class=facts>{facts_line(facts)}</p>", "".join(f"<p>{line}</p>" for line in summary), "<nav>",
            "".join(f"<a href='#{i}'>{escape(t)}</a>" for i, t, _, _ in sections), "</nav>",
-           "<h2 id=bars>Bars</h2>",
-           f"<p>{len(bars) - len(failed)} of {len(bars)} bars hold." +
-           (" Those that do not come first." if failed else "") + "</p>",
-           bars_table(failed + [b for b in bars if b["verdict"] != "FAIL"])]
+           "<h2 id=bars>Bars</h2>", bars_part(bars)]
     for identity, title, introduction, parts in sections:
         out.append(f"<h2 id={identity}>{escape(title)}</h2>{introduction}")
         out += parts

@@ -17,6 +17,7 @@ import laws  # noqa: E402
 import page  # noqa: E402
 import scaling  # noqa: E402
 import stress  # noqa: E402
+import summary  # noqa: E402
 from tables import Run, jsonable  # noqa: E402
 
 PARTS = [contenders, accuracy, laws, closed_loop, stress, scaling]  # in the report's order
@@ -83,7 +84,7 @@ def main():
         parser.error(f"{options.folder}: no CSV table there; run tools/bench, which writes them")
     known = facts(options)
     made, figures = sections(run)
-    text = page.page(known, run.bars, made)
+    text = page.page(known, run.bars, list(summary.lines(run)), made)
     if len(text.encode()) > MOST_BYTES:
         sys.exit(f"report.py: the page would have {len(text.encode())} bytes, more than {MOST_BYTES}")
     (run.folder / "results.json").write_text(json.dumps(results(run, known), indent=1, allow_nan=False) + "\n", encoding="utf-8")

@@ -24,6 +24,10 @@ def report(folder, *more):
     return subprocess.run([sys.executable, "-B", str(HERE / "report.py"), str(folder), *more], capture_output=True, text=True)
 
 
+def frontier_of(path):
+    return subprocess.run([sys.executable, "-B", str(HERE / "frontier.py"), str(path)], capture_output=True, text=True)
+
+
 class OfQuickRuns(unittest.TestCase):
     """Needs the tables of all programs."""
 
@@ -62,6 +66,11 @@ class OfQuickRuns(unittest.TestCase):
             else:
                 self.assertEqual(len(self.results["tables"][path.stem]["rows"]), len(rows), path)
 
+    def test_the_frontier_computed_anew_is_the_files(self):
+        done = frontier_of(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("fdcg_f64", done.stdout)
+
     def test_every_bar_is_on_the_page(self):
         self.assertGreater(len(self.results["bars"]), 20)
         for bar in self.results["bars"]:
@@ -84,6 +93,48 @@ class OfFigures(unittest.TestCase):
             axes = next(contenders.overview(run)).axes[1]
         lines = {line.get_label(): list(zip(*line.get_data())) for line in axes.get_lines()}
         self.assertEqual({"paper, sphere": [(100, 50), (400, 90)], "paper, star": [(100, 70), (400, 60)]}, lines)
+
+
+class OfLosses(unittest.TestCase):
+    """Of made-up times and errors."""
+    ROWS = [("fdcg_f64_stored", "fdcg", 100, 0, "no"), ("fdcg_f32_stored", "fdcg", 98, 1e-9, "no"),
+            ("paper_vertices", "ablation", 80, 1e-18, "yes"), ("grid_64", "distance_grid", 30, 1e-5, "yes"),
+            ("proxy", "proxy", 79.5, 1e-17, "yes"), ("cgal_closest", "closest_point", 500, 1e-18, "no")]
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def write(self, rows):
+        head = "body,group,faces,contender,family,mean_ns,god_object_rms_m,bytes_per_face,bake_s,on_frontier,beaten_by,resolution"
+        lines = [f"star_1k,star,1000,{name},{family},{ns},{error},1,1,{best},,0.01" for name, family, ns, error, best in rows]
+        (self.folder / "pareto.csv").write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
+
+    def test_the_frontier_is_of_all_contenders_and_what_is_not_told_apart_does_not_beat(self):
+        self.write(self.ROWS)
+        done = frontier_of(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("fdcg_f64_stored is beaten by paper_vertices: 0.80 of its time", done.stdout)
+        self.assertNotIn("by grid_64", done.stdout)
+
+    def test_a_file_that_says_otherwise_is_found_out(self):
+        self.write([(*row[:4], "yes") for row in self.ROWS])
+        done = frontier_of(self.folder)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("star_1k, cgal_closest", done.stderr)
+
+    def test_the_report_says_first_where_fdcg_loses(self):
+        self.write(self.ROWS)
+        done = report(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        first = re.findall(r"<p>(.*?)</p>", (self.folder / "report.html").read_text(encoding="utf-8"))[0]
+        self.assertIn("Where fdcg loses", first)
+        self.assertIn("f64 on 1 of 1 bodies (1,000 faces), at worst to proxy, which takes 0.80 of its time", first)
+        self.assertIn("also to paper_vertices", first)
+
+    def test_where_nobody_is_as_exact_and_faster_it_says_that(self):
+        self.write([row for row in self.ROWS if row[0] in ("fdcg_f64_stored", "grid_64", "cgal_closest")])
+        self.assertEqual(report(self.folder).returncode, 0)
+        self.assertIn("no less exact: nowhere.", (self.folder / "report.html").read_text(encoding="utf-8"))
 
 
 class OfBrokenFolders(unittest.TestCase):

@@ -144,8 +144,8 @@ bool Judge::is_held_at_corner(const Tick& tick) const {
   return true;
 }
 
-// A god-object of a face that is on one of its edges but for rounding: the edge's own friction may hold it. Or the face's, one of
-// an edge.
+// A god-object of a face that is on one of its edges but for rounding: the edge's own friction may hold it. Or the face's, one
+// of an edge.
 bool Judge::is_held_beside(const Tick& tick) const {
   if (tick.result.transitions == 0) return false;
   const std::uint32_t feature = tick.after.feature;
