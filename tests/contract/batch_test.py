@@ -325,6 +325,40 @@ class BadInput(BatchCase):
         self.batch(out="other")
         self.assertEqual(tree(self.folder / "other"), tree(self.folder / "out"))
 
+    def test_robots_that_name_one_another_are_lines_of_their_own(self):
+        robot = '<robot name="a"><link name="l"><visual><geometry><mesh filename="{}"/></geometry></visual></link></robot>'
+        self.write("a.urdf", robot.format("b.urdf"))
+        self.write("b.urdf", robot.format("a.urdf"))
+        self.write("a.sdf", '<sdf version="1.7"><model name="a"><include><uri>a.sdf</uri></include></model></sdf>')
+        self.write("part.off", TETRAHEDRON)
+        self.write("list.txt", "a.urdf\nb.urdf\na.sdf\npart.off\n")
+        self.write("rules.json", "{}")
+        done = self.batch()
+        self.assertEqual({"b.urdf": 3, "a.urdf": 3, "a.sdf": 3, "part.off": 0}, {line["mesh"]: line["exit_code"] for line in self.lines()})
+        told = [line for line in done.stderr.decode().splitlines() if "which names meshes and is none" in line or "names no mesh" in line]
+        self.assertEqual(3, len(told), done.stderr)
+
+    def test_a_full_disk_ends_the_run_and_resume_goes_on(self):
+        if os.geteuid() != 0 or subprocess.run(("unshare", "--mount", "true"), check=False, capture_output=True).returncode != 0:
+            self.skipTest("a disk of a few megabytes needs root and mounts")
+        self.library(parts=20, rows=24)
+        self.batch("-q", out="whole")
+        (self.folder / "disk").mkdir()
+        run = '"$0" batch --manifest list.txt --manifest rules.json -o disk/out -q'
+        script = f"""
+            mount -t tmpfs -o size=1m none disk
+            {run}; echo "code $?"
+            ls --ignore=lock disk/out/unfinished/1-of-1
+            find disk/out/files -type f -name '*.fdcg' -exec "$0" inspect --verify {{}} ';' >/dev/null || echo half
+            mount -o remount,size=100m disk
+            {run} --resume 2>/dev/null; echo "code $?"
+            cp -r disk/out out"""
+        done = self.run_program("unshare", "--mount", "--propagation", "private", "sh", "-c", script, FDCG, cwd=self.folder, env=self.environment)
+        self.assertEqual(["code 3", "code 3"], done.stdout.decode().splitlines())  # of the library; nothing unfinished, nothing half-written
+        fatal = [line for line in done.stderr.decode().splitlines() if "make room for it and go on with --resume" in line]
+        self.assertEqual(1, len(fatal), done.stderr)
+        self.assertEqual(tree(self.folder / "whole"), tree(self.folder / "out"))
+
     def test_no_room_for_an_output_is_one_line_and_nothing_half_written(self):
         self.library(rows=20)
 
