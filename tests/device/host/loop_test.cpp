@@ -3,54 +3,13 @@
 #include <thread>
 
 #include "catch.hpp"
-#include "fake_device.hpp"
-#include "host/servo_loop.hpp"
 #include "host/supervisor.hpp"
-#include "host/writer.hpp"
-#include "scene/scene_build.hpp"
-#include "thread_calls.hpp"
-#include "tick/link.hpp"
+#include "loop_rig.hpp"
 
 using namespace fdcg::dev;
 using namespace fdcg::dev::test;
 
 namespace {
-
-constexpr std::uint64_t kMsNs = 1'000'000;
-
-// A device, opened, and the parts of a host around it.
-struct Rig {
-  FakeDevice device;
-  FakeTransport transport{device};
-  Profile profile = fake_profile();
-  Link link;
-  Writer writer{profile, transport, link};
-  HostConfig config = fake_config("");
-  SceneGraphs graphs;
-  DeviceScene scene;
-  Event lost;
-  ServoLoop servo;
-
-  Rig() {
-    REQUIRE(graphs.open(config).empty());
-    REQUIRE(build_device_scene(config, {}, graphs, &scene).empty());
-    ServoParts parts;
-    parts.transport = &transport;
-    parts.link = &link;
-    parts.writer = &writer;
-    parts.lost = &lost;
-    parts.start_ns = monotonic_ns();
-    REQUIRE(servo.begin(scene.setups[0], parts, nullptr));
-  }
-  void send(const GatedForce& force, std::uint32_t echo) {
-    writer.put(force, echo);
-    writer.wake();
-  }
-  void open() {
-    REQUIRE(transport.open().empty());
-    link.open();
-  }
-};
 
 // A force that the gate has let through: only a gate can make one.
 GatedForce gated_force() {
@@ -72,12 +31,6 @@ GatedForce gated_force() {
   REQUIRE(force.effort()[2] == Approx(2));
   return force;
 }
-
-struct Running {
-  Thread thread;
-  explicit Running(std::function<void()> body) { REQUIRE(thread.start("test", std::move(body)).empty()); }
-  bool ends_within_ms(int ms) { return thread.join_within(static_cast<std::uint64_t>(ms) * kMsNs); }
-};
 
 }  // namespace
 
@@ -326,59 +279,4 @@ TEST_CASE("servo loop: a loss is signalled once, after zero force, and the devic
   CHECK(status.opened == 2);
   CHECK(status.counters.lost == 0);  // the sequence begins anew
   CHECK(rig.device.misused == 0);
-}
-
-TEST_CASE("servo loop: no heap and no lock, whatever happens to the device") {
-  if (!can_count_thread_calls()) return;
-  Rig rig;
-  LogRing log(1u << 16);  // too small for all of it: a full ring is part of the test
-  rig.open();
-  Running writer([&] { rig.writer.run(); });
-  ThreadCalls calls;
-  std::atomic<bool> ends{false};
-  std::uint64_t ticks = 0;
-  Running servo([&] {
-    count_calls_of_this_thread(true);
-    while (!ends) {
-      rig.servo.tick();
-      ++ticks;
-    }
-    count_calls_of_this_thread(false);
-    calls = thread_calls();
-  });
-  rig.servo.request_arm();
-  sleep_ms(50);
-  rig.device.is_silent = true;
-  sleep_ms(30);
-  rig.device.is_silent = false;
-  rig.device.burst = 200;
-  rig.device.excess = 3;
-  sleep_ms(30);
-  rig.device.excess = 0;
-  rig.device.refuses_writes = true;
-  rig.servo.request_arm();
-  sleep_ms(30);
-  rig.device.is_plugged = false;
-  sleep_ms(50);
-  rig.servo.request_disarm();
-  ends = true;
-  CHECK(servo.ends_within_ms(1000));
-  CHECK(ticks > 10);
-  CHECK(calls.heap == 0);
-  CHECK(calls.locks == 0);
-  rig.writer.request_stop();
-  CHECK(writer.ends_within_ms(1000));
-}
-
-TEST_CASE("the counters of heap and locks count") {
-  if (!can_count_thread_calls()) return;
-  const ThreadCalls before = thread_calls();
-  count_calls_of_this_thread(true);
-  std::mutex mutex;
-  delete new std::string(100, 'x');
-  mutex.lock();
-  mutex.unlock();
-  count_calls_of_this_thread(false);
-  CHECK(thread_calls().heap - before.heap >= 2);
-  CHECK(thread_calls().locks - before.locks == 1);
 }
