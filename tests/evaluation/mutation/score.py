@@ -15,33 +15,43 @@ import csv
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 
 FAULTS = pathlib.Path(__file__).resolve().parent / "faults.csv"
+KNOWN = FAULTS.with_name("score.csv")  # what it has said of stress
 MOST_MISSED_BY_STRESS = 2
-TIMEOUT_S = 300
+MOST_CPU_S, TIMEOUT_S = 300, 1800  # of one run
 
 
 def judges(folder, ticks):
+    """Of each the runs that it has, in turn, until one finds a fault: the short one finds most."""
+    stress = [folder / "fdcg_stress", "--first", "--threads", "1"]
     return {
-        "stress": [folder / "fdcg_stress", "--first", "--steps", str(ticks), "--threads", "1"],
-        "accuracy": [folder / "fdcg_bench_accuracy", "--quick"],
-        "laws": [folder / "fdcg_bench_laws", "--quick"],
-        "closed_loop": [folder / "fdcg_bench_closed_loop", "--quick"],
+        "stress": [[*stress, "--quick"], [*stress, "--steps", str(ticks)]],
+        "accuracy": [[folder / "fdcg_bench_accuracy", "--quick"]],
+        "laws": [[folder / "fdcg_bench_laws", "--quick"]],
+        "closed_loop": [[folder / "fdcg_bench_closed_loop", "--quick"]],
     }
 
 
-def found_by(command, library, fault, output):
+def found_by(commands, library, fault, output):
     """How the judge found the fault: the first bar that failed; None: it did not."""
+    return next((how for command in commands if (how := found_in(command, library, fault, output))), None)
+
+
+def found_in(command, library, fault, output):
     environment = {**os.environ, "FDCG_JUDGED_LIBRARY": str(library), "FDCG_MUTANT": fault}
     try:
-        done = subprocess.run([*map(str, command), "--output", str(output)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        done = subprocess.run(["prlimit", f"--cpu={MOST_CPU_S}", *map(str, command), "--output", str(output)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True, errors="replace", timeout=TIMEOUT_S, env=environment)
     except subprocess.TimeoutExpired:
         return "hangs"
     if done.returncode == 0:
         return None
+    if done.returncode == -signal.SIGXCPU:
+        return "hangs"
     found = re.search(r"^FOUND \S+?-f(?:64|32)-(\S+) at", done.stdout, re.M) or re.search(r"^FAIL ([^:\n]+)", done.stdout, re.M)
     return found.group(1) if found else f"exit code {done.returncode}"
 
@@ -70,6 +80,9 @@ def main():
     names = options.judges.split(",")
     with open(FAULTS, newline="") as file:
         faults = [f for f in csv.DictReader(file) if not options.faults or f["name"] in options.faults.split(",")]
+    with open(FAULTS, newline="") as file, open(KNOWN, newline="") as known:
+        if {f["name"] for f in csv.DictReader(file)} != {f["fault"] for f in csv.DictReader(known)}:
+            parser.error(f"{KNOWN} is of other faults than {FAULTS}: renew it")
     if unknown := [name for name in names if name not in commands]:
         parser.error(f"there is no judge {unknown[0]}; there are {', '.join(commands)}")
     if not faults:

@@ -218,6 +218,10 @@ void Judge::look_at_pull(Tick& tick, Verdicts& v) const {
   double front = tick.after.state == FDCG_FACE   ? in_front_of_node(feature, tick.hip)
                  : tick.after.state == FDCG_EDGE ? in_front_of_edge(specimen_.edges[feature], tick.hip)
                                                  : in_front_of_corner(feature, tick.hip, tick.rounding);
+  // A face holds what is behind it: on its plane is not behind it (contact-model FACE-1).
+  const bool may_be_on = tick.after.state == FDCG_FACE && deviation_ == 0 && front > -kMostPull_eps * tick.rounding;
+  if (may_be_on && specimen_.nodes[feature].is_planar && specimen_.exact_side(feature, tick.hip) >= 0)
+    tick.faults |= bit(Fault::pull);
   front -= deviation_;
   if (front <= 0) return;
   v.worst_pull_eps = std::max(v.worst_pull_eps, front / tick.rounding);

@@ -117,6 +117,19 @@ void Specimen::read_shapes() {
   }
 }
 
+int Specimen::exact_side(std::uint32_t node, const Hip& x) const {
+  const fdcg_graph& g = graph();
+  const auto point = [&](std::uint32_t k) -> const Hip& { return corners[fdcg_get_side(&g, node, k).corner].point; };
+  const Hip &p = point(0), &q = point(1);
+  std::uint32_t widest = 2;
+  double most = 0;
+  for (std::uint32_t k = 2; k < nodes[node].side_count; ++k) {
+    const double area = norm(cross_product(difference(q, p), difference(point(k), p)));
+    if (area > most) most = area, widest = k;
+  }
+  return exact_sign(p, q, point(widest), x);
+}
+
 // By exact signs of one face's corners against the other's plane; `stored` where merged faces have no exact planes, and where
 // two faces lie back to back.
 std::uint32_t Specimen::type_between(std::uint32_t a, std::uint32_t b, std::uint32_t stored) const {
@@ -125,18 +138,11 @@ std::uint32_t Specimen::type_between(std::uint32_t a, std::uint32_t b, std::uint
   const auto point = [&](std::uint32_t n, std::uint32_t k) -> const Hip& {
     return corners[fdcg_get_side(&g, n, k).corner].point;
   };
-  const Hip &p = point(a, 0), &q = point(a, 1);
-  std::uint32_t widest = 2;
-  double most = 0;
-  for (std::uint32_t k = 2; k < nodes[a].side_count; ++k) {
-    const double area = norm(cross_product(difference(q, p), difference(point(a, k), p)));
-    if (area > most) most = area, widest = k;
-  }
   int above = 0;  // of the corner of b that is farthest from a's plane; the others are on the same side, or on the plane
   double farthest = -1;
   for (std::uint32_t k = 0; k < nodes[b].side_count; ++k) {
     const double off = std::abs(signed_distance(nodes[a].normal, nodes[a].offset, point(b, k)));
-    const int sign = exact_sign(p, q, point(a, widest), point(b, k));
+    const int sign = exact_side(a, point(b, k));
     if (sign != 0 && off > farthest) farthest = off, above = sign;
   }
   return above > 0 ? FDCG_CONCAVE : above < 0 ? FDCG_CONVEX : FDCG_COPLANAR;

@@ -75,6 +75,8 @@ class Specimen {
 
   [[nodiscard]] const fdcg_graph& graph() const { return mesh.view(); }
   [[nodiscard]] const fdcg_header& header() const { return *mesh.view().header; }
+  // Of a node that is planar exactly: 1 in front of it, 0 on its plane, -1 behind it.
+  [[nodiscard]] int exact_side(std::uint32_t node, const Hip& x) const;
   [[nodiscard]] double epsilon() const { return header().real_bytes == 8 ? 0x1p-52 : 0x1p-23; }
 
  private:
