@@ -19,6 +19,7 @@
 #include "base/vec3.hpp"
 #include "fdcg/format.h"
 #include "graph/classify.hpp"
+#include "graph/corner_normals.hpp"
 #include "graph/face_materials.hpp"
 #include "graph/graph.hpp"
 #include "graph/info.hpp"
@@ -50,10 +51,12 @@ std::string check_options(const CompileOptions& options) {
     return "the coplanar angle is " + format_number(options.coplanar.angle_rad) + " rad; it must be at least 0 and below pi/2";
   if (options.weld.kind == Weld::Kind::distance && !(options.weld.distance >= 0 && std::isfinite(options.weld.distance)))
     return "the weld distance is " + format_number(options.weld.distance) + "; it must be at least 0 and finite";
-  constexpr std::array<std::string_view, 5> kOptional{"hierarchy", "source-map", "info", "mass", "materials"};
+  if (!(options.crease_rad >= 0 && options.crease_rad <= std::numbers::pi))
+    return "the crease angle is " + format_number(options.crease_rad) + " rad; it must be 0 to pi";
+  constexpr std::array<std::string_view, 6> kOptional{"hierarchy", "source-map", "info", "mass", "materials", "normals"};
   for (const std::string& section : options.without) {
     if (std::find(kOptional.begin(), kOptional.end(), section) == kOptional.end())
-      return "the section '" + section + "' cannot be left out; hierarchy, source-map, info, mass and materials can";
+      return "the section '" + section + "' cannot be left out; hierarchy, source-map, info, mass, materials and normals can";
   }
   return check_mass_options(options);
 }
@@ -157,7 +160,7 @@ void free_geometry(PolygonSoup& soup) {
 Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
                                    unsigned jobs, Compiled& compiled, PolygonSoup* spare) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
-  if (spare != nullptr) free_geometry(*spare);
+  if (spare != nullptr && options.normals != Normals::file) free_geometry(*spare);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
@@ -169,11 +172,17 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
   faces.regions = find_regions(cut.mesh, cut.topology, faces.edges, {options.coplanar, quantum, options.precision});
   compiled.split_faces = count_split(cut, faces.regions);
+  CornerNormals normals;
+  if (!options.without.contains("normals")) normals = find_corner_normals(soup, source_face, cut, options);
+  compiled.shaded_faces = normals.shaded;
+  compiled.unusable_normals = normals.unusable;
   const bool has_materials = !soup.materials.empty() && !options.without.contains("materials");
   if (has_materials) split_by_material(soup, source_face, cut, faces.regions);
+  split_by_normals(normals, faces.regions);
   auto mass = weigh(cut.mesh, cut.topology, faces.regions, options, jobs, compiled);
   if (!mass) return mass.error();
   input.mass = *mass;
+  const std::vector<VertexId> corners = normals.shaded > 0 ? cut.mesh.corners : std::vector<VertexId>{};
   if (faces.regions.list.empty()) {
     faces.mesh = std::move(cut.mesh);
     faces.topology = std::move(cut.topology);
@@ -184,6 +193,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
     faces = merge_regions(std::move(cut.mesh), std::move(cut.topology), std::move(faces.edges), std::move(faces.regions), how);
     if (input.mass) input.mass->deviation = std::max(input.mass->deviation, faces.removed_distance);
   }
+  input.normals_of_face = normals_of_faces(normals, corners, faces);
   input.face_of_source = trace_sources(input.source_face_count, source_face, cut.polygon, std::move(faces.face_of_triangle));
   compiled.merged_faces = count_sharing(input.face_of_source, faces.mesh.face_count());
   if (has_materials) {
@@ -229,6 +239,8 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
 
 Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare) {
   if (std::string reason = check_options(options); !reason.empty()) return Failure{2, std::move(reason)};
+  if (options.normals == Normals::file && soup.corner_normals.empty())
+    return Failure{2, soup.name + ": holds no normals (vn of OBJ); --normals faces makes them from the faces", {}};
   const unsigned jobs = resolve_jobs(options.jobs);
   const auto stage = [&](std::string_view name, double fraction) {
     if (options.progress) options.progress(name, fraction);

@@ -20,12 +20,14 @@ struct Choice {
 };
 
 // Small, but of every kind: convex and concave edges, saddles, a busy corner with its tree, needles, open borders, faces that
-// are not exactly planar, far from the origin, tiny, planes stored and derived, with and without a hierarchy.
+// are not exactly planar, far from the origin, tiny, planes stored and derived, with and without a hierarchy, with
+// normals at its corners.
 std::vector<Choice> choices() {
-  bake::CompileOptions stored, derived, bare, millimetres;
+  bake::CompileOptions stored, derived, bare, millimetres, shaded;
   derived.store_planes = false;
   bare.without = {"hierarchy", "source-map"};
   millimetres.metres_per_unit = 0.001;
+  shaded.normals = bake::Normals::faces;
   const auto turned = [](const PolygonSoup& soup, double scale, double far) {
     return transformed(soup, random_rotation(7), scale, {far, -far, far / 2});
   };
@@ -37,7 +39,8 @@ std::vector<Choice> choices() {
           {turned(star_sphere(2, 0.3, 3), 1e-3, 0), stored},
           {turned(spiky_sphere(1, 1.5, 5), 1, 0), stored},
           {needle_strip(120, 0.02, 11), stored},
-          {bumpy_patch(6, 0.1, 13), derived}};
+          {bumpy_patch(6, 0.1, 13), derived},
+          {turned(star_sphere(2, 0.3, 3), 1, 0), shaded}};
 }
 
 void write_array(std::ostream& out, const std::string& name, std::span<const std::byte> bytes) {

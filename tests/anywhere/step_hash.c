@@ -66,12 +66,13 @@ static void move_hand(hand_t* hand, int32_t tick, const fdcg_result* last) {
   }
 }
 
-static void vary(fdcg_params* params, int32_t way) {
+static void vary(fdcg_params* params, int32_t way, int is_shaded) {
   params->mu_static = way % 4 * 0.3;
   params->mu_dynamic = params->mu_static * 0.7;
   params->edge_friction = way / 4 % 2 == 0 ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
   params->damping_n_s_per_m = way / 8 % 2;
   params->friction_flags = way / 6 % 3 == 2 ? (uint32_t)way % 16 : 0; /* all four terms of the friction curve, in all combinations */
+  if (is_shaded) params->friction_flags |= FDCG_FRICTION_SHADING;
 }
 
 static void step_through(const fdcg_graph* graph, hash_t* hash, uint32_t ticks_in_state[4]) {
@@ -90,7 +91,7 @@ static void step_through(const fdcg_graph* graph, hash_t* hash, uint32_t ticks_i
   memset(&contact, 0, sizeof contact);
   memset(&result, 0, sizeof result);
   for (int32_t tick = 0; tick < kTicks; ++tick) {
-    vary(&params, tick / kTicksOfAWay);
+    vary(&params, tick / kTicksOfAWay, graph->normals != 0);
     move_hand(&hand, tick, &result);
     fdcg_step(graph, &params, &contact, hand.hip, &result);
     for (int k = 0; k < 3; ++k) {

@@ -12,7 +12,7 @@ static unsafe class PathHash {
       return 1;
     }
     fdcg_params all = Native.fdcg_make_params();
-    if (all.struct_bytes != sizeof(fdcg_params) || sizeof(fdcg_contact) != 224 || sizeof(fdcg_result) != 72) return 3;
+    if (all.struct_bytes != sizeof(fdcg_params) || sizeof(fdcg_contact) != 304 || sizeof(fdcg_result) != 72) return 3;
     var contact = new fdcg_contact();
     ulong hash = 0xCBF29CE484222325;
     double* hip = stackalloc double[3];

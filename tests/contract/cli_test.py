@@ -625,6 +625,7 @@ class Replay(Case):
             (("replay", graph, "--trajectory", path, "--mu-d", "-1"), 2, ("--mu-d", "'-1'")),
             (("replay", graph, "--trajectory", path, "--stiffness", "nan"), 2, ("--stiffness", "'nan'")),
             (("replay", graph, "--trajectory", path, "--edge-friction", "glue"), 2, ("wedge, paper",)),
+            (("replay", graph, "--trajectory", path, "--shading"), 2, ("no normals", "--normals faces")),
             (("replay", graph, "--trajectory", path, "-o", path), 2, ("overwrite",)),
             (("replay", self.path("missing.fdcg"), "--trajectory", path), 3, ("missing.fdcg",)),
             (("replay", path, "--trajectory", path), 3, ("hip.csv",)),

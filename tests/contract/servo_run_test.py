@@ -494,7 +494,7 @@ class Check(ServoCase):
             {"fdcg_scene": 2}, {"object": []}, {"objects": [{"name": "cube"}]}, {"devices": []},
             {"objects": [{**cube, "stiffness_n_per_m": -1}]}, {"objects": [{**cube, "pose": {"scale": 0}}]},
             {"objects": [{**cube, "motion": {"kind": "spin"}}]}, {"objects": [{**cube, "motion": {"kind": "fixed", "rate_hz": 1}}]},
-            {"objects": [{**cube, "edge_friction": "glue"}]}, {"devices": [{**hand, "profile": "fdcg-reference"}]},
+            {"objects": [{**cube, "edge_friction": "glue"}]}, {"objects": [{**cube, "shading": 1}]}, {"devices": [{**hand, "profile": "fdcg-reference"}]},
             {"devices": [{"name": "hand"}]}, {"devices": [{"name": "hand", "source": "recorded"}]},
             {"objects": [{**cube, "surface": {"kind": "sphere", "radius_m": 1}}]}, {"ground": {"mu_static": -1}},
             {"objects": [{"name": "ball", "surface": {"kind": "ball"}}]}, {"gravity_m_per_s2": [0, 0]},

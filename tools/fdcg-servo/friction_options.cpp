@@ -46,12 +46,19 @@ void FrictionOptions::declare(const tools::OptionGroup& group, fdcg_params& para
   term("--presliding", "K", params.presliding_n_per_m, FDCG_FRICTION_PRESLIDING, " N/m",
        "A contact that sticks yields like a spring of K N/m.");
   term("--lag", "S", params.friction_lag_s, FDCG_FRICTION_LAG, " s", "Friction follows slip speed with a delay of S seconds.");
+  group.flag("--shading", has_shading_,
+             "Force shading: the graph's normals are felt in place of its facets (fdcg compile --normals).");
   group.repeated(
       "--material", "NAME=MU_S,MU_D,K", [this](const std::string& text) { named_.push_back(parse_material(text)); },
       "Faces of this material have other friction and stiffness. May be given again.");
 }
 
 std::string FrictionOptions::apply(const fdcg_graph& graph, fdcg_params& params) {
+  if (has_shading_) {
+    if (graph.normals == nullptr)
+      return "it has no normals at the corners of its faces; compile it with --normals faces (--shading)";
+    params.friction_flags |= FDCG_FRICTION_SHADING;
+  }
   if (named_.empty()) return {};
   table_.assign(graph.material_count, {params.mu_static, params.mu_dynamic, params.stiffness_n_per_m});
   for (const auto& [name, material] : named_) {

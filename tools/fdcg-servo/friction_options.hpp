@@ -15,15 +15,17 @@ namespace fdcg::servo {
 class FrictionOptions {
  public:
   void declare(const tools::OptionGroup& group, fdcg_params& params);
-  // With the graph open: materials by their names. Must outlive the params. Empty, or which material the graph has not.
+  // With the graph open: materials by their names, and whether it can be shaded. Must outlive the params. Empty, or what the
+  // graph has not.
   std::string apply(const fdcg_graph& graph, fdcg_params& params);
 
  private:
+  bool has_shading_ = false;
   std::vector<std::pair<std::string, fdcg_material>> named_;
   std::vector<fdcg_material> table_;
 };
 
 // As they stand on the command line.
-inline constexpr const char* kFrictionOptions[] = {"--stribeck", "--viscous", "--presliding", "--lag", "--material"};
+inline constexpr const char* kFrictionOptions[] = {"--stribeck", "--viscous", "--presliding", "--lag", "--shading", "--material"};
 
 }  // namespace fdcg::servo

@@ -145,7 +145,7 @@ BatchResult done(const BatchTask& task, const BatchPlan& plan, const BatchPlace&
   auto entry = found(keys, file->sha256(), cache);
   const bool is_cached = entry.has_value();
   if (!is_cached) {
-    auto soup = file->import({input_format(rule), {}});
+    auto soup = file->import(import_options(rule));
     if (!soup) return failed_result(task, plan, soup.error());
     bake::scale_soup(*soup, task.scale);
     auto made = do_batch_work(rule, *soup, place.jobs);

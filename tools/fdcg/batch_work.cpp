@@ -101,8 +101,12 @@ bake::Result<CacheEntry> work(const RepairSettings& given, const bake::PolygonSo
 
 }  // namespace
 
-std::optional<bake::Format> input_format(const BatchRule& rule) {
-  return std::visit([](const auto& settings) { return settings.input_format; }, rule.settings);
+bake::ImportOptions import_options(const BatchRule& rule) {
+  bake::ImportOptions options;
+  options.format = std::visit([](const auto& settings) { return settings.input_format; }, rule.settings);
+  const auto* const compile = std::get_if<CompileSettings>(&rule.settings);
+  options.normals = compile != nullptr && compile->options.normals == bake::Normals::file;
+  return options;
 }
 
 bake::Result<CacheEntry> do_batch_work(const BatchRule& rule, const bake::PolygonSoup& soup, unsigned jobs) {

@@ -103,6 +103,9 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   if (compiled.repair) text += repair_summary(*compiled.repair, header.metres_per_unit);
   changed(compiled.split_faces, "split: not convex or not planar");
   changed(compiled.merged_faces, "merged with coplanar neighbours");
+  changed(compiled.shaded_faces, "with normals at their corners, for force shading");
+  if (compiled.unusable_normals != 0)
+    text += counted(compiled.unusable_normals, "corner") + " flat: their normals lean from their faces by more than 60 degrees\n";
   text += header.max_deviation == 0
               ? std::string("every corner lies on the planes of its faces\n")
               : "corners lie up to " + short_number(header.max_deviation * scale) + " m off the planes of their faces\n";
@@ -217,6 +220,7 @@ int compile_mesh(CompileArguments& arguments) {
   bake::ImportOptions import_options{arguments.input_format, {}};
   import_options.progress =
       arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
+  import_options.normals = arguments.options.normals == bake::Normals::file;
   auto soup = import_input(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);

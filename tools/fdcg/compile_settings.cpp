@@ -41,7 +41,18 @@ void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
   graph.choice<bool>(
       "--planes", "PLANES", {{"stored", true}, {"derived", false}}, options.store_planes,
       "Edge vectors, end planes and Voronoi planes: stored in the file, or derived in the step, with a smaller file.");
-  const std::vector<std::string> sections{"hierarchy", "source-map", "info", "mass", "materials"};
+  graph.choice<bake::Normals>(
+      "--normals", "NORMALS",
+      {{"none", bake::Normals::none}, {"faces", bake::Normals::faces}, {"file", bake::Normals::file}}, options.normals,
+      "Normals at the corners of faces, for force shading: from the faces around each vertex up to creases, or those of the "
+      "mesh file (vn of OBJ).");
+  graph.parsed(
+      "--crease", "ANGLE",
+      [&options](const std::string& text) {
+        options.crease_rad = number_between("--crease", text, 0, 180, "no angle of 0 to 180 degrees") * std::numbers::pi / 180;
+      },
+      "With --normals faces: faces that meet at a larger angle, in degrees, meet at a crease.", "40");
+  const std::vector<std::string> sections{"hierarchy", "source-map", "info", "mass", "materials", "normals"};
   const auto leave_out = [&options, sections](const std::string& name) {
     require_choice("--without", name, sections);
     options.without.insert(name);

@@ -137,6 +137,9 @@ struct PolygonSoup {
   /// beyond the 65,535th are none.
   std::vector<std::string> materials;
   std::vector<std::uint16_t> face_material;  ///< of each face, or kNoMaterial; empty where there are no materials
+  /// Of each entry of `corners`, where ImportOptions::normals asked for them and the file has any; not of unit length, 0 where
+  /// the file has none at that corner. Empty: none.
+  std::vector<Vec3> corner_normals;
   std::vector<Ignored> ignored;              ///< what was left out
   double metres_per_unit = 0;                ///< as the file states it (COLLADA, 3MF); 0: it does not
   char up_axis = 0;                          ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
@@ -151,6 +154,7 @@ struct PolygonSoup {
 struct ImportOptions {
   std::optional<Format> format;  ///< default: by content, then by the file name's ending
   Progress progress;             ///< may be empty
+  bool normals = false;          ///< read corner normals: OBJ's vn
 };
 
 /// The most that is read of what is no regular file: a pipe, a terminal.
@@ -402,6 +406,16 @@ struct RepairAccount {
 /// is written, so that it need not be zeroed and one buffer can serve for many meshes.
 using Allocate = std::function<std::span<std::byte>(std::size_t bytes)>;
 
+/// 40 degrees.
+inline constexpr double kDefaultCrease_rad = 0.6981317007977318;
+
+/// Which normals the file has at the corners of its nodes, for force shading.
+enum class Normals {
+  none,   ///< no such section
+  faces,  ///< from the faces around each vertex, up to creases; exact where a sphere passes through the vertices (Max 1999)
+  file,   ///< those of the mesh file (ImportOptions::normals)
+};
+
 /// How a mesh is compiled; the options of `fdcg compile`.
 struct CompileOptions {
   double metres_per_unit = 1;            ///< of the file's coordinates
@@ -412,7 +426,9 @@ struct CompileOptions {
   Weld weld;                      ///< which vertices are one
   bool orient = false;            ///< make the winding consistent and outward first
   bool store_planes = true;       ///< false: the step derives them, to the same bits
-  std::set<std::string> without;  ///< optional sections left out: hierarchy, source-map, info, mass, materials
+  Normals normals = Normals::none;  ///< for force shading. Faces that they make smooth are triangles, and not merged
+  double crease_rad = kDefaultCrease_rad;  ///< Normals::faces: faces that meet at a larger angle meet at a crease
+  std::set<std::string> without;  ///< optional sections left out: hierarchy, source-map, info, mass, materials, normals
   /// At most one of the two; 0: not known. With either, a mesh that encloses no solid is refused; without, its file has no mass
   /// properties (Compiled::no_mass says why).
   double density_kg_per_m3 = 0;
@@ -432,6 +448,8 @@ struct Compiled {
   std::uint64_t flipped_faces = 0;      ///< by orient
   std::uint64_t split_faces = 0;        ///< not convex or not planar: cut into several nodes
   std::uint64_t merged_faces = 0;       ///< source faces that share their node with others
+  std::uint64_t shaded_faces = 0;       ///< triangles with normals at their corners, where CompileOptions::normals asked for them
+  std::uint64_t unusable_normals = 0;   ///< corners whose normal leans from their triangle's by more than 60 degrees: left out
   std::optional<RepairAccount> repair;  ///< where CompileOptions::repair asked for one
   std::string no_mass;           ///< why the file has no mass properties; empty where it has, and where they were left out
   std::vector<std::byte> bytes;  ///< the file, unless CompileOptions::allocate placed it; empty if the report does not pass

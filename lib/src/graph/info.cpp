@@ -23,6 +23,8 @@ Json options_json(const CompileOptions& options) {
   if (options.coplanar.kind == Coplanar::Kind::angle) json["coplanar_angle_rad"] = options.coplanar.angle_rad;
   json["merge"] = options.merge && !options.triangles;
   if (options.triangles) json["triangles"] = true;
+  if (options.normals != Normals::none) json["normals"] = options.normals == Normals::file ? "file" : "faces";
+  if (options.normals == Normals::faces) json["crease_rad"] = options.crease_rad;
   json["weld"] = kWelds[static_cast<int>(options.weld.kind)];
   if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
   json["orient"] = options.orient;

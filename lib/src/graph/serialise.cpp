@@ -95,6 +95,9 @@ class Writer {
     if (input_.mass) layout_.records<fdcg_mass_record>(file_, FDCG_SECTION_MASS)[0] = *input_.mass;
     write_materials();
     write_fan_runs();
+    const auto normals = layout_.records<fdcg_node_normals>(file_, FDCG_SECTION_NODE_NORMALS);
+    for (std::size_t face = 0; face < input_.normals_of_face.size(); ++face)
+      normals[graph_.node_of_face[face]] = input_.normals_of_face[face];
     write_header();
     return file_;
   }
@@ -128,6 +131,8 @@ class Writer {
       layout_.add(FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), input_.materials.size());
     }
     if (has_fan_runs()) layout_.add(FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), graph_.fan_runs.size());
+    if (!input_.normals_of_face.empty())
+      layout_.add(FDCG_SECTION_NODE_NORMALS, sizeof(fdcg_node_normals), graph_.node_count());
     layout_.place();
   }
 

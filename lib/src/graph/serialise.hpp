@@ -25,6 +25,7 @@ struct SerialiseInput {
   std::optional<fdcg_mass_record> mass;         // none: no section
   std::vector<std::string> materials;           // names; empty: no sections
   std::vector<std::uint16_t> material_of_face;  // of each face the graph was made of
+  std::vector<fdcg_node_normals> normals_of_face;  // likewise; empty: no section
   std::string info;                             // JSON; empty: no section
   Precision precision = Precision::f64;
   bool with_planes = true;

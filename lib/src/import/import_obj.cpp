@@ -2,9 +2,12 @@
 // Wavefront OBJ: the statements v and f (and its old name fo); o, g and usemtl name parts. Other statements describe appearance
 // and are skipped, or are counted as ignored elements.
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "import/soup_reader.hpp"
 
@@ -65,6 +68,7 @@ class ObjReader : TextSoupReader {
   Result<PolygonSoup> read() {
     const bool is_read = read_statements();
     if (is_read) drop_missing_vertices();
+    if (is_read) name_normals();
     set_quanta();
     return result(is_read);
   }
@@ -77,6 +81,8 @@ class ObjReader : TextSoupReader {
         if (!read_vertex()) return false;
       } else if (keyword == "f" || keyword == "fo") {
         if (!read_face()) return false;
+      } else if (keyword == "vn" && input_.wants_normals) {
+        if (!read_normal()) return false;
       } else if (keyword != "vn" && keyword != "vt") {
         read_other(keyword);
       }
@@ -135,6 +141,38 @@ class ObjReader : TextSoupReader {
     return true;
   }
 
+  bool read_normal() {
+    std::array<double, 3> xyz{};
+    for (double& value : xyz) {
+      if (scan_.line_done()) return fail_here("a normal needs three numbers, but the line ends early");
+      if (!scan_.read_real(value)) return fail_here("the number of a normal " + not_a_number());
+    }
+    normals_.push_back({xyz[0], xyz[1], xyz[2]});
+    return true;
+  }
+
+  // Of "/vt/vn" or "//vn" the number of the normal, counted from 1; 0: none.
+  [[nodiscard]] std::int64_t normal_in(std::string_view more) const {
+    const std::size_t at = more.find('/', 1);
+    std::int64_t number = 0;
+    if (at == std::string_view::npos) return 0;
+    const auto [end, error] = std::from_chars(more.data() + at + 1, more.data() + more.size(), number);
+    if (error != std::errc() || end != more.data() + more.size()) return 0;
+    return number < 0 ? static_cast<std::int64_t>(normals_.size()) + 1 + number : number;
+  }
+
+  // Normals may stand after the faces that name them.
+  void name_normals() {
+    if (normals_.empty()) return;
+    normal_of_corner_.resize(soup_.corners.size(), 0);
+    soup_.corner_normals.resize(soup_.corners.size());
+    for (std::size_t i = 0; i < normal_of_corner_.size(); ++i) {
+      const std::int64_t number = normal_of_corner_[i];
+      if (number >= 1 && number <= static_cast<std::int64_t>(normals_.size()))
+        soup_.corner_normals[i] = normals_[static_cast<std::size_t>(number - 1)];
+    }
+  }
+
   // v, v/vt, v//vn or v/vt/vn for each corner.
   bool read_face() {
     if (is_new_part_) begin_named_part();
@@ -146,7 +184,11 @@ class ObjReader : TextSoupReader {
       if (!scan_.token_ended()) {
         if (scan_.peek() != '/')
           return fail_here("a face corner has " + scan_.quote() + " after its vertex number, in place of '/'");
-        scan_.read_word();
+        const std::string_view more = scan_.read_word();
+        if (input_.wants_normals) {
+          normal_of_corner_.resize(soup_.corners.size(), 0);
+          normal_of_corner_.push_back(normal_in(more));
+        }
       }
       soup_.corners.push_back(resolve(index));
     }
@@ -170,6 +212,8 @@ class ObjReader : TextSoupReader {
   }
 
   std::int64_t largest_index_ = -1;
+  std::vector<Vec3> normals_;
+  std::vector<std::int64_t> normal_of_corner_;  // counted from 1, 0: none; of the corners up to the last that has one
   std::string object_, group_, material_;  // at the cursor
   bool is_new_part_ = false;
 };

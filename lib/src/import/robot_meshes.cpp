@@ -169,12 +169,20 @@ void scale_soup(PolygonSoup& soup, const Vec3& scale) {
       if (std::isfinite(c)) largest = std::max(largest, std::fabs(c));
     }
   }
+  // The cofactors of the scale, and outwards again where it mirrors.
+  const double outward = (scale.x < 0) != ((scale.y < 0) != (scale.z < 0)) ? -1 : 1;
+  for (Vec3& n : soup.corner_normals)
+    n = {outward * n.x * scale.y * scale.z, outward * n.y * scale.z * scale.x, outward * n.z * scale.x * scale.y};
   const double most = std::max({std::fabs(scale.x), std::fabs(scale.y), std::fabs(scale.z)});
   soup.absolute_quantum = soup.absolute_quantum * most + 0x1p-53 * largest;
-  if (!((scale.x < 0) != ((scale.y < 0) != (scale.z < 0)))) return;
+  if (outward > 0) return;
   for (std::size_t f = 0; f < soup.face_count(); ++f) {
     const auto first = soup.corners.begin() + soup.face_first[f], last = soup.corners.begin() + soup.face_first[f + 1];
-    if (first != last) std::reverse(first + 1, last);
+    if (first == last) continue;
+    std::reverse(first + 1, last);
+    if (soup.corner_normals.empty()) continue;
+    const auto normals = soup.corner_normals.begin() + soup.face_first[f];
+    std::reverse(normals + 1, normals + (last - first));
   }
 }
 

@@ -61,7 +61,8 @@ namespace Fdcg {
     FDCG_FRICTION_LAG = 8,
     FDCG_FRICTION_MATERIALS = 16,
     FDCG_FRICTION_FINGER = 32,
-    FDCG_FRICTION_ALL = 63,
+    FDCG_FRICTION_SHADING = 64,
+    FDCG_FRICTION_ALL = 127,
   }
 
   public enum fdcg_result_flag {
@@ -144,6 +145,7 @@ namespace Fdcg {
     public uint material_count;
     public uint fan_run_count;
     public IntPtr fan_runs;
+    public IntPtr normals;
     public fdcg_graph* owner;
   }
 
@@ -252,7 +254,7 @@ namespace Fdcg {
     public ulong non_finite_ticks;
     public ulong transition_bound_ticks;
     public ulong sweep_bound_ticks;
-    public fixed byte internals[136];
+    public fixed byte internals[216];
   }
 
   [StructLayout(LayoutKind.Sequential)]
@@ -528,6 +530,9 @@ namespace Fdcg {
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern fdcg_corner_info fdcg_get_corner(fdcg_graph* graph, uint corner);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern uint fdcg_get_node_normals(fdcg_graph* graph, uint node, double* normals);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern uint fdcg_get_fan(fdcg_graph* graph, uint corner, uint* entries, uint capacity);

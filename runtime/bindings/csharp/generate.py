@@ -12,7 +12,7 @@ PLAIN = {"uint8_t": "byte", "uint16_t": "ushort", "uint32_t": "uint", "uint64_t"
          "double": "double", "float": "float", "char": "byte", "void": "void"}
 OPAQUE = {"fdcg_scene", "fdcg_pile", "fdcg_deform"}
 # of format.h, which C# sees by pointers alone
-FORMAT = {"fdcg_header", "fdcg_connection", "fdcg_busy_corner", "fdcg_box8", "fdcg_material_record", "fdcg_fan_run"}
+FORMAT = {"fdcg_header", "fdcg_connection", "fdcg_busy_corner", "fdcg_box8", "fdcg_material_record", "fdcg_fan_run", "fdcg_node_normals"}
 KEYWORDS = {"object": "@object", "in": "@in", "params": "@params", "ref": "@ref"}
 
 HEAD = """// SPDX-License-Identifier: Apache-2.0

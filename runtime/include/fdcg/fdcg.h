@@ -147,6 +147,7 @@ typedef struct fdcg_graph {
   uint32_t material_count;               /**< entries of `materials` */
   uint32_t fan_run_count;                /**< entries of `fan_runs` */
   const fdcg_fan_run* fan_runs;          /**< NULL: not in the file */
+  const fdcg_node_normals* normals;      /**< NULL: not in the file; else header->node_count entries */
   const struct fdcg_graph* owner;        /**< of a mapping: the struct that was opened, and alone unmaps it */
 } fdcg_graph;
 
@@ -280,6 +281,11 @@ typedef struct fdcg_corner_info {
 /** Reads a corner; its number below header->corner_count. */
 FDCG_API fdcg_corner_info fdcg_get_corner(const fdcg_graph* graph, uint32_t corner);
 
+/** The normals that shading interpolates over a node (fdcg_friction_flag): three vectors of unit length, outward, at the corners
+ * where its sides 0, 1 and 2 start. Returns 0, and the node's own normal three times, where the node is flat or the file has
+ * no such section. */
+FDCG_API uint32_t fdcg_get_node_normals(const fdcg_graph* graph, uint32_t node, double normals[9]);
+
 /** Lists the corner's connections, counter-clockwise seen from outside, each as connection << 1 | end (end 0: its corner[0] is
  * this corner). Writes at most `capacity` of them and returns their number. Cost: linear in that. */
 FDCG_API uint32_t fdcg_get_fan(const fdcg_graph* graph, uint32_t corner, uint32_t* entries, uint32_t capacity);
@@ -374,7 +380,11 @@ typedef enum fdcg_step_optimization {
  * A stiffness that rose under a pressed contact would push the hand. So it falls at once, and rises only by as much as sliding
  * dissipates meanwhile, the sampling's term k |dx|^2 / 2 included. A new contact starts with its own.
  *
- * **Finger**: what touches, combined with what is touched (fdcg_combine_materials). */
+ * **Finger**: what touches, combined with what is touched (fdcg_combine_materials).
+ *
+ * **Shading** (Melder and Harwin 2005): on a node with normals at its corners (fdcg compile --normals) the friction cone stands
+ * along the normal that is interpolated at the god-object, so that facets are not felt. Without such normals, and on surfaces
+ * and deformable meshes, the flag does nothing. No more energy is given back than was put in: docs/shading.md. */
 typedef enum fdcg_friction_flag {
   FDCG_FRICTION_STRIBECK = 1,   /**< stribeck_m_per_s */
   FDCG_FRICTION_VISCOUS = 2,    /**< viscous_s_per_m */
@@ -382,7 +392,8 @@ typedef enum fdcg_friction_flag {
   FDCG_FRICTION_LAG = 8,        /**< friction_lag_s */
   FDCG_FRICTION_MATERIALS = 16, /**< materials, material_count */
   FDCG_FRICTION_FINGER = 32,    /**< finger */
-  FDCG_FRICTION_ALL = 63        /**< every one */
+  FDCG_FRICTION_SHADING = 64,   /**< the graph's node normals: force shading */
+  FDCG_FRICTION_ALL = 127       /**< every one */
 } fdcg_friction_flag;
 
 /** What a material feels like. */
@@ -435,7 +446,7 @@ FDCG_INLINE fdcg_params fdcg_make_params(void) {
 FDCG_API fdcg_status fdcg_check_params(const fdcg_params* params, fdcg_error* error);
 
 /** Bytes of a contact that are the step's own. */
-#define FDCG_CONTACT_INTERNAL_BYTES 136
+#define FDCG_CONTACT_INTERNAL_BYTES 216
 
 /** One contact point on one graph. All zero: not yet started. Keep it from tick to tick; copy it freely. Read its fields, do
  * not write them. Positions are local to the graph (format.h), so that no digits are lost far from the world's origin. */
@@ -481,12 +492,12 @@ typedef struct fdcg_result {
  * FDCG_RESULT_NON_FINITE.
  *
  * Work: a god-object that stays on its face takes some 400 instructions, a face crossed some 780, whatever the mesh; with the
- * friction curve some 1,500, with presliding 1,900. Two budgets (src/base/work.hpp: FDCG_RULE_WORK for the surface,
- * FDCG_SWEEP_WORK for free space; set when the library is compiled) together let a tick run to some 75,000 instructions, 5 us
- * at 3 GHz; what is left is carried to the next tick, with a valid god-object. A budget is compared between pieces of work, of
- * which the largest is a face that the path meets within rounding: an exact sign for each of its sides, of which fdcg compile
- * gives a face at most 16. The dearest tick that a search over 23 awkward bodies has found takes 11 us
- * (tests/bench/worst_case.cpp), all but a few under 5. */
+ * friction curve some 1,500, presliding 1,900; shading some 1,100, with friction 1,500. Two budgets (src/base/work.hpp:
+ * FDCG_RULE_WORK for the surface, FDCG_SWEEP_WORK for free space; set when the library is compiled) together let a tick run to
+ * some 75,000 instructions, 5 us at 3 GHz; what is left is carried to the next tick, with a valid god-object. A budget is
+ * compared between pieces of work, of which the largest is a face that the path meets within rounding: an exact sign for each
+ * of its sides, of which fdcg compile gives a face at most 16. The dearest tick that a search over 23 awkward bodies has found
+ * takes 11 us (tests/bench/worst_case.cpp), all but a few under 5. */
 FDCG_API void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact, const double hip_object_m[3],
                         fdcg_result* result);
 

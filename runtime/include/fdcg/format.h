@@ -74,7 +74,8 @@ enum fdcg_section_id {
   FDCG_SECTION_MASS = 12,         /**< fdcg_mass_record, one. Optional: of closed meshes that enclose a solid */
   FDCG_SECTION_MATERIALS = 13,    /**< uint16_t: the material of each node, or FDCG_NO_MATERIAL. Optional, with the next */
   FDCG_SECTION_MATERIAL_NAMES = 14, /**< fdcg_material_record, one a material */
-  FDCG_SECTION_FAN_RUNS = 15        /**< fdcg_fan_run: which nodes stand together because they share a busy corner. Optional */
+  FDCG_SECTION_FAN_RUNS = 15,       /**< fdcg_fan_run: which nodes stand together because they share a busy corner. Optional */
+  FDCG_SECTION_NODE_NORMALS = 16    /**< fdcg_node_normals, one a node: the surface that shading feels. Optional */
 };
 
 /** How the faces of a connection meet. */
@@ -260,6 +261,14 @@ typedef struct fdcg_fan_run {
 /** fdcg_fan_run.flags. Set where a node at the corner, or one across a concave side of such a node, is inexact. */
 #define FDCG_RUN_INEXACT 1u
 
+/** The normals of a smooth surface at a node's corners, in the order of its sides. A node of more than three sides is flat: all
+ * its codes are FDCG_FLAT_NORMAL. Two nodes that agree along the edge between them are smooth there; else it is a crease. */
+typedef struct fdcg_node_normals {
+  uint16_t corner[3][2]; /**< octahedral code (schemas/fdcg-v1.md), or FDCG_FLAT_NORMAL twice: the node's own normal */
+} fdcg_node_normals;
+/** fdcg_node_normals.corner, in both numbers. */
+#define FDCG_FLAT_NORMAL 0xffffu
+
 /** Eight boxes of the hierarchy, on a grid of their own: box j reaches from origin + cell * low[.][j] to origin + cell *
  * high[.][j] along each axis, with cell = 2^(exponent - 127), in tree units: the power of two at or below header.extent. Bounds
  * only ever grow outwards. The hierarchy is an implicit tree: level 0 has one record for every eight leaves, a leaf being
@@ -317,6 +326,7 @@ FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f64, first) == 24 && offsetof(fdcg_corne
 FDCG_STATIC_ASSERT(offsetof(fdcg_corner_f32, first) == 12 && offsetof(fdcg_corner_f32, fan) == 23, "corner_f32");
 FDCG_STATIC_ASSERT(sizeof(fdcg_busy_corner) == 16, "busy corner: 16 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_fan_run) == 16, "fan run: 16 bytes");
+FDCG_STATIC_ASSERT(sizeof(fdcg_node_normals) == 12, "normals of a node: 12 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_box8) == 64, "eight boxes: 64 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_mass_record) == 104, "mass: 104 bytes");
 FDCG_STATIC_ASSERT(sizeof(fdcg_material_record) == 64, "material: 64 bytes");

@@ -38,6 +38,14 @@
 #define FDCG_WITH_FRICTION_TERMS 1
 #endif
 
+// FDCG_FRICTION_SHADING, one of these terms.
+#ifndef FDCG_WITH_SHADING
+#define FDCG_WITH_SHADING FDCG_WITH_FRICTION_TERMS
+#endif
+#if FDCG_WITH_SHADING && !FDCG_WITH_FRICTION_TERMS
+#error "FDCG_WITH_SHADING needs FDCG_WITH_FRICTION_TERMS"
+#endif
+
 // Graphs with corners of more than FDCG_BUSY_FAN edges, and graphs with merged faces whose corners lie off their planes
 // (header.max_deviation). A library without one refuses such files (FDCG_E_VERSION), and the step is smaller.
 #ifndef FDCG_WITH_BUSY_CORNERS

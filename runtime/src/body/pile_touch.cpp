@@ -148,7 +148,7 @@ fdcg_params pair_params(const Meeting& meeting, const Object& on, const fdcg_mat
   const fdcg_material whole = material_of(on.params), pair = fdcg_combine_materials(&whole, &own);
   params.damping_n_s_per_m = 0;  // damping is applied by pile_damp.cpp
   params.tick_s = meeting.step_s;
-  params.friction_flags &= ~uint32_t{FDCG_FRICTION_FINGER};
+  params.friction_flags &= ~uint32_t{FDCG_FRICTION_FINGER | FDCG_FRICTION_SHADING};  // bodies lie on facets
   measure_in_object(on.now.scale, &params);
   if (mixes_itself(params, on)) {
     params.friction_flags |= FDCG_FRICTION_FINGER;

@@ -233,6 +233,7 @@ void place_parts(void* memory, const Layout& layout, const fdcg_graph& graph, fd
   own.edges = own.fan_boxes = nullptr;
   own.fan_runs = nullptr;
   own.fan_run_count = 0;
+  own.normals = nullptr;
   own.nodes = deform->nodes;
   own.connections = deform->connections;
   own.corners = deform->corners;

@@ -165,6 +165,8 @@ constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), sizeof(fdcg_material_record), Presence::optional, kNowhere,
      POINTER(materials)},
     {FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), sizeof(fdcg_fan_run), Presence::optional, kNowhere, POINTER(fan_runs)},
+    {FDCG_SECTION_NODE_NORMALS, sizeof(fdcg_node_normals), sizeof(fdcg_node_normals), Presence::optional, COUNT(node_count),
+     POINTER(normals)},
 };
 #undef COUNT
 #undef POINTER

@@ -37,6 +37,7 @@ struct GraphRecords {
   [[nodiscard]] const FanBox* fan_boxes() const { return static_cast<const FanBox*>(raw_->fan_boxes); }
   [[nodiscard]] const fdcg_box8* hierarchy() const { return raw_->hierarchy; }
   [[nodiscard]] const fdcg_fan_run* fan_runs() const { return raw_->fan_runs; }
+  [[nodiscard]] const fdcg_node_normals* normals() const { return raw_->normals; }  // null: none
   [[nodiscard]] uint32_t fan_run_count() const { return raw_->fan_run_count; }
 
  private:

@@ -73,6 +73,9 @@ class SafeChunk {
     if (status == FDCG_OK && raw_.hierarchy != nullptr) status = hierarchy();
     if (status == FDCG_OK && raw_.source_map != nullptr) status = source_map();
     if (status == FDCG_OK && raw_.node_materials != nullptr) status = materials();
+    if constexpr (FDCG_WITH_SHADING) {  // without it no step reads them
+      if (status == FDCG_OK && raw_.normals != nullptr) status = normals();
+    }
     return status;
   }
 
@@ -356,6 +359,18 @@ class SafeChunk {
     return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
       const uint16_t material = raw_.node_materials[n];
       faults->note((material >= raw_.material_count) & (material != FDCG_NO_MATERIAL), "material out of range");
+    });
+  }
+
+  [[gnu::noinline]] fdcg_status normals() {
+    return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
+      uint32_t is_flat = 1;
+      for (const auto& code : raw_.normals[n].corner) {
+        const uint32_t flat_numbers = (code[0] == FDCG_FLAT_NORMAL) + (code[1] == FDCG_FLAT_NORMAL);
+        faults->note(flat_numbers == 1, "a corner's normal is half a code");
+        is_flat &= flat_numbers == 2;
+      }
+      faults->note((is_flat == 0) & (side_count_of(n) != 3), "has normals at its corners, and more than three of them");
     });
   }
 

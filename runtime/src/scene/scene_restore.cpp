@@ -3,6 +3,7 @@
 // which objects are near a finger, and free contacts with them (scene_step.cpp).
 #include "base/message.hpp"
 #include "scene/state_records.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 namespace {
@@ -91,7 +92,9 @@ void restore_finger(fdcg_scene* scene, uint32_t f, const FingerState& state, con
   }
   for (uint32_t i = 0; i < state.held_count; ++i) {
     scene->slots(f)[held[i].slot] = {held[i].object, 1, state.step};
-    *part_at<fdcg_contact>(scene->first_contact(f), held[i].slot * uint64_t{scene->contact_bytes}) = held[i].contact;
+    auto* const contact = part_at<fdcg_contact>(scene->first_contact(f), held[i].slot * uint64_t{scene->contact_bytes});
+    *contact = held[i].contact;
+    internals_of(*contact).field = {};
     if (has_pads) restore_pad(held[i], scene->objects(), scene->soft_touches(f) + held[i].slot);
   }
   for (uint32_t i = 0; i < state.touch_count; ++i)

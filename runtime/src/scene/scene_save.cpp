@@ -2,6 +2,7 @@
 // A scene's state as bytes (docs/internals/scene-state.md).
 #include "base/message.hpp"
 #include "scene/state_records.hpp"
+#include "step/contact_internals.hpp"
 
 namespace fdcg {
 namespace {
@@ -106,6 +107,7 @@ HeldState state_of(const fdcg_scene& scene, uint32_t f, uint32_t s) {
   state.slot = s;
   state.object = scene.slots(f)[s].object;
   state.contact = *part_at<fdcg_contact>(scene.first_contact(f), s * uint64_t{scene.contact_bytes});
+  internals_of(state.contact).field = {};  // follows from the graph
   state.pad_reference.w = 1;
   const SoftTouch* const pad = soft_touch(scene, f, s);
   if (pad == nullptr) return state;

@@ -87,8 +87,8 @@ struct HeldState {
   TurnState pad_reference;
   double pad_god_object_m[3], pad_normal[3], pad_torque_n_m[3];
 };
-static_assert(sizeof(fdcg_contact) == 224 && sizeof(fdcg_touch) == 80 && sizeof(fdcg_material) == 24);
-static_assert(sizeof(HeldState) == 352);
+static_assert(sizeof(fdcg_contact) == 304 && sizeof(fdcg_touch) == 80 && sizeof(fdcg_material) == 24);
+static_assert(sizeof(HeldState) == 432);
 
 // Offsets of the parts of a state with such counts, which are in the range of a scene's config.
 struct StateLayout {

@@ -33,14 +33,22 @@ struct ClearBall {
   uint32_t next_wait;  // how long to wait if that search finds none
 };
 
+// The field of normals (normal_field.hpp) of the face that a shaded contact is on. It follows from the graph: what is lost of it
+// is made anew, to the same bits.
+struct KeptField {
+  uint64_t of_node;  // its number and 1; 0: none is kept
+  double normals[9];  // a NormalField
+};
+
 struct ContactInternals {
   uint64_t on;               // marks the graph, deformable mesh or kind of surface that it is on (admit.hpp). 0: not yet
   uint32_t seat_state;       // FDCG_EDGE or FDCG_VERTEX: where the god-object was placed and still is; else FDCG_FREE
   uint32_t seat_feature;     // its number
   double slip_m_per_s;       // the speed that friction has followed to, where it lags; else 0
-  double stiffness_n_per_m;  // current stiffness, where materials or presliding count. 0: a new contact
+  double stiffness_n_per_m;  // current stiffness, where materials, presliding or shading count. 0: a new contact
   CarriedSweep sweep;        // what the last tick left to do
   ClearBall clear_ball;      // where no sweep is needed
+  KeptField field;           // where shading counts
 };
 static_assert(sizeof(ContactInternals) == FDCG_CONTACT_INTERNAL_BYTES);
 static_assert(offsetof(fdcg_contact, internals) % alignof(ContactInternals) == 0 &&

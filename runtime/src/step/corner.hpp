@@ -5,6 +5,7 @@
 #include "graph/implicit_tree.hpp"
 #include "step/corner_cone.hpp"
 #include "step/edge.hpp"
+#include "step/shaded_corner.hpp"
 #include "step/walk.hpp"
 
 namespace fdcg {
@@ -27,7 +28,7 @@ struct Steepest {
 };
 
 // Whether the HIP is behind a face, or behind an edge as that rules, so that it holds the god-object (contact-model EDGE-1).
-template <class Geometry, class Real = typename Geometry::Real>
+template <class Geometry, class Real>
 [[gnu::noinline, gnu::cold]] bool holds(Walk<Geometry>& walk, Feature feature) {
   if (feature.state == FDCG_FACE) return walk.side(walk.graph.node(feature.index)) < 0;
   const ConnectionRef<Geometry> connection = walk.graph.connection(feature.index);
@@ -166,6 +167,9 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
   const Beginning way = beginning_of_way(walk, corner);
   if (way == Beginning::outside && !FDCG_MUTANT("free-at-vertex")) return kFree;
   const bool is_inside = way != Beginning::not_told;
+  if constexpr (kShades<Geometry>) {
+    if (is_inside && walk.friction.terms != nullptr && is_at_shaded_face(walk, corner)) return next_from_shaded_corner(walk, corner, t);
+  }
   FanSearch<Geometry> search(walk, t, is_inside);
   if (corner.is_busy() && corner.busy().first_box != FDCG_NONE) {
     search_by_tree(search, corner);

@@ -2,6 +2,7 @@
 // The god-object on an edge (contact-model EDGE-1 to EDGE-7; Melder 2004, sections 5d to 5f and 6).
 #pragma once
 
+#include "step/shaded_edge.hpp"
 #include "step/walk.hpp"
 
 namespace fdcg {
@@ -77,9 +78,13 @@ template <class Geometry, class Real = typename Geometry::Real>
   const ConnectionRef<Geometry> connection = walk.graph.connection(index);
   EdgeSides<Real> s;
   look_at_sides(walk, connection, &s);
-  const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
-  if (connection.type() == FDCG_BOUNDARY) return go_to(is_candidate_a ? Feature{FDCG_FACE, connection.node(0)} : kFree);
+  if (connection.type() == FDCG_BOUNDARY)
+    return go_to(s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree);
   if (lets_go(walk, connection, s) && !FDCG_MUTANT("edge-never-free")) return go_to(kFree);
+  if constexpr (kShades<Geometry>) {
+    if (walk.friction.terms != nullptr) lean_sides(walk, connection, index, s.side, s.voronoi);
+  }
+  const bool is_candidate_a = s.side[0] < 0 && s.voronoi[0] < 0;
   const bool is_candidate_b = s.side[1] < 0 && s.voronoi[1] < 0;
   if (FDCG_MUTANT("edge-wrong-face") && (is_candidate_a || is_candidate_b))
     return go_to({FDCG_FACE, connection.node(is_candidate_a ? 1 : 0)});

@@ -2,6 +2,7 @@
 // The god-object on a face (contact-model FACE-1 to FACE-7; Melder 2004, sections 2, 5b and 5c).
 #pragma once
 
+#include "step/shaded_edge.hpp"
 #include "step/walk.hpp"
 
 namespace fdcg {
@@ -172,12 +173,22 @@ template <class Geometry, class Real = typename Geometry::Real>
   return go_to(landed);
 }
 
+// shading.hpp
+template <class Geometry, class Real = typename Geometry::Real>
+Decision shaded_face_rule(Walk<Geometry>& walk, const fdcg_node_normals& normals);
+
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Decision face_rule(Walk<Geometry>& walk) {
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   walk.spend(kSideWork * node.side_count());
   if constexpr (FDCG_WITH_FRICTION_TERMS) {
-    if (walk.friction.terms != nullptr) walk.friction.terms->select_material_of_face(walk.active.index);
+    if (walk.friction.terms != nullptr) {
+      walk.friction.terms->select_material_of_face(walk.active.index);
+      if constexpr (kShades<Geometry>) {
+        const fdcg_node_normals* const normals = normals_of(walk, walk.active.index);
+        if (normals != nullptr) return shaded_face_rule(walk, *normals);
+      }
+    }
   }
   const Vec3<Real> stands = walk.god_object - walk.hip, reach = stands + walk.rounding_residual;
   return carry_out(

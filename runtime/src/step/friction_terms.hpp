@@ -31,7 +31,8 @@ struct FrictionTerms {
 
   [[nodiscard]] bool has(uint32_t term) const { return (params->friction_flags & term) != 0; }
   // Whether what the contact stores may change but by the hand: see settle() in presliding.hpp.
-  [[nodiscard]] bool has_springs() const { return has(FDCG_FRICTION_MATERIALS | FDCG_FRICTION_PRESLIDING); }
+  [[nodiscard]] bool has_springs() const { return has(FDCG_FRICTION_MATERIALS | FDCG_FRICTION_PRESLIDING) || shades(); }
+  [[nodiscard]] bool shades() const { return has(FDCG_FRICTION_SHADING) && graph != nullptr && graph->normals != nullptr; }
   // What presliding makes of a cone: the remembered place may be so much further from the surface point.
   [[nodiscard]] double give() const {
     return has(FDCG_FRICTION_PRESLIDING) ? 1 + material.stiffness_n_per_m / params->presliding_n_per_m : 1;

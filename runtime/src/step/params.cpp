@@ -71,6 +71,11 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
         .say("params.friction_flags is ", params.friction_flags, ", allowed are sums of fdcg_friction_flag: 0 to ",
              FDCG_FRICTION_ALL);
   }
+  if (!FDCG_WITH_SHADING && has(FDCG_FRICTION_SHADING)) {
+    return Message(error, FDCG_E_ARGUMENT)
+        .text("params.friction_flags has FDCG_FRICTION_SHADING, but this library was built without it; build it with "
+              "FDCG_WITH_SHADING");
+  }
   const ParamRange ranges[] = {
       {"stribeck_m_per_s", has(FDCG_FRICTION_STRIBECK) ? params.stribeck_m_per_s : 1, kLeastParam, kLargestParam},
       {"viscous_s_per_m", has(FDCG_FRICTION_VISCOUS) ? params.viscous_s_per_m : 0, 0, kLargestParam},

@@ -28,6 +28,8 @@
 #include "step/near_zero.hpp"
 #include "step/presliding.hpp"
 #include "step/response.hpp"
+#include "step/shaded_tick.hpp"
+#include "step/shading_account.hpp"
 
 namespace fdcg {
 namespace {
@@ -298,8 +300,14 @@ template <class Geometry>
   if (walk.active == kFree) return;
   if (terms.has_last) terms.go_on_to(widen(walk.god_object));
   if (terms.has(FDCG_FRICTION_LAG)) inner.slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
-  const double stiffness = settle(walk, {contact->state, contact->feature}, vec(contact->god_object));
-  if (terms.has_springs()) inner.stiffness_n_per_m = stiffness;
+  const Feature was = {contact->state, contact->feature};
+  double stiffness;
+  if (kShades<Geometry> && terms.shades()) {
+    stiffness = settle_shaded(walk, was, vec(contact->god_object), vec(contact->hip), &inner.stiffness_n_per_m);
+  } else {
+    stiffness = settle(walk, was, vec(contact->god_object));
+    if (terms.has_springs()) inner.stiffness_n_per_m = stiffness;
+  }
   const Vec3<double> hip = widen(walk.hip), spring = widen(walk.god_object) - hip + terms.yielded;
   spring_damper_force(*walk.graph.header(), params, *contact, stiffness, hip, spring, result);
 }
@@ -343,6 +351,34 @@ template <class Geometry, class Real = typename Geometry::Real>
   contact->slipping = (!is_free || is_undecided || FDCG_MUTANT("slip-flag-free")) && walk.friction.is_slipping ? 1 : 0;
 }
 
+// A tick of a contact that stays on shaded faces, and its account (contact-model SHADE-5). False: it may not, and nothing has
+// changed but the field that it keeps.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::hot]] bool step_on_shaded_faces(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip, fdcg_contact* contact,
+                          fdcg_result* result) {
+  ContactInternals& inner = internals_of(*contact);
+  const double own = params.stiffness_n_per_m, kept = inner.stiffness_n_per_m;
+  if (raw.normals == nullptr || contact->state != FDCG_FACE || !(kept > 0)) return false;
+  const Vec3<Real> god_object = narrow<Real>(contact->god_object);
+  ShadedTick<Real> tick = {contact->feature, FDCG_NONE, 0, god_object, friction_of<Real>(params, *contact), false, &inner.field};
+  if (!slides_on_shaded_faces<Geometry>(raw, hip, &tick)) return false;
+  const Vec3<double> local_hip = widen(hip), was = widen(god_object), spring = widen(tick.god_object) - local_hip;
+  const Vec3<double> before = was - local_hip, last = was - vec(contact->hip);
+  const double may = may_store(kept, own, dot(before, before), dot(last, last));
+  inner.stiffness_n_per_m = kept_stiffness(kept, own, may, dot(spring, spring), tick.is_rest);
+  spring_damper_force(*raw.header, params, *contact, smaller(inner.stiffness_n_per_m, own), local_hip, spring, result);
+  inner.slip_m_per_s = 0;
+  if (!tick.is_rest) inner.seat_state = FDCG_FREE, inner.seat_feature = FDCG_NONE;
+  inner.sweep.stalled_sweeps = 0;
+  contact->feature = tick.node;
+  contact->slipping = tick.friction.is_slipping ? 1 : 0;
+  result->transitions = tick.transitions;
+  store(tick.god_object, contact->god_object);
+  store(hip, contact->hip);
+  write_position(*raw.header, *contact, result);
+  return true;
+}
+
 // A tick of a contact that has started, with terms of friction: all of it goes the long way.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void step_with_terms(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
@@ -361,6 +397,18 @@ template <class Geometry, class Real = typename Geometry::Real>
   store(hip, contact->hip);
   write_position(*raw.header, *contact, result);
   store(vec(result->god_object_m) + terms.yielded * raw.header->metres_per_unit, result->god_object_m);
+}
+
+// The same, but for ticks that are plainly shaded.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::hot]] void step_with_flags(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
+                                                 fdcg_contact* contact, fdcg_result* result) {
+  if constexpr (kShades<Geometry>) {
+    if (params.friction_flags == FDCG_FRICTION_SHADING &&
+        step_on_shaded_faces<Geometry, Real>(raw, params, hip, contact, result))
+      return;
+  }
+  step_with_terms<Geometry>(raw, params, hip, contact, result);
 }
 
 // Not on a mesh whose corners move, where work is counted as numbers are renewed, nor where a test takes rules out; and a
@@ -399,7 +447,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     store(hip, contact->god_object);
     store(hip, contact->hip);
   } else if (FDCG_WITH_FRICTION_TERMS && params.friction_flags != 0) {
-    if constexpr (FDCG_WITH_FRICTION_TERMS) return step_with_terms<Geometry>(raw, params, hip, contact, result);
+    if constexpr (FDCG_WITH_FRICTION_TERMS) return step_with_flags<Geometry>(raw, params, hip, contact, result);
   } else {
     const GraphView<Geometry> graph(raw);
     const Real bound = plane_rounding_bound(graph, hip);

@@ -23,7 +23,7 @@ constexpr const char* kFull = R"({
   "objects": [
     {"name": "cube", "file": "cube.fdcg", "notes": "x",
      "pose": {"rotation_xyzw": [0, 0, 0.6, 0.8], "translation_m": [0.1, -0.2, 0.3], "scale": 2.5},
-     "stiffness_n_per_m": 800.5, "damping_n_s_per_m": 1.25, "mu_static": 0.7, "mu_dynamic": 0.1, "edge_friction": "paper",
+     "stiffness_n_per_m": 800.5, "damping_n_s_per_m": 1.25, "mu_static": 0.7, "mu_dynamic": 0.1, "edge_friction": "paper", "shading": true,
      "motion": {"kind": "spin", "axis": [0, 3, 4], "rate_hz": 0.1}},
     {"name": "ball", "file": "/somewhere/ball.fdcg", "motion": {"kind": "swing", "axis": [1, 0, 0], "rate_hz": 2, "amplitude_m": 0.05}},
     {"name": "tool", "file": "cube.fdcg", "motion": {"kind": "driven"}},
@@ -93,6 +93,8 @@ TEST_CASE("every key of a scene is read") {
   CHECK(cube.params.mu_static == 0.7);
   CHECK(cube.params.mu_dynamic == 0.1);
   CHECK(cube.params.edge_friction == FDCG_EDGE_PAPER);
+  CHECK(cube.params.friction_flags == FDCG_FRICTION_SHADING);
+  CHECK(config.objects[1].params.friction_flags == 0);
   CHECK(cube.motion.kind == MotionKind::kSpin);
   CHECK(cube.motion.axis[1] == 0.6);
   CHECK(cube.motion.axis[2] == 0.8);
@@ -324,6 +326,11 @@ TEST_CASE("scene: an error is one line with file, field, value and limit") {
       {"/objects/0/mu_static", "0.1", {"objects[0].mu_static is 0.1, below mu_dynamic, 0.4 (the default)"}},
       {"/objects/0/mu_dynamic", "0.9", {"objects[0].mu_static is 0.6 (the default), below mu_dynamic, 0.9"}},
       {"/objects/0/edge_friction", "\"glue\"", {"objects[0].edge_friction is \"glue\"", "wedge", "paper"}},
+      {"/objects/0/shading", "1", {"objects[0].shading is 1"}},
+      {"/objects/0", R"({"name": "ball", "shading": true, "surface": {"kind": "sphere", "radius_m": 0.1}})",
+       {"objects[0].shading is for meshes"}},
+      {"/objects/0", R"({"name": "sheet", "file": "s.fdcg", "shading": true, "motion": {"kind": "soft"}})",
+       {"objects[0].shading is true of a soft object"}},
       {"/objects/0/pose", R"({"rotation_xyzw": [0, 0, 0, 2]})", {"objects[0].pose.rotation_xyzw has length 2", "[0, 0, 0, 1]"}},
       {"/objects/0/pose", R"({"translation_m": [0, 0]})", {"objects[0].pose.translation_m is a list of 2", "3"}},
       {"/objects/0/pose", R"({"scale": 0})", {"objects[0].pose.scale is 0", "1e-09"}},

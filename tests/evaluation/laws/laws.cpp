@@ -18,7 +18,8 @@ struct Part {
   void (*measure)(const LawOptions&, Bars&);
 };
 constexpr Part kParts[] = {{"ramps", measure_ramps}, {"slides", measure_slides}, {"stick-slip", measure_stick_slip},
-                           {"creep", measure_creep}, {"energy", measure_energy}, {"tessellation", measure_tessellation}};
+                           {"creep", measure_creep}, {"energy", measure_energy}, {"tessellation", measure_tessellation},
+                           {"shading", measure_shading}};
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Coulomb's law, tessellation, stick-slip, creep, energy."""
+"""Coulomb's law, tessellation, shading, stick-slip, creep, energy."""
 import math
 
 import page
@@ -17,6 +17,7 @@ def content(run):
     yield from slides(run)
     yield from grooves(run)
     yield from tessellation(run)
+    yield from shading(run)
     yield from stick_slip(run)
     yield from energy(run)
 
@@ -105,6 +106,25 @@ def tessellation(run):
     yield finish("tessellation", figure, "Error against the smooth shape over the number of faces for sphere, cylinder, torus and cone",
                  "What a tessellation costs: the distance from the shape that the faces stand for falls with the square of "
                  "their edges; along the surface and in direction it falls with the edge.")
+
+
+def shading(run):
+    table = run.table("shading")
+    if table is None:
+        return
+    figure, axes = subplots(2)
+    for index, method in enumerate(table.values("method")):
+        rows = table.where(method=method).sorted_by("faces").rows
+        axes[0][0].plot([r["faces"] for r in rows], [r["vibration_mn"] for r in rows], label=method, **style(index))
+        timed = [r for r in rows if r["step_ns"] > 0]
+        axes[0][1].plot([r["step_ns"] for r in timed], [r["direction_error_max_rad"] for r in timed], label=method, **style(index))
+    axes[0][0].set(xscale="log", yscale="log", xlabel="faces", title="Vibration of the force, 80 to 450 Hz, mN RMS")
+    axes[0][1].set(yscale="log", xlabel="ns a step", title="Largest error of direction, rad, over time")
+    for ax in axes[0]:
+        legend(ax)
+    yield finish("shading", figure, "Vibration over faces, and error of direction over time, of facets, shading and others on a sphere",
+                 "A hand that slides over a sphere at 0.1 m/s and 1.5 N. A mesh of 4 or 16 times as many facets is the point one or two "
+                 "further along its line.")
 
 
 def stick_slip(run):

@@ -277,13 +277,13 @@ TEST_CASE("the byte form is where its page says") {  // docs/internals/scene-sta
   CHECK(std::memcmp(bytes, "FDCGSTAT", 8) == 0);
   CHECK(word(8) == 2);
   CHECK((word(32) == 1 && word(36) == 0 && word(40) == 1 && word(44) == 1 && word(48) == 1));  // counts
-  CHECK(state.size() * 8 == 72 + 432 + 208 + 352 + 80);
+  CHECK(state.size() * 8 == 72 + 432 + 208 + 432 + 80);
   CHECK(real(72 + 40) == 0.5);              // mu_static
   CHECK(real(72 + 432 + 40 + 16) == 0.4);   // the HIP's z
   const std::size_t held = 72 + 432 + 208;  // slot, object, contact
   CHECK(real(held + 8 + 16) == Approx(0.5));
   CHECK(word(held + 8 + 52) == FDCG_FACE);
-  CHECK(real(held + 352 + 8 + 16) == felt.force_n[2]);
+  CHECK(real(held + 432 + 8 + 16) == felt.force_n[2]);
 }
 
 TEST_CASE("a scene with a deformable mesh is not saved, with the reason") {

@@ -52,6 +52,11 @@ void SceneParser::read_object(const json::Value& from) {
   read_friction(from, &params);
   params.edge_friction = from["edge_friction"].choice_or(0, {"wedge", "paper"}) == 0 ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
   if (from["motion"]) read_motion(from["motion"].object(kMotionKeys), &object.motion);
+  if (from["shading"].boolean_or(false)) {
+    if (object.is_surface) from["shading"].fail("is for meshes; a surface is smooth as it is");
+    if (object.motion.kind == MotionKind::kSoft) from["shading"].fail("is true of a soft object, which cannot be shaded");
+    params.friction_flags |= FDCG_FRICTION_SHADING;
+  }
   const auto moves = [](const ObjectConfig& other) { return is_moved(other.motion); };
   const auto is_body = [](const ObjectConfig& other) { return other.motion.kind == MotionKind::kBody; };
   if (moves(object) && std::count_if(config_.objects.begin(), config_.objects.end(), moves) == kMaxDriven) {

@@ -40,6 +40,7 @@ Json object_json(const ObjectConfig& object) {
   json["mu_static"] = object.params.mu_static;
   json["mu_dynamic"] = object.params.mu_dynamic;
   json["edge_friction"] = object.params.edge_friction == FDCG_EDGE_PAPER ? "paper" : "wedge";
+  if ((object.params.friction_flags & FDCG_FRICTION_SHADING) != 0) json["shading"] = true;
   const Motion& motion = object.motion;
   json["motion"]["kind"] = kKinds[static_cast<int>(motion.kind)];
   if (motion.kind == MotionKind::kSpin || motion.kind == MotionKind::kSwing) {
