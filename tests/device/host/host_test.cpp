@@ -209,6 +209,11 @@ TEST_CASE("host: a blocked read leaves no force, and the host still stops", "[sl
   CHECK(device->misused == 0);
 }
 
+// One of the host's threads did not run for some milliseconds.
+bool is_of_a_busy_machine(Fault fault) {
+  return fault == Fault::kHostLate || fault == Fault::kWriterStuck;
+}
+
 TEST_CASE("shared scene: a silent or unplugged device does not affect the others' forces") {
   Hosted hosted(3);
   hosted.share();
@@ -220,7 +225,8 @@ TEST_CASE("shared scene: a silent or unplugged device does not affect the others
     hosted.device(dead).is_silent = true;
     CHECK(within_ms(2000, [&] { return hosted.device(dead).force_n == 0 && hosted.phase(dead) == Phase::kDisarmed; }));
     // a busy machine may have been late before
-    CHECK((hosted.fault(dead) == Fault::kSilence || hosted.fault(dead) == Fault::kHostLate));
+    INFO("fault " << static_cast<int>(hosted.fault(dead)));
+    CHECK((hosted.fault(dead) == Fault::kSilence || is_of_a_busy_machine(hosted.fault(dead))));
     hosted.press(1);  // at once, where the machine is not too busy
     hosted.device(dead).is_silent = false;
     hosted.device(dead).is_plugged = false;
@@ -229,7 +235,7 @@ TEST_CASE("shared scene: a silent or unplugged device does not affect the others
     hosted.device(dead).is_plugged = true;
     REQUIRE(within_ms(5000, [&] { return hosted.device(dead).is_open.load(); }));
     hosted.press(dead);
-    if (hosted.fault(1) == Fault::kHostLate) hosted.press(1);
+    if (is_of_a_busy_machine(hosted.fault(1))) hosted.press(1);
     CHECK(hosted.device(1).force_n > 1.5);
   }
   CHECK(hosted.host.stop() == "");
