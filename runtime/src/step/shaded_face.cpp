@@ -51,7 +51,7 @@ FDCG_HOT Target target_for(Flat god_object, double depth, Flat lean, double mu) 
            lean.q * by_lean + from_axis.q * by_far + (from_axis.q - axis.q) * by_tilt}};
 }
 
-// One of Newton's steps for x = the place that the lean at x leads to; for now it leads to `place`, and x misses by so much.
+// One step of Newton's method for the x to which the lean at x leads; at the present x the lean leads to `place` instead.
 FDCG_HOT Flat improved(Flat x, Flat place, Flat p, Flat q) {
   const Flat miss = {place.p - x.p, place.q - x.q};
   const double pp = 1 - p.p, qq = 1 - q.q, size = pp * qq - q.p * p.q;
