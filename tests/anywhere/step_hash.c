@@ -71,7 +71,8 @@ static void vary(fdcg_params* params, int32_t way, int is_shaded) {
   params->mu_dynamic = params->mu_static * 0.7;
   params->edge_friction = way / 4 % 2 == 0 ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
   params->damping_n_s_per_m = way / 8 % 2;
-  params->friction_flags = way / 6 % 3 == 2 ? (uint32_t)way % 16 : 0; /* all four terms of the friction curve, in all combinations */
+  params->friction_flags =
+      way / 6 % 3 == 2 ? (uint32_t)way % 16 : 0; /* all four terms of the friction curve, in all combinations */
   if (is_shaded) params->friction_flags |= FDCG_FRICTION_SHADING;
 }
 

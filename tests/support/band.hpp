@@ -10,8 +10,8 @@
 
 namespace fdcg::test {
 
-// Mean square of what lies between two frequencies of a signal of samples taken `rate_hz` times a second, through a Hann window,
-// its straight line taken out. Quadratic in the samples of the band.
+// Mean square of what lies between two frequencies of a signal of samples taken `rate_hz` times a second, through a Hann
+// window, its straight line taken out. Quadratic in the samples of the band.
 inline double band_power(const std::vector<double>& signal, double rate_hz, double low_hz, double high_hz) {
   const std::size_t count = signal.size();
   const auto n = static_cast<double>(count);

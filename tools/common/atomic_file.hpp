@@ -44,7 +44,7 @@ class AtomicFile {
   void discard();
   void unmap();
 
-  std::string path_;    // as the user gave it
+  std::string path_;  // as the user gave it
   std::string unfinished_;
   std::string target_;  // what is renamed onto; empty where the output is written straight
   std::string beside_;

@@ -26,6 +26,7 @@ class FrictionOptions {
 };
 
 // As they stand on the command line.
-inline constexpr const char* kFrictionOptions[] = {"--stribeck", "--viscous", "--presliding", "--lag", "--shading", "--material"};
+inline constexpr const char* kFrictionOptions[] = {"--stribeck", "--viscous", "--presliding",
+                                                   "--lag",      "--shading", "--material"};
 
 }  // namespace fdcg::servo

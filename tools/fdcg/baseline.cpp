@@ -120,8 +120,8 @@ std::string stem(const std::string& path) {
 
 using FilesByPath = std::map<std::string, const BaselineFile*>;
 
-// Gives each mesh without a file the one of `by_path` with the same name, where that is the only one on both sides, and takes it
-// out.
+// Gives each mesh without a file the one of `by_path` with the same name, where that is the only one on both sides, and takes
+// it out.
 void match_by(std::string (*name_of)(const std::string&), const std::vector<std::string>& meshes, FilesByPath& by_path,
               std::vector<const BaselineFile*>& found) {
   std::map<std::string, std::vector<std::size_t>> left;

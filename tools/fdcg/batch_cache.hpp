@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was done before, by what it was done from: an entry's key is the hash of a mesh file's bytes, of those it refers to, of the
-// options and of the program. Entries are checked by their content, so that one that is half-written, forged by a slip or changed
-// since counts as none. Several processes and machines may share a folder (batch_pack.hpp).
+// What was done before, by what it was done from: an entry's key is the hash of a mesh file's bytes, of those it refers to, of
+// the options and of the program. Entries are checked by their content, so that one that is half-written, forged by a slip or
+// changed since counts as none. Several processes and machines may share a folder (batch_pack.hpp).
 #pragma once
 
 #include <optional>

@@ -109,7 +109,8 @@ void add_options(CLI::App& command, BatchArguments& arguments) {
   const OptionGroup input(command, "Input"), output(command, "Output"), work(command, "Work");
   input.repeated(
       "--manifest", "FILE", [&arguments](const std::string& path) { arguments.manifests.push_back(path); },
-      "Meshes, folders, patterns and robots (URDF, SDF), one a line, or with rules as JSON where the name ends in .json. May be "
+      "Meshes, folders, patterns and robots (URDF, SDF), one a line, or with rules as JSON where the name ends in .json. May "
+      "be "
       "repeated; - is standard input.");
   output
       .text("-o,--output", "FOLDER", arguments.output,
@@ -125,8 +126,12 @@ void add_options(CLI::App& command, BatchArguments& arguments) {
       },
       "Do every N-th mesh from the I-th on; --merge joins the results.",
       "the task of an array of Slurm, Grid Engine, LSF and others, else 1/1");
-  CLI::Option* const resume = work.flag("--resume", arguments.resume, "Go on with a run that was ended, or do one again that changed.");
-  work.flag("--merge", arguments.merge, "Join the results of all shards in FOLDER.")->excludes(shard)->excludes(resume)->excludes("--manifest");
+  CLI::Option* const resume =
+      work.flag("--resume", arguments.resume, "Go on with a run that was ended, or do one again that changed.");
+  work.flag("--merge", arguments.merge, "Join the results of all shards in FOLDER.")
+      ->excludes(shard)
+      ->excludes(resume)
+      ->excludes("--manifest");
   work.text("--cache", "FOLDER", arguments.cache, "What was done before, by content; may be shared by runs and machines.",
             "FOLDER/cache of -o");
   work.number("--memory", "MB", arguments.memory_mb, {1, 1e9, " MB"}, "Memory that all meshes in work may take.",

@@ -34,8 +34,9 @@ std::optional<bake::Failure> BatchFolder::open(const BatchPlan& plan, const Shar
   for (const BatchTask& task : plan.tasks) {
     if (!task.mesh.starts_with(inside) || inside == "./") continue;
     return bake::Failure{kUsage,
-                         "'" + printable(task.mesh) + "' lies in the folder of the results; name it not in the manifest, or another "
-                         "folder with -o",
+                         "'" + printable(task.mesh) +
+                             "' lies in the folder of the results; name it not in the manifest, or another "
+                             "folder with -o",
                          {}};
   }
   std::error_code error;
@@ -47,8 +48,9 @@ std::optional<bake::Failure> BatchFolder::open(const BatchPlan& plan, const Shar
     there << file.rdbuf();
     if (there.str() != text)
       return bake::Failure{kUsage,
-                           "'" + path_ + "' has a batch of other meshes, rules or another version of fdcg; name another folder "
-                           "with -o (--cache may stay the same)",
+                           "'" + path_ +
+                               "' has a batch of other meshes, rules or another version of fdcg; name another folder "
+                               "with -o (--cache may stay the same)",
                            {}};
   } else {
     AtomicFile out(this->plan(), this->plan() + "." + unique_name());
@@ -59,8 +61,9 @@ std::optional<bake::Failure> BatchFolder::open(const BatchPlan& plan, const Shar
                         (shard.of == 1 && fs::exists(results(), error));
   if (is_begun && !resumes) {
     return bake::Failure{kUsage,
-                         "'" + path_ + "' has results of this batch already, or a part of them; --resume goes on with them, or "
-                         "name another folder",
+                         "'" + path_ +
+                             "' has results of this batch already, or a part of them; --resume goes on with them, or "
+                             "name another folder",
                          {}};
   }
   return std::nullopt;

@@ -45,8 +45,8 @@ std::size_t find_number(const BatchFolder& folder) {
   }
   if (numbers.empty()) refuse(kFile, "'" + folder.shards() + "' has no results of shards; run 'fdcg batch --shard I/N' first");
   if (numbers.size() > 1) {
-    refuse(kUsage, "'" + folder.shards() + "' has shards of a batch in " + std::to_string(*numbers.begin()) + " and of one in " +
-                       std::to_string(*numbers.rbegin()) + "; remove those that are not wanted");
+    refuse(kUsage, "'" + folder.shards() + "' has shards of a batch in " + std::to_string(*numbers.begin()) +
+                       " and of one in " + std::to_string(*numbers.rbegin()) + "; remove those that are not wanted");
   }
   return *numbers.begin();
 }
@@ -122,9 +122,8 @@ class Tally {
   }
   [[nodiscard]] const BatchTotals& totals() const { return totals_; }
   [[nodiscard]] std::string text(const std::string& plan) const {
-    Json json{{"tool", "fdcg"},          {"version", FDCG_VERSION_STRING},
-                     {"plan", plan},            {"exit_code", totals_.exit_code},
-                     {"meshes", totals_.meshes}, {"exit_codes", by_code(codes_)}};
+    Json json{{"tool", "fdcg"},           {"version", FDCG_VERSION_STRING}, {"plan", plan}, {"exit_code", totals_.exit_code},
+              {"meshes", totals_.meshes}, {"exit_codes", by_code(codes_)}};
     for (const auto& [action, codes] : actions_)
       json["actions"][action] = by_code(codes);
     json["rules"] = Json::object();

@@ -14,8 +14,8 @@ struct BatchTotals {
   int exit_code = 0;  // the highest of all meshes
 };
 
-// Fails (3) where a shard's results are missing, incomplete or of another batch, or the files cannot be written; (2) where there
-// are shards of two numbers.
+// Fails (3) where a shard's results are missing, incomplete or of another batch, or the files cannot be written; (2) where
+// there are shards of two numbers.
 bake::Result<BatchTotals> merge_shards(const BatchFolder& folder);
 
 }  // namespace fdcg::tools

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texts by the hash that they are asked by, in few files: a file for each text would cost more than the work on a small mesh.
-// Each process that writes appends to a pack of its own, and to an index beside it; nothing that another one wrote is changed, so
-// that processes and machines may share a folder without locks. Each text is kept with a hash of it and of its key: one that is
-// cut, altered or not what the index says counts as none.
+// Each process that writes appends to a pack of its own, and to an index beside it; nothing that another one wrote is changed,
+// so that processes and machines may share a folder without locks. Each text is kept with a hash of it and of its key: one that
+// is cut, altered or not what the index says counts as none.
 #pragma once
 
 #include <array>

@@ -28,8 +28,8 @@ struct BatchPlan {
   std::string digest;              // of all that the results depend on but for the files' bytes
 };
 
-// Fails (3) on a manifest that cannot be read, (2) on one that says something wrong, or where two meshes would be written to one
-// file; the message names file and place.
+// Fails (3) on a manifest that cannot be read, (2) on one that says something wrong, or where two meshes would be written to
+// one file; the message names file and place.
 bake::Result<BatchPlan> read_batch_plan(const std::vector<std::string>& manifests);
 
 }  // namespace fdcg::tools

@@ -141,7 +141,7 @@ FolderLock::FolderLock(const std::string& file) : file_(file) {
     return;
   }
   for (int i = 0; flock(descriptor_, LOCK_EX | LOCK_NB) != 0; ++i) {  // the workers of a run that was killed are ending
-    if (errno != EWOULDBLOCK && errno != EINTR) return;  // a file system without locks: nothing can be known
+    if (errno != EWOULDBLOCK && errno != EINTR) return;               // a file system without locks: nothing can be known
     if (i == kTries) {
       trouble_ = "another run holds '" + file + "'; let it end, or give this one another folder";
       return;
@@ -155,7 +155,8 @@ FolderLock::~FolderLock() {
 }
 
 bool FolderLock::is_removed() const {
-  struct stat held {}, there {};
+  struct stat held {
+  }, there{};
   return fstat(descriptor_, &held) == 0 && (stat(file_.c_str(), &there) != 0 || held.st_ino != there.st_ino);
 }
 

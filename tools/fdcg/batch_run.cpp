@@ -46,9 +46,8 @@ class ShardRun {
 
   bake::Result<BatchCounts> run(AtomicFile& results) {
     BatchCache cache(run_.cache);
-    BatchWorkers workers(limits_, [&](std::size_t task) {
-      return packed_result(do_batch_task(plan_.tasks[task], plan_, place_, cache));
-    });
+    BatchWorkers workers(
+        limits_, [&](std::size_t task) { return packed_result(do_batch_task(plan_.tasks[task], plan_, place_, cache)); });
     while (delivered_ < tasks_.size()) {
       give(workers);
       for (const WorkerAnswer& answer : workers.wait())

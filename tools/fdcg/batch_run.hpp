@@ -24,8 +24,8 @@ struct BatchCounts {
   int exit_code = 0;  // the highest
 };
 
-// Writes the outputs and the shard's results. Fails (3) where an output or the results cannot be written: what is done stays, and
-// another run goes on with it.
+// Writes the outputs and the shard's results. Fails (3) where an output or the results cannot be written: what is done stays,
+// and another run goes on with it.
 bake::Result<BatchCounts> run_batch(const BatchPlan& plan, const BatchFolder& folder, const BatchRun& run);
 
 }  // namespace fdcg::tools

@@ -58,7 +58,7 @@ bake::Result<Shard> shard_by(const Engine& engine, std::size_t index, const Vari
   const std::size_t number = index < *first ? 0 : (index - *first) / step + 1;
   if (number < 1 || number > count || (index - *first) % step != 0 || count > kMostShards)
     return wrong_shard(retry + "which is none of " + std::to_string(count) + " from " + std::to_string(*first) +
-                 " on; an array with gaps needs --shard I/N");
+                       " on; an array with gaps needs --shard I/N");
   return Shard{number, count, engine.index};
 }
 

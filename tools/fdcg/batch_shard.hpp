@@ -26,8 +26,8 @@ inline constexpr std::size_t kMostShards = 10'000;
 // "2/4". Fails (2) on anything else.
 bake::Result<Shard> parse_shard(const std::string& text);
 
-// That of an engine's array of tasks, which the environment has: Slurm, Grid Engine, LSF, AWS Batch, Google's Batch and Cloud Run,
-// GitLab, Buildkite, CircleCI. Without one the whole batch. Fails (2) where the variables contradict one another.
+// That of an engine's array of tasks, which the environment has: Slurm, Grid Engine, LSF, AWS Batch, Google's Batch and Cloud
+// Run, GitLab, Buildkite, CircleCI. Without one the whole batch. Fails (2) where the variables contradict one another.
 using Variables = std::function<std::optional<std::string>(const char* name)>;
 bake::Result<Shard> shard_of(const Variables& variables);
 

@@ -91,7 +91,8 @@ class Keys {
   }
   [[nodiscard]] std::string by_file(const std::string& sha256) const { return bake::sha256_of(text_ + sha256); }
   // `files` as the mesh names them, from its folder. Nothing where one cannot be read.
-  [[nodiscard]] std::optional<std::string> by_references(const std::string& sha256, const std::vector<std::string>& files) const {
+  [[nodiscard]] std::optional<std::string> by_references(const std::string& sha256,
+                                                         const std::vector<std::string>& files) const {
     std::string all = text_ + sha256;
     for (const std::string& file : files) {
       const auto hash = bake::sha256_of_file(folder_ / file);

@@ -11,10 +11,10 @@ namespace fdcg::tools {
 
 struct BatchResult {
   int exit_code = 0;
-  bool is_fatal = false;    // an output cannot be written: the run ends, `said` says why
-  bool is_cached = false;   // it was in the cache
-  std::string line;         // of the results, without its end
-  std::string said;         // for people: one line without the mesh's name; empty: nothing was found
+  bool is_fatal = false;      // an output cannot be written: the run ends, `said` says why
+  bool is_cached = false;     // it was in the cache
+  std::string line;           // of the results, without its end
+  std::string said;           // for people: one line without the mesh's name; empty: nothing was found
   std::string cache_trouble;  // why the cache cannot be written
 };
 

@@ -38,7 +38,8 @@ Json account_json(const bake::RepairAccount& account) {
 }
 
 // Members of the result's line, without brackets: the same for each mesh of these bytes.
-void fill_body(CacheEntry& entry, const bake::PolygonSoup& soup, const bake::Report& report, const bake::RepairAccount* repair) {
+void fill_body(CacheEntry& entry, const bake::PolygonSoup& soup, const bake::Report& report,
+               const bake::RepairAccount* repair) {
   Json json{{"exit_code", entry.exit_code}, {"sha256", soup.sha256}};
   if (entry.has_output) {
     json["output_bytes"] = entry.output.size();
@@ -94,7 +95,9 @@ bake::Result<CacheEntry> work(const RepairSettings& given, const bake::PolygonSo
   if (exported) entry.output = std::move(*exported);
   const bool is_clean = exported && repaired->after.passes() && did_all(*repaired);
   entry.exit_code = is_clean ? kClean : kFindings;
-  if (!is_clean) entry.said = exported ? "left after the repairs: " + findings_of(repaired->after) : exported.error().message.substr(soup.name.size() + 2);  // "NAME: why"
+  if (!is_clean)
+    entry.said = exported ? "left after the repairs: " + findings_of(repaired->after)
+                          : exported.error().message.substr(soup.name.size() + 2);  // "NAME: why"
   fill_body(entry, soup, repaired->after, &*repaired);
   return entry;
 }

@@ -105,7 +105,8 @@ std::string summary(const CompileArguments& arguments, const bake::PolygonSoup& 
   changed(compiled.merged_faces, "merged with coplanar neighbours");
   changed(compiled.shaded_faces, "with normals at their corners, for force shading");
   if (compiled.unusable_normals != 0)
-    text += counted(compiled.unusable_normals, "corner") + " flat: their normals lean from their faces by more than 60 degrees\n";
+    text +=
+        counted(compiled.unusable_normals, "corner") + " flat: their normals lean from their faces by more than 60 degrees\n";
   text += header.max_deviation == 0
               ? std::string("every corner lies on the planes of its faces\n")
               : "corners lie up to " + short_number(header.max_deviation * scale) + " m off the planes of their faces\n";

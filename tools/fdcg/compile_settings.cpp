@@ -42,8 +42,8 @@ void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
       "--planes", "PLANES", {{"stored", true}, {"derived", false}}, options.store_planes,
       "Edge vectors, end planes and Voronoi planes: stored in the file, or derived in the step, with a smaller file.");
   graph.choice<bake::Normals>(
-      "--normals", "NORMALS",
-      {{"none", bake::Normals::none}, {"faces", bake::Normals::faces}, {"file", bake::Normals::file}}, options.normals,
+      "--normals", "NORMALS", {{"none", bake::Normals::none}, {"faces", bake::Normals::faces}, {"file", bake::Normals::file}},
+      options.normals,
       "Normals at the corners of faces, for force shading: from the faces around each vertex up to creases, or those of the "
       "mesh file (vn of OBJ).");
   graph.parsed(
@@ -85,7 +85,8 @@ void add_compile_input(CLI::App& command, CompileSettings& settings) {
 void add_compile_settings(CLI::App& command, CompileSettings& settings) {
   const OptionGroup checks(command, "Mesh checks");
   add_weld_option(checks, settings.options.weld);
-  checks.flag("--orient", settings.options.orient, "Make the winding consistent and outward, and report the faces that were turned.");
+  checks.flag("--orient", settings.options.orient,
+              "Make the winding consistent and outward, and report the faces that were turned.");
   checks.flag("--self-intersections", settings.options.self_intersections,
               "Also find faces that cross or touch others, and report them as warnings.");
   command

@@ -26,10 +26,9 @@ struct InspectArguments {
 };
 
 std::string section_name(std::uint32_t id) {
-  constexpr const char* kNames[] = {"nodes",        "node-offsets", "edges",      "connections", "corners",
-                                    "fans",         "hierarchy",    "source-map", "info",        "fan-boxes",
-                                    "busy-corners", "mass",         "materials",  "names",       "fan-runs",
-                                    "normals"};
+  constexpr const char* kNames[] = {"nodes",     "node-offsets", "edges",    "connections", "corners",      "fans",
+                                    "hierarchy", "source-map",   "info",     "fan-boxes",   "busy-corners", "mass",
+                                    "materials", "names",        "fan-runs", "normals"};
   if (id >= 1 && id <= std::size(kNames)) return kNames[id - 1];
   return "unknown-" + std::to_string(id);
 }

@@ -13,7 +13,7 @@ using bake::Vec3;
 
 // Units in the last place that one rounded plane or unit vector may be off by, times a few for the arithmetic of the check.
 constexpr double kRoundings = 16;
-constexpr std::uint64_t kReportEvery = 1 << 14;      // measures
+constexpr std::uint64_t kReportEvery = 1 << 14;       // measures
 constexpr double kMeasuresOfAConnection = 3 * 2 + 3;  // of its two sides, and its own
 
 class Checker {

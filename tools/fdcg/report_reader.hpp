@@ -8,7 +8,8 @@
 
 namespace fdcg::tools {
 
-// As bake::report_line wrote it; the file's name is left empty. Throws simdjson::simdjson_error where a member is missing or wrong.
+// As bake::report_line wrote it; the file's name is left empty. Throws simdjson::simdjson_error where a member is missing or
+// wrong.
 bake::Report read_report(simdjson::dom::element json);
 
 }  // namespace fdcg::tools

@@ -33,9 +33,9 @@ struct ValidateRun {
 
 struct Validated {
   bake::Report report;
-  int exit_code = 0;         // of this file alone
-  std::string error;         // one line; why there was no mesh
-  bake::ElementSpool spool;  // with wants_all_elements
+  int exit_code = 0;                      // of this file alone
+  std::string error;                      // one line; why there was no mesh
+  bake::ElementSpool spool;               // with wants_all_elements
   std::optional<bake::PolygonSoup> soup;  // with keeps_meshes, where there is one
 };
 

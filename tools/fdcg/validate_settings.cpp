@@ -66,7 +66,8 @@ std::string lowered_errors(const ValidateSettings& settings) {
   for (const auto& [name, level] : settings.severities) {
     const bake::Rule* const rule = bake::find_rule(name);
     const bool is_lowered = !level || *level < bake::Severity::error;
-    if (rule != nullptr && is_lowered && rule->severity == bake::Severity::error && !rule->can_be_allowed) names.push_back(name);
+    if (rule != nullptr && is_lowered && rule->severity == bake::Severity::error && !rule->can_be_allowed)
+      names.push_back(name);
   }
   if (names.empty()) return {};
   return listed(names) + (names.size() == 1 ? " is" : " are") +

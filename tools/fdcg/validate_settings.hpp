@@ -29,7 +29,8 @@ ValidateSettings combined(const ValidateSettings& weaker, const ValidateSettings
 // names the right ones.
 bake::Result<Level> parse_fail_on(const std::string& text);
 bake::Result<Level> parse_severity(const std::string& rule, const std::string& text);
-// What to tell whoever made an error that no graph can stand less than one: compile refuses such meshes all the same. Empty: nobody.
+// What to tell whoever made an error that no graph can stand less than one: compile refuses such meshes all the same. Empty:
+// nobody.
 std::string lowered_errors(const ValidateSettings& settings);
 std::optional<bake::Failure> check_allowed_rule(const std::string& rule);
 

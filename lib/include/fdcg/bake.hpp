@@ -140,11 +140,11 @@ struct PolygonSoup {
   /// Of each entry of `corners`, where ImportOptions::normals asked for them and the file has any; not of unit length, 0 where
   /// the file has none at that corner. Empty: none.
   std::vector<Vec3> corner_normals;
-  std::vector<Ignored> ignored;              ///< what was left out
-  double metres_per_unit = 0;                ///< as the file states it (COLLADA, 3MF); 0: it does not
-  char up_axis = 0;                          ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
-  StatedPhysics physics;                     ///< glTF: friction, masses and shapes by formula
-  std::vector<std::string> other_files;      ///< further files that the mesh is from: a glTF file's buffers
+  std::vector<Ignored> ignored;          ///< what was left out
+  double metres_per_unit = 0;            ///< as the file states it (COLLADA, 3MF); 0: it does not
+  char up_axis = 0;                      ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
+  StatedPhysics physics;                 ///< glTF: friction, masses and shapes by formula
+  std::vector<std::string> other_files;  ///< further files that the mesh is from: a glTF file's buffers
 
   /// Faces of the file.
   [[nodiscard]] std::size_t face_count() const { return face_first.empty() ? 0 : face_first.size() - 1; }
@@ -183,8 +183,8 @@ struct Element {
   std::optional<Vec3> point;                        ///< source units
   std::optional<std::uint32_t> line;                ///< text formats
   std::string part;                                 ///< the name of the Part that the first face belongs to, if any
-  /// Of the rule and the coordinates, as floats, of what was found (a patch: of its least corner), not of their numbers: stays when
-  /// the file is renumbered or changed elsewhere. Several findings may share one, so compare as multisets.
+  /// Of the rule and the coordinates, as floats, of what was found (a patch: of its least corner), not of their numbers: stays
+  /// when the file is renumbered or changed elsewhere. Several findings may share one, so compare as multisets.
   std::uint64_t fingerprint = 0;
   bool is_known = false;  ///< a baseline has it
 };
@@ -378,8 +378,8 @@ struct RepairAction {
 
 /// How far a repair may go.
 enum class RepairLevel {
-  safe,  ///< every point of the surface stays: welds, drops faces without area and copies, turns, splits, cuts
-  full,  ///< also unfolds slivers, triangulates polygons that cross themselves, and drops faces that no graph can have
+  safe,   ///< every point of the surface stays: welds, drops faces without area and copies, turns, splits, cuts
+  full,   ///< also unfolds slivers, triangulates polygons that cross themselves, and drops faces that no graph can have
   solid,  ///< also closes holes and resolves intersections into the outer surface (SolidOptions' defaults)
 };
 
@@ -402,8 +402,8 @@ struct RepairAccount {
   std::uint64_t faces_after = 0;   ///< of the result
 };
 
-/// Gives memory for a file of so many bytes, starting at a multiple of 64; empty where there is none to be had. Every byte of it
-/// is written, so that it need not be zeroed and one buffer can serve for many meshes.
+/// Gives memory for a file of so many bytes, starting at a multiple of 64; empty where there is none to be had. Every byte of
+/// it is written, so that it need not be zeroed and one buffer can serve for many meshes.
 using Allocate = std::function<std::span<std::byte>(std::size_t bytes)>;
 
 /// 40 degrees.
@@ -422,10 +422,10 @@ struct CompileOptions {
   Precision precision = Precision::f64;  ///< of the file
   Coplanar coplanar;                     ///< which edges are flat
   bool merge = true;                     ///< join coplanar faces into convex nodes
-  bool triangles = false;         ///< every node one triangle, as deform.h wants them; merges nothing, whatever `merge` says
-  Weld weld;                      ///< which vertices are one
-  bool orient = false;            ///< make the winding consistent and outward first
-  bool store_planes = true;       ///< false: the step derives them, to the same bits
+  bool triangles = false;           ///< every node one triangle, as deform.h wants them; merges nothing, whatever `merge` says
+  Weld weld;                        ///< which vertices are one
+  bool orient = false;              ///< make the winding consistent and outward first
+  bool store_planes = true;         ///< false: the step derives them, to the same bits
   Normals normals = Normals::none;  ///< for force shading. Faces that they make smooth are triangles, and not merged
   double crease_rad = kDefaultCrease_rad;  ///< Normals::faces: faces that meet at a larger angle meet at a crease
   std::set<std::string> without;  ///< optional sections left out: hierarchy, source-map, info, mass, materials, normals
@@ -444,11 +444,11 @@ struct CompileOptions {
 
 /// What compile() made.
 struct Compiled {
-  Report report;                        ///< the verdict, and what was found
-  std::uint64_t flipped_faces = 0;      ///< by orient
-  std::uint64_t split_faces = 0;        ///< not convex or not planar: cut into several nodes
-  std::uint64_t merged_faces = 0;       ///< source faces that share their node with others
-  std::uint64_t shaded_faces = 0;       ///< triangles with normals at their corners, where CompileOptions::normals asked for them
+  Report report;                    ///< the verdict, and what was found
+  std::uint64_t flipped_faces = 0;  ///< by orient
+  std::uint64_t split_faces = 0;    ///< not convex or not planar: cut into several nodes
+  std::uint64_t merged_faces = 0;   ///< source faces that share their node with others
+  std::uint64_t shaded_faces = 0;   ///< triangles with normals at their corners, where CompileOptions::normals asked for them
   std::uint64_t unusable_normals = 0;   ///< corners whose normal leans from their triangle's by more than 60 degrees: left out
   std::optional<RepairAccount> repair;  ///< where CompileOptions::repair asked for one
   std::string no_mass;           ///< why the file has no mass properties; empty where it has, and where they were left out
@@ -470,8 +470,8 @@ std::string compile_report_json(const Compiled& compiled);
 /// another (2), the mesh outgrows the format (3), or by our own fault (4).
 Result<Compiled> compile(const PolygonSoup& soup, const CompileOptions& options);
 
-/// The same of a mesh that is not needed afterwards. Its points, corners and `face_first` are freed as soon as they have served:
-/// of triangles a twelfth of the memory at the peak. What else it has stays.
+/// The same of a mesh that is not needed afterwards. Its points, corners and `face_first` are freed as soon as they have
+/// served: of triangles a twelfth of the memory at the peak. What else it has stays.
 Result<Compiled> compile(PolygonSoup&& soup, const CompileOptions& options);
 
 // ---- repair ----------------------------------------------------------------------------------------------------------------
@@ -487,10 +487,10 @@ struct SolidOptions {
   /// Cut along its intersections by exact arithmetic, or rebuilt on a lattice from its winding number.
   enum class Method { exact, remesh };
   Method method = Method::exact;  ///< which
-  Extent hole_size{1, true};  ///< holes whose bounds have a longer diagonal are left open
-  Extent voxel{0.005, true};  ///< of the lattice, where rebuilt: what is smaller is lost
-  Extent gap{1e-4, true};     ///< borders no farther apart are joined first
-  bool as_floats = false;     ///< the result's coordinates are floats, as binary STL has them
+  Extent hole_size{1, true};      ///< holes whose bounds have a longer diagonal are left open
+  Extent voxel{0.005, true};      ///< of the lattice, where rebuilt: what is smaller is lost
+  Extent gap{1e-4, true};         ///< borders no farther apart are joined first
+  bool as_floats = false;         ///< the result's coordinates are floats, as binary STL has them
 };
 
 /// What may be done to a mesh; each step is taken only where it is asked for, in this order. All but a weld by distance and

@@ -14,8 +14,8 @@ namespace fdcg::bake {
 // What is wrong with a stream of more than kMostStreamBytes: "has more than ..."
 std::string stream_too_long();
 
-// Regular files are mapped read-only, small ones and anything else (a pipe, a device) are read to their end. The bytes are valid while the object
-// lives; another process that shortens the file meanwhile makes them unreadable, as with every mapping.
+// Regular files are mapped read-only, small ones and anything else (a pipe, a device) are read to their end. The bytes are
+// valid while the object lives; another process that shortens the file meanwhile makes them unreadable, as with every mapping.
 class FileBytes {
  public:
   // Fails with exit code 3 on a path that does not exist, is a directory or cannot be read. An empty file is not a failure.

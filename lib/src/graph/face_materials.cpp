@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "shared/text.hpp"
 #include "fdcg/fdcg.h"
+#include "shared/text.hpp"
 
 namespace fdcg::bake {
 

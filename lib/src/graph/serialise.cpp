@@ -131,8 +131,7 @@ class Writer {
       layout_.add(FDCG_SECTION_MATERIAL_NAMES, sizeof(fdcg_material_record), input_.materials.size());
     }
     if (has_fan_runs()) layout_.add(FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), graph_.fan_runs.size());
-    if (!input_.normals_of_face.empty())
-      layout_.add(FDCG_SECTION_NODE_NORMALS, sizeof(fdcg_node_normals), graph_.node_count());
+    if (!input_.normals_of_face.empty()) layout_.add(FDCG_SECTION_NODE_NORMALS, sizeof(fdcg_node_normals), graph_.node_count());
     layout_.place();
   }
 

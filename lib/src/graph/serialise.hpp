@@ -26,7 +26,7 @@ struct SerialiseInput {
   std::vector<std::string> materials;           // names; empty: no sections
   std::vector<std::uint16_t> material_of_face;  // of each face the graph was made of
   std::vector<fdcg_node_normals> normals_of_face;  // likewise; empty: no section
-  std::string info;                             // JSON; empty: no section
+  std::string info;                                // JSON; empty: no section
   Precision precision = Precision::f64;
   bool with_planes = true;
   bool with_hierarchy = true;

@@ -110,7 +110,8 @@ LeastSupport Search::run(std::uint64_t max_cells, const bake::Progress& progress
     const Cell cell = open_.top();
     open_.pop();
     split(cell);
-    if (progress && cells_ % kReportEvery < 2) progress("search for epsilon", static_cast<double>(cells_) / static_cast<double>(max_cells));
+    if (progress && cells_ % kReportEvery < 2)
+      progress("search for epsilon", static_cast<double>(cells_) / static_cast<double>(max_cells));
   }
   // Pruned cones have at least enough() of a best value that has only decreased since.
   return {best_, open_.empty() ? enough() : std::min(enough(), open_.top().lower), cells_};

@@ -214,7 +214,7 @@ class ObjReader : TextSoupReader {
   std::int64_t largest_index_ = -1;
   std::vector<Vec3> normals_;
   std::vector<std::int64_t> normal_of_corner_;  // counted from 1, 0: none; of the corners up to the last that has one
-  std::string object_, group_, material_;  // at the cursor
+  std::string object_, group_, material_;       // at the cursor
   bool is_new_part_ = false;
 };
 

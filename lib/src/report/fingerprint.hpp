@@ -10,8 +10,8 @@
 namespace fdcg::bake {
 
 // A hash of the rule's name and of a multiset of points, independent of their order. Points are hashed bit for bit as
-// floats hold them, so that a mesh which was saved in another format has the same, except that -0 = 0 and all NaN are equal; the
-// same on every machine. The points are:
+// floats hold them, so that a mesh which was saved in another format has the same, except that -0 = 0 and all NaN are equal;
+// the same on every machine. The points are:
 //   findings at vertices   the vertex
 //   at edges               both ends; at a vertex inside an edge these three
 //   at faces               all corners; of a pair of faces those of both, of a duplicate those of one

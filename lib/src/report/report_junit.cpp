@@ -4,8 +4,8 @@
 #include <charconv>
 #include <utility>
 
-#include "shared/text.hpp"
 #include "report/report_parts.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::bake {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "shared/text.hpp"
 #include "report/report_parts.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::bake {
 namespace {

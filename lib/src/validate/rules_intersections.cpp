@@ -8,8 +8,8 @@
 namespace fdcg::bake::checks {
 
 void self_intersection(const Subject& subject, Findings& out) {
-  const SelfIntersections found =
-      find_self_intersections(subject.mesh, subject.geometry, {out.max_elements(), subject.jobs, subject.progress, &subject.topology});
+  const SelfIntersections found = find_self_intersections(
+      subject.mesh, subject.geometry, {out.max_elements(), subject.jobs, subject.progress, &subject.topology});
   // The part of the search in which the limit was reached goes beyond it.
   const std::uint64_t counted = found.crossing + found.touching;
   const std::uint64_t total = found.has_more ? std::min(counted, kMostMeetingPairs) : counted;

@@ -281,9 +281,9 @@ typedef struct fdcg_corner_info {
 /** Reads a corner; its number below header->corner_count. */
 FDCG_API fdcg_corner_info fdcg_get_corner(const fdcg_graph* graph, uint32_t corner);
 
-/** The normals that shading interpolates over a node (fdcg_friction_flag): three vectors of unit length, outward, at the corners
- * where its sides 0, 1 and 2 start. Returns 0, and the node's own normal three times, where the node is flat or the file has
- * no such section. */
+/** The normals that shading interpolates over a node (fdcg_friction_flag): three vectors of unit length, outward, at the
+ * corners where its sides 0, 1 and 2 start. Returns 0, and the node's own normal three times, where the node is flat or the
+ * file has no such section. */
 FDCG_API uint32_t fdcg_get_node_normals(const fdcg_graph* graph, uint32_t node, double normals[9]);
 
 /** Lists the corner's connections, counter-clockwise seen from outside, each as connection << 1 | end (end 0: its corner[0] is

@@ -196,9 +196,9 @@ inline constexpr int kClearMargins = 5;
 inline constexpr double kLeastLean = 0.499;
 // SHADE-4: how far two faces' normals at a corner may be apart and be one; the code of one is off by up to 5e-5.
 inline constexpr double kSmoothAcross = 0x1p-12;
-// SHADE-3: a step that misses by less than this share of the depth is the last, since the next would miss by about its square; a
-// god-object is not moved for less than the slack; a bulge as round as the god-object is deep, but for kLeastBend, has no stable
-// place. Beyond a side the sum of normals may turn over: so much along the face's normal must be left of it.
+// SHADE-3: a step that misses by less than this share of the depth is the last, since the next would miss by about its square;
+// a god-object is not moved for less than the slack; a bulge as round as the god-object is deep, but for kLeastBend, has no
+// stable place. Beyond a side the sum of normals may turn over: so much along the face's normal must be left of it.
 inline constexpr double kShadingLastMiss = 0x1p-20, kShadingSlack = 0x1p-34, kLeastBend = 1.0 / 16, kLeastUp = 0.25;
 // SHADE-2: where the normal leans away from the force the load counts as this share of the depth.
 inline constexpr double kLeastLoadShare = 0.25;

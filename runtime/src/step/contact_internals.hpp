@@ -33,10 +33,10 @@ struct ClearBall {
   uint32_t next_wait;  // how long to wait if that search finds none
 };
 
-// The field of normals (normal_field.hpp) of the face that a shaded contact is on. It follows from the graph: what is lost of it
-// is made anew, to the same bits.
+// The field of normals (normal_field.hpp) of the face that a shaded contact is on. It follows from the graph: what is lost of
+// it is made anew, to the same bits.
 struct KeptField {
-  uint64_t of_node;  // its number and 1; 0: none is kept
+  uint64_t of_node;   // its number and 1; 0: none is kept
   double normals[9];  // a NormalField
 };
 

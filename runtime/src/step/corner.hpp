@@ -168,7 +168,8 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
   if (way == Beginning::outside && !FDCG_MUTANT("free-at-vertex")) return kFree;
   const bool is_inside = way != Beginning::not_told;
   if constexpr (kShades<Geometry>) {
-    if (is_inside && walk.friction.terms != nullptr && is_at_shaded_face(walk, corner)) return next_from_shaded_corner(walk, corner, t);
+    if (is_inside && walk.friction.terms != nullptr && is_at_shaded_face(walk, corner))
+      return next_from_shaded_corner(walk, corner, t);
   }
   FanSearch<Geometry> search(walk, t, is_inside);
   if (corner.is_busy() && corner.busy().first_box != FDCG_NONE) {

@@ -73,8 +73,9 @@ fdcg_status check_terms(const fdcg_params& params, fdcg_error* error) {
   }
   if (!FDCG_WITH_SHADING && has(FDCG_FRICTION_SHADING)) {
     return Message(error, FDCG_E_ARGUMENT)
-        .text("params.friction_flags has FDCG_FRICTION_SHADING, but this library was built without it; build it with "
-              "FDCG_WITH_SHADING");
+        .text(
+            "params.friction_flags has FDCG_FRICTION_SHADING, but this library was built without it; build it with "
+            "FDCG_WITH_SHADING");
   }
   const ParamRange ranges[] = {
       {"stribeck_m_per_s", has(FDCG_FRICTION_STRIBECK) ? params.stribeck_m_per_s : 1, kLeastParam, kLargestParam},

@@ -354,13 +354,14 @@ template <class Geometry, class Real = typename Geometry::Real>
 // A tick of a contact that stays on shaded faces, and its account (contact-model SHADE-5). False: it may not, and nothing has
 // changed but the field that it keeps.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] bool step_on_shaded_faces(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip, fdcg_contact* contact,
-                          fdcg_result* result) {
+[[gnu::noinline, gnu::hot]] bool step_on_shaded_faces(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
+                                                      fdcg_contact* contact, fdcg_result* result) {
   ContactInternals& inner = internals_of(*contact);
   const double own = params.stiffness_n_per_m, kept = inner.stiffness_n_per_m;
   if (raw.normals == nullptr || contact->state != FDCG_FACE || !(kept > 0)) return false;
   const Vec3<Real> god_object = narrow<Real>(contact->god_object);
-  ShadedTick<Real> tick = {contact->feature, FDCG_NONE, 0, god_object, friction_of<Real>(params, *contact), false, &inner.field};
+  ShadedTick<Real> tick = {contact->feature, FDCG_NONE, 0, god_object, friction_of<Real>(params, *contact), false,
+                           &inner.field};
   if (!slides_on_shaded_faces<Geometry>(raw, hip, &tick)) return false;
   const Vec3<double> local_hip = widen(hip), was = widen(god_object), spring = widen(tick.god_object) - local_hip;
   const Vec3<double> before = was - local_hip, last = was - vec(contact->hip);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A graph that is part of the program, and a hand that comes from above to the middle of the mesh: returns 0 if it feels something. */
+/* A graph that is part of the program, and a hand that comes from above to the middle of the mesh: returns 0 if it feels
+ * something. */
 #include "block.h"
 #include "fdcg/fdcg.h"
 

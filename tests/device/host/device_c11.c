@@ -41,7 +41,8 @@ static int run(fdcg_host* host, const char* moved) {
   fdcg_pose pose = fdcg_make_identity_pose();
   int tries;
   status.struct_bytes = (uint32_t)sizeof status;
-  if (fdcg_host_get_device_count(host) != 1 || !fdcg_host_get_device_name(host, 0) || fdcg_host_get_device_name(host, 1)) return 11;
+  if (fdcg_host_get_device_count(host) != 1 || !fdcg_host_get_device_name(host, 0) || fdcg_host_get_device_name(host, 1))
+    return 11;
   if (fdcg_host_get_status(host, 1, &status) != FDCG_E_ARGUMENT) return 12;
   if (fdcg_host_start(host, &message) != FDCG_OK) return 13;
   if (fdcg_host_start(host, &message) == FDCG_OK) return 14;

@@ -17,8 +17,8 @@ struct Part {
   const char* name;
   void (*measure)(const LawOptions&, Bars&);
 };
-constexpr Part kParts[] = {{"ramps", measure_ramps}, {"slides", measure_slides}, {"stick-slip", measure_stick_slip},
-                           {"creep", measure_creep}, {"energy", measure_energy}, {"tessellation", measure_tessellation},
+constexpr Part kParts[] = {{"ramps", measure_ramps},    {"slides", measure_slides}, {"stick-slip", measure_stick_slip},
+                           {"creep", measure_creep},    {"energy", measure_energy}, {"tessellation", measure_tessellation},
                            {"shading", measure_shading}};
 
 }  // namespace

@@ -57,11 +57,11 @@ std::vector<Way> ways(std::uint64_t seed, int count) {
 }
 
 struct Felt {
-  double vibration_n = 0;      // RMS within the band, all components
-  double direction_rad = 0;    // largest angle between the force and the sphere's normal
-  double size_n = 0;           // largest error of the force's size
-  double turn_rad = 0;         // largest from tick to tick
-  double ns = 0;               // of a step, the mean
+  double vibration_n = 0;    // RMS within the band, all components
+  double direction_rad = 0;  // largest angle between the force and the sphere's normal
+  double size_n = 0;         // largest error of the force's size
+  double turn_rad = 0;       // largest from tick to tick
+  double ns = 0;             // of a step, the mean
 };
 
 Hip turned(const fdcg_graph& graph, const fdcg_result& result) {
@@ -127,7 +127,8 @@ double time_of_step_ns(const fdcg_graph& graph, Method method, const Way& way) {
     const auto begin = std::chrono::steady_clock::now();
     for (const Hip& hip : hips)
       pressed.step(params, hip);
-    least = std::min(least, std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() / kTicks);
+    least =
+        std::min(least, std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() / kTicks);
   }
   return least;
 }
@@ -140,7 +141,8 @@ void measure_shading(const LawOptions& options, Bars& bars) {
   const int levels = options.is_quick ? 3 : 5, ticks = options.is_quick ? 1000 : 3000;
   const std::vector<Way> all = ways(options.seed, options.is_quick ? 2 : 8);
   Table table(options.output, "shading",
-              {"method", "faces", "vibration_mn", "direction_error_max_rad", "force_size_error_max_n", "turn_max_rad_per_ms", "step_ns"});
+              {"method", "faces", "vibration_mn", "direction_error_max_rad", "force_size_error_max_n", "turn_max_rad_per_ms",
+               "step_ns"});
   double worst_share = 0, most_n = 0, worst_turn = 0;
   for (int level = kFirstLevel; level < kFirstLevel + levels; ++level) {
     bake::CompileOptions compile;
@@ -161,7 +163,8 @@ void measure_shading(const LawOptions& options, Bars& bars) {
     worst_turn = std::max(worst_turn, shaded.turn_rad / sphere.turn_rad);
   }
   bars.at_most("shading: vibration of 80 to 450 Hz as a share of the facets'", worst_share, 0.1, "", "spheres, 0.1 m/s, 1.5 N");
-  bars.at_most("shading: vibration of 80 to 450 Hz from 1,280 faces on", most_n * 1e3, 2, "mN", "the threshold of skin is 1 to 10");
+  bars.at_most("shading: vibration of 80 to 450 Hz from 1,280 faces on", most_n * 1e3, 2, "mN",
+               "the threshold of skin is 1 to 10");
   bars.at_most("shading: largest turn of the force in 0.1 mm over the sphere's", worst_turn, 1.2, "", "across smooth edges");
 }
 

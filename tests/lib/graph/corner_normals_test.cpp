@@ -124,9 +124,9 @@ TEST_CASE("an OBJ file's own normals are taken, also those that stand after the 
   CHECK(soup->corner_normals[0] == Vec3{0, 0, -2});
   CHECK(soup->corner_normals[4] == Vec3{0.5, -1, 0.3});
   CHECK(soup->corner_normals[5] == Vec3{0, -1, 1});
-  CHECK(soup->corner_normals[3] == Vec3{});   // counted back from the latest, of which there was none yet
-  CHECK(soup->corner_normals[7] == Vec3{});   // there is no ninth
-  CHECK(soup->corner_normals[8] == Vec3{});   // none is named
+  CHECK(soup->corner_normals[3] == Vec3{});  // counted back from the latest, of which there was none yet
+  CHECK(soup->corner_normals[7] == Vec3{});  // there is no ninth
+  CHECK(soup->corner_normals[8] == Vec3{});  // none is named
   CHECK(import_memory(text, "four.obj")->corner_normals.empty());
 
   CompileOptions options;
@@ -156,8 +156,9 @@ TEST_CASE("normals that no writer writes are refused, or harmless") {
     return std::string(status == FDCG_OK ? "" : error.message);
   };
   CHECK(damaged([](const fdcg_graph&, fdcg_node_normals*) {}).empty());
-  CHECK(damaged([](const fdcg_graph&, fdcg_node_normals* n) { n[0].corner[1][0] = 1, n[0].corner[1][1] = 0xffff; })
-            .find("half a code") != std::string::npos);
+  CHECK(damaged([](const fdcg_graph&, fdcg_node_normals* n) {
+          n[0].corner[1][0] = 1, n[0].corner[1][1] = 0xffff;
+        }).find("half a code") != std::string::npos);
   CHECK(damaged([](const fdcg_graph& graph, fdcg_node_normals* n) {
           std::uint32_t polygon = 0;
           while (fdcg_get_node(&graph, polygon).side_count == 3)

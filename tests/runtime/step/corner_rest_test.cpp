@@ -96,8 +96,8 @@ TEST_CASE("no rest at a corner of many walls that is no least place") {
   CHECK(counts.in_free_air == 0);
 }
 
-// Ways through the tip of a cone of thousands of sides, which end beside it in the plane of a face, and so near to the planes of
-// hundreds: whether such a way begins outside has to be told all the same.
+// Ways through the tip of a cone of thousands of sides, which end beside it in the plane of a face, and so near to the planes
+// of hundreds: whether such a way begins outside has to be told all the same.
 TEST_CASE("no rest at a fine tip with the HIP beside it in the plane of a face") {
   for (const PointedKind kind : {PointedKind::needle, PointedKind::cone, PointedKind::flat}) {
     const PointedBody body = pointed_body(kind, 10'000, random_rotation(21));

@@ -21,8 +21,8 @@ struct DeviceStatus {
   TimeHistogram round_trip;             // from the write of an output to its echo
 };
 
-// A servo thread that hangs writes no new status. Turns a status older than kStandstillS, now_s after the start, into what holds
-// then: no force, since the writer sends zero by itself, and disarmed, as the thread will be when it runs again.
+// A servo thread that hangs writes no new status. Turns a status older than kStandstillS, now_s after the start, into what
+// holds then: no force, since the writer sends zero by itself, and disarmed, as the thread will be when it runs again.
 inline constexpr double kStandstillS = 0.25;
 void tell_standstill(double now_s, DeviceStatus* status);
 

@@ -34,7 +34,7 @@ struct Field {
   std::uint32_t constant = 0;  // kConstant: the raw value; kEnable: the raw value while armed (0 otherwise); kStatus: mask of
                                // the bits that say that the device has a fault
   std::uint32_t enabled = 0;   // kStatus: mask of the bits that say that the device applies the force; 0: it does not tell
-  std::uint8_t bits = 0;  // so many from `bit` of the byte at offset on, upwards, the least bit being 0; 0: whole bytes
+  std::uint8_t bits = 0;       // so many from `bit` of the byte at offset on, upwards, the least bit being 0; 0: whole bytes
   std::uint8_t bit = 0;
 };
 

@@ -10,9 +10,9 @@
 #include <cstring>
 #include <memory>
 
-#include "shared/text.hpp"
 #include "scene/scene_json.hpp"
 #include "session/session_reader.hpp"
+#include "shared/text.hpp"
 
 namespace fdcg::dev {
 namespace {

@@ -49,7 +49,8 @@ std::string add_object(const HostConfig& config, std::size_t index, const SceneL
     setup->soft_id[setup->soft_count++] = *id;
   } else {
     if ((params.friction_flags & FDCG_FRICTION_SHADING) != 0 && graphs.of_object(index).normals == nullptr)
-      return object.file + " has no normals at the corners of its faces, so it cannot be shaded; compile it with --normals faces";
+      return object.file +
+             " has no normals at the corners of its faces, so it cannot be shaded; compile it with --normals faces";
     status = fdcg_scene_add_object(setup->scene, &graphs.of_object(index), &params, &object.pose, id, &error);
   }
   return status == FDCG_OK ? std::string() : error.message;

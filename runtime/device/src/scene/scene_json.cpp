@@ -15,8 +15,8 @@ constexpr std::size_t kMostSceneBytes = json::Limits{}.bytes;
 constexpr json::Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices",  "loop", "log",
                                    "limits",     "gravity_m_per_s2", "ground", "shared",  "stability"};
 constexpr json::Keys kObjectKeys = {
-    "name",       "file",          "surface", "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static",
-    "mu_dynamic", "edge_friction", "shading", "motion", "notes"};
+    "name",          "file",    "surface", "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static", "mu_dynamic",
+    "edge_friction", "shading", "motion",  "notes"};
 constexpr json::Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
 constexpr json::Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend", "graphs"};
 constexpr json::Keys kLogKeys = {"file", "limit_mb"};

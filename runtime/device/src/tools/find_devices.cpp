@@ -26,7 +26,8 @@ std::string read_profiles(const std::vector<std::string>& files, std::vector<Nam
     std::string text;
     std::string problem = json::read_text_file(file, json::Limits{}.bytes, &text);
     if (problem.empty()) problem = parse_profile(text, file, &named.profile);
-    if (problem.empty() && named.profile.match.vendor == 0) problem = file + ": has no \"match\": it is of a device on a serial line";
+    if (problem.empty() && named.profile.match.vendor == 0)
+      problem = file + ": has no \"match\": it is of a device on a serial line";
     if (!problem.empty()) return problem;
     profiles->push_back(named);
   }
