@@ -24,8 +24,9 @@ struct Feel {
 };
 
 struct ContenderInfo {
-  std::string name;    // as in the tables
-  std::string family;  // fdcg, paper, ablation (of fdcg's rules), closest_point, distance_grid, proxy
+  std::string name;     // as in the tables
+  std::string family;   // fdcg, paper, ablation (of fdcg's rules), closest_point, distance_grid, proxy; a rival's own word
+  std::string version;  // of a rival, in words
   std::string precision = "f64", planes = "none", merged = "no";
   bool has_friction = false;
   std::size_t bytes = 0;  // that it needs at run time
@@ -38,6 +39,8 @@ class Contender {
   // The next step is the first.
   virtual void reset() = 0;
   virtual void step(const Ground::Point& hip_m, Feel& feel) = 0;
+  // What the last step took by the contender's own clock, where the way to it takes longer than the step does; else negative.
+  [[nodiscard]] virtual double own_ns() const { return -1; }
   // No effect on what knows no friction. Resets.
   virtual void set_friction(double /*mu_static*/, double /*mu_dynamic*/) { reset(); }
   [[nodiscard]] const ContenderInfo& info() const { return info_; }

@@ -80,7 +80,9 @@ def pareto(run):
                        facecolors="none" if is_f32 else colour(r), label=name, zorder=3)
         best = sorted((frontier.error_m(r), r["mean_ns"]) for r in frontier.frontier(rows))
         ax.plot([b[0] for b in best], [b[1] for b in best], color="#000", linewidth=.7, drawstyle="steps-post", zorder=1)
-        for prefix in ("fdcg_f64", "fdcg_f32", "paper", "paper_vertices", "cgal_closest", "embree_closest", "ray_proxy", "grid_64"):
+        guests = [r["contender"] for r in rows if r["family"] not in FAMILIES]
+        for prefix in ("fdcg_f64", "fdcg_f32", "paper", "paper_vertices", "cgal_closest", "embree_closest", "fcl_closest", "ray_proxy",
+                       "grid_64", *guests):
             named = [r for r in rows if r["contender"] == prefix or (prefix.startswith("fdcg") and r["contender"].startswith(prefix))]
             if named:
                 fastest = min(named, key=lambda r: r["mean_ns"])
