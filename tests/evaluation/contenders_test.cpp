@@ -130,6 +130,7 @@ TEST_CASE("the judge finds nothing in the truth and what is planted in it") {
     stage.felt[first + 3] = {stage.way[first + 3], {}, false, 0, true};
     CHECK(stage.judged().push_throughs == 0);
     CHECK(stage.judged().carried_ticks == 1);
+    CHECK(stage.judged().unjudged_share == Approx(1.0 / static_cast<double>(clean.contact_ticks)));
   }
   SECTION("god-objects a tenth of a millimetre off") {
     for (Feel& f : stage.felt) {
@@ -155,6 +156,38 @@ TEST_CASE("the judge finds nothing in the truth and what is planted in it") {
     CHECK(stage.judged().noticeable_share == 1);
     CHECK(stage.judged().force_share_p99 == Approx(0.1));
   }
+}
+
+TEST_CASE("after a tie every right answer is right, and nothing else") {
+  Stage stage("star_80", WayKind::edge_slide);
+  std::vector<std::size_t> tied;
+  for (std::size_t i = 0; i < stage.way.size(); ++i) {
+    const TrueBody::Tick& tick = stage.ticks_true[i];
+    if (tick.feel.in_contact && !tick.others.empty() && plain::length(tick.feel.force) > 0.05) tied.push_back(i);
+    for (const Feel& other : tick.others)
+      CHECK((other.in_contact != tick.feel.in_contact || plain::length(other.god_object - tick.feel.god_object) >= kApart_m));
+  }
+  REQUIRE(tied.size() > 10);
+  CHECK(stage.judged().tied_share > 0);
+  CHECK(stage.judged().god_object_max_m == 0);
+  for (const std::size_t i : tied)
+    stage.felt[i] = stage.ticks_true[i].others[0];
+  const Metrics other = stage.judged();
+  CHECK(other.judged_rms_m == 0);
+  CHECK(other.god_object_max_m >= kApart_m);
+  CHECK(other.push_throughs == 0);
+  for (const std::size_t i : tied)
+    stage.felt[i] = {stage.way[i], {}, false, 0, false};  // let go, deep inside
+  const Metrics lost = stage.judged();
+  CHECK(lost.judged_rms_m > 0);
+  CHECK(lost.push_throughs > 0);
+}
+
+TEST_CASE("without a tie one answer is right") {
+  const Stage stage("sphere_1k");
+  CHECK(stage.judged().tied_share < 0.05);
+  const Stage tremor("corner_pit_tilted", WayKind::tremor);  // where rounding decides, all the time, and nothing comes of it
+  CHECK(tremor.judged().tied_share < 0.05);
 }
 
 TEST_CASE("an active wall gives more work than the hold's bound, a passive one does not, and a creeping one creeps") {
@@ -250,7 +283,7 @@ TEST_CASE("a contender is beaten by what is faster and no less exact, by what is
   CHECK(where_others_win({entry("ours", 10, 0, "fdcg"), entry("theirs", 11, 0)}, "fdcg").empty());
 }
 
-TEST_CASE("times: every entrant has its rounds, and a slower one is slower") {
+TEST_CASE("times: all entrants have the same rounds, and a slower one is slower") {
   class Waster : public Contender {
    public:
     explicit Waster(int work) : work_(work) {}
@@ -267,11 +300,47 @@ TEST_CASE("times: every entrant has its rounds, and a slower one is slower") {
   };
   Waster quick(10), slow(1000);
   const Way way(500, Point{1, 2, 3});
-  const std::vector<Timing> timings = time_all({&quick, &slow, &quick}, way, Stopwatch(), 0.02);
+  const std::vector<Timing> timings = time_all({&quick, &slow, &quick}, way, Stopwatch(), {0.02, {3, 77, 499}});
   for (const Timing& t : timings) {
-    CHECK(t.rounds >= 3);
+    CHECK(t.rounds >= kLeastRounds);
+    CHECK(t.rounds % 2 == 1);
+    CHECK(t.rounds == timings[0].rounds);
     CHECK(t.tick_ns.size() == way.size());
+    CHECK(t.cold_ns.size() == 3);
     CHECK(t.batch_ns > 0);
+    CHECK(t.least_mean_ns <= t.mean_ns());
+    CHECK(t.met_max_ns >= t.met_p999_ns);
+    CHECK(t.met_p999_ns >= t.least_mean_ns);
   }
   CHECK(timings[1].mean_ns() > 5 * timings[0].mean_ns());
+}
+
+TEST_CASE("times: what the caches have lost costs time, a contender's own clock is believed") {
+  class Reader : public Contender {  // of 64 lines, each on a page of its own
+   public:
+    void reset() override {}
+    void step(const Point&, Feel& feel) override {
+      for (std::size_t i = 0; i < pages_.size(); i += 4096 + 64)
+        feel.transitions += pages_[i];
+    }
+
+   private:
+    std::vector<unsigned char> pages_ = std::vector<unsigned char>(64 * (4096 + 64), 1);
+  };
+  class Honest : public Contender {
+   public:
+    void reset() override {}
+    void step(const Point&, Feel&) override {}
+    [[nodiscard]] double own_ns() const override { return 1234; }
+  };
+  Reader reader;
+  Honest honest;
+  std::vector<std::uint32_t> cold_ticks;
+  for (std::uint32_t i = 10; i < 500; i += 10)
+    cold_ticks.push_back(i);
+  const std::vector<Timing> timings = time_all({&reader, &honest}, Way(500), Stopwatch(), {0.01, cold_ticks});
+  CHECK(Percentiles(timings[0].cold_ns).at(0.5) > 2 * Percentiles(timings[0].tick_ns).at(0.5));
+  CHECK(timings[1].mean_ns() == 1234);
+  CHECK(timings[1].cold_ns.back() == 1234);
+  CHECK(empty_step_ns(Stopwatch()) < 100);
 }

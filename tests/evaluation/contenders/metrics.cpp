@@ -13,9 +13,9 @@ using namespace plain;
 
 namespace {
 
-constexpr double kBackwards = -0.7;       // a cosine: two forces of a right-angled corner are not opposite
-constexpr double kTouch_m = 1e-5;         // depth from which a contact that is lost or made up counts
-constexpr double kWrongFeature_m = 5e-6;  // far beyond rounding and a proxy's gap, and no hand feels it
+constexpr double kBackwards = -0.7;  // a cosine: two forces of a right-angled corner are not opposite
+constexpr double kTouch_m = 1e-5;    // depth from which a contact that is lost or made up counts
+constexpr double kWrongFeature_m = kApart_m;
 
 double at(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -35,6 +35,13 @@ double angle_deg(const Point& a, const Point& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
+// Nothing is felt of a surface that the truth is in contact with, or a force away from it.
+bool is_lost(const Feel& felt, const Feel& truth) {
+  const double true_force = length(truth.force);
+  return true_force > kTouch_m * kStiffness_n_per_m &&
+         (!felt.in_contact || dot(felt.force, truth.force) < kBackwards * length(felt.force) * true_force);
+}
+
 template <class Force>
 double largest_jump(std::size_t ticks, std::size_t in_a_ms, Force force) {
   double largest = 0;
@@ -45,35 +52,44 @@ double largest_jump(std::size_t ticks, std::size_t in_a_ms, Force force) {
 
 }  // namespace
 
+double error_of(const Feel& felt, const TrueBody::Tick& truth) {
+  double least = length(felt.god_object - truth.feel.god_object);
+  for (const Feel& other : truth.others)
+    least = std::min(least, length(felt.god_object - other.god_object));
+  return least;
+}
+
 Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, const std::vector<TrueBody::Tick>& truth,
               const TrueBody& body) {
   Metrics m;
   m.ticks = way.size();
-  std::vector<double> god_object, untied, force, share, direction;
-  bool was_lost = false, is_tied = false;
-  std::uint64_t tied = 0, lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
+  std::vector<double> god_object, judged, force, share, direction;
+  bool was_lost = false;
+  std::uint64_t tied = 0, unjudged = 0, lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     const Feel &f = felt[i], &t = truth[i].feel;
     m.transitions += f.transitions;
     m.carried_ticks += f.is_carried;
     god_object.push_back(length(f.god_object - t.god_object));
-    // what a tie has led to lasts until both are free again
-    is_tied = truth[i].is_tied || (is_tied && (t.in_contact || f.in_contact));
-    if (!is_tied) untied.push_back(god_object.back());
+    judged.push_back(error_of(f, truth[i]));
     force.push_back(length(f.force - t.force));
     if (!t.in_contact) {
-      phantoms += length(f.force) > kTouch_m * kStiffness_n_per_m;
+      phantoms +=
+          length(f.force) > kTouch_m * kStiffness_n_per_m &&
+          std::none_of(truth[i].others.begin(), truth[i].others.end(), [](const Feel& other) { return other.in_contact; });
       was_lost = false;
       continue;
     }
     ++m.contact_ticks;
-    tied += is_tied;
+    tied += !truth[i].others.empty();
     const double true_force = length(t.force);
-    const bool is_lost = !f.is_carried && !is_tied && true_force > kTouch_m * kStiffness_n_per_m &&
-                         (!f.in_contact || dot(f.force, t.force) < kBackwards * length(f.force) * true_force);
-    lost += is_lost;
-    m.push_throughs += is_lost && !was_lost;
-    was_lost = is_lost;
+    const bool is_through =
+        !f.is_carried && is_lost(f, t) &&
+        std::all_of(truth[i].others.begin(), truth[i].others.end(), [&](const Feel& other) { return is_lost(f, other); });
+    lost += is_through;
+    m.push_throughs += is_through && !was_lost;
+    was_lost = is_through;
+    unjudged += f.is_carried;
     wrong += !f.in_contact || body.distance_to(truth[i].state, truth[i].feature, f.god_object) > kWrongFeature_m;
     if (true_force > 0) {
       share.push_back(force.back() / true_force);
@@ -83,7 +99,8 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
   }
   const double contact = std::max<double>(1, static_cast<double>(m.contact_ticks));
   m.tied_share = static_cast<double>(tied) / contact;
-  m.untied_rms_m = rms(untied);
+  m.unjudged_share = static_cast<double>(unjudged) / contact;
+  m.judged_rms_m = rms(judged);
   m.god_object_rms_m = rms(god_object);
   m.god_object_p50_m = at(god_object, 0.5);
   m.god_object_p99_m = at(god_object, 0.99);

@@ -17,9 +17,11 @@ constexpr double kNoticeableForce = 0.07;
 struct Metrics {
   std::uint64_t ticks = 0, contact_ticks = 0;        // of the truth
   std::uint64_t transitions = 0, carried_ticks = 0;  // of the contender
-  // Ticks of true contact, as a share, that follow a decision which floats do not tell apart (TrueBody::Tick::is_tied), until
-  // truth and contender are both free again: there another answer is as right. And the error over all ticks but those.
-  double tied_share = 0, untied_rms_m = 0;
+  // After a tie there are answers that are as right as the truth (TrueBody::Tick::others): ticks of true contact with such, as
+  // a share, and the error from the nearest right answer over every tick.
+  double tied_share = 0, judged_rms_m = 0;
+  // Ticks of true contact, as a share, whose push-through is not judged: the contender says that it goes on in the next.
+  double unjudged_share = 0;
   // |god-object - true god-object| over every tick; a free contender's god-object is the HIP, as the truth's is.
   double god_object_rms_m = 0, god_object_p50_m = 0, god_object_p99_m = 0, god_object_max_m = 0;
   double force_rms_n = 0, force_max_n = 0;              // |force - true force|
@@ -29,11 +31,14 @@ struct Metrics {
   double jump_n_per_ms = 0, true_jump_n_per_ms = 0;     // the largest change of force within a millisecond
   double wrong_feature_share = 0;  // of ticks of true contact: god-object over 5 micrometres from the true feature
   // Pushed through: the HIP is over 10 micrometres below the true god-object, and the contender is free or pushes over 135
-  // degrees away from the true force. Not in carried or tied ticks.
+  // degrees away from the true force, and from the force of every other right answer. Not in carried ticks.
   std::uint64_t push_throughs = 0;  // times that it begins
   double push_through_share = 0;    // of ticks of true contact
   double phantom_share = 0;         // of truly free ticks: a force of over 10 micrometres' depth
 };
+// From the nearest right answer, in metres.
+double error_of(const Feel& felt, const TrueBody::Tick& truth);
+
 Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, const std::vector<TrueBody::Tick>& truth,
               const TrueBody& body);
 

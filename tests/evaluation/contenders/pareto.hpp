@@ -13,6 +13,7 @@ struct Standing {
   // found by rank():
   bool is_on_frontier = false;
   std::string beaten_by;  // the fastest that is no less exact
+  double cold_ns = 0;     // for the table alone
 };
 
 // An entry is beaten by one whose error is no larger and whose time is shorter by more than `resolution`, the part of a time

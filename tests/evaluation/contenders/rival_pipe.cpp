@@ -25,12 +25,12 @@ class Process {
   explicit Process(std::string command) : command_(std::move(command)) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw std::runtime_error(command_ + ": no socket");
-    const std::string line = "exec " + command_;
     child_ = fork();
     if (child_ == 0) {
+      setpgid(0, 0);  // so that all that the shell starts ends with it
       dup2(ends[1], STDIN_FILENO);
       dup2(ends[1], STDOUT_FILENO);
-      execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
+      execl("/bin/sh", "sh", "-c", command_.c_str(), static_cast<char*>(nullptr));
       _exit(127);
     }
     close(ends[1]);
@@ -39,7 +39,8 @@ class Process {
   }
   ~Process() {
     close(socket_);
-    kill(child_, SIGKILL);
+    kill(-child_, SIGKILL);
+    kill(child_, SIGKILL);  // should it have no group yet
     waitpid(child_, nullptr, 0);
   }
   Process(const Process&) = delete;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <list>
 #include <stdexcept>
 #include <utility>
 
@@ -27,17 +28,83 @@ TrueBody::TrueBody(const Ground& ground) : ground_(ground) {
   if (view_.header->node_count <= kLargestBruteForce) surface_ = std::make_unique<ReferenceSurface<long double>>(view_);
 }
 
+Feel TrueBody::feel_of(const ReferenceContact<long double>& contact, const Point& hip_m, const Point& shift_m) const {
+  Feel feel;
+  feel.in_contact = contact.state != FDCG_FREE;
+  feel.god_object = hip_m;
+  if (!feel.in_contact) return feel;
+  const Vector<long double>&go = contact.god_object, &hip = contact.hip;
+  const long double place[3] = {go.x, go.y, go.z}, depth[3] = {go.x - hip.x, go.y - hip.y, go.z - hip.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    feel.god_object[k] = static_cast<double>(place[k] + surface_->origin[k] - shift_m[k]);
+    feel.force[k] = static_cast<double>(depth[k]) * kStiffness_n_per_m;
+  }
+  return feel;
+}
+
+// What else may be right after a tie.
+class TrueBody::Branches {
+ public:
+  Branches(const TrueBody& body, double extent_m) : body_(body), off_m_(kTie * extent_m) {}
+
+  // Before a step: `walker` is at the tick before.
+  void remember(const ReferenceWalker<long double>& walker) { before_ = walker.contact; }
+
+  // After it. `is_tie`: it met one.
+  void follow(const ReferenceWalker<long double>& walker, const ReferenceFriction& friction, bool is_tie, const Point& hip_m,
+              Tick& tick) {
+    if (is_tie && walkers_.empty()) begin(friction);
+    for (Branch& branch : walkers_) {
+      const Point hip = hip_m + branch.shift_m;
+      branch.walker.step(body_.surface_->local(hip.data()));
+      const ReferenceContact<long double>& contact = branch.walker.contact;
+      const Feel feel = body_.feel_of(contact, hip_m, branch.shift_m);
+      const double apart_m = length(feel.god_object - tick.feel.god_object);
+      branch.is_one = contact.state == walker.contact.state && contact.feature == walker.contact.feature && apart_m < kApart_m;
+      if (feel.in_contact != tick.feel.in_contact || apart_m >= kApart_m) tick.others.push_back(feel);
+    }
+    std::erase_if(walkers_, [](const Branch& branch) { return branch.is_one; });
+  }
+  [[nodiscard]] bool has_any() const { return !walkers_.empty(); }
+
+ private:
+  struct Branch {
+    ReferenceWalker<long double> walker;
+    Point shift_m;
+    bool is_one = false;  // with the truth again
+  };
+  void begin(const ReferenceFriction& friction) {
+    for (const Point& corner : {Point{1, 1, 1}, Point{1, -1, -1}, Point{-1, 1, -1}, Point{-1, -1, 1}}) {
+      Branch branch{ReferenceWalker<long double>(*body_.surface_, friction), corner * off_m_};
+      branch.walker.contact = before_;
+      for (Vector<long double>* place : {&branch.walker.contact.hip, &branch.walker.contact.god_object}) {
+        if (before_.state != FDCG_FREE && place != &branch.walker.contact.hip) continue;  // a god-object stays on its feature
+        place->x += branch.shift_m[0], place->y += branch.shift_m[1], place->z += branch.shift_m[2];
+      }
+      walkers_.push_back(std::move(branch));
+    }
+  }
+
+  const TrueBody& body_;
+  double off_m_;
+  ReferenceContact<long double> before_;
+  std::list<Branch> walkers_;
+};
+
 std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFriction& friction) const {
   if (!surface_) return follow_by_runtime(way, friction);
   ReferenceWalker<long double> walker(*surface_, friction);
+  Branches branches(*this, static_cast<double>(surface_->extent));
   std::vector<Tick> ticks(way.size());
-  bool is_tied = false;
   double clear = 0;  // no surface is nearer to the last HIP than this; 0: not known
   for (std::size_t i = 0; i < way.size(); ++i) {
     const std::array<double, 3> local = surface_->local(way[i].data());
     const double way_m = i > 0 ? length(way[i] - way[i - 1]) : 0;
-    const bool is_free = walker.contact.is_started && walker.contact.state == FDCG_FREE;
+    const bool is_free = walker.contact.is_started && walker.contact.state == FDCG_FREE && !branches.has_any();
     if (is_free && clear <= way_m) clear = ground_.closest(way[i - 1]).distance * (1 - 1e-9);
+    Tick& tick = ticks[i];
+    bool is_tie = false;
+    branches.remember(walker);
     if (is_free && clear > way_m) {
       clear -= way_m;
       walker.contact.hip = {local[0], local[1], local[2]};
@@ -46,23 +113,15 @@ std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFric
     } else {
       clear = 0;
       const ReferenceStep step = walker.step(local);
-      ticks[i].feel.transitions = step.transitions;
-      is_tied = is_tied || step.margin < kTie;
+      tick.feel.transitions = step.transitions;
+      is_tie = step.margin < kTie;
     }
-    Tick& tick = ticks[i];
+    const std::uint32_t transitions = tick.feel.transitions;
     tick.state = walker.contact.state;
     tick.feature = walker.contact.feature;
-    tick.feel.in_contact = tick.state != FDCG_FREE;
-    tick.feel.god_object = way[i];
-    is_tied = is_tied && tick.feel.in_contact;
-    tick.is_tied = is_tied;
-    if (!tick.feel.in_contact) continue;
-    const Vector<long double>& go = walker.contact.god_object;
-    const long double place[3] = {go.x, go.y, go.z};
-    for (std::size_t k = 0; k < 3; ++k) {
-      tick.feel.god_object[k] = static_cast<double>(place[k] + surface_->origin[k]);
-      tick.feel.force[k] = static_cast<double>(place[k] - local[k]) * kStiffness_n_per_m;
-    }
+    tick.feel = feel_of(walker.contact, way[i], {});
+    tick.feel.transitions = transitions;
+    branches.follow(walker, friction, is_tie, way[i], tick);
   }
   return ticks;
 }

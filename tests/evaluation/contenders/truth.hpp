@@ -16,6 +16,8 @@ namespace fdcg::test {
 
 constexpr double kTie = 0x1p-22;  // twice the spacing of floats at the extent
 
+constexpr double kApart_m = 5e-6;  // of two answers: far beyond rounding and a proxy's gap, and no hand feels it
+
 // From here on brute force takes gigabytes and minutes: the truth is this runtime's in double, unmerged, and at sampled ticks
 // checked to be the closest point of the mesh, which is sufficient, not necessary.
 constexpr std::uint32_t kLargestBruteForce = 2'000'000;  // faces
@@ -29,8 +31,11 @@ class TrueBody {
   struct Tick {
     Feel feel;
     std::uint32_t state = FDCG_FREE, feature = FDCG_NONE;
-    // Since it was last free a decision was closer than floats tell apart, kTie of the extent: another answer may be as right.
-    bool is_tied = false;
+    // Answers that are as right. A decision that is closer than floats tell apart, kTie of the extent, is a tie: from there on
+    // four more walkers are followed, of hands that are kTie of the extent off, one to each corner of a tetrahedron, so that
+    // every plane is passed on both sides. One ends when it is on the truth's feature again. Here are those that are kApart_m
+    // or more off.
+    std::vector<Feel> others;
   };
   // Sweeps through free space are skipped where the ground is farther than the way is long.
   [[nodiscard]] std::vector<Tick> follow(const Way& way, const ReferenceFriction& friction) const;
@@ -41,6 +46,9 @@ class TrueBody {
   [[nodiscard]] double distance_to(std::uint32_t state, std::uint32_t feature, const Ground::Point& point) const;
 
  private:
+  class Branches;
+  [[nodiscard]] Feel feel_of(const ReferenceContact<long double>& contact, const Ground::Point& hip_m,
+                             const Ground::Point& shift_m) const;
   [[nodiscard]] std::vector<Tick> follow_by_runtime(const Way& way, const ReferenceFriction& friction) const;
 
   const Ground& ground_;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFirstLine = "fdcg-way 1";
 constexpr const char* kColumns =
-    "hip_x_m hip_y_m hip_z_m state tied god_object_x_m god_object_y_m god_object_z_m force_x_n force_y_n force_z_n";
+    "hip_x_m hip_y_m hip_z_m state god_object_x_m god_object_y_m god_object_z_m force_x_n force_y_n force_z_n others";
 
 std::string exact(double value) {
   char text[40];
@@ -88,13 +88,10 @@ void read_rows(Reader& reader, WayFile& file, bool has_truth) {
     if (line.empty() || line[0] == '#') continue;
     file.hips.push_back(reader.point(words));
     if (!has_truth) continue;
-    std::string state, tied;
-    words >> state >> tied;
+    std::string state;
+    words >> state;
     if (state != "free" && state != "face" && state != "edge" && state != "vertex")
       reader.wrong("'" + state + "' is not free, face, edge or vertex");
-    if (tied != "0" && tied != "1") reader.wrong("'" + tied + "' is not 0 or 1");
-    file.is_true_contact.push_back(state != "free");
-    file.is_tied.push_back(tied == "1");
     file.true_god_objects.push_back(reader.point(words));
   }
   if (file.hips.empty()) reader.wrong("the file has no row");
@@ -151,10 +148,15 @@ void write_way(const std::string& folder, const WayFile& file, const std::vector
       << "\ncolumns " << kColumns << '\n';
   for (std::size_t i = 0; i < file.hips.size(); ++i) {
     const Ground::Point& hip = file.hips[i];
-    out << exact(hip[0]) << ' ' << exact(hip[1]) << ' ' << exact(hip[2]) << ' ' << state_name(truth[i].state) << ' '
-        << (truth[i].is_tied ? 1 : 0);
+    out << exact(hip[0]) << ' ' << exact(hip[1]) << ' ' << exact(hip[2]) << ' ' << state_name(truth[i].state);
     put(out, truth[i].feel.god_object);
     put(out, truth[i].feel.force);
+    out << ' ' << truth[i].others.size();
+    for (const Feel& other : truth[i].others) {
+      out << (other.in_contact ? " 1" : " 0");
+      put(out, other.god_object);
+      put(out, other.force);
+    }
     out << '\n';
   }
   close_or_throw(out, path);

@@ -18,7 +18,6 @@ struct WayFile {
   std::string reference;  // what the truth is by
   Way hips;
   std::vector<Ground::Point> true_god_objects;  // empty: the file has none
-  std::vector<bool> is_true_contact, is_tied;   // as many
 };
 
 // FOLDER/NAME.way and, where it is not there yet, FOLDER/BODY.off. Throws std::runtime_error.

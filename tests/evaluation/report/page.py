@@ -68,17 +68,23 @@ def bars_part(bars):
     return (bars_table(failed) if failed else "") + folded
 
 
-def page(facts, bars, summary, sections):
-    """`summary`: sentences, as HTML. `sections`: (id, title, introduction as HTML, list of HTML parts)."""
+def environment_part(environment):
+    rows = [{"what": k, "is": v} for k, v in environment.items()]
+    return "<h2 id=environment>Measured on</h2>" + table(["what", "is"], rows, {"what": "", "is": ""}) if rows else ""
+
+
+def page(facts, bars, front, sections, environment):
+    """`front`: what is to be seen first, as HTML. `sections`: (id, title, introduction as HTML, list of HTML parts)."""
     out = ["<!doctype html><html lang=en><head><meta charset=utf-8><title>fdcg: run time against error</title>",
            "<meta name=viewport content='width=device-width,initial-scale=1'>",
            f"<style>{STYLE}</style></head><body>",
            "<h1>fdcg: run time against error, and stability under stress</h1>",
-           f"<p class=facts>{facts_line(facts)}</p>", "".join(f"<p>{line}</p>" for line in summary), "<nav>",
-           "".join(f"<a href='#{i}'>{escape(t)}</a>" for i, t, _, _ in sections), "</nav>",
-           "<h2 id=bars>Bars</h2>", bars_part(bars)]
+           f"<p class=facts>{facts_line(facts)}</p>", *front, "<nav><a href='#bars'>Bars</a>",
+           "".join(f"<a href='#{i}'>{escape(t)}</a>" for i, t, _, _ in sections),
+           "<a href='#environment'>Measured on</a>" if environment else "", "</nav>", "<h2 id=bars>Bars</h2>", bars_part(bars)]
     for identity, title, introduction, parts in sections:
         out.append(f"<h2 id={identity}>{escape(title)}</h2>{introduction}")
         out += parts
+    out.append(environment_part(environment))
     out.append("</body></html>\n")
     return "\n".join(out)

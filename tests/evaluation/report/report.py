@@ -21,6 +21,7 @@ import summary  # noqa: E402
 from tables import Run, jsonable  # noqa: E402
 
 PARTS = [contenders, accuracy, laws, closed_loop, stress, scaling]  # in the report's order
+FRONT = {"overview"}
 MOST_BYTES = 5_000_000
 
 
@@ -48,28 +49,33 @@ def facts(options):
             "compiler": first_line(["c++", "--version"], "not known")}
 
 
-def results(run, known):
-    return {"tool": "fdcg bench", "facts": known, "bars": [{k: jsonable(v) for k, v in b.items()} for b in run.bars],
+def environment(folder):
+    """What environment.py has recorded; empty where it was not run."""
+    path = folder / "environment.json"
+    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+
+
+def results(run, known, measured_on):
+    return {"tool": "fdcg bench", "facts": {**known, **({"environment": measured_on} if measured_on else {})}, "bars": [{k: jsonable(v) for k, v in b.items()} for b in run.bars],
             "tables": {name: {"columns": t.columns, "rows": [[jsonable(r[c]) for c in t.columns] for r in t.rows]}
                        for name, t in run.tables.items()}}
 
 
 def sections(run):
-    """Each part's section, and every figure. A part that was not run has a sentence that says so."""
-    made, figures = [], []
+    """Each part's section, every figure, and those of FRONT, which stand on the first page. A part that was not run says so."""
+    made, figures, front = [], [], []
     for part in PARTS:
-        parts, drawn = [], []
+        parts = []
         for item in part.content(run):
             if isinstance(item, str):
                 parts.append(item)
-            else:
-                parts.append(page.figure(item))
-                drawn.append(item)
+                continue
+            figures.append(item)
+            (front if item.name in FRONT else parts).append(page.figure(item))
         if not parts:
             parts = ["<p class=note>Not run.</p>"]
         made.append((part.IDENTITY, part.TITLE, part.INTRODUCTION, parts))
-        figures += drawn
-    return made, figures
+    return made, figures, front
 
 
 def main():
@@ -83,11 +89,12 @@ def main():
     if not run.tables and not run.bars:
         parser.error(f"{options.folder}: no CSV table there; run tools/bench, which writes them")
     known = facts(options)
-    made, figures = sections(run)
-    text = page.page(known, run.bars, list(summary.lines(run)), made)
+    measured_on = environment(run.folder)
+    made, figures, front = sections(run)
+    text = page.page(known, run.bars, [*(f"<p>{line}</p>" for line in summary.lines(run)), summary.glance(run), *front], made, measured_on)
     if len(text.encode()) > MOST_BYTES:
         sys.exit(f"report.py: the page would have {len(text.encode())} bytes, more than {MOST_BYTES}")
-    (run.folder / "results.json").write_text(json.dumps(results(run, known), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (run.folder / "results.json").write_text(json.dumps(results(run, known, measured_on), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     (run.folder / "report.html").write_text(text, encoding="utf-8")
     if options.pictures:
         wanted = [f for f in figures if f.name in page.README_PICTURES]

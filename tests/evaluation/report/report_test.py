@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The report over what the programs' quick modes have written (FDCG_EVALUATION: their folder), and over broken tables."""
+import array
 import csv
+import gzip
 import html
 import json
 import os
@@ -24,6 +26,15 @@ def report(folder, *more):
     return subprocess.run([sys.executable, "-B", str(HERE / "report.py"), str(folder), *more], capture_output=True, text=True)
 
 
+def raw_of(path):
+    return subprocess.run([sys.executable, "-B", str(HERE / "raw.py"), str(path)], capture_output=True, text=True)
+
+
+def read_rows(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
 def frontier_of(path):
     return subprocess.run([sys.executable, "-B", str(HERE / "frontier.py"), str(path)], capture_output=True, text=True)
 
@@ -34,6 +45,10 @@ class OfQuickRuns(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(WRITTEN)
+        done = raw_of(cls.folder)
+        assert done.returncode == 0, done.stderr
+        environment = [sys.executable, "-B", str(HERE / "environment.py"), os.environ["FDCG_BUILD"], str(cls.folder)]
+        subprocess.run(environment, check=True)
         cls.run_ = report(cls.folder, "--mode", "quick", "--seed", "1")
         assert cls.run_.returncode == 0, cls.run_.stderr
         cls.page = (cls.folder / "report.html").read_text(encoding="utf-8")
@@ -50,6 +65,18 @@ class OfQuickRuns(unittest.TestCase):
         figures = self.page.count("<figure")
         self.assertGreaterEqual(figures, 8)
         self.assertEqual(len(re.findall(r'role="img" aria-label="[^"]{20,}"', self.page)), figures)
+
+    def test_the_first_page_says_where_we_lose_how_fast_how_wrong_and_the_rest_comes_after(self):
+        places = [self.page.index(text) for text in ("Where fdcg loses", "fdcg, f64:", "Cold:", "fastest other, no less exact", 'id="overview"',
+                                                     "<nav>", "id=bars", 'id="pareto"', "id=environment")]
+        self.assertEqual(places, sorted(places))
+
+    def test_what_was_measured_on_is_recorded(self):
+        known = self.results["facts"]["environment"]
+        for key in ("processor", "caches", "governor", "load_before", "kernel", "compiler", "flags_of_the_step", "libembree-dev"):
+            self.assertIn(key, known)
+        self.assertIn("-ffp-contract=off", known["flags_of_the_step"])
+        self.assertIn(html.escape(known["flags_of_the_step"]), self.page)
 
     def test_ids_are_unique(self):
         ids = re.findall(r'\bid="([^"]+)"', self.page)
@@ -71,10 +98,80 @@ class OfQuickRuns(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("fdcg_f64", done.stdout)
 
+    def test_the_frontier_by_every_measured_tick_is_the_files(self):
+        done = raw_of(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = read_rows(self.folder / "pareto_intervals.csv")
+        self.assertEqual({(r["body"], r["contender"]) for r in rows},
+                         {(r["body"], r["contender"]) for r in read_rows(self.folder / "pareto.csv")})
+        for row in rows:
+            for key in ("mean_ns", "cold_ns", "god_object_rms_m"):
+                low, value, high = (float(row[k]) for k in (f"{key}_low", key, f"{key}_high"))
+                self.assertTrue(low <= value * 1.001 and value <= high * 1.001 and low >= 0, row)
+            self.assertEqual("2", row["seeds"])
+        self.assertTrue(any(float(r["mean_ns_high"]) > float(r["mean_ns_low"]) for r in rows))
+
     def test_every_bar_is_on_the_page(self):
         self.assertGreater(len(self.results["bars"]), 20)
         for bar in self.results["bars"]:
             self.assertTrue(html.escape(bar["bar"]) in self.page, bar["bar"])
+
+
+class OfRawTicks(unittest.TestCase):
+    """Of a made-up file: two contenders and a control, 1,000 ticks, ten of them cold."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (self.folder / "raw").mkdir()
+
+    def write(self, seed, ours_ns=40.0, theirs_ns=80.0, cut=0):
+        head = {"format": "fdcg-raw 1", "body": "b", "faces": 12, "way": "hand", "seed": seed, "ticks": 1000, "rounds": 5,
+                "swept_bytes": 1, "cold_ticks": list(range(10)),
+                "contenders": [{"name": "fdcg_f64_stored", "family": "fdcg", "control": False},
+                               {"name": "other", "family": "proxy", "control": False},
+                               {"name": "fdcg_f64_stored", "family": "fdcg", "control": True}]}
+        numbers = array.array("f", [0] * 2000)
+        for ns, error_m in ((ours_ns, 0.0), (theirs_ns, 3e-6), (ours_ns, 0.0)):
+            numbers.extend([ns - 1, ns + 1] * 500 + [error_m] * 1000 + [3 * ns] * 10)
+        content = (json.dumps(head) + "\n").encode() + numbers.tobytes()
+        with gzip.open(self.folder / "raw" / f"b.hand.{seed}.raw.gz", "wb") as file:
+            file.write(content[:len(content) - cut])
+
+    def summary(self, theirs_ns="80", on_frontier="no"):
+        (self.folder / "pareto.csv").write_text(
+            "body,contender,mean_ns,cold_mean_ns,god_object_rms_m,on_frontier\nb,fdcg_f64_stored,40,120,0,yes\n"
+            f"b,other,{theirs_ns},240,3e-6,{on_frontier}\n")
+
+    def test_two_ways_make_one_figure_with_its_interval(self):
+        self.write(1)
+        self.write(2, theirs_ns=90.0)
+        self.summary("85")
+        (self.folder / "pareto.csv").write_text((self.folder / "pareto.csv").read_text().replace(",240,", ",255,"))
+        done = raw_of(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        other = read_rows(self.folder / "pareto_intervals.csv")[1]
+        self.assertEqual(("85", "2.125", "2", "2000"), tuple(other[k] for k in ("mean_ns", "over_ours", "seeds", "ticks")))
+        self.assertLess(float(other["mean_ns_low"]), 84)
+        self.assertGreater(float(other["mean_ns_high"]), 86)
+        self.assertEqual(("no", "no"), (other["on_frontier"], other["cold_on_frontier"]))
+
+    def test_a_summary_that_says_otherwise_is_found_out(self):
+        self.write(1)
+        self.summary("81", "yes")
+        done = raw_of(self.folder)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("b, other: mean_ns 81, by its ticks 80", done.stderr)
+        self.assertIn("b, other: on_frontier yes, by its ticks no", done.stderr)
+
+    def test_a_file_cut_short_is_named(self):
+        self.write(1, cut=8)
+        self.summary()
+        done = raw_of(self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("b.hand.1.raw.gz: is cut short", done.stderr)
+
+    def test_without_ticks_it_says_who_writes_them(self):
+        self.assertEqual(raw_of(self.folder).returncode, 2)
 
 
 class OfFigures(unittest.TestCase):

@@ -45,7 +45,7 @@ class Templates(unittest.TestCase):
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.library = cls.folder / "template.so"
         build(HERE / "template.c", cls.library)
-        done = bench("--rival", cls.library, "--rival", PIPE, "--body", "cube_12", "--body", "sphere_80", "--ticks", 600, "--way", "hand",
+        done = bench("--rival", cls.library, "--rival", PIPE, "--body", "cube_12", "--body", "sphere_80", "--ticks", 600, "--way", "hand", "--seeds", 1,
                      "--output", cls.folder, "--export", cls.folder / "files")
         assert done.returncode == 0, done.stdout + done.stderr
         cls.rows = rows_of(cls.folder / "contenders.csv")
@@ -83,10 +83,24 @@ class Templates(unittest.TestCase):
             found = judge.judge(path)
             body = found["way"].split(".")[0]
             row = next(r for r in self.rows if r["contender"] == found["contender"] and r["body"] == body)
-            for column in ("god_object_rms_m", "god_object_rms_untied_m", "god_object_max_m", "force_max_n"):
+            for column in ("god_object_rms_m", "god_object_rms_judged_m", "god_object_max_m", "force_max_n"):
                 self.assertAlmostEqual(found[column], float(row[column]), delta=1e-8 * float(row[column]) + 1e-300, msg=f"{path} {column}")
             for column in ("contact_ticks", "push_throughs"):
                 self.assertEqual(found[column], int(row[column]), f"{path} {column}")
+
+    def test_after_a_tie_every_right_answer_is_judged_as_right(self):
+        """Into corners exactly, where rounding decides between faces."""
+        done = bench("--body", "star_1k", "--way", "corner_dive", "--ticks", 600, "--contender", "fdcg_f64_stored", "--contender", "cgal_closest",
+                     "--output", self.folder / "tied", "--export", self.folder / "tied")
+        self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+        rows = {r["contender"]: r for r in rows_of(self.folder / "tied" / "contenders.csv")}
+        self.assertGreater(float(rows["cgal_closest"]["tied_share"]), 0)
+        for path in (self.folder / "tied").glob("*.answers"):
+            found = judge.judge(path)
+            row = rows[found["contender"]]
+            self.assertAlmostEqual(found["god_object_rms_judged_m"], float(row["god_object_rms_judged_m"]), delta=1e-8 * found["god_object_rms_m"])
+            self.assertEqual(found["push_throughs"], int(row["push_throughs"]))
+            self.assertLessEqual(found["god_object_rms_judged_m"], found["god_object_rms_m"])
 
     def test_a_way_read_from_its_file_is_felt_alike_and_its_truth_is_the_truth(self):
         way = next((self.folder / "files").glob("sphere_80.*.way"))
@@ -103,7 +117,7 @@ class Templates(unittest.TestCase):
         way = next((self.folder / "files").glob("cube_12.*.way"))
         lines = way.read_text().splitlines()
         words = lines[-1].split()
-        words[5] = (float.fromhex(words[5]) + 1e-9).hex()
+        words[4] = (float.fromhex(words[4]) + 1e-9).hex()
         bad = way.parent / "bad.way"
         bad.write_text("\n".join([*lines[:-1], " ".join(words)]) + "\n")
         done = bench("--way-file", bad, "--contender", "fdcg_f64_stored", "--output", self.folder / "bad")
