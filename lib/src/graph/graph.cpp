@@ -2,13 +2,14 @@
 #include "graph/graph.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <limits>
 #include <utility>
 
 #include "base/hilbert.hpp"
 #include "base/parallel.hpp"
+#include "base/radix_sort.hpp"
+#include "base/raw_array.hpp"
 #include "base/release.hpp"
 #include "base/vec3.hpp"
 #include "exact/projection.hpp"
@@ -50,7 +51,7 @@ unsigned curve_bits(std::uint32_t faces) {
   return std::clamp(static_cast<unsigned>(std::bit_width(faces)) / 2 + 1, kLeast, kMost);
 }
 
-std::vector<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsigned jobs) {
+RawArray<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsigned jobs) {
   const auto [low, high] = bounds_of(mesh.points);
   const double size = largest_component(high - low);
   const double cells = 1u << bits;
@@ -58,7 +59,7 @@ std::vector<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsig
   const auto cell = [&](double doubled, double from) {
     return static_cast<std::uint32_t>(std::clamp((doubled - 2 * from) * cells_per_unit, 0.0, cells - 1));
   };
-  std::vector<Ranked> ranked(mesh.face_count());
+  RawArray<Ranked> ranked(mesh.face_count());
   parallel_for(jobs, ranked.size(), kRankGrain, [&, from = low](std::size_t begin, std::size_t end) {
     for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
       const Vec3 c = doubled_centre(mesh, f);
@@ -66,27 +67,6 @@ std::vector<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsig
     }
   });
   return ranked;
-}
-
-// Stable, least significant digit first.
-void radix_sort(std::vector<Ranked>& items, unsigned key_bits) {
-  constexpr unsigned kDigitBits = 11;
-  constexpr std::uint64_t kMask = (1u << kDigitBits) - 1;
-  const unsigned digits = (key_bits + kDigitBits - 1) / kDigitBits;
-  std::vector<std::array<std::uint32_t, kMask + 1>> counts(digits);
-  for (const Ranked& item : items) {
-    for (unsigned d = 0; d < digits; ++d)
-      ++counts[d][item.key >> (d * kDigitBits) & kMask];
-  }
-  std::vector<Ranked> other(items.size());
-  for (unsigned d = 0; d < digits; ++d) {
-    std::uint32_t sum = 0;
-    for (std::uint32_t& entry : counts[d])
-      sum += std::exchange(entry, sum);
-    for (const Ranked& item : items)
-      other[counts[d][item.key >> (d * kDigitBits) & kMask]++] = item;
-    items.swap(other);
-  }
 }
 
 // The first corner of a polygon: the one whose triangle with the two next corners is the largest in the projection of the
@@ -117,11 +97,11 @@ class Orderer {
   Graph run() {
     {
       const unsigned bits = curve_bits(mesh_.face_count());
-      std::vector<Ranked> ranked = positions_along_curve(mesh_, bits, jobs_);
-      radix_sort(ranked, 3 * bits);
+      RawArray<Ranked> ranked = positions_along_curve(mesh_, bits, jobs_);
+      radix_sort(ranked, 3 * bits, jobs_, [](const Ranked& item) { return item.key; });
       std::vector<std::uint32_t> faces(ranked.size());
       std::transform(ranked.begin(), ranked.end(), faces.begin(), [](const Ranked& item) { return item.face; });
-      release(ranked);
+      ranked = {};
       graph_.fan_runs = gather_fans(mesh_, topology_, faces);
       place_nodes(faces);
     }

@@ -104,7 +104,9 @@ void number_patches(const Mesh& mesh, const Topology& topology, const std::vecto
   }
 }
 
-std::uint64_t count_components(const Mesh& mesh, FaceSets& sets) {
+// One patch of all faces is one component; else patches and other faces that meet at a vertex are joined.
+std::uint64_t count_components(const Mesh& mesh, const Patches& found, FaceSets& sets) {
+  if (found.patches.size() == 1 && found.patches[0].faces == mesh.face_count()) return 1;
   std::vector<std::uint32_t> face_at(mesh.points.size(), kNone);  // one face at each vertex
   std::uint64_t components = 0;
   std::vector<std::uint32_t> rooted;
@@ -217,7 +219,7 @@ Patches find_patches(const Mesh& mesh, const Topology& topology, const std::vect
   Patches out;
   FaceSets sets = join_across_edges(mesh, topology, odd);
   number_patches(mesh, topology, states, geometry, sets, out);
-  out.components = count_components(mesh, sets);
+  out.components = count_components(mesh, out, sets);
   for (const OddEdge& edge : odd) {
     if (topology.twin[+edge.halfedges[0]] != Topology::kSameWay) continue;
     find_turned(mesh, topology, odd, out);

@@ -4,15 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <utility>
 
 #include "base/hilbert.hpp"
 #include "base/parallel.hpp"
+#include "base/radix_sort.hpp"
 #include "base/vec3.hpp"
 
 namespace fdcg::bake {
 namespace {
 
 constexpr std::size_t kBoxGrain = 4096;
+constexpr std::size_t kPointGrain = 16'384;
 constexpr unsigned kKeyBits = 10;  // per coordinate: fine enough for the order, and key and index fit one word
 
 std::uint32_t field(Cell cell, unsigned axis) {
@@ -26,48 +30,44 @@ std::uint64_t curve_key(const CellBox& box) {
   return hilbert_position(middle, kKeyBits) << 32;
 }
 
-// Least digit first; the digits are the upper halves' 3 x 10 bits.
-void sort_by_upper_half(std::vector<std::uint64_t>& keys) {
-  std::vector<std::uint64_t> sorted(keys.size());
-  for (unsigned shift = 32; shift < 32 + 3 * kKeyBits; shift += kKeyBits) {
-    std::array<std::uint32_t, std::size_t{1} << kKeyBits> place{};
-    const auto digit = [&](std::uint64_t key) { return key >> shift & ((1u << kKeyBits) - 1); };
-    for (const std::uint64_t key : keys)
-      ++place[digit(key)];
-    std::uint32_t sum = 0;
-    for (std::uint32_t& entry : place) {
-      const std::uint32_t count = entry;
-      entry = sum;
-      sum += count;
-    }
-    for (const std::uint64_t key : keys)
-      sorted[place[digit(key)]++] = key;
-    keys.swap(sorted);
-  }
-}
-
 }  // namespace
 
-CellGrid::CellGrid(const std::vector<Vec3>& points) {
+CellGrid::CellGrid(const std::vector<Vec3>& points, unsigned jobs) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr std::size_t kSamples = 4096;
-  for (int k = 0; k < 3; ++k) {
-    std::vector<double> sample;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    const std::size_t stride = points.size() / kSamples + 1;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double half = component(points[i], k) / 2;
-      if (!std::isfinite(half)) continue;
-      low = std::min(low, half);
-      high = std::max(high, half);
-      if (i % stride == 0) sample.push_back(half);
+  constexpr std::size_t kAxes = 3;
+  std::array<double, kAxes> low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+  std::mutex lock;
+  parallel_for(jobs, points.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
+    std::array<double, kAxes> least{kInfinity, kInfinity, kInfinity}, most{-kInfinity, -kInfinity, -kInfinity};
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t k = 0; k < kAxes; ++k) {
+        const double half = component(points[i], static_cast<int>(k)) / 2;
+        if (!std::isfinite(half)) continue;
+        least[k] = std::min(least[k], half);
+        most[k] = std::max(most[k], half);
+      }
     }
-    if (!(low <= high)) low = high = 0;
+    const std::scoped_lock guard(lock);
+    for (std::size_t k = 0; k < kAxes; ++k) {
+      low[k] = std::min(low[k], least[k]);
+      high[k] = std::max(high[k], most[k]);
+    }
+  });
+  const std::size_t stride = points.size() / kSamples + 1;
+  for (std::size_t k = 0; k < kAxes; ++k) {
+    std::vector<double> sample;
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+      const double half = component(points[i], static_cast<int>(k)) / 2;
+      if (std::isfinite(half)) sample.push_back(half);
+    }
+    if (!(low[k] <= high[k])) low[k] = high[k] = 0;
     std::sort(sample.begin(), sample.end());
-    Axis& axis = axes_[static_cast<std::size_t>(k)];
+    Axis& axis = axes_[k];
     for (std::size_t piece = 0; piece < kPieces; ++piece)
-      axis.start[piece] = piece == 0 || sample.empty() ? low : sample[piece * sample.size() / kPieces];
+      axis.start[piece] = piece == 0 || sample.empty() ? low[k] : sample[piece * sample.size() / kPieces];
     for (std::size_t piece = 0; piece < kPieces; ++piece) {
-      const double width = (piece + 1 < kPieces ? axis.start[piece + 1] : high) - axis.start[piece];
+      const double width = (piece + 1 < kPieces ? axis.start[piece + 1] : high[k]) - axis.start[piece];
       constexpr double kCells = 1u << (kCellBits - kPieceBits);
       axis.cells_per_unit[piece] = width > 0 ? std::min(kCells / width, std::numeric_limits<double>::max()) : 0;
     }
@@ -91,18 +91,21 @@ Cell CellGrid::cell(const Vec3& p) const {
          place(axes_[2], p.z / 2) << (2 * kCellBits + 2);
 }
 
-BoxTree::BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs) {
-  std::vector<std::uint64_t> keys(boxes.size());
+BoxTree::BoxTree(const RawArray<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs) {
+  RawArray<std::uint64_t> keys(boxes.size());  // the position along the curve, then the number
   parallel_for(jobs, boxes.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       keys[i] = curve_key(boxes[i]) | i;
   });
-  sort_by_upper_half(keys);
-  order_.resize(boxes.size());
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    order_[i] = static_cast<std::uint32_t>(keys[i]);
+  radix_sort(keys, 3 * kKeyBits, jobs, [](std::uint64_t key) { return key >> 32; });
+  order_ = RawArray<std::uint32_t>(boxes.size());
+  parallel_for(jobs, boxes.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      order_[i] = static_cast<std::uint32_t>(keys[i]);
+  });
   if (!labels.empty()) {  // boxes of one label are consecutive, so that they share nodes
-    std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) { return labels[i] < labels[j]; });
+    std::stable_sort(order_.data(), order_.data() + order_.size(),
+                     [&](std::uint32_t i, std::uint32_t j) { return labels[i] < labels[j]; });
   }
   levels_.emplace_back(boxes.size());
   parallel_for(jobs, boxes.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
@@ -110,12 +113,15 @@ BoxTree::BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint3
       levels_[0][i] = boxes[order_[i]];
   });
   while (levels_.back().size() > 1) {
-    const std::vector<CellBox>& below = levels_.back();
-    std::vector<CellBox> above((below.size() + kArity - 1) / kArity);
-    for (std::size_t i = 0; i < below.size(); ++i) {
-      if (i % kArity == 0) above[i / kArity] = below[i];
-      above[i / kArity].add(below[i]);
-    }
+    const RawArray<CellBox>& below = levels_.back();
+    RawArray<CellBox> above((below.size() + kArity - 1) / kArity);
+    parallel_for(jobs, above.size(), kBoxGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t node = begin; node < end; ++node) {
+        above[node] = below[node * kArity];
+        for (std::size_t i = node * kArity + 1; i < std::min(below.size(), (node + 1) * kArity); ++i)
+          above[node].add(below[i]);
+      }
+    });
     levels_.push_back(std::move(above));
   }
   if (!labels.empty()) label_levels(labels);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/ids.hpp"
+#include "base/raw_array.hpp"
 #include "fdcg/bake.hpp"
 
 namespace fdcg::bake {
@@ -25,7 +26,7 @@ inline constexpr Cell kCellGuards =
 class CellGrid {
  public:
   // Points that are not finite are ignored.
-  explicit CellGrid(const std::vector<Vec3>& points);
+  CellGrid(const std::vector<Vec3>& points, unsigned jobs);
   [[nodiscard]] Cell cell(const Vec3& p) const;
 
  private:
@@ -40,7 +41,7 @@ class CellGrid {
 };
 
 struct CellBox {
-  Cell low = 0, high = kCellGuards;  // `high` with its guards set
+  Cell low, high;  // `high` with its guards set
 
   [[nodiscard]] bool meets(const CellBox& other) const {
     return ((other.high - low) & (high - other.low) & kCellGuards) == kCellGuards;
@@ -65,13 +66,17 @@ class BoxTree {
  public:
   // Pairs of boxes with the same label are omitted and, where many boxes have it, skipped without a test. `labels`: of each
   // box, kNone for none; or empty.
-  BoxTree(const std::vector<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs);
+  BoxTree(const RawArray<CellBox>& boxes, const std::vector<std::uint32_t>& labels, unsigned jobs);
 
   // The number of parts of the work, which can run concurrently and do not depend on the number of threads.
   [[nodiscard]] std::size_t part_count() const { return levels_[part_level_].size(); }
 
-  // Calls visit(i, j) for the pairs of one part: indices of the given boxes, always in the same order; over all parts each pair
-  // once. Ends where visit returns false.
+  [[nodiscard]] std::size_t size() const { return order_.size(); }
+  // The number of the given box at a place of the tree.
+  [[nodiscard]] std::uint32_t number(std::size_t place) const { return order_[place]; }
+
+  // Calls visit(i, j) for the pairs of one part: places of the tree, always in the same order; over all parts each pair once.
+  // Ends where visit returns false.
   template <class Visit>
   void for_each_pair(std::size_t part, Visit visit) const {
     if (within(part_level_, part, visit)) with_later_parts(levels_.size() - 1, 0, part, visit);
@@ -108,7 +113,7 @@ class BoxTree {
   template <class Visit>
   bool between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
     if (have_same_label(level, a, b)) return true;
-    if (level == 0) return visit(order_[a], order_[b]);
+    if (level == 0) return visit(a, b);
     const CellBox* const below = levels_[level - 1].data();
     const CellBox other = levels_[level][b];
     const Children in_a = children(level, a), in_b = children(level, b);
@@ -118,7 +123,7 @@ class BoxTree {
       for (std::size_t j = in_b.begin; j < in_b.end; ++j) {
         if (!box.meets(below[j])) continue;
         if (level == 1) {
-          if (!have_same_label(0, i, j) && !visit(order_[i], order_[j])) return false;
+          if (!have_same_label(0, i, j) && !visit(i, j)) return false;
         } else if (!between(level - 1, i, j, visit)) {
           return false;
         }
@@ -145,8 +150,8 @@ class BoxTree {
   }
   void label_levels(const std::vector<std::uint32_t>& labels);
 
-  std::vector<std::uint32_t> order_;                // the number of each box along the curve
-  std::vector<std::vector<CellBox>> levels_;        // [0]: the boxes in that order
+  RawArray<std::uint32_t> order_;                   // the number of each box along the curve
+  std::vector<RawArray<CellBox>> levels_;           // [0]: the boxes in that order
   std::vector<std::vector<std::uint32_t>> labels_;  // likewise: the common label of the boxes below; or empty
   std::size_t part_level_ = 0;
 };

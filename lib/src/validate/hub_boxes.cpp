@@ -31,25 +31,24 @@ struct HubPatch {
         high{std::max(a.x, b.x) + slack, std::max(a.y, b.y) + slack, std::max(a.z, b.z) + slack} {}
 };
 
-std::vector<CellBox> cells_of(const std::vector<HubPatch>& patches) {
+RawArray<CellBox> cells_of(const std::vector<HubPatch>& patches) {
   std::vector<Vec3> ends;
   for (const HubPatch& patch : patches) {
     ends.push_back(patch.low);
     ends.push_back(patch.high);
   }
-  const CellGrid grid(ends);
-  std::vector<CellBox> boxes;
-  boxes.reserve(patches.size());
-  for (const HubPatch& patch : patches) {
-    boxes.push_back(CellBox::around(grid.cell(patch.low)));
-    boxes.back().add(CellBox::around(grid.cell(patch.high)));
+  const CellGrid grid(ends, 1);
+  RawArray<CellBox> boxes(patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    boxes[i] = CellBox::around(grid.cell(patches[i].low));
+    boxes[i].add(CellBox::around(grid.cell(patches[i].high)));
   }
   return boxes;
 }
 
 }  // namespace
 
-std::vector<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTriangle>& triangles) {
+RawArray<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTriangle>& triangles) {
   std::vector<HubPatch> patches;
   for (const ContactTriangle& t : triangles) {
     const auto at = static_cast<std::size_t>(std::find(t.corner.begin(), t.corner.end(), hub) - t.corner.begin());
@@ -61,7 +60,7 @@ std::vector<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTria
   return cells_of(patches);
 }
 
-std::vector<CellBox> boxes_around(const Vec3* from, const Vec3* to, const std::vector<ContactTriangle>& triangles) {
+RawArray<CellBox> boxes_around(const Vec3* from, const Vec3* to, const std::vector<ContactTriangle>& triangles) {
   const Vec3 e = unit(*to - *from);
   std::vector<HubPatch> patches;
   for (const ContactTriangle& t : triangles) {

@@ -16,11 +16,10 @@ inline constexpr std::uint32_t kHubTriangles = 512;
 
 // Boxes of the directions from `hub`, a corner of all these triangles, to their points. Two of the triangles have more in
 // common than the hub only if these boxes meet.
-[[nodiscard]] std::vector<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTriangle>& triangles);
+[[nodiscard]] RawArray<CellBox> boxes_around(const Vec3* hub, const std::vector<ContactTriangle>& triangles);
 
 // Boxes of the triangles' normals, turned so that the side of all of them from `from` to `to` runs the same way. Two of the
 // triangles have more in common than that side only if these boxes meet.
-[[nodiscard]] std::vector<CellBox> boxes_around(const Vec3* from, const Vec3* to,
-                                                const std::vector<ContactTriangle>& triangles);
+[[nodiscard]] RawArray<CellBox> boxes_around(const Vec3* from, const Vec3* to, const std::vector<ContactTriangle>& triangles);
 
 }  // namespace fdcg::bake

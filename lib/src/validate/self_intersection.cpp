@@ -2,6 +2,7 @@
 #include "validate/self_intersection.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -83,6 +84,21 @@ class Gathered {
 
 using Numbers = std::vector<std::uint32_t>;  // of triangles
 
+// The corners of a triangle where stars are simple: two triangles that share one have nothing else in common. In place of each
+// other corner stands a number that no other triangle has; the fourth is the first again.
+struct StarCorners {
+  std::array<std::uint32_t, 4> vertex;
+};
+
+bool share_a_corner(const StarCorners& a, const StarCorners& b) {
+  unsigned shared = 0;  // compilers make three comparisons of four numbers of this
+  for (std::size_t turn = 0; turn < 3; ++turn) {
+    for (std::size_t i = 0; i < 3; ++i)
+      shared |= static_cast<unsigned>(a.vertex[i] == b.vertex[(i + turn) % 3]);
+  }
+  return shared != 0;
+}
+
 class Search {
  public:
   Search(const Mesh& mesh, const FaceGeometry& geometry, const SelfIntersectionOptions& options)
@@ -110,15 +126,15 @@ class Search {
   }
 
  private:
-  [[nodiscard]] std::vector<CellBox> boxes() const {
-    const CellGrid grid(mesh_.points);
-    std::vector<Cell> cells(mesh_.points.size());
+  [[nodiscard]] RawArray<CellBox> boxes() const {
+    const CellGrid grid(mesh_.points, options_.jobs);
+    RawArray<Cell> cells(mesh_.points.size());
     parallel_for(options_.jobs, cells.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        if (std::isfinite(largest_component(mesh_.points[v]))) cells[v] = grid.cell(mesh_.points[v]);
+        cells[v] = std::isfinite(largest_component(mesh_.points[v])) ? grid.cell(mesh_.points[v]) : 0;
       }
     });
-    std::vector<CellBox> boxes(taking_part_.size());
+    RawArray<CellBox> boxes(taking_part_.size());
     parallel_for(options_.jobs, boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const VertexId* const corner = triangles_.corners(taking_part_[i]);
@@ -198,11 +214,13 @@ class Search {
     return triangles;
   }
 
-  // All pairs whose boxes meet; the tree's box i is that of triangles[i]. The search ends with the first part at which the
-  // pairs of it and of all parts before it reach the limit; what later parts have found by then is left out.
+  // All pairs whose boxes meet; the box that was given to the tree as number i is that of triangles[i]. The search ends with
+  // the first part at which the pairs of it and of all parts before it reach the limit; what later parts have found by then is
+  // left out.
   void search(const BoxTree& tree, const Numbers& triangles, const Progress& progress) {
     constexpr std::size_t kPartsAtOnce = 4;
     const std::size_t batches = (tree.part_count() + kPartsAtOnce - 1) / kPartsAtOnce;
+    const RawArray<StarCorners> stars = stars_of(tree, triangles);
     std::vector<std::optional<Gathered>> finished(batches);
     std::size_t taken = 0, done = 0;
     std::atomic<bool> is_over = all_.is_full();
@@ -211,7 +229,7 @@ class Search {
       if (is_over) return;
       Gathered found(options_.max_listed, triangles_.is_plain());
       for (std::size_t part = begin; part < end && !found.is_full(); ++part)
-        search_part(tree, part, triangles, is_over, found);
+        search_part(tree, part, triangles, stars, is_over, found);
       const std::scoped_lock guard(lock);
       finished[begin / kPartsAtOnce] = std::move(found);
       for (; taken < batches && finished[taken] && !all_.is_full(); finished[taken++].reset())
@@ -221,23 +239,35 @@ class Search {
       if (progress) progress("self-intersection", static_cast<double>(done) / static_cast<double>(tree.part_count()));
     });
   }
-  void search_part(const BoxTree& tree, std::size_t part, const Numbers& triangles, const std::atomic<bool>& is_over,
-                   Gathered& found) const {
-    tree.for_each_pair(part, [&](std::uint32_t i, std::uint32_t j) {
+  void search_part(const BoxTree& tree, std::size_t part, const Numbers& triangles, const RawArray<StarCorners>& stars,
+                   const std::atomic<bool>& is_over, Gathered& found) const {
+    tree.for_each_pair(part, [&](std::size_t i, std::size_t j) {
+      if (stars.size() != 0 && share_a_corner(stars[i], stars[j])) return true;
       if (found.is_full() || is_over.load(std::memory_order_relaxed)) return false;
-      const std::uint32_t s = triangles[i], t = triangles[j];
+      const std::uint32_t s = triangles[tree.number(i)], t = triangles[tree.number(j)];
       const FaceId a = triangles_.face(s), b = triangles_.face(t);
-      if (a == b || (!is_simple_.empty() && share_simple_star(s, t))) return true;
+      if (a == b) return true;
       const Contact contact = judge(triangles_[s], triangles_[t]);
       if (contact != Contact::none) found.add(a, b, contact);
       return true;
     });
   }
-  [[nodiscard]] bool share_simple_star(std::uint32_t s, std::uint32_t t) const {
-    const VertexId *const a = triangles_.corners(s), *const b = triangles_.corners(t);
-    for (std::size_t i = 0; i < 3; ++i)
-      if ((a[i] == b[0] || a[i] == b[1] || a[i] == b[2]) && is_simple_[+a[i]] != 0) return true;
-    return false;
+  // Of the triangles in the order of the tree; empty where nothing is known of stars, or numbers do not suffice.
+  [[nodiscard]] RawArray<StarCorners> stars_of(const BoxTree& tree, const Numbers& triangles) const {
+    constexpr std::uint32_t kNoVertex = std::uint32_t{1} << 31;  // and above
+    if (is_simple_.empty() || std::max(is_simple_.size(), 3 * tree.size()) >= kNoVertex) return {};
+    RawArray<StarCorners> stars(tree.size());
+    parallel_for(options_.jobs, tree.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const VertexId* const corner = triangles_.corners(triangles[tree.number(i)]);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t v = +corner[k];
+          stars[i].vertex[k] = is_simple_[v] != 0 ? v : kNoVertex | static_cast<std::uint32_t>(3 * i + k);
+        }
+        stars[i].vertex[3] = stars[i].vertex[0];
+      }
+    });
+    return stars;
   }
   [[nodiscard]] Contact judge(const ContactTriangle& s, const ContactTriangle& t) const {
     const auto is_corner_of_t = [&t](const Vec3* p) { return p == t.corner[0] || p == t.corner[1] || p == t.corner[2]; };
