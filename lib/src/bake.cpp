@@ -86,6 +86,16 @@ std::vector<std::uint32_t> trace_sources(std::size_t source_faces, const std::ve
   return face_of_source;
 }
 
+// Of each source face, or kNone, from what trace_sources gives.
+std::vector<std::uint32_t> nodes_of_sources(std::vector<std::uint32_t> face_of_source,
+                                            const std::vector<std::uint32_t>& node_of_face) {
+  if (face_of_source.empty()) return node_of_face;
+  for (std::uint32_t& face : face_of_source) {
+    if (face != kNone) face = node_of_face[face];
+  }
+  return face_of_source;
+}
+
 std::uint64_t count_sharing(const std::vector<std::uint32_t>& face_of_source, std::size_t faces) {
   std::vector<std::uint32_t> count(faces, 0);
   for (const std::uint32_t face : face_of_source) {
@@ -172,6 +182,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   faces.edges = classify_edges(cut.mesh, cut.topology, quantum, options.coplanar, jobs);
   faces.regions = find_regions(cut.mesh, cut.topology, faces.edges, {options.coplanar, quantum, options.precision});
   compiled.split_faces = count_split(cut, faces.regions);
+  release(cut.is_whole);
   CornerNormals normals;
   if (!options.without.contains("normals")) normals = find_corner_normals(soup, source_face, cut, options);
   compiled.shaded_faces = normals.shaded;
@@ -194,17 +205,20 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
     if (input.mass) input.mass->deviation = std::max(input.mass->deviation, faces.removed_distance);
   }
   input.normals_of_face = normals_of_faces(normals, corners, faces);
-  input.face_of_source = trace_sources(input.source_face_count, source_face, cut.polygon, std::move(faces.face_of_triangle));
-  compiled.merged_faces = count_sharing(input.face_of_source, faces.mesh.face_count());
+  std::vector<std::uint32_t> face_of_source =
+      trace_sources(input.source_face_count, source_face, cut.polygon, std::move(faces.face_of_triangle));
+  compiled.merged_faces = count_sharing(face_of_source, faces.mesh.face_count());
   if (has_materials) {
     input.materials = soup.materials;
-    input.material_of_face = material_of_faces(soup, faces, input.face_of_source);
+    input.material_of_face = material_of_faces(soup, faces, face_of_source);
   }
   if (!options.without.contains("info"))
     input.info = info_json(soup, input.source_vertex_count, input.source_face_count, options, compiled);
-  const Graph graph =
+  Graph graph =
       order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
   if (std::string reason = out_of_range(graph, input); !reason.empty()) return Failure{3, soup.name + ": " + reason};
+  if (input.with_source_map) input.node_of_source = nodes_of_sources(std::move(face_of_source), graph.node_of_face);
+  if (!has_materials && input.normals_of_face.empty()) release(graph.node_of_face);
   if (options.allocate) return serialise(graph, input, options.allocate);
   return serialise(graph, input, [&](std::size_t count) { return allocate_in(compiled.bytes, count); });
 }

@@ -28,4 +28,10 @@ void keep_large_arrays() {
 #endif
 }
 
+void give_back_free_memory() {
+#if defined(__GLIBC__) && defined(__linux__)
+  malloc_trim(0);
+#endif
+}
+
 }  // namespace fdcg::tools

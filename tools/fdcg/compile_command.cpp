@@ -205,6 +205,7 @@ int check_paths(const CompileArguments& arguments) {
 
 // The output file itself where it can be mapped; else a buffer, to be written at the end.
 std::span<std::byte> memory_for(AtomicFile& out, std::size_t bytes, std::vector<std::byte>& buffer) {
+  give_back_free_memory();
   const std::span<std::byte> mapped = out.map(bytes);
   if (!mapped.empty() || !out.ok()) return mapped;
   buffer.resize(bytes);

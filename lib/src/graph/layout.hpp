@@ -51,7 +51,8 @@ class Layout {
   std::uint64_t bytes_ = 0;
 };
 
-// Offsets of the nodes' blocks: consecutive, of equal size where all nodes have the same number of sides.
+// Offsets of the nodes' blocks: consecutive, of equal size where all nodes have the same number of sides; else the file has
+// them, and they are kept there alone.
 class Blocks {
  public:
   // The sizes depend on the sides: `node` bytes up to the sides, `real` bytes a number, `plane` bytes a stored plane or 0.
@@ -65,10 +66,16 @@ class Blocks {
       bytes_ = nodes * std::uint64_t{uniform_};
       return;
     }
-    offsets_.reserve(nodes);
-    for (std::uint32_t n = 0; n < nodes; ++n) {
-      offsets_.push_back(static_cast<std::uint32_t>(bytes_ / real_));
+    for (std::uint32_t n = 0; n < nodes; ++n)
       bytes_ += size(sides(n));
+  }
+  // Writes the offsets, in numbers of `real` bytes; at() reads them there. Empty where all blocks have one size.
+  void place(std::span<std::uint32_t> offsets) {
+    offsets_ = offsets;
+    std::uint64_t at = 0;
+    for (std::uint32_t n = 0; n < offsets_.size(); ++n) {
+      offsets_[n] = static_cast<std::uint32_t>(at / real_);
+      at += size(sides(n));
     }
   }
   [[nodiscard]] std::uint32_t uniform_bytes() const { return uniform_; }  // 0: they differ
@@ -99,7 +106,7 @@ class Blocks {
   std::size_t node_, real_, plane_;
   std::uint32_t uniform_ = 0;
   std::uint64_t bytes_ = 0;
-  std::vector<std::uint32_t> offsets_;  // in numbers of real_ bytes, as the file has them: bytes() tells whether they fit
+  std::span<std::uint32_t> offsets_;  // the file's section; bytes() tells whether its numbers fit
 };
 
 }  // namespace fdcg::bake

@@ -73,6 +73,7 @@ class Writer {
     file_ = allocate(layout_.bytes());
     if (file_.empty()) return Failure{3, "no memory for a file of " + std::to_string(layout_.bytes()) + " bytes", {}};
     clear_padding();
+    blocks_.place(layout_.records<std::uint32_t>(file_, FDCG_SECTION_NODE_OFFSETS));
     node_blocks_ = layout_.records<std::byte>(file_, FDCG_SECTION_NODES);
     edges_ = layout_.records<typename Records::Edge>(file_, FDCG_SECTION_EDGES);
     connections_ = layout_.records<fdcg_connection>(file_, FDCG_SECTION_CONNECTIONS);
@@ -85,7 +86,6 @@ class Writer {
         write_corner(c);
     });
     write_busy_corners();
-    write_node_offsets();
     if (input_.with_hierarchy) {
       build_hierarchy(graph_, {header_.extent, header_.max_deviation},
                       layout_.records<fdcg_box8>(file_, FDCG_SECTION_HIERARCHY), input_.jobs);
@@ -391,18 +391,10 @@ class Writer {
     return (link & 1u) == 0 ? along : -along;
   }
 
-  void write_node_offsets() {
-    const auto offsets = layout_.records<std::uint32_t>(file_, FDCG_SECTION_NODE_OFFSETS);
-    for (std::uint32_t n = 0; n < offsets.size(); ++n)
-      offsets[n] = static_cast<std::uint32_t>(blocks_.at(n) / sizeof(Real));
-  }
-
   void write_source_map() {
     const std::span<std::uint32_t> map = layout_.records<std::uint32_t>(file_, FDCG_SECTION_SOURCE_MAP);
-    for (std::uint32_t i = 0; i < map.size(); ++i) {
-      const std::uint32_t face = input_.face_of_source.empty() ? i : input_.face_of_source[i];
-      map[i] = face == kNone ? FDCG_NONE : graph_.node_of_face[face];
-    }
+    static_assert(kNone == FDCG_NONE);
+    std::copy_n(input_.node_of_source.begin(), map.size(), map.begin());
   }
 
   void write_materials() {
@@ -451,7 +443,7 @@ class Writer {
   const SerialiseInput& input_;
   Layout layout_;
   fdcg_header header_{};
-  const Blocks blocks_;
+  Blocks blocks_;
   std::vector<fdcg_busy_corner> busy_corners_;
   std::uint32_t fan_boxes_ = 0;
   std::uint32_t fan_entries_ = 0;  // of the busy corners

@@ -21,10 +21,10 @@ struct SerialiseInput {
   double quantum = 0;  // for the header
   std::uint32_t source_vertex_count = 0;
   std::uint32_t source_face_count = 0;
-  std::vector<std::uint32_t> face_of_source;    // of each source face: the face the graph was made of, or kNone; empty: itself
-  std::optional<fdcg_mass_record> mass;         // none: no section
-  std::vector<std::string> materials;           // names; empty: no sections
-  std::vector<std::uint16_t> material_of_face;  // of each face the graph was made of
+  std::vector<std::uint32_t> node_of_source;       // of each source face, or kNone
+  std::optional<fdcg_mass_record> mass;            // none: no section
+  std::vector<std::string> materials;              // names; empty: no sections
+  std::vector<std::uint16_t> material_of_face;     // of each face the graph was made of
   std::vector<fdcg_node_normals> normals_of_face;  // likewise; empty: no section
   std::string info;                                // JSON; empty: no section
   Precision precision = Precision::f64;
