@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake --install [--component NAME]: headers, libraries, the two programs where they are built, a CMake package and pkg-config
-# files. Components, of the installation and of find_package(fdcg): the runtime's parts, step, query, scene, surface, deform
+# files. Components, of the installation and of find_package(fdcg): the runtime's parts, step, query, effect, scene, surface, deform
 # and body; runtime, which is all of them in one library; shared, the same as a shared library; and, unless FDCG_RUNTIME_ONLY, tools (fdcg::fdcg, fdcg::fdcg-servo), bake
 # (fdcg::bake), bake_c (fdcg::bake_c) and device (fdcg::device). One that is installed alone brings those that it needs.
 include(GNUInstallDirs)
@@ -59,6 +59,8 @@ fdcg_install_component(step TARGETS fdcg_step NEEDS package)
 fdcg_install_pc(fdcg-step fdcg_step step)
 fdcg_install_component(query TARGETS fdcg_query NEEDS step)
 fdcg_install_pc(fdcg-query fdcg_query query fdcg-step)
+fdcg_install_component(effect TARGETS fdcg_effect NEEDS query)
+fdcg_install_pc(fdcg-effect fdcg_effect effect fdcg-query)
 fdcg_install_component(scene TARGETS fdcg_scene NEEDS query)
 fdcg_install_pc(fdcg-scene fdcg_scene scene fdcg-query)
 foreach(part surface deform body)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# find_package(fdcg [COMPONENTS step query scene surface deform body runtime shared tools bake bake_c device]): the runtime's libraries that are
+# find_package(fdcg [COMPONENTS step query effect scene surface deform body runtime shared tools bake bake_c device]): the runtime's libraries that are
 # installed, fdcg::step ... fdcg::body, and fdcg::runtime and fdcg::shared, which are all of them; fdcg_add_graph; the programs fdcg::fdcg and
 # fdcg::fdcg-servo where they are installed; fdcg::bake and fdcg::device on request, since they look for what they link. A
 # component that is asked for and not installed is an error.
 include(CMakeFindDependencyMacro)
 set(${CMAKE_FIND_PACKAGE_NAME}_FOUND TRUE)
 set(fdcg_wanted ${${CMAKE_FIND_PACKAGE_NAME}_FIND_COMPONENTS})
-set(fdcg_libraries step query scene surface deform body runtime shared) # each after what it links
+set(fdcg_libraries step query effect scene surface deform body runtime shared) # each after what it links
 
 foreach(component IN LISTS fdcg_wanted)
   if(component IN_LIST fdcg_libraries OR component MATCHES "^(tools|bake|bake_c|device)$")

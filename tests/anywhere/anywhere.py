@@ -29,6 +29,7 @@ def qemu(processor, *options):
 
 # Of the library's objects, all that a program with one sphere may link, and all that one may link that steps one graph.
 ONE_SPHERE = {"admit", "surface", "surface_sphere", "surface_step", "params", "params_init", "friction_terms", "message", "version"}
+ONE_EFFECT = {"effect_step", "message", "vibration", "version"}  # and one with one effect
 ONE_GRAPH = {"admit", "arithmetic", "box_tree", "checksum", "exact_orient", "friction_terms", "hooks", "load", "map_file_none", "map_file_posix",
              "material_section", "message", "node_normals", "params", "params_init", "records", "servo_step", "shaded_face", "version"}
 OTHER_PARTS = r"scene|soft_finger|deform|body|pile|_of_plane|step_plane|[Cc]ylinder|[Cc]apsule|[Cc]one[^a-z]|[Tt]orus|[Ee]llipsoid"
@@ -44,11 +45,13 @@ class AnywhereCase(Case):
     def assert_links_alone(self, nm, program, link_map):
         """A program of tests/consumer/parts links its own part of the runtime, and of surfaces its own kind."""
         name = pathlib.Path(link_map).stem
+        own, objects_of_own, call = {"one_sphere": ("surface_sphere", ONE_SPHERE, "fdcg_surface_step"), "one_effect": ("vibration", ONE_EFFECT, "fdcg_effect_step")}.get(
+            name, ("servo_step", ONE_GRAPH, "fdcg_step"))
         objects = linked_objects(link_map)
-        self.assertIn("surface_sphere" if name == "one_sphere" else "servo_step", objects)
-        self.assertEqual(set(), objects - (ONE_SPHERE if name == "one_sphere" else ONE_GRAPH))
+        self.assertIn(own, objects)
+        self.assertEqual(set(), objects - objects_of_own)
         symbols = self.run_program(nm, "--defined-only", program).stdout.decode().split()
-        self.assertIn("fdcg_surface_step" if name == "one_sphere" else "fdcg_step", symbols)
+        self.assertIn(call, symbols)
         self.assertEqual([], [symbol for symbol in symbols if re.search(f"^(_ZN?4fdcg|fdcg_).*({OTHER_PARTS})", symbol)])
 
     def need(self, *programs):

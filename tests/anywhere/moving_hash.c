@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What step_hash.c leaves out: deformable meshes whose vertices move under a contact, and bodies that fingers push. Prints one
- * hash of each for each precision. C11 without stdio and heap. */
+/* What step_hash.c leaves out: deformable meshes whose vertices move under a contact, bodies that fingers push, and effects on
+ * a contact. Prints one hash of each for each precision. C11 without stdio and heap. */
 #include "graphs.h" /* `static const struct { const char* name; const unsigned char* bytes; uint64_t size; } graphs[]` */
 
 #include "fdcg/body.h"
 #include "fdcg/deform.h"
+#include "fdcg/effect.h"
 #include "hash.h"
 #include "say.h"
 
@@ -124,11 +125,51 @@ static int32_t push_body(const fdcg_graph* graph, hash_t* hash) {
   return touches;
 }
 
+/* Every law, on a hand that wanders about the surface. Returns the ticks in contact. */
+static int32_t feel_effects(const fdcg_graph* graph, hash_t* hash) {
+  static const double speed[2] = {0.05, 0.2}, force[1] = {0.5}, reflection[4] = {-0.5, 0.4, -0.2, 0.3}, deviation[2] = {2, 8};
+  static fdcg_effect_state states[8];
+  fdcg_texture texture = {1000, 2, 2, 1, 0, NULL, NULL, NULL, NULL};
+  fdcg_error error;
+  fdcg_contact contact;
+  fdcg_result result;
+  fdcg_effect_facts facts;
+  const fdcg_params params = fdcg_make_params();
+  const double size = size_of(graph->header);
+  double hip[3] = {0, 0, 0};
+  uint64_t random = 88172645463325252u;
+  int32_t in_contact = 0;
+  texture.speed_m_per_s = speed, texture.force_n = force, texture.reflection = reflection,
+  texture.deviation_m_per_s2 = deviation;
+  const fdcg_effect effects[8] = {fdcg_make_magnet(2, 0.1 * size),  fdcg_make_viscosity(1),
+                                  fdcg_make_stick_slip(300, 0.5),   fdcg_make_vibration(1, 137),
+                                  fdcg_make_noise(1, 50, 300),      fdcg_make_tap(1, 200, 0.01),
+                                  fdcg_make_pulse(1, 0.02, 0.0375), fdcg_make_texture(&texture, 0.05)};
+  memset(states, 0, sizeof states);
+  memset(&contact, 0, sizeof contact);
+  for (int32_t tick = 0; tick < kDeformTicks; ++tick) {
+    double felt[3] = {0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+      const double wide = tick % 500 == 0 ? 1.2 : 0.01;
+      const double about = tick % 500 == 0 ? centre_of(graph->header, k) : hip[k];
+      hip[k] = about + (uniform(&random) - 0.5) * wide * size;
+    }
+    fdcg_step(graph, &params, &contact, hip, &result);
+    if (fdcg_get_effect_facts(graph, &result, hip, 0.1 * size, params.tick_s, &facts, &error) != FDCG_OK) return -1;
+    for (int i = 0; i < 8; ++i)
+      fdcg_effect_step(&effects[i], &facts, &states[i], felt);
+    for (int k = 0; k < 3; ++k)
+      absorb_real(hash, felt[k]);
+    in_contact += result.state != FDCG_FREE;
+  }
+  return in_contact;
+}
+
 int main(void) {
   static const char* const names[2] = {"f32", "f64"};
   for (uint32_t p = 0; p < 2; ++p) {
-    hash_t deformed = {0xCBF29CE484222325u}, pushed = {0xCBF29CE484222325u};
-    int32_t in_contact = 0, touches = 0;
+    hash_t deformed = {0xCBF29CE484222325u}, pushed = {0xCBF29CE484222325u}, effects = {0xCBF29CE484222325u};
+    int32_t in_contact = 0, touches = 0, felt = 0;
     uint32_t sheets = 0;
     for (uint32_t i = 0; i < sizeof graphs / sizeof graphs[0]; ++i) {
       fdcg_graph graph;
@@ -147,10 +188,13 @@ int main(void) {
       const int32_t found = push_body(&graph, &pushed);
       if (found < 0) return 3;
       touches += found;
+      const int32_t effective = feel_effects(&graph, &effects);
+      if (effective < 0) return 5;
+      felt += effective;
     }
-    if (in_contact < 500 || touches < 500) return 4; /* else the hashes say little */
+    if (in_contact < 500 || touches < 500 || felt < 500) return 4; /* else the hashes say little */
     say(names[p]), say(" deform "), say_hex(deformed.value), say(" of "), say_number(sheets);
-    say(", body "), say_hex(pushed.value), say("\n");
+    say(", body "), say_hex(pushed.value), say(", effects "), say_hex(effects.value), say("\n");
   }
   return 0;
 }

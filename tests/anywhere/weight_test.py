@@ -4,7 +4,6 @@ objects. The core is what opens, sweeps, steps and moves scenes; full verificati
 records are counted apart, and so are bodies, surfaces and deformable meshes, which a program without them does not link."""
 import math
 import os
-import pathlib
 import platform
 import re
 import subprocess
@@ -14,7 +13,8 @@ from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
 
 PARTS = ROOT / "tests" / "consumer" / "parts"
 
-SUPPORT = {"body", "body_scene", "body_symbols", "contact_info", "deform_share", "deform_symbols", "inline_symbols", "nearest",
+SUPPORT = {"effect_check", "effect_facts", "effect_step", "effect_symbols", "magnet", "noise", "pulse", "stick_slip", "tap", "texture", "vibration", "viscosity",
+           "body", "body_scene", "body_symbols", "contact_info", "deform_share", "deform_symbols", "inline_symbols", "nearest",
            "query_symbols", "ray", "scene_replace", "scene_restore", "scene_save", "scene_state_check", "scene_symbols", "signed_distance", "step_many", "surface_symbols", "body_step", "deform", "deform_boxes", "deform_move", "deform_scene", "deform_step", "deform_upkeep", "fan_run_section",
            "hooks", "map_file_none", "map_file_posix", "mass_record", "material_section", "message", "params", "params_init", "pile", "pile_damp",
            "pile_near", "pile_patch", "pile_points", "pile_step", "pile_substeps", "pile_touch", "records", "soft_finger", "surface", "surface_all", "surface_box",
@@ -89,8 +89,9 @@ class Parts(WeightCase):
     """A program links the parts of the runtime that it uses and no others, with no help from the linker's options."""
 
     # Bytes of code and constants, the start of the program and the C library included, the graph's own not.
-    X86 = {"one_sphere": 24 * KB}
-    M7 = {"one_sphere": 12 * KB}
+    X86 = {"one_sphere": 24 * KB, "one_effect": 8 * KB}
+    M7 = {"one_sphere": 12 * KB, "one_effect": 10 * KB}
+    WITHOUT_GRAPH = ("one_sphere", "one_effect")
     NO_WORDS = ("-DFDCG_WITH_MESSAGES=OFF",)
     F64, F32 = (*NO_WORDS, "-DFDCG_WITH_F32=OFF"), (*NO_WORDS, "-DFDCG_WITH_F64=OFF")
     PLAIN = ("-DFDCG_WITH_FRICTION_TERMS=OFF", "-DFDCG_WITH_BUSY_CORNERS=OFF", "-DFDCG_WITH_INEXACT_NODES=OFF",
@@ -113,11 +114,11 @@ class Parts(WeightCase):
         return str(self.folder)
 
     def sources(self, program):
-        return [str(PARTS / (program + ".c")), *([] if program == "one_sphere" else [self.path("block.c")])]
+        return [str(PARTS / (program + ".c")), *([] if program in self.WITHOUT_GRAPH else [self.path("block.c")])]
 
-    def text(self, tool, program):
+    def text(self, tool, program, name):
         text = int(self.run_program(tool, program).stdout.decode().splitlines()[1].split()[0])
-        return text if pathlib.Path(program).stem == "one_sphere" else text - os.path.getsize(self.path("block.fdcg"))
+        return text if name in self.WITHOUT_GRAPH else text - os.path.getsize(self.path("block.fdcg"))
 
     def told(self, what, text, bar, limit):
         print(f"{what}: {text} bytes of code and constants (bar {bar}: {'holds' if text <= bar else 'does not hold'})")
@@ -131,11 +132,11 @@ class Parts(WeightCase):
         self.run_program(program)
         if name != "one_scene":
             self.assert_links_alone("nm", program, link_map)
-        return self.text("size", program)
+        return self.text("size", program, name)
 
-    def test_x86_64_a_sphere(self):
-        text = self.native("one_sphere", self.library("both"), self.embedded())
-        self.told("x86-64: one_sphere", text, self.X86["one_sphere"], self.X86["one_sphere"])
+    def test_x86_64_a_sphere_and_an_effect(self):
+        for name, bar in self.X86.items():
+            self.told(f"x86-64: {name}", self.native(name, self.library("both"), self.embedded()), bar, bar)
 
     def test_x86_64_a_graph(self):
         for program, name, options, bar, limit in self.X86_GRAPHS:
@@ -188,12 +189,12 @@ int main(void) {
                                 link=[*link, f"-Wl,-Map={link_map}"])
         if name != "one_scene":
             self.assert_links_alone("arm-none-eabi-nm", program, link_map)
-        return self.text("arm-none-eabi-size", program)
+        return self.text("arm-none-eabi-size", program, name)
 
     def test_cortex_m7(self):
         self.need("arm-none-eabi-g++", "arm-none-eabi-size")
         folder, built = self.embedded(), {}
-        for program, name, options, bar, limit in (("one_sphere", "f32", self.M7_GRAPHS[0][2], *[self.M7["one_sphere"]] * 2), *self.M7_GRAPHS):
+        for program, name, options, bar, limit in (*((name, "f32", self.M7_GRAPHS[0][2], bar, bar) for name, bar in self.M7.items()), *self.M7_GRAPHS):
             if name not in built:
                 built[name] = self.cross_runtime("cortex-m7", *options, name=name)
             for link in ((), ("-Wl,--gc-sections",)):

@@ -76,7 +76,7 @@ class Package(ConsumerCase):
         expected = {"press_and_slide_c": PROMISED, "press_and_slide_cpp": PROMISED, "turntable_c": PROMISED_OF_SCENES,
                     "turntable_cpp": PROMISED_OF_SCENES}
         for page, example in (("friction.md", "friction"), ("friction.md", "materials"), ("bodies.md", "bodies"),
-                              ("surfaces.md", "surface"), ("deform.md", "deform")):
+                              ("surfaces.md", "surface"), ("deform.md", "deform"), ("effects.md", "effects")):
             expected[example + "_c"] = promised(page, example + ".c")
         for program, text in expected.items():
             done = self.run_program(os.path.join(folder, program), cwd=folder)
@@ -143,7 +143,7 @@ class Parts(ConsumerCase):
 
     NEEDED = {"step": {"step"}, "query": {"step", "query"}, "scene": {"step", "query", "scene"},
               "surface": {"step", "query", "scene", "surface"}, "deform": {"step", "query", "scene", "deform"},
-              "body": {"step", "query", "scene", "body"}, "runtime": {"runtime"}}
+              "body": {"step", "query", "scene", "body"}, "effect": {"step", "query", "effect"}, "runtime": {"runtime"}}
 
     def installed(self, *components):
         prefix = self.path("-".join(components))
@@ -165,10 +165,10 @@ class Parts(ConsumerCase):
         self.assertEqual(sorted(objects("runtime")), sorted(parts))
 
     def test_programs_link_the_part_that_they_use(self):
-        prefix, folder = self.installed("surface"), self.path("build")
+        prefix, folder = self.installed("surface", "effect"), self.path("build")
         self.configure(self.copied("parts"), folder, f"-DFDCG_EXECUTABLE={self.prefix}/bin/fdcg", prefix=prefix)
         self.build(folder)
-        for name in ("one_sphere", "one_graph"):
+        for name in ("one_sphere", "one_effect", "one_graph"):
             program = os.path.join(folder, name)
             self.run_program(program)
             self.assert_links_alone("nm", program, program + ".map")

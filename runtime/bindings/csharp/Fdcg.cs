@@ -83,6 +83,37 @@ namespace Fdcg {
     FDCG_EVENT_FEATURE = 16,
   }
 
+  public enum fdcg_effect_kind {
+    FDCG_EFFECT_OWN = 0,
+    FDCG_EFFECT_MAGNET = 1,
+    FDCG_EFFECT_VISCOSITY = 2,
+    FDCG_EFFECT_STICK_SLIP = 3,
+    FDCG_EFFECT_VIBRATION = 4,
+    FDCG_EFFECT_NOISE = 5,
+    FDCG_EFFECT_TAP = 6,
+    FDCG_EFFECT_PULSE = 7,
+    FDCG_EFFECT_TEXTURE = 8,
+  }
+
+  public enum fdcg_effect_when {
+    FDCG_WHEN_TOUCHING = 0,
+    FDCG_WHEN_SLIPPING = 1,
+    FDCG_WHEN_ALWAYS = 2,
+    FDCG_WHEN_TRIGGERED = 3,
+  }
+
+  public enum fdcg_effect_along {
+    FDCG_ALONG_NORMAL = 0,
+    FDCG_ALONG_MOTION = 1,
+    FDCG_ALONG_AXIS = 2,
+  }
+
+  public enum fdcg_effect_region {
+    FDCG_EVERYWHERE = 0,
+    FDCG_IN_BALL = 1,
+    FDCG_IN_BOX = 2,
+  }
+
   public enum fdcg_scene_optimization {
     FDCG_OPT_OUT_OF_REACH = 1,
     FDCG_OPT_FAR_OBJECTS = 2,
@@ -293,6 +324,84 @@ namespace Fdcg {
     public fixed double weights[3];
     public fixed double normal[3];
     public fixed double slip_m_per_s[3];
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_texture {
+    public double rate_hz;
+    public uint order;
+    public uint speed_count;
+    public uint force_count;
+    public uint reserved;
+    public double* speed_m_per_s;
+    public double* force_n;
+    public double* reflection;
+    public double* deviation_m_per_s2;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_effect_facts {
+    public double tick_s;
+    public fixed double hip_m[3];
+    public fixed double surface_m[3];
+    public fixed double normal[3];
+    public fixed double spring_n[3];
+    public uint is_touching;
+    public uint is_slipping;
+    public uint has_surface;
+    public uint material;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_effect_state {
+    public uint has_started;
+    public uint is_active;
+    public uint has_begun;
+    public uint is_triggered;
+    public fixed double hip_m[3];
+    public fixed double way_m[3];
+    public fixed double velocity_m_per_s[3];
+    public fixed double force_n[3];
+    public fixed double normal[3];
+    public double time_s;
+    public double level;
+    public double credit_j;
+    public double given_j;
+    public fixed double memory[40];
+    public ulong random;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_effect {
+    public uint struct_bytes;
+    public uint kind;
+    public uint is_off;
+    public uint when;
+    public uint along;
+    public uint material;
+    public uint region;
+    public uint seed;
+    public IntPtr law;
+    public IntPtr context;
+    public fdcg_texture* texture;
+    public fixed double region_m[3];
+    public fixed double region_half_m[3];
+    public fixed double axis[3];
+    public double force_n;
+    public double distance_m;
+    public double viscosity_n_s_per_m;
+    public double stiffness_n_per_m;
+    public double frequency_hz;
+    public double low_hz;
+    public double impact_n_s_per_m;
+    public double decay_s;
+    public double duration_s;
+    public double period_s;
+    public double mass_kg;
+    public double smoothing_s;
+    public double ramp_s;
+    public double reserve_j;
+    public double power_w;
   }
 
   [StructLayout(LayoutKind.Sequential)]
@@ -605,6 +714,78 @@ namespace Fdcg {
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern void fdcg_step_many(fdcg_graph* graph, fdcg_params* @params, fdcg_contact* contacts, double* hips_object_m, fdcg_result* results, ulong count);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_get_reflection(double* coefficients, uint order, double* reflection, fdcg_error* error);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_effect_init(fdcg_effect* effect, uint struct_bytes);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_magnet_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_viscosity_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_stick_slip_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_vibration_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_noise_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_tap_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_pulse_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_texture_law(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_magnet(double force_n, double distance_m);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_viscosity(double viscosity_n_s_per_m);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_stick_slip(double stiffness_n_per_m, double force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_vibration(double force_n, double frequency_hz);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_noise(double force_n, double low_hz, double high_hz);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_tap(double impact_n_s_per_m, double frequency_hz, double decay_s);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_pulse(double force_n, double duration_s, double period_s);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_texture(fdcg_texture* texture, double mass_kg);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_effect fdcg_make_own_effect(IntPtr law, IntPtr context, double force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_check_effect(fdcg_effect* effect, double tick_s, fdcg_error* error);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern double fdcg_get_effect_stiffness(fdcg_effect* effect, double tick_s);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_get_effect_facts(fdcg_graph* graph, fdcg_result* result, double* hip_object_m, double reach_m, double tick_s, fdcg_effect_facts* facts, fdcg_error* error);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_effect_step(fdcg_effect* effect, fdcg_effect_facts* facts, fdcg_effect_state* state, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_trigger_effect(fdcg_effect_state* state);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern fdcg_pose fdcg_make_identity_pose();

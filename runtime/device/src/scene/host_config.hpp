@@ -2,9 +2,11 @@
 // The content of a scene file (scene_json.hpp fills it), checked, with the full path of every file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "fdcg/effect.h"
 #include "fdcg/fdcg.h"
 #include "fdcg/surface.h"
 #include "tick/device_tick.hpp"
@@ -38,6 +40,24 @@ inline bool is_moved(const Motion& motion) {
   return motion.kind == MotionKind::kSpin || motion.kind == MotionKind::kSwing || motion.kind == MotionKind::kDriven;
 }
 
+// A recorded texture (fdcg_texture), as its file has it.
+struct TextureConfig {
+  double rate_hz = 0;
+  std::vector<double> speed_m_per_s, force_n;  // ascending
+  struct Model {
+    std::vector<double> coefficients;
+    double variance = 0;
+  };
+  std::vector<Model> models;  // [speed][force], all of one order
+};
+
+// An effect of an object, or of the scene.
+struct EffectConfig {
+  fdcg_effect effect{};  // its material and texture are set by the scene that is built
+  std::string material;  // by name; empty: all
+  std::optional<TextureConfig> texture;
+};
+
 struct ObjectConfig {
   std::string name, file;  // file: empty where it is a surface
   bool is_surface = false;
@@ -45,6 +65,7 @@ struct ObjectConfig {
   fdcg_pose pose;
   fdcg_params params;  // tick_s is set from each device's rate
   Motion motion;
+  std::vector<EffectConfig> effects;
 };
 
 // The ground: solid where normal . x < offset_m, world.
@@ -96,6 +117,7 @@ struct HostConfig {
   std::string scene_file, scene_text;
   std::vector<ObjectConfig> objects;
   std::vector<DeviceConfig> devices;
+  std::vector<EffectConfig> effects;  // of the world
   bool is_shared = false;  // all devices feel one scene, in one loop; else each has its own, and there may be no body
   double gravity_m_per_s2[3] = {0, 0, -9.80665};
   GroundConfig ground;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/rotation.hpp"
 #include "scene/scene_bodies.hpp"
+#include "scene/scene_effects_build.hpp"
 #include "shared/text.hpp"
 
 #include <algorithm>
@@ -116,6 +117,11 @@ void add_device(const DeviceConfig& from, const HostConfig& config, DeviceSetup*
 
 }  // namespace
 
+DeviceScene::DeviceScene() = default;
+DeviceScene::~DeviceScene() = default;
+DeviceScene::DeviceScene(DeviceScene&&) noexcept = default;
+DeviceScene& DeviceScene::operator=(DeviceScene&&) noexcept = default;
+
 std::string SceneGraphs::open(const HostConfig& config) {
   close();
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
@@ -199,9 +205,15 @@ std::string build_device_scene(const HostConfig& config, const DeviceRange& devi
     setup.driven[setup.driven_count++] = id;
   }
   if (std::string problem = build_bodies(config, load, graphs, objects, scene, &setup); !problem.empty()) return problem;
+  const auto count = static_cast<int>(devices.count);
+  if (std::string problem = build_effects(config, load, graphs, objects, count, scene, &setup); !problem.empty())
+    return problem;
   scene->setups.assign(devices.count, setup);
-  for (std::size_t i = 0; i < devices.count; ++i)
-    add_device(config.devices[devices.first + i], config, &scene->setups[i]);
+  for (int i = 0; i < count; ++i) {
+    DeviceSetup* const own = &scene->setups[static_cast<std::size_t>(i)];
+    own->effects_device = i;
+    add_device(config.devices[devices.first + static_cast<std::size_t>(i)], config, own);
+  }
   return {};
 }
 

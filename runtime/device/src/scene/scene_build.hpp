@@ -49,11 +49,20 @@ struct SceneLoad {
 SceneLoad load_of(const HostConfig& config, const DeviceRange& devices);
 
 // The scene of a device, or of several, in memory that is filled once and does not move.
+struct BuiltTexture;  // scene_effects_build.hpp
 struct DeviceScene {
+  DeviceScene();
+  ~DeviceScene();
+  DeviceScene(DeviceScene&&) noexcept;
+  DeviceScene& operator=(DeviceScene&&) noexcept;
+
   std::vector<std::uint64_t> memory, pile_memory;
   std::vector<fdcg_scene_body> bodies;
   std::vector<fdcg_reaction> reactions;
   std::vector<std::unique_ptr<SoftObject>> soft;
+  std::unique_ptr<SceneEffects> effects;
+  std::vector<std::unique_ptr<BuiltTexture>> textures;
+  std::deque<fdcg_surface> felt_surfaces;  // with effects
   // One a device; fingers are added by begin_device; driven: the objects with a motion, in the scene's order.
   std::vector<DeviceSetup> setups;
 };

@@ -12,11 +12,21 @@ namespace {
 
 constexpr int kMostObjects = 1000;
 constexpr std::size_t kMostSceneBytes = json::Limits{}.bytes;
-constexpr json::Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices",  "loop", "log",
-                                   "limits",     "gravity_m_per_s2", "ground", "shared",  "stability"};
-constexpr json::Keys kObjectKeys = {
-    "name",          "file",    "surface", "pose", "stiffness_n_per_m", "damping_n_s_per_m", "mu_static", "mu_dynamic",
-    "edge_friction", "shading", "motion",  "notes"};
+constexpr json::Keys kSceneKeys = {"fdcg_scene", "$schema",          "notes",  "objects", "devices",   "loop",   "log",
+                                   "limits",     "gravity_m_per_s2", "ground", "shared",  "stability", "effects"};
+constexpr json::Keys kObjectKeys = {"name",
+                                    "file",
+                                    "surface",
+                                    "pose",
+                                    "stiffness_n_per_m",
+                                    "damping_n_s_per_m",
+                                    "mu_static",
+                                    "mu_dynamic",
+                                    "edge_friction",
+                                    "shading",
+                                    "motion",
+                                    "notes",
+                                    "effects"};
 constexpr json::Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
 constexpr json::Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend", "graphs"};
 constexpr json::Keys kLogKeys = {"file", "limit_mb"};
@@ -53,6 +63,7 @@ void SceneParser::parse(std::string_view text) {
   }
   for (const json::Value& object : scene["objects"].objects(0, kMostObjects, kObjectKeys))
     read_object(object);
+  if (scene["effects"]) config_.effects = read_effects(scene["effects"], nullptr);
   for (const json::Value& device : scene["devices"].objects(1, kMaxDevices))
     read_device(device);
   if (scene["gravity_m_per_s2"]) scene["gravity_m_per_s2"].numbers(config_.gravity_m_per_s2, 3, {-1e4, 1e4});
@@ -86,6 +97,7 @@ void SceneParser::judge_stiffness(const json::Value& scene) {
                             ": its stiffness is felt as " + shown_number(felt) + " N/m; the profile allows " +
                             shown_number(allowed) + ": lower it, or the mapping's scale");
     }
+    judge_effects(scene, device);
   }
 }
 

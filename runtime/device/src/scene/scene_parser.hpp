@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parser behind scene_json.hpp, in three files: the whole (scene_json.cpp), objects and what moves them
-// (scene_json_objects.cpp), devices (scene_json_devices.cpp). For these alone.
+// The parser behind scene_json.hpp, in four files: the whole (scene_json.cpp), objects and what moves them
+// (scene_json_objects.cpp), effects (scene_json_effects.cpp), devices (scene_json_devices.cpp). For these alone.
 #pragma once
 
 #include <string>
@@ -45,6 +45,9 @@ class SceneParser {
   void read_surface(const json::Value& from, ObjectConfig* object);
   void refuse_surface(const json::Value& from, const fdcg_surface& surface);
   void read_friction(const json::Value& from, fdcg_params* params);
+  std::vector<EffectConfig> read_effects(const json::Value& from, const ObjectConfig* object);
+  EffectConfig read_effect(const json::Value& from, const ObjectConfig* object);
+  TextureConfig read_texture(const json::Value& from);
   void read_motion(const json::Value& from, Motion* motion);
   void read_body(const json::Value& from, BodyConfig* body);
   void read_soft(const json::Value& from, SoftConfig* soft);
@@ -64,6 +67,7 @@ class SceneParser {
   void read_mapping(const json::Value& from, Mapping* mapping);
   void read_simulation(const json::Value& from, SimulationConfig* simulation);
   void read_stability(const json::Value& scene);
+  void judge_effects(const json::Value& scene, const DeviceConfig& device) const;
   void judge_stiffness(const json::Value& scene);
   void read_loop(const json::Value& from);
   void read_log(const json::Value& from);
@@ -80,6 +84,7 @@ class SceneParser {
   std::vector<std::string>* warnings_;
   const SceneOptions& options_;
   double scene_force_n_ = 0;  // 0: none
+  int effect_count_ = 0;
 };
 
 }  // namespace fdcg::dev

@@ -5,16 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/scene_json.hpp"
+#include "scene/scene_writer_effects.hpp"
 
 namespace fdcg::dev {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <std::size_t count>
-Json list(const double (&values)[count]) {
-  return Json(std::vector<double>(values, values + count));
-}
 
 Json surface_json(const fdcg_surface& surface) {
   constexpr const char* kKinds[] = {"plane", "sphere", "cylinder", "capsule", "box", "cone", "torus", "ellipsoid"};
@@ -41,6 +35,7 @@ Json object_json(const ObjectConfig& object) {
   json["mu_dynamic"] = object.params.mu_dynamic;
   json["edge_friction"] = object.params.edge_friction == FDCG_EDGE_PAPER ? "paper" : "wedge";
   if ((object.params.friction_flags & FDCG_FRICTION_SHADING) != 0) json["shading"] = true;
+  if (!object.effects.empty()) json["effects"] = effects_json(object.effects);
   const Motion& motion = object.motion;
   json["motion"]["kind"] = kKinds[static_cast<int>(motion.kind)];
   if (motion.kind == MotionKind::kSpin || motion.kind == MotionKind::kSwing) {
@@ -159,6 +154,7 @@ std::string write_scene(const HostConfig& config) {
     scene["objects"].push_back(object_json(object));
   for (const DeviceConfig& device : config.devices)
     scene["devices"].push_back(device_json(device));
+  if (!config.effects.empty()) scene["effects"] = effects_json(config.effects);
   if (config.devices.size() > 1) scene["shared"] = config.is_shared;
   scene["gravity_m_per_s2"] = list(config.gravity_m_per_s2);
   if (config.ground.is_there) {

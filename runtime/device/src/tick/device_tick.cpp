@@ -2,7 +2,9 @@
 #include "tick/device_tick.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "base/rotation.hpp"
 #include "tick/scene_tick.hpp"
 
 namespace fdcg::dev {
@@ -94,9 +96,20 @@ void tell(const DeviceState& device, TickOutput* output) {
   output->state = device.state;
   std::copy_n(device.tip_world_m, 3, output->hip_world_m);
   std::copy_n(device.wanted_n, 3, output->wanted_force_n);
+  for (int i = 0; device.setup.effects != nullptr && i < 3; ++i)
+    output->wanted_force_n[i] += device.effect_n[i];
   output->body_count = device.setup.body_count;
   for (std::uint32_t i = 0; i < output->body_count; ++i)
     output->bodies[i] = fdcg_body_get_pose(&device.setup.bodies[i].body);
+}
+
+// What of the force that was let through is the effects' own: they have the share that the whole has.
+void note_effects(DeviceState& device) {
+  const double* const sent = device.gate.last_force_n();
+  const double asked2 = dot(device.steadied_n, device.steadied_n), sent2 = dot(sent, sent);
+  const double share = asked2 > 0 ? std::min(1.0, std::sqrt(sent2 / asked2)) * device.stability.share() : 0;
+  for (int i = 0; i < 3; ++i)
+    device.effects.sent_n[i] = share * device.effects.now_n[i];
 }
 
 // What was wanted, in the device's frame, through the stage of stability. Without a report the force stays.
@@ -104,8 +117,12 @@ void steady(DeviceState& device, const TickInput& input) {
   if (device.gate.phase() == Phase::kDisarmed && input.arm) device.stability.reset();
   if (!device.to_gate.has_sample) return;
   force_to_device(device.setup.mapping, device.wanted_n, device.steadied_n);
+  // disarmed, they are left out: a hum would keep the gate from arming, which ramps them up then as all else
+  const bool is_armed = device.gate.phase() != Phase::kDisarmed;
+  const double none_n[3] = {0, 0, 0};
+  force_to_device(device.setup.mapping, is_armed ? device.effect_n : none_n, device.effects.now_n);
   device.stability.step(device.tip_m, input.now_ns, device.gate.last_force_n(), device.link.round_trip_s(), device.rubs,
-                        device.steadied_n);
+                        device.steadied_n, device.effects);
 }
 
 void pass_gate(const Member& member) {
@@ -130,6 +147,7 @@ void pass_gate(const Member& member) {
   std::copy_n(device.steadied_n, 3, gate->wanted_force_n);
   const Phase phase_before = device.gate.phase();
   output.force = device.gate.step(*gate);
+  if (device.setup.effects != nullptr) note_effects(device);
   output.phase = device.gate.phase();
   output.fault = device.gate.fault();
   output.calmed = 1 - device.stability.share();

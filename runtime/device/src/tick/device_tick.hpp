@@ -20,6 +20,7 @@
 #include "tick/gate.hpp"
 #include "tick/grip.hpp"
 #include "tick/link_watch.hpp"
+#include "tick/scene_effects.hpp"
 #include "tick/soft.hpp"
 #include "tick/stability.hpp"
 #include "tick/transport.hpp"
@@ -106,7 +107,9 @@ struct DeviceSetup {
   fdcg_pile* pile = nullptr;   // with the ground and all objects; null where there are no bodies
   fdcg_reaction* reactions = nullptr;
   std::uint32_t reaction_count = 0;
-  int soft_count = 0;  // objects that give way, in the DeviceScene's memory too
+  int soft_count = 0;               // objects that give way, in the DeviceScene's memory too
+  SceneEffects* effects = nullptr;  // in the DeviceScene's memory; null: none
+  int effects_device = 0;           // which device of the scene this is
   SoftObject* soft[kMaxSoft] = {};
   fdcg_object_id soft_id[kMaxSoft] = {};
 };
@@ -119,7 +122,8 @@ struct DeviceState {
   ReportJudge judge;
   LinkWatch link;
   Stability stability;
-  double steadied_n[3] = {};  // device's frame, of the last good report: what the stage of stability has made of wanted_n
+  double steadied_n[3] = {};  // device's frame, of the last good report: what the stage of stability has made of both forces
+  EffectForce effects;        // device's frame
   TickCounters counters;
   int samples = 0;          // good reports since the device was opened, up to kSamplesToArm
   bool has_place = false;   // fingers stand where the tip was last seen
@@ -133,7 +137,8 @@ struct DeviceState {
   // as of the last good report
   Sample sample;
   double tip_world_m[3] = {};
-  double wanted_n[3] = {};  // world
+  double wanted_n[3] = {};  // world: of the contacts, without effects
+  double effect_n[3] = {};  // world: of the effects
   std::uint32_t state = 0;
   bool rubs = false;  // a touch slides with friction
 };

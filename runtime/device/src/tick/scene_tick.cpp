@@ -56,6 +56,7 @@ void remove_fingers(DeviceState& device) {
     fdcg_scene_remove_finger(device.setup.scene, device.setup.fingers[contact], nullptr);
   device.has_left = true;
   device.has_place = false;
+  if (device.setup.effects != nullptr) device.setup.effects->reset(device.setup.effects_device);
 }
 
 // Resets the fingers to a position: no contact on the way there.
@@ -67,6 +68,7 @@ void place_fingers(DeviceState& device, const Target& target) {
     for (int contact = 0; contact < device.setup.contact_count; ++contact)
       fdcg_scene_reset_finger(device.setup.scene, device.setup.fingers[contact], target.place_m[contact], nullptr);
   }
+  if (device.setup.effects != nullptr) device.setup.effects->reset(device.setup.effects_device);
   std::copy_n(&target.place_m[0][0], 3 * device.setup.contact_count, &device.places_m[0][0]);
   std::copy_n(target.turn_xyzw, 4, device.turn_xyzw);
   device.has_place = true;
@@ -166,6 +168,23 @@ void sum_touches(DeviceState& device) {
   }
 }
 
+// The effects on all contacts of the device.
+void sum_effects(DeviceState& device, double tick_s) {
+  const DeviceSetup& setup = device.setup;
+  std::fill_n(device.effect_n, 3, 0.0);
+  for (int contact = 0; contact < setup.contact_count; ++contact) {
+    fdcg_finger_result felt;
+    if (fdcg_scene_get_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
+    setup.effects->feel(setup.effects_device, contact, device.places_m[contact], felt, tick_s, device.effect_n);
+  }
+}
+
+// Where bodies are after the step; driven objects are told when they are moved.
+void move_bodies(const DeviceSetup& setup) {
+  for (std::uint32_t i = 0; i < setup.body_count; ++i)
+    setup.effects->move(setup.bodies[i].object, fdcg_body_get_pose(&setup.bodies[i].body));
+}
+
 // Steps the soft sheets with the forces of this tick; their motion takes effect in the next tick.
 void yield_to(const Member* members, int count, const DeviceSetup& clock) {
   for (int soft = 0; soft < clock.soft_count; ++soft) {
@@ -225,11 +244,18 @@ int scene_tick(const Member* members, int count, const bool* has_moved) {
   const DeviceSetup& setup = members[clock].device->setup;
   const TickInput& input = *members[clock].input;
   for (std::uint32_t i = 0; i < std::min<std::uint32_t>(input.pose_count, setup.driven_count); ++i) {
-    fdcg_scene_set_pose(setup.scene, setup.driven[i], &input.poses[i], nullptr);  // a bad pose: the old one stays
+    // a bad pose: the old one stays
+    const fdcg_status status = fdcg_scene_set_pose(setup.scene, setup.driven[i], &input.poses[i], nullptr);
+    if (status == FDCG_OK && setup.effects != nullptr) setup.effects->move(setup.driven[i], input.poses[i]);
   }
   step_scene(members, count, has_moved, *members[clock].device);
   for (int m = 0; m < count; ++m)
     if (members[m].device->has_place) sum_touches(*members[m].device);
+  if (setup.effects != nullptr) {
+    move_bodies(setup);
+    for (int m = 0; m < count; ++m)
+      if (members[m].device->has_place) sum_effects(*members[m].device, 1 / setup.profile.rate_hz);
+  }
   yield_to(members, count, setup);
   return clock;
 }
@@ -242,6 +268,7 @@ void leave_scene(const Member& member) {
   if (device.has_left || (!device.is_waiting && is_heard_within(member, kSilenceS))) return;
   remove_fingers(device);
   std::fill_n(device.wanted_n, 3, 0.0);
+  std::fill_n(device.effect_n, 3, 0.0);
   device.state = 0;
 }
 

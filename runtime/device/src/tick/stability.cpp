@@ -37,10 +37,12 @@ void Stability::reset() {
 }
 
 void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double sent_n[3], double round_trip_s, bool rubs,
-                     double force_n[3]) {
+                     double force_n[3], const EffectForce& effects) {
   if (!is_finite(tip_m) || !is_finite(force_n)) return;  // the gate's to disarm for
   const double seconds = has_last_ && now_ns > last_ns_ ? static_cast<double>(now_ns - last_ns_) * 1e-9 : 0;
-  std::copy_n(sent_n, 3, sent_n_[sent_count_++ % kSent]);
+  for (int i = 0; i < 3; ++i)
+    sent_n_[sent_count_ % kSent][i] = sent_n[i] - effects.sent_n[i];
+  ++sent_count_;
   const bool is_gap = seconds > kGapPeriods * period_s_;
   if (is_gap) bounces_.begin(period_s_);  // in a gap what moved was not seen
   const bool is_thrown = bounces_.step(tip_m, now_ns, force_n, share_ < 1 ? kCalmedBounces : kBounces);
@@ -58,6 +60,8 @@ void Stability::step(const double tip_m[3], std::uint64_t now_ns, const double s
   if (setup_.has_passivity && has_last_) damp(way_m, seconds, force_n);
   if (is_thrown && setup_.has_calming && setup_.has_passivity) calm(bounces_.since_ns(), now_ns);
   if (setup_.has_calming) look_for_shaking(force_n, tip_m, now_ns);
+  for (int i = 0; i < 3; ++i)
+    if (effects.now_n[i] != 0) force_n[i] += share_ * effects.now_n[i];
   if (limits_.continuous_force_n > 0) cool(sent_n, seconds, force_n);
   std::copy_n(tip_m, 3, last_m_);
   last_ns_ = now_ns;

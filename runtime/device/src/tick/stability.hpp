@@ -37,6 +37,13 @@ inline constexpr double kMostDamping_n_s_per_m = 20;
 inline constexpr double kFreeEnergy_j = 1e-4;  // that may come out beside what is stored: rounding of encoders
 inline constexpr double kMostOwed_j = 0.05;    // so the damping of what nobody can make good ends
 
+// The force of effects (fdcg/effect.h), which have accounts of their own: the first two parts do not judge it. It is cut where
+// the scene's force is, and it heats the motors.
+struct EffectForce {
+  double now_n[3] = {};   // to be added
+  double sent_n[3] = {};  // what of sent_n below was theirs
+};
+
 struct StabilitySetup {
   bool has_passivity = false, has_calming = false;
   double stiffness_n_per_m = 0;  // the least that is touched, felt at the device: what a force has stored is f^2 / (2 K)
@@ -51,7 +58,7 @@ class Stability {
   // through in the tick before. round_trip_s: 0 where it is not known. rubs: a touch slides with friction, whose turns are the
   // hand's.
   void step(const double tip_m[3], std::uint64_t now_ns, const double sent_n[3], double round_trip_s, bool rubs,
-            double force_n[3]);
+            double force_n[3], const EffectForce& effects = {});
 
   double share() const { return share_; }                // of the scene's force
   double damping() const { return damping_n_s_per_m_; }  // of the passivity controller, in this tick
