@@ -12,11 +12,11 @@ constexpr int kMostSamples = 16;  // of a tick
 
 // Where a value lies between the points of an axis: index of the lower one, share of the upper one, and how much of the first
 // is left below it.
-struct Place {
+struct AxisPlace {
   uint32_t low, high;
   double share, fade;
 };
-Place place_on(const double* axis, uint32_t count, double value) {
+AxisPlace place_on(const double* axis, uint32_t count, double value) {
   if (value <= axis[0]) return {0, 0, 0, larger(value, 0) / axis[0]};
   uint32_t high = 1;
   while (high < count && value > axis[high])
@@ -25,12 +25,12 @@ Place place_on(const double* axis, uint32_t count, double value) {
   return {high - 1, high, (value - axis[high - 1]) / (axis[high] - axis[high - 1]), 1};
 }
 
-struct Model {
+struct TextureModel {
   double reflection[FDCG_TEXTURE_MAX_ORDER];
   double deviation;
 };
 
-void blend(const fdcg_texture& texture, const Place& speed, const Place& force, Model* model) {
+void blend(const fdcg_texture& texture, const AxisPlace& speed, const AxisPlace& force, TextureModel* model) {
   const uint32_t columns = texture.force_count, order = texture.order;
   const uint32_t cells[4] = {speed.low * columns + force.low, speed.low * columns + force.high,
                              speed.high * columns + force.low, speed.high * columns + force.high};
@@ -48,7 +48,7 @@ void blend(const fdcg_texture& texture, const Place& speed, const Place& force, 
   model->deviation *= speed.fade * force.fade;
 }
 
-double next_sample(const Model& model, uint32_t order, double* lattice, uint64_t* random) {
+double next_sample(const TextureModel& model, uint32_t order, double* lattice, uint64_t* random) {
   double forward = model.deviation * next_noise(random);
   for (uint32_t m = order; m-- > 0;) {
     forward -= model.reflection[m] * lattice[m];
@@ -69,7 +69,7 @@ extern "C" void fdcg_texture_law(const fdcg_effect* effect, const fdcg_effect_fa
   if (state->random == 0) state->random = first_noise(effect->seed);
   const double speed = norm(along_surface(vec(state->velocity_m_per_s), *state));
   const double load = dot(vec(facts->spring_n), vec(state->normal));
-  Model model;
+  TextureModel model;
   blend(texture, place_on(texture.speed_m_per_s, texture.speed_count, speed),
         place_on(texture.force_n, texture.force_count, load), &model);
   *since += texture.rate_hz * facts->tick_s;
