@@ -5,42 +5,27 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
-#include <deque>
 #include <mutex>
 #include <set>
 #include <thread>
 
-#include "dashboard_page.hpp"
-#include "visitors.hpp"
+#include "dashboard_client.hpp"
 
 namespace fdcg::tools {
 namespace {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
 using Tcp = asio::ip::tcp;
 using Code = boost::system::error_code;
-using Text = std::shared_ptr<const std::string>;
-using namespace std::chrono_literals;
 
-constexpr std::size_t kMostClients = 16, kMostEvents = 64, kMostCommands = 256;
-constexpr std::size_t kLongestCommand = 200, kLongestRequest = 8192;  // bytes
-constexpr auto kPatience = 5s;                                        // for a request
-
-std::string_view field_of(const http::request<http::string_body>& request, http::field name) {
-  const auto found = request.find(name);
-  return found == request.end() ? std::string_view() : std::string_view(found->value().data(), found->value().size());
-}
+constexpr std::size_t kMostClients = 16, kMostCommands = 256;
 
 }  // namespace
 
 // All of it belongs to the server's thread, but for the commands.
 struct DashboardServer::Impl {
-  class Client;
+  using Client = DashboardClient<beast::tcp_stream, Impl>;
 
   asio::io_context io{1};
   Tcp::acceptor acceptor{io};
@@ -51,94 +36,7 @@ struct DashboardServer::Impl {
 
   void accept();
   void add_command(std::string command);
-};
-
-class DashboardServer::Impl::Client : public std::enable_shared_from_this<Client> {
- public:
-  Client(Tcp::socket socket, Impl& server) : stream_(std::move(socket)), server_(server) {}
-
-  void start() {
-    parser_.header_limit(kLongestRequest);
-    parser_.body_limit(0);
-    beast::get_lowest_layer(stream_).expires_after(kPatience);
-    http::async_read(stream_.next_layer(), buffer_, parser_,
-                     [self = shared_from_this()](Code code, std::size_t) { code ? self->end() : self->take_request(); });
-  }
-  void close() { beast::get_lowest_layer(stream_).close(); }
-  void send_snapshot(const Text& text) {
-    snapshot_ = text;
-    write();
-  }
-  void send_event(const Text& text) {
-    if (events_.size() < kMostEvents) events_.push_back(text);
-    write();
-  }
-
- private:
-  void end() { server_.clients.erase(shared_from_this()); }
-
-  void take_request() {
-    const auto& request = parser_.get();
-    if (!may_come(field_of(request, http::field::host), field_of(request, http::field::origin)))
-      return answer(http::status::forbidden, "text/plain", "not from another site\n");
-    if (!websocket::is_upgrade(request)) return answer(http::status::ok, "text/html; charset=utf-8", kDashboardPage);
-    beast::get_lowest_layer(stream_).expires_never();
-    stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-    stream_.read_message_max(kLongestCommand);
-    stream_.async_accept(request, [self = shared_from_this()](Code code) {
-      if (code) return self->end();
-      self->is_open_ = true;
-      self->read();
-      self->write();
-    });
-  }
-
-  void answer(http::status status, const char* type, const char* body) {
-    response_ = {status, parser_.get().version()};
-    response_.set(http::field::content_type, type);
-    response_.set(http::field::x_frame_options, "DENY");
-    response_.body() = body;
-    response_.keep_alive(false);
-    response_.prepare_payload();
-    http::async_write(stream_.next_layer(), response_, [self = shared_from_this()](Code, std::size_t) {
-      Code ignored;
-      beast::get_lowest_layer(self->stream_).socket().shutdown(Tcp::socket::shutdown_send, ignored);
-      self->end();
-    });
-  }
-
-  void read() {
-    stream_.async_read(buffer_, [self = shared_from_this()](Code code, std::size_t) {
-      if (code) return self->end();
-      self->server_.add_command(beast::buffers_to_string(self->buffer_.data()));
-      self->buffer_.consume(self->buffer_.size());
-      self->read();
-    });
-  }
-
-  void write() {
-    if (!is_open_ || being_sent_ || (events_.empty() && !snapshot_)) return;
-    if (events_.empty()) {
-      being_sent_ = std::move(snapshot_);
-      snapshot_ = nullptr;
-    } else {
-      being_sent_ = events_.front();
-      events_.pop_front();
-    }
-    stream_.async_write(asio::buffer(*being_sent_), [self = shared_from_this()](Code code, std::size_t) {
-      self->being_sent_ = nullptr;
-      if (!code) self->write();  // else the read ends too
-    });
-  }
-
-  websocket::stream<beast::tcp_stream> stream_;
-  Impl& server_;
-  beast::flat_buffer buffer_{kLongestRequest};
-  http::request_parser<http::string_body> parser_;
-  http::response<http::string_body> response_;
-  bool is_open_ = false;
-  Text snapshot_, being_sent_;
-  std::deque<Text> events_;
+  void end(const std::shared_ptr<Client>& client) { clients.erase(client); }
 };
 
 void DashboardServer::Impl::accept() {

@@ -13,6 +13,7 @@ constexpr std::size_t kFixedHeaderBytes = sizeof kSessionMagic + 8;  // magic, v
 constexpr std::size_t kMostHeaderBytes = 64'000'000;
 constexpr std::size_t kMostRecordBytes = kRecordFrameBytes + kMostTickBytes;
 constexpr std::size_t kBytesOfEnd = 16;  // a device
+constexpr std::size_t kPieceBytes = 1 << 16;
 
 std::uint64_t get(const std::uint8_t* from, std::size_t bytes) {
   std::uint64_t value = 0;
@@ -61,10 +62,16 @@ SessionReader::~SessionReader() {
 }
 
 std::string SessionReader::open(const std::string& path) {
+  errno = 0;
+  std::FILE* const file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) return "cannot read '" + path + "': " + std::strerror(errno);
+  return open(file, path);
+}
+
+std::string SessionReader::open(std::FILE* file, const std::string& path) {
+  file_ = file;
   path_ = path;
   errno = 0;
-  file_ = std::fopen(path.c_str(), "rb");
-  if (file_ == nullptr) return "cannot read '" + path + "': " + std::strerror(errno);
   bytes_.resize(kFixedHeaderBytes);
   const std::size_t got = std::fread(bytes_.data(), 1, bytes_.size(), file_);
   if (got == 0 && std::ferror(file_) != 0) return "cannot read '" + path + "': " + std::strerror(errno);
@@ -80,12 +87,10 @@ std::string SessionReader::open(const std::string& path) {
     return path + ": byte 12: a header of " + std::to_string(text_bytes) + " bytes; at most " +
            std::to_string(kMostHeaderBytes) + ": the file is damaged";
   }
-  bytes_.resize(kFixedHeaderBytes + text_bytes + 8);
-  const std::size_t rest = bytes_.size() - kFixedHeaderBytes;
-  const std::size_t rest_got = std::fread(bytes_.data() + kFixedHeaderBytes, 1, rest, file_);
-  if (rest_got < rest) {
-    return path + ": the header has " + std::to_string(bytes_.size()) + " bytes, the file ends after " +
-           std::to_string(kFixedHeaderBytes + rest_got) + ": nothing of the session is left";
+  const std::size_t header_bytes = kFixedHeaderBytes + text_bytes + 8;
+  if (!read_up_to(header_bytes)) {
+    return path + ": the header has " + std::to_string(header_bytes) + " bytes, the file ends after " +
+           std::to_string(bytes_.size()) + ": nothing of the session is left";
   }
   const std::uint64_t checksum = get(bytes_.data() + bytes_.size() - 8, 8);
   const std::string text(reinterpret_cast<const char*>(bytes_.data()) + kFixedHeaderBytes, text_bytes);
@@ -95,6 +100,18 @@ std::string SessionReader::open(const std::string& path) {
   offset_ = bytes_.size();
   bytes_.reserve(kMostRecordBytes);
   return {};
+}
+
+// In pieces: a damaged length costs no more memory than the file has bytes.
+bool SessionReader::read_up_to(std::size_t bytes) {
+  while (bytes_.size() < bytes) {
+    const std::size_t had = bytes_.size(), piece = std::min(bytes - had, kPieceBytes);
+    bytes_.resize(had + piece);
+    const std::size_t got = std::fread(bytes_.data() + had, 1, piece, file_);
+    bytes_.resize(had + got);
+    if (got < piece) return false;
+  }
+  return true;
 }
 
 bool SessionReader::ends(Ending ending, const std::string& why) {

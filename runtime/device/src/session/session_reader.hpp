@@ -59,6 +59,8 @@ class SessionReader {
 
   // Empty: the header is whole. Otherwise the file and what is wrong with it.
   std::string open(const std::string& path);
+  // The same of a file that is open, at its start; it is closed here. `name`: for messages.
+  std::string open(std::FILE* file, const std::string& name);
   const SessionHeader& header() const { return header_; }
   // False at the end; ending() then says which. kEnd records are not given out: see end().
   bool next(SessionRecord* record);
@@ -68,6 +70,7 @@ class SessionReader {
   std::uint64_t offset() const { return offset_; }       // bytes read and found whole
 
  private:
+  bool read_up_to(std::size_t bytes);  // of bytes_
   bool read_record();
   bool ends(Ending ending, const std::string& why);
   bool read_end(const SessionRecord& record);
