@@ -124,6 +124,66 @@ bool holds_a_writer() {
 
 }  // namespace
 
+namespace {
+
+// A pipe that takes nothing any more: who writes there waits.
+int full_pipe(int* reading_end) {
+  int ends[2];
+  REQUIRE(pipe2(ends, O_NONBLOCK) == 0);
+  const char bytes[4096] = {};
+  while (write(ends[1], bytes, sizeof bytes) > 0) {
+  }
+  REQUIRE(fcntl(ends[1], F_SETFL, 0) == 0);
+  *reading_end = ends[0];
+  return ends[1];
+}
+
+// False: this machine was too busy to say.
+bool is_stuck(Hosted& hosted, int index) {
+  hosted.press(index);
+  hosted.device(index).holds_writes = true;
+  REQUIRE(within_ms(2000, [&] { return hosted.phase(index) == Phase::kDisarmed; }));
+  if (hosted.fault(index) == Fault::kWriterStuck) return true;
+  hosted.device(index).holds_writes = false;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("host: a device that takes no output in any way does not keep another's zero from being sent") {
+  Hosted hosted(2);
+  int first_reading = -1, ends[2];
+  const int first_writing = full_pipe(&first_reading);
+  REQUIRE(pipe2(ends, O_NONBLOCK | O_DIRECT) == 0);
+  hosted.device(0).emergency = first_writing;
+  hosted.device(1).emergency = ends[1];
+  hosted.start();
+  for (int index = 0; index < 2; ++index) {
+    int tries = 0;
+    while (!is_stuck(hosted, index) && ++tries < 6) {
+    }
+    REQUIRE(tries < 6);
+    sleep_ms(50);  // the first one's zero waits in its pipe by now
+  }
+  std::uint8_t report[kMaxReportBytes];
+  ssize_t bytes = -1;
+  CHECK(within_ms(2000, [&] { return (bytes = read(ends[0], report, sizeof report)) > 0; }));
+  Command zero;
+  CHECK(decode_output(fake_profile(), report, static_cast<int>(bytes), &zero));
+  CHECK_FALSE(zero.is_enabled);
+  std::uint8_t rest[4096];
+  while (read(first_reading, rest, sizeof rest) > 0) {
+  }
+  for (int index = 0; index < 2; ++index)
+    hosted.device(index).holds_writes = false;
+  CHECK(within_ms(1000, [&] { return hosted.device(0).force_n == 0 && hosted.device(1).force_n == 0; }));
+  for (int index = 0; index < 2; ++index)
+    hosted.device(index).emergency = -1;
+  CHECK(hosted.host.stop() == "");
+  for (const int end : {first_reading, first_writing, ends[0], ends[1]})
+    close(end);
+}
+
 TEST_CASE("host: a writer thread that hangs is disarmed, and another thread sends the zero") {
   int held = 0;
   const int wanted = strikes(5);

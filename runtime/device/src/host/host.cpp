@@ -9,6 +9,7 @@
 #include "base/threads.hpp"
 #include "host/emergency.hpp"
 #include "host/servo_loop.hpp"
+#include "host/stand_in.hpp"
 #include "host/supervisor.hpp"
 #include "host/writer.hpp"
 #include "recording/session_log.hpp"
@@ -25,7 +26,7 @@ constexpr std::uint64_t kStopMarginNs = 100'000'000;  // of kStopS, for what fol
 
 }  // namespace
 
-// A device and all that its two threads touch.
+// A device and all that its threads touch.
 struct Unit {
   Unit(std::unique_ptr<Transport> way, const Profile& profile) : transport(std::move(way)), writer(profile, *transport, link) {}
 
@@ -35,6 +36,7 @@ struct Unit {
   ServoLoop servo;
   std::vector<std::size_t> moving;  // objects
   EmergencyExit emergency;
+  StandIn stand_in{writer, link, emergency};
   // The latest status from the threads.
   DeviceStatus status;
   WriterStatus writes;
@@ -64,8 +66,8 @@ struct Host::Impl {
   TransportMaker maker;
   std::shared_ptr<Shared> shared;
   Thread supervisor;
-  std::vector<Thread> servos;   // as the groups
-  std::vector<Thread> writers;  // as the units
+  std::vector<Thread> servos;              // as the groups
+  std::vector<Thread> writers, stand_ins;  // as the units
   std::vector<std::string> warnings;
   bool is_running = false, has_run = false, has_log = false;
   std::atomic<bool> is_stopping{false};
@@ -140,6 +142,7 @@ std::string Host::Impl::build_unit(std::size_t index, Group& group) {
   parts.link = &unit->link;
   parts.writer = &unit->writer;
   parts.lost = &shared->supervisor.lost();
+  parts.stalled = &unit->stand_in.stalled();
   parts.start_ns = shared->start_ns;
   parts.log = group.log.get();
   parts.log_place = static_cast<int>(index - group.devices.first);
@@ -190,12 +193,14 @@ std::string Host::Impl::start_log() {
 std::string Host::Impl::start_threads() {
   servos.resize(shared->groups.size());
   writers.resize(shared->units.size());
+  stand_ins.resize(shared->units.size());
   const std::shared_ptr<Shared> share = shared;
   for (std::size_t i = 0; i < shared->units.size(); ++i) {
     Unit* const unit = shared->units[i].get();
     if (!add_emergency_exit(&unit->emergency))
       warnings.push_back("too many devices: one gets no zero force if this program crashes");
     std::string problem = writers[i].start("fdcg-writer", [share, unit] { unit->writer.run(); });
+    if (problem.empty()) problem = stand_ins[i].start("fdcg-stand-in", [share, unit] { unit->stand_in.run(); });
     if (!problem.empty()) return problem;
   }
   for (std::size_t i = 0; i < shared->groups.size(); ++i) {
@@ -232,6 +237,7 @@ void Host::Impl::make_punctual() {
     if (is_free_running(i)) continue;
     const std::string name = "device '" + shared->config.devices[i].name + "', writer thread";
     warn(set_real_time_priority(writers[i], name, loop.writer_priority));
+    set_real_time_priority(stand_ins[i], name, loop.writer_priority);  // where it is not granted, that has been said
   }
 }
 
@@ -400,6 +406,8 @@ std::string Host::Impl::end_threads() {
     unit->writer.request_stop();
   for (const auto& unit : shared->units)
     unit->servo.request_stop();
+  for (const auto& unit : shared->units)
+    unit->stand_in.request_stop();
   shared->supervisor.request_stop();
   const bool has_supervisor_ended = join(supervisor);
   std::string problem;
@@ -411,16 +419,17 @@ std::string Host::Impl::end_threads() {
   }
   for (std::size_t i = 0; i < shared->units.size(); ++i) {
     Unit& unit = *shared->units[i];
-    const bool has_writer_ended = join(writers[i]), has_servo_ended = have_servos_ended[i];
+    const bool has_writer_ended = join(writers[i]), has_stand_in_ended = join(stand_ins[i]);
+    const bool has_servo_ended = have_servos_ended[i];
     unit.link.close();
     unit.emergency.descriptor.store(-1);
     unit.emergency.call.store(nullptr);
     unit.is_left = !has_servo_ended;
-    const bool has_ended = has_writer_ended && has_servo_ended && has_supervisor_ended;
+    const bool has_ended = has_writer_ended && has_stand_in_ended && has_servo_ended && has_supervisor_ended;
     if (has_ended) unit.transport->close();
     if (has_ended && unit.writer.has_left_zero()) continue;
     problem += (problem.empty() ? "device '" : "; device '") + shared->config.devices[i].name + "': ";
-    if (!has_writer_ended || !unit.writer.has_left_zero()) {
+    if (!has_writer_ended || !has_stand_in_ended || !unit.writer.has_left_zero()) {
       problem += "takes no output, and may not have got its zero force";
     } else {
       problem += !has_servo_ended ? "its read does not return" : "was being opened";

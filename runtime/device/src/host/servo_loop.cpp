@@ -140,7 +140,7 @@ void ServoLoop::send_force() {
   parts_.writer->wake();
   if (const std::uint64_t stall = parts_.writer->stall(); stall != seen_stall_) {
     seen_stall_ = stall;
-    if (stall != 0) parts_.lost->signal();  // it sends the zero that the writer does not
+    if (stall != 0 && parts_.stalled != nullptr) parts_.stalled->signal();
   }
   // The supervisor is notified only now, after the zero force of this tick has been handed to the writer.
   if (input_.read == ReadStatus::kLost && !is_lost_ && was_inside_) {

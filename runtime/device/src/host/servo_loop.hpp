@@ -35,7 +35,8 @@ struct ServoParts {
   Writer* writer = nullptr;
   LogRing* log = nullptr;                   // may be null
   int log_place = 0;                        // among the ring's devices
-  Event* lost = nullptr;                    // signalled when the reader finds the device gone, or the writer hangs
+  Event* lost = nullptr;                    // signalled when the reader finds the device gone
+  Event* stalled = nullptr;                 // signalled when the writer hangs; may be null
   std::vector<const ObjectConfig*> moving;  // in the order of DeviceSetup::driven
   std::uint64_t start_ns = 0;               // the motions' time 0
 };

@@ -11,7 +11,7 @@ constexpr std::uint64_t kMs = 1'000'000;
 constexpr std::uint64_t kSoonNs = 100 * kMs, kLaterNs = 1000 * kMs;  // between attempts to open
 constexpr std::uint64_t kSoonForNs = 5000 * kMs;                     // an unplugged device is usually back by then
 constexpr std::uint64_t kZeroForceNs = 20 * kMs;                     // for the zero force of the tick that found the loss
-constexpr std::uint64_t kClosingPollNs = 2 * kMs;                    // poll interval while a reader or writer is inside
+constexpr std::uint64_t kClosingPollNs = 2 * kMs;                    // poll interval while a thread is inside
 constexpr std::uint64_t kIdleNs = 200 * kMs;
 
 }  // namespace
@@ -48,19 +48,9 @@ void Supervisor::run() {
 
 void Supervisor::look_after(Watched& device) {
   if (device.state == State::kOpen && device.parts.servo->lost_opening() == device.parts.link->opened()) begin_closing(device);
-  if (device.state == State::kOpen) stand_in(device);
   const std::uint64_t now_ns = monotonic_ns();
   if (device.state == State::kClosing) try_to_close(device, now_ns);
   if (device.state == State::kAbsent && now_ns >= device.next_try_ns) try_to_open(device, now_ns);
-}
-
-// A writer that hangs: the gate has disarmed, and this thread sends the zero, once. Where the device takes no output this
-// blocks as long as the writer's own write does.
-void Supervisor::stand_in(Watched& device) {
-  const std::uint64_t stall = device.parts.writer->stall();
-  if (stall == 0 || stall == device.seen_stall) return;
-  device.seen_stall = stall;
-  send_zero(*device.parts.emergency);
 }
 
 void Supervisor::begin_closing(Watched& device) {

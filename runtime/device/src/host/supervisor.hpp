@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that opens devices, closes a lost one after its reader and writer have left it, and reopens it when it is back.
+// The thread that opens devices, closes a lost one when no thread is inside, and reopens it when it is back.
 // All calls that enumerate, open or close are made here, one device after another: hidapi needs one thread for them, and they
 // take milliseconds.
 #pragma once
@@ -25,7 +25,7 @@ struct SupervisedDevice {
   Link* link = nullptr;
   ServoLoop* servo = nullptr;
   Writer* writer = nullptr;
-  EmergencyExit* emergency = nullptr;
+  EmergencyExit* emergency = nullptr;  // what the transport has, while it is open
 };
 
 class Supervisor {
@@ -49,11 +49,9 @@ class Supervisor {
     State state = State::kAbsent;
     std::uint64_t opened_ns = 0, absent_since_ns = 0, next_try_ns = 0;
     std::atomic<bool> is_over{false};
-    std::uint64_t seen_stall = 0;  // of its writer
-    std::string problem;           // under problem_mutex_
+    std::string problem;  // under problem_mutex_
   };
   void look_after(Watched& device);
-  void stand_in(Watched& device);
   void try_to_open(Watched& device, std::uint64_t now_ns);
   void begin_closing(Watched& device);
   void try_to_close(Watched& device, std::uint64_t now_ns);

@@ -44,8 +44,8 @@ class Writer {
   // After run: false where a device that is there did not take its zero force.
   bool has_left_zero() const { return has_left_zero_.load(std::memory_order_acquire); }
 
-  // For the supervisor: 0, or the number of a stall: the thread hangs with a force sent, in a write or between two. A zero
-  // force by another way (emergency.hpp) arrives, or waits beside the write that is blocked.
+  // For who stands in (stand_in.hpp): 0, or the number of a stall: the thread hangs with a force sent, in a write or between
+  // two. A zero force by another way (emergency.hpp) arrives, or waits beside the write that is blocked.
   std::uint64_t stall() const { return stall_.load(std::memory_order_acquire); }
   // The number of a report that somebody else sends in its place; a new one each time.
   std::uint32_t take_sequence() { return sequence_.fetch_add(1); }
