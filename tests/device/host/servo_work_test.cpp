@@ -2,7 +2,9 @@
 // What the servo thread does in a tick: no heap, no lock, and how long it takes.
 #include <algorithm>
 
+#include "base/real_time.hpp"
 #include "catch.hpp"
+#include "instruction_count.hpp"
 #include "loop_rig.hpp"
 #include "thread_calls.hpp"
 
@@ -96,6 +98,58 @@ TEST_CASE("servo loop: its own work in a tick takes less than 10 us, log and sna
     WARN("own work of a tick: p50 " << half_ns << " ns, p99 " << took_ns[took_ns.size() * 99 / 100] << " ns");
   }
   CHECK(half_ns < 10'000);
+}
+
+namespace {
+
+// Of a tick in contact and armed, but for the reading; the median of some. Each is single-stepped, which takes so long that the
+// next tick disarms.
+std::uint64_t instructions_of_a_tick(bool has_taps) {
+  constexpr int kCounted = 3, kTicksToArm = 20, kTicksInside = 40;
+  constexpr std::uint64_t kMost = 1'000'000;
+  LogRing log(1u << 22);
+  Rig rig(cube_file(), has_taps ? &log : nullptr);
+  if (has_taps) rig.servo.keep_snapshots(4096);
+  rig.open();
+  Running writer([&] { rig.writer.run(); });
+  const OwnPriority real_time(80);  // where it is granted a busy machine is no matter
+  const auto ticks = [&](int count) {
+    for (int i = 0; i < count; ++i)
+      rig.servo.tick();
+  };
+  std::uint8_t report[kMaxReportBytes];
+  std::vector<std::uint64_t> counts;
+  for (int tries = 0; static_cast<int>(counts.size()) < kCounted && tries < 20 * kCounted; ++tries) {
+    rig.device.tip_z_m = 0.01;
+    ticks(kTicksToArm);
+    rig.servo.request_arm();
+    ticks(kTicksToArm);
+    rig.device.tip_z_m = -0.002;
+    ticks(kTicksInside);
+    if (!(rig.device.force_n > 0)) continue;  // a busy machine was late
+    rig.device.burst = 1;
+    std::uint64_t count = fdcg::test::instructions_of([&] { rig.servo.tick(); }, kMost);
+    rig.device.burst = 1;
+    count -= fdcg::test::instructions_of([&] { rig.reads.read(report, sizeof report, 1); }, kMost);  // it finds a report
+    count -= fdcg::test::instructions_of([&] { rig.reads.read(report, sizeof report, 0); }, kMost);  // and then none
+    counts.push_back(count);
+  }
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+  REQUIRE(counts.size() == kCounted);
+  std::sort(counts.begin(), counts.end());
+  return counts[kCounted / 2];
+}
+
+}  // namespace
+
+TEST_CASE("servo loop: a tick's instructions, with log and snapshot and without") {
+  if (!can_count_thread_calls() || FDCG_COUNTS_INSTRUCTIONS == 0) return;
+  const std::uint64_t without = instructions_of_a_tick(false), with = instructions_of_a_tick(true);
+  WARN("instructions of a tick: " << without << ", with log and snapshot " << with);
+  CHECK(without > 1000);
+  CHECK(with < 20'000);
+  CHECK(with - without < 10'000);
 }
 
 TEST_CASE("the counters of heap and locks count") {

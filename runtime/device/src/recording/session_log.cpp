@@ -148,7 +148,8 @@ void LogRing::copy_out(std::uint64_t at, std::uint8_t* to, std::size_t bytes) co
 std::size_t LogRing::encode(const TickInput& input, const TickOutput& output, int device, std::size_t at) {
   std::uint8_t* const entry = scratch_ + at;
   std::size_t bytes = encode_tick_input(input, entry + kEntryBytes);
-  bytes += encode_tick_output(logged(output), entry + kEntryBytes + bytes);
+  log_output(output, &output_);
+  bytes += encode_tick_output(output_, entry + kEntryBytes + bytes);
   const std::uint32_t words[2] = {static_cast<std::uint32_t>(bytes), static_cast<std::uint32_t>(device)};
   const std::uint64_t tick = ticks_[device]++;
   std::memcpy(entry, words, sizeof words);

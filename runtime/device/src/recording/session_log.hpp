@@ -13,6 +13,7 @@
 #include "scene/host_config.hpp"
 #include "scene/scene_build.hpp"
 #include "tick/device_tick.hpp"
+#include "tick/tick_bytes.hpp"
 
 namespace fdcg::dev {
 
@@ -49,6 +50,7 @@ class LogRing {
 
   std::uint8_t* bytes_ = nullptr;
   std::uint8_t* scratch_ = nullptr;  // the servo thread's: ticks being encoded
+  LoggedOutput output_;              // and the output of one
   std::uint32_t capacity_ = 0;
   int device_count_ = 1;
   std::uint64_t ticks_[kMaxDevices] = {};           // the servo thread's: put so far, dropped ones too

@@ -56,7 +56,8 @@ struct TickInput {
   RawReport reports[kMaxDrain];  // oldest first; only the first report_count are set
 };
 
-struct TickOutput {
+// But for the bodies, of which most scenes have few.
+struct TickTold {
   GatedForce force;
   std::uint32_t echo = 0;  // sequence of the report that the force answers
   Phase phase = Phase::kDisarmed;
@@ -72,7 +73,10 @@ struct TickOutput {
   double wanted_force_n[3] = {};  // world, before the gate
   Sample sample;
   std::uint32_t body_count = 0;
-  fdcg_pose bodies[kMaxBodies] = {};  // world, after the tick; in the order of DeviceSetup::bodies
+};
+
+struct TickOutput : TickTold {
+  fdcg_pose bodies[kMaxBodies] = {};  // world, after the tick; in the order of DeviceSetup::bodies; zero beyond body_count
 };
 
 // World = R (scale * device) + offset. Forces are turned, not scaled: a stiffness of K in the world is felt as scale * K.

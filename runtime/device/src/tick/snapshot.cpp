@@ -31,7 +31,6 @@ void take_contact(const fdcg_finger_result& finger, fdcg_snapshot_contact* to) {
 }  // namespace
 
 void take_snapshot(const DeviceState& device, const TickOutput& output, std::uint64_t tick, double seconds, fdcg_snapshot* to) {
-  *to = {};
   to->tick = tick;
   to->time_s = seconds;
   to->phase = static_cast<std::uint32_t>(output.phase);
@@ -45,9 +44,10 @@ void take_snapshot(const DeviceState& device, const TickOutput& output, std::uin
   to->round_trip_s = output.round_trip_s;
   to->contact_count = static_cast<std::uint32_t>(device.setup.contact_count);
   for (int i = 0; i < device.setup.contact_count; ++i) {
-    fdcg_finger_result finger{};
+    fdcg_finger_result finger;
     const bool is_there = fdcg_scene_get_result(device.setup.scene, device.setup.fingers[i], &finger, nullptr) == FDCG_OK;
     fdcg_snapshot_contact& contact = to->contacts[i];
+    contact = {};
     contact.object = -1;
     std::copy_n(device.places_m[i], 3, contact.hip_m);
     std::copy_n(device.places_m[i], 3, contact.god_object_m);

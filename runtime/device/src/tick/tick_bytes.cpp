@@ -206,8 +206,8 @@ void visit_report(Archive& archive, std::conditional_t<Archive::kReads, RawRepor
 
 }  // namespace
 
-LoggedOutput logged(const TickOutput& output) {
-  LoggedOutput plain;
+void log_output(const TickOutput& output, LoggedOutput* to) {
+  LoggedOutput& plain = *to;
   std::copy(output.force.effort(), output.force.effort() + kMaxAxes, plain.effort);
   std::copy(output.force.force_n(), output.force.force_n() + 3, plain.force_n);
   plain.is_enabled = output.force.is_enabled();
@@ -227,6 +227,11 @@ LoggedOutput logged(const TickOutput& output) {
   plain.body_count = static_cast<std::uint8_t>(output.body_count);
   for (std::uint32_t i = 0; i < output.body_count; ++i)
     plain.bodies[i] = output.bodies[i];
+}
+
+LoggedOutput logged(const TickOutput& output) {
+  LoggedOutput plain;
+  log_output(output, &plain);
   return plain;
 }
 

@@ -32,6 +32,8 @@ struct LoggedOutput {
   fdcg_pose bodies[kMaxBodies] = {};  // but for their scales, which the scene has
 };
 LoggedOutput logged(const TickOutput& output);
+// The same into one that is there; its bodies beyond the count are not touched.
+void log_output(const TickOutput& output, LoggedOutput* plain);
 
 // Both return the number of bytes written, at most kMostInputBytes and kMostOutputBytes.
 std::size_t encode_tick_input(const TickInput& input, std::uint8_t* to);
