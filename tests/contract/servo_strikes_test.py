@@ -1,0 +1,367 @@
+# SPDX-License-Identifier: Apache-2.0
+"""fdcg-servo run while something goes wrong, on a device made of the firmware core (tests/device/transport/fake_hid_firmware.c,
+whose folder FDCG_FAKE_HID_FIRMWARE names): what the program can know and when, and what it does then. FDCG_STRIKES: how often each
+is done, at random moments. All times are the device's, of one clock: what is struck, what the host was handed, and what it sent.
+
+A machine that is busy with other things may be late by itself: such a strike is done once more, and may be late only so often."""
+import json
+import mmap
+import os
+import random
+import shutil
+import signal
+import struct
+import subprocess
+import threading
+import time
+import unittest
+
+from support import ROOT, SERVO, Case
+
+PATIENCE_S = 60
+STRIKES = int(os.environ.get("FDCG_STRIKES", "1"))
+MOST_LATE = 4 + STRIKES  # strikes that a busy machine may spoil
+ZERO_LIMIT_S = 0.002  # the bar: from the first chance to know until zero is sent
+MOST_RISE_N = 0.1  # what the hand's own moving changes in a period, and far below a step
+SILENCE_S, TAKEN_S, PERIOD_S, TRIPS = 0.010, 0.010, 0.001, 16
+
+EVENT = struct.Struct("<qIIIIfI")
+MOST_EVENTS, HEADER_BYTES = 1 << 17, 64
+HANDED_OUT, TAKEN, LAGS, FOREIGN, GONE, FORCE = range(1, 7)
+FIELDS = {name: 4 * i for i, name in enumerate(
+    ("report_lag_us", "output_lag_us", "foreign", "is_unplugged", "wrong_byte", "is_pressing", "event_count"))}
+
+
+class Event:
+    def __init__(self, words):
+        ns, self.kind, self.sequence, self.echo, self.is_enable, self.force_n, _ = words
+        self.at_s = ns * 1e-9
+
+
+class Device:
+    """What is shared with it, and the host that drives it."""
+
+    def __init__(self, case, name):
+        self.node = case.write(name, b"")
+        self.memory_file = case.write(name + ".memory", bytes(HEADER_BYTES + MOST_EVENTS * EVENT.size))
+        with open(self.memory_file, "r+b") as file:
+            self.memory = mmap.mmap(file.fileno(), 0)
+        case.addCleanup(self.memory.close)
+
+    def set(self, **values):
+        for name, value in values.items():
+            struct.pack_into("<I", self.memory, FIELDS[name], value)
+
+    def count(self):
+        return struct.unpack_from("<I", self.memory, FIELDS["event_count"])[0]
+
+    def events(self, since):
+        end = self.count()
+        assert end - since < MOST_EVENTS
+        return [Event(EVENT.unpack_from(self.memory, HEADER_BYTES + i % MOST_EVENTS * EVENT.size)) for i in range(since, end)]
+
+    def force_n(self):
+        """Of the last output that it was sent."""
+        for at in range(self.count() - 1, max(-1, self.count() - 50), -1):
+            event = Event(EVENT.unpack_from(self.memory, HEADER_BYTES + at % MOST_EVENTS * EVENT.size))
+            if event.kind == TAKEN:
+                return event.force_n
+        return 0
+
+
+class Program:
+    """fdcg-servo, and what it says: its status lines, one by one."""
+
+    def __init__(self, case, device, *command):
+        environment = {**os.environ, "LD_LIBRARY_PATH": os.environ["FDCG_FAKE_HID_FIRMWARE"], "FDCG_FAKE_NODE": device.node,
+                       "FDCG_FAKE_MEMORY": device.memory_file}
+        self.process = subprocess.Popen([SERVO, *command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                        env=environment)
+        self.lines, self.errors = [], []
+        self.readers = [threading.Thread(target=self.read, args=pair, daemon=True)
+                        for pair in ((self.process.stdout, self.lines), (self.process.stderr, self.errors))]
+        for reader in self.readers:
+            reader.start()
+        case.addCleanup(self.end)
+
+    @staticmethod
+    def read(stream, lines):
+        for line in stream:
+            lines.append(line.decode())
+
+    def end(self):
+        self.process.kill()
+        self.process.wait()
+        for reader in self.readers:
+            reader.join()
+        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+            stream.close()
+
+    def say(self, command):
+        self.process.stdin.write(command.encode() + b"\n")
+        self.process.stdin.flush()
+
+    def status(self):
+        return json.loads(self.lines[-1])["devices"][0] if self.lines else {}
+
+    def fresh_status(self):
+        """One that was written from now on."""
+        before = len(self.lines)
+        until = time.monotonic() + PATIENCE_S
+        while len(self.lines) < before + 2 and time.monotonic() < until:
+            time.sleep(0.005)
+        return self.status()
+
+
+class Late(Exception):
+    """This machine was too busy to say."""
+
+
+class Strikes(Case):
+    def setUp(self):
+        super().setUp()
+        shutil.copy(ROOT / "testdata" / "scenes" / "cube.fdcg", self.folder)
+        self.device = Device(self, "node")
+        self.random = random.Random(self.id())
+        self.slowest_s, self.late = 0, []
+        cube = {"name": "cube", "file": "cube.fdcg", "pose": {"scale": 0.2, "translation_m": [-0.1, -0.1, -0.2]},
+                "stiffness_n_per_m": 500, "mu_static": 0.5, "mu_dynamic": 0.4}
+        # where real time is granted a busy machine is no matter
+        self.description = {"fdcg_scene": 1, "objects": [cube],
+                            "devices": [{"name": "hand", "profile": "fdcg-reference", "force_limit_n": 3}],
+                            "loop": {"servo_priority": 80, "writer_priority": 70, "lock_memory": False}}
+        self.scene = self.write("scene.json", json.dumps(self.description))
+
+    def started(self, scene=None, *arguments):
+        return Program(self, self.device, "run", scene or self.scene, "--hid", "hidraw", "--status", "json", "--status-every",
+                       "0.02", *(arguments or ("--no-log",)))
+
+    def wait(self, condition, limit_s=PATIENCE_S):
+        until = time.monotonic() + limit_s
+        while not condition():
+            if time.monotonic() > until:
+                return False
+            time.sleep(0.001)
+        return True
+
+    def feel(self, program):
+        """Armed above the surface, then pressed in, until there are 1.5 N, and for a random moment."""
+        until = time.monotonic() + PATIENCE_S
+        while time.monotonic() < until:
+            self.device.set(is_pressing=0)
+            time.sleep(0.35)  # up there by then
+            program.say("arm")
+            if not self.wait(lambda: program.status().get("phase") == "armed", 2):
+                continue
+            self.device.set(is_pressing=1)
+            if self.wait(lambda: self.device.force_n() > 1.5, 1):
+                time.sleep(self.random.uniform(0.005, 0.06))
+                return
+        self.fail(f"no force in a minute: {program.lines[-1:]} {program.errors}")
+
+    def strike(self, program, strike, reasons):
+        """One time: felt, struck, and judged. strike() sets something, and returns how the time of the first chance to know comes
+        from the events after it (None: it has not come yet)."""
+        self.feel(program)
+        before = program.fresh_status()["disarmed"]
+        since = self.device.count()
+        known_of = strike()
+        self.assertTrue(self.wait(lambda: known_of(self.device.events(since)) is not None), "the device has not been struck")
+        known_s = known_of(self.device.events(since))
+        self.assertTrue(self.wait(lambda: time.monotonic() > known_s + 0.1))
+        outputs = [event for event in self.device.events(since) if event.kind == TAKEN]
+        after = program.fresh_status()["disarmed"]
+        told = {reason for reason in after if after[reason] > before.get(reason, 0)}
+        zero = self.judge_zero(outputs, known_s)
+        if told & {"host-late", "writer-stuck"}:
+            raise Late(f"the host itself was late: {told}")
+        self.assertTrue(told and told <= reasons, f"{told or 'nothing'} is told instead of {reasons}")
+        if zero.at_s - known_s > ZERO_LIMIT_S:
+            raise Late(f"zero after {1000 * (zero.at_s - known_s):.3f} ms")
+        self.slowest_s = max(self.slowest_s, zero.at_s - known_s)
+
+    def judge_zero(self, outputs, known_s):
+        """The first zero; from it on all are, and none grew that was sent once the host could know."""
+        zero = next((event for event in outputs if event.force_n == 0 and not event.is_enable), None)
+        self.assertIsNotNone(zero, "the force stays")
+        for before, event in zip(outputs, outputs[1:]):
+            if event.at_s > zero.at_s:
+                self.assertEqual((0, 0), (event.force_n, event.is_enable), "there is force before it was armed again")
+            elif event.at_s > known_s:
+                self.assertLess(event.force_n - before.force_n, MOST_RISE_N, "the force steps up")
+        return zero
+
+    def often(self, once):
+        done = 0
+        while done < STRIKES:
+            try:
+                once()
+                done += 1
+            except Late as late:
+                self.late.append(str(late))
+                self.assertLess(len(self.late), MOST_LATE, self.late)
+        if STRIKES > 1:
+            print(f"{self.id()}: {done} times, zero within {1000 * self.slowest_s:.3f} ms of the first chance to know; "
+                  f"{len(self.late)} spoilt: {self.late}", flush=True)
+
+    def test_another_host_on_the_device_takes_the_force_away(self):
+        program = self.started()
+
+        def strike():
+            self.device.set(foreign=self.random.randint(100, 1_000_000))
+
+            def known(events):
+                sequence = next((event.sequence for event in events if event.kind == FOREIGN), None)
+                return next((event.at_s for event in events if event.kind == HANDED_OUT and event.echo == sequence), None)
+            return known
+
+        def once():
+            self.strike(program, strike, {"other-host"})
+            time.sleep(0.5)  # for so long a foreign echo is held against it
+        self.often(once)
+
+    def test_a_second_program_is_told_of_the_first_which_goes_on(self):
+        program = self.started()
+
+        def once():
+            self.feel(program)
+            disarmed, since = program.fresh_status()["disarmed"], self.device.count()
+            second = self.started()
+            owner = f"process {program.process.pid} ("
+            self.assertTrue(self.wait(lambda: owner in second.status().get("problem", "")), second.lines[-1:] + second.errors)
+            second.say("arm")
+            time.sleep(0.05)
+            second.say("quit")
+            self.assertEqual(1, second.process.wait(timeout=PATIENCE_S))
+            if program.fresh_status()["disarmed"] != disarmed:
+                raise Late(program.status()["disarmed"])
+            self.assertTrue(all(event.is_enable for event in self.device.events(since) if event.kind == TAKEN))
+        self.often(once)
+
+    def test_a_node_that_stands_twice_in_a_scene_never_has_force(self):
+        hand = self.description["devices"][0]
+        twice = self.write("twice.json", json.dumps({**self.description, "devices": [hand, {**hand, "name": "the same"}]}))
+
+        def once():
+            program = self.started()
+            self.feel(program)
+            since = self.device.count()
+            program.process.send_signal(signal.SIGTERM)
+            program.process.wait(timeout=PATIENCE_S)
+            self.judge_zero([event for event in self.device.events(since) if event.kind == TAKEN], 0)
+            outputs = self.device.count()
+            for refused, code in ((Program(self, self.device, "check", twice), 1), (self.started(twice), 3)):
+                self.assertEqual(code, refused.process.wait(timeout=PATIENCE_S))
+                for reader in refused.readers:
+                    reader.join()
+                self.assertIn("finds the same device", "".join(refused.lines + refused.errors))
+            self.assertEqual([], [event for event in self.device.events(outputs) if event.kind == TAKEN])
+        self.often(once)
+
+    @staticmethod
+    def write_over(file, content):
+        with file.open("r+b") as opened:
+            opened.write(content)
+
+    def test_a_graph_that_is_cut_written_over_replaced_or_removed_changes_nothing(self):
+        graph = self.folder / "cube.fdcg"
+        whole = graph.read_bytes()
+        changes = {
+            "cut": lambda: os.truncate(graph, self.random.randrange(4096)),
+            "written over": lambda: self.write_over(graph, b"x" * len(whole)),
+            "removed": graph.unlink,
+            "replaced": lambda: graph.write_bytes(b"another"),
+        }
+        log = self.path("session.fdcglog")
+        program = self.started(self.scene, "--log", log)
+        for name, change in changes.items():
+            with self.subTest(change=name):
+                def once(change=change):
+                    graph.write_bytes(whole)
+                    self.feel(program)
+                    disarmed, since = program.fresh_status()["disarmed"], self.device.count()
+                    change()
+                    time.sleep(0.2)
+                    if program.fresh_status()["disarmed"] != disarmed:
+                        raise Late(program.status()["disarmed"])
+                    outputs = [event for event in self.device.events(since) if event.kind == TAKEN]
+                    self.assertGreater(len(outputs), 50)
+                    for before, event in zip(outputs, outputs[1:]):
+                        self.assertTrue(event.is_enable and abs(event.force_n - before.force_n) < 4 * MOST_RISE_N,
+                                        f"a step from {before.force_n} N to {event.force_n} N")
+                self.often(once)
+        program.say("quit")
+        self.assertIn(program.process.wait(timeout=PATIENCE_S), (0, 1))
+        graph.write_bytes(whole)
+        self.assertIn(b"every output the same", self.servo("replay", log).stdout)
+
+    def test_a_device_that_describes_itself_otherwise_gets_no_force(self):
+        program = self.started()
+
+        def once():
+            self.feel(program)
+            since = self.device.count()
+            self.device.set(is_unplugged=1)
+            self.assertTrue(self.wait(lambda: program.status()["connection"] == "absent"))
+            # version, number of axes, what they measure, counts, rate
+            self.device.set(wrong_byte=self.random.choice((1, 3, 4, 6, 29)), is_unplugged=0)
+            told = ("feature report says", "the device measures")
+            self.assertTrue(self.wait(lambda: any(words in program.status().get("problem", "") for words in told)), program.lines[-1])
+            program.say("arm")
+            time.sleep(self.random.uniform(0.1, 0.3))
+            events = self.device.events(since)
+            gone = next(event.at_s for event in events if event.kind == GONE)
+            self.assertEqual([], [event for event in events if event.kind == TAKEN and event.at_s > gone])
+            self.assertEqual(0, [event for event in events if event.kind == FORCE][-1].force_n)
+            self.device.set(is_unplugged=1)
+            time.sleep(0.3)
+            self.device.set(wrong_byte=0, is_unplugged=0)
+            self.assertTrue(self.wait(lambda: program.status()["connection"] == "open"))
+        self.often(once)
+
+    def check_lag(self, lag_s):
+        program = self.started()
+
+        def once():
+            is_of_outputs = lag_s < SILENCE_S or self.random.random() < 0.5
+            if lag_s < SILENCE_S:
+                known_after_s = lag_s + (TRIPS + 1) * PERIOD_S
+            else:
+                known_after_s = TAKEN_S + PERIOD_S if is_of_outputs else 3.5 * PERIOD_S
+
+            def strike():
+                self.device.set(**{"output_lag_us" if is_of_outputs else "report_lag_us": round(1e6 * lag_s)})
+
+                def known(events):
+                    begun = next((event.at_s for event in events if event.kind == LAGS), None)
+                    return None if begun is None else begun + known_after_s
+                return known
+            try:
+                reasons = {"lag"} if lag_s < SILENCE_S else {"not-taken"} if is_of_outputs else {"silence"}
+                self.strike(program, strike, reasons)
+                self.device.set(is_pressing=0)
+                time.sleep(0.35)
+                since = self.device.count()
+                for _ in range(3):
+                    program.say("arm")
+                    time.sleep(0.1)
+                outputs = [event for event in self.device.events(since) if event.kind == TAKEN]
+                self.assertGreater(len(outputs), 100)
+                self.assertEqual(0, sum(event.is_enable for event in outputs), "it was armed while what is sent comes back too late")
+            finally:
+                self.device.set(report_lag_us=0, output_lag_us=0)
+                time.sleep(0.1)
+        self.often(once)
+
+    def test_a_constant_lag_of_5_ms(self):
+        self.check_lag(0.005)
+
+    def test_a_constant_lag_of_15_ms(self):
+        self.check_lag(0.015)
+
+    def test_a_constant_lag_of_30_ms(self):
+        self.check_lag(0.030)
+
+
+if __name__ == "__main__":
+    unittest.main()
