@@ -200,7 +200,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   } else {
     const bool keeps_polygons = !cut.polygon.empty() && !options.triangles;
     const MergeOptions how{options.merge && !options.triangles, options.coplanar, quantum,
-                           keeps_polygons ? &cut.polygon : nullptr};
+                           keeps_polygons ? &cut.polygon : nullptr, jobs};
     faces = merge_regions(std::move(cut.mesh), std::move(cut.topology), std::move(faces.edges), std::move(faces.regions), how);
     if (input.mass) input.mass->deviation = std::max(input.mass->deviation, faces.removed_distance);
   }
@@ -268,6 +268,7 @@ Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& optio
   compiled.report = check(soup, ready.mesh, ready.topology, ready.states, how);
   if (options.repair && repair != nullptr) repair(soup, options, how, compiled, ready);
   if (!compiled.report.passes()) return compiled;
+  release(ready.states);
   stage("graph", 0.5);
   const auto file = build(soup, std::move(ready.mesh), std::move(ready.topology), options, jobs, compiled, spare);
   if (!file) return file.error();

@@ -200,8 +200,8 @@ int compare(const Settings& settings, const std::string& path) {
       {"openmesh", 0, 0, 0, nothing, [&] { return read_by_openmesh(path); }},
       {"checks", is_large ? 0.5 : 0.75, 0, 120, ours, [&] { return is_valid(path, settings.jobs, false); }},
       {"validate", is_large ? 0.7 : 0.8, 0, 0, ours, [&] { return is_valid(path, settings.jobs, true); }},
-      {"compile", 1.5, 2.2, 0, with_buffer, [&] { return compiles(path, settings.jobs, buffer); }},
-      {"fresh", 1.5, 2.2, 350, ours, [&] { return compiles(path, settings.jobs, {}); }}};
+      {"compile", 1.5, is_large ? 0 : 2.2, 0, with_buffer, [&] { return compiles(path, settings.jobs, buffer); }},
+      {"fresh", 1.5, is_large ? 0 : 2.2, 350, ours, [&] { return compiles(path, settings.jobs, {}); }}};
   if (!settings.only.empty()) std::erase_if(contenders, [&](const Contender& c) { return c.name != settings.only; });
   const auto memory_bytes = static_cast<std::size_t>(700e6 * settings.millions);  // more than any of them takes
   for (int round = 0; round < settings.rounds; ++round) {

@@ -9,12 +9,16 @@
 #include <utility>
 
 #include "base/lazy_array.hpp"
+#include "base/parallel.hpp"
+#include "base/raw_array.hpp"
 #include "base/release.hpp"
 #include "base/vec3.hpp"
 #include "graph/remove_vertices.hpp"
 
 namespace fdcg::bake {
 namespace {
+
+constexpr std::size_t kCopyGrain = 1u << 15;
 
 // Initial values of the entries of a triangle's slots, and of a triangle.
 struct NextInTriangle {
@@ -101,12 +105,14 @@ class Merger {
     parent_ = LazyArray<Itself>(mesh_.face_count());
     sides_ = LazyArray<ThreeSides>(mesh_.face_count());
     std::vector<Diagonal> diagonals;
-    for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      const HalfedgeId twin = topology_.twin[slot];
-      const std::uint32_t r = region(slot);
-      if (r == kNone || !is_alive(slot / 3) || twin == Topology::kBoundary || +twin < slot) continue;
-      if (region(+twin) != r || !may_join(slot / 3, +twin / 3)) continue;
-      diagonals.push_back({squared_length(start(+twin) - start(slot)), slot});
+    for (std::uint32_t face = 0; face < mesh_.face_count(); ++face) {
+      const std::uint32_t r = regions_.of_face[face];
+      if (r == kNone || !is_alive(face)) continue;
+      for (std::uint32_t slot = 3 * face; slot < 3 * face + 3; ++slot) {
+        const HalfedgeId twin = topology_.twin[slot];
+        if (twin == Topology::kBoundary || +twin < slot || region(+twin) != r || !may_join(face, +twin / 3)) continue;
+        diagonals.push_back({squared_length(start(+twin) - start(slot)), slot});
+      }
     }
     std::stable_sort(diagonals.begin(), diagonals.end(),
                      [](const Diagonal& a, const Diagonal& b) { return a.squared_length > b.squared_length; });
@@ -218,11 +224,12 @@ class Merger {
 
   // values[slots[0]], values[slots[1]], ...; frees `values`.
   template <class Value>
-  static std::vector<Value> moved_to(std::vector<Value>& values, const std::vector<std::uint32_t>& slots) {
-    std::vector<Value> result;
-    result.reserve(slots.size());
-    for (const std::uint32_t slot : slots)
-      result.push_back(values[slot]);
+  std::vector<Value> moved_to(std::vector<Value>& values, std::span<const std::uint32_t> slots) const {
+    std::vector<Value> result(slots.size());
+    parallel_for(options_.jobs, slots.size(), kCopyGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        result[i] = values[slots[i]];
+    });
     release(values);
     return result;
   }
@@ -233,41 +240,62 @@ class Merger {
     parent_ = {};
     sides_ = {};
     release(mesh_.face_first);
-    std::vector<std::uint32_t> slot_now(mesh_.corners.size(), kNone);
-    Mesh& mesh = out_.mesh;
-    mesh.face_first.push_back(0);
     const auto triangles = static_cast<std::uint32_t>(mesh_.corners.size() / 3);
+    RawArray<std::uint32_t> slot_now(mesh_.corners.size());
+    RawArray<std::uint32_t> source(mesh_.corners.size());  // slots, in their new order
+    std::uint32_t taken = 0;
+    for (std::uint32_t f = 0; f < triangles; ++f) {
+      for (std::uint32_t slot = 3 * f; regions_.of_face[f] != kNone && slot < 3 * f + 3; ++slot)
+        slot_now[slot] = kNone;
+    }
+    const auto take = [&](std::uint32_t slot) {
+      slot_now[slot] = taken;
+      source[taken++] = slot;
+    };
+    Mesh& mesh = out_.mesh;
     face_of_loner_.assign(triangles, kNone);
-    std::vector<std::uint32_t> source;  // slots, in their new order
-    source.reserve(mesh_.corners.size());
     mesh.face_first.reserve(triangles + 1);
     out_.regions.of_face.reserve(triangles);
-    for (std::uint32_t first = 0; first < slot_now.size(); ++first) {
-      if (!is_alive(first / 3) || next_[first] == kNone || slot_now[first] != kNone) continue;
-      std::uint32_t slot = first;
-      do {
-        slot_now[slot] = static_cast<std::uint32_t>(source.size());
-        source.push_back(slot);
-        slot = next_[slot];
-      } while (slot != first);
-      if (region(first) == kNone) face_of_loner_[first / 3] = mesh.face_count();
-      out_.regions.of_face.push_back(region(first));
-      mesh.face_first.push_back(static_cast<std::uint32_t>(source.size()));
+    mesh.face_first.push_back(0);
+    const auto end_face = [&](std::uint32_t region) {
+      out_.regions.of_face.push_back(region);
+      mesh.face_first.push_back(taken);
+    };
+    for (std::uint32_t f = 0; f < triangles; ++f) {
+      const std::uint32_t home = regions_.of_face[f];
+      if (home == kNone) {  // a triangle as it was
+        face_of_loner_[f] = mesh.face_count();
+        take(3 * f), take(3 * f + 1), take(3 * f + 2);
+        end_face(kNone);
+        continue;
+      }
+      for (std::uint32_t first = 3 * f; is_alive(f) && first < 3 * f + 3; ++first) {
+        if (next_[first] == kNone || slot_now[first] != kNone) continue;
+        for (std::uint32_t slot = first; slot_now[slot] == kNone; slot = next_[slot])
+          take(slot);
+        end_face(home);
+      }
     }
     next_ = {};
-    out_.topology.twin.reserve(source.size());
-    for (const std::uint32_t slot : source) {
-      const HalfedgeId twin = topology_.twin[slot];
-      out_.topology.twin.push_back(twin == Topology::kBoundary ? twin : HalfedgeId{slot_now[+twin]});
-    }
+    const std::span<const std::uint32_t> slots{source.data(), taken};
+    out_.topology.twin.resize(taken);
+    parallel_for(options_.jobs, taken, kCopyGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const HalfedgeId twin = topology_.twin[slots[i]];
+        out_.topology.twin[i] = twin == Topology::kBoundary ? twin : HalfedgeId{slot_now[+twin]};
+      }
+    });
     topology_ = {};
-    release(slot_now);
-    mesh.corners = moved_to(mesh_.corners, source);
-    out_.edges = moved_to(edges_, source);
-    release(source);
-    out_.topology.face_of.reserve(mesh.corners.size());
-    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
-      out_.topology.face_of.insert(out_.topology.face_of.end(), mesh.face_first[f + 1] - mesh.face_first[f], FaceId{f});
+    slot_now = {};
+    mesh.corners = moved_to(mesh_.corners, slots);
+    out_.edges = moved_to(edges_, slots);
+    source = {};
+    out_.topology.face_of.resize(taken);
+    parallel_for(options_.jobs, mesh.face_count(), kCopyGrain, [&](std::size_t begin, std::size_t end) {
+      for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f)
+        std::fill(out_.topology.face_of.begin() + mesh.face_first[f], out_.topology.face_of.begin() + mesh.face_first[f + 1],
+                  FaceId{f});
+    });
     mesh.points = std::move(mesh_.points);
     mesh.origin = mesh_.origin;
     mesh.source_point = std::move(mesh_.source_point);

@@ -18,6 +18,7 @@ struct MergeOptions {
   Coplanar coplanar;
   Quantum quantum;
   const std::vector<std::uint32_t>* polygon = nullptr;  // of each triangle: the polygon it was cut from; null: none was cut
+  unsigned jobs = 1;
 };
 
 struct Merged {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -100,11 +101,11 @@ class BoxTree {
   template <class Visit>
   bool within(std::size_t level, std::size_t node, Visit& visit) const {
     if (level == 0 || label(level, node) != kNone) return true;
-    const auto [begin, end] = children(level, node);
-    for (std::size_t i = begin; i < end; ++i) {
+    const Children in = children(level, node);
+    for (std::size_t i = in.begin; i < in.end; ++i) {
       if (!within(level - 1, i, visit)) return false;
-      for (std::size_t j = i + 1; j < end; ++j) {
-        if (levels_[level - 1][i].meets(levels_[level - 1][j]) && !between(level - 1, i, j, visit)) return false;
+      for (unsigned hits = meeting(level - 1, {i, i + 1}, {i + 1, in.end}); hits != 0; hits &= hits - 1) {
+        if (!between(level - 1, i, i + 1 + static_cast<std::size_t>(std::countr_zero(hits)), visit)) return false;
       }
     }
     return true;
@@ -114,22 +115,27 @@ class BoxTree {
   bool between(std::size_t level, std::size_t a, std::size_t b, Visit& visit) const {
     if (have_same_label(level, a, b)) return true;
     if (level == 0) return visit(a, b);
-    const CellBox* const below = levels_[level - 1].data();
-    const CellBox other = levels_[level][b];
     const Children in_a = children(level, a), in_b = children(level, b);
-    for (std::size_t i = in_a.begin; i < in_a.end; ++i) {
-      const CellBox box = below[i];
-      if (!box.meets(other)) continue;
-      for (std::size_t j = in_b.begin; j < in_b.end; ++j) {
-        if (!box.meets(below[j])) continue;
-        if (level == 1) {
-          if (!have_same_label(0, i, j) && !visit(i, j)) return false;
-        } else if (!between(level - 1, i, j, visit)) {
-          return false;
-        }
-      }
+    for (unsigned hits = meeting(level - 1, in_a, in_b); hits != 0; hits &= hits - 1) {
+      const auto hit = static_cast<std::size_t>(std::countr_zero(hits));
+      if (!between(level - 1, in_a.begin + hit / kArity, in_b.begin + hit % kArity, visit)) return false;
     }
     return true;
+  }
+  // Bit kArity i + j: whether the i-th box of the one range meets the j-th of the other. All at once, since whether one does
+  // can hardly be foretold.
+  [[nodiscard]] unsigned meeting(std::size_t level, Children in_a, Children in_b) const {
+    const CellBox *const first = levels_[level].data() + in_a.begin, *const second = levels_[level].data() + in_b.begin;
+    const auto test = [&](std::size_t count, std::size_t other_count) {
+      unsigned hits = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = 0; j < other_count; ++j)
+          hits |= static_cast<unsigned>(first[i].meets(second[j])) << (i * kArity + j);
+      }
+      return hits;
+    };
+    const std::size_t count = in_a.end - in_a.begin, other_count = in_b.end - in_b.begin;
+    return count == kArity && other_count == kArity ? test(kArity, kArity) : test(count, other_count);  // most, unrolled
   }
   template <class Visit>
   bool with_later_parts(std::size_t level, std::size_t node, std::size_t part, Visit& visit) const {

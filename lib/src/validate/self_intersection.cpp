@@ -106,14 +106,16 @@ class Search {
         options_(options),
         triangles_(mesh, geometry, options.jobs),
         all_(options.max_listed, triangles_.is_plain()) {
-    for (const Vec3& p : mesh.points)
-      is_filtered_ = is_filtered_ && !(largest_component(p) > kLargestFiltered && std::isfinite(largest_component(p)));
-    for (std::uint32_t t = 0; t < triangles_.count(); ++t) {
-      const FaceId f = triangles_.face(t);
-      if (geometry.is_finite(f) && !geometry.is_degenerate(f)) taking_part_.push_back(t);
-    }
-    if (options.topology != nullptr && triangles_.is_plain())
-      is_simple_ = find_simple_stars(mesh, *options.topology, options.jobs);
+    std::atomic<bool> is_filtered = true;
+    parallel_for(options.jobs, mesh.points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const double size = largest_component(mesh.points[v]);
+        if (size > kLargestFiltered && std::isfinite(size)) is_filtered = false;
+      }
+    });
+    is_filtered_ = is_filtered;
+    find_taking_part(geometry);
+    if (options.topology != nullptr && triangles_.is_plain()) stars_ = find_simple_stars(mesh, *options.topology, options.jobs);
   }
 
   SelfIntersections run() {
@@ -146,8 +148,31 @@ class Search {
     return boxes;
   }
 
+  // In order; counted first, so that all threads can write them.
+  void find_taking_part(const FaceGeometry& geometry) {
+    const auto takes_part = [&](std::size_t t) {
+      const FaceId f = triangles_.face(static_cast<std::uint32_t>(t));
+      return geometry.is_finite(f) && !geometry.is_degenerate(f);
+    };
+    const std::size_t count = triangles_.count();
+    std::vector<std::size_t> before((count + kGrain - 1) / kGrain + 1, 0);  // those of all batches before
+    parallel_for(options_.jobs, count, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        before[begin / kGrain + 1] += takes_part(t);
+    });
+    std::partial_sum(before.begin(), before.end(), before.begin());
+    taking_part_.resize(before.back());
+    parallel_for(options_.jobs, count, kGrain, [&](std::size_t begin, std::size_t end) {
+      std::size_t at = before[begin / kGrain];
+      for (std::size_t t = begin; t < end; ++t) {
+        if (takes_part(t)) taking_part_[at++] = static_cast<std::uint32_t>(t);
+      }
+    });
+  }
+
   // For each triangle its corner with the most triangles, if that is a hub, else kNone. Empty where there is no hub.
   [[nodiscard]] Numbers hubs_of(const Numbers& triangles) const {
+    if (!stars_.is_simple.empty() && stars_.most_faces < kHubTriangles) return {};
     Numbers count(mesh_.points.size(), 0);
     std::uint32_t most = 0;
     for (const std::uint32_t t : triangles) {
@@ -255,14 +280,14 @@ class Search {
   // Of the triangles in the order of the tree; empty where nothing is known of stars, or numbers do not suffice.
   [[nodiscard]] RawArray<StarCorners> stars_of(const BoxTree& tree, const Numbers& triangles) const {
     constexpr std::uint32_t kNoVertex = std::uint32_t{1} << 31;  // and above
-    if (is_simple_.empty() || std::max(is_simple_.size(), 3 * tree.size()) >= kNoVertex) return {};
+    if (stars_.is_simple.empty() || std::max(stars_.is_simple.size(), 3 * tree.size()) >= kNoVertex) return {};
     RawArray<StarCorners> stars(tree.size());
     parallel_for(options_.jobs, tree.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const VertexId* const corner = triangles_.corners(triangles[tree.number(i)]);
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t v = +corner[k];
-          stars[i].vertex[k] = is_simple_[v] != 0 ? v : kNoVertex | static_cast<std::uint32_t>(3 * i + k);
+          stars[i].vertex[k] = stars_.is_simple[v] != 0 ? v : kNoVertex | static_cast<std::uint32_t>(3 * i + k);
         }
         stars[i].vertex[3] = stars[i].vertex[0];
       }
@@ -305,8 +330,8 @@ class Search {
   const Mesh& mesh_;
   const SelfIntersectionOptions& options_;
   FaceTriangles triangles_;
-  Numbers taking_part_;                  // ascending; of cut polygons all
-  std::vector<std::uint8_t> is_simple_;  // of each vertex, find_simple_stars(); empty: not asked
+  Numbers taking_part_;  // ascending; of cut polygons all
+  SimpleStars stars_;    // of none where not asked
   bool is_filtered_ = true;
   Gathered all_;
 };

@@ -9,6 +9,7 @@
 // its first edge is below and its second above. Both signs are taken from doubles with bounds on their error.
 #include "validate/simple_stars.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -107,7 +108,7 @@ class Star {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_simple_stars(const Mesh& mesh, const Topology& topology, unsigned jobs) {
+SimpleStars find_simple_stars(const Mesh& mesh, const Topology& topology, unsigned jobs) {
   struct Corners {
     std::uint32_t first = kNone, count = 0;
   };
@@ -119,13 +120,16 @@ std::vector<std::uint8_t> find_simple_stars(const Mesh& mesh, const Topology& to
     at.first = slot;
     ++at.count;
   }
-  std::vector<std::uint8_t> is_simple(mesh.points.size());
-  parallel_for(jobs, is_simple.size(), kStarGrain, [&](std::size_t begin, std::size_t end) {
+  SimpleStars stars;
+  stars.is_simple.resize(mesh.points.size());
+  for (const Corners& at : corners)
+    stars.most_faces = std::max(stars.most_faces, at.count);
+  parallel_for(jobs, corners.size(), kStarGrain, [&](std::size_t begin, std::size_t end) {
     Star star(mesh, topology);
     for (std::size_t v = begin; v < end; ++v)
-      is_simple[v] = corners[v].first != kNone && star.is_simple(corners[v].first, corners[v].count);
+      stars.is_simple[v] = corners[v].first != kNone && star.is_simple(corners[v].first, corners[v].count);
   });
-  return is_simple;
+  return stars;
 }
 
 }  // namespace fdcg::bake

@@ -321,7 +321,7 @@ TEST_CASE("faces around a vertex meet as pairs of them do, however often they tu
 TEST_CASE("a vertex is decided where its faces lie around it once, and not where they lie so twice or fold") {
   const auto simple_at_first = [](const PolygonSoup& soup) {
     const Subject subject(soup);
-    return find_simple_stars(subject.mesh, subject.topology, 1).front() != 0;
+    return find_simple_stars(subject.mesh, subject.topology, 1).is_simple.front() != 0;
   };
   Random random(3);
   for (int round = 0; round < 200; ++round) {
