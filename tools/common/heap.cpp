@@ -28,6 +28,13 @@ void keep_large_arrays() {
 #endif
 }
 
+void keep_heap_top([[maybe_unused]] int bytes) {
+#if defined(__GLIBC__) && defined(__linux__)
+  mallopt(M_TRIM_THRESHOLD, bytes);
+  mallopt(M_TOP_PAD, bytes / 4);
+#endif
+}
+
 void give_back_free_memory() {
 #if defined(__GLIBC__) && defined(__linux__)
   malloc_trim(0);

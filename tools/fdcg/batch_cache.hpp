@@ -17,6 +17,7 @@ struct CacheEntry {
   std::string said;    // for people: what was found; empty: nothing
   std::string body;    // members of the result's line
   std::string output;  // the bytes of the file that was written, if any
+  std::string output_sha256{};
   bool has_output = false;
 };
 
@@ -34,8 +35,6 @@ class BatchCache {
   void store_references(const std::string& key, const std::vector<std::string>& files);
 
  private:
-  void put(const std::string& key, const std::string& content);
-
   BatchPacks packs_;
   std::string trouble_;
 };

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <string_view>
 #include <system_error>
 
@@ -17,9 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A text in a pack: this, the hash of its key and itself, a line's end, itself.
-constexpr std::string_view kMagic = "fdcg batch entry 2 ";
-constexpr std::size_t kHashDigits = 64, kHead = kMagic.size() + kHashDigits + 1;
+// A text in a pack: this, the hash of its key, itself and the hash of its bytes, how many bytes, a line's end, itself, the
+// bytes.
+constexpr std::string_view kMagic = "fdcg batch entry 3 ";
+constexpr std::size_t kHashDigits = 64, kSizeDigits = 16, kHead = kMagic.size() + kHashDigits + 1 + kSizeDigits + 1;
 // An entry of an index: the key, the offset and the bytes in the pack, in the machine's byte order. One of another order leads
 // nowhere.
 constexpr std::size_t kIndexBytes = 48;
@@ -28,8 +32,20 @@ std::string cannot_write(const std::string& path) {
   return "cannot write '" + path + "': " + std::strerror(errno);
 }
 
-bool write_now(std::FILE* file, const std::string& bytes) {
-  return std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
+bool write_now(std::FILE* file, std::initializer_list<std::string_view> pieces) {
+  for (const std::string_view piece : pieces)
+    if (std::fwrite(piece.data(), 1, piece.size(), file) != piece.size()) return false;
+  return std::fflush(file) == 0;
+}
+
+std::string head_of(const std::string& hash, std::size_t bytes) {
+  std::array<char, kSizeDigits + 1> size{};
+  std::snprintf(size.data(), size.size(), "%016llx", static_cast<unsigned long long>(bytes));
+  return std::string(kMagic) + hash + ' ' + size.data() + '\n';
+}
+
+std::string hash_of(const std::string& key, const std::string& text, const std::string& sha256) {
+  return bake::sha256_of(key + text + sha256);
 }
 
 }  // namespace
@@ -69,7 +85,7 @@ void BatchPacks::read_index(const std::string& pack) {
   packs_.push_back(pack);
 }
 
-std::optional<std::string> BatchPacks::get(const std::string& key) const {
+std::optional<PackedText> BatchPacks::get(const std::string& key) const {
   const auto [first, last] = places_.equal_range(binary(key));
   for (auto at = first; at != last; ++at) {
     const Place& place = at->second;
@@ -80,29 +96,31 @@ std::optional<std::string> BatchPacks::get(const std::string& key) const {
     std::string record(place.bytes, '\0');
     std::ifstream file(path, std::ios::binary);
     file.seekg(static_cast<std::streamoff>(place.offset));
-    if (!file.read(record.data(), static_cast<std::streamsize>(record.size())) || !record.starts_with(kMagic)) continue;
-    const std::string hash = record.substr(kMagic.size(), kHashDigits);
-    record.replace(0, kHead, key);
-    if (bake::sha256_of(record) == hash) return record.substr(key.size());
+    if (!file.read(record.data(), static_cast<std::streamsize>(record.size()))) continue;
+    std::size_t bytes = 0;
+    const char* const digits = record.data() + kHead - 1 - kSizeDigits;
+    if (std::from_chars(digits, digits + kSizeDigits, bytes, 16).ec != std::errc{} || bytes > record.size() - kHead) continue;
+    PackedText found{record.substr(kHead, record.size() - kHead - bytes), record.substr(record.size() - bytes)};
+    const std::string sha256 = found.bytes.empty() ? std::string() : bake::sha256_of(found.bytes);
+    if (record.starts_with(head_of(hash_of(key, found.text, sha256), bytes))) return found;
   }
   return std::nullopt;
 }
 
-std::string BatchPacks::put(const std::string& key, const std::string& text) {
+std::string BatchPacks::put(const std::string& key, const std::string& text, const std::string& bytes,
+                            const std::string& sha256) {
   if (!pack_)
     if (std::string trouble = begin_pack(); !trouble.empty()) return trouble;
-  std::string record = key + text;
-  const std::string hash = bake::sha256_of(record);
-  record.replace(0, key.size(), std::string(kMagic) + hash + "\n");
-  const Place place{static_cast<std::uint32_t>(packs_.size() - 1), written_, record.size()};
-  const Key bytes = binary(key);
-  std::string entry(bytes.data(), bytes.size());
+  const std::string head = head_of(hash_of(key, text, bytes.empty() ? std::string() : sha256), bytes.size());
+  const Place place{static_cast<std::uint32_t>(packs_.size() - 1), written_, head.size() + text.size() + bytes.size()};
+  const Key name = binary(key);
+  std::string entry(name.data(), name.size());
   entry.append(reinterpret_cast<const char*>(&place.offset), sizeof place.offset);
   entry.append(reinterpret_cast<const char*>(&place.bytes), sizeof place.bytes);
-  if (!write_now(pack_.get(), record)) return cannot_write(packs_.back() + ".pack");
-  written_ += record.size();
-  if (!write_now(index_.get(), entry)) return cannot_write(packs_.back() + ".index");
-  places_.emplace(bytes, place);
+  if (!write_now(pack_.get(), {head, text, bytes})) return cannot_write(packs_.back() + ".pack");
+  written_ += place.bytes;
+  if (!write_now(index_.get(), {entry})) return cannot_write(packs_.back() + ".index");
+  places_.emplace(name, place);
   return {};
 }
 

@@ -16,15 +16,20 @@
 
 namespace fdcg::tools {
 
+struct PackedText {
+  std::string text, bytes;
+};
+
 class BatchPacks {
  public:
   // Reads the indices that are there: 48 bytes a text. What others append later is not seen.
   explicit BatchPacks(std::string folder);
 
   // `key`: 64 hexadecimal digits. Where several were put, one that is whole.
-  [[nodiscard]] std::optional<std::string> get(const std::string& key) const;
-  // One write, and one for the index. Why it cannot be written, or nothing.
-  std::string put(const std::string& key, const std::string& text);
+  [[nodiscard]] std::optional<PackedText> get(const std::string& key) const;
+  // Why it cannot be written, or nothing. `sha256`: of `bytes`, in hexadecimal digits; empty where there are none.
+  std::string put(const std::string& key, const std::string& text, const std::string& bytes = {},
+                  const std::string& sha256 = {});
 
  private:
   using Key = std::array<char, 32>;

@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "../common/atomic_file.hpp"
+#include "../common/heap.hpp"
 #include "../common/terminal.hpp"
 #include "batch_process.hpp"
 
@@ -205,6 +206,8 @@ void BatchWorkers::serve(int channel) const {
     setrlimit(RLIMIT_DATA, &limit);
   }
 #endif
+  constexpr int kKept = 16 << 20;  // less than what a task is taken to need anyway
+  keep_heap_top(kKept);
   for (std::uint64_t task = 0; read_all(channel, &task, sizeof task);) {
     const std::string answer = work_(task);
     const std::uint64_t bytes = answer.size();

@@ -43,7 +43,8 @@ void fill_body(CacheEntry& entry, const bake::PolygonSoup& soup, const bake::Rep
   Json json{{"exit_code", entry.exit_code}, {"sha256", soup.sha256}};
   if (entry.has_output) {
     json["output_bytes"] = entry.output.size();
-    json["output_sha256"] = bake::sha256_of(entry.output);
+    entry.output_sha256 = bake::sha256_of(entry.output);
+    json["output_sha256"] = entry.output_sha256;
   }
   if (repair != nullptr) json["repair"] = account_json(*repair);
   std::string text = json.dump();
