@@ -417,8 +417,9 @@ class Killed(BatchCase):
     def test_with_kill_9_at_random_moments(self):
         self.library(parts=30, rows=12)
         whole, seconds = self.undisturbed()
-        numbers, kills = random.Random(25), 0
-        for trial in range(12):
+        numbers, kills, trial = random.Random(25), 0, 0
+        while trial < 12 or (kills <= 12 and trial < 48):  # a machine whose speed changes lets more of them end first
+            trial += 1
             shutil.rmtree(self.folder / "out", ignore_errors=True)
             for _ in range(3):
                 run = self.start()
