@@ -5,7 +5,7 @@
 
 #include "fdcg/body.h"
 #include "fdcg/deform.h"
-#include "fdcg/effect.h"
+#include "fdcg/relief.h"
 #include "hash.h"
 #include "say.h"
 
@@ -125,7 +125,7 @@ static int32_t push_body(const fdcg_graph* graph, hash_t* hash) {
   return touches;
 }
 
-/* Every law, on a hand that wanders about the surface. Returns the ticks in contact. */
+/* Every law, and a relief, on a hand that wanders about the surface. Returns the ticks in contact. */
 static int32_t feel_effects(const fdcg_graph* graph, hash_t* hash) {
   static const double speed[2] = {0.05, 0.2}, force[1] = {0.5}, reflection[4] = {-0.5, 0.4, -0.2, 0.3}, deviation[2] = {2, 8};
   static fdcg_effect_state states[8];
@@ -134,6 +134,7 @@ static int32_t feel_effects(const fdcg_graph* graph, hash_t* hash) {
   fdcg_contact contact;
   fdcg_result result;
   fdcg_effect_facts facts;
+  fdcg_relief_state relieved = {0};
   const fdcg_params params = fdcg_make_params();
   const double size = size_of(graph->header);
   double hip[3] = {0, 0, 0};
@@ -145,17 +146,23 @@ static int32_t feel_effects(const fdcg_graph* graph, hash_t* hash) {
                                   fdcg_make_stick_slip(300, 0.5),   fdcg_make_vibration(1, 137),
                                   fdcg_make_noise(1, 50, 300),      fdcg_make_tap(1, 200, 0.01),
                                   fdcg_make_pulse(1, 0.02, 0.0375), fdcg_make_texture(&texture, 0.05)};
+  const fdcg_waves waves = fdcg_make_grain(0.001 * size, 0.01 * size, 0.1 * size, 1.5, 5);
+  const fdcg_relief relief = fdcg_make_relief(&waves);
   memset(states, 0, sizeof states);
   memset(&contact, 0, sizeof contact);
   for (int32_t tick = 0; tick < kDeformTicks; ++tick) {
-    double felt[3] = {0, 0, 0};
+    double felt[3] = {0, 0, 0}, moved[3];
     for (int k = 0; k < 3; ++k) {
       const double wide = tick % 500 == 0 ? 1.2 : 0.01;
       const double about = tick % 500 == 0 ? centre_of(graph->header, k) : hip[k];
       hip[k] = about + (uniform(&random) - 0.5) * wide * size;
     }
-    fdcg_step(graph, &params, &contact, hip, &result);
+    fdcg_relief_move(&relief, &relieved, hip, params.tick_s, moved);
+    fdcg_step(graph, &params, &contact, moved, &result);
     if (fdcg_get_effect_facts(graph, &result, hip, 0.1 * size, params.tick_s, &facts, &error) != FDCG_OK) return -1;
+    fdcg_relief_turn(&relief, &relieved, &facts, result.force_n);
+    for (int k = 0; k < 3; ++k)
+      absorb_real(hash, result.force_n[k]);
     for (int i = 0; i < 8; ++i)
       fdcg_effect_step(&effects[i], &facts, &states[i], felt);
     for (int k = 0; k < 3; ++k)

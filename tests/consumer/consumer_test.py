@@ -76,7 +76,7 @@ class Package(ConsumerCase):
         expected = {"press_and_slide_c": PROMISED, "press_and_slide_cpp": PROMISED, "turntable_c": PROMISED_OF_SCENES,
                     "turntable_cpp": PROMISED_OF_SCENES}
         for page, example in (("friction.md", "friction"), ("friction.md", "materials"), ("bodies.md", "bodies"),
-                              ("surfaces.md", "surface"), ("deform.md", "deform"), ("effects.md", "effects")):
+                              ("surfaces.md", "surface"), ("deform.md", "deform"), ("effects.md", "effects"), ("relief.md", "relief")):
             expected[example + "_c"] = promised(page, example + ".c")
         for program, text in expected.items():
             done = self.run_program(os.path.join(folder, program), cwd=folder)

@@ -405,6 +405,45 @@ namespace Fdcg {
   }
 
   [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_waves {
+    public uint count;
+    public uint reserved;
+    public fixed double per_m[48];
+    public fixed double amplitude_m[16];
+    public fixed double phase_turns[16];
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_relief {
+    public uint struct_bytes;
+    public uint is_off;
+    public uint material;
+    public uint reserved;
+    public IntPtr law;
+    public IntPtr data;
+    public double most_m;
+    public double curvature_per_m;
+    public double reserve_j;
+    public double power_w;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_relief_state {
+    public uint has_started;
+    public uint has_surface;
+    public fixed double hip_m[3];
+    public fixed double moved_m[3];
+    public fixed double surface_m[3];
+    public fixed double normal[3];
+    public fixed double slope[3];
+    public fixed double force_n[3];
+    public fixed double flat_n[3];
+    public double height_m;
+    public double credit_j;
+    public double given_j;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
   public unsafe struct fdcg_object_id {
     public uint index;
     public uint generation;
@@ -786,6 +825,39 @@ namespace Fdcg {
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern void fdcg_trigger_effect(fdcg_effect_state* state);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_waves fdcg_make_ridges(double amplitude_m, double wavelength_m, double* direction);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_waves fdcg_make_bumps(double amplitude_m, double wavelength_m);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_waves fdcg_make_grain(double rms_m, double shortest_m, double longest_m, double exponent, uint seed);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_relief_init(fdcg_relief* relief, uint struct_bytes);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_waves_law(fdcg_relief* relief, double* place_m, double* way_m, double* height_m, double* slope);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_get_waves_bounds(fdcg_waves* waves, double* most_m, double* curvature_per_m);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_relief fdcg_make_relief(fdcg_waves* waves);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_check_relief(fdcg_relief* relief, fdcg_error* error);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern double fdcg_get_relief_stiffness(fdcg_relief* relief, double load_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_relief_move(fdcg_relief* relief, fdcg_relief_state* state, double* hip_m, double tick_s, double* moved_m);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_relief_turn(fdcg_relief* relief, fdcg_relief_state* state, fdcg_effect_facts* facts, double* force_n);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern fdcg_pose fdcg_make_identity_pose();

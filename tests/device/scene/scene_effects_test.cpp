@@ -200,6 +200,56 @@ TEST_CASE("a vibration in free air is no loop that shakes, and reaches the devic
   CHECK(most > 1);
 }
 
+TEST_CASE("a relief is read, written, refused by its key, felt, and replayed bit for bit") {
+  HostConfig config;
+  std::vector<std::string> warnings;
+  REQUIRE(read_scene(kScenes + "relief.json", &config, &warnings) == "");
+  REQUIRE(config.objects[0].relief);
+  CHECK(config.objects[0].relief->wavelength_m == 0.002);
+  CHECK(config.objects[1].relief->seed == 4);
+  const std::string written = write_scene(config);
+  HostConfig back;
+  REQUIRE(parse_scene(written, config.scene_file, &back, nullptr, {false}) == "");
+  CHECK(write_scene(back) == written);
+
+  const Felt with_relief = felt(config, 4.5);
+  CHECK(with_relief.is_same);
+  CHECK(with_relief.calmed == 0);
+  for (ObjectConfig& object : config.objects)
+    object.relief.reset();
+  const Felt without = felt(config, 4.5);
+  // in the middle of the table's stroke: crests of the lateral force, 2 mm apart, over some 60 mm
+  const auto crests = [](const Felt& of) {
+    int count = 0;
+    double last_m = -1, low = 1e9, high = -1e9;
+    for (std::size_t i = 1; i + 1 < of.force_n.size(); ++i) {
+      const double x = of.hip_m[i][0], f = of.force_n[i][0];
+      if (x < -0.03 || x > 0.03 || of.hip_m[i][2] > 0) continue;
+      low = std::min(low, f), high = std::max(high, f);
+      const bool is_crest = f > of.force_n[i - 1][0] && f >= of.force_n[i + 1][0] && f > (low + high) / 2;
+      if (is_crest && x - last_m > 0.001) {
+        ++count;
+        last_m = x;
+      }
+    }
+    return std::make_pair(count, high - low);
+  };
+  const auto [count, swing] = crests(with_relief);
+  CHECK(count >= 27);
+  CHECK(count <= 32);
+  CHECK(swing > 3 * crests(without).second);
+
+  json scene = with(kTone);
+  scene["objects"][0]["relief"] = {{"kind", "ridges"}, {"amplitude_m", 1e-4}};
+  CHECK(refusal(scene).find("relief.wavelength_m is missing") != std::string::npos);
+  scene["objects"][0]["relief"] = {{"kind", "grain"}, {"rms_m", 1e-5}, {"shortest_m", 0.002}, {"longest_m", 0.001}};
+  CHECK(refusal(scene).find("relief.longest_m is below shortest_m") != std::string::npos);
+  scene["objects"][0]["relief"]["direction"] = {1, 0, 0};
+  CHECK(refusal(scene).find("direction") != std::string::npos);
+  scene["objects"][0]["relief"] = {{"kind", "bumps"}, {"amplitude_m", 1e-4}, {"wavelength_m", 0.001}, {"material", "wood"}};
+  CHECK(refusal(scene).find("relief.material is for the materials of a mesh") != std::string::npos);
+}
+
 TEST_CASE("effects are felt on an object that turns and is scaled as on one that rests") {
   json scene = with({{"kind", "viscosity"}, {"viscosity_n_s_per_m", 2}, {"when", "always"}, {"reserve_j", 1000}});
   scene["objects"][0]["surface"] = {{"kind", "sphere"}, {"radius_m", 0.001}};

@@ -63,6 +63,7 @@ struct DeviceScene {
   std::unique_ptr<SceneEffects> effects;
   std::vector<std::unique_ptr<BuiltTexture>> textures;
   std::deque<fdcg_surface> felt_surfaces;  // with effects
+  std::deque<fdcg_waves> waves;            // of reliefs
   // One a device; fingers are added by begin_device; driven: the objects with a motion, in the scene's order.
   std::vector<DeviceSetup> setups;
 };

@@ -49,10 +49,26 @@ std::string add_effect(const EffectConfig& from, const fdcg_graph* graph, double
   return {};
 }
 
+std::string add_relief(const ReliefConfig& from, const fdcg_graph* graph, DeviceScene* scene) {
+  scene->waves.push_back(from.waves());
+  fdcg_relief relief = fdcg_make_relief(&scene->waves.back());
+  relief.is_off = from.relief.is_off;
+  relief.reserve_j = from.relief.reserve_j;
+  relief.power_w = from.relief.power_w;
+  if (!from.material.empty()) {
+    relief.material = fdcg_find_material(graph, from.material.c_str());
+    if (relief.material == FDCG_NONE) return "the graph has no material '" + from.material + "'";
+  }
+  fdcg_error error{};
+  if (fdcg_check_relief(&relief, &error) != FDCG_OK) return error.message;
+  scene->effects->set_relief(relief);
+  return {};
+}
+
 bool has_effects(const HostConfig& config) {
   bool has = !config.effects.empty();
   for (const ObjectConfig& object : config.objects)
-    has = has || !object.effects.empty();
+    has = has || !object.effects.empty() || object.relief;
   return has;
 }
 
@@ -70,7 +86,7 @@ std::string build_effects(const HostConfig& config, const SceneLoad& load, const
   }
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const ObjectConfig& object = config.objects[i];
-    if (object.effects.empty()) continue;
+    if (object.effects.empty() && !object.relief) continue;
     FeltObject felt;
     felt.id = objects[i];
     felt.pose = object.pose;
@@ -81,6 +97,10 @@ std::string build_effects(const HostConfig& config, const SceneLoad& load, const
       felt.graph = &graphs.of_object(i);
     }
     scene->effects->add_object(felt);
+    if (object.relief) {
+      const std::string problem = add_relief(*object.relief, felt.graph, scene);
+      if (!problem.empty()) return place_of(config, i) + "relief: " + problem;
+    }
     for (std::size_t k = 0; k < object.effects.size(); ++k) {
       const std::string problem = add_effect(object.effects[k], felt.graph, load.slowest_hz, scene);
       if (!problem.empty()) return place_of(config, i) + "effects[" + std::to_string(k) + "]: " + problem;

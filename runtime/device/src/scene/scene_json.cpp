@@ -26,7 +26,8 @@ constexpr json::Keys kObjectKeys = {"name",
                                     "shading",
                                     "motion",
                                     "notes",
-                                    "effects"};
+                                    "effects",
+                                    "relief"};
 constexpr json::Keys kGroundKeys = {"normal", "offset_m", "stiffness_n_per_m", "mu_static", "mu_dynamic"};
 constexpr json::Keys kLoopKeys = {"servo_priority", "writer_priority", "cpu", "lock_memory", "backend", "graphs"};
 constexpr json::Keys kLogKeys = {"file", "limit_mb"};

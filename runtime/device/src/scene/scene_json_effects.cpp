@@ -181,20 +181,69 @@ EffectConfig SceneParser::read_effect(const json::Value& from, const ObjectConfi
   return config;
 }
 
+ReliefConfig SceneParser::read_relief(const json::Value& from, const ObjectConfig& object) {
+  ReliefConfig config;
+  constexpr json::NumberRange kHeights = above_0(0.1, "m"), kWaves = {1e-6, 10, true, "m"};
+  config.kind = static_cast<ReliefKind>(from["kind"].choice({"ridges", "bumps", "grain"}));
+  std::vector<std::string> keys = {"kind", "notes", "material", "off", "reserve_j", "power_w"};
+  const bool is_grain = config.kind == ReliefKind::kGrain, is_ridges = config.kind == ReliefKind::kRidges;
+  for (const char* key : {"amplitude_m", "wavelength_m"})
+    if (!is_grain) keys.emplace_back(key);
+  for (const char* key : {"rms_m", "shortest_m", "longest_m", "exponent", "seed"})
+    if (is_grain) keys.emplace_back(key);
+  if (is_ridges) keys.emplace_back("direction");
+  from.allow_only(keys, " of such a relief");
+  if (is_grain) {
+    config.rms_m = from["rms_m"].number(kHeights);
+    config.shortest_m = from["shortest_m"].number(kWaves);
+    config.longest_m = from["longest_m"].number(kWaves);
+    if (config.longest_m < config.shortest_m) from["longest_m"].fail("is below shortest_m");
+    config.exponent = from["exponent"].number_or(1, from_0(3, ""));
+    config.seed = static_cast<std::uint32_t>(from["seed"].integer_or(0, 0, 4294967295));
+  } else {
+    config.amplitude_m = from["amplitude_m"].number(kHeights);
+    config.wavelength_m = from["wavelength_m"].number(kWaves);
+    if (from["direction"]) read_unit(from["direction"], config.direction, 3);
+  }
+  if (from["material"]) {
+    config.material = from["material"].text(kLongestName);
+    if (object.is_surface) from["material"].fail("is for the materials of a mesh");
+  }
+  fdcg_relief_init(&config.relief, sizeof config.relief);
+  config.relief.is_off = from["off"].boolean_or(false) ? 1 : 0;
+  config.relief.reserve_j = from["reserve_j"].number_or(config.relief.reserve_j, kEnergies);
+  config.relief.power_w = from["power_w"].number_or(config.relief.power_w, from_0(1e6, "W"));
+  if (object.motion.kind == MotionKind::kSoft) from["kind"].fail("is a relief of a soft object, which has none");
+  return config;
+}
+
 // As a spring of that stiffness would be.
 void SceneParser::judge_effects(const json::Value& scene, const DeviceConfig& device) const {
-  const double allowed = device.profile.limits.stiffness_n_per_m;
+  const double allowed_n_per_m = device.profile.limits.stiffness_n_per_m;
   const auto judge = [&](const EffectConfig& effect, const std::string& whose) {
     const double felt = fdcg_get_effect_stiffness(&effect.effect, 1 / device.profile.rate_hz) * device.mapping.scale;
-    if (allowed <= 0 || felt <= allowed) return;
+    if (allowed_n_per_m <= 0 || felt <= allowed_n_per_m) return;
     scene["devices"].fail(": device " + in_quotes(device.name) + ": an effect of " + whose + " shakes as a spring of " +
-                          shown_number(felt) + " N/m would; the profile allows " + shown_number(allowed) + ": weaken it");
+                          shown_number(felt) + " N/m would; the profile allows " + shown_number(allowed_n_per_m) +
+                          ": weaken it");
   };
   for (const EffectConfig& effect : config_.effects)
     judge(effect, "the scene");
   for (const ObjectConfig& object : config_.objects)
     for (const EffectConfig& effect : object.effects)
       judge(effect, "object " + in_quotes(object.name));
+  const double load_n = device.most_force_n > 0 ? device.most_force_n : device.profile.limits.force_n;
+  for (const ObjectConfig& object : config_.objects) {
+    if (!object.relief || warnings_ == nullptr || allowed_n_per_m <= 0) continue;
+    const fdcg_waves waves = object.relief->waves();
+    const fdcg_relief relief = fdcg_make_relief(&waves);
+    const double felt = fdcg_get_relief_stiffness(&relief, load_n) * device.mapping.scale;
+    if (felt <= allowed_n_per_m) continue;
+    warnings_->push_back("device " + in_quotes(device.name) + ": the relief of object " + in_quotes(object.name) +
+                         " is felt along the surface as " + shown_number(felt) + " N/m at the device's force limit of " +
+                         shown_number(load_n) + " N; the profile allows " + shown_number(allowed_n_per_m) +
+                         ": it may buzz; make it lower, or its waves longer");
+  }
 }
 
 }  // namespace fdcg::dev

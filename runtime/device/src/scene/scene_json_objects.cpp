@@ -58,6 +58,7 @@ void SceneParser::read_object(const json::Value& from) {
     params.friction_flags |= FDCG_FRICTION_SHADING;
   }
   if (from["effects"]) object.effects = read_effects(from["effects"], &object);
+  if (from["relief"]) object.relief = read_relief(from["relief"], object);
   const auto moves = [](const ObjectConfig& other) { return is_moved(other.motion); };
   const auto is_body = [](const ObjectConfig& other) { return other.motion.kind == MotionKind::kBody; };
   if (moves(object) && std::count_if(config_.objects.begin(), config_.objects.end(), moves) == kMaxDriven) {

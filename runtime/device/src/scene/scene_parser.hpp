@@ -47,6 +47,7 @@ class SceneParser {
   void read_friction(const json::Value& from, fdcg_params* params);
   std::vector<EffectConfig> read_effects(const json::Value& from, const ObjectConfig* object);
   EffectConfig read_effect(const json::Value& from, const ObjectConfig* object);
+  ReliefConfig read_relief(const json::Value& from, const ObjectConfig& object);
   TextureConfig read_texture(const json::Value& from);
   void read_motion(const json::Value& from, Motion* motion);
   void read_body(const json::Value& from, BodyConfig* body);

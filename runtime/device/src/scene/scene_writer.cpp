@@ -36,6 +36,7 @@ Json object_json(const ObjectConfig& object) {
   json["edge_friction"] = object.params.edge_friction == FDCG_EDGE_PAPER ? "paper" : "wedge";
   if ((object.params.friction_flags & FDCG_FRICTION_SHADING) != 0) json["shading"] = true;
   if (!object.effects.empty()) json["effects"] = effects_json(object.effects);
+  if (object.relief) json["relief"] = relief_json(*object.relief);
   const Motion& motion = object.motion;
   json["motion"]["kind"] = kKinds[static_cast<int>(motion.kind)];
   if (motion.kind == MotionKind::kSpin || motion.kind == MotionKind::kSwing) {

@@ -76,6 +76,27 @@ Json effect_json(const EffectConfig& config) {
 
 }  // namespace
 
+Json relief_json(const ReliefConfig& config) {
+  constexpr const char* kReliefs[] = {"ridges", "bumps", "grain"};
+  Json json = {{"kind", kReliefs[static_cast<int>(config.kind)]}};
+  if (config.kind == ReliefKind::kGrain) {
+    json["rms_m"] = config.rms_m;
+    json["shortest_m"] = config.shortest_m;
+    json["longest_m"] = config.longest_m;
+    json["exponent"] = config.exponent;
+    json["seed"] = config.seed;
+  } else {
+    json["amplitude_m"] = config.amplitude_m;
+    json["wavelength_m"] = config.wavelength_m;
+  }
+  if (config.kind == ReliefKind::kRidges) json["direction"] = list(config.direction);
+  if (!config.material.empty()) json["material"] = config.material;
+  if (config.relief.is_off != 0) json["off"] = true;
+  json["reserve_j"] = config.relief.reserve_j;
+  json["power_w"] = config.relief.power_w;
+  return json;
+}
+
 Json effects_json(const std::vector<EffectConfig>& effects) {
   Json json = Json::array();
   for (const EffectConfig& effect : effects)

@@ -16,6 +16,7 @@ Json list(const double (&values)[count]) {
   return Json(std::vector<double>(values, values + count));
 }
 
+Json relief_json(const ReliefConfig& relief);
 Json effects_json(const std::vector<EffectConfig>& effects);
 
 }  // namespace fdcg::dev

@@ -137,6 +137,7 @@ struct DeviceState {
   GripState grip;
   double tip_m[3] = {};                   // device's frame, as of the last good report with a place
   double places_m[kMaxContacts][3] = {};  // of the contacts, world, in the last tick
+  double moved_m[kMaxContacts][3] = {};   // where the scene was told that they are (fdcg/relief.h)
   double turn_xyzw[4] = {0, 0, 0, 1};     // and how they were turned
   // as of the last good report
   Sample sample;

@@ -130,7 +130,13 @@ void SceneEffects::add(const fdcg_effect& effect) {
   effects_.push_back(effect);
 }
 
+void SceneEffects::set_relief(const fdcg_relief& relief) {
+  rows_.back().has_relief = true;
+  rows_.back().relief = relief;
+}
+
 void SceneEffects::begin(int devices) {
+  reliefs_.assign(static_cast<std::size_t>(devices) * kMaxContacts, OnRelief{});
   states_.assign(static_cast<std::size_t>(devices) * kMaxContacts * effects_.size(), fdcg_effect_state{});
 }
 
@@ -140,9 +146,81 @@ void SceneEffects::move(fdcg_object_id object, const fdcg_pose& pose) {
 }
 
 void SceneEffects::reset(int device) {
+  for (int contact = 0; contact < kMaxContacts; ++contact)
+    relief_of(device, contact) = OnRelief{};
   const std::size_t each = kMaxContacts * effects_.size();
   std::fill_n(states_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(device) * each), each,
               fdcg_effect_state{});
+}
+
+SceneEffects::OnRelief& SceneEffects::relief_of(int device, int contact) {
+  return reliefs_[static_cast<std::size_t>(device) * kMaxContacts + static_cast<std::size_t>(contact)];
+}
+
+// Of the touched objects that which pushes most, where it has a relief.
+const SceneEffects::Row* SceneEffects::strongest_row(const fdcg_finger_result& felt) const {
+  const Row* strongest = nullptr;
+  double most2 = 0;
+  for (std::uint32_t t = 0; t < felt.touch_count; ++t) {
+    const double square = dot(felt.touches[t].force_n, felt.touches[t].force_n);
+    if (felt.touches[t].state == FDCG_FREE || !(square > most2)) continue;
+    most2 = square;
+    strongest = nullptr;
+    for (const Row& row : rows_)
+      if (row.has_relief && row.object.id.index == felt.touches[t].object.index) strongest = &row;
+  }
+  return strongest;
+}
+
+void SceneEffects::shift(int device, int contact, const double hip_world_m[3], double tick_s, double moved_world_m[3]) {
+  OnRelief& on = relief_of(device, contact);
+  std::copy_n(hip_world_m, 3, moved_world_m);
+  std::copy_n(hip_world_m, 3, on.hip_world_m);
+  if (on.row < 0) return;
+  const Row& row = rows_[static_cast<std::size_t>(on.row)];
+  const fdcg_finger_result free{};
+  const Seen seen = see(row.object, hip_world_m, free);
+  double hip_m[3], moved_m[3], by_m[3];
+  for (int i = 0; i < 3; ++i)
+    hip_m[i] = seen.hip_m[i] * seen.scale;
+  fdcg_relief_move(&row.relief, &on.state, hip_m, tick_s, moved_m);
+  if (on.state.height_m == 0) return;
+  for (int i = 0; i < 3; ++i)
+    by_m[i] = moved_m[i] - hip_m[i];
+  for (int i = 0; i < 3; ++i)
+    moved_world_m[i] += dot(seen.rows + 3 * i, by_m);
+}
+
+void SceneEffects::turn(int device, int contact, const fdcg_finger_result& felt, double tick_s, double force_n[3]) {
+  OnRelief& on = relief_of(device, contact);
+  const Row* const next = strongest_row(felt);
+  const int next_row = next == nullptr ? -1 : static_cast<int>(next - rows_.data());
+  const auto step = [&](const Row& row) {
+    const Seen seen = see(row.object, on.hip_world_m, felt);
+    const fdcg_effect_facts facts = facts_of(row.object, seen, tick_s);
+    double own_n[3];
+    to_object(seen.rows, force_n, own_n);
+    fdcg_relief_turn(&row.relief, &on.state, &facts, own_n);
+    for (int i = 0; i < 3; ++i)
+      force_n[i] = dot(seen.rows + 3 * i, own_n);
+  };
+  if (on.row >= 0) step(rows_[static_cast<std::size_t>(on.row)]);
+  if (next_row == on.row) return;
+  // another object, or none: the account goes along
+  const double credit_j = on.state.credit_j, given_j = on.state.given_j;
+  const bool has_started = on.state.has_started != 0;
+  on.state = fdcg_relief_state{};
+  on.row = next_row;
+  if (next == nullptr) return;
+  on.state.given_j = given_j;
+  step(*next);  // it has no slope yet: the force stays
+  if (!has_started) return;
+  on.state.credit_j = std::min(credit_j, next->relief.reserve_j);
+  on.state.has_started = 1;
+  std::copy_n(on.state.flat_n, 3, on.state.force_n);
+  const Seen seen = see(next->object, on.hip_world_m, felt);
+  for (int i = 0; i < 3; ++i)
+    on.state.hip_m[i] = on.state.moved_m[i] = seen.hip_m[i] * seen.scale;
 }
 
 void SceneEffects::feel(int device, int contact, const double hip_world_m[3], const fdcg_finger_result& felt, double tick_s,

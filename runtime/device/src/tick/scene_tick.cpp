@@ -12,6 +12,7 @@ namespace {
 // The targets of a device's contacts at the end of the tick, world.
 struct Target {
   double place_m[kMaxContacts][3];
+  double moved_m[kMaxContacts][3];  // by reliefs
   double turn_xyzw[4];
 };
 
@@ -70,6 +71,7 @@ void place_fingers(DeviceState& device, const Target& target) {
   }
   if (device.setup.effects != nullptr) device.setup.effects->reset(device.setup.effects_device);
   std::copy_n(&target.place_m[0][0], 3 * device.setup.contact_count, &device.places_m[0][0]);
+  std::copy_n(&target.place_m[0][0], 3 * device.setup.contact_count, &device.moved_m[0][0]);
   std::copy_n(target.turn_xyzw, 4, device.turn_xyzw);
   device.has_place = true;
 }
@@ -78,7 +80,7 @@ void place_fingers(DeviceState& device, const Target& target) {
 void move_fingers(const DeviceState& device, const Target& target, double share) {
   const DeviceSetup& setup = device.setup;
   for (int contact = 0; contact < setup.contact_count; ++contact) {
-    const double *const from = device.places_m[contact], *const to = target.place_m[contact];
+    const double *const from = device.moved_m[contact], *const to = target.moved_m[contact];
     double at_m[3];
     for (int i = 0; i < 3; ++i)
       at_m[i] = share == 1 ? to[i] : from[i] + (to[i] - from[i]) * share;
@@ -115,6 +117,14 @@ void step_bodies(const Member* members, int count, const Target* targets, const 
   }
 }
 
+void move_by_reliefs(const DeviceState& device, double tick_s, Target* target) {
+  const DeviceSetup& setup = device.setup;
+  std::copy_n(&target->place_m[0][0], 3 * setup.contact_count, &target->moved_m[0][0]);
+  if (setup.effects == nullptr) return;
+  for (int contact = 0; contact < setup.contact_count; ++contact)
+    setup.effects->shift(setup.effects_device, contact, target->place_m[contact], tick_s, target->moved_m[contact]);
+}
+
 bool may_touch(const DeviceState& device, bool has_moved) {
   return device.has_place || (has_moved && !device.is_waiting);
 }
@@ -129,6 +139,7 @@ void step_scene(const Member* members, int count, const bool* has_moved, const D
     for (int contact = 0; contact < device.setup.contact_count; ++contact)
       contact_place(device.setup, device.grip, contact, device.tip_m, targets[m].place_m[contact]);
     if (!device.has_place) place_fingers(device, targets[m]);
+    move_by_reliefs(device, 1 / clock.setup.profile.rate_hz, &targets[m]);
   }
   if (clock.setup.body_count > 0 && clock.counters.bodies_lost == 0) {
     step_bodies(members, count, targets, clock.setup);
@@ -142,11 +153,12 @@ void step_scene(const Member* members, int count, const bool* has_moved, const D
     if (!device.has_place) continue;
     std::copy_n(targets[m].turn_xyzw, 4, device.turn_xyzw);
     std::copy_n(&targets[m].place_m[0][0], 3 * device.setup.contact_count, &device.places_m[0][0]);
+    std::copy_n(&targets[m].moved_m[0][0], 3 * device.setup.contact_count, &device.moved_m[0][0]);
   }
 }
 
 // The sum of the forces on all contacts of the device. The reported state is that of the touch with the largest force.
-void sum_touches(DeviceState& device) {
+void sum_touches(DeviceState& device, double tick_s) {
   const DeviceSetup& setup = device.setup;
   double largest = 0;
   std::fill_n(device.wanted_n, 3, 0.0);
@@ -155,8 +167,10 @@ void sum_touches(DeviceState& device) {
   for (int contact = 0; contact < setup.contact_count; ++contact) {
     fdcg_finger_result felt;
     if (fdcg_scene_get_result(setup.scene, setup.fingers[contact], &felt, nullptr) != FDCG_OK) continue;
+    double force_n[3] = {felt.force_n[0], felt.force_n[1], felt.force_n[2]};
+    if (setup.effects != nullptr) setup.effects->turn(setup.effects_device, contact, felt, tick_s, force_n);
     for (int i = 0; i < 3; ++i)
-      device.wanted_n[i] += felt.force_n[i];
+      device.wanted_n[i] += force_n[i];
     for (std::uint32_t t = 0; t < felt.touch_count; ++t) {
       const double* const f = felt.touches[t].force_n;
       const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
@@ -250,7 +264,7 @@ int scene_tick(const Member* members, int count, const bool* has_moved) {
   }
   step_scene(members, count, has_moved, *members[clock].device);
   for (int m = 0; m < count; ++m)
-    if (members[m].device->has_place) sum_touches(*members[m].device);
+    if (members[m].device->has_place) sum_touches(*members[m].device, 1 / setup.profile.rate_hz);
   if (setup.effects != nullptr) {
     move_bodies(setup);
     for (int m = 0; m < count; ++m)

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hand is moved along the normal by the height under it, and the step's force comes back through the transposed derivative
+// of that move.
+#include "fdcg/relief.h"
+
+#include "base/struct_bytes.hpp"
+#include "effect/effect_motion.hpp"
+
+namespace fdcg {
+namespace {
+
+constexpr double kFadingHeights = 0.25;  // of the reserve: from here on the heights fade
+constexpr double kKnees = 8;  // so many largest heights deep they are felt in full; from 7 on force only rises with depth
+
+// How far heights are felt at a depth, and its derivative: a smooth step.
+struct GrownIn {
+  double share, per_m;
+};
+GrownIn grown_in(double depth_m, double knee_m) {
+  if (depth_m >= knee_m) return {1, 0};
+  const double s = depth_m / knee_m;
+  return {s * s * (3 - 2 * s), 6 * s * (1 - s) / knee_m};
+}
+
+// Sets height_m and slope for this place of the hand.
+void look(const fdcg_relief& relief, Along hip, fdcg_relief_state* state) {
+  state->height_m = 0;
+  store(Along{0, 0, 0}, state->slope);
+  const Along normal = vec(state->normal);
+  const double depth = state->has_surface != 0 ? dot(vec(state->surface_m) - hip, normal) : 0;
+  if (!(depth > 0) || relief.is_off != 0) return;
+  const double fading = kFadingHeights * relief.reserve_j;
+  const double share = state->credit_j < fading ? larger(state->credit_j, 0) / fading : 1;
+  const Along way = state->has_started != 0 ? hip - vec(state->hip_m) : Along{0, 0, 0};
+  double place_m[3], way_m[3], slope[3] = {0, 0, 0}, height_m = 0;
+  store(hip + normal * depth, place_m);
+  store(way - normal * dot(way, normal), way_m);
+  relief.law(&relief, place_m, way_m, &height_m, slope);
+  if (!is_usable(vec(slope)) || !(absolute(height_m) <= relief.most_m)) return;
+  const GrownIn in = grown_in(depth, kKnees * relief.most_m);
+  const Along along = vec(slope) - normal * dot(vec(slope), normal);
+  state->height_m = share * in.share * height_m;
+  store(along * (share * in.share) - normal * (share * in.per_m * height_m), state->slope);
+}
+
+}  // namespace
+}  // namespace fdcg
+
+extern "C" void fdcg_relief_init(fdcg_relief* relief, uint32_t struct_bytes) {
+  fdcg_relief defaults = {};
+  defaults.material = FDCG_NONE;
+  defaults.reserve_j = 0.002;
+  defaults.power_w = 0.02;
+  fdcg::fill_defaults(relief, defaults, struct_bytes);
+}
+
+extern "C" void fdcg_relief_move(const fdcg_relief* relief, fdcg_relief_state* state, const double hip_m[3], double tick_s,
+                                 double moved_m[3]) {
+  using namespace fdcg;
+  const Along hip = {hip_m[0], hip_m[1], hip_m[2]};
+  if (!is_usable(hip) || relief->struct_bytes != sizeof *relief) {
+    *state = fdcg_relief_state{};
+    for (int k = 0; k < 3; ++k)
+      moved_m[k] = hip_m[k];
+    return;
+  }
+  if (state->has_started == 0) state->credit_j = relief->reserve_j;
+  look(*relief, hip, state);
+  const Along moved = hip - vec(state->normal) * state->height_m;
+  if (state->has_started != 0) {  // what the relief has given since, beyond the step
+    const double given =
+        dot(vec(state->force_n), hip - vec(state->hip_m)) - dot(vec(state->flat_n), moved - vec(state->moved_m));
+    state->given_j += given;
+    state->credit_j = smaller(state->credit_j - given + relief->power_w * tick_s, relief->reserve_j);
+  }
+  state->has_started = 1;
+  store(hip, state->hip_m);
+  store(moved, state->moved_m);
+  for (int k = 0; k < 3; ++k)
+    moved_m[k] = state->moved_m[k];
+}
+
+extern "C" void fdcg_relief_turn(const fdcg_relief* relief, fdcg_relief_state* state, const fdcg_effect_facts* facts,
+                                 double force_n[3]) {
+  using namespace fdcg;
+  const Along flat = {force_n[0], force_n[1], force_n[2]};
+  const Along force = flat - vec(state->slope) * dot(flat, vec(state->normal));
+  store(flat, state->flat_n);
+  store(force, state->force_n);
+  const bool is_of_material = relief->material == FDCG_NONE || facts->material == relief->material;
+  state->has_surface = facts->is_touching != 0 && is_of_material ? 1 : 0;
+  store(vec(facts->surface_m), state->surface_m);
+  if (state->has_surface != 0) store(vec(facts->normal), state->normal);
+  for (int k = 0; k < 3; ++k)
+    force_n[k] = state->force_n[k];
+}

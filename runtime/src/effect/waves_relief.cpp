@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Heights that are sums of waves.
+#include "effect/effect_motion.hpp"
+#include "effect/waves.hpp"
+#include "fdcg/relief.h"
+
+namespace fdcg {
+namespace {
+
+constexpr double kTurnRad = 6.283185307179586476925, kFarthestTurns = 1e15;
+
+// A wave that passes by so many turns a tick: whole up to a quarter, gone at a half.
+double share_of_turns(double turns) {
+  constexpr double kWhole = 0.25, kGone = 0.5;
+  if (turns <= kWhole) return 1;
+  return turns >= kGone ? 0 : (kGone - turns) / (kGone - kWhole);
+}
+
+double uniform(uint64_t* state) {  // -1 to 1
+  constexpr double kScale = 0x1p-52;
+  next_noise(state);
+  return static_cast<double>((*state * 0x2545F4914F6CDD1DU) >> 11) * kScale - 1;
+}
+
+Along any_direction(uint64_t* state) {
+  constexpr int kMostTries = 64;
+  for (int i = 0; i < kMostTries; ++i) {
+    const Along v = {uniform(state), uniform(state), uniform(state)};
+    const double square = dot(v, v);
+    if (square > 0.01 && square <= 1) return v * (1 / root(square));
+  }
+  return {0, 0, 1};
+}
+
+// x to a power of halves, 0 to 3.
+double power_of(double x, double exponent) {
+  double result = 1;
+  for (; exponent >= 0.75; exponent -= 1)
+    result *= x;
+  return exponent >= 0.25 ? result * root(x) : result;
+}
+
+void set_wave(fdcg_waves* waves, Along direction, double wavelength_m, double amplitude_m, double phase_turns) {
+  const uint32_t i = waves->count++;
+  store(direction * (1 / wavelength_m), waves->per_m[i]);
+  waves->amplitude_m[i] = amplitude_m;
+  waves->phase_turns[i] = phase_turns;
+}
+
+}  // namespace
+}  // namespace fdcg
+
+extern "C" fdcg_waves fdcg_make_ridges(double amplitude_m, double wavelength_m, const double direction[3]) {
+  using namespace fdcg;
+  fdcg_waves waves = {};
+  Along along = {0, 0, 0};
+  if (direction != nullptr) along = {direction[0], direction[1], direction[2]};
+  const double length = norm(along);
+  set_wave(&waves, length > 0 ? along * (1 / length) : Along{0, 0, 0}, wavelength_m, amplitude_m, 0);
+  return waves;
+}
+
+extern "C" fdcg_waves fdcg_make_bumps(double amplitude_m, double wavelength_m) {
+  using namespace fdcg;
+  fdcg_waves waves = {};
+  for (int k = 0; k < 3; ++k)
+    set_wave(&waves, {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}, wavelength_m, amplitude_m / 3, 0);
+  return waves;
+}
+
+extern "C" fdcg_waves fdcg_make_grain(double rms_m, double shortest_m, double longest_m, double exponent, uint32_t seed) {
+  using namespace fdcg;
+  fdcg_waves waves = {};
+  uint64_t random = first_noise(seed);
+  double step = longest_m / shortest_m;  // from a wave to the next: its 16th root
+  for (int i = 0; i < 4; ++i)
+    step = root(step);
+  double wavelength_m = shortest_m * root(step), square = 0;
+  for (uint32_t i = 0; i < FDCG_MAX_WAVES; ++i, wavelength_m *= step) {
+    const Along direction = any_direction(&random);
+    const double amplitude = power_of(wavelength_m / longest_m, exponent);
+    square += amplitude * amplitude / 2;
+    set_wave(&waves, direction, wavelength_m, amplitude, 0.5 * uniform(&random));
+  }
+  for (double& amplitude_m : waves.amplitude_m)
+    amplitude_m *= rms_m / root(square);
+  return waves;
+}
+
+extern "C" void fdcg_get_waves_bounds(const fdcg_waves* waves, double* most_m, double* curvature_per_m) {
+  using namespace fdcg;
+  double most = 0, curvature = 0;
+  for (uint32_t i = 0; waves != nullptr && i < waves->count && i < FDCG_MAX_WAVES; ++i) {
+    const Along per_m = vec(waves->per_m[i]);
+    most += waves->amplitude_m[i];
+    curvature += waves->amplitude_m[i] * kTurnRad * kTurnRad * dot(per_m, per_m);
+  }
+  if (most_m != nullptr) *most_m = most;
+  if (curvature_per_m != nullptr) *curvature_per_m = curvature;
+}
+
+extern "C" void fdcg_waves_law(const fdcg_relief* relief, const double place_m[3], const double way_m[3], double* height_m,
+                               double slope[3]) {
+  using namespace fdcg;
+  const fdcg_waves& waves = *static_cast<const fdcg_waves*>(relief->data);
+  const Along place = {place_m[0], place_m[1], place_m[2]}, way = {way_m[0], way_m[1], way_m[2]};
+  double height = 0;
+  Along gradient = {0, 0, 0};
+  for (uint32_t i = 0; i < waves.count && i < FDCG_MAX_WAVES; ++i) {
+    const Along per_m = vec(waves.per_m[i]);
+    const double amplitude = waves.amplitude_m[i] * share_of_turns(absolute(dot(per_m, way)));
+    if (!(amplitude > 0)) continue;
+    const double turns = dot(per_m, place) + waves.phase_turns[i];
+    if (!(absolute(turns) < kFarthestTurns)) continue;
+    const SineCosine at = sine_cosine_of_turns(turns);
+    height += amplitude * at.sine;
+    gradient = gradient + per_m * (amplitude * kTurnRad * at.cosine);
+  }
+  *height_m = height;
+  slope[0] = gradient.x, slope[1] = gradient.y, slope[2] = gradient.z;
+}
