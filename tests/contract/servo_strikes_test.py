@@ -23,6 +23,8 @@ STRIKES = int(os.environ.get("FDCG_STRIKES", "1"))
 MOST_LATE = 4 + STRIKES  # strikes that a busy machine may spoil
 ZERO_LIMIT_S = 0.002  # the bar: from the first chance to know until zero is sent
 MOST_RISE_N = 0.1  # what the hand's own moving changes in a period, and far below a step
+# told where a busy machine stops a thread of the host, or all of it (the device's watchdog)
+BY_ITSELF = {"host-late", "writer-stuck", "silence", "not-taken", "device-fault"}
 SILENCE_S, TAKEN_S, PERIOD_S, TRIPS = 0.010, 0.010, 0.001, 16
 
 EVENT = struct.Struct("<qIIIIfI")
@@ -117,7 +119,7 @@ class Late(Exception):
     """This machine was too busy to say."""
 
 
-class Strikes(Case):
+class StrikeCase(Case):
     def setUp(self):
         super().setUp()
         shutil.copy(ROOT / "testdata" / "scenes" / "cube.fdcg", self.folder)
@@ -164,6 +166,8 @@ class Strikes(Case):
         from the events after it (None: it has not come yet)."""
         self.feel(program)
         before = program.fresh_status()["disarmed"]
+        if not self.device.force_n() > 0:
+            raise Late("disarmed before it was struck")
         since = self.device.count()
         known_of = strike()
         self.assertTrue(self.wait(lambda: known_of(self.device.events(since)) is not None), "the device has not been struck")
@@ -173,7 +177,7 @@ class Strikes(Case):
         after = program.fresh_status()["disarmed"]
         told = {reason for reason in after if after[reason] > before.get(reason, 0)}
         zero = self.judge_zero(outputs, known_s)
-        if told & {"host-late", "writer-stuck"}:
+        if told & BY_ITSELF - reasons:
             raise Late(f"the host itself was late: {told}")
         self.assertTrue(told and told <= reasons, f"{told or 'nothing'} is told instead of {reasons}")
         if zero.at_s - known_s > ZERO_LIMIT_S:
@@ -181,15 +185,28 @@ class Strikes(Case):
         self.slowest_s = max(self.slowest_s, zero.at_s - known_s)
 
     def judge_zero(self, outputs, known_s):
-        """The first zero; from it on all are, and none grew that was sent once the host could know."""
-        zero = next((event for event in outputs if event.force_n == 0 and not event.is_enable), None)
+        """The first zero; from it on all are, and none grew that was sent once the host could know. The last disables too."""
+        zero = next((event for event in outputs if event.force_n == 0), None)
         self.assertIsNotNone(zero, "the force stays")
         for before, event in zip(outputs, outputs[1:]):
             if event.at_s > zero.at_s:
-                self.assertEqual((0, 0), (event.force_n, event.is_enable), "there is force before it was armed again")
+                self.assertEqual(0, event.force_n, "there is force before it was armed again")
             elif event.at_s > known_s:
                 self.assertLess(event.force_n - before.force_n, MOST_RISE_N, "the force steps up")
+        self.assertEqual(0, outputs[-1].is_enable)
         return zero
+
+    def check_goes_on(self, program, disarmed, since):
+        """The force is there as if nothing were. A thread of the host that is late has its zero sent by another."""
+        outputs = [event for event in self.device.events(since) if event.kind == TAKEN]
+        after = program.fresh_status()["disarmed"]
+        told = {reason for reason in after if after[reason] > disarmed.get(reason, 0)}
+        self.assertTrue(told <= BY_ITSELF, told)
+        if told or not all(event.is_enable for event in outputs):
+            raise Late(f"the host itself was late: {told}")
+        self.assertGreater(len(outputs), 20)
+        for before, event in zip(outputs, outputs[1:]):
+            self.assertLess(abs(event.force_n - before.force_n), 4 * MOST_RISE_N)
 
     def often(self, once):
         done = 0
@@ -204,6 +221,8 @@ class Strikes(Case):
             print(f"{self.id()}: {done} times, zero within {1000 * self.slowest_s:.3f} ms of the first chance to know; "
                   f"{len(self.late)} spoilt: {self.late}", flush=True)
 
+
+class Hosts(StrikeCase):
     def test_another_host_on_the_device_takes_the_force_away(self):
         program = self.started()
 
@@ -233,9 +252,7 @@ class Strikes(Case):
             time.sleep(0.05)
             second.say("quit")
             self.assertEqual(1, second.process.wait(timeout=PATIENCE_S))
-            if program.fresh_status()["disarmed"] != disarmed:
-                raise Late(program.status()["disarmed"])
-            self.assertTrue(all(event.is_enable for event in self.device.events(since) if event.kind == TAKEN))
+            self.check_goes_on(program, disarmed, since)
         self.often(once)
 
     def test_a_node_that_stands_twice_in_a_scene_never_has_force(self):
@@ -258,6 +275,8 @@ class Strikes(Case):
             self.assertEqual([], [event for event in self.device.events(outputs) if event.kind == TAKEN])
         self.often(once)
 
+
+class Changes(StrikeCase):
     @staticmethod
     def write_over(file, content):
         with file.open("r+b") as opened:
@@ -282,13 +301,7 @@ class Strikes(Case):
                     disarmed, since = program.fresh_status()["disarmed"], self.device.count()
                     change()
                     time.sleep(0.2)
-                    if program.fresh_status()["disarmed"] != disarmed:
-                        raise Late(program.status()["disarmed"])
-                    outputs = [event for event in self.device.events(since) if event.kind == TAKEN]
-                    self.assertGreater(len(outputs), 50)
-                    for before, event in zip(outputs, outputs[1:]):
-                        self.assertTrue(event.is_enable and abs(event.force_n - before.force_n) < 4 * MOST_RISE_N,
-                                        f"a step from {before.force_n} N to {event.force_n} N")
+                    self.check_goes_on(program, disarmed, since)
                 self.often(once)
         program.say("quit")
         self.assertIn(program.process.wait(timeout=PATIENCE_S), (0, 1))
@@ -319,6 +332,8 @@ class Strikes(Case):
             self.assertTrue(self.wait(lambda: program.status()["connection"] == "open"))
         self.often(once)
 
+
+class Lags(StrikeCase):
     def check_lag(self, lag_s):
         program = self.started()
 
