@@ -466,8 +466,8 @@ class Killed(BatchCase):
         self.batch("-q", out="whole")
         run = self.start()
         killed = False
-        for _ in range(400):
-            time.sleep(0.01)
+        while not killed and run.poll() is None:
+            time.sleep(0.005)
             for child in self.children(run.pid):
                 if not killed and self.resident_kb(child) > 60_000:
                     os.kill(child, signal.SIGSEGV)
