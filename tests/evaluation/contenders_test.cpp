@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "catch.hpp"
+#include "instruction_count.hpp"
 #include "metrics.hpp"
 #include "pareto.hpp"
 #include "plan.hpp"
@@ -313,6 +314,10 @@ TEST_CASE("times: all entrants have the same rounds, and a slower one is slower"
     CHECK(t.met_p999_ns >= t.least_mean_ns);
   }
   CHECK(timings[1].mean_ns() > 5 * timings[0].mean_ns());
+  const double instructions = contact_instructions(quick, way, {5, 10, 400});
+  CHECK((FDCG_COUNTS_INSTRUCTIONS == 0 || instructions > 20));
+  CHECK(instructions < 300);
+  CHECK(contact_instructions(slow, way, {5, 10, 400}) == 0);
 }
 
 TEST_CASE("times: what the caches have lost costs time, a contender's own clock is believed") {

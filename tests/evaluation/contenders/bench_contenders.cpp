@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
                  1, 1000);
   program.option("--body", options.bodies, "only these; any of bodies.hpp, up to 10 million faces (some 12 GB)");
   program.option("--way", options.ways, "only these of the plan's ways");
-  program.option("--ticks", options.ticks, "of each way; default 10,000, quick 4,000", 100, 1e6);
+  program.option("--ticks", options.ticks,
+                 "of each way; default 4,000 where the frontier is over several seeds, else 10,000; quick 4,000", 100, 1e6);
   program.option("--rival", options.rivals, "shared object or pipe:COMMAND that takes part too (docs/rivals.md)");
   program.option("--contender", options.contenders, "only these, by their names in contenders.csv");
   program.option("--export", options.export_folder, "folder for meshes, ways with their truth, and every contender's answers");

@@ -20,6 +20,7 @@ struct ContenderRow {
   Metrics metrics;
   double creep_m = 0;
   LoopEnergy energy;
+  double contact_instructions = 0;
 };
 
 const std::vector<std::string>& contender_columns();

@@ -199,7 +199,8 @@ void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
     WayOptions options;
     options.kind = plan.kind;
     options.rate_hz = plan.rate_hz;
-    options.ticks = options_.ticks > 0 ? options_.ticks : std::min(options_.is_quick ? 4000u : 10'000u, plan.most_ticks);
+    options.ticks =
+        options_.ticks > 0 ? options_.ticks : std::min(options_.is_quick || plan.counts ? 4000u : 10'000u, plan.most_ticks);
     options.seed = options_.seed + k;
     options.hold_ticks = 20;  // of teleports: time to arrive
     WayFile along;
@@ -274,9 +275,11 @@ std::vector<float> Evaluation::run_contender(const Scene& scene, const WayPlan& 
     error_m.push_back(static_cast<float>(error_of(felt[i], truth[i])));
   }
   if (!options_.export_folder.empty()) write_answers(options_.export_folder, along, info.name, felt);
-  ContenderRow row{scene.body, along, info, timing, judge(way, plan.rate_hz, felt, truth, scene.truth), 0, {}};
+  ContenderRow row{scene.body, along, info, timing, judge(way, plan.rate_hz, felt, truth, scene.truth), 0, {}, 0};
   row.energy = energy_of_loop(contender, way);
   row.creep_m = creep_m(contender, way, truth);
+  if (along.seed == options_.seed)
+    row.contact_instructions = contact_instructions(contender, way, ticks_in_contact(truth, truth.size()));
   table_.write(cells_of(row, truth));
   if (row.metrics.unjudged_share > unjudged_share_) {
     unjudged_share_ = row.metrics.unjudged_share;

@@ -4,7 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <limits>
+
+#include "instruction_count.hpp"
 
 namespace fdcg::test {
 namespace {
@@ -167,6 +168,27 @@ std::vector<Timing> time_all(const std::vector<Contender*>& entrants, const Way&
     timings[e].cold_ns = time_cold(*entrants[e], way, plan.cold_ticks, clock, sweep);
   }
   return timings;
+}
+
+double contact_instructions(Contender& contender, const Way& way, const std::vector<std::uint32_t>& ticks) {
+  constexpr std::size_t kCounted = 3;
+  constexpr std::uint64_t kMost = 1000;  // single-stepped, some ten microseconds each
+  std::vector<float> counts;
+  Feel feel;
+  contender.reset();
+  const std::size_t stride = std::max<std::size_t>(1, ticks.size() / kCounted);
+  std::size_t long_ones = 0;
+  for (std::size_t i = 0, next = stride / 2; next < ticks.size() && contender.own_ns() < 0; ++i) {
+    if (i < ticks[next]) {
+      contender.step(way[i], feel);
+      continue;
+    }
+    counts.push_back(static_cast<float>(instructions_of([&] { contender.step(way[i], feel); }, kMost)));
+    long_ones += counts.back() > 0.9 * kMost;
+    if (2 * long_ones >= kCounted) return 0;
+    next += stride;
+  }
+  return median(std::move(counts));
 }
 
 double empty_step_ns(const Stopwatch& watch) {

@@ -37,6 +37,10 @@ constexpr int kLeastRounds = 5, kMostRounds = 31;  // odd: a median is one of th
 std::vector<Timing> time_all(const std::vector<Contender*>& entrants, const Way& way, const Stopwatch& watch,
                              const TimingPlan& plan);
 
+// Instructions of a step, the median over three of `ticks`: the same on every run and machine of a kind. 0
+// where they cannot be counted, are over a thousand, or are another process's.
+double contact_instructions(Contender& contender, const Way& way, const std::vector<std::uint32_t>& ticks);
+
 // What is taken off, beyond what two readings of the clock differ by at least.
 double empty_step_ns(const Stopwatch& watch);
 

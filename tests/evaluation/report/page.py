@@ -2,8 +2,6 @@
 """The report as one HTML page that needs nothing else."""
 import html
 
-README_PICTURES = {"overview", "god_object_error"}  # figures that testdata/pictures keeps a copy of
-
 STYLE = """
 :root { --ink: #1c1c1c; --soft: #666; --line: #ddd; --good: #1a7f37; --bad: #c1121f; }
 body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); max-width: 62rem; margin: 2rem auto; padding: 0 1rem; background: #fff; }

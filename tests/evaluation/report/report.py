@@ -62,20 +62,19 @@ def results(run, known, measured_on):
 
 
 def sections(run):
-    """Each part's section, every figure, and those of FRONT, which stand on the first page. A part that was not run says so."""
-    made, figures, front = [], [], []
+    """Each part's section, and the figures of FRONT, which stand on the first page. A part that was not run says so."""
+    made, front = [], []
     for part in PARTS:
         parts = []
         for item in part.content(run):
             if isinstance(item, str):
                 parts.append(item)
                 continue
-            figures.append(item)
             (front if item.name in FRONT else parts).append(page.figure(item))
         if not parts:
             parts = ["<p class=note>Not run.</p>"]
         made.append((part.IDENTITY, part.TITLE, part.INTRODUCTION, parts))
-    return made, figures, front
+    return made, front
 
 
 def main():
@@ -83,26 +82,18 @@ def main():
     parser.add_argument("folder", help="where the CSV tables are, and where the report goes")
     parser.add_argument("--mode", default="full", choices=["full", "quick"], help="said in the report")
     parser.add_argument("--seed", default="1", help="said in the report")
-    parser.add_argument("--pictures", metavar="DIR", help="the pictures of the README, as SVG files, into DIR")
     options = parser.parse_args()
     run = Run(options.folder)
     if not run.tables and not run.bars:
         parser.error(f"{options.folder}: no CSV table there; run tools/bench, which writes them")
     known = facts(options)
     measured_on = environment(run.folder)
-    made, figures, front = sections(run)
+    made, front = sections(run)
     text = page.page(known, run.bars, [*(f"<p>{line}</p>" for line in summary.lines(run)), summary.glance(run), *front], made, measured_on)
     if len(text.encode()) > MOST_BYTES:
         sys.exit(f"report.py: the page would have {len(text.encode())} bytes, more than {MOST_BYTES}")
     (run.folder / "results.json").write_text(json.dumps(results(run, known, measured_on), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     (run.folder / "report.html").write_text(text, encoding="utf-8")
-    if options.pictures:
-        wanted = [f for f in figures if f.name in page.README_PICTURES]
-        for f in wanted:
-            (pathlib.Path(options.pictures) / f"{f.name}.svg").write_text(f.svg + "\n", encoding="utf-8")
-        missing = sorted(page.README_PICTURES - {f.name for f in wanted})
-        if missing:
-            sys.exit(f"report.py: no data for the picture {', '.join(missing)}; run all parts")
 
 
 if __name__ == "__main__":

@@ -234,6 +234,51 @@ class OfLosses(unittest.TestCase):
         self.assertIn("no less exact: nowhere.", (self.folder / "report.html").read_text(encoding="utf-8"))
 
 
+class OfPublished(unittest.TestCase):
+    """The figures of README and docs, and the tables that they are made of."""
+
+    def setUp(self):
+        sys.path.insert(0, str(HERE))
+        import publish
+        self.publish = publish
+
+    def test_every_figure_is_the_tables(self):
+        done = subprocess.run([sys.executable, "-B", str(HERE / "publish.py"), "--check"], capture_output=True, text=True)
+        self.assertEqual(0, done.returncode, done.stderr)
+
+    def test_a_figure_that_is_not_is_found_out(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        rows = read_rows(self.publish.KEPT / "pareto.csv")
+        for row in rows:
+            if row["contender"] == "fdcg_f64_stored" and row["faces"] == "12":
+                row["mean_ns"] = str(float(row["mean_ns"]) + 1)
+        with open(folder / "pareto.csv", "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(rows)
+        for name in ("nearest.csv", "environment.json"):
+            (folder / name).write_text((self.publish.KEPT / name).read_text())
+        with unittest.mock.patch.object(self.publish, "KEPT", folder), unittest.mock.patch("sys.stderr") as told:
+            self.assertEqual(1, self.publish.check())
+        said = "".join(call.args[0] for call in told.write.call_args_list)
+        self.assertIn("README.md: figures 'step times'", said)
+        self.assertIn("docs/benchmarks.md: figures 'times'", said)
+
+    def test_the_frontier_of_the_tables_is_what_they_say(self):
+        done = frontier_of(self.publish.KEPT)
+        self.assertEqual(0, done.returncode, done.stderr)
+
+    def test_what_they_were_measured_on_is_kept(self):
+        known = json.loads((self.publish.KEPT / "environment.json").read_text(encoding="utf-8"))
+        self.assertTrue({"processor", "compiler", "load_before", "revision"} <= set(known))
+
+    def test_a_run_that_lacks_a_table_is_refused(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        done = subprocess.run([sys.executable, "-B", str(HERE / "publish.py"), folder], capture_output=True, text=True)
+        self.assertEqual(2, done.returncode)
+        self.assertIn("lacks pareto.csv", done.stderr)
+
+
 class OfBrokenFolders(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))

@@ -14,11 +14,10 @@
 namespace {
 
 using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
-constexpr double kBall_m = 1e-12;  // a ball of no radius at all is refused
 
 struct Body {
   Mesh mesh;
-  fcl::Sphered hand{kBall_m};
+  fcl::Sphered hand{0};
   fcl::DistanceRequestd request{true};
   std::vector<fcl::Vector3d> normals;  // of triangles; their length is any
   double stiffness_n_per_m = 0;
@@ -64,8 +63,9 @@ void step(void* of, const double hip_m[3], fdcg_rival_result* result) {
   fcl::Transform3d pose = fcl::Transform3d::Identity();
   pose.translation() = hip;
   fcl::distance(&body.mesh, fcl::Transform3d::Identity(), &body.hand, pose, body.request, found);
-  const bool is_inside =
-      found.b1 >= 0 && (hip - found.nearest_points[0]).dot(body.normals[static_cast<std::size_t>(found.b1)]) < 0;
+  // on the surface, where FCL says of two bodies that meet nothing but that, no force is felt
+  const bool is_inside = found.min_distance > 0 && found.b1 >= 0 &&
+                         (hip - found.nearest_points[0]).dot(body.normals[static_cast<std::size_t>(found.b1)]) < 0;
   for (int k = 0; k < 3; ++k) {
     const double offset = is_inside ? found.nearest_points[0][k] - hip[k] : 0;
     result->god_object_m[k] = hip[k] + offset;
