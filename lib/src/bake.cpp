@@ -254,7 +254,11 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
 Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare) {
   if (std::string reason = check_options(options); !reason.empty()) return Failure{2, std::move(reason)};
   if (options.normals == Normals::file && soup.corner_normals.empty())
-    return Failure{2, soup.name + ": holds no normals (vn of OBJ); --normals faces makes them from the faces", {}};
+    return Failure{
+        2,
+        soup.name +
+            ": holds no normals (vn of OBJ, nx ny nz of PLY, NORMAL of glTF); --normals faces makes them from the faces",
+        {}};
   const unsigned jobs = resolve_jobs(options.jobs);
   const auto stage = [&](std::string_view name, double fraction) {
     if (options.progress) options.progress(name, fraction);

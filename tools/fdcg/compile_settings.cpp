@@ -45,7 +45,7 @@ void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
       "--normals", "NORMALS", {{"none", bake::Normals::none}, {"faces", bake::Normals::faces}, {"file", bake::Normals::file}},
       options.normals,
       "Normals at the corners of faces, for force shading: from the faces around each vertex up to creases, or those of the "
-      "mesh file (vn of OBJ).");
+      "mesh file (vn of OBJ, nx ny nz of PLY, NORMAL of glTF).");
   graph.parsed(
       "--crease", "ANGLE",
       [&options](const std::string& text) {

@@ -154,7 +154,7 @@ struct PolygonSoup {
 struct ImportOptions {
   std::optional<Format> format;  ///< default: by content, then by the file name's ending
   Progress progress;             ///< may be empty
-  bool normals = false;          ///< read corner normals: OBJ's vn
+  bool normals = false;          ///< read corner normals: OBJ's vn, PLY's nx ny nz, glTF's NORMAL (not of Draco data)
 };
 
 /// The most that is read of what is no regular file: a pipe, a terminal.

@@ -81,7 +81,7 @@ std::string plain(const Value& value) {
 
 class Parser {
  public:
-  explicit Parser(const json::Document& document) : root_(document.root()) {}
+  Parser(const json::Document& document, bool wants_normals) : root_(document.root()), wants_normals_(wants_normals) {}
 
   Document parse() {
     check_asset();
@@ -163,6 +163,10 @@ class Parser {
     if (const Value positions = attributes["POSITION"]) {
       primitive.positions = use_accessor(positions);
       check_positions(positions, *primitive.positions);
+    }
+    if (const Value normals = attributes["NORMAL"]; normals && wants_normals_) {
+      primitive.normals = use_accessor(normals);
+      check_positions(normals, *primitive.normals);
     }
     if (const Value indices = item["indices"]) {
       primitive.indices = use_accessor(indices);
@@ -449,12 +453,13 @@ class Parser {
   }
 
   Value root_;
+  bool wants_normals_;
   Document document_;
 };
 
 }  // namespace
 
-Document parse_document(std::string_view text) {
+Document parse_document(std::string_view text, bool wants_normals) {
   constexpr json::Limits kLimits = {0xFFFFFFFF, 128, true};  // glTF needs some ten levels, extras may have a few more
   constexpr std::size_t kShown = 300;                        // bytes: the text that is wrong may be long
   std::optional<json::Document> document;
@@ -464,7 +469,7 @@ Document parse_document(std::string_view text) {
     throw Refusal{(refusal.is_cut_short ? "truncated: it " : "") + printable(refusal.message, kShown) +
                   "; fetch or export the file again"};
   }
-  return Parser(*document).parse();
+  return Parser(*document, wants_normals).parse();
 }
 
 }  // namespace fdcg::bake::gltf

@@ -81,6 +81,7 @@ enum class Mode : std::uint8_t { points, lines, line_loop, line_strip, triangles
 struct Primitive {
   Mode mode = Mode::triangles;
   std::optional<Index> positions, indices;  // accessors
+  std::optional<Index> normals;             // accessor, where they are wanted
   std::optional<Index> draco_view;          // KHR_draco_mesh_compression
   std::uint32_t draco_positions = 0;        // unique id of the attribute
   bool has_targets = false;
@@ -117,6 +118,7 @@ struct Document {
 };
 
 // Throws Refusal.
-Document parse_document(std::string_view text);
+// wants_normals: those of primitives are looked up too.
+Document parse_document(std::string_view text, bool wants_normals = false);
 
 }  // namespace fdcg::bake::gltf

@@ -50,6 +50,7 @@ class SceneBuilder {
       }
     }
     show_physics();
+    if (!soup_.corner_normals.empty()) soup_.corner_normals.resize(soup_.corners.size());
     rounding_.finish(soup_);
     materials_.finish(soup_);
     for (const auto& [what, count] : ignored_) {
@@ -188,8 +189,33 @@ class SceneBuilder {
       const std::uint32_t index = indices.at(i);
       return index < limit ? first_point + index : PolygonSoup::kInvalidVertex;
     };
+    const std::size_t first_corner = soup_.corners.size();
     add_faces(primitive.mode, indices.count(), world != nullptr && is_mirrored(*world), resolve);
+    if (primitive.normals) take_normals(*primitive.normals, positions.count(), first_point, first_corner, world);
     return first_point;
+  }
+
+  // Of the corners since first_corner. Normals go by the inverse transpose of the transform.
+  void take_normals(Index accessor, std::uint64_t points, std::uint32_t first_point, std::size_t first_corner,
+                    const Matrix* world) {
+    const Positions normals(document_, accessor, buffers_);
+    if (normals.count() != points) {
+      ++count("primitives whose normals are not as many as their positions");
+      return;
+    }
+    std::vector<Vec3> of_point;
+    normals.for_each([&](const Vec3& n) { of_point.push_back(world != nullptr ? turned_normal(*world, n) : n); });
+    soup_.corner_normals.resize(soup_.corners.size());
+    for (std::size_t i = first_corner; i < soup_.corners.size(); ++i)
+      if (soup_.corners[i] != PolygonSoup::kInvalidVertex) soup_.corner_normals[i] = of_point[soup_.corners[i] - first_point];
+  }
+
+  // By the cofactors, with the determinant's sign: the inverse transpose but for its length.
+  static Vec3 turned_normal(const Matrix& m, const Vec3& n) {
+    const double s = is_mirrored(m) ? -1 : 1;
+    return {s * ((m[5] * m[10] - m[6] * m[9]) * n.x + (m[2] * m[9] - m[1] * m[10]) * n.y + (m[1] * m[6] - m[2] * m[5]) * n.z),
+            s * ((m[6] * m[8] - m[4] * m[10]) * n.x + (m[0] * m[10] - m[2] * m[8]) * n.y + (m[2] * m[4] - m[0] * m[6]) * n.z),
+            s * ((m[4] * m[9] - m[5] * m[8]) * n.x + (m[1] * m[8] - m[0] * m[9]) * n.y + (m[0] * m[5] - m[1] * m[4]) * n.z)};
   }
 
   std::uint32_t show_draco(const Primitive& primitive, const Matrix* world) {

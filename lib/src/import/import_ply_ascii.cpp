@@ -19,6 +19,7 @@ class AsciiBody : TextSoupReader {
       is_read = is_read && read_element(element);
     is_read = is_read && check_end();
     set_quanta(has_float_coordinates(header_));
+    spread_normals(normals_, soup_);
     return result(is_read);
   }
 
@@ -62,7 +63,8 @@ class AsciiBody : TextSoupReader {
 
   bool read_vertex(const ElementKind& element, std::uint64_t row) {
     soup_.point_line.push_back(line());
-    Vec3 point;
+    Vec3 point, normal;
+    bool has_normal = false;
     for (const Property& property : element.properties) {
       if (property.role == Role::none) {
         if (!skip_value(element, row, property)) return false;
@@ -70,10 +72,14 @@ class AsciiBody : TextSoupReader {
       }
       if (!scan_.find_token()) return fail_end(element, row);
       double value = 0;
-      if (!read_coordinate(value)) return fail_here(row_name(element, row) + ": " + not_a_number());
-      (property.role == Role::x ? point.x : property.role == Role::y ? point.y : point.z) = value;
+      const bool is_of_place = !is_of_normal(property.role);
+      if (!(is_of_place ? read_coordinate(value) : scan_.read_real(value)))
+        return fail_here(row_name(element, row) + ": " + not_a_number());
+      component_of(is_of_place ? point : normal, property.role) = value;
+      has_normal = has_normal || !is_of_place;
     }
     soup_.points.push_back(point);
+    if (has_normal) normals_.push_back(normal);
     return true;
   }
 
@@ -183,6 +189,7 @@ class AsciiBody : TextSoupReader {
   }
 
   const Header& header_;
+  std::vector<Vec3> normals_;  // of the points, where they are read
 };
 
 }  // namespace

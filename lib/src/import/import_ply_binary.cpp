@@ -73,6 +73,7 @@ class BinaryBody : SoupReader {
     bool is_read = true;
     for (const ElementKind& element : header_.elements)
       is_read = is_read && read_element(element);
+    spread_normals(normals_, soup_);
     return result(is_read && check_end());
   }
 
@@ -118,13 +119,14 @@ class BinaryBody : SoupReader {
     std::array<Scalar, 3> type{};
     std::size_t row_bytes = 0;
     for (const Property& property : element.properties) {
-      if (property.role != Role::none) {
+      if (property.role != Role::none && !is_of_normal(property.role)) {
         const std::size_t k = static_cast<std::size_t>(property.role) - static_cast<std::size_t>(Role::x);
         at[k] = row_bytes;
         type[k] = property.value;
       }
       row_bytes += size_of(property.value);
     }
+    read_fixed_normals(element, row_bytes);
     const auto all = [&type](Scalar wanted) { return type[0] == wanted && type[1] == wanted && type[2] == wanted; };
     if (all(Scalar::f32)) {
       soup_.relative_quantum = 0x1p-24;
@@ -142,6 +144,19 @@ class BinaryBody : SoupReader {
       });
     }
     return true;
+  }
+
+  // Of all rows, before the points are read.
+  void read_fixed_normals(const ElementKind& element, std::size_t row_bytes) {
+    const auto has = [](const Property& property) { return is_of_normal(property.role); };
+    if (!std::any_of(element.properties.begin(), element.properties.end(), has)) return;
+    normals_.resize(static_cast<std::size_t>(element.count));
+    std::size_t at = 0;
+    for (const Property& property : element.properties) {
+      for (std::size_t row = 0; has(property) && row < normals_.size(); ++row)
+        component_of(normals_[row], property.role) = load_scalar<kSwap>(property.value, p_ + row * row_bytes + at);
+      at += size_of(property.value);
+    }
   }
 
   template <class Convert>
@@ -246,9 +261,7 @@ class BinaryBody : SoupReader {
       const std::size_t bytes = size_of(property.value);
       if (left() < bytes) return fail_end(element, row, bytes);
       if (property.role != Role::none) {
-        (property.role == Role::x   ? point.x
-         : property.role == Role::y ? point.y
-                                    : point.z) = load_scalar<kSwap>(property.value, p_);
+        component_of(point, property.role) = load_scalar<kSwap>(property.value, p_);
       }
       p_ += bytes;
     }
@@ -319,6 +332,7 @@ class BinaryBody : SoupReader {
   }
 
   const Header& header_;
+  std::vector<Vec3> normals_;  // of the points, where they are read
   const char* p_;
   const char* end_;
 };
