@@ -340,6 +340,7 @@ int Evaluation::finish() {
   bars_.at_most("own push-throughs", static_cast<double>(faults_.push_throughs), 0, "times", faults_.push_through_at);
   bars_.at_most("own creep at rest", faults_.creep_m, 0, "m", faults_.creep_at);
   bars_.at_most("own work beyond the zero-order hold's", faults_.energy_excess_j, 0, "J", faults_.energy_at);
+  bars_.at_most("contact ticks that are not judged, largest share", unjudged_share_, 0.01, "of a way's", unjudged_at_);
   if (!options_.way_files.empty()) bars_.at_most("truth beside the way files'", truth_off_m_, kBody_m * 0x1p-53, "m");
   return bars_.failures() == 0 ? 0 : 1;
 }
