@@ -85,13 +85,13 @@ class Gathered {
 using Numbers = std::vector<std::uint32_t>;  // of triangles
 
 // The corners of a triangle where stars are simple: two triangles that share one have nothing else in common. In place of each
-// other corner stands a number that no other triangle has; the fourth is the first again.
+// other corner stands a number that no other triangle has; the fourth number is there for the size.
 struct StarCorners {
   std::array<std::uint32_t, 4> vertex;
 };
 
 bool share_a_corner(const StarCorners& a, const StarCorners& b) {
-  unsigned shared = 0;  // compilers make three comparisons of four numbers of this
+  unsigned shared = 0;  // without a branch: which corner it is can hardly be foretold
   for (std::size_t turn = 0; turn < 3; ++turn) {
     for (std::size_t i = 0; i < 3; ++i)
       shared |= static_cast<unsigned>(a.vertex[i] == b.vertex[(i + turn) % 3]);
