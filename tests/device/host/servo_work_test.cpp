@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the servo thread does in a tick: no heap, no lock, and how long it takes.
 #include <algorithm>
+#include <cstdlib>
 
 #include "base/real_time.hpp"
 #include "catch.hpp"
@@ -58,32 +59,81 @@ TEST_CASE("servo loop: no heap and no lock, whatever happens to the device") {
 
 namespace {
 
-// All of a tick but the reading, in order of size: judging, stepping, the gate, handing over, the log, the snapshot.
-std::vector<std::int64_t> own_work_ns() {
+struct Work {
+  std::vector<std::int64_t> all_ns, wake_ns;  // of each tick; the second is in the first
+};
+
+std::int64_t quantile(std::vector<std::int64_t> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size()))];
+}
+
+// All of a tick but the reading: judging, stepping, the gate, handing over, the log, the snapshot.
+Work own_work(int priority) {
   constexpr int kTicks = 2000;
   LogRing log(1u << 22);
   Rig rig(cube_file(), &log);
   rig.servo.keep_snapshots(2 * kTicks);
   rig.open();
-  Running writer([&] { rig.writer.run(); });
-  std::vector<std::int64_t> took_ns;
-  took_ns.reserve(kTicks);
+  Running writer([&] {
+    const OwnPriority real_time(priority);
+    rig.writer.run();
+  });
+  Work work;
+  work.all_ns.reserve(kTicks);
+  work.wake_ns.reserve(kTicks);
   Running servo([&] {
+    const OwnPriority real_time(priority);
     rig.servo.request_arm();
     const std::int64_t clock_ns = rig.reads.clock_cost_ns = clock_cost_ns();
+    count_calls_of_this_thread(true);
     for (int tick = 0; tick < kTicks; ++tick) {
       if (tick == 100) rig.device.tip_z_m = -0.002;
+      const std::int64_t wake_ns = futex_ns_of_this_thread();
       const std::int64_t before_ns = spent_ns() - rig.reads.read_ns;
       rig.servo.tick();
-      took_ns.push_back(spent_ns() - rig.reads.read_ns - before_ns - clock_ns);
+      work.all_ns.push_back(spent_ns() - rig.reads.read_ns - before_ns - clock_ns);
+      work.wake_ns.push_back(futex_ns_of_this_thread() - wake_ns);
     }
+    count_calls_of_this_thread(false);
   });
   REQUIRE(servo.ends_within_ms(60'000));
   rig.writer.request_stop();
   CHECK(writer.ends_within_ms(1000));
   CHECK(rig.servo.snapshots().dropped() == 0);
   CHECK(log.dropped(0) == 0);
-  std::sort(took_ns.begin(), took_ns.end());
+  return work;
+}
+
+}  // namespace
+
+namespace {
+
+// What it takes to wake a thread that sleeps, and nothing else: on a virtual machine it may be most of a tick.
+std::vector<std::int64_t> bare_wakes_ns(int priority) {
+  constexpr int kWakes = 1000;
+  Event event;
+  std::atomic<bool> ends{false};
+  Running sleeper([&] {
+    const OwnPriority real_time(priority);
+    while (!ends)
+      event.wait(kMsNs * 1000);
+  });
+  std::vector<std::int64_t> took_ns;
+  Running waker([&] {
+    const OwnPriority real_time(priority);
+    const std::int64_t clock_ns = clock_cost_ns();
+    for (int wake = 0; wake < kWakes; ++wake) {
+      sleep_ms(1);
+      const std::int64_t before_ns = spent_ns();
+      event.signal();
+      took_ns.push_back(spent_ns() - before_ns - clock_ns);
+    }
+  });
+  CHECK(waker.ends_within_ms(60'000));
+  ends = true;
+  event.signal();
+  CHECK(sleeper.ends_within_ms(10'000));
   return took_ns;
 }
 
@@ -91,13 +141,25 @@ std::vector<std::int64_t> own_work_ns() {
 
 TEST_CASE("servo loop: its own work in a tick takes less than 10 us, log and snapshot included") {
   if (!can_count_thread_calls()) return;  // sanitizers make it slower
-  std::int64_t half_ns = 10'000;
-  for (int round = 0; round < 5 && half_ns >= 10'000; ++round) {  // other programs may have the caches
-    const std::vector<std::int64_t> took_ns = own_work_ns();
-    half_ns = took_ns[took_ns.size() / 2];
-    WARN("own work of a tick: p50 " << half_ns << " ns, p99 " << took_ns[took_ns.size() * 99 / 100] << " ns");
+  constexpr std::int64_t kMostNs = 10'000;
+  const bool is_idle =
+      std::getenv("FDCG_IDLE") != nullptr;  // the machine, but for this test: the 99th percentile is judged too
+  const int priority = GENERATE(0, 80);
+  bool is_within = false;
+  for (int round = 0; round < 10 && !is_within; ++round) {  // other programs may have the caches
+    const Work work = own_work(priority);
+    std::vector<std::int64_t> rest_ns;
+    for (std::size_t i = 0; i < work.all_ns.size(); ++i)
+      rest_ns.push_back(work.all_ns[i] - work.wake_ns[i]);
+    is_within =
+        quantile(priority == 0 ? work.all_ns : rest_ns, 0.5) < kMostNs && (!is_idle || quantile(rest_ns, 0.99) < kMostNs);
+    WARN("priority " << priority << ": p50 " << quantile(rest_ns, 0.5) << " p99 " << quantile(rest_ns, 0.99)
+                     << " ns; waking the writer p50 " << quantile(work.wake_ns, 0.5) << " p99 " << quantile(work.wake_ns, 0.99)
+                     << " ns; both p50 " << quantile(work.all_ns, 0.5) << " p99 " << quantile(work.all_ns, 0.99) << " ns");
   }
-  CHECK(half_ns < 10'000);
+  const std::vector<std::int64_t> bare_ns = bare_wakes_ns(priority);
+  WARN("a bare thread's wake p50 " << quantile(bare_ns, 0.5) << " p99 " << quantile(bare_ns, 0.99) << " ns");
+  CHECK(is_within);
 }
 
 namespace {

@@ -4,10 +4,14 @@
 
 #include <dlfcn.h>
 #include <pthread.h>
+#include <sys/syscall.h>
 
 #include <atomic>
+#include <cstdarg>
 #include <cstddef>
 #include <cstdlib>
+
+#include "spent_time.hpp"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define FDCG_COUNTS 1
@@ -18,6 +22,7 @@
 namespace {
 
 thread_local bool is_counted = false;
+thread_local std::int64_t futex_ns = 0;
 std::atomic<std::uint64_t> heap_calls, lock_calls;
 
 [[maybe_unused]] void count(std::atomic<std::uint64_t>& calls) {
@@ -77,6 +82,23 @@ FDCG_COUNTED_LOCK(pthread_mutex_lock, pthread_mutex_t)
 FDCG_COUNTED_LOCK(pthread_mutex_trylock, pthread_mutex_t)
 FDCG_COUNTED_LOCK(pthread_rwlock_rdlock, pthread_rwlock_t)
 FDCG_COUNTED_LOCK(pthread_rwlock_wrlock, pthread_rwlock_t)
+
+// The futex calls of threads that count are timed: by them an event wakes another thread.
+extern "C" long syscall(long number, ...) noexcept {
+  static std::atomic<long (*)(long, ...)> real{nullptr};
+  if (real.load() == nullptr) real.store(next<long (*)(long, ...)>("syscall"));
+  va_list list;
+  va_start(list, number);
+  long arguments[6];
+  for (long& argument : arguments)
+    argument = va_arg(list, long);
+  va_end(list);
+  const bool is_timed = is_counted && number == SYS_futex;
+  const std::int64_t before_ns = is_timed ? fdcg::dev::test::spent_ns() : 0;
+  const long result = real.load()(number, arguments[0], arguments[1], arguments[2], arguments[3], arguments[4], arguments[5]);
+  if (is_timed) futex_ns += fdcg::dev::test::spent_ns() - before_ns;
+  return result;
+}
 #endif
 
 namespace fdcg::dev::test {
@@ -89,6 +111,9 @@ void count_calls_of_this_thread(bool is_counting) {
 }
 ThreadCalls thread_calls() {
   return {heap_calls.load(), lock_calls.load()};
+}
+std::int64_t futex_ns_of_this_thread() {
+  return futex_ns;
 }
 
 }  // namespace fdcg::dev::test

@@ -2,7 +2,6 @@
 // The parts of a host around one device, each of which a test drives by itself.
 #pragma once
 
-#include <ctime>
 #include <functional>
 
 #include "catch.hpp"
@@ -10,27 +9,12 @@
 #include "host/writer.hpp"
 #include "hosted.hpp"
 #include "scene/scene_build.hpp"
+#include "spent_time.hpp"
 #include "tick/link.hpp"
 
 namespace fdcg::dev::test {
 
 inline constexpr std::uint64_t kMsNs = 1'000'000;
-
-// Of the calling thread: the machine may be busy with others.
-inline std::int64_t spent_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
-// What a look at that clock, a call of the system, costs.
-inline std::int64_t clock_cost_ns() {
-  constexpr int kLooks = 1000;
-  const std::int64_t before_ns = spent_ns();
-  for (int look = 1; look < kLooks; ++look)
-    spent_ns();
-  return (spent_ns() - before_ns) / kLooks;
-}
 
 // What the reader spends in there is kept apart.
 class TimedReads final : public Transport {
