@@ -3,7 +3,8 @@
 whose folder FDCG_FAKE_HID_FIRMWARE names): what the program can know and when, and what it does then. FDCG_STRIKES: how often each
 is done, at random moments. All times are the device's, of one clock: what is struck, what the host was handed, and what it sent.
 
-A machine that is busy with other things may be late by itself: such a strike is done once more, and may be late only so often."""
+A machine may stand still by itself. The device's witnesses, threads above the host's on every processor, note when and for how
+long: a strike is done once more where that explains what went wrong, and only so often. What they did not see is the host's fault."""
 import json
 import mmap
 import os
@@ -23,15 +24,43 @@ STRIKES = int(os.environ.get("FDCG_STRIKES", "1"))
 MOST_LATE = 4 + STRIKES  # strikes that a busy machine may spoil
 ZERO_LIMIT_S = 0.002  # the bar: from the first chance to know until zero is sent
 MOST_RISE_N = 0.1  # what the hand's own moving changes in a period, and far below a step
-# told where a busy machine stops a thread of the host, or all of it (the device's watchdog)
-BY_ITSELF = {"host-late", "writer-stuck", "silence", "not-taken", "device-fault"}
+# told where the machine stops a thread of the host, or all of it (the device's watchdog); for how long it stands still at least
+BY_ITSELF = {"host-late": 0.005, "writer-stuck": 0.0025, "silence": 0.005, "not-taken": 0.005, "device-fault": 0.005}
+STANDSTILL_NEAR_S = 0.05  # before a disarming that it explains, and after
+STATUS_AGE_S = 0.025  # of what a status line says
 SILENCE_S, TAKEN_S, PERIOD_S, TRIPS = 0.010, 0.010, 0.001, 16
 
 EVENT = struct.Struct("<qIIIIfI")
 MOST_EVENTS, HEADER_BYTES = 1 << 17, 64
-HANDED_OUT, TAKEN, LAGS, FOREIGN, GONE, FORCE = range(1, 7)
+HANDED_OUT, TAKEN, LAGS, FOREIGN, GONE, FORCE, STOOD = range(1, 8)
 FIELDS = {name: 4 * i for i, name in enumerate(
     ("report_lag_us", "output_lag_us", "foreign", "is_unplugged", "wrong_byte", "is_pressing", "event_count"))}
+
+
+def grants_real_time():
+    granted = []
+
+    def ask():
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(90))
+            granted.append(True)
+        except OSError:
+            pass
+    asking = threading.Thread(target=ask)
+    asking.start()
+    asking.join()
+    return bool(granted)
+
+
+def standstill_s(events, begin_s, end_s):
+    """For how long in this time the machine stood still: on any processor, as its witness noted."""
+    spans = sorted((max(begin_s, event.at_s - 1e-6 * event.sequence), min(end_s, event.at_s)) for event in events
+                   if event.kind == STOOD)
+    total_s, until_s = 0, begin_s
+    for first_s, last_s in spans:
+        total_s += max(0, last_s - max(first_s, until_s))
+        until_s = max(until_s, last_s)
+    return total_s
 
 
 class Event:
@@ -77,6 +106,7 @@ class Program:
     def __init__(self, case, device, *command):
         environment = {**os.environ, "LD_LIBRARY_PATH": os.environ["FDCG_FAKE_HID_FIRMWARE"], "FDCG_FAKE_NODE": device.node,
                        "FDCG_FAKE_MEMORY": device.memory_file}
+        self.launched_s = time.monotonic()
         self.process = subprocess.Popen([SERVO, *command], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                         env=environment)
         self.lines, self.errors = [], []
@@ -107,16 +137,18 @@ class Program:
         return json.loads(self.lines[-1])["devices"][0] if self.lines else {}
 
     def fresh_status(self):
-        """One that was written from now on."""
-        before = len(self.lines)
-        until = time.monotonic() + PATIENCE_S
-        while len(self.lines) < before + 2 and time.monotonic() < until:
+        """What is told of a moment from now on. A line's time counts from the session's start, which is after the launch: by the
+        clock, since lines may have waited in the pipe."""
+        now_s = time.monotonic()
+        while time.monotonic() < now_s + PATIENCE_S:
+            if self.lines and self.launched_s + json.loads(self.lines[-1])["time_s"] > now_s + STATUS_AGE_S:
+                break
             time.sleep(0.005)
         return self.status()
 
 
 class Late(Exception):
-    """This machine was too busy to say."""
+    """This machine stood still, and so nothing can be said."""
 
 
 class StrikeCase(Case):
@@ -126,6 +158,7 @@ class StrikeCase(Case):
         self.device = Device(self, "node")
         self.random = random.Random(self.id())
         self.slowest_s, self.late = 0, []
+        self.has_witness = grants_real_time() and "FDCG_SLOW_HOST" not in os.environ
         cube = {"name": "cube", "file": "cube.fdcg", "pose": {"scale": 0.2, "translation_m": [-0.1, -0.1, -0.2]},
                 "stiffness_n_per_m": 500, "mu_static": 0.5, "mu_dynamic": 0.4}
         # where real time is granted a busy machine is no matter
@@ -149,6 +182,7 @@ class StrikeCase(Case):
     def feel(self, program):
         """Armed above the surface, then pressed in, until there are 1.5 N, and for a random moment."""
         until = time.monotonic() + PATIENCE_S
+        self.felt = self.device.count()
         while time.monotonic() < until:
             self.device.set(is_pressing=0)
             time.sleep(0.35)  # up there by then
@@ -161,13 +195,32 @@ class StrikeCase(Case):
                 return
         self.fail(f"no force in a minute: {program.lines[-1:]} {program.errors}")
 
+    def excuse(self, what, needed_s, begin_s, end_s):
+        """Late, if the machine stood still for so long in this time; else the host has failed. Where threads have no priority
+        anything may hold one of them up, and no witness knows; a host with a sanitizer (FDCG_SLOW_HOST) is late by itself."""
+        stood_s = standstill_s(self.device.events(self.felt), begin_s, end_s)
+        told = f"{what}, and the machine stood still for {1000 * stood_s:.2f} ms"
+        if self.has_witness and stood_s < needed_s:
+            self.fail(f"{told}: {1000 * needed_s:.2f} would explain it")
+        raise Late(told)
+
+    def excuse_disarming(self, program, what, told=()):
+        """The last disarming was not meant."""
+        what += f" ({program.fresh_status()['fault']})"
+        events = self.device.events(self.felt)
+        outputs = [event for event in events if event.kind == TAKEN]
+        at_s = next((after.at_s for before, after in reversed(list(zip(outputs, outputs[1:])))
+                     if before.is_enable and not after.is_enable), outputs[-1].at_s)
+        needed_s = max((BY_ITSELF[reason] for reason in told), default=min(BY_ITSELF.values()))
+        self.excuse(what, needed_s, at_s - STANDSTILL_NEAR_S, at_s + STANDSTILL_NEAR_S)
+
     def strike(self, program, strike, reasons):
         """One time: felt, struck, and judged. strike() sets something, and returns how the time of the first chance to know comes
         from the events after it (None: it has not come yet)."""
         self.feel(program)
         before = program.fresh_status()["disarmed"]
         if not self.device.force_n() > 0:
-            raise Late("disarmed before it was struck")
+            self.excuse_disarming(program, "disarmed before it was struck")
         since = self.device.count()
         known_of = strike()
         self.assertTrue(self.wait(lambda: known_of(self.device.events(since)) is not None), "the device has not been struck")
@@ -177,11 +230,12 @@ class StrikeCase(Case):
         after = program.fresh_status()["disarmed"]
         told = {reason for reason in after if after[reason] > before.get(reason, 0)}
         zero = self.judge_zero(outputs, known_s)
-        if told & BY_ITSELF - reasons:
-            raise Late(f"the host itself was late: {told}")
+        if told & BY_ITSELF.keys() - reasons:
+            self.excuse_disarming(program, f"{told} is told", told & BY_ITSELF.keys() - reasons)
         self.assertTrue(told and told <= reasons, f"{told or 'nothing'} is told instead of {reasons}")
-        if zero.at_s - known_s > ZERO_LIMIT_S:
-            raise Late(f"zero after {1000 * (zero.at_s - known_s):.3f} ms")
+        late_s = zero.at_s - known_s - ZERO_LIMIT_S
+        if late_s > 0:
+            self.excuse(f"zero {1000 * late_s:.2f} ms too late", late_s, known_s, zero.at_s)
         self.slowest_s = max(self.slowest_s, zero.at_s - known_s)
 
     def judge_zero(self, outputs, known_s):
@@ -201,9 +255,9 @@ class StrikeCase(Case):
         outputs = [event for event in self.device.events(since) if event.kind == TAKEN]
         after = program.fresh_status()["disarmed"]
         told = {reason for reason in after if after[reason] > disarmed.get(reason, 0)}
-        self.assertTrue(told <= BY_ITSELF, told)
+        self.assertTrue(told <= BY_ITSELF.keys(), told)
         if told or not all(event.is_enable for event in outputs):
-            raise Late(f"the host itself was late: {told}")
+            self.excuse_disarming(program, f"{told or 'nothing'} is told, and it is disarmed", told)
         self.assertGreater(len(outputs), 20)
         for before, event in zip(outputs, outputs[1:]):
             self.assertLess(abs(event.force_n - before.force_n), 4 * MOST_RISE_N)
@@ -220,6 +274,43 @@ class StrikeCase(Case):
         if STRIKES > 1:
             print(f"{self.id()}: {done} times, zero within {1000 * self.slowest_s:.3f} ms of the first chance to know; "
                   f"{len(self.late)} spoilt: {self.late}", flush=True)
+
+
+class Witnesses(StrikeCase):
+    """What is excused, and what is not."""
+
+    def test_a_program_that_is_stopped_is_seen_to_stand_still(self):
+        program = self.started()
+        self.feel(program)
+        begin_s = time.monotonic()
+        program.process.send_signal(signal.SIGSTOP)
+        time.sleep(0.03)
+        program.process.send_signal(signal.SIGCONT)
+        time.sleep(0.05)
+        events = self.device.events(self.felt)
+        self.assertGreater(standstill_s(events, begin_s, time.monotonic()), 0.02)
+        with self.assertRaises(Late):
+            self.excuse("late", 0.02, begin_s, time.monotonic())
+        with self.assertRaises(Late):
+            self.excuse_disarming(program, "disarmed", {"host-late"})
+
+    def test_a_host_that_is_late_by_itself_is_not_excused(self):
+        if not self.has_witness:
+            self.skipTest("no real-time priority is granted, or the host is slow")
+        program = self.started()
+        self.feel(program)
+        end_s = time.monotonic()
+        seen_s = standstill_s(self.device.events(self.felt), end_s - 0.01, end_s)
+        with self.assertRaises(AssertionError):
+            self.excuse("late", seen_s + 0.0001, end_s - 0.01, end_s)
+
+    def test_standstills_of_two_processors_count_once(self):
+        def stood(at_s, for_s):
+            return Event((round(1e9 * at_s), STOOD, round(1e6 * for_s), 0, 0, 0, 0))
+        events = [stood(1.010, 0.010), stood(1.012, 0.004), stood(1.020, 0.001), stood(1.0021, 0.0001)]
+        self.assertAlmostEqual(0.013, standstill_s(events, 0.9, 1.1))
+        self.assertAlmostEqual(0.007, standstill_s(events, 1.005, 1.012))
+        self.assertEqual(0, standstill_s(events, 1.05, 1.1))
 
 
 class Hosts(StrikeCase):

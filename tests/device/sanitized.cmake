@@ -85,7 +85,7 @@ function(fdcg_sanitized_servo name)
     string(REPLACE ":" "." title ${class})
     fdcg_script_test("contract_${name}: ${title}" TIER nightly TIMEOUT 600 PROPERTIES PROCESSORS 2
       COMMAND ${FDCG_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/contract/${file}.py ${case} ENVIRONMENT
-      "FDCG=$<TARGET_FILE:fdcg>;FDCG_SERVO=$<TARGET_FILE:${target}>;FDCG_ROOT=${PROJECT_SOURCE_DIR};FDCG_FAKE_HID=$<TARGET_FILE_DIR:fdcg_test_fake_hid_node>;FDCG_FAKE_HID_FIRMWARE=$<TARGET_FILE_DIR:fdcg_test_fake_hid_firmware>;FDCG_PTY_DEVICE=$<TARGET_FILE:fdcg_test_pty_device>;FDCG_PLUGIN_HAPLY_INVERSE=$<TARGET_FILE:fdcg_haply_inverse>;FDCG_PLUGIN_FORCE_DIMENSION=$<TARGET_FILE:fdcg_test_force_dimension>;FDCG_PLUGIN_NOVINT_FALCON=$<TARGET_FILE:fdcg_test_novint_falcon>;ASAN_OPTIONS=${sanitizer_options};TSAN_OPTIONS=${sanitizer_options}")
+      "FDCG=$<TARGET_FILE:fdcg>;FDCG_SERVO=$<TARGET_FILE:${target}>;FDCG_SLOW_HOST=1;FDCG_ROOT=${PROJECT_SOURCE_DIR};FDCG_FAKE_HID=$<TARGET_FILE_DIR:fdcg_test_fake_hid_node>;FDCG_FAKE_HID_FIRMWARE=$<TARGET_FILE_DIR:fdcg_test_fake_hid_firmware>;FDCG_PTY_DEVICE=$<TARGET_FILE:fdcg_test_pty_device>;FDCG_PLUGIN_HAPLY_INVERSE=$<TARGET_FILE:fdcg_haply_inverse>;FDCG_PLUGIN_FORCE_DIMENSION=$<TARGET_FILE:fdcg_test_force_dimension>;FDCG_PLUGIN_NOVINT_FALCON=$<TARGET_FILE:fdcg_test_novint_falcon>;ASAN_OPTIONS=${sanitizer_options};TSAN_OPTIONS=${sanitizer_options}")
   endforeach()
 endfunction()
 

@@ -4,12 +4,18 @@
  * the struct below: who strikes writes there what is to go wrong, and reads there what the device handed out and took, and
  * when.
  *
- * The hand strokes over z = 0; pressing, it goes down to 4 mm below it. */
+ * The hand strokes over z = 0; pressing, it goes down to 4 mm below it.
+ *
+ * A witness on each processor, above the host's threads where the system grants that, notes when the machine itself stood
+ * still: nothing that the host does can hold it up. */
+#define _GNU_SOURCE /* a thread's own processor */
 #include <errno.h>
 #include <fcntl.h>
 #include <hidapi/hidapi.h>
 #include <math.h>
 #include <pthread.h>
+#include <sched.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -21,12 +27,13 @@
 #include "fdcg_firmware.h"
 
 enum { kMostEvents = 1 << 17, kQueue = 64 };
-enum { kHandedOut = 1, kTaken = 2, kLags = 3, kForeign = 4, kGone = 5, kForce = 6 };
+enum { kHandedOut = 1, kTaken = 2, kLags = 3, kForeign = 4, kGone = 5, kForce = 6, kStood = 7 };
+enum { kWitnessPriority = 90, kMostWitnesses = 64 };
 
 typedef struct Event {
-  int64_t ns; /* CLOCK_MONOTONIC; of kTaken: when hid_write was called */
+  int64_t ns; /* CLOCK_MONOTONIC; of kTaken: when hid_write was called; of kStood: when it went on */
   uint32_t kind;
-  uint32_t sequence;  /* of the report; of kForeign: the other host's */
+  uint32_t sequence;  /* of the report; of kForeign: the other host's; of kStood: for so many microseconds */
   uint32_t echo;      /* of kHandedOut */
   uint32_t is_enable; /* of kTaken */
   float force_n;      /* its norm: of kTaken what is asked for, of kForce what the motors get from now on */
@@ -56,6 +63,7 @@ typedef struct Queued {
 
 static const int64_t kMs = 1000000;
 static const int64_t kWriteNs = 100000; /* a write of USB's takes its time */
+static const int64_t kWitnessNs = 250000, kStoodNs = 300000;
 
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static Shared* shared;
@@ -166,6 +174,13 @@ static void tick(int64_t ns) {
   made->echo = firmware.echo;
 }
 
+/* The device's ticks up to now, whoever comes first: its time never goes back. Under the mutex. */
+static void catch_up(int64_t now) {
+  if (now - due_ns > kQueue * kMs) due_ns = now; /* nobody has come for long */
+  for (; due_ns <= now; due_ns += kMs)
+    tick(due_ns);
+}
+
 /* Under the mutex. False: it is gone. */
 static int is_there(void) {
   const uint32_t is_unplugged = atomic_load(&shared->is_unplugged);
@@ -179,6 +194,38 @@ static int is_there(void) {
   return !is_unplugged;
 }
 
+static void* witness(void* cpu) {
+  const struct sched_param priority = {.sched_priority = kWitnessPriority};
+  cpu_set_t own;
+  int64_t next_ns;
+  CPU_ZERO(&own);
+  CPU_SET((size_t)(intptr_t)cpu, &own);
+  if (pthread_setaffinity_np(pthread_self(), sizeof own, &own) != 0) return NULL;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+  for (next_ns = now_ns() + kWitnessNs;; next_ns = now_ns() + kWitnessNs) {
+    int64_t now;
+    sleep_until(next_ns);
+    now = now_ns();
+    if (now - next_ns < kStoodNs) continue;
+    pthread_mutex_lock(&mutex);
+    note(now, kStood)->sequence = (uint32_t)((now - next_ns) / 1000);
+    noted();
+    pthread_mutex_unlock(&mutex);
+  }
+}
+
+static void start_witnesses(void) {
+  const long cpus = sysconf(_SC_NPROCESSORS_CONF);
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before); /* the program's signals are for its own threads */
+  for (long cpu = 0; cpu < cpus && cpu < kMostWitnesses; ++cpu) {
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, witness, (void*)(intptr_t)cpu) == 0) pthread_detach(thread);
+  }
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
 int hid_init(void) {
   const char* const path = getenv("FDCG_FAKE_MEMORY");
   const int file = path != NULL ? open(path, O_RDWR | O_CLOEXEC) : -1;
@@ -187,6 +234,7 @@ int hid_init(void) {
   shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   close(file);
   if (shared == MAP_FAILED) abort();
+  start_witnesses();
   return 0;
 }
 
@@ -231,15 +279,14 @@ int hid_read_timeout(hid_device* device, unsigned char* data, size_t capacity, i
   (void)device;
   if (capacity < FDCG_FW_INPUT_BYTES) return -1;
   for (;;) {
-    int64_t now = now_ns(), next_ns;
+    int64_t now, next_ns;
     pthread_mutex_lock(&mutex);
     if (!is_there()) {
       pthread_mutex_unlock(&mutex);
       return -1;
     }
-    if (now - due_ns > kQueue * kMs) due_ns = now; /* nobody has read for long */
-    for (; due_ns <= now; due_ns += kMs)
-      tick(due_ns);
+    now = now_ns();
+    catch_up(now);
     next_ns = due_ns;
     if (report_first != report_end) {
       const Queued* const first = &reports[report_first % kQueue];
@@ -274,6 +321,8 @@ int hid_write(hid_device* device, const unsigned char* data, size_t bytes) {
   pthread_mutex_lock(&mutex);
   is_here = is_there();
   if (is_here) {
+    const int64_t now = now_ns();
+    catch_up(now);
     memcpy(force_n, data + 5, sizeof force_n);
     event = note(called_ns, kTaken);
     event->sequence = get32(data + 1);
@@ -281,7 +330,7 @@ int hid_write(hid_device* device, const unsigned char* data, size_t bytes) {
     event->force_n = event->is_enable ? norm_of(force_n) : 0;
     noted();
     if (output_lag_us == 0) {
-      take(now_ns(), data, bytes);
+      take(now, data, bytes);
     } else if (output_end - output_first < kQueue) {
       Queued* const sent = &outputs[output_end++ % kQueue];
       sent->due_ns = called_ns + (int64_t)output_lag_us * 1000;
