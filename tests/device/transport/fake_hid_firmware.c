@@ -27,7 +27,7 @@
 #include "fdcg_firmware.h"
 
 enum { kMostEvents = 1 << 17, kQueue = 64 };
-enum { kHandedOut = 1, kTaken = 2, kLags = 3, kForeign = 4, kGone = 5, kForce = 6, kStood = 7 };
+enum { kHandedOut = 1, kTaken = 2, kLags = 3, kForeign = 4, kGone = 5, kForce = 6, kStood = 7, kRestarted = 8, kLosing = 9 };
 enum { kWitnessPriority = 90, kMostWitnesses = 64 };
 
 typedef struct Event {
@@ -47,7 +47,10 @@ typedef struct Shared {
   _Atomic uint32_t wrong_byte; /* of the feature report, whose last bit is turned; 0: none */
   _Atomic uint32_t is_pressing;
   _Atomic uint32_t event_count;
-  uint32_t padding[9];
+  _Atomic uint32_t restarts;   /* it begins anew with its next tick: numbers, clock and echo; once */
+  _Atomic uint32_t loses_half; /* every other report is lost under way */
+  _Atomic uint32_t rate_hz;    /* from the next start on; 0: 1000 */
+  uint32_t padding[6];
   Event events[kMostEvents];
 } Shared;
 
@@ -70,7 +73,8 @@ static Shared* shared;
 static fdcg_fw firmware;
 static Queued reports[kQueue], outputs[kQueue];
 static uint32_t report_first, report_end, output_first, output_end, was_lagging, was_unplugged = 1;
-static int64_t due_ns;
+static uint32_t was_losing;
+static int64_t due_ns, begun_ns, period_ns = 1000000;
 static double z_m = 0.01;
 static float last_force_n;
 
@@ -108,22 +112,30 @@ static void noted(void) {
   atomic_fetch_add(&shared->event_count, 1);
 }
 
-static void power_up(void) {
-  fdcg_fw_config config = {1000000, {-100, -100, -100}, {100, 100, 100}, 8, 3, 1000, 20, 3, FDCG_FW_CARTESIAN};
+static void power_up(int64_t ns) {
+  const uint32_t wanted_hz = atomic_load(&shared->rate_hz), rate_hz = wanted_hz == 0 ? 1000 : wanted_hz;
+  fdcg_fw_config config = {1000000, {-100, -100, -100}, {100, 100, 100}, 8, 3, (uint16_t)rate_hz, 20, 3, FDCG_FW_CARTESIAN};
+  period_ns = 1000000000 / rate_hz;
+  begun_ns = ns;
   fdcg_fw_init(&firmware, &config);
   report_first = report_end = output_first = output_end = 0;
 }
 
+/* The device's own clock. */
+static uint32_t device_us(int64_t ns) {
+  return (uint32_t)((ns - begun_ns) / 1000);
+}
+
 static void note_force(int64_t ns) {
   float force_n[3];
-  fdcg_fw_force(&firmware, (uint32_t)(ns / 1000), force_n);
+  fdcg_fw_force(&firmware, device_us(ns), force_n);
   if (norm_of(force_n) == last_force_n) return;
   last_force_n = note(ns, kForce)->force_n = norm_of(force_n);
   noted();
 }
 
 static void take(int64_t ns, const uint8_t* bytes, size_t count) {
-  fdcg_fw_take_output(&firmware, (uint32_t)(ns / 1000), bytes, count);
+  fdcg_fw_take_output(&firmware, device_us(ns), bytes, count);
   note_force(ns);
 }
 
@@ -143,7 +155,8 @@ static void hear_another(int64_t ns, uint32_t ahead) {
 }
 
 static void move_hand(int64_t ns, int32_t counts[3]) {
-  const double target_m = atomic_load(&shared->is_pressing) ? -0.004 : 0.01, step_m = 0.00005; /* 50 mm/s */
+  const double target_m = atomic_load(&shared->is_pressing) ? -0.004 : 0.01,
+               step_m = 0.05 * 1e-9 * (double)period_ns; /* 50 mm/s */
   const double turn = 2 * 3.14159265358979 * 3 * (double)(ns % 1000000000) / 1e9;
   z_m += z_m < target_m - step_m ? step_m : z_m > target_m + step_m ? -step_m : target_m - z_m;
   counts[0] = (int32_t)(2000 * sin(turn));
@@ -155,7 +168,14 @@ static void move_hand(int64_t ns, int32_t counts[3]) {
 static void tick(int64_t ns) {
   const uint32_t report_lag_us = atomic_load(&shared->report_lag_us), output_lag_us = atomic_load(&shared->output_lag_us);
   const uint32_t ahead = atomic_exchange(&shared->foreign, 0), is_lagging = (report_lag_us | output_lag_us) != 0;
+  const uint32_t is_losing = atomic_load(&shared->loses_half);
   int32_t counts[3];
+  if (atomic_exchange(&shared->restarts, 0)) {
+    power_up(ns);
+    note(ns, kRestarted), noted();
+  }
+  if (is_losing && !was_losing) note(ns, kLosing), noted();
+  was_losing = is_losing;
   if (is_lagging != was_lagging) {
     report_first = report_end = output_first = output_end = 0;
     was_lagging = is_lagging;
@@ -169,15 +189,16 @@ static void tick(int64_t ns) {
   if (report_end - report_first == kQueue) ++report_first; /* as hidraw's ring */
   Queued* const made = &reports[report_end++ % kQueue];
   made->due_ns = ns + (int64_t)report_lag_us * 1000;
-  fdcg_fw_make_input(&firmware, (uint32_t)(ns / 1000), counts, 0, made->bytes);
+  fdcg_fw_make_input(&firmware, device_us(ns), counts, 0, made->bytes);
   made->sequence = firmware.sequence;
   made->echo = firmware.echo;
+  if (is_losing && made->sequence % 2 != 0) --report_end;
 }
 
 /* The device's ticks up to now, whoever comes first: its time never goes back. Under the mutex. */
 static void catch_up(int64_t now) {
-  if (now - due_ns > kQueue * kMs) due_ns = now; /* nobody has come for long */
-  for (; due_ns <= now; due_ns += kMs)
+  if (now - due_ns > kQueue * period_ns) due_ns = now; /* nobody has come for long */
+  for (; due_ns <= now; due_ns += period_ns)
     tick(due_ns);
 }
 
@@ -188,7 +209,7 @@ static int is_there(void) {
     was_unplugged = is_unplugged;
     if (is_unplugged) note(now_ns(), kGone), noted();
     if (is_unplugged && last_force_n > 0) last_force_n = 0, note(now_ns(), kForce), noted();
-    if (!is_unplugged) power_up();
+    if (!is_unplugged) power_up(now_ns());
     due_ns = now_ns();
   }
   return !is_unplugged;
