@@ -35,21 +35,21 @@ class Restarts(StrikeCase):
         reasons = {"restarted"} if BEGUN_REPORTS / rate_hz < SILENCE_S else {"restarted", "silence"}
         self.often(lambda: self.strike(program, strike, reasons))
 
-    def test_at_1_khz(self):
+    def test_a_device_that_begins_anew_at_1_khz(self):
         self.check_restarts(1000)
 
-    def test_at_2_khz(self):
+    def test_a_device_that_begins_anew_at_2_khz(self):
         self.check_restarts(2000)
 
-    def test_at_4_khz(self):
+    def test_a_device_that_begins_anew_at_4_khz(self):
         self.check_restarts(4000)
 
-    def test_at_8_khz(self):
+    def test_a_device_that_begins_anew_at_8_khz(self):
         self.check_restarts(8000)
 
 
 class Losses(StrikeCase):
-    def test_half_of_the_reports(self):
+    def test_half_of_the_reports_lost(self):
         program = self.started()
 
         def strike():

@@ -738,6 +738,14 @@ class Devices(ServoCase):
         for line in rules.splitlines():
             self.assertTrue(line == "" or line.startswith("#") or 'TAG+="uaccess"' in line, line)
 
+    def test_a_built_in_profile_is_printed_as_it_stands(self):
+        for path in PROFILES:
+            printed = self.servo("devices", "--print", path.stem).stdout
+            self.assertEqual(path.read_bytes(), printed)
+            own = self.write("own.json", printed)
+            self.servo("devices", "--profile", own, "--udev")
+        self.assert_one_line(self.servo("devices", "--print", "woodenhaptic", code=2), "woodenhaptics", "did you mean")
+
     def test_the_list_is_json_where_asked_for(self):
         listed = json.loads(self.servo("devices", "--json").stdout)
         self.assertIn(listed["backend"], ("hidraw", "libusb"))
@@ -746,6 +754,7 @@ class Devices(ServoCase):
 
     def test_wrong_usage(self):
         self.assert_one_line(self.servo("devices", "--udev", "--json", code=2), "--json")
+        self.assert_one_line(self.servo("devices", "--print", "openffboard", "--udev", code=2), "--print")
         self.assert_one_line(self.servo("devices", "--hid", "x", code=2), "--hid")
         self.assert_one_line(self.servo("devices", "--profile", self.path("no.json"), "--udev", code=3), "no.json")
         bad = self.write("bad.json", '{"fdcg_profile": 1}')

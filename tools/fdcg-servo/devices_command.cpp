@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 struct DevicesArguments {
   dev::DeviceSearch search;
   bool json = false, udev = false;
+  std::string printed;  // the profile's name; empty: none
 };
 
 std::string hexadecimal(unsigned value) {
@@ -53,6 +54,13 @@ Json json_of(const dev::FoundDevice& found) {
 }
 
 int run_devices(const DevicesArguments& arguments) {
+  if (!arguments.printed.empty()) {
+    std::string text;
+    if (const std::string problem = dev::print_profile(arguments.printed, &text); !problem.empty())
+      return fail(kUsage, problem);
+    std::fputs(text.c_str(), stdout);
+    return kClean;
+  }
   if (arguments.udev) {
     std::string rules;
     if (const std::string problem = dev::make_udev_rules(arguments.search.profile_files, &rules); !problem.empty())
@@ -87,6 +95,7 @@ Command add_devices(CLI::App& app) {
   command->footer(R"(Examples:
   fdcg-servo devices
   fdcg-servo devices --profile my-device.json --json
+  fdcg-servo devices --print woodenhaptics > my-device.json
   fdcg-servo devices --udev | sudo tee /etc/udev/rules.d/70-fdcg.rules
 
 )" + tools::exit_codes("success", "not used by this command"));
@@ -97,7 +106,14 @@ Command add_devices(CLI::App& app) {
   add_hid_option(tools::OptionGroup(*command, "Devices"), arguments->search.backend, "hidraw, then libusb");
   const tools::OptionGroup output(*command, "Output");
   CLI::Option* const json = output.flag("--json", arguments->json, "Print JSON.");
-  output.flag("--udev", arguments->udev, "Print udev rules that let users open the devices of the profiles.")->excludes(json);
+  CLI::Option* const udev =
+      output.flag("--udev", arguments->udev, "Print udev rules that let users open the devices of the profiles.")
+          ->excludes(json);
+  command->add_option("--print", arguments->printed, "Print this built-in profile, for a file of your own.")
+      ->type_name("PROFILE")
+      ->group("Output")
+      ->excludes(json)
+      ->excludes(udev);
   return {command, [arguments] { return run_devices(*arguments); }};
 }
 

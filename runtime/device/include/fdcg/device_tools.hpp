@@ -54,6 +54,8 @@ struct DeviceSearch {
 std::string find_devices(const DeviceSearch& search, std::vector<FoundDevice>* devices, std::string* backend);
 // udev rules that let users open the devices of the built-in profiles and of these files.
 std::string make_udev_rules(const std::vector<std::string>& profile_files, std::string* rules);
+// A built-in profile as it would stand in a file.
+std::string print_profile(const std::string& name, std::string* text);
 
 // ---- calibrate: a device's axes, read without force
 // ---------------------------------------------------------------------------

@@ -86,11 +86,15 @@ namespace {
 void warn(const json::Value& limits, double rate_hz, const std::string& file_name, std::vector<std::string>* warnings) {
   if (const std::string warning = rate_warning(rate_hz); !warning.empty())
     warnings->push_back(one_line(file_name + ": " + warning));
+  std::string unknown;
   for (const char* key : {"force_n", "effort", "slew_n_per_s", "velocity_m_per_s", "workspace_m"}) {
-    if (!limits || !limits[key])
-      warnings->push_back(one_line(file_name + ": limits." + key +
-                                   " is not known: the device is read but gives no force; measure it, or ask its maker"));
+    if (!limits || !limits[key]) unknown += (unknown.empty() ? "limits." : ", limits.") + std::string(key);
   }
+  if (!unknown.empty())
+    warnings->push_back(
+        one_line(file_name + ": not known: " + unknown +
+                 ": the device is read but gives no force; measure them, or ask its maker, and write them into a "
+                 "profile of your own ('fdcg-servo devices --print' gives a built-in one to begin with)"));
   if (!limits || !limits["device_watchdog_s"])
     warnings->push_back(one_line(file_name +
                                  ": limits.device_watchdog_s is not known and taken as none: forces stay low, since "

@@ -4,6 +4,7 @@
 #include "fdcg/device_tools.hpp"
 #include "profile/profile_json.hpp"
 #include "shared/json/reader.hpp"
+#include "shared/text.hpp"
 #include "transport/hid_devices.hpp"
 
 namespace fdcg::dev {
@@ -99,6 +100,17 @@ std::string make_udev_rules(const std::vector<std::string>& profile_files, std::
               "\", ATTR{idProduct}==\"" + product + "\", " + grant;
   }
   return {};
+}
+
+std::string print_profile(const std::string& name, std::string* text) {
+  if (const BuiltinProfile* const built_in = find_builtin_profile(name)) {
+    *text = built_in->text;
+    return {};
+  }
+  std::vector<std::string> names;
+  for (const BuiltinProfile& profile : builtin_profiles())
+    names.emplace_back(profile.name);
+  return "there is no built-in profile " + in_quotes(name) + "; there are " + listed(names) + did_you_mean(name, names);
 }
 
 }  // namespace fdcg::dev
