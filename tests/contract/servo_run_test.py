@@ -744,7 +744,7 @@ class Devices(ServoCase):
             self.assertEqual(path.read_bytes(), printed)
             own = self.write("own.json", printed)
             self.servo("devices", "--profile", own, "--udev")
-        self.assert_one_line(self.servo("devices", "--print", "woodenhaptic", code=2), "woodenhaptics", "did you mean")
+        self.assert_one_line(self.servo("devices", "--print", "woodenhaptic", code=2), "'woodenhaptic'", "woodenhaptics")
 
     def test_the_list_is_json_where_asked_for(self):
         listed = json.loads(self.servo("devices", "--json").stdout)

@@ -4,7 +4,6 @@
 #include "fdcg/device_tools.hpp"
 #include "profile/profile_json.hpp"
 #include "shared/json/reader.hpp"
-#include "shared/text.hpp"
 #include "transport/hid_devices.hpp"
 
 namespace fdcg::dev {
@@ -107,10 +106,10 @@ std::string print_profile(const std::string& name, std::string* text) {
     *text = built_in->text;
     return {};
   }
-  std::vector<std::string> names;
+  std::string names;
   for (const BuiltinProfile& profile : builtin_profiles())
-    names.emplace_back(profile.name);
-  return "there is no built-in profile " + in_quotes(name) + "; there are " + listed(names) + did_you_mean(name, names);
+    names += (names.empty() ? "" : ", ") + std::string(profile.name);
+  return "there is no built-in profile '" + name + "'; there are " + names;
 }
 
 }  // namespace fdcg::dev
