@@ -2,6 +2,7 @@
 #include "evaluation.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -20,12 +21,13 @@ using bake::Precision;
 
 namespace {
 
-// Rivals of this folder, whose libraries were found when it was built.
-const std::vector<std::string> kShippedRivals = {
-#ifdef FDCG_RIVAL_FCL
-    FDCG_RIVAL_FCL
-#endif
-};
+// Those of rivals/, whose libraries were found when this was built.
+const std::vector<std::string> kShippedRivals = {FDCG_RIVALS_SHIPPED};
+
+// Closest points err as Embree's and CGAL's do, and these take ten times as long: they are measured for the frontier alone.
+bool answers_as_another(const ContenderInfo& info) {
+  return info.name == "fcl_closest" || info.name == "bullet_closest";
+}
 
 // Every edge has two faces.
 bool is_closed(const fdcg::bake::PolygonSoup& soup) {
@@ -146,10 +148,32 @@ Contenders Evaluation::entrants_of(const Ground& ground, const Body& body) const
 
 void Evaluation::run(const BodyPlan& plan) {
   const Body body = body_named(plan.body);
-  const Ground ground(body.make());
+  run(body, body.make(), plan.ways);
+}
+
+void Evaluation::run_mesh(const std::string& path) {
+  auto soup = fdcg::bake::import_mesh(path);
+  if (!soup) throw std::runtime_error(soup.error().message);
+  Body body;
+  for (const char c : std::filesystem::path(path).stem().string())
+    body.name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  body.faces = static_cast<std::uint32_t>(soup->face_count());
+  body.is_closed = is_closed(*soup);
+  fdcg::bake::PolygonSoup scaled = scaled_to_body(*soup);
+  scaled.name = body.name;
+  const auto compiled = fdcg::bake::compile(scaled, {});
+  if (!compiled || compiled->bytes.empty()) {
+    std::printf("%s: passed over, it does not compile: fdcg validate says why\n", path.c_str());
+    return;
+  }
+  run(body, std::move(scaled), ways_of_brought());
+}
+
+void Evaluation::run(const Body& body, fdcg::bake::PolygonSoup soup, const std::vector<WayPlan>& ways) {
+  const Ground ground(std::move(soup));
   const TrueBody truth(ground);
   const Contenders contenders = entrants_of(ground, body);
-  for (const WayPlan& way : plan.ways) {
+  for (const WayPlan& way : ways) {
     if (is_wanted(way)) run_way({body, ground, truth, contenders}, way);
   }
 }
@@ -178,7 +202,9 @@ Evaluation::Entrants Evaluation::enter(const Scene& scene, const WayPlan& plan) 
   Entrants entrants;
   for (const auto& contender : scene.contenders) {
     contender->set_friction(plan.mu_static, plan.mu_dynamic);
-    if (plan.mu_static == 0 || contender->info().has_friction) entrants.all.push_back(contender.get());
+    if (plan.mu_static > 0 && !contender->info().has_friction) continue;
+    const bool is_asked_for = plan.counts || !options_.contenders.empty() || !options_.way_files.empty();
+    if (is_asked_for || !answers_as_another(contender->info())) entrants.all.push_back(contender.get());
   }
   entrants.judged = entrants.all.size();
   if (!plan.counts) return entrants;
@@ -191,16 +217,15 @@ Evaluation::Entrants Evaluation::enter(const Scene& scene, const WayPlan& plan) 
 
 void Evaluation::run_way(const Scene& scene, const WayPlan& plan) {
   const Entrants entrants = enter(scene, plan);
-  const std::uint32_t planned = options_.is_quick ? 2 : 5;
-  const std::uint32_t seeds = !plan.counts ? 1 : options_.seeds > 0 ? options_.seeds : planned;
+  const WayMeasure measure = measure_of(plan, options_.is_quick);
+  const std::uint32_t seeds = plan.counts && options_.seeds > 0 ? options_.seeds : measure.ways;
   Measured measured;
   std::uint32_t found = 0;
   for (std::uint32_t k = 0; found < seeds && k < kMostTried * seeds; ++k) {
     WayOptions options;
     options.kind = plan.kind;
     options.rate_hz = plan.rate_hz;
-    options.ticks =
-        options_.ticks > 0 ? options_.ticks : std::min(options_.is_quick || plan.counts ? 4000u : 10'000u, plan.most_ticks);
+    options.ticks = options_.ticks > 0 ? options_.ticks : measure.ticks;
     options.seed = options_.seed + k;
     options.hold_ticks = 20;  // of teleports: time to arrive
     WayFile along;
@@ -231,11 +256,11 @@ Evaluation::Measured Evaluation::run_along(const Scene& scene, const WayPlan& pl
   for (std::size_t i = 0; i < along.true_god_objects.size(); ++i)
     truth_off_m_ = std::max(truth_off_m_, length(along.true_god_objects[i] - truth[i].feel.god_object));
   if (!options_.export_folder.empty()) write_way(options_.export_folder, along, truth, scene.ground.soup());
-  // more rounds where a bar is set: f64 and f32 are a hundredth apart
+  const WayMeasure measure = measure_of(plan, options_.is_quick);
   TimingPlan timing;
-  timing.budget_s = !options_.judges_times ? 0.05 : (options_.is_quick ? 0.25 : 0.4) * (plan.counts ? 2 : 1);
-  const std::size_t cold = !options_.judges_times ? 5 : options_.is_quick ? 40 : 100;
-  timing.cold_ticks = ticks_in_contact(truth, plan.counts ? cold : 0);
+  timing.budget_s = options_.judges_times ? measure.budget_s : 0.05;
+  timing.cold_ticks =
+      ticks_in_contact(truth, options_.judges_times ? measure.cold_ticks : std::min<std::size_t>(measure.cold_ticks, 2));
   const std::vector<Timing> timings = time_all(entrants.all, along.hips, watch_, timing);
   std::printf("%s, %s at %g Hz, mu %g/%g, seed %llu\n", scene.body.name.c_str(), along.way.c_str(), plan.rate_hz,
               plan.mu_static, plan.mu_dynamic, static_cast<unsigned long long>(along.seed));

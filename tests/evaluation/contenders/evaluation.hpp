@@ -29,6 +29,7 @@ struct EvaluationOptions {
   std::string export_folder;              // empty: nothing is exported
   std::vector<std::string> way_files;     // in place of the plan
   std::string mesh;                       // of way files that name none
+  PlainColumns columns;                   // of these
 };
 
 // contenders.csv, pareto.csv, pareto_verdict.csv, raw/ and the bars, in the options' folder. Throws std::runtime_error.
@@ -37,6 +38,8 @@ class Evaluation {
   explicit Evaluation(const EvaluationOptions& options);
   void run(const BodyPlan& plan);
   void run(const WayFile& file);
+  // A mesh that others bring, scaled to kBody_m. Passed over, and said, where it does not compile.
+  void run_mesh(const std::string& path);
   // Exit code: 1 where a bar fails.
   int finish();
 
@@ -67,6 +70,7 @@ class Evaluation {
     void add(const std::string& where, const Metrics& m, double creep, const LoopEnergy& energy);
   };
 
+  void run(const Body& body, bake::PolygonSoup soup, const std::vector<WayPlan>& ways);
   [[nodiscard]] bool is_wanted(const WayPlan& way) const;
   [[nodiscard]] Contenders entrants_of(const Ground& ground, const Body& body) const;
   [[nodiscard]] Entrants enter(const Scene& scene, const WayPlan& plan) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plan.hpp"
 
+#include <algorithm>
+
 namespace fdcg::test {
 namespace {
 
@@ -14,12 +16,15 @@ const WayPlan kRub{WayKind::hand, 1000, kMuStatic, kMuDynamic};
 const WayPlan kShake{WayKind::tremor, 1000, kMuStatic, kMuDynamic};
 const WayPlan kJumps{WayKind::teleport};
 
-// Without those that count for a frontier: awkward bodies are not on the ladder of sizes.
-BodyPlan awkward(const std::string& name, std::vector<WayPlan> ways) {
-  return {name, std::move(ways)};
-}
+// What the frontier is over, too: bodies as scanners, CAD and simulation bring them.
+constexpr const char* kAsBrought[] = {"scan_24k", "drilled_plate", "squashed_10k", "spindle_10k"};
 
 }  // namespace
+
+WayMeasure measure_of(const WayPlan& way, bool is_quick) {
+  if (way.counts) return is_quick ? WayMeasure{4, 2000, 10, 0.15} : WayMeasure{30, 1200, 5, 0.15};
+  return {1, std::min(is_quick ? 4000u : 10'000u, way.most_ticks), 0, is_quick ? 0.2 : 0.4};
+}
 
 std::vector<BodyPlan> plan_of(bool is_quick) {
   const WayPlan dive{WayKind::corner_dive}, tremor{WayKind::tremor}, edges{WayKind::edge_slide};
@@ -29,8 +34,8 @@ std::vector<BodyPlan> plan_of(bool is_quick) {
       plan.push_back({name, {kHand}});
     for (const WayPlan& way : {kRub, edges, dive})
       plan[1].ways.push_back(way);
-    plan.push_back(awkward("thin_plate", {kPress}));
-    plan.push_back(awkward("corner_pit_tilted", {kShake}));
+    plan.push_back({"thin_plate", {kPress}});
+    plan.push_back({"corner_pit_tilted", {kShake}});
     return plan;
   }
   std::vector<BodyPlan> plan;
@@ -38,6 +43,8 @@ std::vector<BodyPlan> plan_of(bool is_quick) {
                            "sphere_100k", "star_100k", "sphere_1M", "star_1M"}) {
     plan.push_back({name, {kHand}});
   }
+  for (const char* name : kAsBrought)
+    plan.push_back({name, ways_of_brought()});
   for (const WayPlan& way : {kRub, kJumps, dive})
     plan[0].ways.push_back(way);
   for (BodyPlan& body : plan) {  // the same motion at other rates, and the other motions
@@ -49,19 +56,23 @@ std::vector<BodyPlan> plan_of(bool is_quick) {
       body.ways.push_back(way);
   }
   for (const char* name : {"corner_pit_tilted", "v_groove_tilted", "saddle", "spiky", "thin_plate"})
-    plan.push_back(awkward(name, {kPress, kRub, dive, tremor, kShake}));
-  plan.push_back(awkward("knife", {kPress, dive}));
-  plan.push_back(awkward("foil", {kPress}));
-  plan.push_back(awkward("needle_strip", {kPress, edges}));
+    plan.push_back({name, {kPress, kRub, dive, tremor, kShake}});
+  plan.push_back({"knife", {kPress, dive}});
+  plan.push_back({"foil", {kPress}});
+  plan.push_back({"needle_strip", {kPress, edges}});
   // a tree's closest point on a fan costs half a millisecond a tick
   constexpr std::uint32_t kFanTicks = 500;
   plan.push_back(
-      awkward("fan_peak", {{WayKind::hand, 1000, 0, 0, false, kFanTicks}, {WayKind::fan_orbit, 1000, 0, 0, false, kFanTicks}}));
+      {"fan_peak", {{WayKind::hand, 1000, 0, 0, false, kFanTicks}, {WayKind::fan_orbit, 1000, 0, 0, false, kFanTicks}}});
   return plan;
 }
 
 std::vector<WayPlan> ways_of_other(const Body& body) {
   return body.group == BodyGroup::awkward ? std::vector<WayPlan>{kPress, kRub, kJumps} : std::vector<WayPlan>{kHand, kJumps};
+}
+
+std::vector<WayPlan> ways_of_brought() {
+  return {kHand, kRub};
 }
 
 Contenders contenders_for(const Ground& ground, const Body& body, bool is_quick) {

@@ -26,8 +26,20 @@ struct BodyPlan {
 };
 
 std::vector<BodyPlan> plan_of(bool is_quick);
-// The ways of a body that the plan lacks.
+
+// How much is measured of a way: of those that count, many short ones, since what a hand does there differs more from way to
+// way than within one.
+struct WayMeasure {
+  std::uint32_t ways = 1;      // of seeds one after the other
+  std::uint32_t ticks = 0;     // of each
+  std::size_t cold_ticks = 0;  // of each: before each of them the caches are swept, some milliseconds for each contender
+  double budget_s = 0;         // of each way, for warm rounds; where that is too few rounds it takes longer
+};
+WayMeasure measure_of(const WayPlan& way, bool is_quick);
+
+// The ways of a body that the plan lacks; of meshes that others bring.
 std::vector<WayPlan> ways_of_other(const Body& body);
+std::vector<WayPlan> ways_of_brought();
 
 using Contenders = std::vector<std::unique_ptr<Contender>>;
 // The first is the runtime in double with stored planes.

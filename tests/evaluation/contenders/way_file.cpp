@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "way_file.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -81,6 +82,23 @@ class Reader {
   std::ifstream file_;
   std::size_t line_ = 0;
 };
+
+void read_plain(Reader& reader, WayFile& file, const PlainColumns& columns) {
+  for (std::string line; reader.next(line);) {
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ',' || c == ';' || c == '\r'; }, ' ');
+    if (line.find_first_not_of(" \t") == std::string::npos || line[0] == '#') continue;
+    std::istringstream words(line);
+    std::string passed_over;
+    for (int column = 1; column < columns.first; ++column)
+      words >> passed_over;
+    Ground::Point hip = reader.point(words);
+    for (double& value : hip)
+      value *= columns.unit_m;
+    file.hips.push_back(hip);
+  }
+  if (file.hips.empty()) reader.wrong("the file has no row");
+}
 
 void read_rows(Reader& reader, WayFile& file, bool has_truth) {
   for (std::string line; reader.next(line);) {
@@ -177,7 +195,7 @@ void write_answers(const std::string& folder, const WayFile& file, const std::st
   close_or_throw(out, path);
 }
 
-WayFile read_way(const std::string& path) {
+WayFile read_way(const std::string& path, const PlainColumns& columns) {
   WayFile file;
   Reader reader(path);
   std::string first;
@@ -190,7 +208,8 @@ WayFile read_way(const std::string& path) {
   }
   Reader again(path);
   file.way = std::filesystem::path(path).stem().string();
-  read_rows(again, file, false);
+  file.rate_hz = columns.rate_hz;
+  read_plain(again, file, columns);
   return file;
 }
 

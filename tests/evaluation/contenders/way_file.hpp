@@ -28,8 +28,14 @@ void write_answers(const std::string& folder, const WayFile& file, const std::st
 // body.way.seed.rate.friction
 std::string name_of(const WayFile& file);
 
-// Throws std::runtime_error, naming file and line. A file without the format's first line is plain columns, the first three of
-// which are the HIP in metres; it has neither mesh nor truth.
-WayFile read_way(const std::string& path);
+// How files of plain columns, recordings say, are to be read: three columns next to each other are the HIP in the mesh's frame.
+struct PlainColumns {
+  int first = 1;  // column of x; the first is 1
+  double unit_m = 1, rate_hz = 1000;
+};
+
+// Throws std::runtime_error, naming file and line. A file without the format's first line is plain columns, set apart by
+// blanks, commas or semicolons; it has neither mesh nor truth.
+WayFile read_way(const std::string& path, const PlainColumns& columns);
 
 }  // namespace fdcg::test

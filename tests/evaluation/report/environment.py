@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 NOT_KNOWN = "not known"
-LIBRARIES = ("libembree-dev", "libcgal-dev", "libfcl-dev", "libgmp-dev", "libmpfr-dev", "libc6")
+LIBRARIES = ("libembree-dev", "libcgal-dev", "libfcl-dev", "libopenvdb-dev", "libbullet-dev", "libgmp-dev", "libmpfr-dev", "libc6")
 
 
 def first_line(path):

@@ -21,6 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 KEPT = ROOT / "testdata" / "evaluation"
 PICTURES = ROOT / "testdata" / "pictures"
 OURS = "fdcg_f64_stored"
+AWKWARD = "awkward"  # group of the bodies as others bring them
 NEAREST = "paper_vertices"  # the contender that comes nearest
 MOST_NAMED = 4  # ways
 BESIDE = ["body", "faces", "way", "seed", "rate_hz", "mu_static", "contender", "ticks", "mean_ns", "contact_p50_ns", "contact_instructions",
@@ -28,7 +29,9 @@ BESIDE = ["body", "faces", "way", "seed", "rate_hz", "mu_static", "contender", "
 SIZES = {"12 faces": (12, 12), "1 k": (900, 1100), "10 k": (9_000, 11_000), "100 k": (90_000, 110_000), "1 M": (900_000, 1_100_000)}
 ROWS = {OURS: "fdcg, f64", "fdcg_f32_stored": "fdcg, f32", "paper": "the paper's algorithm as printed",
         "paper_vertices": "the same with its corrections, `paper_vertices`", "ray_proxy": "ray proxy", "embree_closest": "closest point, Embree",
-        "cgal_closest": "closest point, CGAL", "fcl_closest": "closest point, FCL", "grid_64": "distance grid, 64 cells a side"}
+        "cgal_closest": "closest point, CGAL", "fcl_closest": "closest point, FCL",
+        "bullet_closest": "closest point, Bullet's tree", "neighbour_walk": "walk over neighbours", "finger_proxy": "finger-proxy", "openvdb_128": "distance grid on OpenVDB, 128 cells a side",
+        "grid_64": "distance grid, 64 cells a side"}
 
 
 def rounded(value):
@@ -67,8 +70,9 @@ def kept():
 
 
 def of_size(rows, contender, size):
+    """Of the ladder of sizes."""
     low, high = SIZES[size]
-    return [r for r in rows if r["contender"] == contender and low <= r["faces"] <= high]
+    return [r for r in rows if r["contender"] == contender and r["group"] != AWKWARD and low <= r["faces"] <= high]
 
 
 def mean(rows, key="mean_ns"):
@@ -88,7 +92,7 @@ def times(rows):
     """The table of docs/benchmarks.md."""
     lines = ["", "| | " + " | ".join(SIZES) + " | error, RMS |", "| --- |" + " --- |" * (len(SIZES) + 1)]
     for contender, name in ROWS.items():
-        mine = [r for r in rows if r["contender"] == contender and any(low <= r["faces"] <= high for low, high in SIZES.values())]
+        mine = [r for size in SIZES for r in of_size(rows, contender, size)]
         cells = [f"{mean(found):.0f}" if (found := of_size(rows, contender, size)) else "" for size in SIZES]
         errors = [r["god_object_rms_m"] for r in mine]
         if mine:
@@ -97,6 +101,21 @@ def times(rows):
     lines.append(f"| fdcg, f64, in a swept cache | " + " | ".join(cold) + " | |")
     embree = [f"{mean(found, 'cold_mean_ns'):.0f}" if (found := of_size(rows, "embree_closest", size)) else "" for size in SIZES]
     lines.append("| Embree, in a swept cache | " + " | ".join(embree) + " | |")
+    return "\n".join(lines) + "\n"
+
+
+def brought(rows):
+    """The table of bodies as others bring them; nothing where none was measured."""
+    bodies = list(dict.fromkeys(r["body"] for r in rows if r["group"] == AWKWARD))
+    if not bodies:
+        return ""
+    lines = ["", "| | " + " | ".join(f"`{body}`" for body in bodies) + " | error, RMS |", "| --- |" + " --- |" * (len(bodies) + 1)]
+    for contender, name in ROWS.items():
+        mine = {r["body"]: r for r in rows if r["contender"] == contender and r["group"] == AWKWARD}
+        cells = [f"{mine[body]['mean_ns']:.0f}" if body in mine else "" for body in bodies]
+        errors = [r["god_object_rms_m"] for r in mine.values()]
+        if mine:
+            lines.append(f"| {name} | " + " | ".join(cells) + f" | {min(errors):.1g} to {max(errors):.1g} m |")
     return "\n".join(lines) + "\n"
 
 
@@ -141,7 +160,7 @@ def span(rows, key):
     return f"{low:.0f} to {high:.0f}" if f"{low:.0f}" != f"{high:.0f}" else f"{low:.0f}"
 
 
-FIGURES = {"README.md": {"step times": step_times}, "docs/benchmarks.md": {"losses": losses, "nearest": nearest, "times": times}}
+FIGURES = {"README.md": {"step times": step_times}, "docs/benchmarks.md": {"losses": losses, "nearest": nearest, "times": times, "brought": brought}}
 
 
 def pattern(name):

@@ -108,7 +108,7 @@ class OfQuickRuns(unittest.TestCase):
             for key in ("mean_ns", "cold_ns", "god_object_rms_m"):
                 low, value, high = (float(row[k]) for k in (f"{key}_low", key, f"{key}_high"))
                 self.assertTrue(low <= value * 1.001 and value <= high * 1.001 and low >= 0, row)
-            self.assertEqual("2", row["seeds"])
+            self.assertEqual("4", row["seeds"])
         self.assertTrue(any(float(r["mean_ns_high"]) > float(r["mean_ns_low"]) for r in rows))
 
     def test_every_bar_is_on_the_page(self):

@@ -31,7 +31,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kQuickSteps = 9e5, kFullSteps = 3e7;
+constexpr double kQuickSteps = 9e5, kFullSteps = 1.2e7;
 constexpr int kMostReproducers = 3;  // of each case, precision and fault
 
 struct Options {

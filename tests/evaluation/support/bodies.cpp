@@ -18,18 +18,70 @@ constexpr int kNeedles = 500;     // of the strip: each 500 times as long as wid
 constexpr double kRadian = std::numbers::pi / 180;
 constexpr std::uint64_t kTilt = 31;  // seed of the rotation of tilted bodies: no face is parallel to an axis
 
-// Waves that a finger follows, of a tenth of the radius; on them hashed roughness of a tenth of an edge, so that about half of
-// all edges are concave whatever the fineness.
-PolygonSoup star(int parts) {
+// Waves that a finger follows, of a tenth of the radius; on them hashed roughness, in edges.
+PolygonSoup waved(int parts, double roughness) {
   PolygonSoup soup = geodesic_sphere(parts);
   const double edge = std::sqrt(4 * std::numbers::pi / (20.0 * parts * parts) * 4 / std::sqrt(3.0));
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
     Vec3& p = soup.points[i];
     const double waves = std::sin(3 * p.x + 1) * std::cos(4 * p.y) + std::sin(5 * p.z + 2 * p.x);
-    const double factor = 1 + 0.05 * waves + 0.1 * edge * (2 * hashed_unit(7, i) - 1);
+    const double factor = 1 + 0.05 * waves + roughness * edge * (2 * hashed_unit(7, i) - 1);
     p = {p.x * factor, p.y * factor, p.z * factor};
   }
   return soup;
+}
+
+// A tenth of an edge: about half of all edges are concave whatever the fineness.
+PolygonSoup star(int parts) {
+  return waved(parts, 0.1);
+}
+
+PolygonSoup stretched(PolygonSoup soup, const Vec3& by) {
+  for (Vec3& p : soup.points)
+    p = {p.x * by.x, p.y * by.y, p.z * by.z};
+  return soup;
+}
+
+// As a scanner sees it: noise of half an edge along the ray, coordinates of so many steps a radius.
+PolygonSoup scan(int parts) {
+  constexpr double kSteps = 1024;
+  PolygonSoup soup = waved(parts, 0.5);
+  for (Vec3& p : soup.points)
+    p = {std::round(p.x * kSteps) / kSteps, std::round(p.y * kSteps) / kSteps, std::round(p.z * kSteps) / kSteps};
+  return soup;
+}
+
+// As CAD tessellates it: a square plate with a round hole; from each corner of the plate needles go to a quarter of the hole.
+PolygonSoup drilled_plate(int around) {
+  constexpr double kHole = 0.5, kHalfHeight = 0.15;
+  std::vector<Vec3> points;
+  for (const double z : {-kHalfHeight, kHalfHeight}) {
+    for (int i = 0; i < 4; ++i) {
+      const double angle = (2 * i + 1) * std::numbers::pi / 4;
+      points.push_back({std::sqrt(2.0) * std::cos(angle), std::sqrt(2.0) * std::sin(angle), z});
+    }
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * k * std::numbers::pi / around;
+      points.push_back({kHole * std::cos(angle), kHole * std::sin(angle), z});
+    }
+  }
+  const auto n = static_cast<std::uint32_t>(around), top = n + 4;
+  const auto hole = [&](std::uint32_t k) { return 4 + k % n; };
+  std::vector<Polygon> faces;
+  const auto both_sides = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    faces.push_back({a + top, b + top, c + top});
+    faces.push_back({c, b, a});
+  };
+  const auto wall = [&](std::uint32_t a, std::uint32_t b) { faces.push_back({a, b, b + top, a + top}); };
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    both_sides(i, (i + 1) % 4, hole((i + 1) * n / 4));
+    wall(i, (i + 1) % 4);
+    for (std::uint32_t k = i * n / 4; k < (i + 1) * n / 4; ++k) {
+      both_sides(i, hole(k + 1), hole(k));
+      wall(hole(k + 1), hole(k));
+    }
+  }
+  return triangulated(make_soup("drilled plate", std::move(points), faces));
 }
 
 // 2 * 2n * n triangles.
@@ -59,6 +111,18 @@ std::vector<Body> awkward_bodies() {
       {"knife", group, 0, true, "a wedge of 2 degrees", [](int) { return tilted(wedge(2 * kRadian)); }},
       {"needle_strip", group, 0, false, "an open, arched strip of needles 500 times as long as wide",
        [](int) { return needle_strip(kNeedles, 0.2, 3); }},
+      {"scan_24k", group, 0, true, "the waved ball as a scanner sees it: noise of half an edge, rounded coordinates",
+       [](int) { return scan(35); }},
+      {"drilled_plate", group, 0, true, "as CAD tessellates it: needles from the corners of a plate to its round hole",
+       [](int) { return tilted(drilled_plate(512)); }},
+      {"squashed_10k", group, 0, true, "the waved ball, a twentieth as thick",
+       [](int) {
+         return tilted(stretched(star(22), {1, 1, 0.05}));
+       }},
+      {"spindle_10k", group, 0, true, "the waved ball, a twentieth as wide: faces 20 times as long as wide",
+       [](int) {
+         return tilted(stretched(star(22), {0.05, 0.05, 1}));
+       }},
       {"spiky", group, 0, true, "every vertex pulled out by up to the radius: sharp peaks, deep valleys",
        [](int) { return spiky_sphere(3, 1, 2); }},
       {"saddle", group, 0, true, "a saddle corner of eight faces", [](int) { return saddle_block(); }},
@@ -99,15 +163,18 @@ std::vector<Body> every_body() {
 
 }  // namespace
 
-bake::PolygonSoup Body::make() const {
-  PolygonSoup soup = make_unscaled(size);
+bake::PolygonSoup scaled_to_body(const bake::PolygonSoup& soup) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Vec3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
   for (const Vec3& p : soup.points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  soup = scaled(soup, kBody_m / std::max({high.x - low.x, high.y - low.y, high.z - low.z}));
+  return scaled(soup, kBody_m / std::max({high.x - low.x, high.y - low.y, high.z - low.z}));
+}
+
+bake::PolygonSoup Body::make() const {
+  PolygonSoup soup = scaled_to_body(make_unscaled(size));
   soup.name = name;
   return soup;
 }

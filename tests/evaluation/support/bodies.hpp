@@ -33,6 +33,9 @@ struct Body {
   [[nodiscard]] bake::PolygonSoup make() const;  // metres
 };
 
+// Its longest side made kBody_m.
+bake::PolygonSoup scaled_to_body(const bake::PolygonSoup& soup);
+
 // Every body of at most so many faces, the ladder first, each group in ascending order of faces.
 std::vector<Body> bodies(std::uint32_t most_faces = 1'100'000);
 // Throws std::invalid_argument, listing the names, where there is no such body.
