@@ -191,11 +191,15 @@ class Run(ServoCase):
         for change in (lambda: os.truncate(graph, 0), lambda: graph.write_bytes(b"x" * len(whole)), graph.unlink):
             log = self.path("session.fdcglog")
             process = self.started(self.scene(), "--arm", "--for", "1.5", "--log", log, "--status", "none")
+            until = time.monotonic() + 30
+            while not (os.path.exists(log) and os.path.getsize(log) > 0) and time.monotonic() < until:
+                time.sleep(0.01)  # the log begins after the graphs are read
             time.sleep(0.5)
             change()
             self.assertIn(process.wait(timeout=30), (0, 1))
             graph.write_bytes(whole)
             self.assertIn(b"every output the same", self.servo("replay", log).stdout)  # it names what was stepped on
+            os.remove(log)
 
     def test_a_device_that_is_not_there_at_the_start_is_not_armed_by_the_option(self):
         scene = self.scene(devices=[{"name": "hand", "profile": "fdcg-reference", "serial": "no such device"}])

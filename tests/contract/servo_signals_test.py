@@ -157,7 +157,7 @@ class SignalCase(Case):
         self.assertGreater(sequence, outputs[-2][0])
 
 
-class Endings(SignalCase):
+class EndingCase(SignalCase):
     def end_by(self, number, moment_s, codes):
         process, node = self.started()
         self.press(process, node)
@@ -177,10 +177,14 @@ class Endings(SignalCase):
                     for end in ends:
                         end.result()
 
+
+class Crashes(EndingCase):
     def test_a_crash_leaves_zero_force_and_dies_of_its_signal(self):
         self.check_signals(signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL, signal.SIGTRAP,
                            signal.SIGSYS)
 
+
+class Endings(EndingCase):
     def test_so_does_every_other_signal_that_ends_a_program(self):
         self.check_signals(signal.SIGQUIT, signal.SIGXCPU, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM, signal.SIGVTALRM,
                            signal.SIGPROF, signal.SIGIO, signal.SIGRTMIN, signal.SIGRTMAX)

@@ -3,7 +3,7 @@
 # sanitizer: all sources once more for each.
 set(device_programs profile scene tick transport hid host real_time random)
 set(servo_classes_asan servo_run_test:Run servo_run_test:Latency servo_run_test:Replay servo_run_test:Check servo_run_test:Examples
-    servo_run_test:Hostile servo_run_test:Devices servo_signals_test:Endings servo_signals_test:Stops
+    servo_run_test:Hostile servo_run_test:Devices servo_signals_test:Crashes servo_signals_test:Endings servo_signals_test:Stops
     servo_strikes_test:Hosts servo_strikes_test:Changes servo_strikes_test:Lags servo_faults_test:Restarts servo_faults_test:Losses
     serial_test:Lines serial_test:Faults serial_test:Calibrate serial_test:Refusals plugins_test:Libraries plugins_test:Haply
     dashboard_test:Bridges dashboard_test:Sockets dashboard_test:Recordings dashboard_test:Keys)
