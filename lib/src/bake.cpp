@@ -137,6 +137,7 @@ std::string out_of_range(const Graph& graph, const SerialiseInput& input) {
   const bool is_f32 = input.precision == Precision::f32;
   const double largest = is_f32 ? FDCG_LARGEST_EXTENT_F32 : FDCG_LARGEST_EXTENT_F64;
   constexpr double kLargestOrigin = 1e100;  // accepted by the runtime
+  constexpr double kLargestSeen = 1e38;     // a float
   double extent = 0;
   for (const Vec3& point : graph.points)
     extent = std::max(extent, largest_component(point));
@@ -144,6 +145,10 @@ std::string out_of_range(const Graph& graph, const SerialiseInput& input) {
     return "the object reaches " + format_number(extent) + " from its middle, in coordinates known to within " +
            format_number(input.quantum) + "; the format holds " + format_number(1 / largest) + " to " + format_number(largest) +
            ": scale the mesh" + (is_f32 ? ", or compile it with --precision f64" : "");
+  }
+  if (!input.visual.is_empty() && extent > kLargestSeen) {
+    return "the object reaches " + format_number(extent) + " from its middle; the mesh for the eye, in floats, holds up to " +
+           format_number(kLargestSeen) + ": scale the mesh, or leave out --visual";
   }
   if (!(largest_component(input.origin) <= kLargestOrigin)) {
     return "the object lies " + format_number(largest_component(input.origin)) + " from the origin, the format holds up to " +
@@ -170,7 +175,7 @@ void free_geometry(PolygonSoup& soup) {
 Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
                                    unsigned jobs, Compiled& compiled, PolygonSoup* spare) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
-  if (spare != nullptr && options.normals != Normals::file) free_geometry(*spare);
+  if (spare != nullptr && options.normals != Normals::file && !options.visual) free_geometry(*spare);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
@@ -187,6 +192,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   if (!options.without.contains("normals")) normals = find_corner_normals(soup, source_face, cut, options);
   compiled.shaded_faces = normals.shaded;
   compiled.unusable_normals = normals.unusable;
+  if (options.visual) input.visual = draw_triangles(soup, source_face, cut, options);
   const bool has_materials = !soup.materials.empty() && !options.without.contains("materials");
   if (has_materials) split_by_material(soup, source_face, cut, faces.regions);
   split_by_normals(normals, faces.regions);
@@ -205,6 +211,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
     if (input.mass) input.mass->deviation = std::max(input.mass->deviation, faces.removed_distance);
   }
   input.normals_of_face = normals_of_faces(normals, corners, faces);
+  const std::vector<std::uint32_t> seen_faces = options.visual ? faces.face_of_triangle : std::vector<std::uint32_t>{};
   std::vector<std::uint32_t> face_of_source =
       trace_sources(input.source_face_count, source_face, cut.polygon, std::move(faces.face_of_triangle));
   compiled.merged_faces = count_sharing(face_of_source, faces.mesh.face_count());
@@ -214,9 +221,10 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   }
   if (!options.without.contains("info"))
     input.info = info_json(soup, input.source_vertex_count, input.source_face_count, options, compiled);
-  Graph graph =
-      order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions), jobs);
+  Graph graph = order_graph(std::move(faces.mesh), std::move(faces.topology), std::move(faces.edges), std::move(faces.regions),
+                            jobs, options.visual);
   if (std::string reason = out_of_range(graph, input); !reason.empty()) return Failure{3, soup.name + ": " + reason};
+  if (options.visual) share_vertices(input.visual, graph, seen_faces);
   if (input.with_source_map) input.node_of_source = nodes_of_sources(std::move(face_of_source), graph.node_of_face);
   if (!has_materials && input.normals_of_face.empty()) release(graph.node_of_face);
   if (options.allocate) return serialise(graph, input, options.allocate);
@@ -248,7 +256,9 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
   const std::size_t per_face = node + hierarchy + sizeof(std::uint32_t);
   const std::size_t per_side = sizeof(fdcg_side) + plane + (sizeof(fdcg_connection) + edge) / 2 + corner / 6;
   constexpr std::size_t kHeaderAndInfo = 4096;
-  return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side;
+  const std::size_t seen =
+      options.visual ? soup.corners.size() * (sizeof(fdcg_visual_vertex) / 6 + 2 * sizeof(std::uint32_t)) : 0;
+  return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side + seen;
 }
 
 Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare) {

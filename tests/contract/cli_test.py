@@ -349,6 +349,25 @@ class Inspect(Case):
         self.assertEqual(0.3, told("--mass", "0.3")[0]["mass_kg"])
         self.assertIn("not in the file", told("--without", "mass")[1])
 
+    def test_the_mesh_for_the_eye_is_listed_and_its_library_is_a_dependency(self):
+        self.assertIsNone(json.loads(self.fdcg("inspect", "--json", self.compiled_cube()).stdout)["visual"])
+        blocks = (ROOT / "runtime/examples/steel_and_rubber.obj").read_text()
+        mesh, out = self.write("blocks.obj", "mtllib paint.mtl\n" + blocks), self.path("blocks.fdcg")
+        library = self.write("paint.mtl", "newmtl steel\nKd 0 0.5 1\n")
+        self.fdcg("compile", mesh, "-o", out, "--visual", "--depfile", self.path("blocks.d"))
+        self.assertIn(os.path.basename(library), pathlib.Path(self.path("blocks.d")).read_text())
+        about = json.loads(self.fdcg("inspect", "--json", out).stdout)
+        jsonschema.validate(about, schema("inspect.schema.json"))
+        self.assertEqual((32, 20), (about["visual"]["vertices"], about["visual"]["triangles"]))
+        self.assertEqual([("steel", [0, 0.5, 1, 1]), ("rubber", [1, 1, 1, 1])],
+                         [(m["name"], m["base_colour"]) for m in about["visual"]["materials"]])
+        sizes = {section["name"]: section["bytes"] for section in about["sections"]}
+        self.assertEqual((1280, 240, 80, 192), tuple(sizes["visual-" + name] for name in ("vertices", "indices", "nodes", "materials")))
+        self.assertIn("32 vertices, 20 triangles: steel (10), rubber (10)", self.fdcg("inspect", out).stdout.decode())
+        with open(library, "w") as changed:
+            changed.write("newmtl steel\nKd 1 0 0\n")
+        self.assertIn("would overwrite", self.fdcg("compile", mesh, "-o", library, "--visual", code=2).stderr.decode())
+
     def test_an_open_mesh_has_no_mass_and_says_why(self):
         lid_off = CUBE.replace("8 6 0", "8 5 0").replace("4 4 5 6 7\n", "")
         mesh, out = self.write("open.off", lid_off), self.path("open.fdcg")

@@ -67,6 +67,24 @@ inline void require_sound(const PolygonSoup& soup) {
   require(soup.ignored.size() <= 300, "what is ignored is a short list");
 }
 
+// Of a soup that was asked how it looks.
+inline void require_sound_look(const PolygonSoup& soup) {
+  const Appearance& look = soup.appearance;
+  const auto fits = [](std::size_t have, std::size_t wanted) { return have == 0 || have == wanted; };
+  require(fits(soup.corner_normals.size(), soup.corners.size()) && fits(look.uv.size(), soup.corners.size()) &&
+              fits(look.colours.size(), soup.corners.size()),
+          "each corner has what others have");
+  require(fits(look.face_material.size(), soup.face_count()), "each face has a material, or none has");
+  for (const std::uint16_t material : look.face_material)
+    require(material == Appearance::kNoMaterial || material < look.materials.size(), "materials are there");
+  for (const Colour& colour : look.colours)
+    for (const float share : colour)
+      require(share >= 0 && share <= 1, "colours are shares");
+  for (const LookMaterial& material : look.materials)
+    for (const float share : material.base_colour)
+      require(share >= 0 && share <= 1, "base colours are shares");
+}
+
 inline bool same_points(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);
 }
@@ -97,6 +115,13 @@ inline int fuzz_import(Format format, const unsigned char* data, std::size_t siz
   } else {
     require(soup.error().exit_code == 3 && soup.error().message.find('\n') == std::string::npos, "a refusal is one line");
     require(soup.error().message.size() < 1000, "a refusal is short");
+  }
+  if (size % 4 == 2) {
+    ImportOptions looking{format, {}};
+    looking.normals = looking.appearance = true;
+    const Result<PolygonSoup> seen = import_memory(bytes, "fuzz", looking);
+    require(soup.has_value() || !seen.has_value(), "what is seen may refuse a file, not admit it");
+    if (seen) require_sound(*seen), require_sound_look(*seen);
   }
   if (size % 4 != 1) return 0;  // the second reading costs as much as the first
   const Result<PolygonSoup> again = import_memory(bytes, "fuzz", {format, {}});

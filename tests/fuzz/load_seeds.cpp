@@ -16,8 +16,10 @@ int main(int count, char** arguments) {
     return 2;
   }
   const std::string directory = arguments[1];
-  const auto write = [&](const char* name, const bake::PolygonSoup& soup, bake::Precision precision, bool store_planes) {
+  const auto write = [&](const char* name, const bake::PolygonSoup& soup, bake::Precision precision, bool store_planes,
+                         bool visual = false) {
     bake::CompileOptions options;
+    options.visual = visual;
     options.precision = precision;
     options.store_planes = store_planes;
     options.without = {"info"};
@@ -30,10 +32,11 @@ int main(int count, char** arguments) {
   };
   constexpr auto f64 = bake::Precision::f64, f32 = bake::Precision::f32;
   const auto inexact = rounded_to_float(transformed(grid_box(2, 2, 1, {1, 1, 0.5}), random_rotation(3)));
-  const bool is_written = write("busy-corner-f64", cone(40), f64, true) && write("busy-corner-f32", cone(40), f32, true) &&
-                          write("inexact-f64", inexact, f64, false) && write("inexact-f32", inexact, f32, true) &&
-                          write("l-f64", l_prism(), f64, true) && write("l-f32-derived", l_prism(), f32, false) &&
-                          write("open-patch-f64", plane_grid(2, 2), f64, true) &&
-                          write("open-patch-f32", plane_grid(2, 2), f32, true);
+  const bool is_written =
+      write("busy-corner-f64", cone(40), f64, true) && write("busy-corner-f32", cone(40), f32, true) &&
+      write("inexact-f64", inexact, f64, false) && write("inexact-f32", inexact, f32, true) &&
+      write("l-f64", l_prism(), f64, true) && write("l-f32-derived", l_prism(), f32, false) &&
+      write("open-patch-f64", plane_grid(2, 2), f64, true) && write("open-patch-f32", plane_grid(2, 2), f32, true) &&
+      write("visual-f64", l_prism(), f64, true, true) && write("visual-f32", plane_grid(2, 2), f32, false, true);
   return is_written ? 0 : 4;
 }

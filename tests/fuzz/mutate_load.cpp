@@ -123,6 +123,7 @@ void look_at_records(const fdcg_graph& graph) {
   if (graph.header->corner_count < 64) (void)fdcg_pick_points(&graph, points, 8, &count, &error);
   fdcg_mass mass;
   (void)fdcg_get_mass(&graph, &mass, &error);
+  look_at_visual(graph);
 }
 
 struct Running {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fdcg/fdcg.h"
+#include "fdcg/visual.h"
 
 namespace fdcg::test {
 
@@ -70,6 +71,26 @@ inline void touch_everywhere(const fdcg_graph& graph, std::uint32_t steps) {
   }
 }
 
+// Reads all that a renderer would: what was found right leads nowhere else.
+inline void look_at_visual(const fdcg_graph& graph) {
+  fdcg_visual visual;
+  if (fdcg_get_visual(&graph, &visual, nullptr) != FDCG_OK) return;
+  std::uint64_t end = 0;
+  double sum = 0;
+  for (std::uint32_t m = 0; m < visual.material_count; ++m) {
+    const fdcg_visual_material& material = visual.materials[m];
+    end += std::strlen(material.name) < sizeof material.name ? material.index_count : 0;
+    for (std::uint32_t i = 0; i < material.index_count; ++i) {
+      const fdcg_visual_vertex& vertex = visual.vertices[visual.indices[material.first_index + i]];
+      sum += double{vertex.position[0]} + vertex.uv[1];
+      if (vertex.corner != FDCG_NONE) sum += fdcg_get_corner(&graph, vertex.corner).point[0];
+    }
+  }
+  for (std::uint32_t t = 0; t < visual.index_count / 3; ++t)
+    if (visual.nodes[t] != FDCG_NONE) sum += fdcg_get_node(&graph, visual.nodes[t]).offset;
+  if (end != visual.index_count || !(sum * 0 == 0)) std::abort();
+}
+
 // Any bytes through open and step: first as they are, then with magic, version, size and checksums made to fit, so that the
 // checks behind them are reached. Whatever is SAFE is walked on; what is FULL is SAFE. How often of the two times it opened.
 inline int open_and_touch(std::span<const std::byte> bytes, std::uint32_t steps) {
@@ -82,6 +103,7 @@ inline int open_and_touch(std::span<const std::byte> bytes, std::uint32_t steps)
     if (fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_SAFE, &graph, &error) == FDCG_OK) {
       ++opened;
       touch_everywhere(graph, steps);
+      look_at_visual(graph);
     } else if (is_full) {
       std::abort();
     }

@@ -179,6 +179,26 @@ class Graph(BrowserCase):
         self.wait_for(lambda s: s["colours"] == "number")
         self.assertNotEqual(before, self.picture())
 
+    def test_the_mesh_for_the_eye_has_its_materials_colours(self):
+        painted = self.path("painted.obj")
+        blocks = (ROOT / "runtime/examples/steel_and_rubber.obj").read_text()
+        pathlib.Path(painted).write_text("mtllib paint.mtl\n" + blocks)
+        pathlib.Path(self.path("paint.mtl")).write_text("newmtl steel\nKd 0 1 0\nnewmtl rubber\nKd 1 0 0\n")
+        self.fdcg("compile", painted, "--units", "cm", "--visual", "-o", self.path("painted.fdcg"))
+        self.open(self.view(self.path("painted.fdcg")))
+        state = self.state()
+        self.assertEqual(("seen", ["steel", "rubber"]), (state["colours"], state["seen"]))
+        pixels = self.picture()
+        of = [tuple(pixels[at:at + 3]) for at in range(0, len(pixels), 4)]
+        red = sum(r > 100 > 2 * max(g, b) for r, g, b in of)
+        green = sum(g > 100 > 2 * max(r, b) for r, g, b in of)
+        self.assertGreater(red, 20)
+        self.assertGreater(green, 20)
+        self.find("node-colour").send_keys("one colour")
+        self.wait_for(lambda s: s["colours"] == "plain")
+        self.assertNotEqual(pixels, self.picture())
+        self.assertEqual("node", self.wait_for(lambda s: self.canvas().click() or s["picked"])["picked"]["kind"])
+
     def test_a_click_picks_and_layers_go_on_and_off(self):
         self.canvas().click()
         self.assertEqual("node", self.wait_for(lambda s: s["picked"])["picked"]["kind"])

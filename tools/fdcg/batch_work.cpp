@@ -109,7 +109,8 @@ bake::ImportOptions import_options(const BatchRule& rule) {
   bake::ImportOptions options;
   options.format = std::visit([](const auto& settings) { return settings.input_format; }, rule.settings);
   const auto* const compile = std::get_if<CompileSettings>(&rule.settings);
-  options.normals = compile != nullptr && compile->options.normals == bake::Normals::file;
+  options.appearance = compile != nullptr && compile->options.visual;
+  options.normals = options.appearance || (compile != nullptr && compile->options.normals == bake::Normals::file);
   return options;
 }
 

@@ -222,7 +222,8 @@ int compile_mesh(CompileArguments& arguments) {
   bake::ImportOptions import_options{arguments.input_format, {}};
   import_options.progress =
       arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
-  import_options.normals = arguments.options.normals == bake::Normals::file;
+  import_options.normals = arguments.options.normals == bake::Normals::file || arguments.options.visual;
+  import_options.appearance = arguments.options.visual;
   auto soup = import_input(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);

@@ -51,7 +51,11 @@ void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
       [&options](const std::string& text) {
         options.crease_rad = number_between("--crease", text, 0, 180, "no angle of 0 to 180 degrees") * std::numbers::pi / 180;
       },
-      "With --normals faces: faces that meet at a larger angle, in degrees, meet at a crease.", "40");
+      "Of normals made from faces: faces that meet at a larger angle, in degrees, meet at a crease.", "40");
+  graph.flag(
+      "--visual", options.visual,
+      "Also the mesh for the eye: triangles with normals, texture coordinates, colours and materials, as OBJ, PLY and glTF "
+      "files have them (fdcg/visual.h).");
   const std::vector<std::string> sections{"hierarchy", "source-map", "info", "mass", "materials", "normals"};
   const auto leave_out = [&options, sections](const std::string& name) {
     require_choice("--without", name, sections);

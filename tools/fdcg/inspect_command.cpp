@@ -9,6 +9,7 @@
 #include "../common/terminal.hpp"
 #include "dump.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg/visual.h"
 #include "fdcg_commands.hpp"
 #include "invariants.hpp"
 #include "open_graph.hpp"
@@ -26,9 +27,11 @@ struct InspectArguments {
 };
 
 std::string section_name(std::uint32_t id) {
-  constexpr const char* kNames[] = {"nodes",     "node-offsets", "edges",    "connections", "corners",      "fans",
-                                    "hierarchy", "source-map",   "info",     "fan-boxes",   "busy-corners", "mass",
-                                    "materials", "names",        "fan-runs", "normals"};
+  constexpr const char* kNames[] = {
+      "nodes",        "node-offsets",    "edges",    "connections", "corners",         "fans",
+      "hierarchy",    "source-map",      "info",     "fan-boxes",   "busy-corners",    "mass",
+      "materials",    "names",           "fan-runs", "normals",     "visual-vertices", "visual-indices",
+      "visual-nodes", "visual-materials"};
   if (id >= 1 && id <= std::size(kNames)) return kNames[id - 1];
   return "unknown-" + std::to_string(id);
 }
@@ -96,6 +99,22 @@ Json materials_of(const fdcg_graph& graph) {
   return {{"list", list}, {"nodes_without", nodes.back()}};
 }
 
+// null where the file has none.
+Json visual_of(const fdcg_graph& graph) {
+  fdcg_visual visual{};
+  if (fdcg_get_visual(&graph, &visual, nullptr) != FDCG_OK) return nullptr;
+  Json materials = Json::array();
+  for (std::uint32_t m = 0; m < visual.material_count; ++m) {
+    const fdcg_visual_material& material = visual.materials[m];
+    materials.push_back({{"name", material.name},
+                         {"triangles", material.index_count / 3},
+                         {"base_colour", material.base_colour},
+                         {"texture_coordinates", (material.flags & FDCG_VISUAL_UV) != 0},
+                         {"colours", (material.flags & FDCG_VISUAL_COLOURS) != 0}});
+  }
+  return {{"vertices", visual.vertex_count}, {"triangles", visual.index_count / 3}, {"materials", materials}};
+}
+
 Json description_of(const fdcg_graph& graph) {
   const fdcg_header& header = *graph.header;
   const std::uint32_t* const types = header.connection_type_count;
@@ -122,6 +141,7 @@ Json description_of(const fdcg_graph& graph) {
           {"repair", from_info("repair")},
           {"physics", from_info("physics")},
           {"materials", materials_of(graph)},
+          {"visual", visual_of(graph)},
           {"sections", sections_of(header)},
           {"source",
            {{"file_sha256", source.contains("file_sha256") ? source["file_sha256"] : Json(nullptr)},
@@ -140,6 +160,18 @@ std::string materials_text(const Json& materials) {
   for (const Json& material : materials["list"])
     text += as_words(material["name"]) + " (" + material["nodes"].dump() + " nodes), ";
   return text + "none (" + materials["nodes_without"].dump() + ")\n";
+}
+
+std::string visual_text(const Json& visual) {
+  std::string text = "  visual       " + grouped(visual["vertices"].get<std::uint64_t>()) + " vertices, " +
+                     grouped(visual["triangles"].get<std::uint64_t>()) + " triangles: ";
+  for (const Json& material : visual["materials"]) {
+    text += text.ends_with(": ") ? "" : ", ";
+    text += (material["name"] == "" ? "no material" : as_words(material["name"])) + " (" + material["triangles"].dump() +
+            (material["texture_coordinates"] == true ? ", texture coordinates" : "") +
+            (material["colours"] == true ? ", colours" : "") + ")";
+  }
+  return text + "\n";
 }
 
 // What the mesh file states, which the program that steps is to follow: a line each.
@@ -194,6 +226,7 @@ std::string description_text(const std::string& file, const Json& about) {
   text += "  deviation    " + about["max_deviation_m"].dump() + " m at most between a corner and its node's plane\n";
   text += mass_text(about);
   if (!about["materials"].is_null()) text += materials_text(about["materials"]);
+  if (!about["visual"].is_null()) text += visual_text(about["visual"]);
   if (about["physics"].is_object()) text += physics_text(about["physics"]);
   const Json& source = about["source"];
   text += "  source       " + count(source["vertices"]) + " vertices, " + count(source["faces"]) + " faces, SHA-256 " +
@@ -203,7 +236,7 @@ std::string description_text(const std::string& file, const Json& about) {
   text += "  sections\n";
   for (const Json& section : about["sections"]) {
     std::string name = as_words(section["name"]);
-    name.resize(12, ' ');
+    name.resize(std::max<std::size_t>(name.size(), 12), ' ');
     text += "    " + name + " at " + section["offset"].dump() + ", " + count(section["bytes"]) + " bytes\n";
   }
   return text;
@@ -234,6 +267,11 @@ int run_inspect(const InspectArguments& arguments) {
     return fail(kFile, arguments.file == "-" ? std::string("standard input: ") + error.message : error.message);
   }
   const fdcg_graph& graph = opened.graph();
+  fdcg_visual visual{};
+  if (const fdcg_status status = fdcg_get_visual(&graph, &visual, &error); status != FDCG_OK && status != FDCG_E_ABSENT) {
+    bar.wipe();
+    return fail(kFile, arguments.file + ": " + error.message);
+  }
   const std::vector<Invariant> invariants = arguments.verify ? check_invariants(graph, progress) : std::vector<Invariant>{};
   bar.wipe();
   Json about = description_of(graph);

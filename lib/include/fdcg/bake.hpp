@@ -31,6 +31,7 @@
 #include <variant>
 #include <vector>
 
+#include "fdcg/appearance.hpp"
 #include "fdcg/physics.hpp"
 
 namespace fdcg::bake {
@@ -140,11 +141,13 @@ struct PolygonSoup {
   /// Of each entry of `corners`, where ImportOptions::normals asked for them and the file has any; not of unit length, 0 where
   /// the file has none at that corner. Empty: none.
   std::vector<Vec3> corner_normals;
-  std::vector<Ignored> ignored;          ///< what was left out
-  double metres_per_unit = 0;            ///< as the file states it (COLLADA, 3MF); 0: it does not
-  char up_axis = 0;                      ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
-  StatedPhysics physics;                 ///< glTF: friction, masses and shapes by formula
-  std::vector<std::string> other_files;  ///< further files that the mesh is from: a glTF file's buffers
+  Appearance appearance;         ///< where ImportOptions::appearance asked for it
+  std::vector<Ignored> ignored;  ///< what was left out
+  double metres_per_unit = 0;    ///< as the file states it (COLLADA, 3MF); 0: it does not
+  char up_axis = 0;              ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
+  StatedPhysics physics;         ///< glTF: friction, masses and shapes by formula
+  std::vector<std::string>
+      other_files;  ///< further files that the mesh is from: a glTF file's buffers, an OBJ file's materials
 
   /// Faces of the file.
   [[nodiscard]] std::size_t face_count() const { return face_first.empty() ? 0 : face_first.size() - 1; }
@@ -155,6 +158,7 @@ struct ImportOptions {
   std::optional<Format> format;  ///< default: by content, then by the file name's ending
   Progress progress;             ///< may be empty
   bool normals = false;          ///< read corner normals: OBJ's vn, PLY's nx ny nz, glTF's NORMAL (not of Draco data)
+  bool appearance = false;       ///< read PolygonSoup::appearance: of OBJ, PLY and glTF (not of Draco data)
 };
 
 /// The most that is read of what is no regular file: a pipe, a terminal.
@@ -428,6 +432,9 @@ struct CompileOptions {
   bool store_planes = true;         ///< false: the step derives them, to the same bits
   Normals normals = Normals::none;  ///< for force shading. Faces that they make smooth are triangles, and not merged
   double crease_rad = kDefaultCrease_rad;  ///< Normals::faces: faces that meet at a larger angle meet at a crease
+  /// The mesh for the eye too (fdcg/visual.h): with the soup's `appearance`, and its normals or, where it has none, those of
+  /// the faces up to creases of `crease_rad`.
+  bool visual = false;
   std::set<std::string> without;  ///< optional sections left out: hierarchy, source-map, info, mass, materials, normals
   /// At most one of the two; 0: not known. With either, a mesh that encloses no solid is refused; without, its file has no mass
   /// properties (Compiled::no_mass says why).

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/vec3.hpp"
+#include "graph/source_corners.hpp"
 #include "shared/octahedral.hpp"
 
 namespace fdcg::bake {
@@ -102,36 +103,30 @@ class Averager {
   std::vector<Vec3> normal_;
 };
 
-// Of a slot, what the mesh file says of the source face's corner there; none: it says nothing.
-class FileNormals {
- public:
-  FileNormals(const PolygonSoup& soup, const std::vector<std::uint32_t>& source_face, const Triangulation& cut)
-      : soup_(soup), source_face_(source_face), cut_(cut) {}
-
-  [[nodiscard]] std::optional<Vec3> at(std::uint32_t slot) const {
-    const std::uint32_t triangle = slot / 3, polygon = cut_.polygon.empty() ? triangle : cut_.polygon[triangle];
-    const std::uint32_t face = source_face_.empty() ? polygon : source_face_[polygon];
-    if (face >= soup_.face_count()) return std::nullopt;
-    const Vec3 place = cut_.mesh.points[+cut_.mesh.corners[slot]] + cut_.mesh.origin;
-    std::uint32_t nearest = kNone;
-    double least = 0;
-    for (std::uint32_t i = soup_.face_first[face]; i < soup_.face_first[face + 1]; ++i) {
-      if (soup_.corners[i] == PolygonSoup::kInvalidVertex) continue;
-      const double off = squared_length(soup_.points[soup_.corners[i]] - place);
-      if (nearest == kNone || off < least) nearest = i, least = off;
-    }
-    if (nearest == kNone) return std::nullopt;
-    const Vec3 found = scaled_to_unit(soup_.corner_normals[nearest]);
-    return found == Vec3{} ? std::nullopt : std::optional(found);
-  }
-
- private:
-  const PolygonSoup& soup_;
-  const std::vector<std::uint32_t>& source_face_;
-  const Triangulation& cut_;
-};
+// What the mesh file says of the source face's corner there; none: it says nothing.
+std::optional<Vec3> file_normal(const PolygonSoup& soup, const SourceCorners& corners, std::uint32_t slot) {
+  const std::uint32_t corner = corners.at(slot);
+  if (corner == kNone) return std::nullopt;
+  const Vec3 found = scaled_to_unit(soup.corner_normals[corner]);
+  return found == Vec3{} ? std::nullopt : std::optional(found);
+}
 
 }  // namespace
+
+std::vector<Vec3> smooth_normals(const PolygonSoup& soup, const std::vector<std::uint32_t>& source_face,
+                                 const Triangulation& cut, const CompileOptions& options) {
+  Averager averager(cut, options.crease_rad);
+  std::vector<Vec3> normals = averager.run();
+  const SourceCorners corners(soup, source_face, cut);
+  for (std::uint32_t slot = 0; slot < normals.size(); ++slot) {
+    const Vec3 own = averager.normal(slot / 3);
+    if (normals[slot] == Vec3{}) normals[slot] = own == Vec3{} ? Vec3{0, 0, 1} : own;
+    if (soup.corner_normals.empty()) continue;
+    const std::optional<Vec3> given = file_normal(soup, corners, slot);
+    if (given) normals[slot] = options.orient && dot(*given, own) < 0 ? -*given : *given;
+  }
+  return normals;
+}
 
 CornerNormals find_corner_normals(const PolygonSoup& soup, const std::vector<std::uint32_t>& source_face,
                                   const Triangulation& cut, const CompileOptions& options) {
@@ -140,13 +135,13 @@ CornerNormals find_corner_normals(const PolygonSoup& soup, const std::vector<std
   Averager averager(cut, options.crease_rad);
   const bool has_file = options.normals == Normals::file;
   const std::vector<Vec3> mean = has_file ? std::vector<Vec3>{} : averager.run();
-  const FileNormals file(soup, source_face, cut);
+  const SourceCorners corners(soup, source_face, cut);
   std::vector<fdcg_node_normals> of_face(cut.mesh.face_count(), kFlatNode);
   for (std::uint32_t f = 0; f < of_face.size(); ++f) {
     const Vec3 own = averager.normal(f);
     bool is_plane = true;
     for (std::uint32_t k = 0; k < 3; ++k) {
-      std::optional<Vec3> normal = has_file ? file.at(3 * f + k) : std::optional(mean[3 * f + k]);
+      std::optional<Vec3> normal = has_file ? file_normal(soup, corners, 3 * f + k) : std::optional(mean[3 * f + k]);
       if (!normal) continue;
       if (has_file && options.orient && dot(*normal, own) < 0) normal = -*normal;
       const double lean = dot(*normal, own);

@@ -24,6 +24,11 @@ struct CornerNormals {
 [[nodiscard]] CornerNormals find_corner_normals(const PolygonSoup& soup, const std::vector<std::uint32_t>& source_face,
                                                 const Triangulation& cut, const CompileOptions& options);
 
+// Of each slot of `cut`, of unit length, for the eye: the file's where the soup has one, else from the faces around the vertex,
+// up to creases of options.crease_rad.
+[[nodiscard]] std::vector<Vec3> smooth_normals(const PolygonSoup& soup, const std::vector<std::uint32_t>& source_face,
+                                               const Triangulation& cut, const CompileOptions& options);
+
 // Takes every triangle that is not flat out of its region as a piece of its own, which keeps the region's plane and is merged
 // with nothing.
 void split_by_normals(const CornerNormals& normals, Regions& regions);

@@ -91,8 +91,8 @@ std::uint32_t best_start(const Mesh& mesh, std::uint32_t f, const Vec3& normal) 
 // Builds the graph from the mesh.
 class Orderer {
  public:
-  Orderer(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, Regions& regions, unsigned jobs)
-      : mesh_(mesh), topology_(topology), edges_(edges), regions_(regions), jobs_(jobs) {}
+  Orderer(Mesh& mesh, Topology& topology, std::vector<EdgeClass>& edges, Regions& regions, unsigned jobs, bool names_vertices)
+      : mesh_(mesh), topology_(topology), edges_(edges), regions_(regions), jobs_(jobs), names_vertices_(names_vertices) {}
 
   Graph run() {
     {
@@ -191,6 +191,7 @@ class Orderer {
     }
     for (FanRun& run : graph_.fan_runs)
       run.vertex = corner_of[run.vertex];
+    if (names_vertices_) graph_.corner_of_vertex = std::move(corner_of);
     release(mesh_.points);
     fan.push_back(0);
     std::uint32_t sum = 0;
@@ -213,14 +214,16 @@ class Orderer {
   std::vector<EdgeClass>& edges_;
   Regions& regions_;
   unsigned jobs_;
+  bool names_vertices_;
   Graph graph_;
   std::vector<std::uint32_t> side_of_slot_;
 };
 
 }  // namespace
 
-Graph order_graph(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions, unsigned jobs) {
-  return Orderer(mesh, topology, edges, regions, jobs).run();
+Graph order_graph(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions, unsigned jobs,
+                  bool names_vertices) {
+  return Orderer(mesh, topology, edges, regions, jobs, names_vertices).run();
 }
 
 }  // namespace fdcg::bake

@@ -25,10 +25,11 @@ struct Graph {
   std::vector<std::uint32_t> connection;    // of each side: connection << 1 | which
   std::vector<std::uint32_t> region;        // of each node, or kNone; empty where no node has one
   std::vector<Region> regions;
-  std::vector<std::uint32_t> fan_start;     // of each corner: the side that its fan starts with
-  std::vector<std::uint32_t> first_fan;     // corner c: fan entries first_fan[c] .. first_fan[c + 1] - 1
-  std::vector<std::uint32_t> node_of_face;  // of each face of the mesh that this was made of
-  std::vector<FanRun> fan_runs;             // in ascending order; `vertex` is a corner of the graph
+  std::vector<std::uint32_t> fan_start;         // of each corner: the side that its fan starts with
+  std::vector<std::uint32_t> first_fan;         // corner c: fan entries first_fan[c] .. first_fan[c + 1] - 1
+  std::vector<std::uint32_t> node_of_face;      // of each face of the mesh that this was made of
+  std::vector<std::uint32_t> corner_of_vertex;  // of each vertex of that mesh, or kNone: no face has it; empty: not asked for
+  std::vector<FanRun> fan_runs;                 // in ascending order; `vertex` is a corner of the graph
   std::uint32_t connection_count = 0;
   std::uint32_t largest_fan = 0;
 
@@ -55,7 +56,9 @@ struct Graph {
 
 // Orders faces, connections and corners. The mesh is manifold and oriented, its faces are convex, its twins are half-edges or
 // kBoundary; vertices of no face are dropped. A polygon starts at the corner whose triangle with the two next corners is the
-// largest (and strictly counter-clockwise). Near linear; the order does not depend on `jobs`.
-[[nodiscard]] Graph order_graph(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions, unsigned jobs);
+// largest (and strictly counter-clockwise). Near linear; the order does not depend on `jobs`. `names_vertices`: fills
+// corner_of_vertex.
+[[nodiscard]] Graph order_graph(Mesh mesh, Topology topology, std::vector<EdgeClass> edges, Regions regions, unsigned jobs,
+                                bool names_vertices = false);
 
 }  // namespace fdcg::bake

@@ -24,7 +24,8 @@ Json options_json(const CompileOptions& options) {
   json["merge"] = options.merge && !options.triangles;
   if (options.triangles) json["triangles"] = true;
   if (options.normals != Normals::none) json["normals"] = options.normals == Normals::file ? "file" : "faces";
-  if (options.normals == Normals::faces) json["crease_rad"] = options.crease_rad;
+  if (options.normals == Normals::faces || options.visual) json["crease_rad"] = options.crease_rad;
+  if (options.visual) json["visual"] = true;
   json["weld"] = kWelds[static_cast<int>(options.weld.kind)];
   if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
   json["orient"] = options.orient;

@@ -98,6 +98,7 @@ class Writer {
     const auto normals = layout_.records<fdcg_node_normals>(file_, FDCG_SECTION_NODE_NORMALS);
     for (std::size_t face = 0; face < input_.normals_of_face.size(); ++face)
       normals[graph_.node_of_face[face]] = input_.normals_of_face[face];
+    write_visual();
     write_header();
     return file_;
   }
@@ -132,8 +133,15 @@ class Writer {
     }
     if (has_fan_runs()) layout_.add(FDCG_SECTION_FAN_RUNS, sizeof(fdcg_fan_run), graph_.fan_runs.size());
     if (!input_.normals_of_face.empty()) layout_.add(FDCG_SECTION_NODE_NORMALS, sizeof(fdcg_node_normals), graph_.node_count());
+    if (!input_.visual.is_empty()) {
+      layout_.add(section_id(FDCG_SECTION_VISUAL_VERTICES), sizeof(fdcg_visual_vertex), input_.visual.vertices.size());
+      layout_.add(section_id(FDCG_SECTION_VISUAL_INDICES), sizeof(std::uint32_t), input_.visual.indices.size());
+      layout_.add(section_id(FDCG_SECTION_VISUAL_NODES), sizeof(std::uint32_t), input_.visual.nodes.size());
+      layout_.add(section_id(FDCG_SECTION_VISUAL_MATERIALS), sizeof(fdcg_visual_material), input_.visual.materials.size());
+    }
     layout_.place();
   }
+  static fdcg_section_id section_id(fdcg_visual_section_id id) { return static_cast<fdcg_section_id>(id); }
 
   // What lies between sections. Inside them every byte is written with its record.
   void clear_padding() {
@@ -403,6 +411,18 @@ class Writer {
       of_node[graph_.node_of_face[face]] = input_.material_of_face[face];
     std::transform(input_.materials.begin(), input_.materials.end(),
                    layout_.records<fdcg_material_record>(file_, FDCG_SECTION_MATERIAL_NAMES).begin(), material_record);
+  }
+
+  void write_visual() {
+    const auto write = [this](const auto& records, fdcg_visual_section_id id) {
+      using Record = typename std::decay_t<decltype(records)>::value_type;
+      std::copy(records.begin(), records.end(), layout_.records<Record>(file_, section_id(id)).begin());
+    };
+    if (input_.visual.is_empty()) return;
+    write(input_.visual.vertices, FDCG_SECTION_VISUAL_VERTICES);
+    write(input_.visual.indices, FDCG_SECTION_VISUAL_INDICES);
+    write(input_.visual.nodes, FDCG_SECTION_VISUAL_NODES);
+    write(input_.visual.materials, FDCG_SECTION_VISUAL_MATERIALS);
   }
 
   void write_header() {

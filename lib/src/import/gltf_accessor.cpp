@@ -129,6 +129,27 @@ Vec3 Positions::at(const Strided& values, std::uint64_t i) {
           load_scalar(values.type, values.is_normalized, bytes + 2 * size)};
 }
 
+Attribute::Attribute(const Document& document, Index accessor, Buffers& buffers)
+    : base_(resolve_base(document, accessor, buffers)), components_(std::min(document.accessors[accessor].components, 4u)) {
+  Replacement replacement = resolve_sparse(document, accessor, buffers);
+  values_ = replacement.values;
+  replaced_ = std::move(replacement.places);
+}
+
+std::array<double, 4> Attribute::at(std::uint64_t i) const {
+  const auto found = std::lower_bound(replaced_.begin(), replaced_.end(), i);
+  const bool is_replaced = found != replaced_.end() && *found == i;
+  const Strided& values = is_replaced ? values_ : base_;
+  const std::uint64_t place = is_replaced ? static_cast<std::uint64_t>(found - replaced_.begin()) : i;
+  std::array<double, 4> result = {1, 1, 1, 1};
+  for (unsigned k = 0; k < components_; ++k) {
+    const char* const bytes =
+        values.first == nullptr ? nullptr : values.first + place * values.stride + k * size_of(values.type);
+    result[k] = bytes == nullptr ? 0 : load_scalar(values.type, values.is_normalized, bytes);
+  }
+  return result;
+}
+
 Indices::Indices(const Document& document, Index accessor, Buffers& buffers)
     : base_(resolve_base(document, accessor, buffers)) {
   Replacement replacement = resolve_sparse(document, accessor, buffers);

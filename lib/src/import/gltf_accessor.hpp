@@ -49,6 +49,22 @@ class Positions {
   std::vector<std::uint32_t> replaced_;  // ascending; of a sparse accessor
 };
 
+// Values of up to four components, read in any order: texture coordinates, colours.
+class Attribute {
+ public:
+  Attribute(const Document& document, Index accessor, Buffers& buffers);
+
+  [[nodiscard]] std::uint64_t count() const { return base_.count; }
+  [[nodiscard]] unsigned components() const { return components_; }
+  // Below count(); components that are not there are 1.
+  [[nodiscard]] std::array<double, 4> at(std::uint64_t i) const;
+
+ private:
+  Strided base_, values_;
+  unsigned components_;
+  std::vector<std::uint32_t> replaced_;  // ascending; of a sparse accessor
+};
+
 // Vertex numbers.
 class Indices {
  public:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "import/beside.hpp"
 #include "import/meshopt_decode.hpp"
 
 namespace fdcg::bake::gltf {
@@ -65,24 +66,6 @@ std::optional<std::string> base64_decoded(std::string_view text) {
   }
   if (have >= 6) return std::nullopt;  // a single digit left over is not a byte
   return bytes;
-}
-
-// A relative path that stays in the folder: no scheme ("http:", "C:"), no root, no "..".
-bool stays_beneath(const std::filesystem::path& path, const std::string& text) {
-  if (path.empty() || path.is_absolute() || path.has_root_path()) return false;
-  if (text.find(':') != std::string::npos || text.find('\\') != std::string::npos || text.find('\0') != std::string::npos)
-    return false;
-  return std::none_of(path.begin(), path.end(), [](const std::filesystem::path& part) { return part == ".."; });
-}
-
-// With links followed.
-bool lies_beneath(const std::filesystem::path& path, const std::filesystem::path& folder) {
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::canonical(path, error);
-  if (error) return false;
-  const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, error);
-  if (error) return false;
-  return std::mismatch(root.begin(), root.end(), real.begin(), real.end()).first == root.end();
 }
 
 }  // namespace

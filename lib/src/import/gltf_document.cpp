@@ -5,54 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.hpp"
+#include "import/gltf_extensions.hpp"
 #include "shared/json/reader.hpp"
 #include "shared/text.hpp"
 
 namespace fdcg::bake::gltf {
 namespace {
-
-constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression";
-
-// Extensions that a file may require and that leave the triangles as they are (or that are read here).
-bool is_harmless(std::string_view extension) {
-  constexpr std::array<std::string_view, 36> kPrefixes = {kDraco,
-                                                          kMeshopt,
-                                                          "EXT_mesh_manifold",
-                                                          "EXT_mesh_features",
-                                                          "EXT_instance_features",
-                                                          "KHR_physics_rigid_bodies",
-                                                          "KHR_implicit_shapes",
-                                                          "KHR_collision_shapes",
-                                                          "KHR_rigid_bodies",
-                                                          "KHR_interactivity",
-                                                          "KHR_node_hoverability",
-                                                          "KHR_node_selectability",
-                                                          "KHR_node_visibility",
-                                                          "FB_ngon_encoding",
-                                                          "GODOT_single_root",
-                                                          "MSFT_packing_",
-                                                          "NV_materials_",
-                                                          "OMI_",
-                                                          "VRM",
-                                                          "AGI_",
-                                                          "EXT_materials_",
-                                                          "EXT_image_",
-                                                          "ADOBE_softbox",
-                                                          "KHR_mesh_quantization",
-                                                          "KHR_materials_",
-                                                          "KHR_texture_",
-                                                          "KHR_lights_",
-                                                          "KHR_xmp",
-                                                          "KHR_technique",  // _webgl, and KHR_techniques_webgl
-                                                          "KHR_animation_",
-                                                          "KHR_audio",
-                                                          "EXT_texture_",
-                                                          "EXT_lights_",
-                                                          "MSFT_texture_",
-                                                          "ADOBE_materials_",
-                                                          "EXT_structural_metadata"};
-  return std::any_of(kPrefixes.begin(), kPrefixes.end(), [extension](std::string_view p) { return extension.starts_with(p); });
-}
 
 using json::Value;
 
@@ -81,7 +40,7 @@ std::string plain(const Value& value) {
 
 class Parser {
  public:
-  Parser(const json::Document& document, bool wants_normals) : root_(document.root()), wants_normals_(wants_normals) {}
+  Parser(const json::Document& document, Wanted wanted) : root_(document.root()), wanted_(wanted) {}
 
   Document parse() {
     check_asset();
@@ -164,10 +123,11 @@ class Parser {
       primitive.positions = use_accessor(positions);
       check_positions(positions, *primitive.positions);
     }
-    if (const Value normals = attributes["NORMAL"]; normals && wants_normals_) {
+    if (const Value normals = attributes["NORMAL"]; normals && wanted_.normals) {
       primitive.normals = use_accessor(normals);
       check_positions(normals, *primitive.normals);
     }
+    if (wanted_.appearance) read_looks(attributes, primitive);
     if (const Value indices = item["indices"]) {
       primitive.indices = use_accessor(indices);
       check_indices(indices, *primitive.indices);
@@ -177,15 +137,45 @@ class Parser {
     return primitive;
   }
 
-  // Only the names are read. The geometry does not need them, so errors here do not refuse the file.
+  void read_looks(const Value& attributes, Primitive& primitive) {
+    const auto check = [this](const Value& place, Index index, bool is_usable, const char* kinds) {
+      if (!is_usable || document_.accessors[index].type == Component::u32)
+        place.fail(": accessors[" + std::to_string(index) + "] is not of " + kinds +
+                   " of floats, nor of 8- or 16-bit integers");
+    };
+    if (const Value uv = attributes["TEXCOORD_0"]) {
+      primitive.uv = use_accessor(uv);
+      check(uv, *primitive.uv, document_.accessors[*primitive.uv].components == 2, "VEC2");
+    }
+    if (const Value colours = attributes["COLOR_0"]) {
+      primitive.colours = use_accessor(colours);
+      const unsigned components = document_.accessors[*primitive.colours].components;
+      check(colours, *primitive.colours, components == 3 || components == 4, "VEC3 or VEC4");
+    }
+  }
+
+  // The geometry does not need them, so errors here do not refuse the file.
   void read_materials() try {
     const Value materials = root_["materials"];
     if (!materials) return;
     document_.materials.resize(materials.size());
     for (std::size_t m = 0; m < materials.size(); ++m)
       document_.materials[m] = name_of(materials.item(m));
+    if (!wanted_.appearance) return;
+    document_.base_colours.resize(materials.size(), {1, 1, 1, 1});
+    for (std::size_t m = 0; m < materials.size(); ++m)
+      read_base_colour(materials.item(m), document_.base_colours[m]);
   } catch (const Refusal&) {
     return;
+  }
+  static void read_base_colour(const Value& material, Colour& colour) {
+    const Value metallic = material["pbrMetallicRoughness"];
+    const Value factor = metallic ? metallic["baseColorFactor"] : metallic;
+    if (!factor) return;
+    std::array<double, 4> shares{};
+    read_numbers(factor, shares);
+    for (std::size_t k = 0; k < shares.size(); ++k)
+      colour[k] = share_of(shares[k]);
   }
   [[nodiscard]] Index material_of(const Value& primitive) const try {
     const Value material = primitive["material"];
@@ -453,13 +443,13 @@ class Parser {
   }
 
   Value root_;
-  bool wants_normals_;
+  Wanted wanted_;
   Document document_;
 };
 
 }  // namespace
 
-Document parse_document(std::string_view text, bool wants_normals) {
+Document parse_document(std::string_view text, Wanted wanted) {
   constexpr json::Limits kLimits = {0xFFFFFFFF, 128, true};  // glTF needs some ten levels, extras may have a few more
   constexpr std::size_t kShown = 300;                        // bytes: the text that is wrong may be long
   std::optional<json::Document> document;
@@ -469,7 +459,7 @@ Document parse_document(std::string_view text, bool wants_normals) {
     throw Refusal{(refusal.is_cut_short ? "truncated: it " : "") + printable(refusal.message, kShown) +
                   "; fetch or export the file again"};
   }
-  return Parser(*document, wants_normals).parse();
+  return Parser(*document, wanted).parse();
 }
 
 }  // namespace fdcg::bake::gltf

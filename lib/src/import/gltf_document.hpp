@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The geometry described by the JSON of a glTF 2.0 file, checked: every index in it is valid. Parts that the geometry does not
-// need (images, animations, other accessors) are neither read nor checked; of materials only the names are read.
+// need (images, animations, other accessors) are neither read nor checked; of materials only names and base colours are read.
 //
 // Places in messages are JSON paths: "meshes[2].primitives[0].attributes.POSITION".
 #pragma once
@@ -82,6 +82,7 @@ struct Primitive {
   Mode mode = Mode::triangles;
   std::optional<Index> positions, indices;  // accessors
   std::optional<Index> normals;             // accessor, where they are wanted
+  std::optional<Index> uv, colours;         // likewise
   std::optional<Index> draco_view;          // KHR_draco_mesh_compression
   std::uint32_t draco_positions = 0;        // unique id of the attribute
   bool has_targets = false;
@@ -111,14 +112,20 @@ struct Document {
   std::vector<Accessor> accessors;
   std::vector<Mesh> meshes;
   std::vector<std::string> materials;  // names, of those that have one
+  std::vector<Colour> base_colours;    // of the materials, where the appearance is wanted
   std::vector<Node> nodes;
   std::vector<Matrix> matrices;
   Physics physics;
   std::vector<Index> roots;  // of the scene that is shown: the default one, else the first; without scenes, all roots
 };
 
+// What is looked up beside the geometry.
+struct Wanted {
+  bool normals = false;
+  bool appearance = false;  // texture coordinates, colours and base colours
+};
+
 // Throws Refusal.
-// wants_normals: those of primitives are looked up too.
-Document parse_document(std::string_view text, bool wants_normals = false);
+Document parse_document(std::string_view text, Wanted wanted = {});
 
 }  // namespace fdcg::bake::gltf

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/srgb.hpp"
 #include "import/draco_decode.hpp"
 #include "import/gltf_accessor.hpp"
 #include "import/gltf_placing.hpp"
@@ -21,6 +22,9 @@ namespace {
 
 constexpr std::uint64_t kPrimitiveCost = 64;  // in elements: overhead of a primitive beside its points and corners
 constexpr std::size_t kMaxNameBytes = 128;    // of a node or a mesh, in the name of a part
+
+constexpr std::array<float, 2> kNoPlace = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
+constexpr Colour kWhite = {1, 1, 1, 1};
 
 // Cut to kMaxNameBytes, never inside a UTF-8 character.
 std::string cut(const std::string& name) {
@@ -51,6 +55,7 @@ class SceneBuilder {
     }
     show_physics();
     if (!soup_.corner_normals.empty()) soup_.corner_normals.resize(soup_.corners.size());
+    if (input_.wants_appearance) finish_appearance();
     rounding_.finish(soup_);
     materials_.finish(soup_);
     for (const auto& [what, count] : ignored_) {
@@ -158,6 +163,7 @@ class SceneBuilder {
       begin_material(n, mesh.primitives[p].material);
       const std::uint32_t first_point = show(mesh.primitives[p], world);
       if (soup_.face_count() == faces) continue;
+      take_material(mesh.primitives[p].material);
       soup_.parts.push_back(
           {name_or(node.name, "nodes", n) + "/" + name_or(mesh.name, "meshes", node.mesh) + "/primitive " + std::to_string(p),
            static_cast<std::uint32_t>(faces), first_point});
@@ -192,7 +198,54 @@ class SceneBuilder {
     const std::size_t first_corner = soup_.corners.size();
     add_faces(primitive.mode, indices.count(), world != nullptr && is_mirrored(*world), resolve);
     if (primitive.normals) take_normals(*primitive.normals, positions.count(), first_point, first_corner, world);
+    const auto corner_point = [&](std::size_t i) { return soup_.corners[i] - first_point; };
+    if (primitive.uv) {
+      take_attribute(*primitive.uv, positions.count(), first_corner, corner_point, soup_.appearance.uv, kNoPlace,
+                     [](const std::array<double, 4>& value) {
+                       return std::array<float, 2>{static_cast<float>(value[0]), static_cast<float>(value[1])};
+                     });
+    }
+    if (primitive.colours) {
+      take_attribute(*primitive.colours, positions.count(), first_corner, corner_point, soup_.appearance.colours, kWhite,
+                     [](const std::array<double, 4>& value) {
+                       return Colour{share_of(value[0]), share_of(value[1]), share_of(value[2]), share_of(value[3])};
+                     });
+    }
     return first_point;
+  }
+
+  // Of the corners since first_corner; those before it that have none are `none`.
+  template <class Point, class Value, class Convert>
+  void take_attribute(Index accessor, std::uint64_t points, std::size_t first_corner, const Point& point_of,
+                      std::vector<Value>& of_corners, const Value& none, const Convert& convert) {
+    const Attribute attribute(document_, accessor, buffers_);
+    if (attribute.count() != points) {
+      ++count("primitives whose texture coordinates or colours are not as many as their positions");
+      return;
+    }
+    of_corners.resize(soup_.corners.size(), none);
+    for (std::size_t i = first_corner; i < soup_.corners.size(); ++i)
+      if (soup_.corners[i] != PolygonSoup::kInvalidVertex) of_corners[i] = convert(attribute.at(point_of(i)));
+  }
+
+  // Of the faces since the last call: what is seen, whatever is felt.
+  void take_material(Index material) {
+    if (!input_.wants_appearance || document_.materials.empty()) return;
+    const bool has = material < Appearance::kNoMaterial;
+    soup_.appearance.face_material.resize(soup_.face_count(),
+                                          has ? static_cast<std::uint16_t>(material) : Appearance::kNoMaterial);
+  }
+
+  void finish_appearance() {
+    Appearance& look = soup_.appearance;
+    if (!look.uv.empty()) look.uv.resize(soup_.corners.size(), kNoPlace);
+    if (!look.colours.empty()) look.colours.resize(soup_.corners.size(), kWhite);
+    if (look.face_material.empty()) return;
+    look.face_material.resize(soup_.face_count(), Appearance::kNoMaterial);
+    for (std::size_t m = 0; m < document_.materials.size() && m < Appearance::kNoMaterial; ++m) {
+      const bool has_colour = m < document_.base_colours.size();
+      look.materials.push_back({document_.materials[m], has_colour ? document_.base_colours[m] : kWhite});
+    }
   }
 
   // Of the corners since first_corner. Normals go by the inverse transpose of the transform.

@@ -156,7 +156,7 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   }
 
   Sha256Task hash(sha256.empty() ? bytes : std::string_view());
-  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file, options.normals});
+  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file, options.normals, options.appearance});
   if (!soup) return soup;
   if (soup->face_count() == 0) {
     return refuse(name, "holds no face, " + std::to_string(soup->points.size()) + " vertices; export the mesh with its faces",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wavefront OBJ: the statements v and f (and its old name fo); o, g and usemtl name parts. Other statements describe appearance
-// and are skipped, or are counted as ignored elements.
+// Wavefront OBJ: the statements v and f (and its old name fo); o, g and usemtl name parts; vn, vt and mtllib where they are
+// asked for. Other statements describe appearance and are skipped, or are counted as ignored elements.
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/srgb.hpp"
+#include "import/obj_appearance.hpp"
 #include "import/soup_reader.hpp"
 
 namespace fdcg::bake {
@@ -63,14 +65,16 @@ constexpr Unread kUnread[] = {
 class ObjReader : TextSoupReader {
  public:
   explicit ObjReader(const MeshText& input)
-      : TextSoupReader(input, Format::obj, {.hash_comments = true, .continuation = true}) {}
+      : TextSoupReader(input, Format::obj, {.hash_comments = true, .continuation = true}), appearance_(input.file) {}
 
   Result<PolygonSoup> read() {
     const bool is_read = read_statements();
     if (is_read) drop_missing_vertices();
     if (is_read) name_normals();
     set_quanta();
-    return result(is_read);
+    Result<PolygonSoup> soup = result(is_read);
+    if (soup && input_.wants_appearance) appearance_.finish(*soup);
+    return soup;
   }
 
  private:
@@ -83,6 +87,10 @@ class ObjReader : TextSoupReader {
         if (!read_face()) return false;
       } else if (keyword == "vn" && input_.wants_normals) {
         if (!read_normal()) return false;
+      } else if (keyword == "vt" && input_.wants_appearance) {
+        if (!read_place()) return false;
+      } else if (keyword == "mtllib" && input_.wants_appearance) {
+        appearance_.add_libraries(scan_.read_rest_of_line());
       } else if (keyword != "vn" && keyword != "vt") {
         read_other(keyword);
       }
@@ -136,8 +144,34 @@ class ObjReader : TextSoupReader {
       if (!read_coordinate(value)) return fail_here("the vertex coordinate " + not_a_number());
     }
     if (soup_.points.size() >= kMaxPoints) return fail_here("more than 4,294,967,040 vertices; cut the mesh into parts");
+    if (input_.wants_appearance) read_colour();
     soup_.points.push_back({xyz[0], xyz[1], xyz[2]});
     soup_.point_line.push_back(line);
+    return true;
+  }
+
+  // Three numbers after a vertex, or after its weight. Others are no colour.
+  void read_colour() {
+    std::array<double, 4> more{};
+    std::size_t count = 0;
+    while (count < more.size() && !scan_.line_done() && scan_.read_real(more[count]))
+      ++count;
+    if (count < 3) return;
+    const double* const rgb = more.data() + (count - 3);
+    appearance_.add_colour(soup_.points.size(), {linear_of_srgb(rgb[0]), linear_of_srgb(rgb[1]), linear_of_srgb(rgb[2]), 1});
+  }
+
+  // u v, of which v may be left out, and perhaps w.
+  bool read_place() {
+    std::array<double, 2> uv{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (scan_.line_done()) {
+        if (k == 0) return fail_here("a texture coordinate needs a number, but the line ends early");
+        break;
+      }
+      if (!scan_.read_real(uv[k])) return fail_here("the number of a texture coordinate " + not_a_number());
+    }
+    appearance_.add_place(uv[0], uv[1]);
     return true;
   }
 
@@ -189,6 +223,7 @@ class ObjReader : TextSoupReader {
           normal_of_corner_.resize(soup_.corners.size(), 0);
           normal_of_corner_.push_back(normal_in(more));
         }
+        if (input_.wants_appearance) appearance_.add_corner(soup_.corners.size(), more);
       }
       soup_.corners.push_back(resolve(index));
     }
@@ -211,6 +246,7 @@ class ObjReader : TextSoupReader {
     }
   }
 
+  ObjAppearance appearance_;
   std::int64_t largest_index_ = -1;
   std::vector<Vec3> normals_;
   std::vector<std::int64_t> normal_of_corner_;  // counted from 1, 0: none; of the corners up to the last that has one

@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "import/ply_extras.hpp"
+
 namespace fdcg::bake {
 namespace ply {
 namespace {
@@ -157,25 +159,6 @@ class HeaderParser : SoupReader {
     return name == "vertex_indices" || name == "vertex_index" ? Role::indices : Role::none;
   }
 
-  // nx, ny and nz, where all three are there once each, as numbers, in rows of one size.
-  static void assign_normals(ElementKind& element) {
-    constexpr std::array<Role, 3> kRoles = {Role::nx, Role::ny, Role::nz};
-    constexpr std::array<std::string_view, 3> kNames = {"nx", "ny", "nz"};
-    std::array<Property*, 3> found{};
-    if (element.has_lists()) return;
-    for (Property& property : element.properties) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (property.name != kNames[k]) continue;
-        if (found[k] != nullptr) return;
-        found[k] = &property;
-      }
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-      if (found[k] == nullptr) return;
-    for (std::size_t k = 0; k < 3; ++k)
-      found[k]->role = kRoles[k];
-  }
-
   bool assign_roles(ElementKind& element) {
     std::array<int, 5> seen{};
     for (Property& property : element.properties) {
@@ -190,7 +173,7 @@ class HeaderParser : SoupReader {
                     (property.is_list ? " not be a list" : " be a list"));
       }
     }
-    if (element.kind == Kind::vertex && input_.wants_normals) assign_normals(element);
+    if (element.kind == Kind::vertex) assign_extras(element, input_.wants_normals, input_.wants_appearance);
     const auto has = [&seen](Role role) { return seen[static_cast<std::size_t>(role)] == 1; };
     if (element.kind == Kind::vertex && !(has(Role::x) && has(Role::y) && has(Role::z))) {
       return fail("element 'vertex' lacks one of the properties x, y and z");

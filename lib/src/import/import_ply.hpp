@@ -13,8 +13,9 @@ namespace fdcg::bake::ply {
 
 enum class Encoding { ascii, little_endian, big_endian };
 enum class Scalar : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
-enum class Kind { vertex, face, tristrips, other };      // of an element
-enum class Role { none, x, y, z, indices, nx, ny, nz };  // of a property, in an element that is read
+enum class Kind { vertex, face, tristrips, other };  // of an element
+// Of a property, in an element that is read.
+enum class Role { none, x, y, z, indices, nx, ny, nz, red, green, blue, alpha, u, v };
 
 [[nodiscard]] constexpr std::size_t size_of(Scalar type) {
   constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
@@ -66,19 +67,13 @@ struct Header {
   return false;
 }
 
-[[nodiscard]] inline bool is_of_normal(Role role) {
-  return role == Role::nx || role == Role::ny || role == Role::nz;
+// Whether it is what VertexExtras keeps.
+[[nodiscard]] inline bool is_extra(Role role) {
+  return role >= Role::nx;
 }
 // Which component of a place or of a normal.
 [[nodiscard]] inline double& component_of(Vec3& v, Role role) {
   return role == Role::x || role == Role::nx ? v.x : role == Role::y || role == Role::ny ? v.y : v.z;
-}
-// Gives each corner its vertex' normal. To be called once all is read; no normals: nothing.
-inline void spread_normals(const std::vector<Vec3>& of_points, PolygonSoup& soup) {
-  if (of_points.empty()) return;
-  soup.corner_normals.resize(soup.corners.size());
-  for (std::size_t i = 0; i < soup.corners.size(); ++i)
-    if (soup.corners[i] < of_points.size()) soup.corner_normals[i] = of_points[soup.corners[i]];
 }
 
 // Reads and checks the header: the elements and properties that a mesh needs are there, once each, with usable types.

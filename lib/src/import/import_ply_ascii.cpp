@@ -5,6 +5,7 @@
 #include <string>
 
 #include "import/import_ply.hpp"
+#include "import/ply_extras.hpp"
 
 namespace fdcg::bake::ply {
 namespace {
@@ -19,7 +20,7 @@ class AsciiBody : TextSoupReader {
       is_read = is_read && read_element(element);
     is_read = is_read && check_end();
     set_quanta(has_float_coordinates(header_));
-    spread_normals(normals_, soup_);
+    extras_.spread(soup_);
     return result(is_read);
   }
 
@@ -52,6 +53,7 @@ class AsciiBody : TextSoupReader {
   void reserve(const ElementKind& element) {
     const auto rows = static_cast<std::size_t>(element.count);
     if (element.kind == Kind::vertex) {
+      extras_.begin(element);
       soup_.points.reserve(rows);
       soup_.point_line.reserve(rows);
     } else if (element.kind == Kind::face) {
@@ -63,8 +65,7 @@ class AsciiBody : TextSoupReader {
 
   bool read_vertex(const ElementKind& element, std::uint64_t row) {
     soup_.point_line.push_back(line());
-    Vec3 point, normal;
-    bool has_normal = false;
+    Vec3 point;
     for (const Property& property : element.properties) {
       if (property.role == Role::none) {
         if (!skip_value(element, row, property)) return false;
@@ -72,14 +73,15 @@ class AsciiBody : TextSoupReader {
       }
       if (!scan_.find_token()) return fail_end(element, row);
       double value = 0;
-      const bool is_of_place = !is_of_normal(property.role);
-      if (!(is_of_place ? read_coordinate(value) : scan_.read_real(value)))
-        return fail_here(row_name(element, row) + ": " + not_a_number());
-      component_of(is_of_place ? point : normal, property.role) = value;
-      has_normal = has_normal || !is_of_place;
+      const bool has_read = is_extra(property.role) ? scan_.read_real(value) : read_coordinate(value);
+      if (!has_read) return fail_here(row_name(element, row) + ": " + not_a_number());
+      if (is_extra(property.role)) {
+        extras_.set(static_cast<std::size_t>(row), property, value);
+      } else {
+        component_of(point, property.role) = value;
+      }
     }
     soup_.points.push_back(point);
-    if (has_normal) normals_.push_back(normal);
     return true;
   }
 
@@ -189,7 +191,7 @@ class AsciiBody : TextSoupReader {
   }
 
   const Header& header_;
-  std::vector<Vec3> normals_;  // of the points, where they are read
+  VertexExtras extras_;
 };
 
 }  // namespace

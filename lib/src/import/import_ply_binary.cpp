@@ -11,6 +11,7 @@
 #include <string>
 
 #include "import/import_ply.hpp"
+#include "import/ply_extras.hpp"
 
 namespace fdcg::bake::ply {
 namespace {
@@ -73,7 +74,7 @@ class BinaryBody : SoupReader {
     bool is_read = true;
     for (const ElementKind& element : header_.elements)
       is_read = is_read && read_element(element);
-    spread_normals(normals_, soup_);
+    extras_.spread(soup_);
     return result(is_read && check_end());
   }
 
@@ -119,14 +120,14 @@ class BinaryBody : SoupReader {
     std::array<Scalar, 3> type{};
     std::size_t row_bytes = 0;
     for (const Property& property : element.properties) {
-      if (property.role != Role::none && !is_of_normal(property.role)) {
+      if (property.role != Role::none && !is_extra(property.role)) {
         const std::size_t k = static_cast<std::size_t>(property.role) - static_cast<std::size_t>(Role::x);
         at[k] = row_bytes;
         type[k] = property.value;
       }
       row_bytes += size_of(property.value);
     }
-    read_fixed_normals(element, row_bytes);
+    read_fixed_extras(element, row_bytes);
     const auto all = [&type](Scalar wanted) { return type[0] == wanted && type[1] == wanted && type[2] == wanted; };
     if (all(Scalar::f32)) {
       soup_.relative_quantum = 0x1p-24;
@@ -147,14 +148,12 @@ class BinaryBody : SoupReader {
   }
 
   // Of all rows, before the points are read.
-  void read_fixed_normals(const ElementKind& element, std::size_t row_bytes) {
-    const auto has = [](const Property& property) { return is_of_normal(property.role); };
-    if (!std::any_of(element.properties.begin(), element.properties.end(), has)) return;
-    normals_.resize(static_cast<std::size_t>(element.count));
+  void read_fixed_extras(const ElementKind& element, std::size_t row_bytes) {
+    extras_.begin(element);
     std::size_t at = 0;
     for (const Property& property : element.properties) {
-      for (std::size_t row = 0; has(property) && row < normals_.size(); ++row)
-        component_of(normals_[row], property.role) = load_scalar<kSwap>(property.value, p_ + row * row_bytes + at);
+      for (std::size_t row = 0; is_extra(property.role) && row < element.count; ++row)
+        extras_.set(row, property, load_scalar<kSwap>(property.value, p_ + row * row_bytes + at));
       at += size_of(property.value);
     }
   }
@@ -332,7 +331,7 @@ class BinaryBody : SoupReader {
   }
 
   const Header& header_;
-  std::vector<Vec3> normals_;  // of the points, where they are read
+  VertexExtras extras_;
   const char* p_;
   const char* end_;
 };

@@ -301,6 +301,39 @@ namespace Fdcg {
   }
 
   [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_visual_vertex {
+    public fixed float position[3];
+    public uint corner;
+    public fixed short normal[4];
+    public fixed float uv[2];
+    public fixed ushort colour[4];
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_visual_material {
+    public fixed byte name[64];
+    public fixed float base_colour[4];
+    public uint first_index;
+    public uint index_count;
+    public uint flags;
+    public uint reserved;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_visual {
+    public fdcg_visual_vertex* vertices;
+    public uint* indices;
+    public uint* nodes;
+    public fdcg_visual_material* materials;
+    public uint vertex_count;
+    public uint index_count;
+    public uint material_count;
+    public uint reserved;
+    public fixed double origin[3];
+    public double metres_per_unit;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
   public unsafe struct fdcg_surface_hit {
     public uint struct_bytes;
     public uint state;
@@ -714,6 +747,9 @@ namespace Fdcg {
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern void fdcg_step(fdcg_graph* graph, fdcg_params* @params, fdcg_contact* contact, double* hip_object_m, fdcg_result* result);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_get_visual(fdcg_graph* graph, fdcg_visual* visual, fdcg_error* error);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern void fdcg_surface_hit_init(fdcg_surface_hit* hit, uint struct_bytes);

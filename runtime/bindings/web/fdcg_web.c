@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "fdcg/fdcg.h"
+#include "fdcg/visual.h"
 
 #define EXPORT(name) __attribute__((export_name(#name))) name
 
@@ -17,6 +18,8 @@ _Static_assert(offsetof(fdcg_side_info, connection) == 32 && sizeof(fdcg_side_in
 _Static_assert(offsetof(fdcg_connection_info, corner) == 32 && sizeof(fdcg_connection_info) == 64, "edge: 4 doubles, 8 words");
 _Static_assert(offsetof(fdcg_corner_info, fan_count) == 48 && sizeof(fdcg_corner_info) == 56, "corner: 6 doubles, 2 words");
 
+_Static_assert(offsetof(fdcg_visual, vertex_count) == 16 && sizeof(fdcg_visual) == 64, "visual: 4 addresses, 4 words, 4 doubles");
+
 enum { kMostFan = 4096, kMostSweeps = 100000, kMostMaterials = 64 };
 
 static fdcg_graph graph;
@@ -25,6 +28,7 @@ static fdcg_params params;
 static fdcg_material materials[kMostMaterials], wanted_materials[kMostMaterials];
 static fdcg_result result;
 static fdcg_error error;
+static fdcg_visual visual;
 static double hip[3];
 static union {
   fdcg_node_info node;
@@ -78,6 +82,11 @@ const fdcg_header* EXPORT(fdcg_web_header)(void) {
 
 const uint32_t* EXPORT(fdcg_web_source_map)(void) {
   return graph.source_map;
+}
+
+/* The mesh for the eye; NULL: the file has none, or it is damaged. */
+const fdcg_visual* EXPORT(fdcg_web_visual)(void) {
+  return fdcg_get_visual(&graph, &visual, &error) == FDCG_OK ? &visual : NULL;
 }
 
 /* ---- contact ------------------------------------------------------------------------------------------------------------ */

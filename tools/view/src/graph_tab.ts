@@ -11,6 +11,7 @@ import { grouped } from './numbers';
 import { TYPES } from './runtime';
 import { SurfaceMaterial } from './surface_material';
 import { themeColor } from './theme';
+import { visualOf } from './visual_model';
 
 export type Feature = { kind: 'node' | 'connection' | 'corner'; number: number };
 const KINDS = ['node', 'connection', 'corner'] as const;
@@ -25,6 +26,9 @@ export class GraphTab implements Tab {
   private readonly material = new SurfaceMaterial(true);
   private readonly surface: DetailedSurface;
   private readonly edges: LineSegments[];
+  private readonly hasSeen: boolean; // the mesh for the eye
+  private seen: DetailedSurface | undefined;
+  private seenMaterials: string[] = [];
   private readonly records = h('pre.records', { tabIndex: 0, 'aria-label': 'Records of what is picked' });
   private readonly boxes = new Group();
   private levels: BoxLevel[] | undefined;
@@ -38,6 +42,7 @@ export class GraphTab implements Tab {
     private readonly showMesh: (shown: boolean) => void,
   ) {
     this.surface = new DetailedSurface(context.stage, model.geometry, this.material);
+    this.hasSeen = model.runtime.visual() !== undefined;
     this.edges = TYPES.map((_, type) => {
       const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(model.lines[type]!, 3));
       return new LineSegments(geometry, new LineBasicMaterial());
@@ -49,7 +54,7 @@ export class GraphTab implements Tab {
     this.group.visible = false;
     context.stage.content.add(this.group);
     this.element.append(this.counts(), this.looks(), this.finder(), this.records);
-    this.colour('plain');
+    this.colour(this.hasSeen ? 'seen' : 'plain');
     this.applyTheme();
     this.showRecords();
   }
@@ -65,7 +70,8 @@ export class GraphTab implements Tab {
       h('div.legend', {}, checkbox(`${type} (${grouped(header.types[k]!)})`, type !== 'coplanar' || header.types[k]! > 0, (shown) => this.showEdges(k, shown), `edges-${type}`), h(`span.swatch.${type}`, { 'aria-hidden': 'true' })),
     );
     const select = h('select', { id: 'node-colour', onchange: () => this.colour(select.value) });
-    for (const [value, text] of [['plain', 'one colour'], ['number', 'by node: merged regions'], ['sides', 'by number of sides'], ['material', 'by material']] as const) select.append(h('option', { value }, text));
+    for (const [value, text] of [['plain', 'one colour'], ['number', 'by node: merged regions'], ['sides', 'by number of sides'], ['material', 'by material'], ...(this.hasSeen ? ([['seen', 'as they are seen']] as const) : [])] as const) select.append(h('option', { value }, text));
+    select.value = this.hasSeen ? 'seen' : 'plain';
     const level = h('select', { id: 'box-level', onchange: () => this.showBoxes(Number(select2().value)) });
     const select2 = (): HTMLSelectElement => level;
     level.append(h('option', { value: '-1' }, 'none'));
@@ -109,6 +115,7 @@ export class GraphTab implements Tab {
 
   private colour(by: string): void {
     this.colours = by;
+    this.showSeen(by === 'seen');
     const plain = themeColor('face-front');
     const { runtime } = this.model;
     const names = new Map<string, number>();
@@ -124,6 +131,17 @@ export class GraphTab implements Tab {
       return [plain.r, plain.g, plain.b];
     });
     this.context.stage.invalidate();
+  }
+
+  private showSeen(shown: boolean): void {
+    const visual = shown && this.seen === undefined ? visualOf(this.model) : undefined;
+    if (visual !== undefined) {
+      this.seen = new DetailedSurface(this.context.stage, visual.geometry, new SurfaceMaterial(true, true));
+      this.seenMaterials = visual.materials;
+      this.group.add(this.seen.group);
+    }
+    if (this.seen !== undefined) this.seen.group.visible = shown;
+    this.surface.group.visible = !shown || this.seen === undefined;
   }
 
   private showBoxes(level: number): void {
@@ -263,7 +281,7 @@ export class GraphTab implements Tab {
     this.edges.forEach((lines, type) => ((lines.material as LineBasicMaterial).color = themeColor(TYPES[type]!)));
   }
   state(): Record<string, unknown> {
-    return { picked: this.picked, planes: this.planes, busy: this.model.busyCorners.length, colours: this.colours, records: this.records.textContent, edges: this.edges.map((lines) => lines.visible), boxes: this.boxes.children.length };
+    return { picked: this.picked, planes: this.planes, busy: this.model.busyCorners.length, colours: this.colours, seen: this.seenMaterials, records: this.records.textContent, edges: this.edges.map((lines) => lines.visible), boxes: this.boxes.children.length };
   }
 }
 

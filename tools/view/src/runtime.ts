@@ -9,6 +9,7 @@ interface Exports {
   fdcg_web_open(data: number, bytes: number): number;
   fdcg_web_message(): number;
   fdcg_web_source_map(): number;
+  fdcg_web_visual(): number;
   fdcg_web_hip(): number;
   fdcg_web_result(): number;
   fdcg_web_set_material(material: number, muStatic: number, muDynamic: number, stiffness: number): void;
@@ -125,6 +126,19 @@ export class Runtime {
   /** The open file's bytes, where they lie; until memory grows. */
   bytes(): Uint8Array {
     return new Uint8Array(this.x.memory.buffer, this.base, this.size);
+  }
+  /** fdcg_visual, checked, where it lies in memory; until memory grows. Undefined: the file has none. */
+  visual(): { vertices: DataView; indices: Uint32Array; materials: DataView } | undefined {
+    const at = this.x.fdcg_web_visual();
+    if (at === 0) return undefined;
+    const v = this.view(at);
+    const word = (k: number): number => v.getUint32(4 * k, true);
+    const { buffer } = this.x.memory;
+    return {
+      vertices: new DataView(buffer, word(0), 40 * word(4)),
+      indices: new Uint32Array(buffer, word(1), word(5)),
+      materials: new DataView(buffer, word(3), 96 * word(6)),
+    };
   }
   header(): GraphHeader {
     const v = this.view(this.base);

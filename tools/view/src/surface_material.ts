@@ -13,7 +13,13 @@ varying vec3 vWorld;
 attribute vec3 faceColor;
 varying vec3 vColor;
 #endif
+#ifdef SMOOTH
+varying vec3 vNormal;
+#endif
 void main() {
+#ifdef SMOOTH
+  vNormal = normalMatrix * normal;
+#endif
   vec4 eye = modelViewMatrix * vec4(position, 1.0);
   vPosition = eye.xyz;
 #ifdef FOCUSED
@@ -38,6 +44,9 @@ varying vec3 vWorld;
 #ifdef COLOURED
 varying vec3 vColor;
 #endif
+#ifdef SMOOTH
+varying vec3 vNormal;
+#endif
 void main() {
 #ifdef FOCUSED
   float kept = max(1.0 - ghost, smoothstep(0.8, 1.0, distance(vWorld, focus) / focusRadius));
@@ -45,7 +54,11 @@ void main() {
   float threshold = mod(cell.x * 5.0 + cell.y * 7.0 + mod(cell.x * cell.y, 2.0) * 3.0, 16.0) / 16.0;
   if (kept < 0.999 && threshold >= kept) discard;
 #endif
+#ifdef SMOOTH
+  vec3 normal = vNormal;
+#else
   vec3 normal = cross(dFdx(vPosition), dFdy(vPosition));
+#endif
   float perLength = inversesqrt(dot(normal, normal));
   float facing = abs(dot(normal, vPosition)) * perLength * inversesqrt(dot(vPosition, vPosition));
   float light = 0.33 + 0.58 * facing + 0.13 * normal.y * perLength;
@@ -59,12 +72,13 @@ void main() {
 }`;
 
 export class SurfaceMaterial extends ShaderMaterial {
-  constructor(coloured = false) {
+  /** `smooth`: by the geometry's normals, in place of the faces'. */
+  constructor(coloured = false, smooth = false) {
     super({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       side: DoubleSide,
-      defines: coloured ? { COLOURED: '' } : {},
+      defines: { ...(coloured ? { COLOURED: '' } : {}), ...(smooth ? { SMOOTH: '' } : {}) },
       polygonOffset: true,
       polygonOffsetFactor: 1,
       polygonOffsetUnits: 1,
