@@ -17,9 +17,9 @@ struct Part {
   const char* name;
   void (*measure)(const LawOptions&, Bars&);
 };
-constexpr Part kParts[] = {{"ramps", measure_ramps},    {"slides", measure_slides}, {"stick-slip", measure_stick_slip},
-                           {"creep", measure_creep},    {"energy", measure_energy}, {"tessellation", measure_tessellation},
-                           {"shading", measure_shading}};
+constexpr Part kParts[] = {{"ramps", measure_ramps},     {"slides", measure_slides}, {"stick-slip", measure_stick_slip},
+                           {"creep", measure_creep},     {"energy", measure_energy}, {"tessellation", measure_tessellation},
+                           {"shading", measure_shading}, {"scans", measure_scans}};
 
 }  // namespace
 

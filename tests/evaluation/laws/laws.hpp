@@ -35,6 +35,9 @@ void measure_tessellation(const LawOptions& options, Bars& bars);
 // What is felt of a sphere's facets, with and without shading (shading.csv).
 void measure_shading(const LawOptions& options, Bars& bars);
 
+// The same of scans (scans.csv), where Debian's libcgal-demo has them.
+void measure_scans(const LawOptions& options, Bars& bars);
+
 // Break-away, leap, turn and the saw-tooth of a pulled hand against their formulas (stick_slip.csv, stick_slip_trace.csv).
 void measure_stick_slip(const LawOptions& options, Bars& bars);
 
