@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A device of one's own in one file: a mass on a hand's spring, a second above and a second 3 mm below. Its settings may say
  * "absent", "lies" (it echoes what nobody sent) or "loses" (it is gone after half a second). */
+#define _POSIX_C_SOURCE 200112L /* clocks, where the compiler is strict */
 #include <fdcg/transport.h>
 #include <stdio.h>
 #include <string.h>

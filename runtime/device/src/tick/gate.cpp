@@ -58,7 +58,9 @@ constexpr FaultWords kWords[kFaults] = {
     {"none", "no fault"},
     {"unknown-limit", "the profile leaves a limit unknown, so there is no force; fill in its \"limits\""},
     {"silence", "no good report for 10 ms; look at the cable and the device, then arm again"},
-    {"writer-stuck", "the device did not take a force for 5 ms; look at the device, then arm again"},
+    {"writer-stuck",
+     "a force was not taken for 5 ms: the device holds writes up, or this computer did not run the thread that writes; look at "
+     "the device, give this program real-time priority, then arm again"},
     {"write-failed", "a force could not be written; the device is gone or refuses its output report"},
     {"read-failed", "the device is gone; plug it in again, then arm"},
     {"not-finite", "a force or position was not a finite number; please report this with the log"},
