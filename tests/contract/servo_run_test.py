@@ -6,6 +6,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -213,7 +214,10 @@ class Run(ServoCase):
                 "simulation": {"mass_kg": 0.1, "damping_n_s_per_m": 0.5, "hand_stiffness_n_per_m": 300, "hand_damping_n_s_per_m": 1,
                                "script": [{"at_s": at, "place_m": [0, 0, z]} for at, z in ((0, 0.01), (1, 0.01), (2, -0.005), (100, -0.005))]}}
         scene = self.scene(objects=[cube], devices=[hand], limits={"force_n": 5})
-        out = self.run_scene(scene, "--arm", "--no-log", "--for", "4").stdout
+        for _ in range(5):
+            out = self.run_scene(scene, "--arm", "--no-log", "--for", "4").stdout
+            if not re.search(rb"disarmed \((host-late|writer-stuck|silence)\)", out):
+                break  # it was there until it shook
         self.assertRegex(out, rb"hand: (it shakes: the scene's forces are cut to 10 %|disarmed: the loop of hand, device and scene shakes)")
         log = self.path("shaking.fdcglog")
         self.run_scene(scene, "--arm", "--log", log, "--for", "4", "--fast")

@@ -9,7 +9,7 @@ set(servo_classes_asan servo_run_test:Run servo_run_test:Latency servo_run_test:
     dashboard_test:Bridges dashboard_test:Sockets dashboard_test:Recordings dashboard_test:Keys)
 # What has threads beside each other; tests that want so many ticks in a time fail under this sanitizer.
 set(servo_classes_tsan servo_run_test:Hostile servo_signals_test:Stops servo_strikes_test:Hosts servo_strikes_test:Lags
-    dashboard_test:Sockets)
+    serial_test:Faults plugins_test:Libraries plugins_test:Haply dashboard_test:Sockets)
 # a crash is the handler's of the host, not the sanitizer's; the host's own memory is what is looked at
 set(sanitizer_options handle_segv=0:handle_abort=0:handle_sigbus=0:handle_sigfpe=0:handle_sigill=0:handle_sigtrap=0)
 
