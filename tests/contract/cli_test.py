@@ -597,6 +597,19 @@ class Replay(Case):
         for row in on_top:
             self.assertLess(abs(float(row["fx"])) + abs(float(row["fy"])), 1e-9)
 
+    def test_a_relief_is_felt_as_its_heights_say(self):
+        graph = self.compiled_cube("--units", "cm")
+        places = [0.0101] * 5 + [0.0085] * 60
+        path = self.write("ridges.csv", "t,x,y,z\n" + "".join(f"{i / 1000},{0.002 + 1e-4 * i},0.005,{z}\n" for i, z in enumerate(places)))
+        logs = [self.servo("replay", graph, "--trajectory", path, "-o", "-", "--mu-s", "0", "--mu-d", "0", "--relief", "ridges=1e-4,1e-3").stdout
+                for _ in range(2)]
+        self.assertEqual(*logs)
+        wave = 2 * math.pi / 1e-3
+        for row in self.rows(logs[0])[7:]:
+            x = float(row["hip_x"])
+            self.assertAlmostEqual(1.5 + 0.1 * math.sin(wave * x), float(row["fz"]), delta=1e-5)
+            self.assertAlmostEqual(-1e-4 * wave * math.cos(wave * x) * float(row["fz"]), float(row["fx"]), delta=1e-4)
+
     def test_twice_gives_the_same_bytes(self):
         graph, path = self.compiled_cube(), self.slide(9000)
         logs = []
@@ -644,6 +657,9 @@ class Replay(Case):
             (("replay", graph, "--trajectory", path, "--mu-d", "-1"), 2, ("--mu-d", "'-1'")),
             (("replay", graph, "--trajectory", path, "--stiffness", "nan"), 2, ("--stiffness", "'nan'")),
             (("replay", graph, "--trajectory", path, "--edge-friction", "glue"), 2, ("wedge, paper",)),
+            (("replay", graph, "--trajectory", path, "--relief", "ridges=1e-4"), 2, ("--relief", "ridges=1e-4")),
+            (("replay", graph, "--trajectory", path, "--relief", "grain=1e-4,1e-3,nan"), 2, ("grain=1e-4,1e-3,nan",)),
+            (("replay", graph, "--trajectory", path, "--relief", "bumps=1e-4,0"), 2, ("--relief",)),
             (("replay", graph, "--trajectory", path, "--shading"), 2, ("no normals", "--normals faces")),
             (("replay", graph, "--trajectory", path, "-o", path), 2, ("overwrite",)),
             (("replay", self.path("missing.fdcg"), "--trajectory", path), 3, ("missing.fdcg",)),

@@ -15,6 +15,7 @@
 #include "friction_options.hpp"
 #include "hand_path.hpp"
 #include "path_warnings.hpp"
+#include "relief_option.hpp"
 #include "replay_session.hpp"
 #include "servo_commands.hpp"
 #include "status_text.hpp"
@@ -41,6 +42,7 @@ struct ReplayArguments {
   std::string log;
   fdcg_params params = fdcg_make_params();
   FrictionOptions friction;
+  ReliefOption relief;
   std::string path, written_path;
   bool has_mu_dynamic = false;
   bool quiet = false;
@@ -123,8 +125,9 @@ void append_row(std::string& text, const TrajectoryPoint& point, const fdcg_resu
 }
 
 // Steps every point, logs every tick. The clock is read around the step alone.
-ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, const std::vector<TrajectoryPoint>& points,
-                     fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log, tools::ProgressBar& bar) {
+ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, ReliefOption& relief,
+                     const std::vector<TrajectoryPoint>& points, fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log,
+                     tools::ProgressBar& bar) {
   ReplaySummary summary;
   std::vector<Tick> ticks(std::min(kChunkTicks, points.size()));
   std::string text = kLogHeader;
@@ -132,7 +135,12 @@ ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, const s
     const std::size_t count = std::min(kChunkTicks, points.size() - begin);
     for (std::size_t i = 0; i < count; ++i) {
       const Clock::time_point before = Clock::now();
-      fdcg_step(&graph, &params, &contact, points[begin + i].hip_object_m.data(), &ticks[i].result);
+      const double* const hip_m = points[begin + i].hip_object_m.data();
+      if (relief.is_given()) {
+        relief.step(graph, params, hip_m, &contact, &ticks[i].result);
+      } else {
+        fdcg_step(&graph, &params, &contact, hip_m, &ticks[i].result);
+      }
       const std::uint64_t measured = nanoseconds(Clock::now() - before);
       ticks[i].step_ns = measured - std::min(measured, clock_ns);
     }
@@ -304,7 +312,7 @@ int run_replay(ReplayArguments& arguments) {
   }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};
-  const ReplaySummary summary = replay(graph, arguments.params, points, contact, clock_ns, log, bar);
+  const ReplaySummary summary = replay(graph, arguments.params, arguments.relief, points, contact, clock_ns, log, bar);
   if (summary.in_state[FDCG_FREE] == summary.ticks) warn_of_nothing_touched(graph, points, arguments.trajectory);
   fdcg_close(&graph);
   if (const int code = tools::commit_all({&log}); code != kClean) return code;
@@ -334,6 +342,7 @@ void add_graph_options(CLI::App& command, ReplayArguments& arguments) {
       "--edge-friction", "RULE", {{"wedge", FDCG_EDGE_WEDGE}, {"paper", FDCG_EDGE_PAPER}}, params.edge_friction,
       "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 paper.");
   arguments.friction.declare(contact, params);
+  arguments.relief.declare(contact);
 }
 
 }  // namespace
@@ -368,8 +377,8 @@ every output is compared bit for bit.
             arguments->has_mu_dynamic = command->count("--mu-d") != 0;
             if (!dev::is_session_log(arguments->graph)) return run_replay(*arguments);
             std::string given;
-            for (const char* const name :
-                 {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness", "--damping", "--edge-friction"})
+            for (const char* const name : {"--trajectory", "--path", "--write-path", "--mu-s", "--mu-d", "--stiffness",
+                                           "--damping", "--edge-friction", "--relief"})
               if (given.empty() && command->count(name) != 0) given = name;
             for (const char* const name : kFrictionOptions)
               if (given.empty() && command->count(name) != 0) given = name;

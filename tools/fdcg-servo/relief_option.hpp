@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Option --relief: heights that are felt and not in the mesh (fdcg/relief.h).
+#pragma once
+
+#include <optional>
+
+#include "../common/options.hpp"
+#include "fdcg/relief.h"
+
+namespace fdcg::servo {
+
+class ReliefOption {
+ public:
+  void declare(const tools::OptionGroup& group);
+  [[nodiscard]] bool is_given() const { return waves_.has_value(); }
+  // One tick of `contact` with the relief, which was given; where hip_m is not finite, without.
+  void step(const fdcg_graph& graph, const fdcg_params& params, const double* hip_m, fdcg_contact* contact,
+            fdcg_result* result);
+
+ private:
+  std::optional<fdcg_waves> waves_;
+  fdcg_relief relief_{};
+  fdcg_relief_state state_{};
+};
+
+}  // namespace fdcg::servo
