@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   program.option("--meshes", meshes, "folder of meshes that are bodies too, after the others, each scaled to 0.1 m");
   program.option("--way", options.ways, "only these of the plan's ways");
   program.option("--ticks", options.ticks,
-                 "of each way; default 1,200 where the frontier is over several, else 10,000; quick 2,000 and 4,000", 100, 1e6);
+                 "of each way; default 1,000 where the frontier is over several, else 10,000; quick 2,000 and 4,000", 100, 1e6);
   program.option("--rival", options.rivals, "shared object or pipe:COMMAND that takes part too (docs/rivals.md)");
   program.option("--contender", options.contenders, "only these, by their names in contenders.csv");
   program.option("--export", options.export_folder, "folder for meshes, ways with their truth, and every contender's answers");

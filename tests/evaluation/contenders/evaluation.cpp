@@ -24,7 +24,9 @@ namespace {
 // Those of rivals/, whose libraries were found when this was built.
 const std::vector<std::string> kShippedRivals = {FDCG_RIVALS_SHIPPED};
 
-// Closest points err as Embree's and CGAL's do, and these take ten times as long: they are measured for the frontier alone.
+constexpr std::uint32_t kLargestBullet = 200'000;  // faces; its step takes over 30 microseconds on a million
+
+// Closest points err as Embree's and CGAL's do, and these take longer: they are measured for the frontier alone.
 bool answers_as_another(const ContenderInfo& info) {
   return info.name == "fcl_closest" || info.name == "bullet_closest";
 }
@@ -130,10 +132,12 @@ bool Evaluation::is_wanted(const WayPlan& way) const {
 
 Contenders Evaluation::entrants_of(const Ground& ground, const Body& body) const {
   Contenders list = contenders_for(ground, body, options_.is_quick);
-  for (const std::vector<std::string>* rivals : {&kShippedRivals, &options_.rivals}) {
-    for (const std::string& rival : *rivals)
+  for (const std::string& rival : kShippedRivals) {
+    if (body.faces <= kLargestBullet || rival.find("rival_bullet") == std::string::npos)
       list.push_back(make_rival(rival, ground.soup()));
   }
+  for (const std::string& rival : options_.rivals)
+    list.push_back(make_rival(rival, ground.soup()));
   if (options_.contenders.empty()) return list;
   std::erase_if(list, [&](const auto& contender) {
     return std::find(options_.contenders.begin(), options_.contenders.end(), contender->info().name) ==

@@ -22,7 +22,7 @@ constexpr const char* kAsBrought[] = {"scan_24k", "drilled_plate", "squashed_10k
 }  // namespace
 
 WayMeasure measure_of(const WayPlan& way, bool is_quick) {
-  if (way.counts) return is_quick ? WayMeasure{4, 2000, 10, 0.15} : WayMeasure{30, 1200, 5, 0.15};
+  if (way.counts) return is_quick ? WayMeasure{4, 2000, 10, 0.15} : WayMeasure{30, 1000, 3, 0.15};
   return {1, std::min(is_quick ? 4000u : 10'000u, way.most_ticks), 0, is_quick ? 0.2 : 0.4};
 }
 
@@ -60,10 +60,9 @@ std::vector<BodyPlan> plan_of(bool is_quick) {
   plan.push_back({"knife", {kPress, dive}});
   plan.push_back({"foil", {kPress}});
   plan.push_back({"needle_strip", {kPress, edges}});
-  // a tree's closest point on a fan costs half a millisecond a tick
-  constexpr std::uint32_t kFanTicks = 500;
-  plan.push_back(
-      {"fan_peak", {{WayKind::hand, 1000, 0, 0, false, kFanTicks}, {WayKind::fan_orbit, 1000, 0, 0, false, kFanTicks}}});
+  // a tree's closest point on a fan, and a walk over neighbours there, cost half a millisecond a tick and more
+  constexpr std::uint32_t kFanTicks = 300;
+  plan.push_back({"fan_peak", {{WayKind::fan_orbit, 1000, 0, 0, false, kFanTicks}}});
   return plan;
 }
 

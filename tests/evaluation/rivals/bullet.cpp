@@ -21,6 +21,8 @@ struct Body {
   std::unique_ptr<btTriangleIndexVertexArray> triangles;
   std::unique_ptr<btBvhTriangleMeshShape> shape;
   btVector3 last;  // answer
+  bool has_last = false;
+  btScalar first_reach = 0;
   double stiffness_n_per_m = 0;
 };
 
@@ -47,6 +49,7 @@ class Nearest : public btTriangleCallback {
       offer(nearest_on_segment(hip_, corners[k], corners[(k + 1) % 3]), normal);
   }
   [[nodiscard]] const btVector3& point() const { return point_; }
+  [[nodiscard]] btScalar distance() const { return btSqrt(square_); }
   [[nodiscard]] bool is_inside() const { return (hip_ - point_).dot(normal_) < 0; }
 
  private:
@@ -76,7 +79,9 @@ void* load(const fdcg_rival_mesh* mesh, double stiffness_n_per_m, char error[256
         static_cast<int>(mesh->triangle_count), body->corners.data(), static_cast<int>(3 * sizeof(int)),
         static_cast<int>(mesh->point_count), &body->points[0][0], static_cast<int>(sizeof(btVector3)));
     body->shape = std::make_unique<btBvhTriangleMeshShape>(body->triangles.get(), true);
-    body->last = body->points[0];
+    constexpr btScalar kFirst = 1.f / 64;  // of the bounds
+    const btVector3 size = body->shape->getLocalAabbMax() - body->shape->getLocalAabbMin();
+    body->first_reach = std::max(kFirst * size.length(), SIMD_EPSILON);
     return body.release();
   } catch (const std::exception& thrown) {
     std::snprintf(error, 256, "%s", thrown.what());
@@ -89,19 +94,22 @@ void unload(void* body) {
 }
 
 void reset(void* of) {
-  Body& body = *static_cast<Body*>(of);
-  body.last = body.points[0];
+  static_cast<Body*>(of)->has_last = false;
 }
 
 void step(void* of, const double hip_m[3], fdcg_rival_result* result) {
   Body& body = *static_cast<Body*>(of);
   const btVector3 hip(static_cast<btScalar>(hip_m[0]), static_cast<btScalar>(hip_m[1]), static_cast<btScalar>(hip_m[2]));
   constexpr btScalar kRounding = 1e-6f;  // the last answer itself is found again
-  const btScalar reach = (hip - body.last).length() * (1 + kRounding) + kRounding;
-  const btVector3 half(reach, reach, reach);
-  Nearest nearest(hip, body.last);
-  body.shape->processAllTriangles(&nearest, hip - half, hip + half);
+  Nearest nearest(hip, hip);
+  btScalar reach = body.has_last ? (hip - body.last).length() * (1 + kRounding) + kRounding : body.first_reach;
+  for (bool is_found = false; !is_found; reach *= 2) {  // of the first tick: until the nearest in the box is within its ball
+    const btVector3 half(reach, reach, reach);
+    body.shape->processAllTriangles(&nearest, hip - half, hip + half);
+    is_found = nearest.distance() <= reach;
+  }
   body.last = nearest.point();
+  body.has_last = true;
   for (int k = 0; k < 3; ++k) {
     const double offset = nearest.is_inside() ? double{nearest.point()[k]} - hip_m[k] : 0;
     result->god_object_m[k] = hip_m[k] + offset;
@@ -119,8 +127,9 @@ uint64_t memory(const void* of) {
 
 #define FDCG_TEXT(number) #number
 #define FDCG_TEXT_OF(macro) FDCG_TEXT(macro)
-constexpr fdcg_rival kRival = {FDCG_RIVAL_ABI, 0,    "bullet_closest", "closest_point", "f32", "Bullet " FDCG_TEXT_OF(BT_BULLET_VERSION), load, unload,
-                               reset,          step, memory,           nullptr};
+constexpr fdcg_rival kRival = {
+    FDCG_RIVAL_ABI, 0,    "bullet_closest", "closest_point", "f32", "Bullet " FDCG_TEXT_OF(BT_BULLET_VERSION), load, unload,
+    reset,          step, memory,           nullptr};
 
 }  // namespace
 
