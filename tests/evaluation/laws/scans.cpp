@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is felt of the facets of scans, with and without shading: a HIP slides without friction 1.5 mm below a smooth curve
-// through the surface. Ways on which the nearest place of the surface leaps by more than that depth are told apart: there the
+// What is felt of the facets of scans, with and without shading: a HIP slides without friction below a smooth curve
+// through the surface. Ways on which the nearest place of the surface leaps by more than the depth are told apart: there the
 // hand is deeper than the surface bends, and the force leaps whatever the normals.
 #include <algorithm>
 #include <array>
@@ -19,8 +19,9 @@ namespace fdcg::test {
 namespace {
 
 constexpr double kSize_m = 0.15;  // the largest side of every scan
-constexpr double kWay_m = 0.03, kDepth_m = 1.5e-3, kRate_hz = 1000, kLow_hz = 80, kHigh_hz = 450;
-constexpr int kTicks = 300;  // 0.1 m/s
+constexpr double kWay_m = 0.03, kRate_hz = 1000, kLow_hz = 80, kHigh_hz = 450;
+constexpr std::array<double, 2> kDepths_m = {1.5e-3, 3e-3};  // bars are for the first, 1.5 N
+constexpr int kTicks = 300;                                  // 0.1 m/s
 constexpr int kEntryTicks = 40, kSettleTicks = 30;
 constexpr std::size_t kCoefficients = 6;  // of the curve, a polynomial
 
@@ -75,6 +76,7 @@ std::array<double, kCoefficients> fitted(const std::vector<double>& heights) {
 struct ScanWay {
   Hip middle, normal, direction;
   std::array<double, kCoefficients> curve;
+  double depth_m;
 
   // From above the surface in the first ticks, which count below 0.
   [[nodiscard]] Hip at(int tick) const {
@@ -82,7 +84,7 @@ struct ScanWay {
     double height = 0;
     for (std::size_t k = kCoefficients; k-- > 0;)
       height = height * s + curve[k];
-    const double depth = tick < 0 ? kDepth_m * (1 + 2.0 * tick / kEntryTicks) : kDepth_m;
+    const double depth = tick < 0 ? depth_m * (1 + 2.0 * tick / kEntryTicks) : depth_m;
     return along(along(middle, direction, s * kWay_m), normal, height - depth);
   }
 };
@@ -98,7 +100,7 @@ std::optional<ScanWay> draw_way(const fdcg_graph& graph, Random& random) {
   const std::optional<Met> met = cast(graph, along(inside, out, 2 * kSize_m), along({}, out, -1), 4 * kSize_m);
   const Hip side = point_of(random.direction());
   if (!met) return std::nullopt;
-  ScanWay way{met->place, met->normal, across(met->normal, side), {}};
+  ScanWay way{met->place, met->normal, across(met->normal, side), {}, kDepths_m[0]};
   std::vector<double> heights;
   for (int i = 0; i <= kTicks; ++i) {
     const Hip above =
@@ -109,7 +111,7 @@ std::optional<ScanWay> draw_way(const fdcg_graph& graph, Random& random) {
   }
   way.curve = fitted(heights);
   for (int i = 0; i <= kTicks; ++i) {
-    const double off = dot(along(way.at(i), way.middle, -1), way.normal) + kDepth_m - heights[static_cast<std::size_t>(i)];
+    const double off = dot(along(way.at(i), way.middle, -1), way.normal) + way.depth_m - heights[static_cast<std::size_t>(i)];
     if (std::fabs(off) > kMostOff_m) return std::nullopt;
   }
   return way;
@@ -172,36 +174,40 @@ void measure_scan(const LawOptions& options, const std::filesystem::path& path, 
   compile.jobs = options.threads;
   const CompiledMesh mesh(*soup, compile);
   Random random(options.seed);
-  std::array<Sums, 2> sums;  // of calm ways, and of those that leap
-  for (int i = 0; i < tries && sums[0].ways < wanted; ++i) {
-    const std::optional<ScanWay> way = draw_way(mesh.view(), random);
-    if (!way) continue;
-    const std::optional<double> facets = felt(mesh.view(), *way, 0);
-    const std::optional<double> shaded = felt(mesh.view(), *way, FDCG_FRICTION_SHADING);
-    if (!facets || !shaded) continue;
-    Sums& sum = sums[largest_leap_m(mesh.view(), *way) > kDepth_m ? 1 : 0];
-    ++sum.ways;
-    sum.facets += *facets;
-    sum.shaded += *shaded;
+  std::array<std::array<Sums, 2>, kDepths_m.size()> sums;  // by depth: of calm ways, and of those that leap
+  for (int i = 0; i < tries && sums[0][0].ways < wanted; ++i) {
+    std::optional<ScanWay> way = draw_way(mesh.view(), random);
+    for (std::size_t d = 0; way && d < kDepths_m.size(); ++d) {
+      way->depth_m = kDepths_m[d];
+      const std::optional<double> facets = felt(mesh.view(), *way, 0);
+      const std::optional<double> shaded = felt(mesh.view(), *way, FDCG_FRICTION_SHADING);
+      if (!facets || !shaded) continue;
+      Sums& sum = sums[d][largest_leap_m(mesh.view(), *way) > way->depth_m ? 1 : 0];
+      ++sum.ways;
+      sum.facets += *facets;
+      sum.shaded += *shaded;
+    }
   }
   const std::string name = path.stem().string();
   constexpr const char* kWays[] = {"calm", "leaping"};
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    const Sums& sum = sums[k];
-    if (sum.ways == 0) continue;
-    table.row(name, mesh.view().header->node_count, kWays[k], sum.ways, 1e3 * std::sqrt(sum.facets / sum.ways),
-              1e3 * std::sqrt(sum.shaded / sum.ways));
+  for (std::size_t d = 0; d < kDepths_m.size(); ++d) {
+    for (std::size_t k = 0; k < sums[d].size(); ++k) {
+      const Sums& sum = sums[d][k];
+      if (sum.ways == 0) continue;
+      table.row(name, mesh.view().header->node_count, 1e3 * kDepths_m[d], kWays[k], sum.ways,
+                1e3 * std::sqrt(sum.facets / sum.ways), 1e3 * std::sqrt(sum.shaded / sum.ways));
+    }
   }
   constexpr double kMostShare = 1.0 / 3;
   bars.at_most("scans: vibration of 80 to 450 Hz as a share of the facets', " + name,
-               std::sqrt(sums[0].shaded / sums[0].facets), kMostShare, "",
+               std::sqrt(sums[0][0].shaded / sums[0][0].facets), kMostShare, "",
                "where the nearest place does not leap; 0.1 m/s, 1.5 N, 15 cm large");
 }
 
 }  // namespace
 
 void measure_scans(const LawOptions& options, Bars& bars) {
-  Table table(options.output, "scans", {"scan", "faces", "ways", "count", "facets_mn", "shaded_mn"});
+  Table table(options.output, "scans", {"scan", "faces", "depth_mm", "ways", "count", "facets_mn", "shaded_mn"});
   for (const char* const name : {"bunny00.off", "armadillo.off", "elephant.off"}) {
     const std::filesystem::path path = std::filesystem::path(FDCG_CGAL_DATA) / "data/meshes" / name;
     if (std::filesystem::exists(path)) measure_scan(options, path, table, bars);

@@ -134,13 +134,13 @@ def scans(run):
         return
     figure, axes = subplots(1)
     ax = axes[0][0]
-    labels = [f"{r['scan']}, {r['ways']}" for r in table.rows]
+    labels = [f"{r['scan']}, {r['depth_mm']:g} mm, {r['ways']}" for r in table.rows]
     for index, (column, name) in enumerate((("facets_mn", "facets"), ("shaded_mn", "shaded by the cone"))):
         ax.barh([k + .4 * index for k in range(len(labels))], [r[column] for r in table.rows], height=.38, color=COLOURS[index], label=name)
     ax.set(yticks=[k + .2 for k in range(len(labels))], yticklabels=labels, xlabel="mN RMS", title="Vibration of the force, 80 to 450 Hz, on scans")
     legend(ax)
     yield finish("scans", figure, "Vibration of the force on scans, of facets and with shading",
-                 "Scans of 15 cm, a hand at 0.1 m/s, 1.5 mm deep. Leaping: the nearest place of the surface leaps by more than the depth "
+                 "Scans of 15 cm, a hand at 0.1 m/s with 1 N/mm. Leaping: the nearest place of the surface leaps by more than the depth "
                  "on the way, since the hand is deeper there than the surface bends, and so does the force of any method.")
 
 
