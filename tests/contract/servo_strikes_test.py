@@ -185,6 +185,7 @@ class Lags(StrikeCase):
                 for _ in range(3):
                     program.say("arm")
                     time.sleep(0.1)
+                program.fresh_status()
                 outputs = [event for event in self.device.events(since) if event.kind == TAKEN]
                 self.assertGreater(len(outputs), 100)
                 self.assertEqual(0, sum(event.is_enable for event in outputs), "it was armed while what is sent comes back too late")
