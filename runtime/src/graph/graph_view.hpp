@@ -73,13 +73,15 @@ class NodeRef {
   [[nodiscard]] uint32_t previous(uint32_t k) const { return (k == 0 ? side_count() : k) - 1; }
   [[nodiscard]] uint32_t next(uint32_t k) const { return k + 1 < side_count() ? k + 1 : 0; }
 
+  // voronoi_plane() where the graph has them.
+  [[nodiscard]] Plane<Real> stored_plane(uint32_t k) const {
+    const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
+    if (FDCG_MUTANT("rims-shifted")) return {vec(stored.normal), stored.offset + fault_shift()};
+    return {vec(stored.normal), stored.offset};
+  }
   // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model GRAPH-3).
   [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
-    if (__builtin_expect(graph_->has_planes(), true)) {
-      const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
-      if (FDCG_MUTANT("rims-shifted")) return {vec(stored.normal), stored.offset + fault_shift()};
-      return {vec(stored.normal), stored.offset};
-    }
+    if (__builtin_expect(graph_->has_planes(), true)) return stored_plane(k);
     Plane<Real> derived;
     derive_plane(k, &derived);
     return derived;

@@ -51,10 +51,12 @@ template <class Geometry, class Real = typename Geometry::Real>
   return first;
 }
 
-template <class Geometry, class Real = typename Geometry::Real>
+// kIsPlain: the graph is (GraphView::is_plain).
+template <bool kIsPlain = false, class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT Crossing<Real> first_crossing(NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
   for (uint32_t k = node.first_doubtful(to, bound); k < node.side_count(); ++k) {
-    if (node.voronoi_plane(k).distance(to) >= -bound) return first_crossing_from(k, node, from, to);
+    const Plane<Real> plane = kIsPlain ? node.stored_plane(k) : node.voronoi_plane(k);
+    if (plane.distance(to) >= -bound) return first_crossing_from(k, node, from, to);
   }
   return {};
 }
@@ -76,7 +78,7 @@ struct FaceMove {
 // rounding (contact-model FACE-7). Whether friction holds it is asked of its place: the next tick has no other.
 // Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
 // Changes nothing but friction.is_slipping.
-template <class Geometry, class Laws, class Real = typename Geometry::Real>
+template <bool kIsPlain = false, class Geometry, class Laws, class Real = typename Geometry::Real>
 FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
                                      Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
   using Kind = typename FaceMove<Real>::Kind;
@@ -95,7 +97,7 @@ FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec
   const Real part = FDCG_MUTANT("slides-half") ? (1 + shrink) / 2 : FDCG_MUTANT("slides-past") ? -shrink : shrink;
   const Vec3<Real> target = surface_point + offset * part;
   const Crossing<Real> crossing =
-      FDCG_MUTANT("rim-unseen") ? Crossing<Real>{} : first_crossing(node, god_object, target, bound);
+      FDCG_MUTANT("rim-unseen") ? Crossing<Real>{} : first_crossing<kIsPlain>(node, god_object, target, bound);
   return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
 }
 

@@ -42,7 +42,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
       there.side(there.next(back)));  // for the next crossing, of a triangle: the third is where this one began
   graph.prefetch_plainly(there.side(there.previous(back)));
   if (!FDCG_MUTANT("hops-anywhere") &&
-      !(side < -bound && there.voronoi_plane(back).distance(hip) < 0 && here.voronoi_plane(k).distance(hip) >= 0))
+      !(side < -bound && there.stored_plane(back).distance(hip) < 0 && here.stored_plane(k).distance(hip) >= 0))
     return false;
   const Vec3<Real> from = hop->god_object, way = (hop->move.target - from) - hop->rounding_residual;
   const Vec3<Real> ahead = hop->rounding_residual + way * hop->move.crossing.fraction;
@@ -61,7 +61,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   hop->edge = crossed.link >> 1;
   hop->transitions += 2;
   spend(&hop->work_left, kHopWork + kSideWork * there.side_count());
-  hop->move = move_on_face(there, hop->friction, hip, bound, side, god_object, gap, gap + hop->rounding_residual);
+  hop->move = move_on_face<true>(there, hop->friction, hip, bound, side, god_object, gap, gap + hop->rounding_residual);
   return true;
 }
 
