@@ -47,6 +47,12 @@ uint64_t word_of(const fdcg_connection& connection) {
   return word;
 }
 
+// A record of the next chunk, which memory sends while this one's are judged. Inlined by force: GCC drops calls of a function
+// that does nothing else.
+[[gnu::always_inline]] inline void prefetch(const void* record) {
+  __builtin_prefetch(record, 0, 2);
+}
+
 // Its passes are functions of their own: inlined into one, they would take longer for want of registers.
 template <class Real>
 class SafeChunk {
@@ -63,9 +69,7 @@ class SafeChunk {
     if (header_.connection_count == 0 || header_.corner_count == 0)
       return refuse_record(error_, "header.connection_count", header_.connection_count, "no writer leaves all of them out");
     checksums();
-    const bool are_sound =
-        uniform_sides_ == 3 && (records_.has_planes() ? are_sound_triangles<true>() : are_sound_triangles<false>());
-    fdcg_status status = are_sound ? FDCG_OK : nodes();
+    fdcg_status status = are_nodes_sound() ? FDCG_OK : refuse_nodes();
     if (status == FDCG_OK) status = connections();
     if (status == FDCG_OK && records_.edges() != nullptr) status = edges();
     if (status == FDCG_OK) status = corners();
@@ -108,128 +112,139 @@ class SafeChunk {
     return block == nullptr ? 0 : reinterpret_cast<const Node*>(block)->side_count;
   }
 
-  // The same questions as nodes() asks, of triangles of one size, without a branch: a difference below zero has its upper half
-  // set. False: something is wrong, and nodes() is to say what.
-  template <bool kHasPlanes>
-  [[gnu::noinline]] bool are_sound_triangles() const {
-    constexpr uint32_t kSides = 3, kBlock = node_bytes<Real>(kSides, kHasPlanes);
-    const uint64_t last_connection = header_.connection_count - 1, last_corner = header_.corner_count - 1;
-    const uint64_t nodes = header_.node_count, end = chunk_.end_of(nodes);
+  bool are_nodes_sound() const {
+    if (uniform_sides_ == 3) return records_.has_planes() ? are_sound<3, true>() : are_sound<3, false>();
+    return records_.has_planes() ? are_sound<0, true>() : are_sound<0, false>();
+  }
+
+  // With no branch that could not be predicted. False: something is wrong, and refuse_nodes() says what. kSides: of every node,
+  // in a block of a size that is known here; 0: any.
+  template <uint32_t kSides, bool kHasPlanes>
+  [[gnu::noinline]] bool are_sound() const {
+    const uint32_t last_connection = header_.connection_count - 1, last_corner = header_.corner_count - 1;
+    const uint32_t nodes = header_.node_count;
+    const uint64_t first_node = chunk_.first_of(nodes), end = chunk_.end_of(nodes);
     const fdcg_connection* const connections = records_.connections();
-    uint64_t n = chunk_.first_of(nodes), over = 0, wrong = 0, seconds = 0;
-    const unsigned char* block = records_.nodes() + n * kBlock;
+    uint64_t at = kSides != 0 ? first_node * node_bytes<Real>(kSides, kHasPlanes) : offset_of(first_node);
+    const uint64_t begin = at, ahead = (kSides != 0 ? end * node_bytes<Real>(kSides, kHasPlanes) : offset_of(end)) - at;
+    uint32_t sides = 0, seconds = 0, wrong = first_node == 0 && begin != 0, over = 0;
     UnitCheck<Real> check(-largest_offset_, largest_offset_);
-    for (; n < end; ++n, block += kBlock) {
+    for (uint64_t n = first_node; n < end; ++n) {
+      if (kSides == 0 && !holds_node(at)) return false;
+      const unsigned char* const block = records_.nodes() + at;
       const auto& node = *reinterpret_cast<const Node*>(block);
-      wrong |= (node.side_count ^ kSides) | (node.flags & ~uint32_t{FDCG_NODE_INEXACT});
+      const uint32_t count = kSides != 0 ? kSides : node.side_count;
+      at += node_bytes<Real>(count, kHasPlanes);
+      if (kSides == 0 && (!is_side_count(count) || at != offset_of(n + 1))) return false;
+      prefetch(block + ahead);
+      wrong |= (node.side_count ^ count) | (node.flags & ~uint32_t{FDCG_NODE_INEXACT});
+      const auto* const side_records = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
 #pragma GCC unroll 3
-      for (uint64_t k = 0; k < kSides; ++k) {
-        const fdcg_side side = node.sides[k];
-        const uint64_t link = side.link >> 1, which = side.link & 1;
-        const uint64_t word = word_of(connections[link <= last_connection ? link : 0]);
-        over |= (last_connection - link) | (last_corner - side.corner) | (nodes - (side.across + 1));
-        // As its first side, the connection's first node is this one, else the one across. No branch: it could not be
-        // predicted.
-        const uint64_t first = n ^ ((n ^ side.across) & (0 - which)), side_at = kSide0At + which * (kSide1At - kSide0At);
-        wrong |= (word ^ (k << side_at | first)) & (kByte << side_at | kNode);
-        wrong |= uint64_t{(word >> kTypeAt & kByte) == FDCG_BOUNDARY} ^ uint64_t { side.across == FDCG_NONE };
+      for (uint32_t k = 0; k < count; ++k) {
+        const fdcg_side side = side_records[k];
+        const uint32_t link = side.link >> 1, which = side.link & 1;
+        const fdcg_connection& connection = connections[link <= last_connection ? link : 0];
+        over += link > last_connection;
+        over += side.corner > last_corner;
+        over += side.across + 1 > nodes;  // FDCG_NONE + 1 is 0
+        // As its first side, the connection's first node is this one, else the one across.
+        const uint32_t self = static_cast<uint32_t>(n), first = self ^ ((self ^ side.across) & (0 - which));
+        wrong |= (connection.node ^ first) | (connection.side[which] ^ k);
+        wrong |= static_cast<uint32_t>(connection.type == FDCG_BOUNDARY) ^ static_cast<uint32_t>(side.across == FDCG_NONE);
+        if (kSides == 0 && side.across < nodes) over += connection.side[1 - which] >= side_count_of(side.across);
         seconds += which;
       }
+      sides += count;
       const Real* const face = node.plane.normal;
       if constexpr (kHasPlanes) {
-        const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(kSides));
+        const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(count));
         check.look_at(face, planes);
-        check.look_at(planes + 4, planes + 8);
+        for (uint32_t k = 1; k < count; k += 2)
+          check.look_at(planes + 4 * k, planes + 4 * (k + 1 < count ? k + 1 : k));
       } else {
         check.look_at(face, face);
-        wrong |= uint64_t{!has_derived_planes(node)};
+        for (uint32_t k = 0; k < count; ++k)
+          wrong |= !has_derived_plane(node, side_records[k], side_records[k + 1 < count ? k + 1 : 0]);
       }
     }
-    const uint64_t count = end - chunk_.first_of(nodes);
-    part_->sides += kSides * count;
-    part_->first_sides += kSides * count - seconds;
-    return (over >> 32 | wrong) == 0 && check.holds();
+    if ((over | wrong) != 0 || !check.holds()) return false;
+    part_->sides += sides;
+    part_->first_sides += sides - seconds;
+    return true;
   }
 
-  // The planes that the step will derive. Corners of damaged files may be anything.
-  bool has_derived_planes(const Node& node) const {
-    bool has_all = true;
-    for (uint32_t k = 0; k < 3; ++k) {
-      const uint32_t c = node.sides[k].link >> 1;
-      const Vec3<Real> along = along_of(node.sides[k], node.sides[k < 2 ? k + 1 : 0], c < header_.connection_count ? c : 0);
-      has_all &= is_across(along, vec(node.plane.normal));
+  // Where node n's block starts in its section, which ends where one more would start. Of blocks that differ: as the file says.
+  [[nodiscard]] uint64_t offset_of(uint64_t n) const {
+    if (uniform_sides_ != 0) return n * records_.block_bytes();
+    return n == header_.node_count ? node_section_bytes_ : records_.node_offsets()[n] * uint64_t{sizeof(Real)};
+  }
+  [[nodiscard]] bool holds_node(uint64_t at) const {
+    return at <= node_section_bytes_ && node_section_bytes_ - at >= sizeof(Node);
+  }
+  [[nodiscard]] bool is_side_count(uint32_t count) const {
+    return uniform_sides_ != 0 ? count == uniform_sides_ : count >= 3 && count <= FDCG_MAX_SIDES;
+  }
+
+  // A plane that the step will derive. Corners of damaged files may be anything.
+  bool has_derived_plane(const Node& node, const fdcg_side& side, const fdcg_side& next) const {
+    const uint32_t c = side.link >> 1;
+    return is_across(along_of(side, next, c < header_.connection_count ? c : 0), vec(node.plane.normal));
+  }
+
+  // Where are_sound() has found a fault: the first node that is wrong, by name.
+  [[gnu::cold, gnu::noinline]] fdcg_status refuse_nodes() {
+    const uint64_t first = chunk_.first_of(header_.node_count), end = chunk_.end_of(header_.node_count);
+#if FDCG_WITH_MESSAGES
+    for (uint64_t n = first; n < end; ++n) {
+      if (const char* const what = fault_of_node(static_cast<uint32_t>(n)); what != nullptr)
+        return refuse_record(error_, "node", n, what);
     }
-    return has_all;
+#endif
+    return refuse_record(error_, "node", first, "is wrong, or one after it");
   }
 
-  [[gnu::noinline]] fdcg_status nodes() {
-    return for_mine(header_.node_count, "node", [&](uint32_t n, auto* faults) {
-      const unsigned char* const block = uniform_sides_ != 0 ? records_.nodes() + n * records_.block_bytes() : checked_block(n);
-      if (block == nullptr) return faults->note(true, "its block is out of range");
-      const uint32_t count = reinterpret_cast<const Node*>(block)->side_count;
-      if (uniform_sides_ != 0 ? count != uniform_sides_ : count < 3 || count > FDCG_MAX_SIDES)
-        return faults->note(true, "has too few sides or too many");
-      const uint64_t at = static_cast<uint64_t>(block - records_.nodes()),
-                     end = at + node_bytes<Real>(count, records_.has_planes());
-      const bool is_last = n + 1 == header_.node_count;
-      if (uniform_sides_ == 0) {
-        const uint64_t next = is_last ? node_section_bytes_ : records_.node_offsets()[n + 1] * uint64_t{sizeof(Real)};
-        if (end > node_section_bytes_ || next != end || (n == 0 && at != 0))
-          return faults->note(true, "its block does not end where the next one starts");
-      }
-      part_->sides += count;
-      look_at_node(n, block, count, &part_->first_sides, faults);
-    });
-  }
-
-  // `block` holds a node of so many sides.
-  template <class Faults>
-  [[gnu::always_inline]] void look_at_node(uint32_t n, const unsigned char* block, uint32_t count, uint64_t* first_sides,
-                                           Faults* faults) const {
+  [[nodiscard]] const char* fault_of_node(uint32_t n) const {
+    const uint64_t at = offset_of(n);
+    if (!holds_node(at)) return "its block is out of range";
+    const unsigned char* const block = records_.nodes() + at;
     const auto& node = *reinterpret_cast<const Node*>(block);
-    faults->note((node.flags & ~FDCG_NODE_INEXACT) != 0, "unknown flags");
-    look_at_planes(block, count, faults);
+    if (!is_side_count(node.side_count)) return "has too few sides or too many";
+    const uint64_t end = at + node_bytes<Real>(node.side_count, records_.has_planes());
+    if (end != offset_of(n + uint64_t{1}) || end > node_section_bytes_ || (n == 0 && at != 0))
+      return "its block does not end where the next one starts";
+    if ((node.flags & ~FDCG_NODE_INEXACT) != 0) return "unknown flags";
+    const auto is_plane = [this](const Real* plane) {
+      UnitCheck<Real> check(-largest_offset_, largest_offset_);
+      check.look_at(plane, plane);
+      return check.holds();
+    };
+    if (!is_plane(node.plane.normal)) return "its normal is not of unit length, or its plane lies outside the object";
+    const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(node.side_count));
     const auto* const sides = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
-    for (uint32_t k = 0; k < count; ++k) {
-      const fdcg_side& side = sides[k];
-      const bool is_known = side.link >> 1 < header_.connection_count;
-      const uint32_t c = is_known ? side.link >> 1 : 0;
-      const uint64_t word = word_of(records_.connections()[c]), which = side.link & 1;
-      faults->note(!is_known, "connection out of range");
-      faults->note(side.corner >= header_.corner_count, "corner out of range");
-      faults->note(side.across + 1 > header_.node_count, "neighbour out of range");  // FDCG_NONE + 1 is 0
-      const uint64_t as_first = (word ^ (uint64_t{k} << kSide0At | n)) & (kByte << kSide0At | kNode);
-      const uint64_t as_second = (word ^ (uint64_t{k} << kSide1At | side.across)) & (kByte << kSide1At | kNode);
-      faults->note((which == 0 ? as_first : as_second) != 0, "its connection does not own it");
-      const bool is_boundary = (word >> kTypeAt & kByte) == FDCG_BOUNDARY;
-      faults->note(is_boundary != (side.across == FDCG_NONE), "a connection's type does not fit its nodes");
-      *first_sides += 1 - which;
-      const bool has_neighbour = side.across < header_.node_count && which == 0;
-      faults->note(has_neighbour && (word >> kSide1At & kByte) >= side_count_of(side.across), "its neighbour has no such side");
-      if (!records_.has_planes()) look_at_derived(node, side, sides[k + 1 < count ? k + 1 : 0], c, faults);
+    for (uint32_t k = 0; k < node.side_count; ++k) {
+      if (const char* const what = fault_of_side(n, k, sides[k]); what != nullptr) return what;
+      const bool has_plane = records_.has_planes()
+                                 ? is_plane(planes + 4 * k)
+                                 : has_derived_plane(node, sides[k], sides[k + 1 < node.side_count ? k + 1 : 0]);
+      if (!has_plane) return "Voronoi plane out of range";
     }
+    return nullptr;
   }
 
-  template <class Faults>
-  [[gnu::always_inline]] void look_at_planes(const unsigned char* block, uint32_t count, Faults* faults) const {
-    const Real* const face = reinterpret_cast<const Node*>(block)->plane.normal;
-    const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(count));
-    UnitCheck<Real> check(-largest_offset_, largest_offset_);
-    if (Faults::kHasNames || !records_.has_planes()) {
-      check.look_at(face, face);
-      faults->note(!check.holds(), "its normal is not of unit length, or its plane lies outside the object");
-    }
-    if (!records_.has_planes()) return;
-    check.look_at(face, planes);
-    for (uint32_t k = 1; k < count; k += 2)
-      check.look_at(planes + 4 * k, planes + 4 * (k + 1 < count ? k + 1 : k));
-    faults->note(!check.holds(), "Voronoi plane out of range");
+  [[nodiscard]] const char* fault_of_side(uint32_t n, uint32_t k, const fdcg_side& side) const {
+    const uint32_t link = side.link >> 1, which = side.link & 1;
+    if (link >= header_.connection_count) return "connection out of range";
+    if (side.corner >= header_.corner_count) return "corner out of range";
+    if (side.across + 1 > header_.node_count) return "neighbour out of range";  // FDCG_NONE + 1 is 0
+    const fdcg_connection& connection = records_.connections()[link];
+    if (connection.node != (which == 0 ? n : side.across) || connection.side[which] != k)
+      return "its connection does not own it";
+    if ((connection.type == FDCG_BOUNDARY) != (side.across == FDCG_NONE)) return "a connection's type does not fit its nodes";
+    const bool has_neighbour = side.across != FDCG_NONE;
+    if (has_neighbour && connection.side[1 - which] >= side_count_of(side.across)) return "its neighbour has no such side";
+    return nullptr;
   }
 
-  template <class Faults>
-  void look_at_derived(const Node& node, const fdcg_side& side, const fdcg_side& next, uint32_t c, Faults* faults) const {
-    faults->note(!is_across(along_of(side, next, c), vec(node.plane.normal)), "Voronoi plane out of range");
-  }
   // The edge vector of a side, of whatever length; `c`: its connection, in range.
   Vec3<Real> along_of(const fdcg_side& side, const fdcg_side& next, uint32_t c) const {
     if (records_.edges() != nullptr) return vec(records_.edges()[c].direction);
@@ -262,8 +277,10 @@ class SafeChunk {
     const uint64_t first = chunk_.first_of(header_.connection_count), end = chunk_.end_of(header_.connection_count);
     const auto numbers = [this](uint64_t c) { return static_cast<const Real*>(records_.edges()[c].direction); };
     UnitCheck<Real> check(0, largest_offset_);
-    for (uint64_t c = first; c < end; c += 2)
+    for (uint64_t c = first; c < end; c += 2) {
+      prefetch(numbers(c + (end - first)));
       check.look_at(numbers(c), numbers(c + 1 < end ? c + 1 : c));
+    }
     if (check.holds()) return FDCG_OK;
     return for_all(first, end, "edge", error_, [&](uint32_t c, auto* faults) {
       UnitCheck<Real> one(0, largest_offset_);
