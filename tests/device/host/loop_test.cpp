@@ -180,6 +180,49 @@ TEST_CASE("writer: after a blocked write the newest force is sent first") {
   CHECK(writer.ends_within_ms(1000));
 }
 
+// The servo thread was stopped before it stored the force (first), and after, before it woke the writer (then).
+TEST_CASE("writer: a force 10 ms old is sent as zero") {
+  Rig rig;
+  rig.open();
+  const GatedForce force = gated_force();
+  rig.writer.put(force, 1, monotonic_ns() - 10 * kMsNs);
+  Running writer([&] { rig.writer.run(); });
+  REQUIRE(within_ms(1000, [&] { return rig.device.echo == 1; }));
+  rig.send(force, 2);
+  REQUIRE(within_ms(1000, [&] { return rig.device.echo == 2; }));
+  rig.device.holds_writes = true;
+  rig.send(force, 3);
+  REQUIRE(within_ms(1000, [&] { return rig.device.inside_writes == 1; }));
+  rig.writer.put(force, 4, monotonic_ns());
+  sleep_ms(12);
+  rig.device.holds_writes = false;
+  REQUIRE(within_ms(1000, [&] { return rig.device.echo == 4; }));
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+  for (const Written& written : rig.device.all_written()) {
+    CAPTURE(written.command.echo);
+    if (written.command.echo == 1 || written.command.echo == 4) CHECK_FALSE(written.command.is_enabled);
+  }
+}
+
+TEST_CASE("writer: it has kept nobody waiting before a force was stored") {
+  Rig rig;
+  rig.open();
+  Running writer([&] { rig.writer.run(); });
+  rig.send(gated_force(), 1);
+  REQUIRE(within_ms(1000, [&] { return rig.device.echo == 1; }));
+  REQUIRE(within_ms(1000, [&] { return rig.writer.busy_ns(monotonic_ns()) == 0; }));
+  sleep_ms(8);  // as a servo thread that is stopped in the middle of a tick
+  rig.device.holds_writes = true;
+  rig.writer.put(gated_force(), 2, monotonic_ns());
+  CHECK(rig.writer.busy_ns(monotonic_ns()) < 4 * kMsNs);
+  sleep_ms(8);
+  CHECK(rig.writer.busy_ns(monotonic_ns()) >= 7 * kMsNs);
+  rig.device.holds_writes = false;
+  rig.writer.request_stop();
+  CHECK(writer.ends_within_ms(1000));
+}
+
 TEST_CASE("writer: a failed write is reported until one succeeds, and a closed link is no failure") {
   Rig rig;
   Running writer([&] { rig.writer.run(); });

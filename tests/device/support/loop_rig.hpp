@@ -64,7 +64,7 @@ struct Rig {
     REQUIRE(servo.begin(scene.setups[0], parts, nullptr));
   }
   void send(const GatedForce& force, std::uint32_t echo) {
-    writer.put(force, echo);
+    writer.put(force, echo, monotonic_ns());
     writer.wake();
   }
   void open() {

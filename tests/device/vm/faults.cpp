@@ -49,8 +49,7 @@ constexpr StrikeKind kStrikes[] = {
     {"int", strike_end<SIGINT>},
     {"hup", strike_end<SIGHUP>},
     {"tstp", strike_stopped, "not-armed"},
-    // The gate tells the first fault that it finds (gate.cpp, fault_of), seldom that of the writer (1 in 20 seen).
-    {"servo-thread", strike_servo_thread, "host-late,writer-stuck"},
+    {"servo-thread", strike_servo_thread, "host-late"},
     {"writer-thread", strike_writer_thread, "writer-stuck"},
     {"second-program", strike_second_program},
     {"node-twice", strike_node_twice},

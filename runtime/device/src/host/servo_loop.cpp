@@ -58,7 +58,7 @@ void ServoLoop::tick_together(ServoLoop* const* loops, int count, int* clock) {
   }
   *clock = group_tick(members, count);
   for (int i = 0; i < count; ++i)
-    loops[i]->parts_.writer->put(loops[i]->output_.force, loops[i]->output_.echo);
+    loops[i]->parts_.writer->put(loops[i]->output_.force, loops[i]->output_.echo, loops[i]->input_.now_ns);
   for (int i = 0; i < count; ++i)
     loops[i]->send_force();
   LogRing* const log = loops[0]->parts_.log;

@@ -20,11 +20,14 @@ constexpr std::uint64_t kGoodbyeNs = 800'000'000;
 Writer::Writer(const Profile& profile, Transport& transport, Link& link)
     : profile_(profile), transport_(transport), link_(link) {}
 
-void Writer::put(const GatedForce& force, std::uint32_t echo) {
+void Writer::put(const GatedForce& force, std::uint32_t echo, std::uint64_t made_ns) {
+  // The wait for the writer begins here, not with the tick: in between, this thread itself may have been stopped.
+  if (done_.load(std::memory_order_acquire) >= put_number_) progress_ns_ = monotonic_ns();
   Letter letter;
   letter.force = force;
   letter.echo = echo;
   letter.number = ++put_number_;
+  letter.made_ns = made_ns;
   letters_.put(letter);
   put_.store(put_number_, std::memory_order_release);
 }
@@ -65,9 +68,9 @@ void Writer::run() {
   bool is_zeroed = true;  // the last force sent was zero, or none was sent
   while (!is_stopping_.load(std::memory_order_acquire)) {
     if (letters_.take(&letter)) {
-      send(letter.force, letter.echo);
+      is_zeroed = monotonic_ns() >= letter.made_ns + kSilenceNs;
+      send(is_zeroed ? GatedForce() : letter.force, letter.echo);
       done_.store(letter.number, std::memory_order_release);
-      is_zeroed = false;
     } else if (!wake_.wait(is_zeroed ? kAwakeNs : kSilenceNs) && !is_zeroed) {
       send(GatedForce(), letter.echo);
       is_zeroed = true;

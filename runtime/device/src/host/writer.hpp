@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A device's writer: a separate thread, since a device that does not take output blocks hid_write for 5 s. It always sends the
-// newest force. If nothing new is stored for kSilenceS it sends zero once, so that a hanging servo thread leaves no force.
+// newest force. If nothing new is stored for kSilenceS it sends zero once, so that a hanging servo thread leaves no force; a
+// force that old is sent as zero, so that a servo thread that goes on after it hung leaves none either.
 #pragma once
 
 #include <atomic>
@@ -30,8 +31,9 @@ class Writer {
   Writer(const Profile& profile, Transport& transport, Link& link);
 
   // For the servo thread. No lock, no heap, no wait. put stores a force, which the writer sends in its next iteration; wake
-  // starts that iteration now (a system call of some microseconds if the thread sleeps).
-  void put(const GatedForce& force, std::uint32_t echo);
+  // starts that iteration now (a system call of some microseconds if the thread sleeps). made_ns: the clock of the tick that
+  // the force was computed in.
+  void put(const GatedForce& force, std::uint32_t echo, std::uint64_t made_ns);
   void wake() { wake_.signal(); }
   // For how long the write in progress has been going on, or the thread has left a stored force where it was; 0: neither.
   std::uint64_t busy_ns(std::uint64_t now_ns);
@@ -67,7 +69,7 @@ class Writer {
   struct Letter {
     GatedForce force;
     std::uint32_t echo = 0;
-    std::uint64_t number = 0;
+    std::uint64_t number = 0, made_ns = 0;
   };
   bool send(const GatedForce& force, std::uint32_t echo);
   bool send_fixed(const FixedReport& report);
