@@ -37,7 +37,7 @@ constexpr float kFarthestBox = 8;
 constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
 
 // A connection's record as one word: node 0, side of node 0, side of node 1, type, flatness.
-constexpr int kSide0At = 32, kSide1At = 40, kTypeAt = 48, kFlatnessAt = 56;
+constexpr int kSide1At = 40, kTypeAt = 48, kFlatnessAt = 56;
 constexpr uint64_t kNode = 0xFFFFFFFFu, kByte = 0xFF;
 
 uint64_t word_of(const fdcg_connection& connection) {
