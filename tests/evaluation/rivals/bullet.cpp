@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fdcg_rival.h"
+#include "rival_mesh.hpp"
 
 namespace {
 
@@ -25,6 +26,10 @@ struct Body {
   btScalar first_reach = 0;
   double stiffness_n_per_m = 0;
 };
+
+btVector3 vector_of(const double* p) {
+  return {static_cast<btScalar>(p[0]), static_cast<btScalar>(p[1]), static_cast<btScalar>(p[2])};
+}
 
 btVector3 nearest_on_segment(const btVector3& p, const btVector3& a, const btVector3& b) {
   const btVector3 along = b - a;
@@ -69,12 +74,8 @@ void* load(const fdcg_rival_mesh* mesh, double stiffness_n_per_m, char error[256
   try {
     auto body = std::make_unique<Body>();
     body->stiffness_n_per_m = stiffness_n_per_m;
-    for (std::uint64_t i = 0; i < mesh->point_count; ++i) {
-      const double* p = mesh->points_m + 3 * i;
-      body->points.emplace_back(static_cast<btScalar>(p[0]), static_cast<btScalar>(p[1]), static_cast<btScalar>(p[2]));
-    }
-    for (std::uint64_t i = 0; i < 3 * mesh->triangle_count; ++i)
-      body->corners.push_back(static_cast<int>(mesh->corners[i]));
+    body->points = fdcg::rivals::points_of(*mesh, vector_of);
+    body->corners.assign(mesh->corners, mesh->corners + 3 * mesh->triangle_count);
     body->triangles = std::make_unique<btTriangleIndexVertexArray>(
         static_cast<int>(mesh->triangle_count), body->corners.data(), static_cast<int>(3 * sizeof(int)),
         static_cast<int>(mesh->point_count), &body->points[0][0], static_cast<int>(sizeof(btVector3)));
@@ -99,7 +100,7 @@ void reset(void* of) {
 
 void step(void* of, const double hip_m[3], fdcg_rival_result* result) {
   Body& body = *static_cast<Body*>(of);
-  const btVector3 hip(static_cast<btScalar>(hip_m[0]), static_cast<btScalar>(hip_m[1]), static_cast<btScalar>(hip_m[2]));
+  const btVector3 hip = vector_of(hip_m);
   constexpr btScalar kRounding = 1e-6f;  // the last answer itself is found again
   Nearest nearest(hip, hip);
   btScalar reach = body.has_last ? (hip - body.last).length() * (1 + kRounding) + kRounding : body.first_reach;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fdcg_rival.h"
+#include "rival_mesh.hpp"
 
 namespace {
 
@@ -26,16 +27,11 @@ struct Body {
 void* load(const fdcg_rival_mesh* mesh, double stiffness_n_per_m, char error[256]) {
   try {
     auto body = std::make_unique<Body>();
-    const auto point = [&](std::uint32_t i) { return fcl::Vector3d(Eigen::Map<const fcl::Vector3d>(mesh->points_m + 3 * i)); };
-    std::vector<fcl::Vector3d> points;
-    std::vector<fcl::Triangle> triangles;
-    for (std::uint32_t i = 0; i < mesh->point_count; ++i)
-      points.push_back(point(i));
-    for (std::uint64_t t = 0; t < mesh->triangle_count; ++t) {
-      const std::uint32_t* c = mesh->corners + 3 * t;
-      triangles.emplace_back(c[0], c[1], c[2]);
-      body->normals.push_back((points[c[1]] - points[c[0]]).cross(points[c[2]] - points[c[0]]));
-    }
+    const auto points = fdcg::rivals::points_of(*mesh, [](const double* p) { return fcl::Vector3d(p[0], p[1], p[2]); });
+    const auto triangles =
+        fdcg::rivals::triangles_of(*mesh, [](const std::uint32_t* c) { return fcl::Triangle(c[0], c[1], c[2]); });
+    for (const fcl::Triangle& t : triangles)
+      body->normals.push_back((points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]));
     const bool is_built = body->mesh.beginModel() == fcl::BVH_OK && body->mesh.addSubModel(points, triangles) == fcl::BVH_OK &&
                           body->mesh.endModel() == fcl::BVH_OK;
     if (!is_built) {

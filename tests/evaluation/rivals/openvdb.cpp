@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "fdcg_rival.h"
+#include "rival_mesh.hpp"
 
 namespace {
 
@@ -41,12 +42,9 @@ void* load(const fdcg_rival_mesh* mesh, double stiffness_n_per_m, char error[256
     body->voxel_m = std::max({size.x(), size.y(), size.z()}) / kVoxels;
     const auto transform = openvdb::math::Transform::createLinearTransform(body->voxel_m);
     transform->postTranslate(low);
-    std::vector<openvdb::Vec3s> points;
-    std::vector<openvdb::Vec3I> triangles;
-    for (std::uint64_t i = 0; i < mesh->point_count; ++i)
-      points.emplace_back(transform->worldToIndex(point(i)));
-    for (std::uint64_t t = 0; t < mesh->triangle_count; ++t)
-      triangles.emplace_back(mesh->corners + 3 * t);
+    const auto points = fdcg::rivals::points_of(
+        *mesh, [&](const double* p) { return openvdb::Vec3s(transform->worldToIndex(openvdb::Vec3d(p))); });
+    const auto triangles = fdcg::rivals::triangles_of(*mesh, [](const std::uint32_t* c) { return openvdb::Vec3I(c); });
     const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(points, triangles);
     const auto inside_voxels = static_cast<float>(kDeepest_m / body->voxel_m);
     tbb::task_arena(1).execute([&] {  // one thread, as all bake
