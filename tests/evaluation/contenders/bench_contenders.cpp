@@ -89,8 +89,10 @@ int main(int argc, char** argv) {
       evaluation.run(read_way(path, options.columns));
     for (const BodyPlan& body : plan_with(options))
       evaluation.run(body);
+    std::size_t taken = 0;
     for (const std::string& path : files_of(meshes))
-      evaluation.run_mesh(path);
+      taken += evaluation.run_mesh(path);
+    if (!meshes.empty()) std::printf("%zu of the files of %s were measured\n", taken, meshes.c_str());
     return evaluation.finish();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());

@@ -21,11 +21,6 @@ using bake::Precision;
 
 namespace {
 
-// Those of rivals/, whose libraries were found when this was built.
-const std::vector<std::string> kShippedRivals = {FDCG_RIVALS_SHIPPED};
-
-constexpr std::uint32_t kLargestBullet = 200'000;  // faces; its step takes over 30 microseconds on a million
-
 // Closest points err as Embree's and CGAL's do, and these take longer: they are measured for the frontier alone.
 bool answers_as_another(const ContenderInfo& info) {
   return info.name == "fcl_closest" || info.name == "bullet_closest";
@@ -131,13 +126,7 @@ bool Evaluation::is_wanted(const WayPlan& way) const {
 }
 
 Contenders Evaluation::entrants_of(const Ground& ground, const Body& body) const {
-  Contenders list = contenders_for(ground, body, options_.is_quick);
-  for (const std::string& rival : kShippedRivals) {
-    if (body.faces <= kLargestBullet || rival.find("rival_bullet") == std::string::npos)
-      list.push_back(make_rival(rival, ground.soup()));
-  }
-  for (const std::string& rival : options_.rivals)
-    list.push_back(make_rival(rival, ground.soup()));
+  Contenders list = all_contenders_for(ground, body, options_.is_quick, options_.rivals);
   if (options_.contenders.empty()) return list;
   std::erase_if(list, [&](const auto& contender) {
     return std::find(options_.contenders.begin(), options_.contenders.end(), contender->info().name) ==
@@ -155,22 +144,34 @@ void Evaluation::run(const BodyPlan& plan) {
   run(body, body.make(), plan.ways);
 }
 
-void Evaluation::run_mesh(const std::string& path) {
+bool Evaluation::run_mesh(const std::string& path) {
+  const auto passed_over = [&](const std::string& why) {
+    std::printf("passed over: %s%s\n", why.starts_with(path) ? "" : (path + ": ").c_str(), why.c_str());
+    std::fflush(stdout);
+    return false;
+  };
   auto soup = fdcg::bake::import_mesh(path);
-  if (!soup) throw std::runtime_error(soup.error().message);
+  if (!soup) return passed_over(soup.error().message);
   Body body;
   for (const char c : std::filesystem::path(path).stem().string())
     body.name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  body.faces = static_cast<std::uint32_t>(soup->face_count());
-  body.is_closed = is_closed(*soup);
-  fdcg::bake::PolygonSoup scaled = scaled_to_body(*soup);
+  const auto compiled = fdcg::bake::compile(*soup, {});
+  if (!compiled || compiled->bytes.empty()) return passed_over("does not compile: fdcg validate says why");
+  if (compiled->split_faces > 0) return passed_over("has faces that are not flat and convex: cut them into triangles first");
+  fdcg::bake::RepairOptions once = fdcg::bake::repair_options(fdcg::bake::RepairLevel::safe);  // equal vertices are one
+  once.judges = false;
+  const auto welded = fdcg::bake::repair(*soup, once);
+  if (!welded) return passed_over(welded.error().message);
+  fdcg::bake::PolygonSoup scaled = scaled_to_body(welded->soup);
   scaled.name = body.name;
-  const auto compiled = fdcg::bake::compile(scaled, {});
-  if (!compiled || compiled->bytes.empty()) {
-    std::printf("%s: passed over, it does not compile: fdcg validate says why\n", path.c_str());
-    return;
+  body.faces = static_cast<std::uint32_t>(scaled.face_count());
+  body.is_closed = is_closed(scaled);
+  try {
+    run(body, std::move(scaled), ways_of_brought());
+  } catch (const std::runtime_error& error) {  // a contender that refuses it, or no way of a hand on it
+    return passed_over(error.what());
   }
-  run(body, std::move(scaled), ways_of_brought());
+  return true;
 }
 
 void Evaluation::run(const Body& body, fdcg::bake::PolygonSoup soup, const std::vector<WayPlan>& ways) {

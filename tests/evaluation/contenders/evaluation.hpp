@@ -38,8 +38,9 @@ class Evaluation {
   explicit Evaluation(const EvaluationOptions& options);
   void run(const BodyPlan& plan);
   void run(const WayFile& file);
-  // A mesh that others bring, scaled to kBody_m. Passed over, and said, where it does not compile.
-  void run_mesh(const std::string& path);
+  // A mesh that others bring, scaled to kBody_m, equal vertices made one. Passed over, and said, where it is no mesh, does not
+  // compile, has faces that are not convex, a contender refuses it, or too few seeds give a hand's way on it; then false.
+  bool run_mesh(const std::string& path);
   // Exit code: 1 where a bar fails.
   int finish();
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "rival.hpp"
+
 namespace fdcg::test {
 namespace {
 
@@ -18,6 +20,11 @@ const WayPlan kJumps{WayKind::teleport};
 
 // What the frontier is over, too: bodies as scanners, CAD and simulation bring them.
 constexpr const char* kAsBrought[] = {"scan_24k", "drilled_plate", "squashed_10k", "spindle_10k"};
+
+// Those of rivals/, whose libraries were found when this was built.
+const std::vector<std::string> kShippedRivals = {FDCG_RIVALS_SHIPPED};
+
+constexpr std::uint32_t kLargestBullet = 200'000;  // faces; its step takes over 30 microseconds on a million
 
 }  // namespace
 
@@ -101,6 +108,17 @@ Contenders contenders_for(const Ground& ground, const Body& body, bool is_quick)
   for (const int resolution : resolutions)
     list.push_back(make_distance_grid(ground, resolution));
   if (!is_quick && body.name == "star_10k") list.push_back(make_distance_grid(ground, 256));
+  return list;
+}
+
+Contenders all_contenders_for(const Ground& ground, const Body& body, bool is_quick, const std::vector<std::string>& rivals) {
+  Contenders list = contenders_for(ground, body, is_quick);
+  for (const std::string& rival : kShippedRivals) {
+    if (body.faces <= kLargestBullet || rival.find("rival_bullet") == std::string::npos)
+      list.push_back(make_rival(rival, ground.soup()));
+  }
+  for (const std::string& rival : rivals)
+    list.push_back(make_rival(rival, ground.soup()));
   return list;
 }
 

@@ -44,5 +44,7 @@ std::vector<WayPlan> ways_of_brought();
 using Contenders = std::vector<std::unique_ptr<Contender>>;
 // The first is the runtime in double with stored planes.
 Contenders contenders_for(const Ground& ground, const Body& body, bool is_quick);
+// ... and the rivals that were built, and others, by make_rival()'s specifications.
+Contenders all_contenders_for(const Ground& ground, const Body& body, bool is_quick, const std::vector<std::string>& rivals);
 
 }  // namespace fdcg::test

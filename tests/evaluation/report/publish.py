@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The figures of README and docs/benchmarks.md: small tables in testdata/evaluation, and the text and pictures made of them.
 
-Usage: publish.py RUN_DIR    takes the tables of a full run of tools/bench (contenders, accuracy), then makes text and pictures anew
+Usage: publish.py RUN_DIR    takes the tables of a full run of tools/bench (contenders, accuracy, hands; of the last alone where that is
+                             all there is), then makes text and pictures anew
        publish.py --redraw   makes text and pictures anew of the tables that are there
        publish.py --check    tells where the text is not that of the tables; exit code 1 where it is not
 Text stands between <!-- figures: NAME --> and <!-- end of figures -->. Exit code 2: wrong usage, or a table is missing.
@@ -34,6 +35,10 @@ ROWS = {OURS: "fdcg, f64", "fdcg_f32_stored": "fdcg, f32", "paper": "the paper's
         "grid_64": "distance grid, 64 cells a side"}
 
 
+FELT = ["scene", "mu_static", "contender", "hand_rms_n", "hand_max_n", "vibration_n", "direction_p99_deg", "felt_share", "felt_ms", "lost_share"]
+HELD = ["scene", "contender", "stable_share_of_exact"]
+
+
 def rounded(value):
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
@@ -41,6 +46,11 @@ def rounded(value):
 def take(folder):
     """What of a run's tables the figures need, so rounded that a reader gets the same text."""
     run = Run(folder)
+    for name, columns in (("hands", FELT), ("hands_limits", HELD)):
+        if name in run.tables:
+            write(KEPT / f"{name}.csv", columns, [r for r in run.tables[name].rows if r["contender"] in ROWS])
+    if set(run.tables) == {"hands", "hands_limits", "hands_traces"}:
+        return
     needed = ("pareto", "pareto_intervals", "contenders", "god_object_error_histogram")
     missing = [name for name in needed if name not in run.tables]
     if missing:
@@ -155,12 +165,43 @@ def nearest(_):
                               (f", most on {errs}" if worst else "") + ".")
 
 
+def hands(_):
+    """What the hand feels beside the truth: RMS of the difference, and in how many of the ticks it is felt."""
+    rows = read_table(KEPT / "hands.csv").rows
+    scenes = list(dict.fromkeys(r["scene"] for r in rows))
+    lines = ["", "| | " + " | ".join(scenes) + " |", "| --- |" + " --- |" * len(scenes)]
+    for contender, name in ROWS.items():
+        mine = {r["scene"]: r for r in rows if r["contender"] == contender}
+        cells = [of_hand(mine[scene]) if scene in mine else "" for scene in scenes]
+        if mine:
+            lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def of_hand(row):
+    return f"{row['hand_rms_n']:.1g}" + (f" ({100 * row['felt_share']:.0f} %)" if row["felt_share"] else "")
+
+
+def held(_):
+    """Whose contact is stable up to the exact limit."""
+    rows = read_table(KEPT / "hands_limits.csv").rows
+    said = []
+    for contender, name in ROWS.items():
+        off = [f"{r['scene'].replace('_', ' ')} {r['stable_share_of_exact']:.2g}" for r in rows if r["contender"] == contender
+               and abs(r["stable_share_of_exact"] - 1) > 0.01]
+        if off:
+            said.append(f"{name} ({', '.join(off)})")
+    ours = [r["stable_share_of_exact"] for r in rows if r["contender"].startswith("fdcg")]
+    return (f"fdcg's stiffest stable contact is {min(ours):.3f} to {max(ours):.3f} of that limit; other than 0.99 to 1.01 of it somewhere: " +
+            ("; ".join(said) or "none") + ".")
+
+
 def span(rows, key):
     low, high = min(r[key] for r in rows), max(r[key] for r in rows)
     return f"{low:.0f} to {high:.0f}" if f"{low:.0f}" != f"{high:.0f}" else f"{low:.0f}"
 
 
-FIGURES = {"README.md": {"step times": step_times}, "docs/benchmarks.md": {"losses": losses, "nearest": nearest, "times": times, "brought": brought}}
+FIGURES = {"README.md": {"step times": step_times}, "docs/benchmarks.md": {"losses": losses, "nearest": nearest, "times": times, "brought": brought, "hands": hands, "held": held}}
 
 
 def pattern(name):

@@ -14,6 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import accuracy  # noqa: E402
 import closed_loop  # noqa: E402
 import contenders  # noqa: E402
+import hands  # noqa: E402
 import laws  # noqa: E402
 import page  # noqa: E402
 import scaling  # noqa: E402
@@ -21,7 +22,7 @@ import stress  # noqa: E402
 import summary  # noqa: E402
 from tables import Run, jsonable  # noqa: E402
 
-PARTS = [contenders, accuracy, laws, closed_loop, stress, scaling]  # in the report's order
+PARTS = [contenders, accuracy, hands, laws, closed_loop, stress, scaling]  # in the report's order
 FRONT = {"overview"}
 MOST_BYTES = 8_000_000
 
