@@ -193,8 +193,9 @@ class SafeChunk {
 
   // Where are_sound() has found a fault: the first node that is wrong, by name.
   [[gnu::cold, gnu::noinline]] fdcg_status refuse_nodes() {
-    const uint64_t first = chunk_.first_of(header_.node_count), end = chunk_.end_of(header_.node_count);
+    const uint64_t first = chunk_.first_of(header_.node_count);
 #if FDCG_WITH_MESSAGES
+    const uint64_t end = chunk_.end_of(header_.node_count);
     for (uint64_t n = first; n < end; ++n) {
       if (const char* const what = fault_of_node(static_cast<uint32_t>(n)); what != nullptr)
         return refuse_record(error_, "node", n, what);
