@@ -1,33 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The format's checksum: blocks of 4,096 bytes, each sixteen 64-bit lanes wide, each lane a chain of steps that can be undone
-// (xor with a word; the lower half times an odd number, the halves exchanged, the upper half mixed in), folded by the same
-// steps. A block's sum goes through steps that can be undone too before the sums are added up. So two inputs of one length that
-// differ inside a single word always differ in the result; elsewhere they agree by chance once in 2^64. It detects damage,
-// not deliberate changes.
-//
-// Blocks are apart so that threads can share a section; one product of 32 bits a word is what SSE2 has, two words at once.
+// The format's checksum, made for speed: it reads whole files (checksum_steps.hpp has what it is).
 #include "graph/checksum.hpp"
 
 #include <string.h>
 
 #include "fdcg/fdcg.h"
+#include "graph/checksum_steps.hpp"
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
 namespace fdcg {
 namespace {
-
-constexpr int kLaneCount = 16;
-constexpr uint64_t kStripe = 8 * kLaneCount;
-constexpr uint32_t kFactor = 0x9E3779B1u;              // odd, bits well mixed: a prime near 2^32 over the golden ratio
-constexpr uint64_t kMultiplier = 0x9E3779B97F4A7C15u;  // odd, bits well mixed: 2^64 over the golden ratio
-constexpr uint64_t kSeed = 0x46444347'00000002u;       // "FDCG", version of the checksum
-
-uint64_t absorbed(uint64_t lane, uint64_t word) {
-  const uint64_t mixed = lane ^ word, product = (mixed & 0xFFFFFFFFu) * kFactor;
-  return (product << 32 | product >> 32) ^ mixed >> 32;
-}
 
 #if defined(__SSE2__)
 
@@ -106,17 +90,7 @@ uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
   return sum;
 }
 
-uint64_t mixed_in(uint64_t sum, uint64_t index) {
-  uint64_t mixed = (sum + index * kMultiplier) * kMultiplier;
-  mixed ^= mixed >> 32;
-  return mixed * kMultiplier;
-}
-
 }  // namespace
-
-uint64_t checksum_start(uint64_t bytes) {
-  return kSeed + bytes * kMultiplier;
-}
 
 uint64_t checksum_of_blocks(const unsigned char* data, uint64_t bytes, uint64_t first, uint64_t end) {
   uint64_t sum = 0;

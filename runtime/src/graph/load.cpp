@@ -8,6 +8,7 @@
 #include "base/message.hpp"
 #include "fdcg/fdcg.h"
 #include "graph/box_tree.hpp"
+#include "graph/checksum.hpp"
 #include "graph/load.hpp"
 #include "graph/record_types.hpp"
 #include "graph/sections.hpp"
@@ -57,7 +58,7 @@ fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
         .say("format version ", header.format_version, ", this library reads version ", FDCG_FORMAT_VERSION,
              "; compile the mesh again or update the library");
   }
-  if (header.header_checksum != fdcg_checksum(&header, offsetof(fdcg_header, header_checksum))) {
+  if (header.header_checksum != small_checksum(&header, offsetof(fdcg_header, header_checksum))) {
     return Message(error, FDCG_E_CHECKSUM, offsetof(fdcg_header, header_checksum))
         .text("the header's checksum does not match; the file is damaged, compile the mesh again");
   }
@@ -227,7 +228,7 @@ fdcg_status check_table(const void* data, const fdcg_header& header, fdcg_error*
   if (end > header.file_bytes)
     return Message(error, FDCG_E_LAYOUT).text("the section table reaches beyond the end of the file");
   const auto* table = static_cast<const unsigned char*>(data) + sizeof(fdcg_header);
-  if (header.table_checksum != fdcg_checksum(table, end - sizeof(fdcg_header))) {
+  if (header.table_checksum != small_checksum(table, end - sizeof(fdcg_header))) {
     return Message(error, FDCG_E_CHECKSUM, sizeof(fdcg_header))
         .text("the section table's checksum does not match; the file is damaged, compile the mesh again");
   }
