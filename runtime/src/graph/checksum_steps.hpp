@@ -2,8 +2,8 @@
 // The format's checksum: blocks of 4,096 bytes, each sixteen 64-bit lanes wide, each lane a chain of steps that can be undone
 // (xor with a word; the lower half times an odd number, the halves exchanged, the upper half mixed in), folded by the same
 // steps. A block's sum goes through steps that can be undone too before the sums are added up. So two inputs of one length that
-// differ inside a single word always differ in the result; elsewhere they agree by chance once in 2^64. It detects damage,
-// not deliberate changes.
+// differ inside a single word always differ in the result. It detects damage, not deliberate changes, and not all damage: the
+// upper half of a word meets the lower half of the lane's next word unmixed, so equal changes of both cancel.
 //
 // Blocks are apart so that threads can share a section; one product of 32 bits a word is what SSE2 has, two words at once.
 #pragma once
