@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "table.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -52,4 +55,21 @@ TEST_CASE("a bar holds at its limit; beyond it, and for what was not measured, i
 
 TEST_CASE("a folder that cannot be made is an error that names the file") {
   CHECK_THROWS(Table("/proc/no such folder", "t", {"a"}));
+}
+
+TEST_CASE("bars that stop at the first one that fails end the program there, with exit code 1") {
+  const pid_t child = fork();
+  if (child == 0) {
+    constexpr int kWentOn = 5;
+    Bars bars(kFolder, "first", true);
+    bars.at_most("holds", 1, 2, "");
+    bars.at_most("fails", 3, 2, "");
+    _exit(kWentOn);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 1);
+  CHECK(text_of(std::filesystem::path(kFolder) / "first.bars.csv").find("fails,3,at most,2,,FAIL,") != std::string::npos);
+  std::filesystem::remove_all(kFolder);
 }

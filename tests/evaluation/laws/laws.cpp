@@ -25,6 +25,7 @@ constexpr Part kParts[] = {{"ramps", measure_ramps},     {"slides", measure_slid
 
 int main(int argc, char** argv) {
   LawOptions options;
+  bool stops_at_first = false;
   std::vector<std::string> names, only;
   for (const Part& part : kParts)
     names.push_back(part.name);
@@ -36,10 +37,11 @@ int main(int argc, char** argv) {
   program.option("--output", options.output, "Folder for the tables");
   program.option("--seed", options.seed, "Of everything drawn at random");
   program.option("--threads", options.threads, "The results do not depend on it", 1, 256);
+  program.flag("--first", stops_at_first, "End at the first bar that fails, with exit code 1");
   program.choice("--only", only, "Parts to run; default: all", names);
   if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
-    Bars bars(options.output, "fdcg_bench_laws");
+    Bars bars(options.output, "fdcg_bench_laws", stops_at_first);
     for (const Part& part : kParts) {
       if (only.empty() || std::ranges::count(only, part.name) > 0) part.measure(options, bars);
     }

@@ -9,6 +9,7 @@
 #include "base/mutation.hpp"
 #include "fdcg/fdcg.h"
 #include "step/contact_internals.hpp"
+#include "tick_count.hpp"
 
 extern "C" void fdcg_step_inner(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                                 const double hip_object_m[3], fdcg_result* result);
@@ -99,6 +100,7 @@ void plant_in_flags(const Tick& tick) {
 
 extern "C" FDCG_API void fdcg_step(const fdcg_graph* graph, const fdcg_params* params, fdcg_contact* contact,
                                    const double hip_object_m[3], fdcg_result* result) {
+  fdcg::test::count_tick();
   fdcg_params changed = *params;
   const fdcg_contact before = *contact;
   const Tick tick = {*graph->header, before, hip_object_m, changed, *contact, *result};

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -54,8 +55,9 @@ void Table::write(const std::vector<std::string>& cells) {
   if (!file_) throw std::runtime_error(path_ + ": cannot be written; is the disk full, the folder there and yours?");
 }
 
-Bars::Bars(const std::string& folder, const std::string& program)
-    : table_(folder, program + ".bars", {"bar", "measured", "relation", "limit", "unit", "verdict", "note"}) {}
+Bars::Bars(const std::string& folder, const std::string& program, bool stops_at_first)
+    : table_(folder, program + ".bars", {"bar", "measured", "relation", "limit", "unit", "verdict", "note"}),
+      stops_at_first_(stops_at_first) {}
 
 bool Bars::at_most(const std::string& bar, double measured, double limit, const std::string& unit, const std::string& note) {
   return judge(bar, measured, true, limit, unit, note);
@@ -73,6 +75,7 @@ bool Bars::judge(const std::string& bar, double measured, bool is_at_most, doubl
   std::printf("%-4s %s: %s %s (%s %s)%s%s\n", holds ? "ok" : "FAIL", bar.c_str(), cell(measured).c_str(), unit.c_str(),
               is_at_most ? "at most" : "at least", cell(limit).c_str(), note.empty() ? "" : "; ", note.c_str());
   std::fflush(stdout);
+  if (!holds && stops_at_first_) std::_Exit(1);
   return holds;
 }
 

@@ -42,7 +42,8 @@ class Table {
 // FOLDER/PROGRAM.bars.csv: bar, measured, relation, limit, unit, verdict (ok, FAIL), note. Each is said on standard output too.
 class Bars {
  public:
-  Bars(const std::string& folder, const std::string& program);
+  // `stops_at_first`: the first bar that fails ends the program, with exit code 1.
+  Bars(const std::string& folder, const std::string& program, bool stops_at_first = false);
   bool at_most(const std::string& bar, double measured, double limit, const std::string& unit, const std::string& note = "");
   bool at_least(const std::string& bar, double measured, double limit, const std::string& unit, const std::string& note = "");
   [[nodiscard]] int failures() const { return failures_; }
@@ -51,6 +52,7 @@ class Bars {
   bool judge(const std::string& bar, double measured, bool is_at_most, double limit, const std::string& unit,
              const std::string& note);
   Table table_;
+  bool stops_at_first_;
   int failures_ = 0;
 };
 
