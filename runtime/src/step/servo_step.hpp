@@ -173,6 +173,8 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk) &&
         !goes_on_at_corner(walk, &trail)) {
+      // Of a face and an edge the face pulls; a shaded one pulls another way than its plane does.
+      if (at.state == FDCG_FACE && walk.active.state == FDCG_EDGE && normals_of(walk, at.index) == nullptr) walk.active = at;
       return progress;
     }
     walk.spend(kTransitionWork);
