@@ -21,6 +21,12 @@ struct Vec3 {
   Real x, y, z;
 };
 
+// The same, copied number by number. Numbers that were stored one by one, and are then copied two at once, make the processor
+// wait until they have left its store buffer.
+template <class Real>
+inline Vec3<Real> by_parts(Vec3<Real> a) {
+  return {a.x, a.y, a.z};
+}
 template <class Real>
 inline Vec3<Real> vec(const Real (&a)[3]) {
   return {a[0], a[1], a[2]};

@@ -51,54 +51,84 @@ template <class Geometry, class Real = typename Geometry::Real>
   return first;
 }
 
+// The first side inside of whose Voronoi plane a place is not by more than `bound`; side_count() if there is none.
 // kIsPlain: the graph is (GraphView::is_plain).
 template <bool kIsPlain = false, class Geometry, class Real = typename Geometry::Real>
+FDCG_HOT uint32_t first_near_side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) {
+  uint32_t k = node.first_doubtful(x, bound);
+  while (k < node.side_count() && !((kIsPlain ? node.stored_plane(k) : node.voronoi_plane(k)).distance(x) >= -bound))
+    ++k;
+  return k;
+}
+
+template <class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT Crossing<Real> first_crossing(NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to, Real bound) {
-  for (uint32_t k = node.first_doubtful(to, bound); k < node.side_count(); ++k) {
-    const Plane<Real> plane = kIsPlain ? node.stored_plane(k) : node.voronoi_plane(k);
-    if (plane.distance(to) >= -bound) return first_crossing_from(k, node, from, to);
-  }
-  return {};
+  const uint32_t k = first_near_side(node, to, bound);
+  return k < node.side_count() ? first_crossing_from(k, node, from, to) : Crossing<Real>{};
 }
 
 // What becomes of a god-object on a face (contact-model FACE-1 to FACE-4).
+enum class FaceMoveKind {
+  leaves,   // the HIP is not behind the face
+  rests,    // friction holds it
+  slides,   // to `target`, on the same face
+  nears,    // to `target`, which may be beyond a side: meet_side() tells
+  crosses,  // on its way there it meets a side
+};
 template <class Real>
 struct FaceMove {
-  enum class Kind {
-    leaves,   // the HIP is not behind the face
-    rests,    // friction holds it
-    slides,   // to `target`, on the same face
-    crosses,  // on its way there it meets a side
-  } kind;
+  using Kind = FaceMoveKind;
+
+  Kind kind;
   Vec3<Real> target;
   Crossing<Real> crossing;
+};
+// The same before its sides have been looked at closely: it may near, but does not cross.
+template <class Real>
+struct FaceGlance {
+  FaceMoveKind kind;
+  uint32_t near_side;  // the first that it may be beyond
+  Vec3<Real> target;
 };
 
 // `bound`: plane_rounding_bound of the HIP. `stands`: from the HIP to the god-object; `reach`: to where it would be without
 // rounding (contact-model FACE-7). Whether friction holds it is asked of its place: the next tick has no other.
-// Cost: one plane; where the god-object slides, one for each side of the node, two for those beyond which the target lies.
-// Changes nothing but friction.is_slipping.
+// Cost: one plane; where the god-object slides, one for each side of the node. Changes nothing but friction.is_slipping.
 template <bool kIsPlain = false, class Geometry, class Laws, class Real = typename Geometry::Real>
-FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
-                                     Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
-  using Kind = typename FaceMove<Real>::Kind;
+FDCG_HOT FaceGlance<Real> glance_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
+                                         Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
+  using Kind = FaceMoveKind;
   if (FDCG_MUTANT("leaves-late")) side = side - Real(1e-4) * node.extent();
   if (FDCG_MUTANT("leaves-early")) side = side + Real(1e-4) * node.extent();
-  if (FDCG_MUTANT("on-plane") ? side > 0 : !(side < 0)) return {Kind::leaves, god_object, {}};
+  if (FDCG_MUTANT("on-plane") ? side > 0 : !(side < 0)) return {Kind::leaves, 0, god_object};
   const Vec3<Real> normal = node.normal();
   const Vec3<Real> off = stands - normal * dot(normal, stands);  // its part in the plane: from the surface point
   const Real depth = -side;
   const Slip<Real> slip = friction.slip(god_object, dot(off, off), depth);
-  if (slip.is_rest) return {Kind::rests, god_object, {}};
+  if (slip.is_rest) return {Kind::rests, 0, god_object};
   const Vec3<Real> offset = reach - normal * dot(normal, reach);
   const Real reach2 = dot(offset, offset);
   const Real shrink = slip.gap > 0 && reach2 > 0 ? slip.gap / root(reach2) : Real(0);
   const Vec3<Real> surface_point = hip + normal * depth;
   const Real part = FDCG_MUTANT("slides-half") ? (1 + shrink) / 2 : FDCG_MUTANT("slides-past") ? -shrink : shrink;
   const Vec3<Real> target = surface_point + offset * part;
-  const Crossing<Real> crossing =
-      FDCG_MUTANT("rim-unseen") ? Crossing<Real>{} : first_crossing<kIsPlain>(node, god_object, target, bound);
-  return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, target, crossing};
+  const uint32_t k = FDCG_MUTANT("rim-unseen") ? node.side_count() : first_near_side<kIsPlain>(node, target, bound);
+  return {k < node.side_count() ? Kind::nears : Kind::slides, k, by_parts(target)};
+}
+
+// Of a god-object that stood at `from`. Cost: two planes for each side beyond which the target may lie.
+template <class Geometry, class Real = typename Geometry::Real>
+inline FaceMove<Real> meet_side(NodeRef<Geometry> node, Vec3<Real> from, const FaceGlance<Real>& glance) {
+  using Kind = FaceMoveKind;
+  if (glance.kind != Kind::nears) return {glance.kind, glance.target, {}};
+  const Crossing<Real> crossing = first_crossing_from(glance.near_side, node, from, glance.target);
+  return {crossing.local_side == FDCG_NONE ? Kind::slides : Kind::crosses, glance.target, crossing};
+}
+
+template <bool kIsPlain = false, class Geometry, class Laws, class Real = typename Geometry::Real>
+FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
+                                     Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
+  return meet_side(node, god_object, glance_on_face<kIsPlain>(node, friction, hip, bound, side, god_object, stands, reach));
 }
 
 // A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.

@@ -424,6 +424,15 @@ template <class Geometry>
 inline constexpr bool kHasHops = Geometry::kKeepsDirections;
 #endif
 
+// Whether a tick on a face has a short way of its own; a library built for size has one way for all.
+#ifdef __OPTIMIZE_SIZE__
+inline constexpr bool kGlances = false;
+#define FDCG_STEP_ON inline
+#else
+inline constexpr bool kGlances = true;
+#define FDCG_STEP_ON [[gnu::noinline]]
+#endif
+
 // A HIP that is no number, or too far away for the step's arithmetic.
 [[gnu::noinline, gnu::cold]] inline void refuse_hip(const fdcg_header& header, fdcg_contact* contact, fdcg_result* result) {
   ++contact->non_finite_ticks;
@@ -431,11 +440,96 @@ inline constexpr bool kHasHops = Geometry::kKeepsDirections;
   write_position(header, *contact, result);
 }
 
-// A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7).
+// What a tick finds of a contact on a face before it looks at sides closely.
+template <class Real>
+struct FaceTick {
+  Real side;  // of the HIP, from the face
+  QuickFriction<Real> friction;
+  FaceGlance<Real> glance;
+};
+template <class Geometry, class Real = typename Geometry::Real>
+FDCG_HOT FaceTick<Real> look_at_face(const GraphView<Geometry>& graph, const fdcg_params& params, const fdcg_contact& contact,
+                                     Vec3<Real> hip, Real bound) {
+  const NodeRef<Geometry> node = graph.node(contact.feature);
+  const Vec3<Real> god_object = narrow<Real>(contact.god_object), stands = god_object - hip;
+  const Real side = side_of(graph, node, hip, bound, nullptr);
+  QuickFriction<Real> friction = {friction_of<Real>(params, contact)};
+  const FaceGlance<Real> glance = glance_on_face(node, friction, hip, bound, side, god_object, stands, stands);
+  return {side, friction, {glance.kind, glance.near_side, by_parts(glance.target)}};
+}
+
+// Whether a god-object ends on its face.
+template <class Geometry, class Real = typename Geometry::Real>
+inline bool ends_on_face(const GraphView<Geometry>& graph, Vec3<Real> hip, FaceMoveKind kind, bool has_hopped) {
+  return kind == FaceMoveKind::slides ? !is_far(graph, hip) : kind == FaceMoveKind::rests && !has_hopped;
+}
+template <class Real>
+FDCG_HOT void end_on_face(const fdcg_header& header, const fdcg_params& params, Vec3<Real> hip, FaceMoveKind kind,
+                          Vec3<Real> target, bool is_slipping, fdcg_contact* contact, fdcg_result* result) {
+  ContactInternals& inner = internals_of(*contact);
+  if (kind == FaceMoveKind::slides) inner.seat_state = FDCG_FREE, inner.seat_feature = FDCG_NONE;
+  contact->slipping = is_slipping ? 1 : 0;
+  inner.sweep.stalled_sweeps = 0;
+  respond(header, params, *contact, hip, target, result);
+  store(target, contact->god_object);
+}
+template <class Real>
+FDCG_STEP_ON void end_hops_on_face(const fdcg_header& header, const fdcg_params& params, Vec3<Real> hip, const Hop<Real>& hop,
+                                   fdcg_contact* contact, fdcg_result* result) {
+  result->transitions = hop.transitions;
+  end_on_face(header, params, hip, hop.move.kind, hop.move.target, hop.friction.is_slipping, contact, result);
+}
+
+// The rest of a tick: from a face that the god-object may leave, or on which it must be asked again, with what has been found
+// there; or, `tick` null, from elsewhere.
+template <class Geometry, class Real = typename Geometry::Real>
+FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip, const FaceTick<Real>* tick,
+                          fdcg_contact* contact, fdcg_result* result) {
+  const GraphView<Geometry> graph(raw);
+  const Real bound = plane_rounding_bound(graph, hip);
+  const bool is_on_face = contact->state == FDCG_FACE;
+  Hop<Real> hop;
+  hop.god_object = narrow<Real>(contact->god_object);
+  hop.rounding_residual = {0, 0, 0};
+  hop.work_left = kRuleWork;
+  hop.transitions = 0;
+  hop.friction = {friction_of<Real>(params, *contact)};
+  if (is_on_face) {
+    const NodeRef<Geometry> node = graph.node(contact->feature);
+    if constexpr (kGlances) {
+      hop.friction = tick->friction;
+      hop.move = meet_side(node, hop.god_object, tick->glance);
+    } else {
+      const Vec3<Real> stands = hop.god_object - hip;
+      hop.move = move_on_face(node, hop.friction, hip, bound, side_of(graph, node, hip, bound, nullptr), hop.god_object, stands,
+                              stands);
+    }
+    if (kHasHops<Geometry> && hop.move.kind == FaceMoveKind::crosses && tick->side < -bound &&
+        (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0) {
+      hop.node = contact->feature;
+      hop_to_hip(graph, hip, bound, &hop);
+      contact->feature = hop.node;
+    }
+    if (ends_on_face(graph, hip, hop.move.kind, hop.transitions != 0))
+      return end_hops_on_face(*raw.header, params, hip, hop, contact, result);
+  }
+  Walk<Geometry> walk = {graph,
+                         {static_cast<const PlainFriction<Real>&>(hop.friction), nullptr},
+                         hip,
+                         bound,
+                         hop.god_object,
+                         {contact->state, contact->feature},
+                         hop.transitions != 0 ? Feature{FDCG_EDGE, hop.edge} : seat_of(*contact),
+                         hop.work_left,
+                         hop.rounding_residual};
+  walk_to_hip<Geometry, Real>(walk, is_on_face ? &hop.move : nullptr, hop.transitions, params, contact, result);
+}
+
+// A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7): what such a
+// tick does not need is made in step_on().
 template <class Geometry, class Real = typename Geometry::Real>
 void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
           fdcg_result* result) {
-  using Kind = typename FaceMove<Real>::Kind;
   const fdcg_header& header = *raw.header;
   Vec3<double> local_hip;
   *result = {};
@@ -452,56 +546,17 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   } else if (FDCG_WITH_FRICTION_TERMS && params.friction_flags != 0) {
     if constexpr (FDCG_WITH_FRICTION_TERMS) return step_with_flags<Geometry>(raw, params, hip, contact, result);
   } else {
-    const GraphView<Geometry> graph(raw);
-    const Real bound = plane_rounding_bound(graph, hip);
-    const Vec3<Real> god_object = narrow<Real>(contact->god_object);
-    const bool is_on_face = contact->state == FDCG_FACE;
-    Hop<Real> hop;
-    hop.friction = {friction_of<Real>(params, *contact)};
-    hop.transitions = 0;
-    Real side = 0;
-    if (is_on_face) {
-      const NodeRef<Geometry> node = graph.node(contact->feature);
-      side = side_of(graph, node, hip, bound, nullptr);
-      const Vec3<Real> stands = god_object - hip;
-      hop.move = move_on_face(node, hop.friction, hip, bound, side, god_object, stands, stands);
-    }
-    if (kHasHops<Geometry> && is_on_face && hop.move.kind == Kind::crosses && side < -bound &&
-        (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0) {
-      hop.node = contact->feature;
-      hop.work_left = kRuleWork;
-      hop.god_object = god_object;
-      hop.rounding_residual = {0, 0, 0};
-      hop_to_hip(graph, hip, bound, &hop);
-      contact->feature = hop.node;
-    }
-    const bool has_hopped = hop.transitions != 0;
-    const bool is_at_end =
-        is_on_face && (hop.move.kind == Kind::slides ? !is_far(graph, hip) : hop.move.kind == Kind::rests && !has_hopped);
-    if (is_at_end) {
-      ContactInternals& inner = internals_of(*contact);
-      if (hop.move.kind == Kind::slides) inner.seat_state = FDCG_FREE, inner.seat_feature = FDCG_NONE;
-      contact->slipping = hop.friction.is_slipping ? 1 : 0;
-      inner.sweep.stalled_sweeps = 0;
-      result->transitions = hop.transitions;
-      respond(header, params, *contact, hip, hop.move.target, result);
-      store(hop.move.target, contact->god_object);
-    } else {
-      Walk<Geometry> walk = {graph,
-                             {static_cast<const PlainFriction<Real>&>(hop.friction), nullptr},
-                             hip,
-                             bound,
-                             god_object,
-                             {contact->state, contact->feature},
-                             seat_of(*contact),
-                             kRuleWork};
-      if (has_hopped) {
-        walk.god_object = hop.god_object;
-        walk.rounding_residual = hop.rounding_residual;
-        walk.seat = {FDCG_EDGE, hop.edge};
-        walk.work_left = hop.work_left;
+    if (kGlances && contact->state == FDCG_FACE) {
+      const GraphView<Geometry> graph(raw);
+      const FaceTick<Real> tick = look_at_face(graph, params, *contact, hip, plane_rounding_bound(graph, hip));
+      if (ends_on_face(graph, hip, tick.glance.kind, false)) {
+        end_on_face(header, params, hip, tick.glance.kind, tick.glance.target, tick.friction.is_slipping, contact, result);
+      } else {
+        const FaceTick<Real> found = tick;  // of its own, so that the way above keeps nothing in memory
+        step_on<Geometry, Real>(raw, params, hip, &found, contact, result);
       }
-      walk_to_hip<Geometry, Real>(walk, is_on_face ? &hop.move : nullptr, hop.transitions, params, contact, result);
+    } else {
+      step_on<Geometry, Real>(raw, params, hip, nullptr, contact, result);
     }
     store(hip, contact->hip);
   }
