@@ -4,6 +4,7 @@ lines of text. In real time, on a machine that may be busy."""
 import json
 import os
 import pathlib
+import random
 import signal
 import subprocess
 import time
@@ -12,6 +13,7 @@ import unittest
 from servo_run_test import ROOT, SERVO, ServoCase, lines_of
 
 PTY_DEVICE = os.environ["FDCG_PTY_DEVICE"]
+STRIKES = int(os.environ.get("FDCG_STRIKES", "1"))
 PROFILES = {"bytes": ROOT / "runtime/device/profiles/fdcg-reference.json", "text": ROOT / "testdata/profiles/serial_text.json"}
 # from above into the cube, which has its top at z = 0
 DOWN = [{"at_s": at, "place_m": [0, 0, z]} for at, z in ((0, 0.01), (0.9, 0.01), (1.1, -0.004), (100, -0.004))]
@@ -35,11 +37,11 @@ class SerialCase(ServoCase):
         return self.scene(loop={"lock_memory": False}, devices=[{"name": "hand", "source": "serial", **device}])
 
     def asked(self, process):
-        """(force, enabled, outputs) of what the device was asked for last."""
+        """(force, enabled, outputs) of what the device was asked for last, and whether it says that it applies that."""
         process.stdin.write("?\n")
         process.stdin.flush()
-        _, force, _, enabled, _, outputs = process.stdout.readline().split()
-        return float(force), int(enabled), int(outputs)
+        _, force, _, enabled, _, outputs, _, applies = process.stdout.readline().split()
+        return float(force), int(enabled), int(outputs), int(applies)
 
 
 class Lines(SerialCase):
@@ -124,6 +126,73 @@ class Faults(SerialCase):
                         if was_felt:
                             break
                     self.assertTrue(was_felt)
+
+
+class Killed(SerialCase):
+    """kill -9, to which no program answers. The device is a process of its own, and goes on."""
+
+    WATCHDOG_S = 0.05
+    UNWATCHED_N = 1.001  # what a device without a watchdog gets at most, and the rounding of its reports
+
+    def killed_under_force(self, kind, **simulation):
+        """The device, its scene, what it was asked for when the host died, and when that was."""
+        for _ in range(4):
+            device, scene = self.plug(kind, **simulation)
+            if "watchdog_s" in simulation:  # what its profile does not know of
+                scene = json.loads(pathlib.Path(scene).read_text())
+                profile = json.loads(PROFILES[kind].read_text())
+                del profile["limits"]["device_watchdog_s"]
+                scene["devices"][0]["profile"] = profile
+                scene = self.write("unwatched.json", json.dumps(scene))
+            host = self.started(scene, "--arm", "--no-log", "-q")
+            until = time.monotonic() + 5
+            while not (self.asked(device)[0] > 0.1 and self.asked(device)[3]) and time.monotonic() < until:
+                time.sleep(0.01)
+            time.sleep(random.uniform(0, 0.2))
+            before = self.asked(device)
+            host.kill()
+            host.wait()
+            killed_s = time.monotonic()
+            time.sleep(0.01)  # what is still on the line
+            after = self.asked(device)
+            if min(before[0], after[0]) > 0:
+                return device, scene, after, killed_s
+            device.kill()
+        self.fail("the machine was too busy for the hand to be armed")
+
+    def left_alone_by_the_next_host(self, device, scene, outputs):
+        host = self.started(scene, "--no-log", "-q")
+        until = time.monotonic() + 5
+        while self.asked(device)[2] <= outputs and time.monotonic() < until:
+            time.sleep(0.005)
+        self.assertEqual((0, 0), self.asked(device)[:2])
+        time.sleep(0.1)
+        self.assertEqual((0, 0, 0), (*self.asked(device)[:2], self.asked(device)[3]))
+        host.terminate()
+        host.wait()
+
+    def test_the_devices_watchdog_takes_the_force_away(self):
+        for kind in PROFILES:
+            for _ in range(STRIKES):
+                with self.subTest(kind):
+                    device, scene, after, killed_s = self.killed_under_force(kind)
+                    while self.asked(device)[3] and time.monotonic() < killed_s + 2:
+                        time.sleep(0.001)
+                    self.assertLess(time.monotonic() - killed_s, self.WATCHDOG_S + 0.05)  # its next report, and this thread's delay
+                    self.assertEqual(after[:3], self.asked(device)[:3], "nobody has sent anything")
+                    self.left_alone_by_the_next_host(device, scene, after[2])
+                    device.kill()
+
+    def test_without_a_watchdog_the_force_is_small_until_the_next_host(self):
+        for kind in PROFILES:
+            for _ in range(STRIKES):
+                with self.subTest(kind):
+                    device, scene, after, _ = self.killed_under_force(kind, watchdog_s=10)
+                    time.sleep(random.uniform(0.03, 0.5))
+                    self.assertEqual((*after[:3], 1), self.asked(device))
+                    self.assertLess(after[0], self.UNWATCHED_N)
+                    self.left_alone_by_the_next_host(device, scene, after[2])
+                    device.kill()
 
 
 class Calibrate(SerialCase):

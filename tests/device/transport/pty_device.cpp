@@ -2,7 +2,8 @@
 // usage: pty_device SCENE.json PROFILE.json LINK
 // A device on a serial line: the scene's simulated one, firmware core and faults included, behind a pseudo-terminal that LINK
 // points to, in the frames or lines of the profile. Prints "ready", then for every line that it reads on standard input what
-// its motors were last asked for: "force N enabled 0|1 outputs COUNT". It ends with its input. An unplugged device hangs up.
+// its motors were last asked for, and whether it says that it applies that: "force N enabled 0|1 outputs COUNT applies 0|1". It
+// ends with its input. An unplugged device hangs up.
 #include <fcntl.h>
 #include <poll.h>
 #include <sched.h>
@@ -29,7 +30,7 @@ namespace {
 
 struct Asked {
   std::atomic<double> force_n{0};
-  std::atomic<bool> is_enabled{false};
+  std::atomic<bool> is_enabled{false}, is_applied{false};
   std::atomic<long> outputs{0};
 };
 
@@ -59,7 +60,7 @@ class Bridge {
       open_line();
       std::atomic<bool> is_over{false};
       std::thread receiver([&] { receive(asked, &is_over); });
-      send();
+      send(asked);
       is_over = true;
       receiver.join();
       close(line_);
@@ -81,16 +82,18 @@ class Bridge {
     keeper_ = open(ptsname(line_), O_RDWR | O_NOCTTY);  // so that a host which comes later, or again, is no hang-up
   }
 
-  void send() {
+  void send(Asked* asked) {
     std::uint8_t report[kMaxReportBytes + 16], frame[2 * kMaxFrameBytes];
     for (;;) {
       const ReadResult read = device_->read(report, sizeof report, 100);
       if (read.status == ReadStatus::kLost) break;
       if (read.status == ReadStatus::kTimeout) continue;
       int bytes = read.bytes;
+      Sample sample;
+      const bool is_told = decode_input(own_, report, bytes, &sample) == Verdict::kGood || sample.has_fault;
+      if (is_told) asked->is_applied = sample.is_enabled;
       if (spoken_.input.is_text()) {
-        Sample sample;
-        if (decode_input(own_, report, bytes, &sample) != Verdict::kGood && !sample.has_fault) continue;
+        if (!is_told) continue;
         answered_ = sample.sequence;
         bytes = encode_input(spoken_, sample, report);
       }
@@ -159,7 +162,8 @@ int main(int argc, char** argv) {
   std::printf("ready\n");
   std::fflush(stdout);
   for (std::string line; std::getline(std::cin, line);) {
-    std::printf("force %.6g enabled %d outputs %ld\n", asked.force_n.load(), asked.is_enabled ? 1 : 0, asked.outputs.load());
+    std::printf("force %.6g enabled %d outputs %ld applies %d\n", asked.force_n.load(), asked.is_enabled ? 1 : 0,
+                asked.outputs.load(), asked.is_applied ? 1 : 0);
     std::fflush(stdout);
   }
   std::_Exit(0);
