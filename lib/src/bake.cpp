@@ -22,8 +22,10 @@
 #include "graph/corner_normals.hpp"
 #include "graph/face_materials.hpp"
 #include "graph/graph.hpp"
+#include "graph/height_sections.hpp"
 #include "graph/info.hpp"
 #include "graph/merge.hpp"
+#include "graph/node_places.hpp"
 #include "graph/regions.hpp"
 #include "graph/serialise.hpp"
 #include "graph/triangulate.hpp"
@@ -175,7 +177,7 @@ void free_geometry(PolygonSoup& soup) {
 Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology topology, const CompileOptions& options,
                                    unsigned jobs, Compiled& compiled, PolygonSoup* spare) {
   SerialiseInput input = serialise_input(soup, mesh, options, jobs);
-  if (spare != nullptr && options.normals != Normals::file && !options.visual) free_geometry(*spare);
+  if (spare != nullptr && options.normals != Normals::file && !options.visual && !options.heights) free_geometry(*spare);
   const Quantum quantum = quantum_of(soup, mesh, options.precision);
   const std::vector<std::uint32_t> source_face = mesh.source_face;
   Triangulation cut = triangulate(std::move(mesh), std::move(topology));
@@ -196,6 +198,8 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   const bool has_materials = !soup.materials.empty() && !options.without.contains("materials");
   if (has_materials) split_by_material(soup, source_face, cut, faces.regions);
   split_by_normals(normals, faces.regions);
+  NodePlaces places;
+  if (options.heights) places = find_node_places(soup, source_face, cut, faces.regions);
   auto mass = weigh(cut.mesh, cut.topology, faces.regions, options, jobs, compiled);
   if (!mass) return mass.error();
   input.mass = *mass;
@@ -211,6 +215,11 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
     if (input.mass) input.mass->deviation = std::max(input.mass->deviation, faces.removed_distance);
   }
   input.normals_of_face = normals_of_faces(normals, corners, faces);
+  if (options.heights) {
+    auto heights = make_height_sections(soup, places_of_faces(places, faces), options, jobs);
+    if (!heights) return heights.error();
+    input.heights = std::move(*heights);
+  }
   const std::vector<std::uint32_t> seen_faces = options.visual ? faces.face_of_triangle : std::vector<std::uint32_t>{};
   std::vector<std::uint32_t> face_of_source =
       trace_sources(input.source_face_count, source_face, cut.polygon, std::move(faces.face_of_triangle));
@@ -226,7 +235,7 @@ Result<std::span<std::byte>> build(const PolygonSoup& soup, Mesh mesh, Topology 
   if (std::string reason = out_of_range(graph, input); !reason.empty()) return Failure{3, soup.name + ": " + reason};
   if (options.visual) share_vertices(input.visual, graph, seen_faces);
   if (input.with_source_map) input.node_of_source = nodes_of_sources(std::move(face_of_source), graph.node_of_face);
-  if (!has_materials && input.normals_of_face.empty()) release(graph.node_of_face);
+  if (!has_materials && input.normals_of_face.empty() && input.heights.is_empty()) release(graph.node_of_face);
   if (options.allocate) return serialise(graph, input, options.allocate);
   return serialise(graph, input, [&](std::size_t count) { return allocate_in(compiled.bytes, count); });
 }
@@ -258,7 +267,10 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
   constexpr std::size_t kHeaderAndInfo = 4096;
   const std::size_t seen =
       options.visual ? soup.corners.size() * (sizeof(fdcg_visual_vertex) / 6 + 2 * sizeof(std::uint32_t)) : 0;
-  return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side + seen;
+  std::size_t felt = options.heights ? soup.face_count() * sizeof(fdcg_node_place) : 0;
+  for (const HeightImage& image : soup.appearance.images)
+    felt += options.heights ? image.values.size() * 5 : 0;  // 2 1/3 numbers a texel, in all levels
+  return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side + seen + felt;
 }
 
 Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare) {
@@ -269,6 +281,9 @@ Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& optio
         soup.name +
             ": holds no normals (vn of OBJ, nx ny nz of PLY, NORMAL of glTF); --normals faces makes them from the faces",
         {}};
+  if (options.heights) {
+    if (std::string missing = missing_for_heights(soup, options); !missing.empty()) return Failure{2, std::move(missing), {}};
+  }
   const unsigned jobs = resolve_jobs(options.jobs);
   const auto stage = [&](std::string_view name, double fraction) {
     if (options.progress) options.progress(name, fraction);

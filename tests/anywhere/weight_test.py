@@ -13,7 +13,7 @@ from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
 
 PARTS = ROOT / "tests" / "consumer" / "parts"
 
-SUPPORT = {"relief", "relief_check", "waves_relief", "effect_check", "effect_facts", "effect_step", "effect_symbols", "magnet", "noise", "pulse", "stick_slip", "tap", "texture", "vibration", "viscosity",
+SUPPORT = {"heights_check", "heights_relief", "relief", "relief_check", "waves_relief", "effect_check", "effect_facts", "effect_step", "effect_symbols", "magnet", "noise", "pulse", "stick_slip", "tap", "texture", "vibration", "viscosity",
            "body", "body_scene", "body_symbols", "checksum", "contact_info", "deform_share", "deform_symbols", "inline_symbols", "nearest",
            "query_symbols", "ray", "scene_replace", "scene_restore", "scene_save", "scene_state_check", "scene_symbols", "signed_distance", "step_many", "surface_symbols", "body_step", "deform", "deform_boxes", "deform_move", "deform_scene", "deform_step", "deform_upkeep", "fan_run_section",
            "hooks", "map_file_none", "map_file_posix", "mass_record", "material_section", "message", "params", "params_init", "pile", "pile_damp",

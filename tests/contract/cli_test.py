@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import signal
 import struct
 import subprocess
@@ -367,6 +368,43 @@ class Inspect(Case):
         with open(library, "w") as changed:
             changed.write("newmtl steel\nKd 1 0 0\n")
         self.assertIn("would overwrite", self.fdcg("compile", mesh, "-o", library, "--visual", code=2).stderr.decode())
+
+    def test_images_of_heights_are_listed_and_are_dependencies(self):
+        self.assertIsNone(json.loads(self.fdcg("inspect", "--json", self.compiled_cube()).stdout)["heights"])
+        for name in ("tile.obj", "tile.mtl", "weave.png"):
+            shutil.copy(ROOT / "testdata/heights" / name, self.path(name))
+        mesh, out = self.path("tile.obj"), self.path("tile.fdcg")
+        self.fdcg("compile", mesh, "-o", out, "--units", "cm", "--heights", "file", "--depfile", self.path("tile.d"))
+        needed = pathlib.Path(self.path("tile.d")).read_text()
+        self.assertIn("tile.mtl", needed)
+        self.assertIn("weave.png", needed)
+        about = json.loads(self.fdcg("inspect", "--json", out).stdout)
+        jsonschema.validate(about, schema("inspect.schema.json"))
+        self.assertEqual([{"width": 64, "height": 64, "levels": 6, "nodes": 1}], about["heights"]["maps"])
+        self.assertAlmostEqual(6e-5, about["heights"]["most_m"], delta=4e-5)
+        sizes = {section["name"]: section["bytes"] for section in about["sections"]}
+        texels = 2 * 64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4
+        self.assertEqual((6 * 48, 40, 2 * texels), tuple(sizes[name] for name in ("places", "height-maps", "height-texels")))
+        self.assertIn("64 x 64 texels in 6 levels (1 nodes)", self.fdcg("inspect", out).stdout.decode())
+        refused = self.fdcg("compile", mesh, "-o", out, "--heights", self.path("weave.png"), code=2).stderr.decode()
+        self.assertIn("--height-range", refused)
+        self.fdcg("compile", mesh, "-o", out, "--heights", self.path("weave.png"), "--height-range", "0.0001", "--depfile", self.path("tile.d"))
+        self.assertIn("weave.png", pathlib.Path(self.path("tile.d")).read_text())
+        with open(self.path("weave.png"), "r+b") as image:
+            image.truncate(300)
+        damaged = self.fdcg("compile", mesh, "-o", out, "--heights", "file", code=3).stderr.decode()
+        self.assertIn("weave.png: is no PNG image that can be read (it ends early); save it as PNG again", damaged)
+        os.remove(self.path("weave.png"))
+        self.assertIn("weave.png", self.fdcg("compile", mesh, "-o", out, "--heights", "file", code=3).stderr.decode())
+
+    def test_a_material_library_that_is_not_read_is_told(self):
+        blocks = (ROOT / "runtime/examples/steel_and_rubber.obj").read_text()
+        out = self.path("blocks.fdcg")
+        mesh = self.write("blocks.obj", "mtllib ../paint.mtl\nmtllib gone.mtl\n" + blocks)
+        said = self.fdcg("compile", mesh, "-o", out, "--visual").stderr.decode()
+        self.assertIn("its material library '../paint.mtl' was not read: it is not in the mesh's folder or beneath it; copy it there", said)
+        self.assertIn("its material library 'gone.mtl' is not there; put it beside the mesh, or remove the line mtllib", said)
+        self.assertNotIn("material library", self.fdcg("compile", mesh, "-o", out).stderr.decode())
 
     def test_an_open_mesh_has_no_mass_and_says_why(self):
         lid_off = CUBE.replace("8 6 0", "8 5 0").replace("4 4 5 6 7\n", "")

@@ -20,6 +20,7 @@ int main(int count, char** arguments) {
                          bool visual = false) {
     bake::CompileOptions options;
     options.visual = visual;
+    options.heights = !soup.appearance.images.empty();
     options.precision = precision;
     options.store_planes = store_planes;
     options.without = {"info"};
@@ -31,12 +32,27 @@ int main(int count, char** arguments) {
     return out.good();
   };
   constexpr auto f64 = bake::Precision::f64, f32 = bake::Precision::f32;
+  const auto with_heights = [](bake::PolygonSoup soup, bake::HeightImage::Wrap wrap) {
+    bake::HeightImage image;
+    image.name = "steps";
+    image.width = 5, image.height = 3, image.range = 0.01;
+    for (std::uint32_t i = 0; i < 15; ++i)
+      image.values.push_back(static_cast<float>(i * 7 % 15) / 15);
+    image.wrap = {wrap, wrap};
+    soup.appearance.images = {image};
+    soup.appearance.all_heights = 0;
+    for (const std::uint32_t corner : soup.corners)
+      soup.appearance.uv.push_back({static_cast<float>(soup.points[corner].x), static_cast<float>(soup.points[corner].y)});
+    return soup;
+  };
   const auto inexact = rounded_to_float(transformed(grid_box(2, 2, 1, {1, 1, 0.5}), random_rotation(3)));
   const bool is_written =
       write("busy-corner-f64", cone(40), f64, true) && write("busy-corner-f32", cone(40), f32, true) &&
       write("inexact-f64", inexact, f64, false) && write("inexact-f32", inexact, f32, true) &&
       write("l-f64", l_prism(), f64, true) && write("l-f32-derived", l_prism(), f32, false) &&
       write("open-patch-f64", plane_grid(2, 2), f64, true) && write("open-patch-f32", plane_grid(2, 2), f32, true) &&
+      write("heights-f64", with_heights(l_prism(), bake::HeightImage::Wrap::mirror), f64, true) &&
+      write("heights-f32", with_heights(plane_grid(2, 2), bake::HeightImage::Wrap::repeat), f32, false) &&
       write("visual-f64", l_prism(), f64, true, true) && write("visual-f32", plane_grid(2, 2), f32, false, true);
   return is_written ? 0 : 4;
 }

@@ -124,6 +124,7 @@ void look_at_records(const fdcg_graph& graph) {
   fdcg_mass mass;
   (void)fdcg_get_mass(&graph, &mass, &error);
   look_at_visual(graph);
+  look_at_heights(graph);
 }
 
 struct Running {

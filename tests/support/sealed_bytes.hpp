@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fdcg/fdcg.h"
+#include "fdcg/heights.h"
 #include "fdcg/visual.h"
 
 namespace fdcg::test {
@@ -91,6 +92,22 @@ inline void look_at_visual(const fdcg_graph& graph) {
   if (end != visual.index_count || !(sum * 0 == 0)) std::abort();
 }
 
+// Asks for heights on every node, at every speed and far away: what was found right leads nowhere else.
+inline void look_at_heights(const fdcg_graph& graph) {
+  fdcg_heights heights;
+  if (fdcg_get_heights(&graph, &heights, nullptr) != FDCG_OK) return;
+  const fdcg_relief relief = fdcg_make_height_relief(&heights);
+  for (std::uint32_t n = 0; n <= heights.node_count; ++n) {
+    double scale = graph.header->extent * graph.header->metres_per_unit;
+    for (int i = 0; i < 8; ++i, scale *= i % 2 == 0 ? 1e-3 : 1e7) {
+      const fdcg_relief_place place = {{scale, -0.7 * scale, 0.3 * scale}, {1e-6 * scale, -1e-7 * scale, 0}, n, 0};
+      double height_m = 0, slope[3];
+      fdcg_heights_law(&relief, &place, &height_m, slope);
+      if (!(height_m <= 1.000001 * relief.most_m && height_m >= -1.000001 * relief.most_m)) std::abort();
+    }
+  }
+}
+
 // Any bytes through open and step: first as they are, then with magic, version, size and checksums made to fit, so that the
 // checks behind them are reached. Whatever is SAFE is walked on; what is FULL is SAFE. How often of the two times it opened.
 inline int open_and_touch(std::span<const std::byte> bytes, std::uint32_t steps) {
@@ -104,6 +121,7 @@ inline int open_and_touch(std::span<const std::byte> bytes, std::uint32_t steps)
       ++opened;
       touch_everywhere(graph, steps);
       look_at_visual(graph);
+      look_at_heights(graph);
     } else if (is_full) {
       std::abort();
     }

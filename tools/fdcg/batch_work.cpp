@@ -109,8 +109,10 @@ bake::ImportOptions import_options(const BatchRule& rule) {
   bake::ImportOptions options;
   options.format = std::visit([](const auto& settings) { return settings.input_format; }, rule.settings);
   const auto* const compile = std::get_if<CompileSettings>(&rule.settings);
-  options.appearance = compile != nullptr && compile->options.visual;
-  options.normals = options.appearance || (compile != nullptr && compile->options.normals == bake::Normals::file);
+  if (compile == nullptr) return options;
+  options.heights = compile->heights;
+  options.appearance = compile->options.visual || compile->options.heights;
+  options.normals = compile->options.visual || compile->options.normals == bake::Normals::file;
   return options;
 }
 

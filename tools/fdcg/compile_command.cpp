@@ -223,7 +223,8 @@ int compile_mesh(CompileArguments& arguments) {
   import_options.progress =
       arguments.options.progress = [&bar](std::string_view stage, double done) { bar.update(stage, done); };
   import_options.normals = arguments.options.normals == bake::Normals::file || arguments.options.visual;
-  import_options.appearance = arguments.options.visual;
+  import_options.appearance = arguments.options.visual || arguments.options.heights;
+  import_options.heights = arguments.heights;
   auto soup = import_input(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
@@ -256,6 +257,8 @@ int compile_mesh(CompileArguments& arguments) {
   std::fputs(what_was_written.c_str(), stream);
   for (const std::string& warning : warnings)
     if (!warning.empty()) warn(arguments.mesh + ": " + warning);
+  for (const std::string& unread : soup->unread_files)
+    warn(arguments.mesh + ": " + unread);
   return kClean;
 }
 

@@ -11,7 +11,8 @@
 namespace fdcg::tools {
 namespace {
 
-void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
+void add_graph_options(CLI::App& command, CompileSettings& settings) {
+  bake::CompileOptions& options = settings.options;
   const OptionGroup graph(command, "Graph");
   add_precision_option(graph, options.precision, "Precision of the numbers in the file.");
   const auto parse_coplanar = [&options](const std::string& text) {
@@ -56,6 +57,16 @@ void add_graph_options(CLI::App& command, bake::CompileOptions& options) {
       "--visual", options.visual,
       "Also the mesh for the eye: triangles with normals, texture coordinates, colours and materials, as OBJ, PLY and glTF "
       "files have them (fdcg/visual.h).");
+  graph.text(
+      "--heights", "IMAGE", settings.heights,
+      "Images as heights that are felt (fdcg/heights.h), PNG of 8 or 16 bits: one for all faces, or, with the word file, "
+      "those that the mesh file's materials name (map_bump, bump and disp of OBJ's mtllib).");
+  graph.parsed(
+      "--height-range", "METRES",
+      [&options](const std::string& text) {
+        options.height_range_m = number_between("--height-range", text, -1, 1, "no number of -1 to 1 (metres)");
+      },
+      "How high white is above black.", "as the mesh file says");
   const std::vector<std::string> sections{"hierarchy", "source-map", "info", "mass", "materials", "normals"};
   const auto leave_out = [&options, sections](const std::string& name) {
     require_choice("--without", name, sections);
@@ -102,11 +113,12 @@ void add_compile_settings(CLI::App& command, CompileSettings& settings) {
           "surface of what it encloses, with its holes closed.")
       ->group("Mesh checks");
   add_allow_option(checks, settings.options.allow, Allowable::errors_the_graph_stands);
-  add_graph_options(command, settings.options);
+  add_graph_options(command, settings);
   add_mass_options(command, settings.options);
 }
 
 std::string settle(CompileSettings& settings) {
+  settings.options.heights = !settings.heights.empty();
   if (settings.repair.empty()) return {};
   for (const bake::RepairLevel level : {bake::RepairLevel::safe, bake::RepairLevel::full, bake::RepairLevel::solid})
     if (settings.repair == bake::level_name(level)) settings.options.repair = level;

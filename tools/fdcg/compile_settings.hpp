@@ -13,7 +13,8 @@ namespace fdcg::tools {
 inline constexpr const char* kDefaultUnit = "metres (the default)";
 
 struct CompileSettings {
-  std::string repair;  // a level; empty: none
+  std::string repair;   // a level; empty: none
+  std::string heights;  // ImportOptions::heights
   std::string unit_text = kDefaultUnit;
   std::optional<bake::Format> input_format;
   bake::CompileOptions options;

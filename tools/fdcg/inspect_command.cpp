@@ -9,6 +9,7 @@
 #include "../common/terminal.hpp"
 #include "dump.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg/heights.h"
 #include "fdcg/visual.h"
 #include "fdcg_commands.hpp"
 #include "invariants.hpp"
@@ -27,11 +28,29 @@ struct InspectArguments {
 };
 
 std::string section_name(std::uint32_t id) {
-  constexpr const char* kNames[] = {
-      "nodes",        "node-offsets",    "edges",    "connections", "corners",         "fans",
-      "hierarchy",    "source-map",      "info",     "fan-boxes",   "busy-corners",    "mass",
-      "materials",    "names",           "fan-runs", "normals",     "visual-vertices", "visual-indices",
-      "visual-nodes", "visual-materials"};
+  constexpr const char* kNames[] = {"nodes",
+                                    "node-offsets",
+                                    "edges",
+                                    "connections",
+                                    "corners",
+                                    "fans",
+                                    "hierarchy",
+                                    "source-map",
+                                    "info",
+                                    "fan-boxes",
+                                    "busy-corners",
+                                    "mass",
+                                    "materials",
+                                    "names",
+                                    "fan-runs",
+                                    "normals",
+                                    "visual-vertices",
+                                    "visual-indices",
+                                    "visual-nodes",
+                                    "visual-materials",
+                                    "places",
+                                    "height-maps",
+                                    "height-texels"};
   if (id >= 1 && id <= std::size(kNames)) return kNames[id - 1];
   return "unknown-" + std::to_string(id);
 }
@@ -115,6 +134,21 @@ Json visual_of(const fdcg_graph& graph) {
   return {{"vertices", visual.vertex_count}, {"triangles", visual.index_count / 3}, {"materials", materials}};
 }
 
+// null where the file has none.
+Json heights_of(const fdcg_graph& graph) {
+  fdcg_heights heights{};
+  if (fdcg_get_heights(&graph, &heights, nullptr) != FDCG_OK) return nullptr;
+  Json maps = Json::array();
+  for (std::uint32_t m = 0; m < heights.map_count; ++m) {
+    const fdcg_height_map& map = heights.maps[m];
+    std::uint32_t nodes = 0;
+    for (std::uint32_t n = 0; n < heights.node_count; ++n)
+      nodes += heights.places[n].map == m ? 1 : 0;
+    maps.push_back({{"width", map.width}, {"height", map.height}, {"levels", map.level_count}, {"nodes", nodes}});
+  }
+  return {{"most_m", heights.most_m}, {"curvature_per_m", heights.curvature_per_m}, {"maps", maps}};
+}
+
 Json description_of(const fdcg_graph& graph) {
   const fdcg_header& header = *graph.header;
   const std::uint32_t* const types = header.connection_type_count;
@@ -142,6 +176,7 @@ Json description_of(const fdcg_graph& graph) {
           {"physics", from_info("physics")},
           {"materials", materials_of(graph)},
           {"visual", visual_of(graph)},
+          {"heights", heights_of(graph)},
           {"sections", sections_of(header)},
           {"source",
            {{"file_sha256", source.contains("file_sha256") ? source["file_sha256"] : Json(nullptr)},
@@ -171,6 +206,14 @@ std::string visual_text(const Json& visual) {
             (material["texture_coordinates"] == true ? ", texture coordinates" : "") +
             (material["colours"] == true ? ", colours" : "") + ")";
   }
+  return text + "\n";
+}
+
+std::string heights_text(const Json& heights) {
+  std::string text = "  heights      up to " + heights["most_m"].dump() + " m:";
+  for (const Json& map : heights["maps"])
+    text += (text.ends_with(":") ? " " : ", ") + map["width"].dump() + " x " + map["height"].dump() + " texels in " +
+            map["levels"].dump() + " levels (" + map["nodes"].dump() + " nodes)";
   return text + "\n";
 }
 
@@ -227,6 +270,7 @@ std::string description_text(const std::string& file, const Json& about) {
   text += mass_text(about);
   if (!about["materials"].is_null()) text += materials_text(about["materials"]);
   if (!about["visual"].is_null()) text += visual_text(about["visual"]);
+  if (!about["heights"].is_null()) text += heights_text(about["heights"]);
   if (about["physics"].is_object()) text += physics_text(about["physics"]);
   const Json& source = about["source"];
   text += "  source       " + count(source["vertices"]) + " vertices, " + count(source["faces"]) + " faces, SHA-256 " +
@@ -269,6 +313,11 @@ int run_inspect(const InspectArguments& arguments) {
   const fdcg_graph& graph = opened.graph();
   fdcg_visual visual{};
   if (const fdcg_status status = fdcg_get_visual(&graph, &visual, &error); status != FDCG_OK && status != FDCG_E_ABSENT) {
+    bar.wipe();
+    return fail(kFile, arguments.file + ": " + error.message);
+  }
+  fdcg_heights heights{};
+  if (const fdcg_status status = fdcg_get_heights(&graph, &heights, &error); status != FDCG_OK && status != FDCG_E_ABSENT) {
     bar.wipe();
     return fail(kFile, arguments.file + ": " + error.message);
   }

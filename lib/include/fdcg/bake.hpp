@@ -147,7 +147,10 @@ struct PolygonSoup {
   char up_axis = 0;              ///< COLLADA: 'x', 'y' or 'z', for information; 0: the file does not say
   StatedPhysics physics;         ///< glTF: friction, masses and shapes by formula
   std::vector<std::string>
-      other_files;  ///< further files that the mesh is from: a glTF file's buffers, an OBJ file's materials
+      other_files;  ///< further files that the mesh is from: a glTF file's buffers, OBJ's materials, images
+
+  /// Files that it names and that were not read, each with why and what to do, for a warning.
+  std::vector<std::string> unread_files;
 
   /// Faces of the file.
   [[nodiscard]] std::size_t face_count() const { return face_first.empty() ? 0 : face_first.size() - 1; }
@@ -159,6 +162,9 @@ struct ImportOptions {
   Progress progress;             ///< may be empty
   bool normals = false;          ///< read corner normals: OBJ's vn, PLY's nx ny nz, glTF's NORMAL (not of Draco data)
   bool appearance = false;       ///< read PolygonSoup::appearance: of OBJ, PLY and glTF (not of Draco data)
+  /// With `appearance`: read images of heights too (PNG). "file": those that the mesh file's materials name (map_bump, bump and
+  /// disp of OBJ's libraries); else the path of one for all faces. Empty: none.
+  std::string heights = {};
 };
 
 /// The most that is read of what is no regular file: a pipe, a terminal.
@@ -435,6 +441,8 @@ struct CompileOptions {
   /// The mesh for the eye too (fdcg/visual.h): with the soup's `appearance`, and its normals or, where it has none, those of
   /// the faces up to creases of `crease_rad`.
   bool visual = false;
+  bool heights = false;           ///< the soup's images as heights (fdcg/heights.h): ImportOptions::heights asked for them
+  double height_range_m = 0;      ///< of every image white above black; 0: as the mesh file says
   std::set<std::string> without;  ///< optional sections left out: hierarchy, source-map, info, mass, materials, normals
   /// At most one of the two; 0: not known. With either, a mesh that encloses no solid is refused; without, its file has no mass
   /// properties (Compiled::no_mass says why).

@@ -26,6 +26,8 @@ Json options_json(const CompileOptions& options) {
   if (options.normals != Normals::none) json["normals"] = options.normals == Normals::file ? "file" : "faces";
   if (options.normals == Normals::faces || options.visual) json["crease_rad"] = options.crease_rad;
   if (options.visual) json["visual"] = true;
+  if (options.heights) json["heights"] = true;
+  if (options.height_range_m != 0) json["height_range_m"] = options.height_range_m;
   json["weld"] = kWelds[static_cast<int>(options.weld.kind)];
   if (options.weld.kind == Weld::Kind::distance) json["weld_distance"] = options.weld.distance;
   json["orient"] = options.orient;

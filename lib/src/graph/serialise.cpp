@@ -99,6 +99,7 @@ class Writer {
     for (std::size_t face = 0; face < input_.normals_of_face.size(); ++face)
       normals[graph_.node_of_face[face]] = input_.normals_of_face[face];
     write_visual();
+    write_heights();
     write_header();
     return file_;
   }
@@ -139,9 +140,15 @@ class Writer {
       layout_.add(section_id(FDCG_SECTION_VISUAL_NODES), sizeof(std::uint32_t), input_.visual.nodes.size());
       layout_.add(section_id(FDCG_SECTION_VISUAL_MATERIALS), sizeof(fdcg_visual_material), input_.visual.materials.size());
     }
+    if (!input_.heights.is_empty()) {
+      layout_.add(section_id(FDCG_SECTION_NODE_PLACES), sizeof(fdcg_node_place), graph_.node_count());
+      layout_.add(section_id(FDCG_SECTION_HEIGHT_MAPS), sizeof(fdcg_height_map), input_.heights.maps.size());
+      layout_.add(section_id(FDCG_SECTION_HEIGHT_TEXELS), sizeof(std::int16_t), input_.heights.texels.size());
+    }
     layout_.place();
   }
   static fdcg_section_id section_id(fdcg_visual_section_id id) { return static_cast<fdcg_section_id>(id); }
+  static fdcg_section_id section_id(fdcg_heights_section_id id) { return static_cast<fdcg_section_id>(id); }
 
   // What lies between sections. Inside them every byte is written with its record.
   void clear_padding() {
@@ -423,6 +430,18 @@ class Writer {
     write(input_.visual.indices, FDCG_SECTION_VISUAL_INDICES);
     write(input_.visual.nodes, FDCG_SECTION_VISUAL_NODES);
     write(input_.visual.materials, FDCG_SECTION_VISUAL_MATERIALS);
+  }
+
+  void write_heights() {
+    const HeightSections& heights = input_.heights;
+    if (heights.is_empty()) return;
+    const auto places = layout_.records<fdcg_node_place>(file_, section_id(FDCG_SECTION_NODE_PLACES));
+    for (std::size_t face = 0; face < heights.place_of_face.size(); ++face)
+      places[graph_.node_of_face[face]] = heights.place_of_face[face];
+    std::copy(heights.maps.begin(), heights.maps.end(),
+              layout_.records<fdcg_height_map>(file_, section_id(FDCG_SECTION_HEIGHT_MAPS)).begin());
+    std::copy(heights.texels.begin(), heights.texels.end(),
+              layout_.records<std::int16_t>(file_, section_id(FDCG_SECTION_HEIGHT_TEXELS)).begin());
   }
 
   void write_header() {

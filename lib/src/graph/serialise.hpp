@@ -12,6 +12,7 @@
 #include "fdcg/bake.hpp"
 #include "fdcg/format.h"
 #include "graph/graph.hpp"
+#include "graph/height_sections.hpp"
 #include "graph/visual_mesh.hpp"
 
 namespace fdcg::bake {
@@ -28,6 +29,7 @@ struct SerialiseInput {
   std::vector<std::uint16_t> material_of_face;     // of each face the graph was made of
   std::vector<fdcg_node_normals> normals_of_face;  // likewise; empty: no section
   VisualMesh visual;                               // empty: no sections
+  HeightSections heights;                          // empty: no sections
   std::string info;                                // JSON; empty: no section
   Precision precision = Precision::f64;
   bool with_planes = true;

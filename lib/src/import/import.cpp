@@ -14,6 +14,7 @@
 #include "base/sha256.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg/results.hpp"
+#include "import/height_image.hpp"
 #include "import/soup_reader.hpp"
 
 namespace fdcg::bake {
@@ -156,8 +157,13 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   }
 
   Sha256Task hash(sha256.empty() ? bytes : std::string_view());
-  Result<PolygonSoup> soup = read_as(*format, {bytes, name, options.progress, file, options.normals, options.appearance});
+  const bool has_own_heights = options.heights == kHeightsOfFile;
+  Result<PolygonSoup> soup =
+      read_as(*format, {bytes, name, options.progress, file, options.normals, options.appearance, has_own_heights});
   if (!soup) return soup;
+  if (!options.heights.empty() && !has_own_heights) {
+    if (const auto failure = add_heights_for_all(options.heights, *soup)) return *failure;
+  }
   if (soup->face_count() == 0) {
     return refuse(name, "holds no face, " + std::to_string(soup->points.size()) + " vertices; export the mesh with its faces",
                   "empty-mesh");

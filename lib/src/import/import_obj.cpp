@@ -65,7 +65,8 @@ constexpr Unread kUnread[] = {
 class ObjReader : TextSoupReader {
  public:
   explicit ObjReader(const MeshText& input)
-      : TextSoupReader(input, Format::obj, {.hash_comments = true, .continuation = true}), appearance_(input.file) {}
+      : TextSoupReader(input, Format::obj, {.hash_comments = true, .continuation = true}),
+        appearance_(input.file, input.wants_heights) {}
 
   Result<PolygonSoup> read() {
     const bool is_read = read_statements();
@@ -73,7 +74,8 @@ class ObjReader : TextSoupReader {
     if (is_read) name_normals();
     set_quanta();
     Result<PolygonSoup> soup = result(is_read);
-    if (soup && input_.wants_appearance) appearance_.finish(*soup);
+    if (!soup || !input_.wants_appearance) return soup;
+    if (const auto problem = appearance_.finish(*soup)) return *problem;
     return soup;
   }
 

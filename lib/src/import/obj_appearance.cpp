@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "import/obj_appearance.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <utility>
 
 #include "base/file_bytes.hpp"
 #include "import/beside.hpp"
+#include "import/height_image.hpp"
+#include "import/soup_reader.hpp"
 
 namespace fdcg::bake {
 namespace {
@@ -23,30 +26,42 @@ void ObjAppearance::add_colour(std::size_t point, const Colour& colour) {
 
 // One name with blanks in it, or several.
 void ObjAppearance::add_libraries(std::string_view names) {
-  if (names.empty() || add_library(std::string(names))) return;
-  if (names.find_first_of(kBlanks) == std::string_view::npos) {
-    ++missing_;
-    return;
-  }
+  if (names.empty() || add_library(std::string(names)) == Library::read) return;
   for (std::size_t at = 0; at < names.size();) {
     const std::size_t end = std::min(names.find_first_of(kBlanks, at), names.size());
-    if (end > at && !add_library(std::string(names.substr(at, end - at)))) ++missing_;
+    if (end > at) note_unread(std::string(names.substr(at, end - at)));
     at = end + 1;
   }
 }
 
-bool ObjAppearance::add_library(const std::string& name) {
-  if (libraries_.contains(name)) return true;
-  if (file_ == nullptr || libraries_.size() >= kMostLibraries || !stays_beneath(name, name)) return false;
+void ObjAppearance::note_unread(const std::string& name) {
+  const Library found = add_library(name);
+  if (found == Library::read || file_ == nullptr) return;
+  constexpr std::size_t kMostNotes = 16;
+  if (unread_.size() >= kMostNotes) return;
+  const std::string library = "its material library '" + readable_name(name) + "' ";
+  unread_.push_back(
+      found == Library::outside
+          ? library +
+                "was not read: it is not in the mesh's folder or beneath it; copy it there and name it without '..' or '/'"
+      : found == Library::missing ? library + "is not there; put it beside the mesh, or remove the line mtllib"
+                                  : library + "cannot be read; check its permissions, or that there are no more than 64");
+}
+
+ObjAppearance::Library ObjAppearance::add_library(const std::string& name) {
+  if (libraries_.contains(name)) return Library::read;
+  if (file_ == nullptr || libraries_.size() >= kMostLibraries) return Library::unreadable;
+  if (!stays_beneath(name, name)) return Library::outside;
   const std::filesystem::path path = file_->parent_path() / name;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || !lies_beneath(path, file_->parent_path())) return false;
+  if (!std::filesystem::is_regular_file(path, error)) return Library::missing;
+  if (!lies_beneath(path, file_->parent_path())) return Library::outside;
   const Result<FileBytes> library = FileBytes::open(path);
-  if (!library) return false;
-  read_obj_materials(library->bytes(), materials_);
+  if (!library) return Library::unreadable;
+  read_obj_materials(library->bytes(), std::filesystem::path(name).parent_path().string(), materials_);
   libraries_.insert(name);
   files_.push_back(path.string());
-  return true;
+  return Library::read;
 }
 
 void ObjAppearance::add_corner(std::size_t corner, std::string_view more) {
@@ -59,7 +74,25 @@ void ObjAppearance::add_corner(std::size_t corner, std::string_view more) {
   place_of_corner_.push_back(number);
 }
 
-void ObjAppearance::finish(PolygonSoup& soup) {
+// Read once for materials that name it with the same options.
+std::uint16_t ObjAppearance::image_of(const ObjMaterial& material, Appearance& look) {
+  if (!wants_heights_ || material.heights.name.empty() || problem_) return LookMaterial::kNoImage;
+  const std::string name = (std::filesystem::path(material.folder) / material.heights.name).string();
+  const auto is_same = [&](const HeightImage& image) {
+    return image.name == name && image.placing == material.heights.placing && image.range == material.heights.range &&
+           image.wrap == material.heights.wrap;
+  };
+  const auto found = std::find_if(look.images.begin(), look.images.end(), is_same);
+  if (found != look.images.end()) return static_cast<std::uint16_t>(found - look.images.begin());
+  HeightImage image = material.heights;
+  image.name = name;
+  problem_ = read_height_image_beside(*file_, image, files_);
+  if (problem_) return LookMaterial::kNoImage;
+  look.images.push_back(std::move(image));
+  return static_cast<std::uint16_t>(look.images.size() - 1);
+}
+
+std::optional<Failure> ObjAppearance::finish(PolygonSoup& soup) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   Appearance& look = soup.appearance;
   if (!place_of_corner_.empty() && !places_.empty()) {
@@ -78,10 +111,12 @@ void ObjAppearance::finish(PolygonSoup& soup) {
   look.face_material = soup.face_material;
   for (const std::string& name : soup.materials) {
     const auto found = materials_.find(name);
-    look.materials.push_back({name, found == materials_.end() ? Colour{1, 1, 1, 1} : found->second});
+    const ObjMaterial material = found == materials_.end() ? ObjMaterial{} : found->second;
+    look.materials.push_back({name, material.colour, image_of(material, look)});
   }
   soup.other_files = std::move(files_);
-  if (missing_ > 0) soup.ignored.push_back({"material libraries that are not beneath the folder", missing_});
+  soup.unread_files = std::move(unread_);
+  return problem_;
 }
 
 }  // namespace fdcg::bake

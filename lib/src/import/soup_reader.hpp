@@ -24,6 +24,7 @@ struct MeshText {
   const std::filesystem::path* file = nullptr;  // where the bytes are from; null: from memory
   bool wants_normals = false;                   // ImportOptions::normals
   bool wants_appearance = false;                // ImportOptions::appearance
+  bool wants_heights = false;                   // ImportOptions::heights is "file"
 };
 
 // One reader per format. Each fails with exit code 3 and one line; refusing a soup without faces is left to the caller. They

@@ -114,6 +114,12 @@ namespace Fdcg {
     FDCG_IN_BOX = 2,
   }
 
+  public enum fdcg_wrap {
+    FDCG_WRAP_REPEAT = 0,
+    FDCG_WRAP_CLAMP = 1,
+    FDCG_WRAP_MIRROR = 2,
+  }
+
   public enum fdcg_scene_optimization {
     FDCG_OPT_OUT_OF_REACH = 1,
     FDCG_OPT_FAR_OBJECTS = 2,
@@ -383,6 +389,8 @@ namespace Fdcg {
     public uint is_slipping;
     public uint has_surface;
     public uint material;
+    public uint node;
+    public uint reserved;
   }
 
   [StructLayout(LayoutKind.Sequential)]
@@ -438,6 +446,14 @@ namespace Fdcg {
   }
 
   [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_relief_place {
+    public fixed double place_m[3];
+    public fixed double way_m[3];
+    public uint node;
+    public uint reserved;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
   public unsafe struct fdcg_waves {
     public uint count;
     public uint reserved;
@@ -464,6 +480,8 @@ namespace Fdcg {
   public unsafe struct fdcg_relief_state {
     public uint has_started;
     public uint has_surface;
+    public uint node;
+    public uint reserved;
     public fixed double hip_m[3];
     public fixed double moved_m[3];
     public fixed double surface_m[3];
@@ -474,6 +492,38 @@ namespace Fdcg {
     public double height_m;
     public double credit_j;
     public double given_j;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_node_place {
+    public fixed double offset[2];
+    public fixed float per_unit[6];
+    public uint map;
+    public uint reserved;
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_height_map {
+    public double metres_per_step;
+    public uint width;
+    public uint height;
+    public uint level_count;
+    public uint first;
+    public fixed uint wrap[2];
+    public fixed uint reserved[2];
+  }
+
+  [StructLayout(LayoutKind.Sequential)]
+  public unsafe struct fdcg_heights {
+    public fdcg_node_place* places;
+    public fdcg_height_map* maps;
+    public short* texels;
+    public uint node_count;
+    public uint map_count;
+    public fixed double origin[3];
+    public double metres_per_unit;
+    public double most_m;
+    public double curvature_per_m;
   }
 
   [StructLayout(LayoutKind.Sequential)]
@@ -875,7 +925,7 @@ namespace Fdcg {
     public static extern void fdcg_relief_init(fdcg_relief* relief, uint struct_bytes);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-    public static extern void fdcg_waves_law(fdcg_relief* relief, double* place_m, double* way_m, double* height_m, double* slope);
+    public static extern void fdcg_waves_law(fdcg_relief* relief, fdcg_relief_place* place, double* height_m, double* slope);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern void fdcg_get_waves_bounds(fdcg_waves* waves, double* most_m, double* curvature_per_m);
@@ -894,6 +944,15 @@ namespace Fdcg {
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern void fdcg_relief_turn(fdcg_relief* relief, fdcg_relief_state* state, fdcg_effect_facts* facts, double* force_n);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_status fdcg_get_heights(fdcg_graph* graph, fdcg_heights* heights, fdcg_error* error);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern void fdcg_heights_law(fdcg_relief* relief, fdcg_relief_place* place, double* height_m, double* slope);
+
+    [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+    public static extern fdcg_relief fdcg_make_height_relief(fdcg_heights* heights);
 
     [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
     public static extern fdcg_pose fdcg_make_identity_pose();

@@ -7,7 +7,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 INCLUDE = HERE.parents[1] / "include" / "fdcg"
-HEADERS = ("fdcg.h", "visual.h", "query.h", "effect.h", "relief.h", "scene.h", "scene_state.h", "surface.h", "soft_finger.h", "body.h", "pile.h", "deform.h")  # each after what it includes
+HEADERS = ("fdcg.h", "visual.h", "query.h", "effect.h", "relief.h", "heights.h", "scene.h", "scene_state.h", "surface.h", "soft_finger.h", "body.h", "pile.h", "deform.h")  # each after what it includes
 PLAIN = {"uint8_t": "byte", "uint16_t": "ushort", "uint32_t": "uint", "uint64_t": "ulong", "int16_t": "short", "int": "int", "int32_t": "int",
          "double": "double", "float": "float", "char": "byte", "void": "void"}
 OPAQUE = {"fdcg_scene", "fdcg_pile", "fdcg_deform"}

@@ -106,6 +106,8 @@ typedef struct fdcg_effect_facts {
   uint32_t is_slipping; /**< 1: dynamic friction holds */
   uint32_t has_surface; /**< 1: surface_m and normal are known */
   uint32_t material;    /**< of the face, or FDCG_NONE */
+  uint32_t node;     /**< the face, or one beside the edge or vertex; FDCG_NONE: none is known, as of a surface without mesh */
+  uint32_t reserved; /**< 0 */
 } fdcg_effect_facts;
 
 /** What an effect keeps from tick to tick. Zero is its start; copy it freely, read it, do not write it. A law of one's own

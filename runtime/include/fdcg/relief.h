@@ -46,11 +46,18 @@ extern "C" {
 #define FDCG_MAX_WAVES 16u /**< of one relief, at most */
 
 struct fdcg_relief;
-/** Heights from places: the height at place_m (m), and its gradient in space, of which what lies along the surface counts.
- * way_m: the hand's in this tick; what has more than half a period in it must be left out, and what has more than a quarter
- * faded. Pure, bounded, without heap. */
-typedef void (*fdcg_relief_handler)(const struct fdcg_relief* relief, const double place_m[3], const double way_m[3],
-                                    double* height_m, double slope[3]);
+/** Where a law is asked for a height. */
+typedef struct fdcg_relief_place {
+  double place_m[3]; /**< on the surface, under the hand */
+  double way_m[3];   /**< the hand's in this tick, along the surface */
+  uint32_t node;     /**< of the graph: what it touched in the last tick, or FDCG_NONE */
+  uint32_t reserved; /**< 0 */
+} fdcg_relief_place;
+
+/** Heights from places: the height (m), and its gradient in space, of which what lies along the surface counts. What has more
+ * than half a period in way_m must be left out, and what has more than a quarter faded. Pure, bounded, without heap. */
+typedef void (*fdcg_relief_handler)(const struct fdcg_relief* relief, const fdcg_relief_place* place, double* height_m,
+                                    double slope[3]);
 
 /** Some waves of heights in space: the sum of amplitude_m sin(2 pi (per_m . x + phase_turns)). On a surface they are felt as
  * they cut through it. */
@@ -88,8 +95,7 @@ typedef struct fdcg_relief {
 /** Sets the first `struct_bytes` bytes of *relief: no law, on every material; reserve 2 mJ, power 20 mW. */
 FDCG_API void fdcg_relief_init(fdcg_relief* relief, uint32_t struct_bytes);
 /** The law of fdcg_waves. */
-FDCG_API void fdcg_waves_law(const fdcg_relief* relief, const double place_m[3], const double way_m[3], double* height_m,
-                             double slope[3]);
+FDCG_API void fdcg_waves_law(const fdcg_relief* relief, const fdcg_relief_place* place, double* height_m, double slope[3]);
 /** The sums of the waves' amplitudes and second derivatives: for most_m and curvature_per_m. */
 FDCG_API void fdcg_get_waves_bounds(const fdcg_waves* waves, double* most_m, double* curvature_per_m);
 /** A relief of waves, which must outlive it. */
@@ -114,6 +120,8 @@ FDCG_API double fdcg_get_relief_stiffness(const fdcg_relief* relief, double load
 typedef struct fdcg_relief_state {
   uint32_t has_started; /**< 0 before the first tick */
   uint32_t has_surface; /**< 1: it touched in the last tick */
+  uint32_t node;        /**< what it touched then */
+  uint32_t reserved;    /**< 0 */
   double hip_m[3];      /**< the hand, of the last tick */
   double moved_m[3];    /**< where the step was told that it is */
   double surface_m[3];  /**< the god-object then */

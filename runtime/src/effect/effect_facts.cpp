@@ -13,6 +13,7 @@ fdcg_status name_surface(const fdcg_graph* graph, const fdcg_result& result, fdc
     const fdcg_node_info face = fdcg_get_node(graph, result.feature);
     for (int k = 0; k < 3; ++k)
       facts->normal[k] = face.normal[k];
+    facts->node = result.feature;
     facts->material = fdcg_get_node_material(graph, result.feature);
     return FDCG_OK;
   }
@@ -20,6 +21,7 @@ fdcg_status name_surface(const fdcg_graph* graph, const fdcg_result& result, fdc
   const fdcg_status status = fdcg_get_contact_info(graph, nullptr, nullptr, &result, facts->tick_s, &info, error);
   for (int k = 0; k < 3; ++k)
     facts->normal[k] = info.normal[k];
+  facts->node = info.node;
   facts->material = info.material;
   return status;
 }
@@ -29,6 +31,7 @@ fdcg_status look_for_surface(const fdcg_graph* graph, double reach_m, fdcg_effec
   const fdcg_status status = fdcg_find_nearest(graph, facts->hip_m, reach_m, &hit, error);
   if (status != FDCG_OK) return status == FDCG_E_ABSENT ? FDCG_OK : status;
   facts->has_surface = hit.side >= 0 ? 1 : 0;  // from inside nothing draws
+  facts->node = hit.node;
   facts->material = fdcg_get_node_material(graph, hit.node);
   for (int k = 0; k < 3; ++k) {
     facts->surface_m[k] = hit.point_m[k];
@@ -51,7 +54,8 @@ extern "C" fdcg_status fdcg_get_effect_facts(const fdcg_graph* graph, const fdcg
   facts->tick_s = tick_s;
   facts->is_touching = facts->has_surface = touches ? 1 : 0;
   facts->is_slipping = result->slipping;
-  facts->material = FDCG_NONE;
+  facts->material = facts->node = FDCG_NONE;
+  facts->reserved = 0;
   for (int k = 0; k < 3; ++k) {
     facts->hip_m[k] = hip_object_m[k];
     facts->surface_m[k] = result->god_object_m[k];

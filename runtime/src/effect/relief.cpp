@@ -32,10 +32,13 @@ void look(const fdcg_relief& relief, Along hip, fdcg_relief_state* state) {
   const double fading = kFadingHeights * relief.reserve_j;
   const double share = state->credit_j < fading ? larger(state->credit_j, 0) / fading : 1;
   const Along way = state->has_started != 0 ? hip - vec(state->hip_m) : Along{0, 0, 0};
-  double place_m[3], way_m[3], slope[3] = {0, 0, 0}, height_m = 0;
-  store(hip + normal * depth, place_m);
-  store(way - normal * dot(way, normal), way_m);
-  relief.law(&relief, place_m, way_m, &height_m, slope);
+  double slope[3] = {0, 0, 0}, height_m = 0;
+  fdcg_relief_place place;
+  store(hip + normal * depth, place.place_m);
+  store(way - normal * dot(way, normal), place.way_m);
+  place.node = state->node;
+  place.reserved = 0;
+  relief.law(&relief, &place, &height_m, slope);
   if (!is_usable(vec(slope)) || !(absolute(height_m) <= relief.most_m)) return;
   const GrownIn in = grown_in(depth, kKnees * relief.most_m);
   const Along along = vec(slope) - normal * dot(vec(slope), normal);
@@ -89,6 +92,7 @@ extern "C" void fdcg_relief_turn(const fdcg_relief* relief, fdcg_relief_state* s
   store(force, state->force_n);
   const bool is_of_material = relief->material == FDCG_NONE || facts->material == relief->material;
   state->has_surface = facts->is_touching != 0 && is_of_material ? 1 : 0;
+  state->node = facts->node;
   store(vec(facts->surface_m), state->surface_m);
   if (state->has_surface != 0) store(vec(facts->normal), state->normal);
   for (int k = 0; k < 3; ++k)

@@ -99,11 +99,10 @@ extern "C" void fdcg_get_waves_bounds(const fdcg_waves* waves, double* most_m, d
   if (curvature_per_m != nullptr) *curvature_per_m = curvature;
 }
 
-extern "C" void fdcg_waves_law(const fdcg_relief* relief, const double place_m[3], const double way_m[3], double* height_m,
-                               double slope[3]) {
+extern "C" void fdcg_waves_law(const fdcg_relief* relief, const fdcg_relief_place* at, double* height_m, double slope[3]) {
   using namespace fdcg;
   const fdcg_waves& waves = *static_cast<const fdcg_waves*>(relief->data);
-  const Along place = {place_m[0], place_m[1], place_m[2]}, way = {way_m[0], way_m[1], way_m[2]};
+  const Along place = vec(at->place_m), way = vec(at->way_m);
   double height = 0;
   Along gradient = {0, 0, 0};
   for (uint32_t i = 0; i < waves.count && i < FDCG_MAX_WAVES; ++i) {
@@ -112,9 +111,9 @@ extern "C" void fdcg_waves_law(const fdcg_relief* relief, const double place_m[3
     if (!(amplitude > 0)) continue;
     const double turns = dot(per_m, place) + waves.phase_turns[i];
     if (!(absolute(turns) < kFarthestTurns)) continue;
-    const SineCosine at = sine_cosine_of_turns(turns);
-    height += amplitude * at.sine;
-    gradient = gradient + per_m * (amplitude * kTurnRad * at.cosine);
+    const SineCosine wave = sine_cosine_of_turns(turns);
+    height += amplitude * wave.sine;
+    gradient = gradient + per_m * (amplitude * kTurnRad * wave.cosine);
   }
   *height_m = height;
   slope[0] = gradient.x, slope[1] = gradient.y, slope[2] = gradient.z;

@@ -3,13 +3,11 @@
 #include "fdcg/visual.h"
 
 #include "base/message.hpp"
-#include "graph/sections.hpp"
+#include "graph/section_records.hpp"
 #include "graph/verify.hpp"
 
 namespace fdcg {
 namespace {
-
-constexpr uint64_t kMostRecords = FDCG_NONE - 1;
 
 bool is_in(float value, float low, float high) {
   return value >= low && value <= high;  // false for NaN
@@ -17,15 +15,6 @@ bool is_in(float value, float low, float high) {
 
 bool is_finite(float value) {
   return is_in(value, -3.402823466e38f, 3.402823466e38f);
-}
-
-// Null where the section is missing or has records of another size.
-template <class Record>
-const Record* records_of(const fdcg_header& header, uint32_t id, uint32_t* count) {
-  const fdcg_section* const section = find_section(header, id);
-  if (section == nullptr || section->record_bytes != sizeof(Record) || section->record_count > kMostRecords) return nullptr;
-  *count = static_cast<uint32_t>(section->record_count);
-  return reinterpret_cast<const Record*>(reinterpret_cast<const unsigned char*>(&header) + section->offset);
 }
 
 fdcg_status refuse_layout(fdcg_error* error, const char* what) {

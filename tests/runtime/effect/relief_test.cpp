@@ -1,87 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heights that are felt on flat faces: the force against the formula, the band, the flank under friction, the energy.
 #include <cmath>
-#include <complex>
 #include <cstring>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "catch.hpp"
-#include "contact_rig.hpp"
-#include "fdcg/relief.h"
 #include "hip_loop.hpp"
 #include "meshes.hpp"
+#include "relief_rig.hpp"
 
 using namespace fdcg::test;
 using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-constexpr double kTick_s = 0.001, kTurn = 2 * std::numbers::pi, kStiffness = 1000;
+constexpr double kTick_s = kReliefTick_s, kTurn = 2 * std::numbers::pi, kStiffness = kReliefStiffness;
 constexpr double kHeight_m = 1e-4, kWave_m = 1e-3, kAlongX[3] = {1, 0, 0};
-
-// A hand on a mesh with a relief.
-struct Felt {
-  fdcg_relief relief;
-  const fdcg_graph& graph;
-  Contact contact;
-  fdcg_relief_state state{};
-  Hip force{};
-
-  Felt(const fdcg_relief& of, const fdcg_graph& on, const fdcg_params& params) : relief(of), graph(on), contact(on, params) {
-    fdcg_error error{};
-    const bool is_taken = fdcg_check_relief(&relief, &error) == FDCG_OK;
-    INFO(error.message);
-    REQUIRE(is_taken);
-  }
-  const Hip& at(const Hip& hip) {
-    double moved_m[3];
-    fdcg_relief_move(&relief, &state, hip.data(), kTick_s, moved_m);
-    fdcg_result result = contact.step({moved_m[0], moved_m[1], moved_m[2]});
-    fdcg_effect_facts facts;
-    REQUIRE(fdcg_get_effect_facts(&graph, &result, moved_m, 0, kTick_s, &facts, nullptr) == FDCG_OK);
-    fdcg_relief_turn(&relief, &state, &facts, result.force_n);
-    force = {result.force_n[0], result.force_n[1], result.force_n[2]};
-    return force;
-  }
-};
 
 const CompiledMesh& block() {  // of side 1 m: the top is z = 0.5
   static const CompiledMesh mesh(cube());
   return mesh;
 }
 
-fdcg_params params_of(double mu_static, double mu_dynamic) {
-  fdcg_params params = contact_params(mu_static, mu_dynamic);
-  params.stiffness_n_per_m = kStiffness;
-  return params;
-}
-
-// A stroke along x at a speed, 1.5 mm deep: force from the 50th tick on.
-std::vector<Hip> stroke(Felt& felt, double speed_m_per_s, int ticks) {
-  std::vector<Hip> forces;
-  double x = -0.3;
-  felt.at({x, 0.01, 0.51});
-  for (int i = 0; i < ticks + 50; ++i) {
-    felt.at({x += speed_m_per_s * kTick_s, 0.01, 0.5 - 0.0015});
-    if (i >= 50) forces.push_back(felt.force);
-  }
-  return forces;
-}
-
-std::complex<double> amplitude_at(const std::vector<Hip>& forces, std::size_t component, double hz) {
-  std::complex<double> sum = 0;
-  for (std::size_t i = 0; i < forces.size(); ++i)
-    sum += forces[i][component] * std::polar(1.0, -kTurn * hz * kTick_s * static_cast<double>(i));
-  return 2.0 / static_cast<double>(forces.size()) * sum;
-}
-
 }  // namespace
 
 TEST_CASE("a wave of 0.1 mm and 1 mm at 0.1 m/s is felt at 100 Hz with the analytic amplitude") {
   const fdcg_waves waves = fdcg_make_ridges(kHeight_m, kWave_m, kAlongX);
-  Felt felt(fdcg_make_relief(&waves), block().view(), params_of(0, 0));
+  Felt felt(fdcg_make_relief(&waves), block().view(), relief_params(0, 0));
   const std::vector<Hip> forces = stroke(felt, 0.1, 1000);
   const double normal_n = std::abs(amplitude_at(forces, 2, 100)), along_n = std::abs(amplitude_at(forces, 0, 100));
   CHECK(normal_n == Approx(kStiffness * kHeight_m).epsilon(0.01));
@@ -102,7 +49,7 @@ TEST_CASE("a wave of 0.1 mm and 1 mm at 0.1 m/s is felt at 100 Hz with the analy
 TEST_CASE("what passes faster than half the tick rate is not felt, and nothing is felt at another frequency than its own") {
   const fdcg_waves waves = fdcg_make_ridges(kHeight_m, kWave_m, kAlongX);
   for (const double speed : {0.05, 0.2, 0.25, 0.3, 0.4, 0.499, 0.5, 0.7, 1.0, 1.3, 2.0, 5.0}) {
-    Felt felt(fdcg_make_relief(&waves), block().view(), params_of(0, 0));
+    Felt felt(fdcg_make_relief(&waves), block().view(), relief_params(0, 0));
     const std::vector<Hip> forces = stroke(felt, speed, speed > 1 ? 100 : 400);
     const double hz = speed / kWave_m, share = hz < 250 ? 1 : std::max(0.0, (500 - hz) / 250);
     double square = 0;
@@ -117,7 +64,7 @@ TEST_CASE("what passes faster than half the tick rate is not felt, and nothing i
 TEST_CASE("contact begins and ends on the flat surface, and the force grows from there without a jump") {
   const fdcg_waves waves = fdcg_make_bumps(kHeight_m, kWave_m);
   for (const double x : {0.0, 0.00025, 0.0005, 0.00075}) {
-    Felt felt(fdcg_make_relief(&waves), block().view(), params_of(0, 0));
+    Felt felt(fdcg_make_relief(&waves), block().view(), relief_params(0, 0));
     double last = 0;
     for (int i = -20; i < 1000; ++i) {
       const double depth = 1e-6 * i;
@@ -134,7 +81,7 @@ TEST_CASE("contact begins and ends on the flat surface, and the force grows from
 TEST_CASE("a contact sticks and slips on the flank of a bump") {
   const fdcg_waves waves = fdcg_make_ridges(kHeight_m, kTurn * kHeight_m / 0.3, kAlongX);
   for (const double side : {-1.0, 1.0}) {
-    Felt felt(fdcg_make_relief(&waves), block().view(), params_of(0.5, 0.5));
+    Felt felt(fdcg_make_relief(&waves), block().view(), relief_params(0.5, 0.5));
     const double x = 0;
     felt.at({x, 0.01, 0.51});
     for (int i = 0; i < 20; ++i)
@@ -158,18 +105,20 @@ TEST_CASE("grain has its root mean square, and is the same for a seed") {
   CHECK(std::memcmp(&waves, &other, sizeof waves) != 0);
   const fdcg_relief relief = fdcg_make_relief(&waves);
   Random random(4);
-  const double still[3] = {0, 0, 0};
   double square = 0, worst_slope = 0;
   constexpr int kPlaces = 200'000;
   for (int i = 0; i < kPlaces; ++i) {
-    const double place[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    const fdcg_relief_place place = {
+        {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}, {0, 0, 0}, FDCG_NONE, 0};
     double height, slope[3], beside, ignored[3];
-    relief.law(&relief, place, still, &height, slope);
+    relief.law(&relief, &place, &height, slope);
     square += height * height / kPlaces;
     REQUIRE(std::fabs(height) <= relief.most_m);
     if (i > 1000) continue;
-    const double step = 1e-8, next[3] = {place[0] + step, place[1], place[2]};
-    relief.law(&relief, next, still, &beside, ignored);
+    const double step = 1e-8;
+    fdcg_relief_place next = place;
+    next.place_m[0] += step;
+    relief.law(&relief, &next, &beside, ignored);
     worst_slope = std::max(worst_slope, std::fabs((beside - height) / step - slope[0]));
   }
   CHECK(std::sqrt(square) == Approx(2e-5).epsilon(0.02));
@@ -193,7 +142,7 @@ TEST_CASE("over closed loops a relief gives the step's work, and no more beyond 
   double most = -1, spent = 0;
   for (int loop = 0; loop < 100'000; ++loop) {
     const fdcg_relief relief = fdcg_make_relief(loop % 2 == 0 ? &ridges : &grain);
-    const fdcg_params params = params_of(loop % 3 * 0.25, loop % 3 * 0.2);
+    const fdcg_params params = relief_params(loop % 3 * 0.25, loop % 3 * 0.2);
     const std::vector<Hip> hips = elliptic_loop(random, kSize, 40 + loop % 60);
     Felt felt(relief, meshes[loop / 6 % 3].view(), params);
     Hip held{}, last = hips[0];
@@ -224,7 +173,7 @@ TEST_CASE("on a flat face what a relief gives beyond the step falls with the way
   for (const int ticks : {500, 1000, 2000, 4000}) {
     fdcg_relief relief = fdcg_make_relief(&waves);
     relief.reserve_j = 1e6;  // the account limits nothing
-    Felt felt(relief, block().view(), params_of(0, 0));
+    Felt felt(relief, block().view(), relief_params(0, 0));
     double bound = 0;
     Hip before{};
     for (int i = 0; i <= ticks; ++i) {
@@ -252,12 +201,12 @@ TEST_CASE("a relief works on its material, and when it is on") {
   const fdcg_waves waves = fdcg_make_ridges(kHeight_m, kWave_m, kAlongX);
   fdcg_relief relief = fdcg_make_relief(&waves);
   relief.material = 1;
-  Felt other(relief, block().view(), params_of(0, 0));
+  Felt other(relief, block().view(), relief_params(0, 0));
   for (const Hip& force : stroke(other, 0.1, 50))
     CHECK(force[0] == 0);
   relief.material = FDCG_NONE;
   relief.is_off = 1;
-  Felt off(relief, block().view(), params_of(0, 0));
+  Felt off(relief, block().view(), relief_params(0, 0));
   for (const Hip& force : stroke(off, 0.1, 50))
     CHECK(force[0] == 0);
 }

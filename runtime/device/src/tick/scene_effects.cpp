@@ -69,7 +69,7 @@ void find_nearest(const fdcg_surface& surface, double reach_m, fdcg_effect_facts
 }
 
 void facts_of_surface(const fdcg_surface& surface, const Seen& seen, double reach_m, fdcg_effect_facts* facts) {
-  facts->material = FDCG_NONE;
+  facts->material = facts->node = FDCG_NONE;
   facts->is_touching = facts->has_surface = seen.result.state != FDCG_FREE ? 1 : 0;
   facts->is_slipping = seen.result.slipping;
   std::copy_n(seen.hip_m, 3, facts->hip_m);
@@ -99,7 +99,7 @@ fdcg_effect_facts facts_of(const FeltObject& object, const Seen& seen, double ti
 fdcg_effect_facts facts_of_world(const double hip_world_m[3], const fdcg_finger_result& felt, double tick_s) {
   fdcg_effect_facts facts{};
   facts.tick_s = tick_s;
-  facts.material = FDCG_NONE;
+  facts.material = facts.node = FDCG_NONE;
   std::copy_n(hip_world_m, 3, facts.hip_m);
   std::copy_n(hip_world_m, 3, facts.surface_m);
   std::copy_n(felt.force_n, 3, facts.spring_n);
