@@ -648,6 +648,17 @@ class Replay(Case):
             self.assertAlmostEqual(1.5 + 0.1 * math.sin(wave * x), float(row["fz"]), delta=1e-5)
             self.assertAlmostEqual(-1e-4 * wave * math.cos(wave * x) * float(row["fz"]), float(row["fx"]), delta=1e-4)
 
+    def test_a_relief_of_images_is_that_of_the_file(self):
+        graph = self.path("tile.fdcg")
+        self.fdcg("compile", str(ROOT / "testdata/heights/tile.obj"), "-o", graph, "--units", "cm", "--heights", "file")
+        path = self.write("stroke.csv", "t,x,y,z\n0,0,0,0.01\n" + "".join(f"{i / 1000},{1e-4 * i},0,0.0035\n" for i in range(1, 200)))
+        flat, felt = (self.rows(self.servo("replay", graph, "--trajectory", path, "-o", "-", *relief).stdout)
+                      for relief in ((), ("--relief", "image")))
+        largest = max(abs(float(a["fz"]) - float(b["fz"])) for a, b in zip(flat, felt))
+        self.assertGreater(largest, 0.01)
+        refused = self.servo("replay", self.compiled_cube(), "--path", "slide", "--relief", "image", code=2).stderr.decode()
+        self.assertIn("--relief image: the file has no heights: compile the mesh with --heights", refused)
+
     def test_twice_gives_the_same_bytes(self):
         graph, path = self.compiled_cube(), self.slide(9000)
         logs = []

@@ -10,7 +10,7 @@ namespace fdcg::servo {
 namespace {
 
 constexpr const char* kReliefForm =
-    "none of ridges=HEIGHT,WAVELENGTH, bumps=HEIGHT,WAVELENGTH and grain=RMS,SHORTEST,LONGEST, in metres";
+    "none of ridges=HEIGHT,WAVELENGTH, bumps=HEIGHT,WAVELENGTH, grain=RMS,SHORTEST,LONGEST (in metres) and image";
 
 // Metres, of "0.0001,0.001"; empty: they are none.
 std::vector<double> lengths_of(const std::string& text) {
@@ -41,6 +41,8 @@ std::optional<fdcg_waves> parse_waves(const std::string& text) {
 
 void ReliefOption::declare(const tools::OptionGroup& group) {
   const auto take = [this](const std::string& text) {
+    is_image_ = text == "image";
+    if (is_image_) return;
     waves_ = parse_waves(text);
     if (!waves_) throw CLI::ValidationError("--relief", "'" + text + "' is " + kReliefForm);
     relief_ = fdcg_make_relief(&*waves_);
@@ -48,10 +50,17 @@ void ReliefOption::declare(const tools::OptionGroup& group) {
     if (fdcg_check_relief(&relief_, &error) != FDCG_OK)
       throw CLI::ValidationError("--relief", "'" + text + "': " + error.message);
   };
-  group.parsed(
-      "--relief", "KIND=M,M", take,
-      "Heights that are felt and not in the mesh, metres: ridges=HEIGHT,WAVELENGTH across x, bumps=HEIGHT,WAVELENGTH, or "
-      "grain=RMS,SHORTEST,LONGEST.");
+  group.parsed("--relief", "KIND=M,M", take,
+               "Heights that are felt and not in the mesh, metres: ridges=HEIGHT,WAVELENGTH across x, bumps=HEIGHT,WAVELENGTH, "
+               "grain=RMS,SHORTEST,LONGEST, or the images of the graph's file: image.");
+}
+
+std::string ReliefOption::open(const fdcg_graph& graph) {
+  if (!is_image_) return {};
+  fdcg_error error{};
+  if (fdcg_get_heights(&graph, &heights_, &error) != FDCG_OK) return error.message;
+  relief_ = fdcg_make_height_relief(&heights_);
+  return fdcg_check_relief(&relief_, &error) == FDCG_OK ? std::string() : error.message;
 }
 
 void ReliefOption::step(const fdcg_graph& graph, const fdcg_params& params, const double* hip_m, fdcg_contact* contact,

@@ -3,22 +3,27 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "../common/options.hpp"
-#include "fdcg/relief.h"
+#include "fdcg/heights.h"
 
 namespace fdcg::servo {
 
 class ReliefOption {
  public:
   void declare(const tools::OptionGroup& group);
-  [[nodiscard]] bool is_given() const { return waves_.has_value(); }
+  [[nodiscard]] bool is_given() const { return waves_.has_value() || is_image_; }
+  // Takes the heights of the graph's file, where the relief is its images. What is wrong with them; empty: nothing.
+  [[nodiscard]] std::string open(const fdcg_graph& graph);
   // One tick of `contact` with the relief, which was given; where hip_m is not finite, without.
   void step(const fdcg_graph& graph, const fdcg_params& params, const double* hip_m, fdcg_contact* contact,
             fdcg_result* result);
 
  private:
   std::optional<fdcg_waves> waves_;
+  bool is_image_ = false;
+  fdcg_heights heights_{};
   fdcg_relief relief_{};
   fdcg_relief_state state_{};
 };

@@ -291,6 +291,8 @@ int take_materials(ReplayArguments& arguments, const fdcg_graph& graph) {
   fdcg_error error{};
   if (const std::string problem = arguments.friction.apply(graph, arguments.params); !problem.empty())
     return fail(kUsage, arguments.graph + ": " + problem);
+  if (const std::string problem = arguments.relief.open(graph); !problem.empty())
+    return fail(kUsage, arguments.graph + ": --relief image: " + problem);
   return fdcg_check_params(&arguments.params, &error) == FDCG_OK ? kClean : fail(kUsage, error.message);
 }
 

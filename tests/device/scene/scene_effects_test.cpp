@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "catch.hpp"
 #include "host/fast_run.hpp"
+#include "meshes.hpp"
 #include "recording/session_replay.hpp"
 #include "scene/scene_build.hpp"
 #include "scene/scene_json.hpp"
@@ -248,6 +250,64 @@ TEST_CASE("a relief is read, written, refused by its key, felt, and replayed bit
   CHECK(refusal(scene).find("direction") != std::string::npos);
   scene["objects"][0]["relief"] = {{"kind", "bumps"}, {"amplitude_m", 1e-4}, {"wavelength_m", 0.001}, {"material", "wood"}};
   CHECK(refusal(scene).find("relief.material is for the materials of a mesh") != std::string::npos);
+}
+
+// Ridges by an image and by the same wave: 1 mm apart, on a block that the scene shows twice as large as its file.
+TEST_CASE("a relief of the file's image is felt as the wave that it shows, and replayed bit for bit") {
+  const Folder folder;
+  fdcg::bake::PolygonSoup soup = fdcg::test::scaled(fdcg::test::cube(), 0.05);
+  fdcg::bake::HeightImage image;
+  image.name = "ridges";
+  image.width = 32, image.height = 1, image.range = 4e-6;
+  for (int i = 0; i < 32; ++i)
+    image.values.push_back(static_cast<float>(0.5 + 0.5 * std::sin(2 * M_PI * (i + 0.5) / 32)));
+  soup.appearance.images = {image};
+  soup.appearance.all_heights = 0;
+  for (const std::uint32_t corner : soup.corners)
+    soup.appearance.uv.push_back(
+        {static_cast<float>(2000 * soup.points[corner].x), static_cast<float>(20 * soup.points[corner].y)});
+  fdcg::bake::CompileOptions options;
+  options.heights = true;
+  const auto compiled = fdcg::bake::compile(soup, options);
+  REQUIRE(compiled.has_value());
+  std::ofstream(folder.file("block.fdcg"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(compiled->bytes.data()), static_cast<std::streamsize>(compiled->bytes.size()));
+  json scene = with(kTone);
+  json& block = scene["objects"][0];
+  block = {{"name", "block"}, {"file", "block.fdcg"}, {"stiffness_n_per_m", 800},
+           {"mu_static", 0},  {"mu_dynamic", 0},       {"pose", {{"scale", 2}}}};
+  scene["devices"][0]["simulation"] = {{"hand_stiffness_n_per_m", 400},
+                                       {"hand_damping_n_s_per_m", 5},
+                                       {"script",
+                                        {{{"at_s", 0}, {"place_m", {-0.03, 0, 0.06}}},
+                                         {{"at_s", 0.5}, {"place_m", {-0.03, 0, 0.047}}},
+                                         {{"at_s", 1.5}, {"place_m", {0.03, 0, 0.047}}}}}};
+  const auto run = [&](const json& relief) {
+    block["relief"] = relief;
+    HostConfig config, back;
+    REQUIRE(parse_scene(scene.dump(), folder.file("s.json"), &config) == "");
+    const std::string written = write_scene(config);
+    REQUIRE(parse_scene(written, config.scene_file, &back, nullptr, {false}) == "");
+    CHECK(write_scene(back) == written);
+    return felt(config, 1.5);
+  };
+  const Felt by_image = run({{"kind", "image"}});
+  const Felt by_wave = run({{"kind", "ridges"}, {"amplitude_m", 2e-6}, {"wavelength_m", 0.001}});
+  const Felt flat = run({{"kind", "image"}, {"off", true}});
+  CHECK(by_image.is_same);
+  double apart = 0, felt_n = 0;
+  for (std::size_t i = 600; i < by_image.force_n.size(); ++i) {
+    apart = std::max(apart, std::fabs(by_image.force_n[i][0] - by_wave.force_n[i][0]));
+    felt_n = std::max(felt_n, std::fabs(by_image.force_n[i][0] - flat.force_n[i][0]));
+  }
+  CHECK(felt_n > 0.01);
+  CHECK(apart < 0.02 * felt_n);
+
+  block["relief"] = {{"kind", "image"}, {"amplitude_m", 1e-4}};
+  CHECK(refusal(scene).find("amplitude_m") != std::string::npos);
+  scene = with(kTone);
+  scene["objects"][0]["relief"] = {{"kind", "image"}};
+  CHECK(refusal(scene).find("relief.kind is of a mesh's file, and this object has none") != std::string::npos);
 }
 
 TEST_CASE("effects are felt on an object that turns and is scaled as on one that rests") {

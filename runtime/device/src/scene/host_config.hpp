@@ -8,6 +8,7 @@
 
 #include "fdcg/effect.h"
 #include "fdcg/fdcg.h"
+#include "fdcg/heights.h"
 #include "fdcg/relief.h"
 #include "fdcg/surface.h"
 #include "tick/device_tick.hpp"
@@ -60,16 +61,16 @@ struct EffectConfig {
 };
 
 // Heights on an object's surface (fdcg/relief.h).
-enum class ReliefKind { kRidges, kBumps, kGrain };
+enum class ReliefKind { kRidges, kBumps, kGrain, kImage };
 struct ReliefConfig {
   ReliefKind kind = ReliefKind::kRidges;
   double amplitude_m = 0, wavelength_m = 0;                       // ridges and bumps
   double direction[3] = {1, 0, 0};                                // of ridges, unit
   double rms_m = 0, shortest_m = 0, longest_m = 0, exponent = 1;  // grain
   std::uint32_t seed = 0;
-  std::string material;  // by name; empty: all
-  fdcg_relief relief{};  // its limits; law, data and material are set by the scene that is built
-  fdcg_waves waves() const {
+  std::string material;       // by name; empty: all
+  fdcg_relief relief{};       // its limits; law, data and material are set by the scene that is built
+  fdcg_waves waves() const {  // but of kImage: its heights are in the object's file
     if (kind == ReliefKind::kRidges) return fdcg_make_ridges(amplitude_m, wavelength_m, direction);
     if (kind == ReliefKind::kBumps) return fdcg_make_bumps(amplitude_m, wavelength_m);
     return fdcg_make_grain(rms_m, shortest_m, longest_m, exponent, seed);

@@ -64,6 +64,7 @@ struct DeviceScene {
   std::vector<std::unique_ptr<BuiltTexture>> textures;
   std::deque<fdcg_surface> felt_surfaces;  // with effects
   std::deque<fdcg_waves> waves;            // of reliefs
+  std::deque<fdcg_heights> heights;        // likewise
   // One a device; fingers are added by begin_device; driven: the objects with a motion, in the scene's order.
   std::vector<DeviceSetup> setups;
 };

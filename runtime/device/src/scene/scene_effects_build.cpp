@@ -49,14 +49,31 @@ std::string add_effect(const EffectConfig& from, const fdcg_graph* graph, double
   return {};
 }
 
-std::string add_relief(const ReliefConfig& from, const fdcg_graph* graph, DeviceScene* scene) {
-  scene->waves.push_back(from.waves());
-  fdcg_relief relief = fdcg_make_relief(&scene->waves.back());
+// The relief's heights, kept by the scene; what is wrong with them.
+std::string make_relief(const ReliefConfig& from, const FeltObject& felt, DeviceScene* scene, fdcg_relief* relief) {
+  if (from.kind != ReliefKind::kImage) {
+    scene->waves.push_back(from.waves());
+    *relief = fdcg_make_relief(&scene->waves.back());
+    return {};
+  }
+  fdcg_heights heights;
+  fdcg_error error{};
+  if (fdcg_get_heights(felt.graph, &heights, &error) != FDCG_OK) return error.message;
+  heights.metres_per_unit *= felt.pose.scale;
+  heights.curvature_per_m /= felt.pose.scale * felt.pose.scale;
+  scene->heights.push_back(heights);
+  *relief = fdcg_make_height_relief(&scene->heights.back());
+  return {};
+}
+
+std::string add_relief(const ReliefConfig& from, const FeltObject& felt, DeviceScene* scene) {
+  fdcg_relief relief;
+  if (const std::string problem = make_relief(from, felt, scene, &relief); !problem.empty()) return problem;
   relief.is_off = from.relief.is_off;
   relief.reserve_j = from.relief.reserve_j;
   relief.power_w = from.relief.power_w;
   if (!from.material.empty()) {
-    relief.material = fdcg_find_material(graph, from.material.c_str());
+    relief.material = fdcg_find_material(felt.graph, from.material.c_str());
     if (relief.material == FDCG_NONE) return "the graph has no material '" + from.material + "'";
   }
   fdcg_error error{};
@@ -77,6 +94,7 @@ bool has_effects(const HostConfig& config) {
 std::string build_effects(const HostConfig& config, const SceneLoad& load, const SceneGraphs& graphs,
                           const std::vector<fdcg_object_id>& objects, int devices, DeviceScene* scene, DeviceSetup* setup) {
   scene->textures.clear();
+  scene->heights.clear();
   scene->effects.reset();
   if (!has_effects(config)) return {};
   scene->effects = std::make_unique<SceneEffects>();
@@ -98,7 +116,7 @@ std::string build_effects(const HostConfig& config, const SceneLoad& load, const
     }
     scene->effects->add_object(felt);
     if (object.relief) {
-      const std::string problem = add_relief(*object.relief, felt.graph, scene);
+      const std::string problem = add_relief(*object.relief, felt, scene);
       if (!problem.empty()) return place_of(config, i) + "relief: " + problem;
     }
     for (std::size_t k = 0; k < object.effects.size(); ++k) {

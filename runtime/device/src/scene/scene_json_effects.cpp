@@ -184,11 +184,12 @@ EffectConfig SceneParser::read_effect(const json::Value& from, const ObjectConfi
 ReliefConfig SceneParser::read_relief(const json::Value& from, const ObjectConfig& object) {
   ReliefConfig config;
   constexpr json::NumberRange kHeights = above_0(0.1, "m"), kWaves = {1e-6, 10, true, "m"};
-  config.kind = static_cast<ReliefKind>(from["kind"].choice({"ridges", "bumps", "grain"}));
+  config.kind = static_cast<ReliefKind>(from["kind"].choice({"ridges", "bumps", "grain", "image"}));
   std::vector<std::string> keys = {"kind", "notes", "material", "off", "reserve_j", "power_w"};
-  const bool is_grain = config.kind == ReliefKind::kGrain, is_ridges = config.kind == ReliefKind::kRidges;
+  const bool is_grain = config.kind == ReliefKind::kGrain, is_ridges = config.kind == ReliefKind::kRidges,
+             is_image = config.kind == ReliefKind::kImage;
   for (const char* key : {"amplitude_m", "wavelength_m"})
-    if (!is_grain) keys.emplace_back(key);
+    if (!is_grain && !is_image) keys.emplace_back(key);
   for (const char* key : {"rms_m", "shortest_m", "longest_m", "exponent", "seed"})
     if (is_grain) keys.emplace_back(key);
   if (is_ridges) keys.emplace_back("direction");
@@ -200,7 +201,7 @@ ReliefConfig SceneParser::read_relief(const json::Value& from, const ObjectConfi
     if (config.longest_m < config.shortest_m) from["longest_m"].fail("is below shortest_m");
     config.exponent = from["exponent"].number_or(1, from_0(3, ""));
     config.seed = static_cast<std::uint32_t>(from["seed"].integer_or(0, 0, 4294967295));
-  } else {
+  } else if (!is_image) {
     config.amplitude_m = from["amplitude_m"].number(kHeights);
     config.wavelength_m = from["wavelength_m"].number(kWaves);
     if (from["direction"]) read_unit(from["direction"], config.direction, 3);
@@ -209,6 +210,7 @@ ReliefConfig SceneParser::read_relief(const json::Value& from, const ObjectConfi
     config.material = from["material"].text(kLongestName);
     if (object.is_surface) from["material"].fail("is for the materials of a mesh");
   }
+  if (is_image && object.is_surface) from["kind"].fail("is of a mesh's file, and this object has none");
   fdcg_relief_init(&config.relief, sizeof config.relief);
   config.relief.is_off = from["off"].boolean_or(false) ? 1 : 0;
   config.relief.reserve_j = from["reserve_j"].number_or(config.relief.reserve_j, kEnergies);
@@ -235,6 +237,7 @@ void SceneParser::judge_effects(const json::Value& scene, const DeviceConfig& de
   const double load_n = device.most_force_n > 0 ? device.most_force_n : device.profile.limits.force_n;
   for (const ObjectConfig& object : config_.objects) {
     if (!object.relief || warnings_ == nullptr || allowed_n_per_m <= 0) continue;
+    if (object.relief->kind == ReliefKind::kImage) continue;  // its file is not open yet
     const fdcg_waves waves = object.relief->waves();
     const fdcg_relief relief = fdcg_make_relief(&waves);
     const double felt = fdcg_get_relief_stiffness(&relief, load_n) * device.mapping.scale;

@@ -77,7 +77,7 @@ Json effect_json(const EffectConfig& config) {
 }  // namespace
 
 Json relief_json(const ReliefConfig& config) {
-  constexpr const char* kReliefs[] = {"ridges", "bumps", "grain"};
+  constexpr const char* kReliefs[] = {"ridges", "bumps", "grain", "image"};
   Json json = {{"kind", kReliefs[static_cast<int>(config.kind)]}};
   if (config.kind == ReliefKind::kGrain) {
     json["rms_m"] = config.rms_m;
@@ -85,7 +85,7 @@ Json relief_json(const ReliefConfig& config) {
     json["longest_m"] = config.longest_m;
     json["exponent"] = config.exponent;
     json["seed"] = config.seed;
-  } else {
+  } else if (config.kind != ReliefKind::kImage) {
     json["amplitude_m"] = config.amplitude_m;
     json["wavelength_m"] = config.wavelength_m;
   }
