@@ -157,6 +157,54 @@ class Contacts(unittest.TestCase):
         self.assertTrue(np.shares_memory(out, again))
         self.assertTrue(np.array_equal(out["force_n"], log.force_n))
 
+    def test_a_relief_is_felt_as_its_heights_say(self):
+        x = 0.1 + 1e-4 * np.arange(200)
+        path = np.stack([x, np.full(200, 0.5), np.full(200, 0.9985)], axis=1)
+        path[0, 2] = 1.01
+        smooth = fdcg.Params(mu_static=0, mu_dynamic=0)
+        relief = fdcg.Relief.ridges(1e-4, 1e-3)
+        self.assertEqual(1e-4, relief.most_m)
+        log = fdcg.replay(cube(), path, smooth, relief=relief)
+        self.assertTrue(np.allclose(1.5 + 0.1 * np.sin(2 * np.pi * x[3:] / 1e-3), log.force_n[3:, 2], atol=1e-6))
+        contact = fdcg.Contact(cube(), smooth, relief)
+        for _ in range(2):
+            self.assertTrue(np.array_equal(log.force_n, [contact.step(tuple(hip)).force_n for hip in path]))
+            contact.reset()
+        with self.assertRaisesRegex(fdcg.Error, "most_m"):
+            fdcg.Relief.bumps(-1, 1e-3)
+        with self.assertRaisesRegex(fdcg.Error, "no heights"):
+            fdcg.Relief.images(cube())
+
+    def test_images_are_felt_where_the_file_has_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = os.path.join(folder, "tile.fdcg")
+            subprocess.run([os.environ["FDCG"], "compile", str(ROOT / "testdata/heights/tile.obj"), "--units", "cm", "--heights",
+                            "file", "-q", "-o", out], check=True)
+            graph = fdcg.Graph.open(out)
+        relief = fdcg.Relief.images(graph)
+        self.assertLess(2e-5, relief.most_m)
+        self.assertLess(relief.most_m, 1e-4)
+        x = 1e-4 * np.arange(200)
+        path = np.stack([x, np.zeros(200), np.full(200, 0.0035)], axis=1)
+        path[0, 2] = 0.01
+        smooth = fdcg.Params(mu_static=0, mu_dynamic=0)
+        felt, flat = fdcg.replay(graph, path, smooth, relief=relief), fdcg.replay(graph, path, smooth)
+        off = 1000 * relief.most_m
+        self.assertGreater(np.abs(felt.force_n - flat.force_n)[3:, 2].max(), 0.2 * off)
+        self.assertLessEqual(np.abs(felt.force_n - flat.force_n)[:, 2].max(), off * (1 + 1e-9))
+        with self.assertRaisesRegex(fdcg.Error, "another graph"):
+            fdcg.Contact(cube(), relief=relief)
+
+    def test_effects_come_on_top(self):
+        path = slide(200)
+        plain = fdcg.replay(cube(), path)
+        log = fdcg.replay(cube(), path, effects=[fdcg.Effect.vibration(0.25, 100)])
+        added = log.force_n - plain.force_n
+        self.assertAlmostEqual(0.25, np.abs(added[100:, 2]).max(), delta=0.02)
+        self.assertTrue(np.array_equal(log.god_object_m, plain.god_object_m))
+        with self.assertRaisesRegex(fdcg.Error, "frequency_hz"):
+            fdcg.Effect.vibration(1, 600)
+
     def test_wrong_parameters_and_paths_are_refused(self):
         with self.assertRaisesRegex(fdcg.Error, "mu_static"):
             fdcg.Params(mu_static=0.1, mu_dynamic=0.2)

@@ -12,6 +12,7 @@
 
 #include "fdcg/bake.hpp"
 #include "fdcg/fdcg.h"
+#include "fdcg/heights.h"
 
 namespace fdcg::python {
 
@@ -45,14 +46,41 @@ class Graph {
   py::object buffer;             // a caller's
 };
 
+// A relief and the heights that it is of.
+struct Relief {
+  Relief() = default;
+  Relief(const Relief&) = delete;
+  Relief& operator=(const Relief&) = delete;
+
+  fdcg_relief relief{};
+  fdcg_waves waves{};
+  fdcg_heights heights{};
+  std::shared_ptr<Graph> graph;  // of images
+};
+
 struct Contact {
   std::shared_ptr<Graph> graph;
   fdcg_params params;
+  std::shared_ptr<Relief> relief;  // null: none
+  std::vector<fdcg_effect> effects;
   fdcg_contact state{};
+  fdcg_relief_state relief_state{};
+  std::vector<fdcg_effect_state> effect_states;  // one an effect
+
+  [[nodiscard]] bool is_plain() const { return relief == nullptr && effects.empty(); }
+  void reset() {
+    state = {};
+    relief_state = {};
+    effect_states.assign(effects.size(), fdcg_effect_state{});
+  }
 };
+
+// A tick with relief and effects.
+fdcg_result step_felt(Contact& contact, const double hip_m[3]);
 
 void bind_mesh(py::module_& module);
 void bind_graph(py::module_& module);
+void bind_relief(py::module_& module);
 void bind_contact(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_grasp(py::module_& module);

@@ -36,12 +36,21 @@ fdcg_params make_params(double mu_static, double mu_dynamic, double stiffness, d
   return params;
 }
 
-std::shared_ptr<Contact> make_contact(std::shared_ptr<Graph> graph, const std::optional<fdcg_params>& params) {
-  return std::make_shared<Contact>(Contact{std::move(graph), params ? *params : fdcg_make_params(), {}});
+std::shared_ptr<Contact> make_contact(std::shared_ptr<Graph> graph, const std::optional<fdcg_params>& params,
+                                      std::shared_ptr<Relief> relief, std::vector<fdcg_effect> effects) {
+  if (relief && relief->graph && relief->graph != graph) raise("the relief's images are of another graph");
+  auto contact = std::make_shared<Contact>();
+  contact->graph = std::move(graph);
+  contact->params = params ? *params : fdcg_make_params();
+  contact->relief = std::move(relief);
+  contact->effects = std::move(effects);
+  contact->reset();
+  return contact;
 }
 
 fdcg_result step(Contact& contact, const py::handle& hip_m) {
   const Place hip = place_from(hip_m, "hip_m");
+  if (!contact.is_plain()) return step_felt(contact, hip.data());
   fdcg_result result;
   fdcg_step(&contact.graph->view, &contact.params, &contact.state, hip.data(), &result);
   return result;
@@ -54,6 +63,11 @@ Results path(Contact& contact, const Places& hips_m, const std::optional<Results
   fdcg_result* const first = results.mutable_data();
   const double* const hips = hips_m.data();
   py::gil_scoped_release others_run;
+  if (!contact.is_plain()) {
+    for (py::ssize_t i = 0; i < count; ++i)
+      first[i] = step_felt(contact, hips + 3 * i);
+    return results;
+  }
   fdcg_step_path(&contact.graph->view, &contact.params, &contact.state, hips, first, static_cast<std::uint64_t>(count));
   return results;
 }
@@ -100,13 +114,14 @@ void bind_contact(py::module_& module) {
                              })
       .def_property_readonly("slip_m_per_s", [](const fdcg_contact_info& info) { return triple(info.slip_m_per_s); });
   py::class_<Contact, std::shared_ptr<Contact>>(module, "Contact", "One contact point on one graph.")
-      .def(py::init(&make_contact), py::arg("graph"), py::arg("params") = py::none())
+      .def(py::init(&make_contact), py::arg("graph"), py::arg("params") = py::none(), py::arg("relief") = py::none(),
+           py::arg("effects") = std::vector<fdcg_effect>{}, "`relief` and `effects`: on top of the contact (Relief, Effect).")
       .def("step", &step, py::arg("hip_m"), "A tick: moves the HIP (metres, object's frame) and computes the force.")
       .def("path", &path, py::arg("hips_m"), py::arg("out") = py::none(),
            "A tick for each row of (n, 3); an array of result_dtype, `out` if it is given.")
       .def("info", &info_of, py::arg("now"), py::arg("before") = py::none(), "What a result of this contact is on.")
       .def(
-          "reset", [](Contact& contact) { contact.state = {}; }, "Forgets the surface: the next tick starts anew, free.")
+          "reset", [](Contact& contact) { contact.reset(); }, "Forgets the surface: the next tick starts anew, free.")
       .def_readonly("graph", &Contact::graph);
 }
 

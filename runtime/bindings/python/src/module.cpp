@@ -46,6 +46,7 @@ PYBIND11_MODULE(_core, module) {
   error_type = py::exception<void>(module, "Error", PyExc_ValueError).release().ptr();
   bind_mesh(module);
   bind_graph(module);
+  bind_relief(module);
   bind_contact(module);
   bind_scene(module);
   bind_grasp(module);
