@@ -273,6 +273,17 @@ class OfPublished(unittest.TestCase):
         known = json.loads((self.publish.KEPT / "environment.json").read_text(encoding="utf-8"))
         self.assertTrue({"processor", "compiler", "load_before", "revision"} <= set(known))
 
+    def test_a_run_of_hands_alone_renews_its_tables_and_no_other(self):
+        run, kept = (pathlib.Path(self.enterContext(tempfile.TemporaryDirectory())) for _ in range(2))
+        for name in ("hands", "hands_limits"):
+            (run / f"{name}.csv").write_text((self.publish.KEPT / f"{name}.csv").read_text())
+        (run / "hands_traces.csv").write_text("scene,contender,time_s,hand_n,off_n\n")
+        with unittest.mock.patch.object(self.publish, "KEPT", kept):
+            self.publish.take(run)
+        self.assertEqual({"hands.csv", "hands_limits.csv"}, {p.name for p in kept.iterdir()})
+        for path in kept.iterdir():
+            self.assertEqual((self.publish.KEPT / path.name).read_text(), path.read_text())
+
     def test_a_run_that_lacks_a_table_is_refused(self):
         folder = self.enterContext(tempfile.TemporaryDirectory())
         done = subprocess.run([sys.executable, "-B", str(HERE / "publish.py"), folder], capture_output=True, text=True)
