@@ -177,11 +177,14 @@ TEST_CASE("texture coordinates and materials of OBJ, with their library") {
   soup = import_mesh(folder / "part.obj", looking());
   REQUIRE(soup);
   CHECK(soup->appearance.materials[0].base_colour == Colour{1, 1, 1, 1});
-  CHECK(soup->ignored.back().count == 1);
+  REQUIRE(soup->unread_files.size() == 1);
+  CHECK_THAT(soup->unread_files[0], Catch::Contains("'paint.mtl' is not there"));
   std::ofstream(folder.parent_path() / "fdcg_visual_outside.mtl") << "newmtl red\nKd 0 0 0\n";
   std::ofstream(folder / "outside.obj") << "mtllib ../fdcg_visual_outside.mtl\n" << (kTetrahedron + 17);
   soup = import_mesh(folder / "outside.obj", looking());
   REQUIRE(soup);
+  REQUIRE(soup->unread_files.size() == 1);
+  CHECK_THAT(soup->unread_files[0], Catch::Contains("'../fdcg_visual_outside.mtl' was not read"));
   CHECK(soup->appearance.materials[0].base_colour == Colour{1, 1, 1, 1});
   CHECK(import_mesh(folder / "part.obj")->appearance.uv.empty());
   CHECK(import_memory(kTetrahedron, "memory.obj", looking())->other_files.empty());
