@@ -143,6 +143,15 @@ class Parts(WeightCase):
             text = self.native(program, self.library(name, *options), self.embedded(name[:3] if name.startswith("f") else "f32"))
             self.told(f"x86-64, {name}: {program}", text, bar, limit)
 
+    def test_x86_64_link_time_optimisation(self):
+        library = self.library("lto", *self.F64, *self.FACETS, "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON")
+        self.embedded("f64")
+        program = self.path("one_graph-lto")
+        self.run_program("cc", *C, "-O2", "-flto=auto", "-I", str(RUNTIME / "include"), "-I", str(self.folder),
+                         *self.sources("one_graph"), library, "-lm", "-o", program)
+        self.run_program(program)
+        self.told("x86-64, f64, lto: one_graph", self.text("size", program, "one_graph"), 64 * KB, 64 * KB)
+
     def test_x86_64_a_scene(self):
         self.native("one_scene", self.library("plain", *self.F32, *self.PLAIN), self.embedded())
 
