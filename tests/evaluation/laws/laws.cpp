@@ -19,7 +19,7 @@ struct Part {
 };
 constexpr Part kParts[] = {{"ramps", measure_ramps},     {"slides", measure_slides}, {"stick-slip", measure_stick_slip},
                            {"creep", measure_creep},     {"energy", measure_energy}, {"tessellation", measure_tessellation},
-                           {"shading", measure_shading}, {"scans", measure_scans}};
+                           {"shading", measure_shading}, {"relief", measure_relief}, {"scans", measure_scans}};
 
 }  // namespace
 

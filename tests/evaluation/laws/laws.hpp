@@ -35,6 +35,9 @@ void measure_tessellation(const LawOptions& options, Bars& bars);
 // What is felt of a sphere's facets, with and without shading (shading.csv).
 void measure_shading(const LawOptions& options, Bars& bars);
 
+// Heights on a flat face against their formula, and what they cost (relief.csv).
+void measure_relief(const LawOptions& options, Bars& bars);
+
 // The same of scans (scans.csv), where Debian's libcgal-demo has them.
 void measure_scans(const LawOptions& options, Bars& bars);
 

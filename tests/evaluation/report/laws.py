@@ -18,6 +18,7 @@ def content(run):
     yield from grooves(run)
     yield from tessellation(run)
     yield from shading(run)
+    yield from relief(run)
     yield from scans(run)
     yield from stick_slip(run)
     yield from energy(run)
@@ -126,6 +127,24 @@ def shading(run):
     yield finish("shading", figure, "Vibration over faces, and error of direction over time, of facets, shading and others on a sphere",
                  "A hand that slides over a sphere at 0.1 m/s and 1.5 N. A mesh of 4 or 16 times as many facets is the point one or two "
                  "further along its line.")
+
+
+def relief(run):
+    table = run.table("relief")
+    if table is None:
+        return
+    figure, axes = subplots(2)
+    names = [r["heights"] for r in table.rows]
+    for index, (column, name) in enumerate((("vibration_mn", "felt"), ("formula_mn", "by the formula"))):
+        axes[0][0].barh([k + .4 * index for k in range(len(names))], [r[column] for r in table.rows], height=.38, color=COLOURS[index], label=name)
+    for index, (column, name) in enumerate((("tick_ns", "with the heights"), ("step_ns", "the step alone"))):
+        axes[0][1].barh([k + .4 * index for k in range(len(names))], [r[column] for r in table.rows], height=.38, color=COLOURS[index], label=name)
+    axes[0][0].set(yticks=[k + .2 for k in range(len(names))], yticklabels=names, title="Vibration of the force, 80 to 450 Hz, mN RMS")
+    axes[0][1].set(yticks=[k + .2 for k in range(len(names))], yticklabels=names, title="ns a tick")
+    for ax in axes[0]:
+        legend(ax)
+    yield finish("relief", figure, "Vibration and time of heights on a flat face: ridges, grain, and an image of ridges",
+                 "A hand that strokes a flat face at 0.1 m/s and 1.5 N, beside the formula for its force.")
 
 
 def scans(run):
