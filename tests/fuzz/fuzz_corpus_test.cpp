@@ -39,6 +39,7 @@ void run_over_corpus(const char* name, Target& target) {
     run_over_corpus(#name, fdcg_fuzz_##name);               \
   }
 FDCG_CORPUS(validate)
+FDCG_CORPUS(heights)
 FDCG_CORPUS(robot)
 FDCG_CORPUS(config)
 FDCG_CORPUS(baseline)
