@@ -22,8 +22,6 @@ struct HeightImage {
   std::string name;                     ///< of its file
   std::uint32_t width = 0, height = 0;  ///< texels
   std::vector<float> values;            ///< row by row from the top, black 0 to white 1
-  /// Of an image of normals: values are heights in lengths of a texel along the surface, and `range` is a factor.
-  bool is_of_normals = false;
   double range = 0;  ///< height of white above black in units of the mesh; 0: the file does not say
   std::array<Wrap, 2> wrap = {Wrap::repeat, Wrap::repeat};  ///< along its rows, along its columns
   /// Where texture coordinates (u, v) are on the image, 0 to 1 along each side, the second one downwards:

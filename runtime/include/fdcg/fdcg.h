@@ -218,7 +218,7 @@ typedef struct fdcg_verification {
   uint64_t sums[FDCG_MOST_SECTIONS]; /**< checksums of their blocks, by the section's place in the table */
 } fdcg_verification;
 
-/** How many chunks an open graph is verified in: at least 1, some 64 kB of the file each. */
+/** How many chunks an open graph is verified in: at least 1, some 256 kB of the file each. */
 FDCG_API uint32_t fdcg_verify_chunk_count(const fdcg_graph* graph);
 
 /** Verifies one chunk of a graph that was opened as trusted, and adds what it comes to to *part. Chunks of one level may be
