@@ -135,7 +135,7 @@ class SafeChunk {
       const auto& node = *reinterpret_cast<const Node*>(block);
       const uint32_t count = kSides != 0 ? kSides : node.side_count;
       at += node_bytes<Real>(count, kHasPlanes);
-      if (kSides == 0 && (!is_side_count(count) || at != offset_of(n + 1))) return false;
+      if (kSides == 0 && (!is_side_count(count) || at != offset_of(n + 1) || at > node_section_bytes_)) return false;
       prefetch(block + ahead);
       wrong |= (node.side_count ^ count) | (node.flags & ~uint32_t{FDCG_NODE_INEXACT});
       const auto* const side_records = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What FDCG_VERIFY_SAFE lets through and FDCG_VERIFY_FULL does not: files that are no surface. A step on one may say anything,
 // but nothing undefined, and its numbers are numbers.
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <cmath>
+#include <cstring>
 
 #include "catch.hpp"
 #include "contact_rig.hpp"
@@ -71,5 +75,37 @@ TEST_CASE("corners with a border that do not say so are SAFE, and harmless to pr
       REQUIRE(fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_SAFE, &graph, nullptr) == FDCG_OK);
       press_on_corners(graph);
     }
+  }
+}
+
+TEST_CASE("a node of more sides than its section holds is refused, and nothing is read beyond the file") {
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    AlignedBytes file = compiled(prism(5), precision);
+    REQUIRE(file.header().node_bytes == 0);
+    const bool is_f64 = precision == Precision::f64, has_planes = (file.header().flags & FDCG_STORED_PLANES) != 0;
+    const std::uint32_t real = is_f64 ? 8 : 4,
+                        sides_at = is_f64 ? offsetof(fdcg_node_f64, sides) : offsetof(fdcg_node_f32, sides);
+    const std::uint32_t most = FDCG_MAX_SIDES, linked = (sides_at + most * std::uint32_t{sizeof(fdcg_side)} + real - 1) / real;
+    auto* const offsets = reinterpret_cast<std::uint32_t*>(file.data() + section_of(file, FDCG_SECTION_NODE_OFFSETS).offset);
+    const std::uint64_t nodes_at = section_of(file, FDCG_SECTION_NODES).offset;
+    const std::uint32_t n = file.header().node_count - 2;
+    const auto side_count = static_cast<std::uint16_t>(most);
+    std::memcpy(file.data() + nodes_at + std::uint64_t{offsets[n]} * real + sides_at - 2 * sizeof side_count, &side_count,
+                sizeof side_count);
+    offsets[n + 1] = offsets[n] + linked + (has_planes ? 4 * most : 0);  // where such a node would end
+    REQUIRE(nodes_at + std::uint64_t{offsets[n + 1]} * real > file.size());
+    seal(file);
+
+    // The file ends where the memory ends.
+    const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)), held = (file.size() + page - 1) / page * page;
+    void* const memory = mmap(nullptr, held + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    REQUIRE(memory != MAP_FAILED);
+    auto* const end = static_cast<unsigned char*>(memory) + held;
+    REQUIRE(mprotect(end, page, PROT_NONE) == 0);
+    unsigned char* const last = end - (file.size() + 63) / 64 * 64;
+    std::memcpy(last, file.data(), file.size());
+    fdcg_graph graph;
+    CHECK(fdcg_open_memory(last, file.size(), FDCG_VERIFY_SAFE, &graph, nullptr) == FDCG_E_GRAPH);
+    munmap(memory, held + page);
   }
 }
