@@ -126,7 +126,8 @@ class SafeChunk {
     const uint64_t first_node = chunk_.first_of(nodes), end = chunk_.end_of(nodes);
     const fdcg_connection* const connections = records_.connections();
     uint64_t at = kSides != 0 ? first_node * node_bytes<Real>(kSides, kHasPlanes) : offset_of(first_node);
-    const uint64_t begin = at, ahead = (kSides != 0 ? end * node_bytes<Real>(kSides, kHasPlanes) : offset_of(end)) - at;
+    const uint64_t begin = at, stop = kSides != 0 ? end * node_bytes<Real>(kSides, kHasPlanes) : offset_of(end);
+    const uint64_t ahead = stop > begin ? stop - begin : 0;  // to the next chunk; of damaged offsets anything
     uint32_t sides = 0, seconds = 0, wrong = first_node == 0 && begin != 0, over = 0;
     UnitCheck<Real> check(-largest_offset_, largest_offset_);
     for (uint64_t n = first_node; n < end; ++n) {
