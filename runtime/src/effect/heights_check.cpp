@@ -10,7 +10,7 @@
 namespace fdcg {
 namespace {
 
-constexpr double kFarthestOffset = 1e6, kSteepest = 1e12, kLeastStep_m = 1e-15, kMostStep_m = 1;
+constexpr double kFarthestOffset = 1e6, kMostPerUnit = 1e12, kLeastStep_m = 1e-15, kMostStep_m = 1;
 
 fdcg_status refuse_heights(fdcg_error* error, const char* what) {
   return Message(error, FDCG_E_GRAPH).say("the heights: ", what, "; compile the mesh again");
@@ -44,7 +44,7 @@ void look_at_place(const fdcg_node_place& place, uint32_t map_count, Faults* fau
   faults->note(place.map >= map_count && place.map != FDCG_NONE, "map out of range");
   for (int k = 0; k < 2; ++k) {
     faults->note(!(absolute(place.offset[k]) <= kFarthestOffset), "its image is too far away");
-    faults->note(!(square_of(place.per_unit[k]) <= kSteepest * kSteepest), "its image is too small");
+    faults->note(!(square_of(place.per_unit[k]) <= kMostPerUnit * kMostPerUnit), "its image is too small");
   }
   faults->note(place.reserved != 0, "a reserved number is not zero");
 }
@@ -70,7 +70,7 @@ void look_at_map(const fdcg_heights& heights, uint32_t texels, uint32_t index, F
 }
 
 // Of steps of the map, per texel of the level.
-struct Bounds {
+struct HeightBounds {
   int32_t height, across, along, mixed;
 };
 
@@ -80,8 +80,8 @@ void raise(int32_t value, int32_t* most) {
 }
 
 // Of a spline of third degree no value is larger than a texel's, no second derivative than a second difference.
-Bounds bounds_of(const fdcg_height_map& map, const int16_t* texels, const HeightLevel& level) {
-  Bounds most = {0, 0, 0, 0};
+HeightBounds bounds_of(const fdcg_height_map& map, const int16_t* texels, const HeightLevel& level) {
+  HeightBounds most = {0, 0, 0, 0};
   const int16_t* const first = texels + level.first;
   for (uint32_t y = 0; y < level.height; ++y) {
     const int16_t* const row = first + uint64_t{y} * level.width;
@@ -122,7 +122,7 @@ void bound_map(uint32_t index, fdcg_heights* heights) {
   const Density per_m = density_of(*heights, index);
   for (uint32_t k = 0; k < map.level_count; ++k) {
     const HeightLevel level = level_of(map, k);
-    const Bounds most = bounds_of(map, heights->texels, level);
+    const HeightBounds most = bounds_of(map, heights->texels, level);
     const double columns = level.width, rows = level.height;
     const double curvature = per_m.columns2 * columns * columns * most.along + per_m.rows2 * rows * rows * most.across +
                              2 * per_m.both * columns * rows * most.mixed;
