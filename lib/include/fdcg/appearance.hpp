@@ -19,10 +19,11 @@ struct HeightImage {
   /// What lies beyond its borders; as fdcg_wrap.
   enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 
-  std::string name;                     ///< of its file
-  std::uint32_t width = 0, height = 0;  ///< texels
-  std::vector<float> values;            ///< row by row from the top, black 0 to white 1
-  double range = 0;  ///< height of white above black in units of the mesh; 0: the file does not say
+  std::string name;           ///< of its file
+  std::uint32_t width = 0;    ///< texels of a row
+  std::uint32_t height = 0;   ///< rows
+  std::vector<float> values;  ///< row by row from the top, black 0 to white 1
+  double range = 0;           ///< height of white above black in units of the mesh; 0: the file does not say
   std::array<Wrap, 2> wrap = {Wrap::repeat, Wrap::repeat};  ///< along its rows, along its columns
   /// Where texture coordinates (u, v) are on the image, 0 to 1 along each side, the second one downwards:
   /// (p[0] u + p[1] v + p[2], p[3] u + p[4] v + p[5]).
@@ -31,7 +32,7 @@ struct HeightImage {
 
 /// What a material of the mesh file looks like.
 struct LookMaterial {
-  static constexpr std::uint16_t kNoImage = 0xFFFF;
+  static constexpr std::uint16_t kNoImage = 0xFFFF;  ///< as `heights`: it has none
 
   std::string name;                   ///< as in the file; may be empty
   Colour base_colour = {1, 1, 1, 1};  ///< Kd and d of OBJ as they stand, baseColorFactor of glTF
