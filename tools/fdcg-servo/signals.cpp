@@ -17,7 +17,9 @@ void on_end(int) {
   if (dev::SceneRun* const host = the_host.load()) host->request_stop();
 }
 
+// Disarmed at once: the main thread may be about to wait for a command, and would see the stop only after that.
 void on_stop(int number) {
+  if (dev::SceneRun* const host = the_host.load()) host->disarm(dev::kAllDevices);
   the_stop.store(number);
 }
 

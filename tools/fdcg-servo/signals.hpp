@@ -2,7 +2,7 @@
 // What signals do to fdcg-servo run while it drives devices.
 //
 //   SIGINT, SIGTERM, SIGHUP   the host is asked to stop: zero force, in order
-//   SIGTSTP, SIGTTIN          kept until take_stop(): a stopped process sends nothing, so its devices are disarmed first
+//   SIGTSTP, SIGTTIN          the devices are disarmed at once, since a stopped process sends nothing; then kept until take_stop()
 //   SIGPIPE, SIGXFSZ, SIGTTOU ignored: a reader that goes away, or a file limit, is an error where it is written; output of a
 //                             background job is let through
 //   a crash, and every other  zero force as the last act of the process, which dies of the signal (emergency.hpp)
@@ -13,7 +13,7 @@
 
 namespace fdcg::servo {
 
-// One at a time. Made in the main thread, before the host's threads run.
+// One at a time. Made in the main thread, after the scene is opened and before the host's threads run.
 class Signals {
  public:
   explicit Signals(dev::SceneRun* host);

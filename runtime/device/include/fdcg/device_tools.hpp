@@ -3,7 +3,7 @@
 // with all that a status shows, logs replayed. Not installed: it may change with every version. A function that returns a text
 // returns "" when all is well, otherwise one line: the file or the device, what is wrong with it, and what to do.
 //
-// One thread at a time is in an object of these, but for SceneRun::request_stop.
+// One thread at a time is in an object of these, but for SceneRun::request_stop and, once a scene is open, SceneRun::disarm.
 #pragma once
 
 #include <cstdint>
@@ -159,8 +159,8 @@ class SceneRun {
   // What the system did not grant (real-time priority, locked memory, a cpu): worse timing, nothing more.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
   [[nodiscard]] int device_count() const;
-  void arm(int device);  // a request: the safety gate decides. kAllDevices: each
-  void disarm(int device);
+  void arm(int device);         // a request: the safety gate decides. kAllDevices: each
+  void disarm(int device);      // async-signal-safe
   DeviceLook look(int device);  // some 20 ms old at most
   // Before start: so many ticks of each device are kept for take_snapshots; 0: none.
   void keep_snapshots(std::size_t ticks);
