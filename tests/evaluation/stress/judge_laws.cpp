@@ -123,8 +123,10 @@ bool Judge::is_held_by_edge(const Tick& tick, const EdgeShape& edge) const {
   return rubbing->gap <= (tick.result.slipping != 0 ? params_.mu_dynamic : params_.mu_static) * rubbing->load + rubbing->slack;
 }
 
-// A god-object of a corner that is on the rim of the friction cone of an edge or a face there, but for rounding: each of those
-// that lead nearer to the HIP holds it.
+// A god-object of a corner that is on the rim of a friction cone there, but for rounding. What leads nearest to the HIP is
+// asked, and nothing else (contact-model CORNER-1, CORNER-3): the edge or the face, of those that are not in front of the HIP,
+// along which it reaches farthest; of several that tie but for rounding one that holds will do. Where none leads nearer the
+// corner holds.
 bool Judge::is_held_at_corner(const Tick& tick) const {
   const std::uint32_t corner = tick.after.feature;
   const fdcg_graph& graph = specimen_.graph();
@@ -132,16 +134,22 @@ bool Judge::is_held_at_corner(const Tick& tick) const {
   fdcg_get_fan(&graph, corner, fan.data(), static_cast<std::uint32_t>(fan.size()));
   const Long t = way(specimen_.corners[corner].point, tick.hip);
   const double sure = kMostDescent_eps * tick.rounding + deviation_;
+  double most = 0, most_held = 0;
+  const auto look_at = [&](double reach, bool is_held) {
+    most = std::max(most, reach);
+    if (is_held) most_held = std::max(most_held, reach);
+  };
   for (const std::uint32_t entry : fan) {
     const EdgeShape& edge = specimen_.edges[entry >> 1];
-    const Real ahead = dot(t, edge.direction) * ((entry & 1) == 0 ? 1 : -1);
+    const auto ahead = static_cast<double>(dot(t, edge.direction) * ((entry & 1) == 0 ? 1 : -1));
     const bool may_hold = edge.node[1] != FDCG_NONE && in_front_of_edge(edge, tick.hip) < -sure;
-    if (may_hold && ahead > sure && !is_held_by_edge(tick, edge)) return false;
+    if (may_hold && ahead > sure) look_at(ahead, is_held_by_edge(tick, edge));
     const std::uint32_t n = edge.node[entry & 1];
     if (n == FDCG_NONE || !(in_front_of_node(n, tick.hip) < -sure)) continue;
-    if (is_over_at(n, tick, sure) && !is_held_by_face(tick, n)) return false;
+    const auto flat = static_cast<double>(length(without(t, specimen_.nodes[n].normal)));
+    if (is_over_at(n, tick, sure)) look_at(flat, is_held_by_face(tick, n));
   }
-  return true;
+  return most_held >= most - sure;
 }
 
 // A god-object of a face that is on one of its edges but for rounding: the edge's own friction may hold it. Or the face's, one
