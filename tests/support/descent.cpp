@@ -6,14 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+
+#include "bounded.hpp"
 
 namespace fdcg::test {
 namespace {
 
-using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
-using ExactVector = Exact::Vector_3;
-using Long = std::array<long double, 3>;
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel::FT;
+template <class Number>
+using Triple = std::array<Number, 3>;
+using Long = Triple<long double>;
 
 Long way(const Hip& from, const Hip& to) {
   Long d;
@@ -21,43 +25,100 @@ Long way(const Hip& from, const Hip& to) {
     d[i] = static_cast<long double>(to[i]) - from[i];
   return d;
 }
-long double dot(const Long& a, const Long& b) {
+template <class Number>
+Number dot(const Triple<Number>& a, const Triple<Number>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-Long cross(const Long& a, const Long& b) {
+template <class Number>
+Triple<Number> cross(const Triple<Number>& a, const Triple<Number>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-
-ExactVector exact_way(const Hip& from, const Hip& to) {
-  return Exact::Point_3(to[0], to[1], to[2]) - Exact::Point_3(from[0], from[1], from[2]);
+template <class Number>
+Number size_of(const Triple<Number>& a) {
+  return abs(a[0]) + abs(a[1]) + abs(a[2]);
 }
 
-// What is met first when a way is turned about `axis`, which is square to it, by less than half a turn.
+int sign_of(const Exact& a) {
+  return static_cast<int>(CGAL::sign(a));
+}
+Triple<Exact> exact_way(const Hip& from, const Hip& to) {
+  return {Exact(to[0]) - from[0], Exact(to[1]) - from[1], Exact(to[2]) - from[2]};
+}
+Triple<Bounded> bounded_way(const Hip& from, const Hip& to) {
+  return {bounded_difference(to[0], from[0]), bounded_difference(to[1], from[1]), bounded_difference(to[2], from[2])};
+}
+
+// What is met first when a way is turned about an axis, which is square to it, by less than half a turn.
+template <class Number>
 class FirstMet {
  public:
-  FirstMet(const ExactVector& t, const ExactVector& axis) : t_(t), axis_(axis), up_(CGAL::cross_product(axis, t)) {}
+  FirstMet(const Triple<Number>& t, const Triple<Number>& axis) : t_(t), axis_(axis), up_(cross(axis, t)) {}
 
-  // False: the axis is a bad choice, since a side of the wing lies in the plane.
-  bool look_at(const ExactVector& a, const ExactVector& b) {
-    const Exact::FT at_a = axis_ * a, at_b = axis_ * b;
-    if (at_a == 0 || at_b == 0) return false;
-    if ((at_a > 0) == (at_b > 0)) return true;
-    const ExactVector ray = a * CGAL::abs(at_b) + b * CGAL::abs(at_a);
-    const Exact::FT along = ray * t_, across = ray * up_;
-    if (across == 0 && along > 0) is_on_surface_ = true;
-    if (across <= 0 || (has_met_ && along * across_ <= along_ * across)) return true;
+  // False: the axis is a bad choice, since a side of the wing lies in the plane; or a sign is doubtful.
+  bool look_at(const Triple<Number>& a, const Triple<Number>& b) {
+    const Number at_a = dot(axis_, a), at_b = dot(axis_, b);
+    const int side_a = sign_of(at_a), side_b = sign_of(at_b);
+    if (side_a == 0 || side_b == 0 || side_a == kDoubtful || side_b == kDoubtful) return false;
+    if (side_a == side_b) return true;
+    const Number of_a = abs(at_b), of_b = abs(at_a);
+    const Triple<Number> ray = {a[0] * of_a + b[0] * of_b, a[1] * of_a + b[1] * of_b, a[2] * of_a + b[2] * of_b};
+    const Number along = dot(ray, t_), across = dot(ray, up_);
+    const int is_up = sign_of(across);
+    if (is_up == kDoubtful) return false;
+    if (is_up == 0 && sign_of(along) > 0) is_on_surface_ = true;
+    if (is_up <= 0) return true;
+    const int is_before = has_met_ ? sign_of(Number(along * across_ - along_ * across)) : 1;
+    if (is_before == kDoubtful) return false;
+    if (is_before <= 0) return true;
     along_ = along, across_ = across, has_met_ = true;
-    is_outside_ = CGAL::cross_product(a, b) * t_ > 0;  // never 0: the wing's plane holds the ray, and not the way
-    return true;
+    facing_ = sign_of(dot(cross(a, b), t_));  // never 0: the wing's plane holds the ray, and not the way
+    return facing_ != kDoubtful;
   }
   [[nodiscard]] bool has_met() const { return has_met_ || is_on_surface_; }
-  [[nodiscard]] bool is_outside() const { return is_outside_ || is_on_surface_; }
+  [[nodiscard]] bool is_outside() const { return facing_ > 0 || is_on_surface_; }
 
  private:
-  ExactVector t_, axis_, up_;
-  Exact::FT along_, across_;  // of the ray met first
-  bool has_met_ = false, is_outside_ = false, is_on_surface_ = false;
+  Triple<Number> t_, axis_, up_;
+  Number along_{}, across_{};  // of the ray met first
+  int facing_ = 0;
+  bool has_met_ = false, is_on_surface_ = false;
 };
+
+// A direction across one of the fan's faces, or nearly: another at each trial.
+template <class Number>
+Triple<Number> direction_across(std::size_t trial, const Triple<Number>& a, const Triple<Number>& b, const Number& off) {
+  const int any[3] = {static_cast<int>(trial % 7) - 3, static_cast<int>(trial % 11) - 5, static_cast<int>(trial % 13) - 6};
+  const double share = std::exp2(-static_cast<double>(trial % 40));
+  Triple<Number> across;
+  for (std::size_t i = 0; i < 3; ++i)
+    across[i] = a[i] * Number{1.0 + static_cast<double>(trial % 5)} + b[i] + off * Number{share * any[i]};
+  return across;
+}
+std::size_t face_tried(std::size_t trial, std::size_t faces) {
+  return trial * 7919 % faces;
+}
+
+// Whether the way begins outside of the faces that meet at the corner, by doubles; none where they do not tell: on the surface
+// they never do.
+std::optional<bool> told_in_doubles(const std::vector<std::pair<Hip, Hip>>& fan, const Hip& corner, const Hip& hip) {
+  const Triple<Bounded> t = bounded_way(corner, hip);
+  for (const auto& wing : fan) {
+    const Triple<Bounded> apart = cross(bounded_way(corner, wing.first), t);
+    if (sign_of(apart[0]) == kDoubtful && sign_of(apart[1]) == kDoubtful && sign_of(apart[2]) == kDoubtful) return std::nullopt;
+  }
+  constexpr std::size_t kTrials = 4;
+  for (std::size_t i = 0; i < kTrials; ++i) {
+    const auto& [left, right] = fan[face_tried(i, fan.size())];
+    const Triple<Bounded> a = bounded_way(corner, left), b = bounded_way(corner, right);
+    const Triple<Bounded> across = direction_across(i, a, b, size_of(a));
+    FirstMet<Bounded> first(t, cross(t, across));
+    const bool is_good = std::all_of(fan.begin(), fan.end(), [&](const auto& wing) {
+      return first.look_at(bounded_way(corner, wing.first), bounded_way(corner, wing.second));
+    });
+    if (is_good && first.has_met()) return first.is_outside();
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -91,28 +152,26 @@ double Descent::reach(const Hip& corner, const Hip& hip) const {
 
 bool Descent::begins_outside(const Hip& corner, const Hip& hip) const {
   const std::vector<Wing>& fan = fan_at(corner);
-  ExactVector t = exact_way(corner, hip);
-  if (t == CGAL::NULL_VECTOR) return true;
+  if (corner == hip) return true;
+  if (const std::optional<bool> told = told_in_doubles(fan, corner, hip)) return *told;
+  Triple<Exact> t = exact_way(corner, hip);
   for (const Wing& wing : fan) {
-    const ExactVector a = exact_way(corner, wing.first);
-    if (CGAL::cross_product(a, t) != CGAL::NULL_VECTOR) continue;
-    if (a * t > 0) return true;
+    const Triple<Exact> a = exact_way(corner, wing.first), apart = cross(a, t);
+    if (apart[0] != 0 || apart[1] != 0 || apart[2] != 0) continue;
+    if (dot(a, t) > 0) return true;
     // No plane that holds the way is in general position: another way so near that nothing lies between.
-    t = t + ExactVector(3, 5, 7) * Exact::FT(CGAL::abs(a.x()) + CGAL::abs(a.y()) + CGAL::abs(a.z())) * Exact::FT(0x1p-300);
+    const Exact beside = size_of(a) * Exact(0x1p-300);
+    t = {t[0] + beside * 3, t[1] + beside * 5, t[2] + beside * 7};
     break;
   }
   // Almost any plane will do that holds the way and passes across a face, or nearly: faces may all lie in one plane with the
   // way.
   for (std::size_t i = 0; i < 1000; ++i) {
-    const Wing& met = fan[i * 7919 % fan.size()];
-    const ExactVector a = exact_way(corner, met.first), b = exact_way(corner, met.second);
-    const Exact::FT off = CGAL::abs(a.x()) + CGAL::abs(a.y()) + CGAL::abs(a.z());
-    const ExactVector any(static_cast<double>(i % 7) - 3, static_cast<double>(i % 11) - 5, static_cast<double>(i % 13) - 6);
-    const ExactVector across =
-        a * Exact::FT(1.0 + static_cast<double>(i % 5)) + b + any * (off * std::exp2(-static_cast<double>(i % 40)));
-    const ExactVector axis = CGAL::cross_product(t, across);
-    if (axis == CGAL::NULL_VECTOR) continue;
-    FirstMet first(t, axis);
+    const Wing& met = fan[face_tried(i, fan.size())];
+    const Triple<Exact> a = exact_way(corner, met.first), b = exact_way(corner, met.second);
+    const Triple<Exact> axis = cross(t, direction_across<Exact>(i, a, b, size_of(a)));
+    if (axis[0] == 0 && axis[1] == 0 && axis[2] == 0) continue;
+    FirstMet<Exact> first(t, axis);
     const bool is_good = std::all_of(fan.begin(), fan.end(), [&](const Wing& wing) {
       return first.look_at(exact_way(corner, wing.first), exact_way(corner, wing.second));
     });

@@ -64,6 +64,47 @@ Vec3 side_across(const PolygonSoup& soup, std::size_t face, const Hip& tip) {
 
 }  // namespace
 
+// A millionth of the way from the corner, what the solid says of a place is what its faces there say of the way.
+TEST_CASE("a way from a corner begins where the solid says of places right beside the corner") {
+  int told[3] = {0, 0, 0};
+  for (const PolygonSoup& shape :
+       {corner_pit(), saddle_block(), cube(), fan_block(7, 0, 0.5, -0.5), fan_block(64, 0, 0.5, 1)}) {
+    const PolygonSoup soup = rounded_to_float(triangulated(shape));
+    const CompiledMesh mesh(soup);
+    const fdcg_header& header = *mesh.view().header;
+    const ExactSolid solid(soup, header);
+    const Descent descent(solid.triangles());
+    Random random(5);
+    for (std::uint32_t c = 0; c < header.corner_count; ++c) {
+      const fdcg_corner_info info = fdcg_get_corner(&mesh.view(), c);
+      const Hip corner = {info.point[0], info.point[1], info.point[2]};
+      for (int i = 0; i < 40; ++i) {
+        // Anywhere, and by few bits in planes, along edges and on both sides of them.
+        const Hip& other = solid.triangles()[random.below(static_cast<std::uint32_t>(solid.triangles().size()))][i % 3];
+        Hip way;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double step = std::ldexp(std::round(std::ldexp(random.uniform(-1, 1), 8)), -8);
+          way[k] = i < 15 ? step : i < 30 ? other[k] - corner[k] : static_cast<double>(random.below(3)) - 1;
+        }
+        const Hip hip = {corner[0] + way[0], corner[1] + way[1], corner[2] + way[2]};
+        Hip near;
+        bool is_exact = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const long double whole = static_cast<long double>(hip[k]) - corner[k], part = std::ldexp(whole, -20);
+          near[k] = static_cast<double>(corner[k] + part);
+          is_exact = is_exact && whole == way[k] && static_cast<long double>(near[k]) - corner[k] == part;
+        }
+        if (!is_exact) continue;
+        const ExactSolid::Where where = solid.where(near);
+        ++told[static_cast<int>(where)];
+        INFO(soup.name << " corner " << c << " way " << way[0] << ' ' << way[1] << ' ' << way[2]);
+        CHECK(descent.begins_outside(corner, hip) == (where != ExactSolid::Where::inside));
+      }
+    }
+  }
+  CHECK(std::min({told[0], told[1], told[2]}) > 100);
+}
+
 TEST_CASE("no rest at a corner of a flat or long body that is no least place") {
   Counts counts;
   std::uint64_t seed = 0;
