@@ -138,13 +138,13 @@ Json visual_of(const fdcg_graph& graph) {
 Json heights_of(const fdcg_graph& graph) {
   fdcg_heights heights{};
   if (fdcg_get_heights(&graph, &heights, nullptr) != FDCG_OK) return nullptr;
+  std::vector<std::uint32_t> nodes(heights.map_count, 0);
+  for (std::uint32_t n = 0; n < heights.node_count; ++n)
+    if (heights.places[n].map < heights.map_count) ++nodes[heights.places[n].map];
   Json maps = Json::array();
   for (std::uint32_t m = 0; m < heights.map_count; ++m) {
     const fdcg_height_map& map = heights.maps[m];
-    std::uint32_t nodes = 0;
-    for (std::uint32_t n = 0; n < heights.node_count; ++n)
-      nodes += heights.places[n].map == m ? 1 : 0;
-    maps.push_back({{"width", map.width}, {"height", map.height}, {"levels", map.level_count}, {"nodes", nodes}});
+    maps.push_back({{"width", map.width}, {"height", map.height}, {"levels", map.level_count}, {"nodes", nodes[m]}});
   }
   return {{"most_m", heights.most_m}, {"curvature_per_m", heights.curvature_per_m}, {"maps", maps}};
 }

@@ -105,21 +105,22 @@ struct Density {
   double columns2, rows2, both;
 };
 
-Density density_of(const fdcg_heights& heights, uint32_t map) {
-  Density most = {0, 0, 0};
+constexpr uint32_t kMapsAtOnce = 32;  // so that all nodes are read eight times at most
+
+// Of the maps first .. first + kMapsAtOnce - 1.
+void find_densities(const fdcg_heights& heights, uint32_t first, Density (&of)[kMapsAtOnce]) {
   const double units_per_m = 1 / heights.metres_per_unit, square = units_per_m * units_per_m;
   for (uint32_t n = 0; n < heights.node_count; ++n) {
-    if (heights.places[n].map != map) continue;
-    const double u2 = square_of(heights.places[n].per_unit[0]) * square;
-    const double v2 = square_of(heights.places[n].per_unit[1]) * square;
-    most = {larger(most.columns2, u2), larger(most.rows2, v2), larger(most.both, root(u2) * root(v2))};
+    const fdcg_node_place& place = heights.places[n];
+    if (place.map < first || place.map >= first + kMapsAtOnce) continue;  // FDCG_NONE is larger
+    Density* const most = &of[place.map - first];
+    const double u2 = square_of(place.per_unit[0]) * square, v2 = square_of(place.per_unit[1]) * square;
+    *most = {larger(most->columns2, u2), larger(most->rows2, v2), larger(most->both, root(u2) * root(v2))};
   }
-  return most;
 }
 
-void bound_map(uint32_t index, fdcg_heights* heights) {
+void bound_map(uint32_t index, const Density& per_m, fdcg_heights* heights) {
   const fdcg_height_map& map = heights->maps[index];
-  const Density per_m = density_of(*heights, index);
   for (uint32_t k = 0; k < map.level_count; ++k) {
     const HeightLevel level = level_of(map, k);
     const HeightBounds most = bounds_of(map, heights->texels, level);
@@ -141,8 +142,12 @@ fdcg_status check(fdcg_heights* heights, uint32_t texels, fdcg_error* error) {
                      [&](uint32_t i, auto* faults) { look_at_map(*heights, texels, i, faults); });
     if (status != FDCG_OK) return status;
   }
-  for (uint32_t m = 0; m < heights->map_count; ++m)
-    bound_map(m, heights);
+  for (uint32_t first = 0; first < heights->map_count; first += kMapsAtOnce) {
+    Density of[kMapsAtOnce] = {};
+    find_densities(*heights, first, of);
+    for (uint32_t m = first; m < heights->map_count && m < first + kMapsAtOnce; ++m)
+      bound_map(m, of[m - first], heights);
+  }
   return FDCG_OK;
 }
 
