@@ -276,11 +276,11 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
 Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare) {
   if (std::string reason = check_options(options); !reason.empty()) return Failure{2, std::move(reason)};
   if (options.normals == Normals::file && soup.corner_normals.empty())
-    return Failure{
-        2,
-        soup.name +
-            ": holds no normals (vn of OBJ, nx ny nz of PLY, NORMAL of glTF); --normals faces makes them from the faces",
-        {}};
+    return Failure{2,
+                   soup.name +
+                       ": holds no normals (vn of OBJ, nx ny nz of PLY, NORMAL of glTF, normals of Draco); --normals faces "
+                       "makes them from the faces",
+                   {}};
   if (options.heights) {
     if (std::string missing = missing_for_heights(soup, options); !missing.empty()) return Failure{2, std::move(missing), {}};
   }

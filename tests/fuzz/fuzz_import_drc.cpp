@@ -7,7 +7,10 @@
 #include "import/draco_decode.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
-  const fdcg::bake::DracoMesh mesh = fdcg::bake::decode_draco_here({{reinterpret_cast<const char*>(data), size}, std::nullopt});
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const fdcg::bake::DracoMesh mesh = fdcg::bake::decode_draco_here({bytes, std::nullopt, {}, true});
+  for (const auto& extra : mesh.extras)
+    if (!extra.empty() && extra.size() != mesh.points.size()) std::abort();
   if (mesh.corners.size() % 3 != 0 || !(mesh.absolute_quantum >= 0)) std::abort();
   return 0;
 }

@@ -67,6 +67,43 @@ std::string write_drc(const bake::PolygonSoup& soup, const DracoWriteOptions& op
   return encoded(encoder, mesh);
 }
 
+std::string write_drc_with_looks(const bake::PolygonSoup& soup, const DracoWriteOptions& options) {
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(static_cast<int>(soup.face_count()));
+  const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int normals = builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
+  const int places = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+  const int colours = builder.AddAttribute(draco::GeometryAttribute::COLOR, 4, draco::DT_UINT8);
+  for (std::uint32_t f = 0; f < soup.face_count(); ++f) {
+    std::array<std::array<float, 3>, 3> at{}, normal{};
+    std::array<std::array<std::uint8_t, 4>, 3> colour{};
+    const std::size_t first = soup.face_first[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bake::Vec3 &p = soup.points.at(soup.corners[first + k]), &n = soup.corner_normals[first + k];
+      at[k] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+      normal[k] = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
+      for (std::size_t c = 0; c < 4; ++c)
+        colour[k][c] = static_cast<std::uint8_t>(soup.appearance.colours[first + k][c] * 255 + 0.5f);
+    }
+    const auto& uv = soup.appearance.uv;
+    const draco::FaceIndex face(f);
+    builder.SetAttributeValuesForFace(positions, face, at[0].data(), at[1].data(), at[2].data());
+    builder.SetAttributeValuesForFace(normals, face, normal[0].data(), normal[1].data(), normal[2].data());
+    builder.SetAttributeValuesForFace(places, face, uv[first].data(), uv[first + 1].data(), uv[first + 2].data());
+    builder.SetAttributeValuesForFace(colours, face, colour[0].data(), colour[1].data(), colour[2].data());
+  }
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(options.method == DracoMethod::sequential ? draco::MESH_SEQUENTIAL_ENCODING
+                                                                      : draco::MESH_EDGEBREAKER_ENCODING);
+  if (options.position_bits > 0) {
+    constexpr int kNormalBits = 10, kPlaceBits = 12;
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, options.position_bits);
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, kNormalBits);
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::TEX_COORD, kPlaceBits);
+  }
+  return encoded(encoder, *builder.Finalize());
+}
+
 std::string write_drc_with_seam() {
   constexpr std::array<std::array<float, 3>, 4> kPlaces = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
   constexpr std::array<std::array<std::size_t, 3>, 2> kFaces = {{{0, 1, 2}, {0, 2, 3}}};

@@ -46,7 +46,7 @@ void add_graph_options(CLI::App& command, CompileSettings& settings) {
       "--normals", "NORMALS", {{"none", bake::Normals::none}, {"faces", bake::Normals::faces}, {"file", bake::Normals::file}},
       options.normals,
       "Normals at the corners of faces, for force shading: from the faces around each vertex up to creases, or those of the "
-      "mesh file (vn of OBJ, nx ny nz of PLY, NORMAL of glTF).");
+      "mesh file (vn of OBJ, nx ny nz of PLY, NORMAL of glTF, normals of Draco).");
   graph.parsed(
       "--crease", "ANGLE",
       [&options](const std::string& text) {
@@ -55,12 +55,13 @@ void add_graph_options(CLI::App& command, CompileSettings& settings) {
       "Of normals made from faces: faces that meet at a larger angle, in degrees, meet at a crease.", "40");
   graph.flag(
       "--visual", options.visual,
-      "Also the mesh for the eye: triangles with normals, texture coordinates, colours and materials, as OBJ, PLY and glTF "
-      "files have them (fdcg/visual.h).");
+      "Also the mesh for the eye: triangles with normals, texture coordinates, colours and materials, as OBJ, PLY, glTF and "
+      "Draco files have them (fdcg/visual.h).");
   graph.text(
       "--heights", "IMAGE", settings.heights,
       "Images as heights that are felt (fdcg/heights.h), PNG of 8 or 16 bits: one for all faces, or, with the word file, "
-      "those that the mesh file's materials name (map_bump, bump and disp of OBJ's mtllib).");
+      "those that the mesh file's materials name (map_bump, bump and disp of OBJ's mtllib; normalTexture of glTF, whose "
+      "normals become heights).");
   graph.parsed(
       "--height-range", "METRES",
       [&options](const std::string& text) {

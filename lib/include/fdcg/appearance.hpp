@@ -14,7 +14,7 @@ namespace fdcg::bake {
 /// Red, green, blue and opacity, 0 to 1, linear.
 using Colour = std::array<float, 4>;
 
-/// An image whose brightness is height.
+/// An image whose brightness is height; one of normals becomes one.
 struct HeightImage {
   /// What lies beyond its borders; as fdcg_wrap.
   enum class Wrap : std::uint8_t { repeat, clamp, mirror };
@@ -22,7 +22,7 @@ struct HeightImage {
   std::string name;           ///< of its file
   std::uint32_t width = 0;    ///< texels of a row
   std::uint32_t height = 0;   ///< rows
-  std::vector<float> values;  ///< row by row from the top, black 0 to white 1
+  std::vector<float> values;  ///< row by row from the top, black 0 to white 1; of normals the lowest 0
   double range = 0;           ///< height of white above black in units of the mesh; 0: the file does not say
   std::array<Wrap, 2> wrap = {Wrap::repeat, Wrap::repeat};  ///< along its rows, along its columns
   /// Where texture coordinates (u, v) are on the image, 0 to 1 along each side, the second one downwards:
@@ -46,8 +46,10 @@ struct Appearance {
   std::vector<LookMaterial> materials;       ///< in order of first use
   std::vector<std::uint16_t> face_material;  ///< of each face; empty where there are no materials
   /// Of each entry of PolygonSoup::corners, or empty: texture coordinates, v downwards from the first row of the image, as glTF
-  /// has them (those of OBJ and PLY are turned). NaN where the file has none at that corner.
+  /// has them (those of OBJ, PLY and Draco files are turned). NaN where the file has none at that corner.
   std::vector<std::array<float, 2>> uv;
+  /// The same for the images of heights, where they lie by others (texCoord of glTF); empty: by `uv`.
+  std::vector<std::array<float, 2>> height_uv;
   std::vector<HeightImage> images;                     ///< of the materials, or one for all faces
   std::uint16_t all_heights = LookMaterial::kNoImage;  ///< the one for all faces, whatever their material
   std::vector<Colour> colours;  ///< of each entry of PolygonSoup::corners, or empty; those of OBJ and PLY are read as sRGB

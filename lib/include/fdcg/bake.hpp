@@ -160,10 +160,11 @@ struct PolygonSoup {
 struct ImportOptions {
   std::optional<Format> format;  ///< default: by content, then by the file name's ending
   Progress progress;             ///< may be empty
-  bool normals = false;          ///< read corner normals: OBJ's vn, PLY's nx ny nz, glTF's NORMAL (not of Draco data)
-  bool appearance = false;       ///< read PolygonSoup::appearance: of OBJ, PLY and glTF (not of Draco data)
+  bool normals = false;          ///< read corner normals: OBJ's vn, PLY's nx ny nz, glTF's NORMAL, Draco's
+  bool appearance = false;       ///< read PolygonSoup::appearance: of OBJ, PLY, glTF and Draco
   /// With `appearance`: read images of heights too (PNG). "file": those that the mesh file's materials name (map_bump, bump and
-  /// disp of OBJ's libraries); else the path of one for all faces. Empty: none.
+  /// disp of OBJ's libraries; normalTexture of glTF, whose normals are integrated); else the path of one for all faces. Empty:
+  /// none.
   std::string heights = {};
 };
 

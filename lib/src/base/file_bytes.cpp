@@ -75,14 +75,14 @@ int read_to_end(int fd, std::string& buffer) {
 
 }  // namespace
 
-Result<FileBytes> FileBytes::open(const std::filesystem::path& path) {
+Result<FileBytes> FileBytes::open(const std::filesystem::path& path, const std::string& what) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0)
     return unreadable(path, "cannot be opened: " + error_text(errno) + "; check the path and its permissions");
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) return unreadable(path, "cannot be examined: " + error_text(errno));
-  if (S_ISDIR(status.st_mode)) return unreadable(path, "is a directory; name a mesh file in it");
-  if (is_endless_device(status)) return unreadable(path, "is a device, which has no end; name a mesh file");
+  if (S_ISDIR(status.st_mode)) return unreadable(path, "is a directory; name " + what + " in it");
+  if (is_endless_device(status)) return unreadable(path, "is a device, which has no end; name " + what);
   FileBytes result;
   constexpr off_t kSmall = off_t{1} << 17;  // to map it, to fault its pages in and to forget them would cost more
   if (S_ISREG(status.st_mode) && status.st_size > 0 && status.st_size <= kSmall) {

@@ -19,7 +19,7 @@ std::string stream_too_long();
 class FileBytes {
  public:
   // Fails with exit code 3 on a path that does not exist, is a directory or cannot be read. An empty file is not a failure.
-  static Result<FileBytes> open(const std::filesystem::path& path);
+  static Result<FileBytes> open(const std::filesystem::path& path, const std::string& what = "a mesh file");
 
   FileBytes() = default;
   FileBytes(FileBytes&& other) noexcept;

@@ -20,8 +20,10 @@ std::string missing_for_heights(const PolygonSoup& soup, const CompileOptions& o
   const Appearance& look = soup.appearance;
   if (!(std::fabs(options.height_range_m) <= 1)) return "the height range is not within -1 to 1 m";
   if (look.images.empty())
-    return soup.name + ": names no image of heights (map_bump, bump or disp of OBJ's mtllib); name one with --heights IMAGE";
-  if (look.uv.empty())
+    return soup.name +
+           ": names no image of heights that is not flat (map_bump, bump or disp of OBJ's mtllib, normalTexture of glTF); name "
+           "one with --heights IMAGE";
+  if (look.uv.empty() && look.height_uv.empty())
     return soup.name +
            ": holds no texture coordinates, which say where on the mesh an image lies (vt of OBJ, u v or s t of PLY, "
            "TEXCOORD_0 of glTF)";

@@ -36,7 +36,11 @@ struct Linear {
 class Placer {
  public:
   Placer(const PolygonSoup& soup, const std::vector<std::uint32_t>& source_face, const Triangulation& cut)
-      : look_(soup.appearance), soup_(soup), cut_(cut), corners_(soup, source_face, cut) {
+      : look_(soup.appearance),
+        uv_(look_.height_uv.empty() ? look_.uv : look_.height_uv),
+        soup_(soup),
+        cut_(cut),
+        corners_(soup, source_face, cut) {
     image_.resize(cut.mesh.face_count());
     place_.resize(cut.mesh.corners.size());
     for (std::uint32_t t = 0; t < image_.size(); ++t)
@@ -131,7 +135,7 @@ class Placer {
   // The image of a triangle, and where its corners are; kNone: it is on none.
   std::uint32_t read(std::uint32_t t) {
     const std::uint32_t face = corners_.face_of(t);
-    if (face == kNone || look_.uv.empty()) return kNone;
+    if (face == kNone || uv_.empty()) return kNone;
     std::uint16_t image = look_.all_heights;
     if (image == LookMaterial::kNoImage && face < look_.face_material.size() &&
         look_.face_material[face] < look_.materials.size())
@@ -142,15 +146,16 @@ class Placer {
                   squared_length(point(3 * t + 2) - point(3 * t))});
     for (std::uint32_t slot = 3 * t; slot < 3 * t + 3; ++slot) {
       const std::uint32_t corner = corners_.at(slot);
-      if (corner == kNone || !std::isfinite(look_.uv[corner][0]) || !std::isfinite(look_.uv[corner][1])) return kNone;
+      if (corner == kNone || !std::isfinite(uv_[corner][0]) || !std::isfinite(uv_[corner][1])) return kNone;
       const Vec3 off = soup_.points[soup_.corners[corner]] - (point(slot) + cut_.mesh.origin);
       if (!(squared_length(off) <= kSamePlace * kSamePlace * side2)) return kNone;
-      place_[slot] = on_image(look_.images[image], look_.uv[corner]);
+      place_[slot] = on_image(look_.images[image], uv_[corner]);
     }
     return image;
   }
 
   const Appearance& look_;
+  const std::vector<std::array<float, 2>>& uv_;
   const PolygonSoup& soup_;
   const Triangulation& cut_;
   SourceCorners corners_;

@@ -28,40 +28,72 @@ DracoMesh refused(std::string trouble) {
   return mesh;
 }
 
-// Copies the values of the attribute, whose type is T, to the points. False if a value is not representable as double.
-template <class T>
-bool copy_values(const draco::PointAttribute& attribute, bool is_normalized, std::vector<Vec3>& points) {
+// Calls take(point, values) for each point with the first `components` values of the attribute, whose type is T. False if one
+// is missing, or not representable as double.
+template <class T, class Take>
+bool take_values(const draco::PointAttribute& attribute, std::uint32_t points, std::size_t components, bool is_normalized,
+                 const Take& take) {
   constexpr double kExact = 0x1p53;  // integers up to this are exact in double
   const std::size_t stride = static_cast<std::size_t>(attribute.byte_stride());
   const auto first = static_cast<std::size_t>(attribute.byte_offset());
   const std::size_t there = attribute.buffer()->data_size();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t value = attribute.mapped_index(draco::PointIndex(static_cast<std::uint32_t>(i))).value();
+  for (std::uint32_t i = 0; i < points; ++i) {
+    const std::uint32_t value = attribute.mapped_index(draco::PointIndex(i)).value();
     const std::size_t at = first + value * stride;
-    if (value >= attribute.size() || at > there || there - at < 3 * sizeof(T)) return false;
-    std::array<T, 3> xyz;
-    std::memcpy(xyz.data(), attribute.buffer()->data() + at, sizeof xyz);
-    std::array<double, 3> c{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      c[k] = static_cast<double>(xyz[k]);
-      if (std::is_integral_v<T> && std::fabs(c[k]) > kExact) return false;
-      if (is_normalized && std::is_integral_v<T>) {
-        c[k] = std::max(c[k] / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
-      }
+    if (value >= attribute.size() || at > there || there - at < components * sizeof(T)) return false;
+    std::array<T, 4> stored{};
+    std::memcpy(stored.data(), attribute.buffer()->data() + at, components * sizeof(T));
+    std::array<double, 4> values = {1, 1, 1, 1};
+    for (std::size_t k = 0; k < components; ++k) {
+      values[k] = static_cast<double>(stored[k]);
+      if (std::is_integral_v<T> && std::fabs(values[k]) > kExact) return false;
+      if (is_normalized && std::is_integral_v<T>)
+        values[k] = std::max(values[k] / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
     }
-    points[i] = {c[0], c[1], c[2]};
+    take(i, values);
   }
   return true;
 }
 
-bool copy_values(const draco::PointAttribute& attribute, bool is_normalized, std::vector<Vec3>& points) {
-  constexpr bool (*kCopy[])(const draco::PointAttribute&, bool, std::vector<Vec3>&) = {
-      copy_values<std::int8_t>,  copy_values<std::uint8_t>,  copy_values<std::int16_t>, copy_values<std::uint16_t>,
-      copy_values<std::int32_t>, copy_values<std::uint32_t>, copy_values<std::int64_t>, copy_values<std::uint64_t>,
-      copy_values<float>,        copy_values<double>};
-  static_assert(draco::DT_FLOAT64 - draco::DT_INT8 + 1 == std::size(kCopy));
-  const int type = attribute.data_type() - draco::DT_INT8;
-  return type >= 0 && type < static_cast<int>(std::size(kCopy)) && kCopy[type](attribute, is_normalized, points);
+// The same of any type; components: 4 at most, and of the attribute.
+template <class Take>
+bool take_values(const draco::PointAttribute& attribute, std::uint32_t points, std::size_t components, bool is_normalized,
+                 const Take& take) {
+  if (!attribute.is_mapping_identity() && attribute.indices_map_size() < points) return false;
+  const auto take_as = [&](auto zero) {
+    return take_values<decltype(zero)>(attribute, points, components, is_normalized, take);
+  };
+  switch (attribute.data_type()) {
+    case draco::DT_INT8:
+      return take_as(std::int8_t{});
+    case draco::DT_UINT8:
+      return take_as(std::uint8_t{});
+    case draco::DT_INT16:
+      return take_as(std::int16_t{});
+    case draco::DT_UINT16:
+      return take_as(std::uint16_t{});
+    case draco::DT_INT32:
+      return take_as(std::int32_t{});
+    case draco::DT_UINT32:
+      return take_as(std::uint32_t{});
+    case draco::DT_INT64:
+      return take_as(std::int64_t{});
+    case draco::DT_UINT64:
+      return take_as(std::uint64_t{});
+    case draco::DT_FLOAT32:
+      return take_as(float{});
+    case draco::DT_FLOAT64:
+      return take_as(double{});
+    default:
+      return false;
+  }
+}
+
+bool take_points(const draco::PointAttribute& attribute, bool is_normalized, std::vector<Vec3>& points) {
+  return take_values(attribute, static_cast<std::uint32_t>(points.size()), 3, is_normalized,
+                     [&](std::uint32_t i, const std::array<double, 4>& v) {
+                       points[i] = {v[0], v[1], v[2]};
+                     });
 }
 
 // The positions as libdraco gives them by default: dequantised here, because the decoder is configured to keep the quantised
@@ -72,7 +104,7 @@ bool read_points(const draco::Mesh& source, const draco::PointAttribute& attribu
   const draco::AttributeTransformData* transform = attribute.GetAttributeTransformData();
   if (transform == nullptr || transform->transform_type() != draco::ATTRIBUTE_QUANTIZATION_TRANSFORM) {
     mesh.is_float = attribute.data_type() == draco::DT_FLOAT32;
-    return copy_values(attribute, attribute.normalized(), mesh.points);
+    return take_points(attribute, attribute.normalized(), mesh.points);
   }
   draco::AttributeQuantizationTransform quantization;
   if (!quantization.InitFromAttribute(attribute)) return false;
@@ -92,7 +124,36 @@ bool read_points(const draco::Mesh& source, const draco::PointAttribute& attribu
   mesh.is_float = true;
   const double steps = std::ldexp(1.0, quantization.quantization_bits()) - 1;
   mesh.absolute_quantum = std::fabs(static_cast<double>(quantization.range())) / steps / 2;
-  return copy_values(floats, false, mesh.points);
+  return take_points(floats, false, mesh.points);
+}
+
+const draco::PointAttribute* extra_of(const draco::Mesh& source, const DracoInput& input, DracoExtra which) {
+  if (const auto& id = input.extra_ids[static_cast<std::size_t>(which)]) return source.GetAttributeByUniqueId(*id);
+  if (!input.wants_named || which == DracoExtra::height_uv) return nullptr;
+  return source.GetNamedAttribute(which == DracoExtra::normal ? draco::GeometryAttribute::NORMAL
+                                  : which == DracoExtra::uv   ? draco::GeometryAttribute::TEX_COORD
+                                                              : draco::GeometryAttribute::COLOR);
+}
+
+void read_extras(const draco::Mesh& source, const DracoInput& input, DracoMesh& mesh) {
+  for (const DracoExtra which : {DracoExtra::normal, DracoExtra::uv, DracoExtra::height_uv, DracoExtra::colour}) {
+    const draco::PointAttribute* const attribute = extra_of(source, input, which);
+    if (attribute == nullptr) continue;
+    const auto components = static_cast<std::size_t>(attribute->num_components());
+    const bool fits = which == DracoExtra::normal   ? components == 3
+                      : which == DracoExtra::colour ? components == 3 || components == 4
+                                                    : components == 2;
+    if (!fits) continue;
+    std::vector<DracoValue>& values = mesh.extras[static_cast<std::size_t>(which)];
+    values.resize(source.num_points());
+    const auto take = [&values](std::uint32_t i, const std::array<double, 4>& v) {
+      for (std::size_t k = 0; k < v.size(); ++k)
+        values[i][k] = static_cast<float>(v[k]);
+    };
+    if (!take_values(*attribute, source.num_points(), components, true, take)) values.clear();
+    if (which == DracoExtra::colour)
+      mesh.has_whole_colours = attribute->data_type() != draco::DT_FLOAT32 && attribute->data_type() != draco::DT_FLOAT64;
+  }
 }
 
 DracoMesh read_mesh(const draco::Mesh& source, const DracoInput& input) {
@@ -115,15 +176,17 @@ DracoMesh read_mesh(const draco::Mesh& source, const DracoInput& input) {
     for (const draco::PointIndex& corner : source.face(f))
       mesh.corners.push_back(corner.value());
   }
+  read_extras(source, input, mesh);
   return mesh;
 }
 
-// ---- the result of the child process: for each mesh a header, its points, its corners, its error text
+// ---- the result of the child process: for each mesh a header, its points, its corners, its extras, its error text
 
 struct MeshHeader {
   std::uint64_t points = 0, corners = 0, trouble = 0;
   double absolute_quantum = 0;
-  std::uint32_t is_point_cloud = 0, is_float = 0;
+  std::uint32_t is_point_cloud = 0, is_float = 0, has_whole_colours = 0, unused = 0;
+  std::array<std::uint64_t, kDracoExtras> extras{};
 };
 
 template <class T>
@@ -133,11 +196,17 @@ void append(ChildAnswer& answer, const T* values, std::size_t count) {
 }
 
 void append(ChildAnswer& answer, const DracoMesh& mesh) {
-  const MeshHeader header = {mesh.points.size(),    mesh.corners.size(), mesh.trouble.size(),
-                             mesh.absolute_quantum, mesh.is_point_cloud, mesh.is_float};
+  MeshHeader header;
+  header.points = mesh.points.size(), header.corners = mesh.corners.size(), header.trouble = mesh.trouble.size();
+  header.absolute_quantum = mesh.absolute_quantum;
+  header.is_point_cloud = mesh.is_point_cloud, header.is_float = mesh.is_float;
+  header.has_whole_colours = mesh.has_whole_colours;
+  std::transform(mesh.extras.begin(), mesh.extras.end(), header.extras.begin(), [](const auto& of) { return of.size(); });
   append(answer, &header, 1);
   append(answer, mesh.points.data(), mesh.points.size());
   append(answer, mesh.corners.data(), mesh.corners.size());
+  for (const std::vector<DracoValue>& extra : mesh.extras)
+    append(answer, extra.data(), extra.size());
   append(answer, mesh.trouble.data(), mesh.trouble.size());
 }
 
@@ -178,13 +247,19 @@ bool DracoMeshes::read(std::size_t count) {
     std::span<const char> trouble;
     Mesh mesh;
     if (!take(bytes, 1, header) || !take(bytes, header[0].points, mesh.points) ||
-        !take(bytes, header[0].corners, mesh.corners) || !take(bytes, header[0].trouble, trouble)) {
+        !take(bytes, header[0].corners, mesh.corners)) {
       return false;
     }
+    for (std::size_t k = 0; k < kDracoExtras; ++k) {
+      const std::uint64_t values = header[0].extras[k];
+      if ((values != 0 && values != header[0].points) || !take(bytes, values, mesh.extras[k])) return false;
+    }
+    if (!take(bytes, header[0].trouble, trouble)) return false;
     mesh.trouble.assign(trouble.begin(), trouble.end());
     mesh.absolute_quantum = header[0].absolute_quantum;
     mesh.is_point_cloud = header[0].is_point_cloud != 0;
     mesh.is_float = header[0].is_float != 0;
+    mesh.has_whole_colours = header[0].has_whole_colours != 0;
     if (mesh.corners.size() % 3 != 0) return false;
     meshes_.push_back(std::move(mesh));
   }

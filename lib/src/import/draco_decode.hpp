@@ -5,6 +5,8 @@
 // process with limits.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,10 +19,21 @@
 
 namespace fdcg::bake {
 
+// What may be read beside positions. height_uv: texture coordinates of another set.
+enum class DracoExtra : std::uint8_t { normal, uv, height_uv, colour };
+inline constexpr std::size_t kDracoExtras = 4;
+// Of each, the attribute's unique id as in glTF; none: it is not wanted.
+using DracoExtraIds = std::array<std::optional<std::uint32_t>, kDracoExtras>;
+
 struct DracoInput {
   std::string_view bytes;
   std::optional<std::uint32_t> position_id;  // the attribute's unique id, as in glTF; default: the position attribute
+  DracoExtraIds extra_ids = {};
+  bool wants_named = false;  // normals, the first texture coordinates and colours, by what Draco calls them
 };
+
+// Of a point: components that are not there are 1; integers as shares of their largest.
+using DracoValue = std::array<float, 4>;
 
 // Points are numbered as Draco numbers them: one for each combination of attribute values, so that a vertex on a seam of
 // another attribute (a texture's, say) is several points at the same place.
@@ -31,6 +44,10 @@ struct DracoMesh {
   double absolute_quantum = 0;         // half a step of the quantisation; 0 where there is none
   std::vector<Vec3> points;            // exactly what libdraco decodes
   std::vector<std::uint32_t> corners;  // three a face
+  // One a point, or none: not wanted, not there, or not of three (normals), two (texture coordinates), three or four (colours)
+  // components.
+  std::array<std::vector<DracoValue>, kDracoExtras> extras;
+  bool has_whole_colours = false;  // colours are integers: of a screen, in files that are no glTF
 };
 
 // In this process: for the child, and for fuzzing under a memory limit of another kind.
@@ -46,6 +63,10 @@ class DracoMeshes {
     double absolute_quantum = 0;
     std::span<const Vec3> points;
     std::span<const std::uint32_t> corners;  // three a face; may be no point's number
+    std::array<std::span<const DracoValue>, kDracoExtras> extras;
+    bool has_whole_colours = false;
+
+    [[nodiscard]] std::span<const DracoValue> extra(DracoExtra which) const { return extras[static_cast<std::size_t>(which)]; }
   };
 
   // Why none could be decoded: how the child process ended, a phrase that follows "its Draco data"; else empty.

@@ -123,15 +123,26 @@ std::string_view Buffers::fetch(Index index) {
     throw Refusal{buffer_place(index) + ": has neither a uri nor " + (index == 0 ? "a binary chunk" : "the first place") +
                   ", so that its bytes are nowhere; export the file again"};
   }
-  if (!uri->starts_with("data:")) return fetch_file(index, *uri);
+  if (!uri->starts_with("data:")) return fetch_file(buffer_place(index), *uri);
   std::optional<std::string> bytes = decode_data_uri(*uri);
   if (!bytes) throw Refusal{buffer_place(index) + ".uri: its data is damaged; fetch or export the file again"};
   return decoded_[index] = std::move(*bytes);
 }
 
-std::string_view Buffers::fetch_file(Index index, const std::string& uri) {
+std::string_view Buffers::image(Index index) {
+  const Image& image = document_.images[index];
+  if (image.view) return view(*image.view);
+  const std::string place = "images[" + std::to_string(index) + "]";
+  if (!image.uri->starts_with("data:")) return fetch_file(place, *image.uri);
+  if (const auto known = images_.find(index); known != images_.end()) return known->second;
+  std::optional<std::string> bytes = decode_data_uri(*image.uri);
+  if (!bytes) throw Refusal{place + ".uri: its data is damaged; fetch or export the file again"};
+  return images_.emplace(index, std::move(*bytes)).first->second;
+}
+
+std::string_view Buffers::fetch_file(const std::string& of, const std::string& uri) {
   if (const auto known = files_.find(uri); known != files_.end()) return known->second.bytes();
-  const std::string shown = "'" + uri.substr(0, 128) + "'", place = buffer_place(index) + ".uri: ";
+  const std::string shown = "'" + uri.substr(0, 128) + "'", place = of + ".uri: ";
   const std::optional<std::string> name = percent_decoded(uri);
   const std::filesystem::path relative = name ? std::filesystem::path(*name) : std::filesystem::path();
   if (!name || !stays_beneath(relative, *name)) {

@@ -24,6 +24,8 @@ class Buffers {
 
   // The bytes of bufferViews[index].
   std::string_view view(Index index);
+  // The bytes of images[index], which a texture of the document uses.
+  std::string_view image(Index index);
 
   // Number of other files read so far, and of the bytes in them.
   [[nodiscard]] const std::vector<std::string>& outside_files() const { return outside_files_; }
@@ -33,13 +35,14 @@ class Buffers {
   std::string_view slice(Index buffer, std::uint64_t offset, std::uint64_t size, const std::string& place);
   std::string_view buffer(Index index);
   std::string_view fetch(Index index);
-  std::string_view fetch_file(Index index, const std::string& uri);
+  std::string_view fetch_file(const std::string& place, const std::string& uri);
 
   const Document& document_;
   std::optional<std::string_view> chunk_;
   const std::filesystem::path* file_;
   std::vector<std::optional<std::string_view>> fetched_;
   std::map<Index, std::string> decoded_;    // data URIs
+  std::map<Index, std::string> images_;     // of data URIs
   std::map<Index, std::string> unpacked_;   // views, by index
   std::map<std::string, FileBytes> files_;  // by URI
   std::vector<std::string> outside_files_;

@@ -132,26 +132,45 @@ class Parser {
       primitive.indices = use_accessor(indices);
       check_indices(indices, *primitive.indices);
     }
-    if (const Value extensions = item["extensions"]) read_draco(extensions, primitive);
     primitive.material = material_of(item);
+    std::string height_uv;  // the name of the attribute
+    if (wanted_.heights && primitive.material != kNone) height_uv = read_normal_texture(attributes, primitive);
+    if (const Value extensions = item["extensions"]) read_draco(extensions, height_uv, primitive);
     return primitive;
   }
 
+  void check_looks(const Value& place, Index index, bool is_usable, const char* kinds) const {
+    if (!is_usable || document_.accessors[index].type == Component::u32)
+      place.fail(": accessors[" + std::to_string(index) + "] is not of " + kinds + " of floats, nor of 8- or 16-bit integers");
+  }
+  Index use_places(const Value& uv) {
+    const Index index = use_accessor(uv);
+    check_looks(uv, index, document_.accessors[index].components == 2, "VEC2");
+    return index;
+  }
   void read_looks(const Value& attributes, Primitive& primitive) {
-    const auto check = [this](const Value& place, Index index, bool is_usable, const char* kinds) {
-      if (!is_usable || document_.accessors[index].type == Component::u32)
-        place.fail(": accessors[" + std::to_string(index) + "] is not of " + kinds +
-                   " of floats, nor of 8- or 16-bit integers");
-    };
-    if (const Value uv = attributes["TEXCOORD_0"]) {
-      primitive.uv = use_accessor(uv);
-      check(uv, *primitive.uv, document_.accessors[*primitive.uv].components == 2, "VEC2");
-    }
+    if (const Value uv = attributes["TEXCOORD_0"]) primitive.uv = use_places(uv);
     if (const Value colours = attributes["COLOR_0"]) {
       primitive.colours = use_accessor(colours);
       const unsigned components = document_.accessors[*primitive.colours].components;
-      check(colours, *primitive.colours, components == 3 || components == 4, "VEC3 or VEC4");
+      check_looks(colours, *primitive.colours, components == 3 || components == 4, "VEC3 or VEC4");
     }
+  }
+
+  // The texture once for each material. The name of the texture coordinates by which it lies; empty: the first.
+  std::string read_normal_texture(const Value& attributes, Primitive& primitive) {
+    document_.images.resize(count_of("images"));
+    document_.normal_textures.resize(document_.materials.size());
+    std::optional<NormalTexture>& texture = document_.normal_textures[primitive.material];
+    if (!texture) {
+      TextureReader reader(root_, document_.images, [this](const Value& view) { return use_view(view); });
+      texture = reader.normal_texture(primitive.material);
+    }
+    if (!texture || texture->tex_coord == 0) return {};
+    std::string name = "TEXCOORD_" + std::to_string(texture->tex_coord);
+    primitive.has_height_uv = true;
+    if (const Value uv = attributes[name]) primitive.height_uv = use_places(uv);
+    return name;
   }
 
   // The geometry does not need them, so errors here do not refuse the file.
@@ -184,7 +203,7 @@ class Parser {
     return kNone;
   }
 
-  void read_draco(const Value& extensions, Primitive& primitive) {
+  void read_draco(const Value& extensions, const std::string& height_uv, Primitive& primitive) {
     const Value draco = extensions[kDraco];
     if (!draco) return;
     if (primitive.mode != Mode::triangles && primitive.mode != Mode::triangle_strip) {
@@ -192,11 +211,22 @@ class Parser {
                  "; only triangles (4) and strips (5) can be");
     }
     const Value attributes = draco["attributes"];
-    const Value position = attributes["POSITION"];
-    const std::uint64_t id = whole(position);
-    if (id > 0xFFFFFFFFu) position.fail("is " + std::to_string(id) + "; unique ids have 32 bits");
-    primitive.draco_positions = static_cast<std::uint32_t>(id);
+    primitive.draco_positions = draco_id(attributes["POSITION"]);
+    const std::pair<DracoExtra, std::string> extras[] = {{DracoExtra::normal, wanted_.normals ? "NORMAL" : ""},
+                                                         {DracoExtra::uv, wanted_.appearance ? "TEXCOORD_0" : ""},
+                                                         {DracoExtra::height_uv, height_uv},
+                                                         {DracoExtra::colour, wanted_.appearance ? "COLOR_0" : ""}};
+    for (const auto& [which, name] : extras) {
+      if (name.empty()) continue;
+      if (const Value attribute = attributes[name])
+        primitive.draco_extras[static_cast<std::size_t>(which)] = draco_id(attribute);
+    }
     primitive.draco_view = use_view(draco["bufferView"]);
+  }
+  static std::uint32_t draco_id(const Value& attribute) {
+    const std::uint64_t id = whole(attribute);
+    if (id > 0xFFFFFFFFu) attribute.fail("is " + std::to_string(id) + "; unique ids have 32 bits");
+    return static_cast<std::uint32_t>(id);
   }
 
   void check_positions(const Value& place, Index index) const {

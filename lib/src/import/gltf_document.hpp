@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The geometry described by the JSON of a glTF 2.0 file, checked: every index in it is valid. Parts that the geometry does not
-// need (images, animations, other accessors) are neither read nor checked; of materials only names and base colours are read.
+// need (animations, other accessors) are neither read nor checked; of materials only names, base colours and, where they are
+// wanted, normal textures are read.
 //
 // Places in messages are JSON paths: "meshes[2].primitives[0].attributes.POSITION".
 #pragma once
@@ -13,7 +14,9 @@
 #include <vector>
 
 #include "fdcg/bake.hpp"
+#include "import/draco_decode.hpp"
 #include "import/gltf_physics.hpp"
+#include "import/gltf_textures.hpp"
 #include "import/placing.hpp"
 #include "shared/json/reader.hpp"
 
@@ -83,8 +86,11 @@ struct Primitive {
   std::optional<Index> positions, indices;  // accessors
   std::optional<Index> normals;             // accessor, where they are wanted
   std::optional<Index> uv, colours;         // likewise
+  std::optional<Index> height_uv;           // accessor; none: it has none of that set
+  bool has_height_uv = false;               // the normal texture of its material lies by height_uv, not by uv
   std::optional<Index> draco_view;          // KHR_draco_mesh_compression
   std::uint32_t draco_positions = 0;        // unique id of the attribute
+  DracoExtraIds draco_extras = {};          // of those that are wanted
   bool has_targets = false;
   std::uint32_t material = 0xFFFFFFFF;  // in Document::materials
 };
@@ -111,8 +117,10 @@ struct Document {
   std::vector<View> views;
   std::vector<Accessor> accessors;
   std::vector<Mesh> meshes;
-  std::vector<std::string> materials;  // names, of those that have one
-  std::vector<Colour> base_colours;    // of the materials, where the appearance is wanted
+  std::vector<std::string> materials;                         // names, of those that have one
+  std::vector<Colour> base_colours;                           // of the materials, where the appearance is wanted
+  std::vector<std::optional<NormalTexture>> normal_textures;  // of the materials that a primitive has, where heights are wanted
+  std::vector<Image> images;                                  // of the file's; those of normal_textures are read
   std::vector<Node> nodes;
   std::vector<Matrix> matrices;
   Physics physics;
@@ -123,6 +131,7 @@ struct Document {
 struct Wanted {
   bool normals = false;
   bool appearance = false;  // texture coordinates, colours and base colours
+  bool heights = false;     // normal textures
 };
 
 // Throws Refusal.

@@ -6,14 +6,16 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/srgb.hpp"
-#include "import/draco_decode.hpp"
 #include "import/gltf_accessor.hpp"
+#include "import/gltf_draco.hpp"
+#include "import/gltf_heights.hpp"
 #include "import/gltf_placing.hpp"
 #include "import/gltf_scene_physics.hpp"
 
@@ -45,7 +47,7 @@ class SceneBuilder {
 
   void build() {
     find_shown_nodes();
-    decode_draco_data();
+    draco_.decode(document_, shown_, buffers_, input_.bytes.size());
     for (std::size_t i = 0; i < shown_.size(); ++i) {
       show(shown_[i]);
       constexpr std::size_t kReportEvery = 1024;  // nodes
@@ -113,42 +115,6 @@ class SceneBuilder {
     worlds_.push_back(world);
   }
 
-  // ---- Draco data: of all primitives at once, in one child process
-
-  using DracoKey = std::pair<Index, std::uint32_t>;  // view, unique id of the positions
-
-  void decode_draco_data() {
-    std::vector<DracoInput> inputs;
-    std::vector<std::string> places;
-    std::size_t bytes = 0;
-    for (const Index n : shown_) {
-      if (document_.nodes[n].mesh == kNone) continue;
-      const Mesh& mesh = document_.meshes[document_.nodes[n].mesh];
-      for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
-        const Primitive& primitive = mesh.primitives[p];
-        if (!primitive.draco_view) continue;
-        const DracoKey key = {*primitive.draco_view, primitive.draco_positions};
-        if (!draco_.emplace(key, inputs.size()).second) continue;
-        inputs.push_back({buffers_.view(*primitive.draco_view), primitive.draco_positions});
-        bytes += inputs.back().bytes.size();
-        places.push_back("meshes[" + std::to_string(document_.nodes[n].mesh) + "].primitives[" + std::to_string(p) + "]");
-      }
-    }
-    if (inputs.empty()) return;
-    bytes = std::min(bytes, file_bytes());  // views may overlap
-    decoded_ = decode_draco(inputs, draco_limits(bytes));
-    if (!decoded_.trouble().empty()) throw Refusal{decoded_.refusal()};
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      const DracoMeshes::Mesh& mesh = decoded_.meshes()[i];
-      if (mesh.is_point_cloud) throw Refusal{places[i] + ": its Draco data is a point cloud; compress a mesh"};
-      if (!mesh.trouble.empty()) {
-        throw Refusal{places[i] + ": its Draco data " + mesh.trouble + "; fetch the file or compress the mesh again"};
-      }
-      constexpr std::size_t kBytes = 12;  // of three floats, of three corners: as it would be without Draco
-      draco_bytes_ += mesh.points.size() * kBytes + mesh.corners.size() / 3 * kBytes;
-    }
-  }
-
   // ---- primitives
 
   void show(Index n) {
@@ -198,34 +164,49 @@ class SceneBuilder {
     const std::size_t first_corner = soup_.corners.size();
     add_faces(primitive.mode, indices.count(), world != nullptr && is_mirrored(*world), resolve);
     if (primitive.normals) take_normals(*primitive.normals, positions.count(), first_point, first_corner, world);
-    const auto corner_point = [&](std::size_t i) { return soup_.corners[i] - first_point; };
-    if (primitive.uv) {
-      take_attribute(*primitive.uv, positions.count(), first_corner, corner_point, soup_.appearance.uv, kNoPlace,
-                     [](const std::array<double, 4>& value) {
-                       return std::array<float, 2>{static_cast<float>(value[0]), static_cast<float>(value[1])};
-                     });
+    const auto taken = [&](Index accessor, auto& of_corners, const auto& none, const auto& convert) {
+      const Attribute attribute(document_, accessor, buffers_);
+      if (attribute.count() != positions.count()) {
+        ++count("primitives whose texture coordinates or colours are not as many as their positions");
+        return;
+      }
+      fill(first_corner, first_point, of_corners, none, [&](std::uint32_t p) { return convert(attribute.at(p)); });
+    };
+    Appearance& look = soup_.appearance;
+    if (primitive.uv) taken(*primitive.uv, look.uv, kNoPlace, place_of<double>);
+    if (primitive.has_height_uv) {
+      copy_places(first_corner);
+      if (primitive.height_uv) taken(*primitive.height_uv, look.height_uv, kNoPlace, place_of<double>);
+      look.height_uv.resize(soup_.corners.size(), kNoPlace);
     }
-    if (primitive.colours) {
-      take_attribute(*primitive.colours, positions.count(), first_corner, corner_point, soup_.appearance.colours, kWhite,
-                     [](const std::array<double, 4>& value) {
-                       return Colour{share_of(value[0]), share_of(value[1]), share_of(value[2]), share_of(value[3])};
-                     });
-    }
+    if (primitive.colours) taken(*primitive.colours, look.colours, kWhite, colour_of<double>);
     return first_point;
   }
 
-  // Of the corners since first_corner; those before it that have none are `none`.
-  template <class Point, class Value, class Convert>
-  void take_attribute(Index accessor, std::uint64_t points, std::size_t first_corner, const Point& point_of,
-                      std::vector<Value>& of_corners, const Value& none, const Convert& convert) {
-    const Attribute attribute(document_, accessor, buffers_);
-    if (attribute.count() != points) {
-      ++count("primitives whose texture coordinates or colours are not as many as their positions");
-      return;
-    }
+  template <class Number>
+  static std::array<float, 2> place_of(const std::array<Number, 4>& value) {
+    return {static_cast<float>(value[0]), static_cast<float>(value[1])};
+  }
+  template <class Number>
+  static Colour colour_of(const std::array<Number, 4>& value) {
+    return {share_of(value[0]), share_of(value[1]), share_of(value[2]), share_of(value[3])};
+  }
+
+  // Of the corners since first_corner, by the numbers of their points in the primitive; those before it that have none are
+  // `none`.
+  template <class Value, class At>
+  void fill(std::size_t first_corner, std::uint32_t first_point, std::vector<Value>& of_corners, const Value& none,
+            const At& at) const {
     of_corners.resize(soup_.corners.size(), none);
     for (std::size_t i = first_corner; i < soup_.corners.size(); ++i)
-      if (soup_.corners[i] != PolygonSoup::kInvalidVertex) of_corners[i] = convert(attribute.at(point_of(i)));
+      if (soup_.corners[i] != PolygonSoup::kInvalidVertex) of_corners[i] = at(soup_.corners[i] - first_point);
+  }
+
+  // Of the corners up to this one that have no places for heights of their own: those for the eye.
+  void copy_places(std::size_t end) {
+    Appearance& look = soup_.appearance;
+    for (std::size_t i = look.height_uv.size(); i < end; ++i)
+      look.height_uv.push_back(i < look.uv.size() ? look.uv[i] : kNoPlace);
   }
 
   // Of the faces since the last call: what is seen, whatever is felt.
@@ -239,6 +220,7 @@ class SceneBuilder {
   void finish_appearance() {
     Appearance& look = soup_.appearance;
     if (!look.uv.empty()) look.uv.resize(soup_.corners.size(), kNoPlace);
+    if (!look.height_uv.empty()) copy_places(soup_.corners.size());
     if (!look.colours.empty()) look.colours.resize(soup_.corners.size(), kWhite);
     if (look.face_material.empty()) return;
     look.face_material.resize(soup_.face_count(), Appearance::kNoMaterial);
@@ -246,6 +228,7 @@ class SceneBuilder {
       const bool has_colour = m < document_.base_colours.size();
       look.materials.push_back({document_.materials[m], has_colour ? document_.base_colours[m] : kWhite});
     }
+    if (input_.wants_heights) add_normal_heights(document_, buffers_, soup_);
   }
 
   // Of the corners since first_corner. Normals go by the inverse transpose of the transform.
@@ -258,9 +241,7 @@ class SceneBuilder {
     }
     std::vector<Vec3> of_point;
     normals.for_each([&](const Vec3& n) { of_point.push_back(world != nullptr ? turned_normal(*world, n) : n); });
-    soup_.corner_normals.resize(soup_.corners.size());
-    for (std::size_t i = first_corner; i < soup_.corners.size(); ++i)
-      if (soup_.corners[i] != PolygonSoup::kInvalidVertex) soup_.corner_normals[i] = of_point[soup_.corners[i] - first_point];
+    fill(first_corner, first_point, soup_.corner_normals, Vec3{}, [&](std::uint32_t p) { return of_point[p]; });
   }
 
   // By the cofactors, with the determinant's sign: the inverse transpose but for its length.
@@ -272,7 +253,7 @@ class SceneBuilder {
   }
 
   std::uint32_t show_draco(const Primitive& primitive, const Matrix* world) {
-    const DracoMeshes::Mesh& mesh = decoded_.meshes()[draco_.at({*primitive.draco_view, primitive.draco_positions})];
+    const DracoMeshes::Mesh& mesh = draco_.mesh_of(primitive);
     const Grain grain = {mesh.is_float ? 0x1p-24 : 0x1p-53, mesh.absolute_quantum};
     const std::uint32_t first_point = place_points({true, *primitive.draco_view, primitive.draco_positions}, mesh.points.size(),
                                                    grain, world, [&mesh](const auto& use) {
@@ -283,11 +264,36 @@ class SceneBuilder {
       const std::uint32_t index = mesh.corners[i];
       return index < mesh.points.size() ? first_point + index : PolygonSoup::kInvalidVertex;
     };
+    const std::size_t first_corner = soup_.corners.size();
     add_faces(Mode::triangles, mesh.corners.size(), world != nullptr && is_mirrored(*world), resolve);
+    take_draco_extras(primitive, mesh, first_point, first_corner, world);
     const std::uint64_t promised =
         primitive.indices && primitive.mode == Mode::triangles ? document_.accessors[*primitive.indices].count / 3 : 0;
     if (promised > mesh.corners.size() / 3) count("faces promised beyond the Draco data") += promised - mesh.corners.size() / 3;
     return first_point;
+  }
+
+  void take_draco_extras(const Primitive& primitive, const DracoMeshes::Mesh& mesh, std::uint32_t first_point,
+                         std::size_t first_corner, const Matrix* world) {
+    const auto taken = [&](DracoExtra which, auto& of_corners, const auto& none, const auto& convert) {
+      const std::span<const DracoValue> values = mesh.extra(which);
+      if (!values.empty())
+        fill(first_corner, first_point, of_corners, none, [&](std::uint32_t p) { return convert(values[p]); });
+      else if (primitive.draco_extras[static_cast<std::size_t>(which)])
+        ++count("primitives whose Draco data has not the normals, texture coordinates or colours that they promise");
+    };
+    Appearance& look = soup_.appearance;
+    taken(DracoExtra::normal, soup_.corner_normals, Vec3{}, [&](const DracoValue& n) {
+      const Vec3 normal = {double{n[0]}, double{n[1]}, double{n[2]}};
+      return world != nullptr ? turned_normal(*world, normal) : normal;
+    });
+    taken(DracoExtra::uv, look.uv, kNoPlace, place_of<float>);
+    if (primitive.has_height_uv) {
+      copy_places(first_corner);
+      taken(DracoExtra::height_uv, look.height_uv, kNoPlace, place_of<float>);
+      look.height_uv.resize(soup_.corners.size(), kNoPlace);
+    }
+    taken(DracoExtra::colour, look.colours, kWhite, colour_of<float>);
   }
 
   // ---- physics: boxes are faces where the scene shows no mesh
@@ -424,7 +430,7 @@ class SceneBuilder {
   };
 
   void charge(Budget& budget, std::uint64_t more) const {
-    const std::uint64_t limit = (kFreeElements + kElementsPerByte * (file_bytes() + draco_bytes_)) / budget.cost;
+    const std::uint64_t limit = (kFreeElements + kElementsPerByte * (file_bytes() + draco_.plain_bytes())) / budget.cost;
     if (more > limit - std::min(budget.used, limit)) {
       throw Refusal{"shows more than " + std::to_string(limit) + " " + budget.what +
                     ", the limit for a file of this size; export instances as meshes of their own"};
@@ -452,9 +458,7 @@ class SceneBuilder {
   std::vector<Index> shown_;     // nodes
   std::vector<Index> world_of_;  // of each node that is shown: in worlds_; none: identity
   std::vector<Matrix> worlds_;
-  std::map<DracoKey, std::size_t> draco_;  // in decoded_
-  DracoMeshes decoded_;
-  std::uint64_t draco_bytes_ = 0;
+  SceneDraco draco_;
   std::map<std::pair<PointsKey, Matrix>, std::uint32_t> placed_;
   Budget points_{"points", 1, kMaxPoints}, corners_{"face corners", 1, kMaxCorners};
   Budget primitives_{"primitives", kPrimitiveCost, kMaxCorners};

@@ -34,14 +34,14 @@ std::optional<Failure> read_height_image_beside(const std::filesystem::path& mes
       (std::filesystem::exists(path, error) && !lies_beneath(path, mesh.parent_path())))
     return refuse(mesh.string(), "names the image of heights '" + readable_name(image.name) +
                                      "', which is not beneath its folder; put the image there, or name it with --heights");
-  const Result<FileBytes> file = FileBytes::open(path);
+  const Result<FileBytes> file = FileBytes::open(path, "an image");
   if (!file) return file.error();
   files.push_back(path.string());
   return read_height_image(file->bytes(), image);
 }
 
 std::optional<Failure> add_heights_for_all(const std::string& path, PolygonSoup& soup) {
-  const Result<FileBytes> file = FileBytes::open(path);
+  const Result<FileBytes> file = FileBytes::open(path, "an image");
   if (!file) return file.error();
   HeightImage image;
   image.name = path;

@@ -56,6 +56,7 @@ class Reader {
     png_read_info(png_, info_);
     image.width = png_get_image_width(png_, info_);
     image.height = png_get_image_height(png_, info_);
+    image.bits = png_get_bit_depth(png_, info_) == 16 ? 16 : 8;
     png_set_expand(png_);  // palettes, few bits, transparency of one colour
     png_set_strip_alpha(png_);
     png_set_expand_16(png_);

@@ -14,6 +14,7 @@ namespace fdcg::bake {
 struct PngImage {
   std::uint32_t width = 0, height = 0;
   std::uint32_t channels = 0;         // 1: grey, 3: red, green, blue. Opacity is left out
+  std::uint32_t bits = 8;             // of a number in the file: 8 (or fewer), or 16
   std::vector<std::uint16_t> values;  // row by row from the top, the channels of a texel together; 65535 is 1
 };
 
