@@ -397,6 +397,26 @@ class Inspect(Case):
         os.remove(self.path("weave.png"))
         self.assertIn("weave.png", self.fdcg("compile", mesh, "-o", out, "--heights", "file", code=3).stderr.decode())
 
+    def test_normal_textures_and_haptic_materials_of_gltf_are_listed(self):
+        seeds = ROOT / "testdata/fuzz/import_gltf"
+        out = self.path("sheet.fdcg")
+        self.fdcg("compile", str(seeds / "normal-texture"), "-o", out, "--heights", "file")
+        self.assertEqual([(3, 2, 1)], [(m["width"], m["height"], m["nodes"])
+                                       for m in json.loads(self.fdcg("inspect", "--json", out).stdout)["heights"]["maps"]])
+        mesh = str(seeds / "haptic-material")
+        self.fdcg("compile", mesh, "-o", out)
+        self.assertIsNone(json.loads(self.fdcg("inspect", "--json", out).stdout)["physics"])
+        self.fdcg("compile", mesh, "-o", out, "--haptic-materials")
+        about = json.loads(self.fdcg("inspect", "--json", out).stdout)
+        jsonschema.validate(about, schema("inspect.schema.json"))
+        [material] = about["physics"]["haptic_materials"]
+        self.assertEqual(("haptic materials[0]", None), (material["name"], material["friction"]))
+        self.assertTrue(0 <= material["stiffness"]["least"] < material["stiffness"]["mean"] < material["stiffness"]["most"] <= 1)
+        self.assertEqual(["haptic materials[0]"], [m["name"] for m in about["materials"]["list"]])
+        self.assertIn("haptic material \"haptic materials[0]\": stiffness 0.", self.fdcg("inspect", out).stdout.decode())
+        told = self.fdcg("compile", str(seeds / "normal-texture"), "-o", out, "--haptic-materials").stderr.decode()
+        self.assertIn("the file states no MPEG_haptic_material", told)
+
     def test_a_material_library_that_is_not_read_is_told(self):
         blocks = (ROOT / "runtime/examples/steel_and_rubber.obj").read_text()
         out = self.path("blocks.fdcg")

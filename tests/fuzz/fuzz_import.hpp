@@ -77,12 +77,26 @@ inline void require_sound_look(const PolygonSoup& soup) {
   require(fits(look.face_material.size(), soup.face_count()), "each face has a material, or none has");
   for (const std::uint16_t material : look.face_material)
     require(material == Appearance::kNoMaterial || material < look.materials.size(), "materials are there");
+  require(fits(look.height_uv.size(), soup.corners.size()), "each corner has what others have");
+  for (const HeightImage& image : look.images) {
+    require(image.width > 0 && image.height > 0 && image.values.size() == std::size_t{image.width} * image.height,
+            "images have their texels");
+    for (const float value : image.values)
+      require(value >= 0 && value <= 1, "heights are shares");
+    require(image.range > 0 && image.range <= 1e300, "heights have a range");
+  }
+  for (const HapticMaterial& material : soup.physics.haptic_materials)
+    for (const auto& texture : {material.stiffness, material.friction})
+      require(!texture || (texture->least >= 0 && texture->least <= texture->most && texture->most <= 1),
+              "textures hold shares");
   for (const Colour& colour : look.colours)
     for (const float share : colour)
       require(share >= 0 && share <= 1, "colours are shares");
-  for (const LookMaterial& material : look.materials)
+  for (const LookMaterial& material : look.materials) {
+    require(material.heights == LookMaterial::kNoImage || material.heights < look.images.size(), "images are there");
     for (const float share : material.base_colour)
       require(share >= 0 && share <= 1, "base colours are shares");
+  }
 }
 
 inline bool same_points(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -118,7 +132,8 @@ inline int fuzz_import(Format format, const unsigned char* data, std::size_t siz
   }
   if (size % 4 == 2) {
     ImportOptions looking{format, {}};
-    looking.normals = looking.appearance = true;
+    looking.normals = looking.appearance = looking.haptic_materials = true;
+    looking.heights = "file";
     const Result<PolygonSoup> seen = import_memory(bytes, "fuzz", looking);
     require(soup.has_value() || !seen.has_value(), "what is seen may refuse a file, not admit it");
     if (seen) require_sound(*seen), require_sound_look(*seen);

@@ -111,6 +111,7 @@ bake::ImportOptions import_options(const BatchRule& rule) {
   const auto* const compile = std::get_if<CompileSettings>(&rule.settings);
   if (compile == nullptr) return options;
   options.heights = compile->heights;
+  options.haptic_materials = compile->haptic_materials;
   options.appearance = compile->options.visual || compile->options.heights;
   options.normals = compile->options.visual || compile->options.normals == bake::Normals::file;
   return options;

@@ -225,6 +225,7 @@ int compile_mesh(CompileArguments& arguments) {
   import_options.normals = arguments.options.normals == bake::Normals::file || arguments.options.visual;
   import_options.appearance = arguments.options.visual || arguments.options.heights;
   import_options.heights = arguments.heights;
+  import_options.haptic_materials = arguments.haptic_materials;
   auto soup = import_input(arguments.mesh, import_options);
   bar.wipe();
   if (!soup) return fail(soup.error().exit_code, soup.error().message);
@@ -257,6 +258,8 @@ int compile_mesh(CompileArguments& arguments) {
   std::fputs(what_was_written.c_str(), stream);
   for (const std::string& warning : warnings)
     if (!warning.empty()) warn(arguments.mesh + ": " + warning);
+  if (arguments.haptic_materials && soup->physics.haptic_materials.empty())
+    warn(arguments.mesh + ": --haptic-materials: the file states no MPEG_haptic_material");
   for (const std::string& unread : soup->unread_files)
     warn(arguments.mesh + ": " + unread);
   return kClean;

@@ -68,6 +68,10 @@ void add_graph_options(CLI::App& command, CompileSettings& settings) {
         options.height_range_m = number_between("--height-range", text, -1, 1, "no number of -1 to 1 (metres)");
       },
       "How high white is above black.", "as the mesh file says");
+  graph.flag("--haptic-materials", settings.haptic_materials,
+             "Experimental: of glTF files also MPEG_haptic_material. Faces have the names of their haptic materials, and 'fdcg "
+             "inspect' "
+             "lists what the textures of stiffness and friction hold.");
   const std::vector<std::string> sections{"hierarchy", "source-map", "info", "mass", "materials", "normals"};
   const auto leave_out = [&options, sections](const std::string& name) {
     require_choice("--without", name, sections);

@@ -15,6 +15,7 @@ inline constexpr const char* kDefaultUnit = "metres (the default)";
 struct CompileSettings {
   std::string repair;   // a level; empty: none
   std::string heights;  // ImportOptions::heights
+  bool haptic_materials = false;
   std::string unit_text = kDefaultUnit;
   std::optional<bake::Format> input_format;
   bake::CompileOptions options;

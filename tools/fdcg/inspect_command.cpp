@@ -231,6 +231,15 @@ std::string physics_text(const Json& physics) {
         m["dynamic_friction"].dump() + " dynamic" + rule(m["friction_combine"]) + ", restitution " + m["restitution"].dump() +
         rule(m["restitution_combine"]));
   }
+  for (const Json& m : physics.value("haptic_materials", Json::array())) {
+    const auto share = [&m](const char* what) {
+      const Json& of = m[what];
+      return std::string(what) + (of.is_null() ? " not stated"
+                                               : " " + short_number(of["mean"]) + " of full scale (" +
+                                                     short_number(of["least"]) + " to " + short_number(of["most"]) + ")");
+    };
+    add("haptic material " + m["name"].dump() + ": " + share("stiffness") + ", " + share("friction"));
+  }
   for (const Json& b : physics.value("bodies", Json::array())) {
     add("body " + b["node"].dump() + ": " + (b["mass_kg"].is_null() ? "mass not stated" : b["mass_kg"].dump() + " kg") +
         (b["kinematic"] == true ? ", moved by others" : ""));

@@ -166,6 +166,9 @@ struct ImportOptions {
   /// disp of OBJ's libraries; normalTexture of glTF, whose normals are integrated); else the path of one for all faces. Empty:
   /// none.
   std::string heights = {};
+  /// Experimental: read MPEG_haptic_material of glTF (ISO/IEC 23090-14) into StatedPhysics::haptic_materials, and name faces by
+  /// it; reads `appearance` too.
+  bool haptic_materials = false;
 };
 
 /// The most that is read of what is no regular file: a pipe, a terminal.

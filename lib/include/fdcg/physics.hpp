@@ -22,6 +22,21 @@ struct PhysicsMaterial {
   std::string restitution_combine;  ///< likewise
 };
 
+/// What a texture of MPEG_haptic_material holds over the faces that have it: shares of its full scale, 0 to 1. The extension
+/// states no unit.
+struct HapticTexture {
+  double mean = 0;   ///< by area
+  double least = 0;  ///< of 16 places a triangle
+  double most = 0;   ///< likewise
+};
+
+/// A material of MPEG_haptic_material (ISO/IEC 23090-14), which is experimental.
+struct HapticMaterial {
+  std::string name;                        ///< as in the file, else by number: "haptic materials[2]"
+  std::optional<HapticTexture> stiffness;  ///< none: no texture of values, or no face has it
+  std::optional<HapticTexture> friction;   ///< likewise
+};
+
 /// A thing that moves as one.
 struct PhysicsBody {
   std::string node;                                       ///< of the file
@@ -47,11 +62,14 @@ struct StatedShape {
 
 /// All of it; empty where the file states none.
 struct StatedPhysics {
-  std::vector<PhysicsMaterial> materials;  ///< in the file's order
-  std::vector<PhysicsBody> bodies;         ///< in the order of their nodes
-  std::vector<StatedShape> shapes;         ///< in the order of their nodes
+  std::vector<PhysicsMaterial> materials;        ///< in the file's order
+  std::vector<PhysicsBody> bodies;               ///< in the order of their nodes
+  std::vector<StatedShape> shapes;               ///< in the order of their nodes
+  std::vector<HapticMaterial> haptic_materials;  ///< in the file's order, where ImportOptions::haptic_materials asked for them
   /// There is nothing.
-  [[nodiscard]] bool is_empty() const { return materials.empty() && bodies.empty() && shapes.empty(); }
+  [[nodiscard]] bool is_empty() const {
+    return materials.empty() && bodies.empty() && shapes.empty() && haptic_materials.empty();
+  }
 };
 
 /// A shape as the value of "surface" in a scene file, JSON on one line: {"kind":"sphere","radius_m":0.05}. Its kind is not

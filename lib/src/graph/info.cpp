@@ -80,6 +80,11 @@ Json shape_info(const StatedShape& shape) {
   return json;
 }
 
+Json texture_info(const std::optional<HapticTexture>& texture) {
+  if (!texture) return nullptr;
+  return {{"mean", texture->mean}, {"least", texture->least}, {"most", texture->most}};
+}
+
 Json physics_info(const StatedPhysics& physics) {
   Json json{{"materials", Json::array()}, {"bodies", Json::array()}, {"shapes", Json::array()}};
   for (const PhysicsMaterial& m : physics.materials) {
@@ -98,6 +103,9 @@ Json physics_info(const StatedPhysics& physics) {
   }
   for (const StatedShape& shape : physics.shapes)
     json["shapes"].push_back(shape_info(shape));
+  for (const HapticMaterial& m : physics.haptic_materials)
+    json["haptic_materials"].push_back(
+        {{"name", m.name}, {"stiffness", texture_info(m.stiffness)}, {"friction", texture_info(m.friction)}});
   return json;
 }
 

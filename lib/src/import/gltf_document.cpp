@@ -7,6 +7,8 @@
 
 #include "base/srgb.hpp"
 #include "import/gltf_extensions.hpp"
+#include "import/gltf_haptics.hpp"
+#include "import/gltf_placing.hpp"
 #include "shared/json/reader.hpp"
 #include "shared/text.hpp"
 
@@ -49,6 +51,7 @@ class Parser {
     document_.views.resize(count_of("bufferViews"));
     document_.buffers.resize(count_of("buffers"));
     read_materials();
+    read_haptic_materials();
     read_meshes();
     read_nodes();
     document_.physics = read_physics(root_);
@@ -98,6 +101,7 @@ class Parser {
       const Value item = meshes.item(m);
       Mesh& mesh = document_.meshes[m];
       mesh.name = name_of(item);
+      if (wanted_.haptics) mesh.haptic = haptic_of_mesh(item, document_.haptics.size());
       const Value primitives = item["primitives"];
       mesh.primitives.reserve(primitives.size());
       for (std::size_t p = 0; p < primitives.size(); ++p)
@@ -157,15 +161,21 @@ class Parser {
     }
   }
 
+  TextureReader textures() {
+    document_.images.resize(count_of("images"));
+    return {root_, document_.images, [this](const Value& view) { return use_view(view); }};
+  }
+  void read_haptic_materials() {
+    if (!wanted_.haptics) return;
+    TextureReader reader = textures();
+    document_.haptics = read_haptics(root_, reader);
+  }
+
   // The texture once for each material. The name of the texture coordinates by which it lies; empty: the first.
   std::string read_normal_texture(const Value& attributes, Primitive& primitive) {
-    document_.images.resize(count_of("images"));
     document_.normal_textures.resize(document_.materials.size());
-    std::optional<NormalTexture>& texture = document_.normal_textures[primitive.material];
-    if (!texture) {
-      TextureReader reader(root_, document_.images, [this](const Value& view) { return use_view(view); });
-      texture = reader.normal_texture(primitive.material);
-    }
+    std::optional<TextureInfo>& texture = document_.normal_textures[primitive.material];
+    if (!texture) texture = textures().normal_texture(primitive.material);
     if (!texture || texture->tex_coord == 0) return {};
     std::string name = "TEXCOORD_" + std::to_string(texture->tex_coord);
     primitive.has_height_uv = true;
@@ -388,7 +398,8 @@ class Parser {
       if (const Value s = item["scale"]) read_numbers(s, scale);
       const Value r = item["rotation"];
       if (r) read_numbers(r, rotation);
-      if (!compose(translation, rotation, scale, matrix)) r.fail("is no rotation: its length is not that of a unit quaternion");
+      if (!composed(translation, rotation, scale, matrix))
+        r.fail("is no rotation: its length is not that of a unit quaternion");
     }
     if (matrix == kIdentity) return;
     node.matrix = static_cast<Index>(document_.matrices.size());
@@ -400,33 +411,6 @@ class Parser {
     if (list.size() != kCount) list.fail("has " + std::to_string(list.size()) + " numbers, not " + std::to_string(kCount));
     for (std::size_t i = 0; i < kCount; ++i)
       numbers[i] = list.item(i).number();
-  }
-
-  // Translation times rotation times scale. The quaternion was rounded to few digits: dividing by its length keeps angles.
-  static bool compose(const std::array<double, 3>& t, const std::array<double, 4>& q, const std::array<double, 3>& s,
-                      Matrix& m) {
-    constexpr double kSlack = 0.01;  // of the squared length; the least precise encoding, normalised bytes, is off by 0.008
-    const auto [x, y, z, w] = q;
-    const double length2 = x * x + y * y + z * z + w * w;
-    if (!(std::fabs(length2 - 1) <= kSlack)) return false;
-    const double k = 2 / length2;
-    m = {s[0] * (1 - k * (y * y + z * z)),
-         s[0] * k * (x * y + z * w),
-         s[0] * k * (x * z - y * w),
-         0,
-         s[1] * k * (x * y - z * w),
-         s[1] * (1 - k * (x * x + z * z)),
-         s[1] * k * (y * z + x * w),
-         0,
-         s[2] * k * (x * z + y * w),
-         s[2] * k * (y * z - x * w),
-         s[2] * (1 - k * (x * x + y * y)),
-         0,
-         t[0],
-         t[1],
-         t[2],
-         1};
-    return true;
   }
 
   // No node has two parents (read_children), so a cycle is the only other error.

@@ -95,12 +95,19 @@ struct Primitive {
   std::uint32_t material = 0xFFFFFFFF;  // in Document::materials
 };
 
+inline constexpr Index kNone = 0xFFFFFFFF;
+
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  Index haptic = kNone;  // in Document::haptics
 };
 
-inline constexpr Index kNone = 0xFFFFFFFF;
+// A material of MPEG_haptic_material: its textures of values.
+struct Haptic {
+  std::string name;
+  std::optional<TextureInfo> stiffness, friction;
+};
 
 struct Node {
   std::string name;
@@ -117,10 +124,11 @@ struct Document {
   std::vector<View> views;
   std::vector<Accessor> accessors;
   std::vector<Mesh> meshes;
-  std::vector<std::string> materials;                         // names, of those that have one
-  std::vector<Colour> base_colours;                           // of the materials, where the appearance is wanted
-  std::vector<std::optional<NormalTexture>> normal_textures;  // of the materials that a primitive has, where heights are wanted
-  std::vector<Image> images;                                  // of the file's; those of normal_textures are read
+  std::vector<std::string> materials;                       // names, of those that have one
+  std::vector<Colour> base_colours;                         // of the materials, where the appearance is wanted
+  std::vector<std::optional<TextureInfo>> normal_textures;  // of the materials that a primitive has, where heights are wanted
+  std::vector<Image> images;                                // of the file's; those of textures above are read
+  std::vector<Haptic> haptics;                              // where they are wanted
   std::vector<Node> nodes;
   std::vector<Matrix> matrices;
   Physics physics;
@@ -132,6 +140,7 @@ struct Wanted {
   bool normals = false;
   bool appearance = false;  // texture coordinates, colours and base colours
   bool heights = false;     // normal textures
+  bool haptics = false;     // MPEG_haptic_material
 };
 
 // Throws Refusal.

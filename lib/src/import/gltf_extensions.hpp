@@ -12,12 +12,13 @@ inline constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshop
 
 // Extensions that a file may require and that leave the triangles as they are (or that are read here).
 inline bool is_harmless(std::string_view extension) {
-  constexpr std::array<std::string_view, 36> kPrefixes = {kDraco,
+  constexpr std::array<std::string_view, 37> kPrefixes = {kDraco,
                                                           kMeshopt,
                                                           "EXT_mesh_manifold",
                                                           "EXT_mesh_features",
                                                           "EXT_instance_features",
                                                           "KHR_physics_rigid_bodies",
+                                                          "MPEG_haptic",  // and MPEG_haptic_material
                                                           "KHR_implicit_shapes",
                                                           "KHR_collision_shapes",
                                                           "KHR_rigid_bodies",

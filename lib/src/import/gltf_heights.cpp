@@ -14,7 +14,7 @@ namespace {
 
 // A texture, and what its faces tell of it.
 struct Measured {
-  NormalTexture texture;
+  TextureInfo texture;
   std::vector<std::size_t> materials;
   double area = 0;
   std::array<double, 2> logarithms{};  // of lengths of the whole image on the mesh, times area
@@ -62,9 +62,9 @@ class Measure {
 
 std::vector<Measured> textures_of(const Document& document) {
   std::vector<Measured> all;
-  std::map<NormalTexture, std::size_t> number_of;
+  std::map<TextureInfo, std::size_t> number_of;
   for (std::size_t m = 0; m < document.normal_textures.size(); ++m) {
-    const std::optional<NormalTexture>& texture = document.normal_textures[m];
+    const std::optional<TextureInfo>& texture = document.normal_textures[m];
     if (!texture) continue;
     const auto [known, is_new] = number_of.emplace(*texture, all.size());
     if (is_new) all.push_back({*texture, {}, 0, {}});

@@ -15,6 +15,7 @@
 #include "base/srgb.hpp"
 #include "import/gltf_accessor.hpp"
 #include "import/gltf_draco.hpp"
+#include "import/gltf_haptics.hpp"
 #include "import/gltf_heights.hpp"
 #include "import/gltf_placing.hpp"
 #include "import/gltf_scene_physics.hpp"
@@ -58,6 +59,7 @@ class SceneBuilder {
     show_physics();
     if (!soup_.corner_normals.empty()) soup_.corner_normals.resize(soup_.corners.size());
     if (input_.wants_appearance) finish_appearance();
+    if (input_.wants_haptics) measure_haptics(document_, buffers_, haptic_runs_, soup_);
     rounding_.finish(soup_);
     materials_.finish(soup_);
     for (const auto& [what, count] : ignored_) {
@@ -126,20 +128,23 @@ class SceneBuilder {
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const std::size_t faces = soup_.face_count();
       charge(primitives_, 1);
-      begin_material(n, mesh.primitives[p].material);
+      begin_material(n, mesh.primitives[p].material, mesh.haptic);
       const std::uint32_t first_point = show(mesh.primitives[p], world);
       if (soup_.face_count() == faces) continue;
       take_material(mesh.primitives[p].material);
+      if (mesh.haptic != kNone) haptic_runs_.push_back({faces, soup_.face_count(), mesh.haptic});
       soup_.parts.push_back(
           {name_or(node.name, "nodes", n) + "/" + name_or(mesh.name, "meshes", node.mesh) + "/primitive " + std::to_string(p),
            static_cast<std::uint32_t>(faces), first_point});
     }
   }
 
-  // What the hand feels: the physics material of the node, else the one that is seen. One without a name is named by its index.
-  void begin_material(Index node, Index material) {
+  // What the hand feels: the physics material of the node, else the haptic one of the mesh, else the one that is seen. One
+  // without a name is named by its index.
+  void begin_material(Index node, Index material, Index haptic) {
     std::string name = material == kNone ? std::string() : document_.materials[material];
     if (material != kNone && name.empty()) name = name_or(name, "materials", material);
+    if (haptic != kNone) name = document_.haptics[haptic].name;
     if (const std::string* const physical = physics_.material_of(node)) name = *physical;
     if (!materials_.begin(soup_, name)) ++count("materials beyond the 65,535th");
   }
@@ -318,7 +323,7 @@ class SceneBuilder {
     const Matrix* const world = world_of(physics_.node(s));
     const std::array<Vec3, 8> corners = corners_of_box(physics_.shape(s));
     charge(primitives_, 1);
-    begin_material(physics_.node(s), kNone);
+    begin_material(physics_.node(s), kNone, kNone);
     const auto first_face = static_cast<std::uint32_t>(soup_.face_count());
     const std::uint32_t first =
         place_points({false, kNone, static_cast<std::uint32_t>(s)}, corners.size(), {}, world, [&corners](const auto& use) {
@@ -459,6 +464,7 @@ class SceneBuilder {
   std::vector<Index> world_of_;  // of each node that is shown: in worlds_; none: identity
   std::vector<Matrix> worlds_;
   SceneDraco draco_;
+  std::vector<HapticRun> haptic_runs_;
   std::map<std::pair<PointsKey, Matrix>, std::uint32_t> placed_;
   Budget points_{"points", 1, kMaxPoints}, corners_{"face corners", 1, kMaxCorners};
   Budget primitives_{"primitives", kPrimitiveCost, kMaxCorners};

@@ -31,7 +31,7 @@ Wrap wrap_of(const Value& value) {
 
 // Translation times rotation times scale. The rotation's sense is that of the extension's example, in which a quarter turn
 // leads to the lower left of the image.
-void read_transform(const Value& transform, NormalTexture& texture) {
+void read_transform(const Value& transform, TextureInfo& texture) {
   double offset[2] = {0, 0}, scale[2] = {1, 1};
   if (const Value given = transform["offset"]) given.numbers(offset, 2, kSane);
   if (const Value given = transform["scale"]) given.numbers(scale, 2, kSane);
@@ -42,13 +42,18 @@ void read_transform(const Value& transform, NormalTexture& texture) {
 
 }  // namespace
 
-std::optional<NormalTexture> TextureReader::normal_texture(std::size_t index) {
+std::optional<TextureInfo> TextureReader::normal_texture(std::size_t index) {
   const Value materials = root_["materials"];
   const Value material = materials.item(index);
   const Value info = material["normalTexture"];
   if (!info) return std::nullopt;
-  NormalTexture texture;
-  texture.scale = info["scale"].number_or(1, kSane);
+  TextureInfo found = texture(info);
+  found.scale = info["scale"].number_or(1, kSane);
+  return found;
+}
+
+TextureInfo TextureReader::texture(const Value& info) {
+  TextureInfo texture;
   texture.tex_coord = static_cast<std::uint32_t>(info["texCoord"].integer_or(0, 0, kMostSets));
   if (const Value extensions = info["extensions"]) {
     if (const Value transform = extensions["KHR_texture_transform"]) read_transform(transform, texture);
@@ -57,7 +62,7 @@ std::optional<NormalTexture> TextureReader::normal_texture(std::size_t index) {
   return texture;
 }
 
-void TextureReader::read_texture(const Value& reference, NormalTexture& texture) {
+void TextureReader::read_texture(const Value& reference, TextureInfo& texture) {
   const Value textures = root_["textures"];
   const Value item = textures.item(index_below(reference, textures, "textures"));
   const Value source = item["source"];
@@ -70,7 +75,7 @@ void TextureReader::read_texture(const Value& reference, NormalTexture& texture)
   texture.wrap = {wrap_of(how["wrapS"]), wrap_of(how["wrapT"])};
 }
 
-void TextureReader::use_image(const Value& reference, NormalTexture& texture) {
+void TextureReader::use_image(const Value& reference, TextureInfo& texture) {
   const Value images = root_["images"];
   const std::size_t index = index_below(reference, images, "images");
   texture.image = static_cast<std::uint32_t>(index);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normal textures of a glTF document's materials: what is stated of them, without the images.
+// Textures that a glTF document's materials name: what is stated of them, without the images.
 #pragma once
 
 #include <array>
@@ -22,14 +22,14 @@ struct Image {
   std::optional<std::uint32_t> view;
 };
 
-struct NormalTexture {
+struct TextureInfo {
   std::uint32_t image = 0;      // in Document::images
   std::uint32_t tex_coord = 0;  // of TEXCOORD_n
-  double scale = 1;             // of the slopes
+  double scale = 1;             // of the slopes of normals
   std::array<HeightImage::Wrap, 2> wrap = {HeightImage::Wrap::repeat, HeightImage::Wrap::repeat};
   std::array<double, 6> placing = {1, 0, 0, 0, 1, 0};  // as HeightImage has it, by KHR_texture_transform
 
-  friend auto operator<=>(const NormalTexture&, const NormalTexture&) = default;
+  friend auto operator<=>(const TextureInfo&, const TextureInfo&) = default;
 };
 
 // The texture, its sampler and its image are looked up where a material is asked for. `images` has an entry for each of the
@@ -41,11 +41,13 @@ class TextureReader {
       : root_(root), images_(images), use_view_(std::move(use_view)) {}
 
   // Of materials[index], which is there. None: it has none.
-  [[nodiscard]] std::optional<NormalTexture> normal_texture(std::size_t index);
+  [[nodiscard]] std::optional<TextureInfo> normal_texture(std::size_t index);
+  // Of a reference to a texture, with what is stated beside it.
+  [[nodiscard]] TextureInfo texture(const json::Value& info);
 
  private:
-  void read_texture(const json::Value& reference, NormalTexture& texture);
-  void use_image(const json::Value& reference, NormalTexture& texture);
+  void read_texture(const json::Value& reference, TextureInfo& texture);
+  void use_image(const json::Value& reference, TextureInfo& texture);
 
   const json::Value& root_;
   std::vector<Image>& images_;

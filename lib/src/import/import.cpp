@@ -159,7 +159,8 @@ Result<PolygonSoup> import_bytes(std::string_view bytes, const std::string& name
   Sha256Task hash(sha256.empty() ? bytes : std::string_view());
   const bool has_own_heights = options.heights == kHeightsOfFile;
   Result<PolygonSoup> soup =
-      read_as(*format, {bytes, name, options.progress, file, options.normals, options.appearance, has_own_heights});
+      read_as(*format, {bytes, name, options.progress, file, options.normals, options.appearance || options.haptic_materials,
+                        has_own_heights, options.haptic_materials});
   if (!soup) return soup;
   if (!options.heights.empty() && !has_own_heights) {
     if (const auto failure = add_heights_for_all(options.heights, *soup)) return *failure;

@@ -93,7 +93,7 @@ Result<PolygonSoup> read_gltf(const MeshText& input) {
     Container container{input.bytes, std::nullopt};
     if (is_glb(input.bytes)) container = open_glb(input.bytes);
     const gltf::Document document =
-        gltf::parse_document(container.json, {input.wants_normals, input.wants_appearance, input.wants_heights});
+        gltf::parse_document(container.json, {input.wants_normals, input.wants_appearance, input.wants_heights, input.wants_haptics});
     gltf::Buffers buffers(document, container.binary, input.file);
     gltf::build_scene(document, buffers, input, soup);
     soup.other_files = buffers.outside_files();

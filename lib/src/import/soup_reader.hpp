@@ -25,6 +25,7 @@ struct MeshText {
   bool wants_normals = false;                   // ImportOptions::normals
   bool wants_appearance = false;                // ImportOptions::appearance
   bool wants_heights = false;                   // ImportOptions::heights is "file"
+  bool wants_haptics = false;                   // ImportOptions::haptic_materials
 };
 
 // One reader per format. Each fails with exit code 3 and one line; refusing a soup without faces is left to the caller. They
