@@ -679,6 +679,26 @@ class Replay(Case):
         refused = self.servo("replay", self.compiled_cube(), "--path", "slide", "--relief", "image", code=2).stderr.decode()
         self.assertIn("--relief image: the file has no heights: compile the mesh with --heights", refused)
 
+    def test_effects_come_on_top_of_what_the_step_and_a_relief_give(self):
+        graph = self.compiled_cube("--units", "cm")
+        path = self.write("press.csv", "t,x,y,z\n" + "".join(f"{i / 1000},0.005,0.005,{0.0101 if i < 5 else 0.0085}\n" for i in range(60)))
+        relief, tone = ("--relief", "bumps=1e-5,1e-3"), ("--effect", "vibration,force_n=0.5,frequency_hz=100,along=axis")
+        up = ("--effect", '{"kind": "viscosity", "viscosity_n_s_per_m": 2, "when": "always"}')
+        plain, felt, both = (self.rows(self.servo("replay", graph, "--trajectory", path, "-o", "-", *relief, *effects).stdout)
+                             for effects in ((), tone, (*tone, *up)))
+        for i, (without, with_tone, with_both) in enumerate(zip(plain, felt, both)):
+            wave = 0.5 * min(1, 0.2 * (i - 4)) * math.sin(2 * math.pi * 0.1 * (i - 5)) if i >= 5 else 0  # a ramp of 5 ms
+            self.assertAlmostEqual(float(without["fz"]) + wave, float(with_tone["fz"]), delta=1e-12)
+            if i < 5 or i > 50:
+                self.assertAlmostEqual(float(with_tone["fz"]), float(with_both["fz"]), delta=1e-3)
+        # 1.6 mm down in a millisecond
+        self.assertGreater(max(float(b["fz"]) - float(a["fz"]) for a, b in zip(felt, both)), 0.3)
+        for words, reason in (("vibration,force_n=0.5", "frequency_hz is missing"), ("glue,force_n=1", 'kind is "glue"'),
+                              ("magnet,force_n=1,distance_m=0.01,material=wood", "the graph has no material 'wood'"),
+                              ("tap;1", 'kind is "tap;1"'), ("tap,1", "is not KIND,KEY=VALUE,...")):
+            refused = self.servo("replay", graph, "--trajectory", path, "--effect", words, code=2).stderr.decode()
+            self.assertIn(reason, refused)
+
     def test_twice_gives_the_same_bytes(self):
         graph, path = self.compiled_cube(), self.slide(9000)
         logs = []

@@ -67,12 +67,14 @@ void ReliefOption::step(const fdcg_graph& graph, const fdcg_params& params, cons
                         fdcg_result* result) {
   if (!std::isfinite(hip_m[0]) || !std::isfinite(hip_m[1]) || !std::isfinite(hip_m[2])) {
     fdcg_step(&graph, &params, contact, hip_m, result);
+    std::copy_n(result->force_n, 3, flat_n_);
     return;
   }
   double moved_m[3];
   fdcg_effect_facts facts;
   fdcg_relief_move(&relief_, &state_, hip_m, params.tick_s, moved_m);
   fdcg_step(&graph, &params, contact, moved_m, result);
+  std::copy_n(result->force_n, 3, flat_n_);
   if (fdcg_get_effect_facts(&graph, result, moved_m, 0, params.tick_s, &facts, nullptr) == FDCG_OK)
     fdcg_relief_turn(&relief_, &state_, &facts, result->force_n);
 }

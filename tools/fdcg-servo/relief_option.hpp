@@ -19,6 +19,8 @@ class ReliefOption {
   // One tick of `contact` with the relief, which was given; where hip_m is not finite, without.
   void step(const fdcg_graph& graph, const fdcg_params& params, const double* hip_m, fdcg_contact* contact,
             fdcg_result* result);
+  // The force of that tick before the heights turned it.
+  [[nodiscard]] const double* flat_force_n() const { return flat_n_; }
 
  private:
   std::optional<fdcg_waves> waves_;
@@ -26,6 +28,7 @@ class ReliefOption {
   fdcg_heights heights_{};
   fdcg_relief relief_{};
   fdcg_relief_state state_{};
+  double flat_n_[3] = {};
 };
 
 }  // namespace fdcg::servo

@@ -10,6 +10,7 @@
 #include "../common/expand_paths.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
+#include "effect_option.hpp"
 #include "fdcg/device_tools.hpp"
 #include "fdcg/fdcg.h"
 #include "friction_options.hpp"
@@ -43,6 +44,7 @@ struct ReplayArguments {
   fdcg_params params = fdcg_make_params();
   FrictionOptions friction;
   ReliefOption relief;
+  EffectOption effect;
   std::string path, written_path;
   bool has_mu_dynamic = false;
   bool quiet = false;
@@ -124,10 +126,23 @@ void append_row(std::string& text, const TrajectoryPoint& point, const fdcg_resu
   text += ',' + std::to_string(result.slipping) + ',' + std::to_string(result.transitions) + '\n';
 }
 
+// One tick of the contact, with what is felt on top of it.
+void step(const fdcg_graph& graph, const fdcg_params& params, const double* hip_m, ReliefOption& relief, EffectOption& effect,
+          fdcg_contact* contact, fdcg_result* result) {
+  if (relief.is_given()) {
+    relief.step(graph, params, hip_m, contact, result);
+  } else {
+    fdcg_step(&graph, &params, contact, hip_m, result);
+  }
+  if (!effect.is_given()) return;
+  fdcg_result felt = *result;
+  if (relief.is_given()) std::copy_n(relief.flat_force_n(), 3, felt.force_n);
+  effect.effects().feel(graph, felt, hip_m, result->force_n);
+}
+
 // Steps every point, logs every tick. The clock is read around the step alone.
-ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, ReliefOption& relief,
-                     const std::vector<TrajectoryPoint>& points, fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log,
-                     tools::ProgressBar& bar) {
+ReplaySummary replay(const fdcg_graph& graph, ReplayArguments& arguments, const std::vector<TrajectoryPoint>& points,
+                     fdcg_contact& contact, std::uint64_t clock_ns, AtomicFile& log, tools::ProgressBar& bar) {
   ReplaySummary summary;
   std::vector<Tick> ticks(std::min(kChunkTicks, points.size()));
   std::string text = kLogHeader;
@@ -135,12 +150,8 @@ ReplaySummary replay(const fdcg_graph& graph, const fdcg_params& params, ReliefO
     const std::size_t count = std::min(kChunkTicks, points.size() - begin);
     for (std::size_t i = 0; i < count; ++i) {
       const Clock::time_point before = Clock::now();
-      const double* const hip_m = points[begin + i].hip_object_m.data();
-      if (relief.is_given()) {
-        relief.step(graph, params, hip_m, &contact, &ticks[i].result);
-      } else {
-        fdcg_step(&graph, &params, &contact, hip_m, &ticks[i].result);
-      }
+      step(graph, arguments.params, points[begin + i].hip_object_m.data(), arguments.relief, arguments.effect, &contact,
+           &ticks[i].result);
       const std::uint64_t measured = nanoseconds(Clock::now() - before);
       ticks[i].step_ns = measured - std::min(measured, clock_ns);
     }
@@ -293,6 +304,8 @@ int take_materials(ReplayArguments& arguments, const fdcg_graph& graph) {
     return fail(kUsage, arguments.graph + ": " + problem);
   if (const std::string problem = arguments.relief.open(graph); !problem.empty())
     return fail(kUsage, arguments.graph + ": --relief image: " + problem);
+  if (const std::string problem = arguments.effect.effects().open(graph, arguments.params.tick_s); !problem.empty())
+    return fail(kUsage, arguments.graph + ": --effect: " + problem);
   return fdcg_check_params(&arguments.params, &error) == FDCG_OK ? kClean : fail(kUsage, error.message);
 }
 
@@ -314,7 +327,7 @@ int run_replay(ReplayArguments& arguments) {
   }
   const std::uint64_t clock_ns = clock_cost_ns();
   fdcg_contact contact{};
-  const ReplaySummary summary = replay(graph, arguments.params, arguments.relief, points, contact, clock_ns, log, bar);
+  const ReplaySummary summary = replay(graph, arguments, points, contact, clock_ns, log, bar);
   if (summary.in_state[FDCG_FREE] == summary.ticks) warn_of_nothing_touched(graph, points, arguments.trajectory);
   fdcg_close(&graph);
   if (const int code = tools::commit_all({&log}); code != kClean) return code;
@@ -345,6 +358,7 @@ void add_graph_options(CLI::App& command, ReplayArguments& arguments) {
       "Friction in a groove: by the load on both faces, or by the distance from the edge, as in the 2004 paper.");
   arguments.friction.declare(contact, params);
   arguments.relief.declare(contact);
+  arguments.effect.declare(contact);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "catch.hpp"
+#include "fdcg/device_tools.hpp"
 #include "host/fast_run.hpp"
 #include "meshes.hpp"
 #include "recording/session_replay.hpp"
@@ -275,7 +276,7 @@ TEST_CASE("a relief of the file's image is felt as the wave that it shows, and r
   json scene = with(kTone);
   json& block = scene["objects"][0];
   block = {{"name", "block"}, {"file", "block.fdcg"}, {"stiffness_n_per_m", 800},
-           {"mu_static", 0},  {"mu_dynamic", 0},       {"pose", {{"scale", 2}}}};
+           {"mu_static", 0},  {"mu_dynamic", 0},      {"pose", {{"scale", 2}}}};
   scene["devices"][0]["simulation"] = {{"hand_stiffness_n_per_m", 400},
                                        {"hand_damping_n_s_per_m", 5},
                                        {"script",
@@ -303,11 +304,95 @@ TEST_CASE("a relief of the file's image is felt as the wave that it shows, and r
   CHECK(felt_n > 0.01);
   CHECK(apart < 0.02 * felt_n);
 
+  // a check of the scene says how stiff it is: 4 pi^2 2e-6 m / (0.5 mm)^2 of the file, over the square of the scale
+  block["relief"] = {{"kind", "image"}};
+  json checked = scene;
+  checked["devices"][0] = {{"name", "hand"}, {"profile", FDCG_SOURCE_DIR "/testdata/profiles/full.json"}};
+  const auto warnings_at = [&](double scale) {
+    checked["objects"][0]["pose"]["scale"] = scale;
+    std::ofstream(folder.file("checked.json")) << checked.dump();
+    const FileCheck check = check_file(folder.file("checked.json"));
+    INFO(check.problem);
+    REQUIRE(check.problem.empty());
+    std::string all;
+    for (const std::string& warning : check.warnings)
+      all += warning + "\n";
+    return all;
+  };
+  CHECK(warnings_at(2).find("the relief of object 'block'") == std::string::npos);
+  CHECK(warnings_at(0.1).find("the relief of object 'block' is felt along the surface as 9") != std::string::npos);
+
   block["relief"] = {{"kind", "image"}, {"amplitude_m", 1e-4}};
   CHECK(refusal(scene).find("amplitude_m") != std::string::npos);
   scene = with(kTone);
   scene["objects"][0]["relief"] = {{"kind", "image"}};
   CHECK(refusal(scene).find("relief.kind is of a mesh's file, and this object has none") != std::string::npos);
+}
+
+TEST_CASE("effects of a graph's contact are those of a scene's object, bit for bit") {
+  const Folder folder;
+  const auto compiled = fdcg::bake::compile(fdcg::test::scaled(fdcg::test::cube(), 0.05), fdcg::bake::CompileOptions{});
+  REQUIRE(compiled.has_value());
+  std::ofstream(folder.file("block.fdcg"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(compiled->bytes.data()), static_cast<std::streamsize>(compiled->bytes.size()));
+  const std::string ribs = kScenes + "ribs.json";
+  const std::pair<std::string, json> effects[] = {
+      {"magnet,force_n=0.5,distance_m=0.004", {{"kind", "magnet"}, {"force_n", 0.5}, {"distance_m", 0.004}}},
+      {"viscosity,viscosity_n_s_per_m=2,when=slipping",
+       {{"kind", "viscosity"}, {"viscosity_n_s_per_m", 2}, {"when", "slipping"}}},
+      {"stick-slip,stiffness_n_per_m=300,force_n=0.2", {{"kind", "stick-slip"}, {"stiffness_n_per_m", 300}, {"force_n", 0.2}}},
+      {R"({"kind": "vibration", "force_n": 0.5, "frequency_hz": 200, "along": "axis", "axis": [0, 1, 0]})",
+       {{"kind", "vibration"}, {"force_n", 0.5}, {"frequency_hz", 200}, {"along", "axis"}, {"axis", {0, 1, 0}}}},
+      {"noise,force_n=0.3,high_hz=300,seed=5", {{"kind", "noise"}, {"force_n", 0.3}, {"high_hz", 300}, {"seed", 5}}},
+      {"tap,impact_n_s_per_m=2,frequency_hz=150,decay_s=0.01",
+       {{"kind", "tap"}, {"impact_n_s_per_m", 2}, {"frequency_hz", 150}, {"decay_s", 0.01}}},
+      {"pulse,force_n=0.4,duration_s=0.02,period_s=0.1,along=motion",
+       {{"kind", "pulse"}, {"force_n", 0.4}, {"duration_s", 0.02}, {"period_s", 0.1}, {"along", "motion"}}},
+      {"texture,texture=" + ribs, {{"kind", "texture"}, {"texture", ribs}}}};
+  json scene = with(kTone), all = json::array();
+  GraphEffects alone;
+  for (const auto& [words, effect] : effects) {
+    all.push_back(effect);
+    CHECK(alone.add(words) == "");
+  }
+  scene["objects"][0] = {{"name", "block"}, {"file", "block.fdcg"}, {"stiffness_n_per_m", 800}, {"effects", all}};
+  scene["devices"][0]["simulation"] = {{"hand_stiffness_n_per_m", 400},
+                                       {"hand_damping_n_s_per_m", 5},
+                                       {"script",
+                                        {{{"at_s", 0}, {"place_m", {-0.015, 0, 0.03}}},
+                                         {{"at_s", 0.5}, {"place_m", {-0.015, 0, 0.022}}},
+                                         {{"at_s", 1.5}, {"place_m", {0.015, 0, 0.022}}}}}};
+  HostConfig config;
+  REQUIRE(parse_scene(scene.dump(), folder.file("s.json"), &config) == "");
+  const Felt in_scene = felt(config, 1.5);
+  fdcg_graph graph{};
+  fdcg_error error{};
+  REQUIRE(fdcg_open_file(folder.file("block.fdcg").c_str(), FDCG_VERIFY_FULL, &graph, &error) == FDCG_OK);
+  fdcg_params params = config.objects[0].params;
+  params.tick_s = 1 / config.devices[0].profile.rate_hz;
+  REQUIRE(alone.open(graph, params.tick_s) == "");
+  fdcg_contact contact{};
+  std::size_t apart = 0, felt_alone = 0;
+  for (std::size_t i = 0; i < in_scene.hip_m.size(); ++i) {
+    fdcg_result result{};
+    fdcg_step(&graph, &params, &contact, in_scene.hip_m[i].data(), &result);
+    const fdcg_result flat = result;
+    alone.feel(graph, flat, in_scene.hip_m[i].data(), result.force_n);
+    for (std::size_t k = 0; k < 3; ++k) {
+      apart += result.force_n[k] != in_scene.force_n[i][k];
+      felt_alone += result.force_n[k] != flat.force_n[k];
+    }
+  }
+  CHECK(apart == 0);
+  CHECK(felt_alone > 1000);
+  fdcg_close(&graph);
+
+  GraphEffects wrong;
+  CHECK(wrong.add("magnet,force_n=0,distance_m=0.004").find("force_n is 0") == 0);
+  CHECK(wrong.add("magnet,force_n=1").find("distance_m is missing") == 0);
+  CHECK(wrong.add("viscosity,viscosity_n_s_per_m").find("is not KIND,KEY=VALUE") == 0);
+  CHECK(wrong.add("{\"kind\": ").find("is not JSON") == 0);
+  CHECK(wrong.is_empty());
 }
 
 TEST_CASE("effects are felt on an object that turns and is scaled as on one that rests") {

@@ -194,6 +194,32 @@ struct FastSceneRun {
   std::string run(Scene scene);
 };
 
+// ---- replay: effects of a graph's contact
+// ---------------------------------------------------------------------------------------------
+
+// Effects of a material (fdcg/effect.h) on one contact of a graph, by the keys that an object of a scene has for them, and to
+// the bit as there for an object in the world's frame.
+class GraphEffects {
+ public:
+  GraphEffects();
+  ~GraphEffects();
+  GraphEffects(const GraphEffects&) = delete;
+  GraphEffects& operator=(const GraphEffects&) = delete;
+
+  // "viscosity,viscosity_n_s_per_m=2,when=slipping", or the JSON that stands in a scene. Files are named from the current
+  // folder. Empty: fine. Otherwise the key, what was found and what is expected.
+  std::string add(const std::string& text);
+  [[nodiscard]] bool is_empty() const;
+  // With the graph's materials, for ticks of this length. Empty: fine.
+  std::string open(const fdcg_graph& graph, double tick_s);
+  // Adds their forces to `force_n`, which is what the hand feels so far (a relief may have turned it). `felt`: of the step.
+  void feel(const fdcg_graph& graph, const fdcg_result& felt, const double hip_m[3], double force_n[3]);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 // ---- replay: the log of a session
 // ---------------------------------------------------------------------------------------------
 

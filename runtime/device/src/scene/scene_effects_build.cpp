@@ -34,17 +34,8 @@ std::unique_ptr<BuiltTexture> built(const TextureConfig& from) {
 
 // At the rate of the slowest device that may be the clock: there the ticks are longest.
 std::string add_effect(const EffectConfig& from, const fdcg_graph* graph, double slowest_hz, DeviceScene* scene) {
-  fdcg_effect effect = from.effect;
-  if (!from.material.empty()) {
-    effect.material = fdcg_find_material(graph, from.material.c_str());
-    if (effect.material == FDCG_NONE) return "the graph has no material '" + from.material + "'";
-  }
-  if (from.texture) {
-    scene->textures.push_back(built(*from.texture));
-    effect.texture = &scene->textures.back()->texture;
-  }
-  fdcg_error error{};
-  if (fdcg_check_effect(&effect, 1 / slowest_hz, &error) != FDCG_OK) return error.message;
+  fdcg_effect effect;
+  if (std::string problem = make_effect(from, graph, slowest_hz, &scene->textures, &effect); !problem.empty()) return problem;
   scene->effects->add(effect);
   return {};
 }
@@ -57,10 +48,7 @@ std::string make_relief(const ReliefConfig& from, const FeltObject& felt, Device
     return {};
   }
   fdcg_heights heights;
-  fdcg_error error{};
-  if (fdcg_get_heights(felt.graph, &heights, &error) != FDCG_OK) return error.message;
-  heights.metres_per_unit *= felt.pose.scale;
-  heights.curvature_per_m /= felt.pose.scale * felt.pose.scale;
+  if (const std::string problem = heights_of(*felt.graph, felt.pose.scale, &heights); !problem.empty()) return problem;
   scene->heights.push_back(heights);
   *relief = fdcg_make_height_relief(&scene->heights.back());
   return {};
@@ -90,6 +78,29 @@ bool has_effects(const HostConfig& config) {
 }
 
 }  // namespace
+
+std::string make_effect(const EffectConfig& from, const fdcg_graph* graph, double slowest_hz,
+                        std::vector<std::unique_ptr<BuiltTexture>>* textures, fdcg_effect* effect) {
+  *effect = from.effect;
+  if (!from.material.empty()) {
+    effect->material = fdcg_find_material(graph, from.material.c_str());
+    if (effect->material == FDCG_NONE) return "the graph has no material '" + from.material + "'";
+  }
+  if (from.texture) {
+    textures->push_back(built(*from.texture));
+    effect->texture = &textures->back()->texture;
+  }
+  fdcg_error error{};
+  return fdcg_check_effect(effect, 1 / slowest_hz, &error) == FDCG_OK ? std::string() : error.message;
+}
+
+std::string heights_of(const fdcg_graph& graph, double scale, fdcg_heights* heights) {
+  fdcg_error error{};
+  if (fdcg_get_heights(&graph, heights, &error) != FDCG_OK) return error.message;
+  heights->metres_per_unit *= scale;
+  heights->curvature_per_m /= scale * scale;
+  return {};
+}
 
 std::string build_effects(const HostConfig& config, const SceneLoad& load, const SceneGraphs& graphs,
                           const std::vector<fdcg_object_id>& objects, int devices, DeviceScene* scene, DeviceSetup* setup) {

@@ -15,6 +15,15 @@ struct BuiltTexture {
   fdcg_texture texture{};
 };
 
+// The images of a graph's file as an object of this scale has them: it is larger, and its heights are as they were. Empty:
+// fine.
+std::string heights_of(const fdcg_graph& graph, double scale, fdcg_heights* heights);
+
+// What a config says, with the materials of this graph (null: none), for ticks of at least slowest_hz; a texture is kept in
+// *textures. Empty: fine.
+std::string make_effect(const EffectConfig& from, const fdcg_graph* graph, double slowest_hz,
+                        std::vector<std::unique_ptr<BuiltTexture>>* textures, fdcg_effect* effect);
+
 // Into scene->effects; setup->effects stays null where there are none. `objects`: by the config's. Empty: fine. Otherwise the
 // object, and what is wrong with its effect.
 std::string build_effects(const HostConfig& config, const SceneLoad& load, const SceneGraphs& graphs,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/scene_parser.hpp"
+#include "scene/stiffness.hpp"
 
 namespace fdcg::dev {
 namespace {
@@ -234,18 +235,11 @@ void SceneParser::judge_effects(const json::Value& scene, const DeviceConfig& de
   for (const ObjectConfig& object : config_.objects)
     for (const EffectConfig& effect : object.effects)
       judge(effect, "object " + in_quotes(object.name));
-  const double load_n = device.most_force_n > 0 ? device.most_force_n : device.profile.limits.force_n;
   for (const ObjectConfig& object : config_.objects) {
-    if (!object.relief || warnings_ == nullptr || allowed_n_per_m <= 0) continue;
-    if (object.relief->kind == ReliefKind::kImage) continue;  // its file is not open yet
+    if (!object.relief || warnings_ == nullptr) continue;
+    if (object.relief->kind == ReliefKind::kImage) continue;  // its file is not open yet: warn_of_image_reliefs()
     const fdcg_waves waves = object.relief->waves();
-    const fdcg_relief relief = fdcg_make_relief(&waves);
-    const double felt = fdcg_get_relief_stiffness(&relief, load_n) * device.mapping.scale;
-    if (felt <= allowed_n_per_m) continue;
-    warnings_->push_back("device " + in_quotes(device.name) + ": the relief of object " + in_quotes(object.name) +
-                         " is felt along the surface as " + shown_number(felt) + " N/m at the device's force limit of " +
-                         shown_number(load_n) + " N; the profile allows " + shown_number(allowed_n_per_m) +
-                         ": it may buzz; make it lower, or its waves longer");
+    warn_of_relief(device, object, fdcg_make_relief(&waves), warnings_);
   }
 }
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/host_config.hpp"
+#include "fdcg/relief.h"
+#include "scene/scene_build.hpp"
 
 namespace fdcg::dev {
 
@@ -13,5 +14,11 @@ namespace fdcg::dev {
 // K T / 2 + B <= b is what keeps the loop passive without a hand (Colgate and Schenkel 1997, Passivity of a class of
 // sampled-data systems, J. Robotic Systems 14(1)). Lengths are scaled by the mapping, forces are not.
 void warn_of_stiffness(const HostConfig& config, std::vector<std::string>* warnings);
+
+// A line where the relief of an object is stiffer along the surface, at the device's force limit, than its profile allows.
+void warn_of_relief(const DeviceConfig& device, const ObjectConfig& object, const fdcg_relief& relief,
+                    std::vector<std::string>* warnings);
+// The same of all devices and objects whose relief is the images of their file, which is `graphs`' own.
+void warn_of_image_reliefs(const HostConfig& config, const SceneGraphs& graphs, std::vector<std::string>* warnings);
 
 }  // namespace fdcg::dev

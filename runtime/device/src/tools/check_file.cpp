@@ -44,6 +44,7 @@ FileCheck check_scene(const std::string& file, const std::string& text) {
   warn_of_stiffness(config, &check.warnings);
   SceneGraphs graphs;
   check.problem = graphs.open(config);
+  if (check.problem.empty()) warn_of_image_reliefs(config, graphs, &check.warnings);
   for (const DeviceRange& devices : device_ranges(config))
     if (check.problem.empty()) check.problem = problem_of(config, devices, graphs);
   if (check.problem.empty()) check.problem = log_problem(config, &check.warnings);
