@@ -3,6 +3,7 @@
 #include "base/message.hpp"
 #include "fdcg/effect.h"
 #include "fdcg/query.h"
+#include "graph/graph_view.hpp"
 
 namespace fdcg {
 namespace {
@@ -10,9 +11,9 @@ namespace {
 // Normal and material of what is touched; on a face, where most ticks are, without weighing its corners.
 fdcg_status name_surface(const fdcg_graph* graph, const fdcg_result& result, fdcg_effect_facts* facts, fdcg_error* error) {
   if (result.state == FDCG_FACE && result.feature < graph->header->node_count) {
-    const fdcg_node_info face = fdcg_get_node(graph, result.feature);
-    for (int k = 0; k < 3; ++k)
-      facts->normal[k] = face.normal[k];
+    with_real_of(*graph->header, [&](auto real) {
+      store(widen(RigidView<decltype(real)>(*graph).node(result.feature).normal()), facts->normal);
+    });
     facts->node = result.feature;
     facts->material = fdcg_get_node_material(graph, result.feature);
     return FDCG_OK;

@@ -29,6 +29,7 @@ inline uint32_t wrapped(int64_t at, uint32_t side, uint32_t wrap) {
   const auto size = static_cast<int64_t>(side);
   if (at >= 0 && at < size) return static_cast<uint32_t>(at);
   if (wrap == FDCG_WRAP_CLAMP) return at < 0 ? 0 : side - 1;
+  if (wrap == FDCG_WRAP_REPEAT && (side & (side - 1)) == 0) return static_cast<uint32_t>(at) & (side - 1);  // no division
   const int64_t period = wrap == FDCG_WRAP_MIRROR ? 2 * size : size;
   int64_t in = at % period;
   if (in < 0) in += period;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdint.h>
+#include <string.h>
 
 #include "fdcg/effect.h"
 
@@ -12,20 +13,26 @@ struct SineCosine {
   double sine, cosine;
 };
 
-// Of 2 pi turns, turns within -1e15 to 1e15. Exact to 1e-15 within -1 to 1.
+// Of 2 pi turns, turns within -2^48 to 2^48. Exact to 1e-15 within -1 to 1. Both by one row of operations, side by side.
 inline SineCosine sine_cosine_of_turns(double turns) {
-  constexpr double kTurn = 6.283185307179586476925;
-  const auto quarters = static_cast<int64_t>(4 * turns + (turns < 0 ? -0.5 : 0.5));  // the nearest
-  const double x = kTurn * (turns - 0.25 * static_cast<double>(quarters)), y = x * x;
+  using Two = double __attribute__((vector_size(16)));
+  using Bits = int64_t __attribute__((vector_size(16)));
+  constexpr double kQuarterTurn = 6.283185307179586476925 / 4, kWhole = 0x1.8p52;  // whole numbers alone are near it
+  const double shifted = 4 * turns + kWhole, x = kQuarterTurn * (4 * turns - (shifted - kWhole)), y = x * x;
+  int64_t quarters;  // its last bits are those of the nearest whole number
+  memcpy(&quarters, &shifted, sizeof quarters);
   // within an eighth of a turn, by their series; in pairs, which a processor does side by side
   const double y2 = y * y, y4 = y2 * y2;
-  const double odd = (-1.0 / 6 + y * (1.0 / 120)) + y2 * (-1.0 / 5040 + y * (1.0 / 362880)) +
-                     y4 * ((-1.0 / 39916800 + y * (1.0 / 6227020800)) - y2 * (1.0 / 1307674368000));
-  const double even = (-1.0 / 2 + y * (1.0 / 24)) + y2 * (-1.0 / 720 + y * (1.0 / 40320)) +
-                      y4 * ((-1.0 / 3628800 + y * (1.0 / 479001600)) - y2 * (1.0 / 87178291200));
-  const double sine = x + x * y * odd, cosine = 1 + y * even;
-  const double swapped[2] = {(quarters & 1) != 0 ? cosine : sine, (quarters & 1) != 0 ? sine : cosine};
-  return {(quarters & 2) != 0 ? -swapped[0] : swapped[0], ((quarters + 1) & 2) != 0 ? -swapped[1] : swapped[1]};
+  const Two series = (Two{-1.0 / 6, -1.0 / 2} + y * Two{1.0 / 120, 1.0 / 24}) +
+                     y2 * (Two{-1.0 / 5040, -1.0 / 720} + y * Two{1.0 / 362880, 1.0 / 40320}) +
+                     y4 * ((Two{-1.0 / 39916800, -1.0 / 3628800} + y * Two{1.0 / 6227020800, 1.0 / 479001600}) -
+                           y2 * Two{1.0 / 1307674368000, 1.0 / 87178291200});
+  const Two found = Two{x, 1} + Two{x * y, y} * series, swapped = {found[1], found[0]};
+  const int64_t odd = -(quarters & 1);  // a choice by bits, since a branch cannot be foreseen
+  const Bits chosen = (reinterpret_cast<Bits>(found) & ~Bits{odd, odd}) | (reinterpret_cast<Bits>(swapped) & Bits{odd, odd});
+  const auto sign = [](int64_t quarter) { return static_cast<int64_t>(static_cast<uint64_t>(quarter & 2) << 62); };
+  const Two result = reinterpret_cast<Two>(chosen ^ Bits{sign(quarters), sign(quarters + 1)});
+  return {result[0], result[1]};
 }
 inline double sine_of_turns(double turns) {
   return sine_cosine_of_turns(turns).sine;

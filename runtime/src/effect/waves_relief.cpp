@@ -7,7 +7,7 @@
 namespace fdcg {
 namespace {
 
-constexpr double kTurnRad = 6.283185307179586476925, kFarthestTurns = 1e15;
+constexpr double kTurnRad = 6.283185307179586476925, kFarthestTurns = 0x1p48;
 
 // A wave that passes by so many turns a tick: whole up to a quarter, gone at a half.
 double share_of_turns(double turns) {
