@@ -272,12 +272,23 @@ class Walker:
             self.at = (FACE, face)
             return
 
+        corner = self.corner_met(face, met_exactly)
+        if corner is not None:
+            self.place(graph.point[corner], (VERTEX, corner))
+            self.at = (VERTEX, corner)
+            return
+
         def off(k):
             edge = graph.edge[graph.side[face][k][0]]
             return norm(minus(point, edge.at(min(max(edge.parameter(point), 0.0), edge.length))))
 
         edge = graph.side[face][min(met_exactly, key=off)][0]  # contact-model FREE-4
         self.at = self.place_on_edge(edge, graph.edge[edge].parameter(point))
+
+    def corner_met(self, face, met_exactly):  # contact-model FREE-4
+        if len(met_exactly) != 2:
+            return None
+        return self.graph.face[face][met_exactly[1] if met_exactly[1] == met_exactly[0] + 1 else 0]
 
     def first_hit(self, start, end, left_out):  # contact-model FREE-3
         graph, best = self.graph, None
@@ -438,7 +449,10 @@ class Walker:
         ahead = edge.parameter(self.god_object) - foot
         radius = self.slip(ahead * ahead, self.edge_load(edge, minus(self.hip, edge.at(foot))))
         if radius is None:  # contact-model EDGE-5
-            return None
+            u = foot + ahead
+            if self.mu_static > 0 or min(u, edge.length - u) > edge.end_tolerance:
+                return None
+            radius = 0.0
         landed = self.place_on_edge(index, foot + radius if ahead > 0 else foot - radius)  # contact-model EDGE-6
         return None if landed == (EDGE, index) else landed
 

@@ -71,6 +71,12 @@ inline bool lets_go(const Walk<Geometry>& walk, ConnectionRef<Geometry> connecti
   return is_free || (is_beyond_a && is_beyond_b && connection.type() != FDCG_CONCAVE);
 }
 
+// contact-model EDGE-5: without friction an edge holds nothing at its end; there the corner decides, which the end is.
+template <class Real>
+[[gnu::noinline, gnu::cold]] bool is_at_end(const EdgeLine<Real>& line, Real u) {
+  return u <= line.end_tolerance || line.length - u <= line.end_tolerance;
+}
+
 // Cost: two face planes, two Voronoi planes.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Decision edge_rule(Walk<Geometry>& walk) {
@@ -101,7 +107,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (walk.friction.terms != nullptr) select_material_of_edge(walk, connection, across);
   }
   const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), edge_load(walk, connection, across));
-  if (slip.is_rest) return rest();
+  if (slip.is_rest && !(walk.friction.mu_static == 0 && is_at_end(line, foot + ahead))) return rest();
   const Feature landed =
       place_on_edge(walk, index, line, (ahead > 0) != FDCG_MUTANT("edge-slides-past") ? foot + slip.gap : foot - slip.gap);
   return landed == walk.active ? rest() : go_to(landed);

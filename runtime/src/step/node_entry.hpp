@@ -183,8 +183,11 @@ class NodeEntry {
   [[gnu::noinline, gnu::cold]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_ == kFree || !is_before_best(0, n)) return;
     const Plane<Real> plane = node.plane();
+    // The offset is as good as the products at a corner that it makes up for; it may have cancelled to much less than them.
+    const Vec3<Real> corner = graph_.corner_point(node.corner(0)), normal = plane.normal;
+    const Plane<Real> uncancelled = {normal, norm1(Vec3<Real>{normal.x * corner.x, normal.y * corner.y, normal.z * corner.z})};
     const auto is_behind = [&](Vec3<Real> x) {  // of a flat or a long body the rounding is much less than the bound
-      return plane.distance(x) < -own_plane_rounding(plane, x);
+      return plane.distance(x) < -own_plane_rounding(uncancelled, x);
     };
     if (is_behind(from_) && is_behind(stood_)) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, and not on its way out
@@ -350,6 +353,8 @@ class NodeEntry {
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
   // the face's own plane meets all sides, and the point may be beside most of them.
   [[nodiscard, gnu::noinline, gnu::cold]] Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly, Vec3<Real> point) const {
+    const bool are_two = (met_exactly & (met_exactly - 1)) != 0 && met_exactly != 7;
+    if (node.side_count() == 3 && are_two) return {FDCG_VERTEX, corner_on_line_};  // remember_corner() has just found it
     Feature nearest = kFree;
     Real nearest2 = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {

@@ -179,7 +179,10 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
-      progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      // Where it began, and no nearer: the next tick would do the same (contact-model TICK-6).
+      const Vec3<Real> gap = walk.god_object - walk.hip;
+      const bool is_circle = walk.active == start && !(dot(gap, gap) < dot(start_gap, start_gap));
+      if (!is_circle) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
       return progress;
     }
   }
