@@ -37,6 +37,21 @@ Meeting meeting(const Triangle& t, const Hip& from, const Hip& to) {
   return at_end == 0 && at_start != 0 ? Meeting::ends_on : Meeting::touching;
 }
 
+// The edge, or the corner twice, that a way across the triangle's plane meets; none of a way within it.
+using Touched = std::array<Hip, 2>;
+std::optional<Touched> rim_touched(const Triangle& t, const Hip& from, const Hip& to) {
+  if (exact_sign(t[0], t[1], t[2], from) * exact_sign(t[0], t[1], t[2], to) >= 0) return std::nullopt;
+  std::optional<Touched> rim;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Hip &a = t[k], &b = t[(k + 1) % 3], &c = t[(k + 2) % 3];
+    if (exact_sign(from, to, a, b) != 0) continue;
+    if (exact_sign(from, to, b, c) == 0) return Touched{b, b};
+    if (exact_sign(from, to, c, a) == 0) return Touched{a, a};
+    rim = a < b ? Touched{a, b} : Touched{b, a};
+  }
+  return rim;
+}
+
 using Wide = long double;  // the plane of a sliver turns by a rounding over its width
 Vector<Wide> wide(const Hip& a) {
   return {a[0], a[1], a[2]};
@@ -316,6 +331,22 @@ InsideGrid::Crossing InsideGrid::crossing(const Hip& from, const Hip& to) const 
     return result.is_through;
   });
   return result;
+}
+
+bool InsideGrid::grazes(const Hip& from, const Hip& to) const {
+  if (where(from) != Where::outside || where(to) != Where::outside) return false;
+  std::optional<Touched> met;
+  const bool meets_more = any_cell_along(from, to, 0, [&](std::size_t cell) {
+    return std::any_of(member_.begin() + first_[cell], member_.begin() + first_[cell + 1], [&](std::uint32_t f) {
+      const Meeting m = meeting(triangles_[f], from, to);
+      if (m == Meeting::apart) return false;
+      const std::optional<Touched> here = m == Meeting::touching ? rim_touched(triangles_[f], from, to) : std::nullopt;
+      if (!here || (met && *met != *here)) return true;
+      met = here;
+      return false;
+    });
+  });
+  return met.has_value() && !meets_more;
 }
 
 bool InsideGrid::comes_near(const Hip& from, const Hip& to, double near) const {

@@ -31,6 +31,9 @@ class InsideGrid {
   // Of a straight way, from anywhere to anywhere.
   [[nodiscard]] Crossing crossing(const Hip& from, const Hip& to) const;
 
+  // Whether a way comes from outside, meets one edge or one corner exactly and nothing else, and ends outside.
+  [[nodiscard]] bool grazes(const Hip& from, const Hip& to) const;
+
   // Whether the surface comes as near to a straight way as that, both ends of the way included. In long double.
   [[nodiscard]] bool comes_near(const Hip& from, const Hip& to, double near) const;
 

@@ -28,9 +28,10 @@ constexpr std::uint32_t kCarried = FDCG_RESULT_TRANSITION_BOUND | FDCG_RESULT_SW
 }  // namespace
 
 std::string_view name_of(Fault fault) {
-  constexpr std::string_view kNames[] = {"nan",      "rule-bound",  "sweep-bound", "growth",   "push-through", "unseen",
-                                         "thin-air", "off-surface", "pull",        "restless", "descent",      "free-air",
-                                         "no-force", "report",      "force",       "friction", "wrong-face",   "uncertified"};
+  constexpr std::string_view kNames[] = {"nan",      "rule-bound", "sweep-bound", "growth", "push-through",
+                                         "unseen",   "thin-air",   "off-surface", "pull",   "restless",
+                                         "descent",  "free-air",   "no-force",    "report", "force",
+                                         "friction", "wrong-face", "uncertified", "stalled"};
   static_assert(std::size(kNames) == kFaults);
   return kNames[static_cast<std::size_t>(fault)];
 }
@@ -77,6 +78,7 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const Hip& hip_m, const f
     look_at_result(tick, hip_m);
     if ((result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0) tick.faults |= bit(Fault::rule_bound);
     if ((result.flags & FDCG_RESULT_SWEEP_BOUND) != 0) tick.faults |= bit(Fault::sweep_bound);
+    look_at_carried(tick);
     if (before.started != 0 && (last_flags_ & FDCG_RESULT_SWEEP_BOUND) == 0) {
       if (after.state != FDCG_FREE) look_at_growth(tick, v);
       if (is_same(before.hip, after.hip)) look_at_rest(tick, v);
@@ -155,6 +157,16 @@ void Judge::look_at_rest(Tick& tick, Verdicts& v) const {
   if (nearer > allowed || is_moving) tick.faults |= bit(Fault::restless);
 }
 
+// Whatever the rules leave for the next tick, each move takes the god-object nearer: no circle (contact-model TICK-5, BOUND-1).
+void Judge::look_at_carried(Tick& tick) {
+  const auto is_at_work = [](std::uint32_t flags) { return (flags & FDCG_RESULT_TRANSITION_BOUND) != 0; };
+  const bool is_held = is_same(tick.before.hip, tick.after.hip) && is_at_work(last_flags_) && is_at_work(tick.result.flags);
+  const bool gets_nowhere =
+      is_held && long_length(tick.god_object, tick.hip) >= long_length(hip_of(tick.before.god_object), tick.hip);
+  stalled_ = gets_nowhere ? stalled_ + 1 : 0;
+  if (stalled_ >= kMostStalled) tick.faults |= bit(Fault::stalled);
+}
+
 void Judge::look_at_feature(Tick& tick, Verdicts& v) const {
   double off = 0;
   const Hip& x = tick.god_object;
@@ -212,9 +224,24 @@ double Judge::in_front_of_corner(std::uint32_t corner, const Hip& x, double roun
   return front;
 }
 
+// An open corner holds nothing that every edge there leads away from (contact-model CORNER-5).
+bool Judge::is_beyond_open_corner(const Tick& tick) const {
+  const CornerShape& corner = specimen_.corners[tick.after.feature];
+  if (!corner.is_open) return false;
+  const fdcg_graph& graph = specimen_.graph();
+  std::vector<std::uint32_t> fan(fdcg_get_fan(&graph, tick.after.feature, nullptr, 0));
+  fdcg_get_fan(&graph, tick.after.feature, fan.data(), static_cast<std::uint32_t>(fan.size()));
+  const Hip t = difference(tick.hip, corner.point);
+  const double sure = kMostPull_eps * tick.rounding + deviation_;
+  return std::all_of(fan.begin(), fan.end(), [&](std::uint32_t entry) {
+    return dot(t, specimen_.edges[entry >> 1].direction) * ((entry & 1) == 0 ? 1 : -1) < -sure;
+  });
+}
+
 // How far the HIP is in front of what holds it.
 void Judge::look_at_pull(Tick& tick, Verdicts& v) const {
   const std::uint32_t feature = tick.after.feature;
+  if (tick.after.state == FDCG_VERTEX && is_beyond_open_corner(tick)) tick.faults |= bit(Fault::pull);
   double front = tick.after.state == FDCG_FACE   ? in_front_of_node(feature, tick.hip)
                  : tick.after.state == FDCG_EDGE ? in_front_of_edge(specimen_.edges[feature], tick.hip)
                                                  : in_front_of_corner(feature, tick.hip, tick.rounding);
@@ -239,6 +266,10 @@ double Judge::descent_from(const Tick& tick) const {
   if (tick.after.state == FDCG_EDGE) {
     const EdgeShape& edge = specimen_.edges[tick.after.feature];
     double most = has_friction_ ? 0 : std::abs(dot(gap, edge.direction));
+    // Where it ends, but for rounding, the corner is meant (contact-model FACE-6).
+    for (const std::uint32_t corner : edge.corner) {
+      if (!has_friction_ && is_meant(corner, edge, tick.god_object)) most = std::max(most, descent_at(corner, tick));
+    }
     const Hip t = difference(tick.hip, edge.start);
     for (const std::uint32_t n : edge.node) {  // square to the edge, into the face
       if (n == FDCG_NONE) continue;
@@ -251,10 +282,21 @@ double Judge::descent_from(const Tick& tick) const {
     }
     return most;
   }
-  const Hip& corner = specimen_.corners[tick.after.feature].point;
-  const double reach = specimen_.descent->reach(corner, tick.hip);
-  if (reach > kMostDescent_eps * tick.rounding || !specimen_.descent->begins_outside(corner, tick.hip)) return reach;
-  return distance(corner, tick.hip);
+  return descent_at(tick.after.feature, tick);
+}
+
+double Judge::descent_at(std::uint32_t corner, const Tick& tick) const {
+  const Hip& point = specimen_.corners[corner].point;
+  const double reach = specimen_.descent->reach(point, tick.hip);
+  if (reach > kMostDescent_eps * tick.rounding || !specimen_.descent->begins_outside(point, tick.hip)) return reach;
+  return distance(point, tick.hip);
+}
+
+// Whether a place on an edge is so near to a corner at its end that the corner is active by rule: half as near, since the place
+// is rounded.
+bool Judge::is_meant(std::uint32_t corner, const EdgeShape& edge, const Hip& place) const {
+  const double sum = std::abs(edge.start[0]) + std::abs(edge.start[1]) + std::abs(edge.start[2]);
+  return distance(place, specimen_.corners[corner].point) <= kEnd_eps / 2 * epsilon_ * (sum + edge.length);
 }
 
 // Where a god-object may be that is at rest.
@@ -294,8 +336,12 @@ void Judge::look_at_way(Tick& tick) {
   const InsideGrid::Crossing way = specimen_.inside->crossing(from, tick.hip);
   tick.is_way_clear = !way.is_through && !way.touches;
   if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
-  if (!tick.is_way_clear || !is_stopped) return;
-  if (tick.after.state != FDCG_FREE || !passes_busy_corner(from, tick.hip)) tick.faults |= bit(Fault::thin_air);
+  if (!is_stopped) return;
+  const bool is_held = tick.after.state != FDCG_FREE;
+  if (is_held && way.touches && !way.is_through && specimen_.inside->grazes(from, tick.hip))
+    tick.faults |= bit(Fault::thin_air);
+  if (!tick.is_way_clear) return;
+  if (is_held || !passes_busy_corner(from, tick.hip)) tick.faults |= bit(Fault::thin_air);
 }
 
 // A busy corner that a way passes within rounding may be met, to be let go in the same tick (contact-model FREE-8, CORNER-4).

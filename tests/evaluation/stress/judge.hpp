@@ -33,6 +33,7 @@ enum class Fault : std::uint8_t {
   friction,      // GO outside of the cone; moved though it holds, held though it does not; a slip flag that is not so
   wrong_face,    // left an edge for the farther of two faces that pull
   uncertified,   // without friction: no local minimum of |x - HIP|, nor for any HIP within rounding, by exact rationals
+  stalled,       // work carried over that gets nowhere: the same HIP in tick after tick, and GO no nearer
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
@@ -46,13 +47,15 @@ std::optional<Fault> fault_named(std::string_view name);
 inline constexpr double kMostGrowth_eps = 16;
 inline constexpr double kSlab_eps = 8;  // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostOffSurface_eps = 64;
+inline constexpr double kEnd_eps = 8;  // of an edge's start and length: so near to its end a corner is active (FACE-6, EDGE-6)
 inline constexpr double kMostRestless_eps = 16;
-inline constexpr double kMostPull_eps = 32;      // of a plane's distance, as the step bounds its own rounding
-inline constexpr double kMostFriction_eps = 64;  // times 1 + mu: as GO may be off its feature
-inline constexpr double kMostDescent_eps = 64;   // how far the way down may lead, as GO may be off its feature
-inline constexpr double kShallow_eps = 4;        // of the size: a HIP so near to the surface may be taken for outside
-inline constexpr double kPerDeviation = 4;       // where merging moved faces: so many times the largest deviation as well
-inline constexpr double kAirPerDeviation = 16;   // ... and how far from its feature a hand that is let go would be in free air
+inline constexpr double kMostPull_eps = 32;       // of a plane's distance, as the step bounds its own rounding
+inline constexpr double kMostFriction_eps = 64;   // times 1 + mu: as GO may be off its feature
+inline constexpr double kMostDescent_eps = 64;    // how far the way down may lead, as GO may be off its feature
+inline constexpr std::uint32_t kMostStalled = 4;  // ticks that carry work over and get nowhere
+inline constexpr double kShallow_eps = 4;         // of the size: a HIP so near to the surface may be taken for outside
+inline constexpr double kPerDeviation = 4;        // where merging moved faces: so many times the largest deviation as well
+inline constexpr double kAirPerDeviation = 16;    // ... and how far from its feature a hand that is let go would be in free air
 
 struct Verdicts {
   std::array<std::uint64_t, kFaults> count{};
@@ -76,7 +79,7 @@ class Judge {
 
   // A new contact: nothing is known of where its HIP is.
   void begin(const fdcg_params& params) {
-    is_known_outside_ = is_outside_ = false, last_flags_ = 0, carried_ = 0;
+    is_known_outside_ = is_outside_ = false, last_flags_ = 0, carried_ = stalled_ = 0;
     has_friction_ = params.mu_static > 0 || params.mu_dynamic > 0;
     params_ = params;
   }
@@ -120,10 +123,14 @@ class Judge {
   void look_at_feature(Tick& tick, Verdicts& v) const;
   [[nodiscard]] double in_front_of_node(std::uint32_t node, const Hip& x) const;
   [[nodiscard]] double in_front_of_edge(const EdgeShape& edge, const Hip& x) const;
+  [[nodiscard]] bool is_beyond_open_corner(const Tick& tick) const;
   [[nodiscard]] double in_front_of_corner(std::uint32_t corner, const Hip& x, double rounding) const;
   void look_at_pull(Tick& tick, Verdicts& v) const;
   void look_at_rest(Tick& tick, Verdicts& v) const;
+  void look_at_carried(Tick& tick);
   [[nodiscard]] double descent_from(const Tick& tick) const;
+  [[nodiscard]] double descent_at(std::uint32_t corner, const Tick& tick) const;
+  [[nodiscard]] bool is_meant(std::uint32_t corner, const EdgeShape& edge, const Hip& place) const;
   bool look_at_descent(Tick& tick, Verdicts& v) const;  // false: it has no say there
   [[nodiscard]] double turned(double edge_length, double depth) const;
   void look_at_place(Tick& tick, Verdicts& v);
@@ -150,6 +157,7 @@ class Judge {
   std::size_t asked_ = 0;         // in crowded cells
   std::uint32_t last_flags_ = 0;  // of the last tick with a finite HIP
   std::uint64_t carried_ = 0;     // ticks in a row
+  std::uint32_t stalled_ = 0;     // ... of a held HIP, in which the god-object came no nearer
 };
 
 }  // namespace fdcg::test

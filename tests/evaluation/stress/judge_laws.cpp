@@ -193,6 +193,7 @@ bool Judge::moves_by_coulomb(const Tick& tick, const Rubbing& rubbing, bool is_s
   const double holding =
       was_slipping ? static_cast<double>(kWayOfStickAgain) * params_.mu_dynamic * load : params_.mu_static * load;
   if (reach < holding - slack) return is_still && !is_slipping;
+  if (was_slipping && reach > holding + slack && !is_slipping) return false;
   const double sliding = was_slipping ? params_.mu_dynamic * load : params_.mu_static * load;
   if (!(reach > sliding + slack)) return true;  // either, within rounding
   if (!is_slipping || std::abs(gap - params_.mu_dynamic * load) > slack) return false;

@@ -263,7 +263,7 @@ void write_row(Table& table, const Row& row, const BlockResult& r, double second
             count_of(r, Fault::restless), v.worst_restless_eps, v.worst_inside_eps, count_of(r, Fault::descent),
             v.worst_descent_eps, count_of(r, Fault::free_air), count_of(r, Fault::report), count_of(r, Fault::force),
             count_of(r, Fault::friction), count_of(r, Fault::wrong_face), count_of(r, Fault::uncertified), v.certified,
-            v.carried, v.slit, v.other, hexadecimal(r.hash), seconds);
+            count_of(r, Fault::stalled), v.carried, v.slit, v.other, hexadecimal(r.hash), seconds);
 }
 
 // The case with the largest share of contact ticks whose place nothing judges.
@@ -297,6 +297,7 @@ int judge_whole(const BlockResult& r, const Unjudged& unjudged, const std::strin
   none("edges left for the farther face", count_of(r, Fault::wrong_face));
   none("rests without friction that are no minimum, by exact rationals", count_of(r, Fault::uncertified),
        "of " + std::to_string(r.verdicts.certified) + " asked");
+  none("work carried over that gets nowhere", count_of(r, Fault::stalled));
   none("NaN or infinite results", count_of(r, Fault::not_a_number));
   bars.at_most("god-object off its feature", r.verdicts.worst_off_surface_eps, kMostOffSurface_eps, "eps of the scale");
   none("forces that pull", count_of(r, Fault::pull));
@@ -355,6 +356,7 @@ int run(const Options& options, const std::string& program) {
                "wrong_face",
                "uncertified",
                "certified",
+               "stalled",
                "unjudged_carried",
                "unjudged_slit",
                "unjudged_other",

@@ -86,7 +86,7 @@ void Specimen::read_corners() {
   }
   for (std::uint32_t c = 0; c < header().corner_count; ++c) {
     const fdcg_corner_info corner = fdcg_get_corner(&g, c);
-    corners.push_back({hip_of(corner.point), hip_of(corner.normal)});
+    corners.push_back({hip_of(corner.point), hip_of(corner.normal), false});
     if (points.count(corners.back().point) == 0) throw std::runtime_error("a corner of the graph is no point of its source");
     if (corner.fan_count > FDCG_BUSY_FAN) busy_points.push_back(corners.back().point);
   }
@@ -113,7 +113,9 @@ void Specimen::read_shapes() {
     const double length = distance(start, end);
     const bool is_rim = c.node[1] == FDCG_NONE;
     const auto type = is_rim ? static_cast<std::uint32_t>(FDCG_BOUNDARY) : type_between(c.node[0], c.node[1], c.type);
-    edges.push_back({start, unit_way(start, end), length, type, {c.node[0], c.node[1]}});
+    edges.push_back({start, unit_way(start, end), length, type, {c.corner[0], c.corner[1]}, {c.node[0], c.node[1]}});
+    for (const std::uint32_t corner : c.corner)
+      corners[corner].is_open = corners[corner].is_open || is_rim;
   }
 }
 

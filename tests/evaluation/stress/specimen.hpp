@@ -48,11 +48,13 @@ struct Rim {  // a Voronoi plane
 struct EdgeShape {
   Hip start, direction;
   double length;
-  std::uint32_t type;     // fdcg_connection_type
+  std::uint32_t type;  // fdcg_connection_type
+  std::uint32_t corner[2];
   std::uint32_t node[2];  // node[1] FDCG_NONE on a boundary
 };
 struct CornerShape {
   Hip point, normal;
+  bool is_open;  // on a boundary
 };
 
 // Throws std::runtime_error where the compiler refuses the body.

@@ -76,6 +76,30 @@ class Block {
     result_.transitions += out.transitions;
     result_.hash = hashed(result_.hash, contact_, out);
     if (faults != 0) report(faults);
+    if ((out.flags & FDCG_RESULT_TRANSITION_BOUND) != 0) look_where_work_ends(hip_m);
+  }
+
+  // Work that was carried over, on a copy: the HIP held, until it is done or the judge says that it never will be.
+  void look_where_work_ends(const Hip& hip_m) {
+    constexpr int kMostHeld = 8;
+    const std::size_t ticks = path_.size();
+    Judge judge = judge_;
+    fdcg_contact contact = contact_;
+    Verdicts verdicts;
+    bool is_stalled = false;
+    for (int i = 0; i < kMostHeld && !is_stalled; ++i) {
+      const fdcg_contact before = contact;
+      fdcg_result out;
+      fdcg_step(&specimen_.graph(), &params_, &contact, hip_m.data(), &out);
+      path_.push_back(hip_m);
+      is_stalled = (judge.judge(before, hip_m, contact, out, verdicts) & bit(Fault::stalled)) != 0;
+      if ((out.flags & FDCG_RESULT_TRANSITION_BOUND) == 0) break;
+    }
+    if (is_stalled) {
+      ++result_.verdicts.count[static_cast<std::size_t>(Fault::stalled)];
+      report(bit(Fault::stalled));
+    }
+    path_.resize(ticks);
   }
 
   void report(std::uint32_t faults) {
