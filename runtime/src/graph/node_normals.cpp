@@ -9,7 +9,8 @@ namespace fdcg {
 Vec3<double> normal_at_corner(const fdcg_node_normals& normals, uint32_t k, Vec3<double> normal) {
   if (k > 2 || is_flat_code(normals.corner[k])) return normal;
   const Vec3<double> found = octahedral_decoded(normals.corner[k]);
-  return dot(found, normal) >= kLeastLean ? found : normal;
+  if (!(dot(found, normal) >= kLeastLean)) return normal;
+  return by_parts(found);
 }
 
 }  // namespace fdcg

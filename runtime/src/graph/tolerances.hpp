@@ -200,6 +200,10 @@ inline constexpr double kSmoothAcross = 0x1p-12;
 // a god-object is not moved for less than the slack; a bulge as round as the god-object is deep, but for kLeastBend, has no
 // stable place. Beyond a side the sum of normals may turn over: so much along the face's normal must be left of it.
 inline constexpr double kShadingLastMiss = 0x1p-20, kShadingSlack = 0x1p-34, kLeastBend = 1.0 / 16, kLeastUp = 0.25;
+// SHADE-7: the short ways' last steps leave less than mu times this of the depth, and without friction less than this share of
+// the way from the HIP's foot.
+inline constexpr double kShadingLeftWithFriction = 0x1p-36, kShadingLeftAtOnce = 0x1p-32;
+inline constexpr int kMostStepsAtOnce = 4, kMostDeeper = 4;  // than in the last tick
 // SHADE-2: where the normal leans away from the force the load counts as this share of the depth.
 inline constexpr double kLeastLoadShare = 0.25;
 inline constexpr int kMostShadingSteps = 16;

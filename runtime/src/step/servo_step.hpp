@@ -359,17 +359,21 @@ template <class Geometry, class Real = typename Geometry::Real>
 // A tick of a contact that stays on shaded faces, and its account (contact-model SHADE-5). False: it may not, and nothing has
 // changed but the field that it keeps.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] bool step_on_shaded_faces(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
+[[gnu::noinline, gnu::hot]] bool step_on_shaded_faces(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& at,
                                                       fdcg_contact* contact, fdcg_result* result) {
   ContactInternals& inner = internals_of(*contact);
   const double own = params.stiffness_n_per_m, kept = inner.stiffness_n_per_m;
   if (raw.normals == nullptr || contact->state != FDCG_FACE || !(kept > 0)) return false;
-  const Vec3<Real> god_object = narrow<Real>(contact->god_object);
-  ShadedTick<Real> tick = {contact->feature, FDCG_NONE, 0, god_object, friction_of<Real>(params, *contact), false,
-                           &inner.field};
-  if (!slides_on_shaded_faces<Geometry>(raw, hip, &tick)) return false;
-  const Vec3<double> local_hip = widen(hip), was = widen(god_object), spring = widen(tick.god_object) - local_hip;
-  const Vec3<double> before = was - local_hip, last = was - vec(contact->hip);
+  const Vec3<Real> hip = by_parts(at);
+  const Vec3<double> local_hip = widen(hip), was = vec(contact->god_object), last = was - vec(contact->hip);
+  ShadedTick<Real> tick;
+  tick.node = contact->feature;
+  tick.edge = FDCG_NONE;
+  tick.transitions = 0;
+  tick.god_object = narrow<Real>(contact->god_object);
+  if (!slides_on_shaded_faces<Geometry>(raw, hip, last, friction_of<Real>(params, *contact), &inner.field, &tick)) return false;
+  const Vec3<Real> god_object = by_parts(tick.god_object);
+  const Vec3<double> before = was - local_hip, spring = widen(god_object) - local_hip;
   const double may = may_store(kept, own, dot(before, before), dot(last, last));
   inner.stiffness_n_per_m = kept_stiffness(kept, own, may, dot(spring, spring), tick.is_rest);
   spring_damper_force(*raw.header, params, *contact, smaller(inner.stiffness_n_per_m, own), local_hip, spring, result);
@@ -377,9 +381,9 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (!tick.is_rest) inner.seat_state = FDCG_FREE, inner.seat_feature = FDCG_NONE;
   inner.sweep.stalled_sweeps = 0;
   contact->feature = tick.node;
-  contact->slipping = tick.friction.is_slipping ? 1 : 0;
+  contact->slipping = tick.is_slipping ? 1 : 0;
   result->transitions = tick.transitions;
-  store(tick.god_object, contact->god_object);
+  store(god_object, contact->god_object);
   store(hip, contact->hip);
   write_position(*raw.header, *contact, result);
   return true;
@@ -407,14 +411,15 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // The same, but for ticks that are plainly shaded.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] void step_with_flags(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
-                                                 fdcg_contact* contact, fdcg_result* result) {
+FDCG_HOT void step_with_flags(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip, fdcg_contact* contact,
+                              fdcg_result* result) {
+  const Vec3<Real> at = by_parts(hip);  // of its own, so that other ways keep nothing in memory
   if constexpr (kShades<Geometry>) {
     if (params.friction_flags == FDCG_FRICTION_SHADING &&
-        step_on_shaded_faces<Geometry, Real>(raw, params, hip, contact, result))
+        step_on_shaded_faces<Geometry, Real>(raw, params, at, contact, result))
       return;
   }
-  step_with_terms<Geometry>(raw, params, hip, contact, result);
+  step_with_terms<Geometry>(raw, params, at, contact, result);
 }
 
 // Not on a mesh whose corners move, where work is counted as numbers are renewed, nor where a test takes rules out; and a

@@ -12,9 +12,13 @@ template <class Geometry>
 inline constexpr bool kShades = FDCG_WITH_SHADING&& Geometry::kKeepsDirections;
 
 template <class Geometry>
-inline FaceFrame frame_of(NodeRef<Geometry> node) {
+FDCG_HOT FaceFrame quick_frame_of(NodeRef<Geometry> node) {
   const Vec3<double> normal = widen(node.normal()), across = widen(node.voronoi_plane(0).normal) * -1.0;
   return {cross(across, normal), across, normal};
+}
+template <class Geometry>
+[[gnu::noinline]] FaceFrame frame_of(NodeRef<Geometry> node) {
+  return quick_frame_of(node);
 }
 
 // False: no face to interpolate over.

@@ -14,6 +14,12 @@ inline double dot(Flat x, Flat y) {
   return x.p * y.p + x.q * y.q;
 }
 
+// A direction: so much along the face for one unit along its normal, and how that changes with a place.
+struct Lean {
+  Flat along, per_p, per_q;
+  double up;  // the sum's part along the normal
+};
+
 FDCG_HOT Lean lean_at(Vec3<double> at_foot, Vec3<double> per_p, Vec3<double> per_q, Flat x) {
   const Vec3<double> sum = at_foot + per_p * x.p + per_q * x.q;
   const double over = 1 / sum.z, p = sum.x * over, q = sum.y * over;
@@ -50,15 +56,67 @@ FDCG_HOT Target target_for(Flat god_object, double depth, Flat lean, double mu) 
           {lean.p * by_lean + from_axis.p * by_far + (from_axis.p - axis.p) * by_tilt,
            lean.q * by_lean + from_axis.q * by_far + (from_axis.q - axis.q) * by_tilt}};
 }
+FDCG_HOT Target target_of(const ShadedSpot& spot, Flat lean, double mu) {
+  if (mu > 0) return target_for(spot.god_object, spot.depth, lean, mu);
+  return {{lean.p * spot.depth, lean.q * spot.depth}, spot.depth, {0, 0}, {0, 0}};
+}
 
 // One step of Newton's method for the x to which the lean at x leads; at the present x the lean leads to `place` instead.
-FDCG_HOT Flat improved(Flat x, Flat place, Flat p, Flat q) {
-  const Flat miss = {place.p - x.p, place.q - x.q};
+FDCG_HOT Flat improved(Flat x, const Target& target, const Lean& lean) {
+  const double pull_p = dot(target.pull, lean.per_p), pull_q = dot(target.pull, lean.per_q);
+  const Flat p = {lean.per_p.p * target.swing + target.from_axis.p * pull_p,
+                  lean.per_p.q * target.swing + target.from_axis.q * pull_p};
+  const Flat q = {lean.per_q.p * target.swing + target.from_axis.p * pull_q,
+                  lean.per_q.q * target.swing + target.from_axis.q * pull_q};
+  const Flat place = target.place, miss = {place.p - x.p, place.q - x.q};
   const double pp = 1 - p.p, qq = 1 - q.q, size = pp * qq - q.p * p.q;
   if (!(size > kLeastBend)) return place;
   const double over = 1 / size;
   return {x.p + (miss.p * qq + q.p * miss.q) * over, x.q + (pp * miss.q + miss.p * p.q) * over};
 }
+
+inline double squared_miss(Flat x, Flat place) {
+  return square(place.p - x.p) + square(place.q - x.q);
+}
+
+// A place x where a slip with a coefficient ends, and how far it is from that: on the cone about the sum S(x), |f x S| = mu f.S
+// with f = (x, depth), and on the line from the god-object to the axis; both without a root or a division, in squared lengths.
+struct SlipMiss {
+  double off_cone, off_line;
+};
+struct SlipEquations {
+  Vec3<double> sum, per_p, per_q;
+  Flat god_object;
+  double depth, grip;  // 1 + mu^2
+
+  struct Place {
+    Vec3<double> way, sum;
+    double size2, far2, push, turn;
+    Flat back;  // from the god-object
+  };
+  [[nodiscard]] FDCG_HOT Place at(Flat x) const {
+    const Vec3<double> way = {x.p, x.q, depth}, here = sum + per_p * x.p + per_q * x.q;
+    return {way,
+            here,
+            dot(here, here),
+            dot(way, way),
+            dot(way, here),
+            x.p * god_object.q - x.q * god_object.p,
+            {x.p - god_object.p, x.q - god_object.q}};
+  }
+  [[nodiscard]] FDCG_HOT SlipMiss miss(const Place& at) const {
+    return {at.far2 * at.size2 - grip * (at.push * at.push),
+            at.sum.z * at.turn - depth * (at.back.p * at.sum.y - at.back.q * at.sum.x)};
+  }
+  // How the misses change with x; `along`: x.p or x.q, `across`: 1 along p and -1 along q.
+  [[nodiscard]] FDCG_HOT SlipMiss change(const Place& at, Vec3<double> per, double along, Flat unit) const {
+    const double cone = along * at.size2 + at.far2 * dot(at.sum, per) -
+                        grip * at.push * ((unit.p * at.sum.x + unit.q * at.sum.y) + dot(at.way, per));
+    const double line = (unit.p * god_object.q - unit.q * god_object.p) * at.sum.z + per.z * at.turn -
+                        depth * ((unit.p * at.sum.y - unit.q * at.sum.x) + (at.back.p * per.y - at.back.q * per.x));
+    return {2 * cone, line};
+  }
+};
 
 }  // namespace
 
@@ -83,58 +141,92 @@ Vec3<double> normal_at(const FaceFrame& frame, const NormalField& field, Vec3<do
   return found * (1 / norm(found));
 }
 
-// The spring is the god-object's place along the plane and the depth along its normal; the normal felt is the lean and 1.
 void look_at_spot(const FaceFrame& frame, const NormalField& field, Vec3<double> hip, Vec3<double> spring, double depth,
                   double slack, ShadedSpot* spot) {
-  spot->frame = &frame;
-  const Vec3<double> at_foot = field.at(frame.flat(hip)), per_p = field.per_p, per_q = field.per_q;
+  const Vec3<double> at_foot = field.at(frame.flat(hip));
   const Flat god_object = frame.flat(spring);
-  const Lean lean = lean_at(at_foot, per_p, per_q, god_object);
-  const double stretch2 = 1 + dot(lean.along, lean.along), over = 1 / stretch2, along = dot(god_object, lean.along) + depth;
-  const double up = along * over, beside_p = god_object.p - lean.along.p * up, beside_q = god_object.q - lean.along.q * up;
-  const double across2 = square(beside_p) + square(beside_q) + square(depth - up);
-  spot->load = larger(up * root(stretch2), depth * kLeastLoadShare);
-  spot->excess2 = larger(across2 * (1 - 2 * kShadingSlack) - square(kShadingSlack * spot->load + slack), 0);
-  spot->at_foot = at_foot;
-  spot->per_p = per_p;
-  spot->per_q = per_q;
-  spot->god_object = god_object;
+  const Vec3<double> way = {god_object.p, god_object.q, depth};
+  const Vec3<double> sum = at_foot + field.per_p * god_object.p + field.per_q * god_object.q, across = cross(way, sum);
+  const double size2 = dot(sum, sum), size = root(size2);
+  const double load = larger(dot(way, sum), depth * kLeastLoadShare * size);
+  spot->at_foot = by_parts(at_foot);
+  spot->god_object.p = god_object.p;
+  spot->god_object.q = god_object.q;
   spot->depth = depth;
-  spot->lean = lean;
+  spot->size2 = size2;
+  spot->load = load;
+  spot->excess2 = larger(dot(across, across) * (1 - 2 * kShadingSlack) - square(kShadingSlack * load + slack * size), 0);
 }
 
-// contact-model SHADE-3: from the god-object. A step whose miss is below the root of what counts as rest is the last: the next
-// one's would be below it.
-Vec3<double> slip_from(const ShadedSpot& spot, double mu) {
-  const Vec3<double> at_foot = spot.at_foot, per_p = spot.per_p, per_q = spot.per_q;
-  const double depth = spot.depth, enough2 = square(kShadingLastMiss * depth);
-  Flat x = spot.god_object;
-  Lean lean = spot.lean;
-  for (int step = 0; step < kMostShadingSteps; ++step) {
-    Flat place = {lean.along.p * depth, lean.along.q * depth}, p, q;
-    const Flat was = x;
-    if (mu > 0) {
-      const Target target = target_for(spot.god_object, depth, lean.along, mu);
-      const double pull_p = dot(target.pull, lean.per_p), pull_q = dot(target.pull, lean.per_q);
-      place = target.place;
-      p = {lean.per_p.p * target.swing + target.from_axis.p * pull_p,
-           lean.per_p.q * target.swing + target.from_axis.q * pull_p};
-      q = {lean.per_q.p * target.swing + target.from_axis.p * pull_q,
-           lean.per_q.q * target.swing + target.from_axis.q * pull_q};
-    } else {
-      p = {lean.per_p.p * depth, lean.per_p.q * depth};
-      q = {lean.per_q.p * depth, lean.per_q.q * depth};
-    }
-    x = improved(x, place, p, q);
-    if (square(place.p - was.p) + square(place.q - was.q) <= enough2) break;
-    const Lean next = lean_at(at_foot, per_p, per_q, x);
-    if (!(next.up >= kLeastUp)) {
-      x = place;
-      break;
-    }
-    lean = next;
+bool slips_near(const ShadedSpot& spot, const NormalField& field, Flat last, double was_depth, double mu, Flat* place) {
+  const double depth = spot.depth;
+  if (!(kMostDeeper * was_depth >= depth)) return false;
+  const double deeper = depth / was_depth;
+  const Flat gone = {depth * (last.p - spot.god_object.p), depth * (last.q - spot.god_object.q)};
+  const Flat near = {last.p * deeper + (field.per_p.x * gone.p + field.per_q.x * gone.q),
+                     last.q * deeper + (field.per_p.y * gone.p + field.per_q.y * gone.q)};
+  const SlipEquations equations = {by_parts(spot.at_foot),
+                                   by_parts(field.per_p),
+                                   by_parts(field.per_q),
+                                   {spot.god_object.p, spot.god_object.q},
+                                   depth,
+                                   1 + mu * mu};
+  const SlipEquations::Place at = equations.at(near);
+  const SlipMiss miss = equations.miss(at), p = equations.change(at, field.per_p, near.p, {1, 0}),
+                 q = equations.change(at, field.per_q, near.q, {0, 1});
+  const double size = p.off_cone * q.off_line - q.off_cone * p.off_line;
+  if (!(absolute(size) >= kLeastBend * ((mu * depth) * (mu * depth)))) return false;
+  const double over = 1 / size;
+  const auto step = [&](SlipMiss by) {
+    return Flat{(q.off_cone * by.off_line - q.off_line * by.off_cone) * over,
+                (p.off_line * by.off_cone - p.off_cone * by.off_line) * over};
+  };
+  const Flat first = step(miss);
+  const double first2 = first.p * first.p + first.q * first.q, enough = kShadingLeftWithFriction * mu * (depth * depth);
+  if (!(first2 <= depth * depth)) return false;
+  Flat x = {near.p + first.p, near.q + first.q};
+  for (int more = 0; more < kMostStepsAtOnce; ++more) {
+    const SlipEquations::Place then = equations.at(x);
+    const Flat by = step(equations.miss(then));
+    const double by2 = by.p * by.p + by.q * by.q;
+    if (!(by2 <= first2)) return false;
+    x = {x.p + by.p, x.q + by.q};
+    // the next one would be less by about the first's share of the circle
+    if (!(first2 * by2 <= enough * enough)) continue;
+    *place = {x.p, x.q};
+    // Between the axis and the god-object, all in the sum's length.
+    const double w = then.sum.z;
+    const Flat axis = {depth * then.sum.x, depth * then.sum.y}, from_axis = {w * x.p - axis.p, w * x.q - axis.q};
+    const Flat whole = {w * spot.god_object.p - axis.p, w * spot.god_object.q - axis.q};
+    const double share = from_axis.p * whole.p + from_axis.q * whole.q, all = whole.p * whole.p + whole.q * whole.q;
+    const int is_between = share > 0, is_short = share < all, is_high = w >= 2 * kLeastUp;
+    return (is_between & is_short & is_high) != 0;
   }
-  return spot.frame->normal * depth + spot.frame->along * x.p + spot.frame->across * x.q;
+  return false;
+}
+
+Flat slip_from_there(const FaceFrame& frame, const NormalField& field, Vec3<double> hip, Vec3<double> spring, double depth,
+                     double mu) {
+  ShadedSpot spot;
+  look_at_spot(frame, field, hip, spring, depth, 0, &spot);
+  return slip_from(spot, field, spot.god_object, mu);
+}
+
+// contact-model SHADE-3. A step whose miss is below the root of what counts as rest is the last: the next one's would be below
+// it.
+Flat slip_from(const ShadedSpot& spot, const NormalField& field, Flat near, double mu) {
+  const double enough2 = square(kShadingLastMiss * spot.depth);
+  Flat x = near;
+  Lean lean = lean_at(spot.at_foot, field.per_p, field.per_q, x);
+  for (int step = 0; step < kMostShadingSteps; ++step) {
+    const Target target = target_of(spot, lean.along, mu);
+    const double miss2 = squared_miss(x, target.place);
+    x = improved(x, target, lean);
+    if (miss2 <= enough2) break;
+    lean = lean_at(spot.at_foot, field.per_p, field.per_q, x);
+    if (!(lean.up >= kLeastUp)) return target.place;
+  }
+  return x;
 }
 
 }  // namespace fdcg

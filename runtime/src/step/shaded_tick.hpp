@@ -17,10 +17,9 @@ struct ShadedTick {
   uint32_t node;
   uint32_t edge;         // the last that it went over, or FDCG_NONE
   uint32_t transitions;  // edges crossed
+  bool is_slipping;
+  bool is_rest;  // friction holds it: it slides to no place on the last face
   Vec3<Real> god_object;
-  PlainFriction<Real> friction;
-  bool is_rest;      // friction holds it: it slides to no place on the last face
-  KeptField* field;  // of the node, where of_node says so
 };
 
 static_assert(sizeof(NormalField) == sizeof(KeptField::normals) && alignof(NormalField) == alignof(double));
@@ -28,17 +27,16 @@ inline NormalField& normals_of(KeptField& kept) {
   return *reinterpret_cast<NormalField*>(kept.normals);
 }
 
-// The field of the tick's node; a flat one has its own normal. False: there is none.
-template <class Geometry, class Real = typename Geometry::Real>
-inline bool keep_field(const fdcg_graph& raw, const GraphView<Geometry>& graph, NodeRef<Geometry> node, const FaceFrame& frame,
-                       const ShadedTick<Real>& tick) {
-  KeptField& kept = *tick.field;
-  if (kept.of_node == uint64_t{tick.node} + 1) return true;
-  const fdcg_node_normals& normals = raw.normals[tick.node];
-  kept.of_node = 0;
-  normals_of(kept) = {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}};
-  if (!is_flat(normals) && !make_field(graph, node, frame, normals, &normals_of(kept))) return false;
-  kept.of_node = uint64_t{tick.node} + 1;
+// Keeps the field of a node; a flat one has its own normal. False: there is none.
+template <class Geometry>
+[[gnu::noinline]] bool make_kept_field(const fdcg_graph& raw, const GraphView<Geometry>& graph, uint32_t index,
+                                       KeptField* kept) {
+  const NodeRef<Geometry> node = graph.node(index);
+  const fdcg_node_normals& normals = raw.normals[index];
+  kept->of_node = 0;
+  normals_of(*kept) = {{0, 0, 1}, {0, 0, 0}, {0, 0, 0}};
+  if (!is_flat(normals) && !make_field(graph, node, frame_of(node), normals, &normals_of(*kept))) return false;
+  kept->of_node = uint64_t{index} + 1;
   return true;
 }
 
@@ -50,7 +48,7 @@ inline bool is_same_code(const uint16_t (&a)[2], const uint16_t (&b)[2]) {
 // False: not plainly so.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] bool hop_over_smooth_edge(const fdcg_graph& raw, const GraphView<Geometry>& graph, Crossing<Real> crossing,
-                                            Vec3<Real> target, ShadedTick<Real>* tick) {
+                                            const Vec3<Real>& target, ShadedTick<Real>* tick) {
   const NodeRef<Geometry> here = graph.node(tick->node);
   const uint32_t k = crossing.local_side;
   const fdcg_side& crossed = here.side(k);
@@ -67,35 +65,44 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Vec3<Real> direction = vec(edge.direction);
   const Real u = dot(landed - start, direction), end_tolerance = end_rounding(start, edge.length);
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return false;
-  tick->god_object = start + direction * u;
+  tick->god_object = by_parts(start + direction * u);
   tick->node = crossed.across;
   tick->edge = crossed.link >> 1;
   ++tick->transitions;
   return true;
 }
 
-// From where the contact stands, on tick->node, to where it comes to rest or slides. False: the rules are to be asked.
+// From where the contact stands, on tick->node, to where it comes to rest or slides; `last`: from the HIP to the god-object
+// after the last tick. False: the rules are to be asked. What is not for an edge that is crossed stays in registers: numbers
+// stored one by one, and copied two at once, take as long as a step of Newton's.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] bool slides_on_shaded_faces(const fdcg_graph& raw, Vec3<Real> hip, ShadedTick<Real>* tick) {
+FDCG_HOT bool slides_on_shaded_faces(const fdcg_graph& raw, Vec3<Real> hip, Vec3<double> last, PlainFriction<Real> friction,
+                                     KeptField* field, ShadedTick<Real>* tick) {
   const GraphView<Geometry> graph(raw);
   const Real bound = plane_rounding_bound(graph, hip);
   if (is_far(graph, hip)) return false;
-  while (tick->transitions < kMostShadedHops) {
-    const NodeRef<Geometry> node = graph.node(tick->node);
+  uint32_t index = tick->node;
+  Vec3<Real> god_object = by_parts(tick->god_object);
+  for (uint32_t hops = 0; hops < kMostShadedHops; ++hops) {
+    const NodeRef<Geometry> node = graph.node(index);
     const Real side = node.plane().distance(hip);
     if (!(side < -bound)) return false;
-    const FaceFrame frame = frame_of(node);
-    if (!keep_field(raw, graph, node, frame, *tick)) return false;
+    if (field->of_node != uint64_t{index} + 1 && !make_kept_field(raw, graph, index, field)) return false;
     Vec3<Real> target;
-    tick->is_rest =
-        rests_on_shaded_face(frame, normals_of(*tick->field), tick->friction, tick->god_object, hip, -side, &target);
-    if (tick->is_rest) return tick->transitions == 0;
-    const Crossing<Real> crossing = first_crossing(node, tick->god_object, target, bound);
+    const bool is_rest =
+        rests_while_shaded(quick_frame_of(node), normals_of(*field), &friction, god_object, hip, -side, last, &target);
+    tick->is_rest = is_rest;
+    tick->is_slipping = friction.is_slipping;
+    if (is_rest) return hops == 0;
+    const Crossing<Real> crossing = first_crossing(node, god_object, target, bound);
     if (crossing.local_side == FDCG_NONE) {
-      tick->god_object = target;
+      tick->god_object = by_parts(target);
       return is_usable(target);
     }
-    if (!hop_over_smooth_edge(raw, graph, crossing, target, tick)) return false;
+    const Vec3<Real> beyond = by_parts(target);
+    if (!hop_over_smooth_edge(raw, graph, crossing, beyond, tick)) return false;
+    index = tick->node;
+    god_object = by_parts(tick->god_object);
   }
   return false;
 }

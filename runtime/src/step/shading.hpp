@@ -14,17 +14,61 @@ inline Vec3<Real> narrowed(Vec3<double> a) {
   return {static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z)};
 }
 
+// A place on a face given from the foot of a HIP that is so deep.
+template <class Real>
+FDCG_HOT Vec3<Real> place_of(const FaceFrame& frame, Vec3<Real> hip, double depth, Flat x) {
+  return narrowed<Real>((widen(hip) + frame.normal * depth) + (frame.along * x.p + frame.across * x.q));
+}
+// Of a god-object's own rounding (contact-model SHADE-2).
+template <class Real>
+inline double slack_of(Vec3<Real> god_object) {
+  return 4 * double{RealLimits<Real>::kEpsilon * norm1(god_object)};
+}
+
 // The part of move_on_face() that depends on the normal (contact-model SHADE-2, SHADE-3): whether `friction` lets the
 // god-object rest, or where to it slips.
 template <class Laws, class Real>
 inline bool rests_on_shaded_face(const FaceFrame& frame, const NormalField& field, Laws& friction, Vec3<Real> god_object,
                                  Vec3<Real> hip, Real depth, Vec3<Real>* target) {
   ShadedSpot spot;
-  const double slack = 4 * double{RealLimits<Real>::kEpsilon * norm1(god_object)};
-  look_at_spot(frame, field, widen(hip), widen(god_object - hip), double{depth}, slack, &spot);
-  const Slip<Real> slip = friction.slip(god_object, static_cast<Real>(spot.excess2), static_cast<Real>(spot.load));
-  *target = slip.is_rest ? god_object : narrowed<Real>(widen(hip) + slip_from(spot, slip.gap > 0 ? slip.gap / spot.load : 0));
-  return slip.is_rest;
+  look_at_spot(frame, field, widen(hip), widen(god_object - hip), double{depth}, slack_of(god_object), &spot);
+  const double over = 1 / spot.size2, load = spot.load * root(over);
+  const Slip<Real> slip = friction.slip(god_object, static_cast<Real>(spot.excess2 * over), static_cast<Real>(load));
+  *target = god_object;
+  if (slip.is_rest) return true;
+  const Flat x = slip_from(spot, field, spot.god_object, slip.gap > 0 ? slip.gap / load : 0);
+  *target = place_of(frame, hip, depth, x);
+  return false;
+}
+
+// The same without friction: what is no farther from where it slips than its slack rests.
+template <class Real>
+FDCG_HOT bool rests_without_friction(const FaceFrame& frame, const NormalField& field, PlainFriction<Real>* friction,
+                                     Vec3<Real> god_object, Vec3<Real> hip, Real depth, Vec3<Real>* target) {
+  Flat x;
+  if (!slips_at_once(frame, field, widen(hip), double{depth}, &x))
+    x = slip_from_there(frame, field, widen(hip), widen(god_object - hip), double{depth}, 0);
+  *target = place_of(frame, hip, depth, x);
+  const Vec3<double> way = widen(*target - god_object);
+  const bool is_rest = dot(way, way) <= square(kShadingSlack * double{depth} + slack_of(god_object));
+  friction->is_slipping = friction->is_slipping || !is_rest;
+  return is_rest;
+}
+
+// The same of two coefficients, where it is known from where the HIP was pulled in the last tick.
+template <class Real>
+FDCG_HOT bool rests_while_shaded(const FaceFrame& frame, const NormalField& field, PlainFriction<Real>* friction,
+                                 Vec3<Real> god_object, Vec3<Real> hip, Real depth, Vec3<double> last, Vec3<Real>* target) {
+  if (!(friction->mu_static > 0)) return rests_without_friction(frame, field, friction, god_object, hip, depth, target);
+  ShadedSpot spot;
+  look_at_spot(frame, field, widen(hip), widen(god_object - hip), double{depth}, slack_of(god_object), &spot);
+  if (friction->slip(god_object, static_cast<Real>(spot.excess2), static_cast<Real>(spot.load)).is_rest) return true;
+  const double mu = friction->mu_dynamic;
+  Flat x;
+  if (!(mu > 0) || !slips_near(spot, field, frame.flat(last), dot(frame.normal, last), mu, &x))
+    x = slip_from(spot, field, {spot.god_object.p, spot.god_object.q}, mu);
+  *target = place_of(frame, hip, depth, x);
+  return false;
 }
 
 // move_on_face() of the active contact, as its face is.
