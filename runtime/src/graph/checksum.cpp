@@ -15,6 +15,11 @@ namespace {
 
 #if defined(__SSE2__)
 
+[[gnu::always_inline]] inline __m128i both_turned(__m128i lanes) {
+  const __m128i product = _mm_mul_epu32(lanes, _mm_set1_epi64x(kFactor));
+  return _mm_xor_si128(_mm_shuffle_epi32(product, 0xB1), _mm_srli_epi64(lanes, 32));
+}
+
 struct BlockLanes {
   static constexpr int kPairs = kLaneCount / 2;
   __m128i pair[kPairs];
@@ -26,12 +31,10 @@ struct BlockLanes {
     }
   }
   [[gnu::always_inline]] void absorb(const unsigned char* stripe) {
-    const __m128i factor = _mm_set1_epi64x(kFactor);
 #pragma GCC unroll 8
     for (int i = 0; i < kPairs; ++i) {
-      const __m128i mixed = _mm_xor_si128(pair[i], _mm_loadu_si128(reinterpret_cast<const __m128i*>(stripe + 16 * i)));
-      const __m128i product = _mm_shuffle_epi32(_mm_mul_epu32(mixed, factor), 0xB1);
-      pair[i] = _mm_xor_si128(product, _mm_srli_epi64(mixed, 32));
+      const __m128i words = _mm_loadu_si128(reinterpret_cast<const __m128i*>(stripe + 16 * i));
+      pair[i] = both_turned(both_turned(_mm_xor_si128(pair[i], words)));
     }
   }
   void store(uint64_t (&lanes)[kLaneCount]) const {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The format's checksum: blocks of 4,096 bytes, each sixteen 64-bit lanes wide, each lane a chain of steps that can be undone
-// (xor with a word; the lower half times an odd number, the halves exchanged, the upper half mixed in), folded by the same
-// steps. A block's sum goes through steps that can be undone too before the sums are added up. So two inputs of one length that
-// differ inside a single word always differ in the result. It detects damage, not deliberate changes, and not all damage: the
-// upper half of a word meets the lower half of the lane's next word unmixed, so equal changes of both cancel.
+// (xor with a word; twice: the lower half times an odd number, the halves exchanged, the upper half mixed in), folded by the
+// same steps. A block's sum goes through steps that can be undone too before the sums are added up. So two inputs of one length
+// that differ inside a single word always differ in the result. After one such turn the word's upper half would stand unmixed
+// where the next word's lower half comes, and equal changes of both would cancel; after two each half has been multiplied. It
+// detects damage, not deliberate changes.
 //
-// Blocks are apart so that threads can share a section; one product of 32 bits a word is what SSE2 has, two words at once.
+// Blocks are apart so that threads can share a section; products of 32 bits are what SSE2 has, two words at once.
 #pragma once
 
 #include <stdint.h>
@@ -16,11 +17,15 @@ constexpr int kLaneCount = 16;
 constexpr uint64_t kStripe = 8 * kLaneCount;
 constexpr uint32_t kFactor = 0x9E3779B1u;              // odd, bits well mixed: a prime near 2^32 over the golden ratio
 constexpr uint64_t kMultiplier = 0x9E3779B97F4A7C15u;  // odd, bits well mixed: 2^64 over the golden ratio
-constexpr uint64_t kSeed = 0x46444347'00000002u;       // "FDCG", version of the checksum
+constexpr uint64_t kSeed = 0x46444347'00000003u;       // "FDCG", version of the checksum
+
+inline uint64_t turned(uint64_t lane) {
+  const uint64_t product = (lane & 0xFFFFFFFFu) * kFactor;
+  return (product << 32 | product >> 32) ^ lane >> 32;
+}
 
 inline uint64_t absorbed(uint64_t lane, uint64_t word) {
-  const uint64_t mixed = lane ^ word, product = (mixed & 0xFFFFFFFFu) * kFactor;
-  return (product << 32 | product >> 32) ^ mixed >> 32;
+  return turned(turned(lane ^ word));
 }
 
 // What a block adds to the sum.
