@@ -34,10 +34,11 @@ template <class Real>
     float distance2[FDCG_TREE_WAYS];
     const fdcg_box8& boxes = deform.boxes[deform.tree.first[next.level] + next.index];
     const uint32_t lanes = deform.tree.lanes(next.level, next.index);
-    uint32_t near = nearer_boxes(boxes, point, clear2, distance2) & lanes, too_loose = near;
+    uint32_t near = squared_distances(boxes, point, clear2, distance2) & lanes, too_loose = near;
     for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)
       too_loose &= ~(uint32_t{!(distance2[j] < enough2)} << j);
-    if (upkeep.has_tightened(next.level, next.index, too_loose)) near = nearer_boxes(boxes, point, clear2, distance2) & lanes;
+    if (upkeep.has_tightened(next.level, next.index, too_loose))
+      near = squared_distances(boxes, point, clear2, distance2) & lanes;
     if (next.level > 0) {
       waiting.push(next, near, distance2);
       continue;
@@ -60,7 +61,7 @@ bool find_quiet_ball(const Upkeep<Real>& upkeep, Vec3<double> hip, fdcg_deform_c
   double reach2;
   const double radius = quiet_radius(upkeep, hip, norm(hip - vec(contact->contact.god_object)), &reach2);
   if (!(radius > 0)) return false;
-  ball = {{hip.x, hip.y, hip.z}, radius * radius, 0, 0};
+  ball = {{hip.x, hip.y, hip.z}, radius * radius, 0, 0, 0};
   contact->ball = deform.watched.add({{hip.x, hip.y, hip.z}, ball.radius2, reach2});
   return true;
 }

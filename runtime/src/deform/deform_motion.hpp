@@ -141,11 +141,7 @@ inline void try_to_catch(const Upkeep<Real>& upkeep, uint32_t n, Vec3<double> x,
 // Which of a record's boxes hold a point or are as near as that, a bit each.
 inline uint32_t near_boxes(const fdcg_box8& record, const float (&point)[3], float near2) {
   float distance2[FDCG_TREE_WAYS];
-  squared_distances(record, point, distance2);
-  uint32_t near = 0;
-  for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)
-    near |= uint32_t{distance2[j] <= near2} << j;
-  return near;
+  return squared_distances(record, point, near2, distance2);
 }
 
 // Cost: the boxes that hold the point, and the triangles in them.

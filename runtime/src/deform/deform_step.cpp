@@ -78,7 +78,7 @@ template <class Real>
   ContactInternals& inner = internals_of(*contact);
   contact->state = inner.seat_state = FDCG_FREE;
   contact->feature = inner.seat_feature = FDCG_NONE;
-  inner.clear_ball.radius2 = 0;
+  end_clear_ball(&inner.clear_ball);
   place_god_object<Real>(contact, place_of(*contact) + out * lift);
 }
 

@@ -69,8 +69,8 @@ bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begi
 // Which of a record's boxes the way enters at a fraction of at most `limit`, a bit each; entry[j]: at which, never too late.
 uint32_t touched_boxes(const fdcg_box8& boxes, const TreeWay& way, float limit, float (&entry)[FDCG_TREE_WAYS]);
 
-// The squared distances of a point from a record's boxes, up to rounding error.
-void squared_distances(const fdcg_box8& boxes, const float (&point)[3], float (&distance2)[FDCG_TREE_WAYS]);
+// The squared distances of a point from a record's boxes, up to rounding error. Returns which are at most `limit2`, a bit each.
+uint32_t squared_distances(const fdcg_box8& boxes, const float (&point)[3], float limit2, float (&distance2)[FDCG_TREE_WAYS]);
 
 // Records and leaves still to be looked at, the nearest of those that were added together on top.
 class WaitingBoxes {

@@ -44,11 +44,8 @@ class NearestSearch {
         continue;
       }
       float distance2[FDCG_TREE_WAYS];
-      squared_distances(graph_.hierarchy()[tree.first[next.level] + next.index], point, distance2);
-      uint32_t near = tree.lanes(next.level, next.index);
-      for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j) {
-        if (distance2[j] > limit2_) near &= ~(1u << j);
-      }
+      const fdcg_box8& boxes = graph_.hierarchy()[tree.first[next.level] + next.index];
+      const uint32_t near = squared_distances(boxes, point, limit2_, distance2) & tree.lanes(next.level, next.index);
       waiting.push(next, near, distance2);
     }
   }

@@ -94,7 +94,7 @@ void restore_finger(fdcg_scene* scene, uint32_t f, const FingerState& state, con
     scene->slots(f)[held[i].slot] = {held[i].object, 1, state.step};
     auto* const contact = part_at<fdcg_contact>(scene->first_contact(f), held[i].slot * uint64_t{scene->contact_bytes});
     *contact = held[i].contact;
-    internals_of(*contact).field = {};
+    keep_no_field(&internals_of(*contact));
     if (has_pads) restore_pad(held[i], scene->objects(), scene->soft_touches(f) + held[i].slot);
   }
   for (uint32_t i = 0; i < state.touch_count; ++i)

@@ -107,7 +107,7 @@ HeldState state_of(const fdcg_scene& scene, uint32_t f, uint32_t s) {
   state.slot = s;
   state.object = scene.slots(f)[s].object;
   state.contact = *part_at<fdcg_contact>(scene.first_contact(f), s * uint64_t{scene.contact_bytes});
-  internals_of(state.contact).field = {};  // follows from the graph
+  keep_no_field(&internals_of(state.contact));
   state.pad_reference.w = 1;
   const SoftTouch* const pad = soft_touch(scene, f, s);
   if (pad == nullptr) return state;

@@ -157,6 +157,17 @@ struct FeatureCounts {
   }
 };
 
+// Whether the nodes that reach into its clear ball are there. A field that is kept is made anew.
+bool has_sound_ball(const fdcg_contact& contact, uint32_t nodes) {
+  const ContactInternals& inner = internals_of(contact);
+  if (inner.clear_ball.near_count > kMostNear) return false;
+  if (inner.clear_ball.near_count != 0 && (contact.state != FDCG_FREE || inner.near.of_node != 0)) return false;
+  for (uint32_t i = 0; i < inner.clear_ball.near_count; ++i) {
+    if (inner.near.node[i] >= nodes) return false;
+  }
+  return true;
+}
+
 bool is_sound(const fdcg_contact& contact, const Object& object) {
   const FeatureCounts features(object);
   const ContactInternals& inner = internals_of(contact);
@@ -171,7 +182,7 @@ bool is_sound(const fdcg_contact& contact, const Object& object) {
                            are_within(inner.clear_ball.centre, kFarthestLocal) && inner.clear_ball.radius2 >= 0 &&
                            inner.slip_m_per_s >= 0 && inner.slip_m_per_s <= kFarthestLocal && inner.stiffness_n_per_m >= 0 &&
                            inner.stiffness_n_per_m <= kFarthestLocal;
-  return has_features && is_swept && has_flags && has_numbers;
+  return has_features && is_swept && has_flags && has_numbers && has_sound_ball(contact, features.of[FDCG_FACE]);
 }
 
 // What a contact with the object is marked with: nothing else may be stepped on it.

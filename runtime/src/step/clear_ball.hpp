@@ -8,6 +8,7 @@
 #include "graph/graph_view.hpp"
 #include "graph/tolerances.hpp"
 #include "step/contact_internals.hpp"
+#include "step/fan_sweep.hpp"
 
 namespace fdcg {
 
@@ -37,40 +38,90 @@ inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> no
   return beside > 0 ? root(from_plane * from_plane + beside * beside) : from_plane;
 }
 
-// How near a leaf's nodes may be, squared, in tree units. `reach`: farther does not matter.
-template <class Geometry, class Real = typename Geometry::Real>
-inline float squared_leaf_distance(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<Real> at, Real reach, Real per_unit) {
-  const uint32_t first = leaf * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
-  Real nearest = reach;
-  for (uint32_t n = first; n < end && n < graph.header()->node_count; ++n) {
-    const Real distance = node_distance(graph, graph.node(n), at, nearest);
-    if (distance < nearest) nearest = distance > 0 ? distance : Real(0);
+// The nodes nearest to a place, as many as a clear ball may have, and how near the next one is.
+template <class Real>
+class NearestNodes {
+ public:
+  explicit NearestNodes(Real reach) : limit_(reach) {}
+
+  // What is no nearer counts no longer.
+  [[nodiscard]] Real limit() const { return limit_; }
+  void block(Real distance) { limit_ = distance < limit_ ? distance : limit_; }
+  void add(uint32_t node, Real distance) {
+    uint32_t at = count_;
+    if (count_ == kMostNear) {  // the farthest of all makes room
+      at = 0;
+      for (uint32_t i = 1; i < kMostNear; ++i)
+        at = distance_[i] > distance_[at] ? i : at;
+      block(distance < distance_[at] ? distance_[at] : distance);
+      if (!(distance < distance_[at])) return;
+    } else {
+      ++count_;
+    }
+    node_[at] = node;
+    distance_[at] = distance;
   }
-  const float distance = static_cast<float>(nearest * per_unit);
-  return distance * distance;
-}
+  // Stores those that are nearer than `radius`; how many.
+  uint32_t store(Real radius, NearNodes* near) const {
+    uint32_t count = 0;
+    *near = {};
+    for (uint32_t i = 0; i < count_; ++i) {
+      if (distance_[i] < radius) near->node[count++] = node_[i];
+    }
+    return count;
+  }
 
-// Which of a record's boxes are nearer than that, a bit each.
-inline uint32_t nearer_boxes(const fdcg_box8& boxes, const float (&point)[3], float clear2,
-                             float (&distance2)[FDCG_TREE_WAYS]) {
-  squared_distances(boxes, point, distance2);
-  uint32_t near = 0;
-  for (uint32_t j = 0; j < FDCG_TREE_WAYS; ++j)
-    near |= uint32_t{distance2[j] < clear2} << j;
-  return near;
-}
+ private:
+  Real limit_;
+  uint32_t count_ = 0;
+  uint32_t node_[kMostNear];
+  Real distance_[kMostNear];
+};
 
-// The radius of a ball around `at` that no face reaches into, by more than the rounding of a sweep inside it: such a sweep
-// finds nothing. 0 where it would be below `way`. Cost: at most kMostClearVisits records and leaves, a handful where nothing is
-// near.
+// Tells the list of a leaf's nodes; none is nearer than `least`. A node at a busy corner is no member: a way may meet the
+// corner and none of its faces (contact-model FREE-8).
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way) {
+inline void look_at_leaf(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<Real> at, Real least,
+                         NearestNodes<Real>* nearest) {
+  const uint32_t first = leaf * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
+  for (uint32_t n = first; n < end && n < graph.header()->node_count; ++n) {
+    const Real beside = node_distance(graph, graph.node(n), at, nearest->limit()), distance = beside > least ? beside : least;
+    if (!(distance < nearest->limit())) continue;
+    bool is_member = false;
+    if constexpr (Geometry::kKeepsDirections) is_member = fan_run_of(graph, n) == FDCG_NONE;
+    if (is_member) {
+      nearest->add(n, distance);
+    } else {
+      nearest->block(distance);
+    }
+  }
+}
+
+// Whether a way within a clear ball surely meets none of the nodes that reach into it.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] bool passes_near_nodes(const GraphView<Geometry>& graph, const ContactInternals& inner,
+                                         const Vec3<Real>& from, const Vec3<Real>& to) {
+  const Real to_bound = plane_rounding_bound(graph, to);
+  const Real slab = slab_depth(graph.max_deviation(), plane_rounding_bound(graph, from));
+  for (uint32_t i = 0; i < inner.clear_ball.near_count; ++i) {
+    if (!surely_passes(graph.node(inner.near.node[i]).plane(), from, to, to_bound, slab)) return false;
+  }
+  return true;
+}
+
+// The radius of a ball around `at` that no face reaches into but those of `near`, `near_count` of them, by more than the
+// rounding of a sweep inside it: such a sweep finds nothing else. 0 where it would be below `way`. Cost: at most
+// kMostClearVisits records and leaves, a handful where nothing is near.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::hot]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way, NearNodes* near,
+                                              uint32_t* near_count) {
   constexpr Real kWaysAhead = 12;              // what a look is to pay for, in ways of this tick
   constexpr Real kLeastReach = Real(1) / 256;  // ... and tree units
   constexpr Real kFar = 64, kTreeReach = 16;   // tree units: no box reaches further than 8
   const Real unit = static_cast<Real>(tree_unit(graph.header()->extent)), per_unit = 1 / unit;
   const Vec3<Real> p = at * per_unit;
   const Real size = norm1(p);
+  *near_count = 0;
   if (size > kFar) return (size / 3 - kTreeReach) * kClearShare<Real> * unit;
   const Real margin = kClearMargins * tree_rounding<Real>(2 * size, 2 * size * RealLimits<Real>::kEpsilon);
   const Real length = way * per_unit;
@@ -78,34 +129,37 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Real reach = kWaysAhead * length > kLeastReach ? kWaysAhead * length : kLeastReach;
   const float point[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
   const float least = static_cast<float>(length + margin), too_near2 = least * least;
-  constexpr float kOpened = 0.25F;  // what is not nearer than half the nearest node so far is not opened but taken as it is
-  float node2 = static_cast<float>(reach * reach), clear2 = node2;
+  constexpr float kOpened = 0.25F;  // what is not nearer than half the limit so far is not opened but taken as it is
+  float limit2 = static_cast<float>(reach * reach), clear2 = limit2;
+  NearestNodes<Real> nearest(reach * unit);
   const BoxTree tree(graph.header()->node_count);
   WaitingBoxes waiting(tree);
   for (int visits = 0; !waiting.is_empty() && clear2 > too_near2;) {
     const WaitingBoxes::Item next = waiting.pop();
     if (!(next.key < clear2)) continue;
-    if (visits == kMostClearVisits || !(next.key < kOpened * node2)) {
+    if (visits == kMostClearVisits || !(next.key < kOpened * limit2)) {
       clear2 = next.key;
       continue;
     }
     ++visits;
     if (next.level < 0) {
-      const float distance2 = squared_leaf_distance(graph, next.index, at, reach * unit, per_unit);
-      const float nearest2 = distance2 > next.key ? distance2 : next.key;
-      if (nearest2 < node2) node2 = nearest2;
-      if (nearest2 < clear2) clear2 = nearest2;
+      look_at_leaf(graph, next.index, at, static_cast<Real>(root(next.key)) * unit, &nearest);
+      const float limit = static_cast<float>(nearest.limit() * per_unit);
+      limit2 = limit * limit;
+      clear2 = limit2 < clear2 ? limit2 : clear2;
       continue;
     }
     float distance2[FDCG_TREE_WAYS];
     const fdcg_box8& boxes = graph.hierarchy()[tree.first[next.level] + next.index];
     const uint32_t lanes = tree.lanes(next.level, next.index);
-    uint32_t near = nearer_boxes(boxes, point, clear2, distance2) & lanes;
-    if (graph.has_tightened(next.level, next.index, near)) near = nearer_boxes(boxes, point, clear2, distance2) & lanes;
-    waiting.push(next, near, distance2);
+    uint32_t nearer = squared_distances(boxes, point, clear2, distance2) & lanes;
+    if (graph.has_tightened(next.level, next.index, nearer)) nearer &= squared_distances(boxes, point, clear2, distance2);
+    waiting.push(next, nearer, distance2);
   }
-  const Real radius = static_cast<Real>(root(clear2)) * kClearShare<Real> - margin;
-  return radius > length ? radius * unit : Real(0);
+  const Real clear = static_cast<Real>(root(clear2)), radius = clear * kClearShare<Real> - margin;
+  if (!(radius > length)) return 0;
+  *near_count = nearest.store(clear * unit, near);
+  return radius * unit;
 }
 
 }  // namespace fdcg

@@ -25,12 +25,13 @@ struct CarriedSweep {
   uint32_t stalled_sweeps;  // consecutive sweeps, each over several ticks, that ended where they began
 };
 
-// A ball in free space that no face touches; if there is one, the last HIP is in it.
+// A ball in free space that no faces touch but a few; if there is one, the last HIP is in it.
 struct ClearBall {
-  double centre[3];    // local
-  double radius2;      // squared; 0: there is none
-  uint32_t wait;       // ticks until the next search for one
-  uint32_t next_wait;  // how long to wait if that search finds none
+  double centre[3];     // local
+  double radius2;       // squared; 0: there is none
+  uint16_t wait;        // ticks until the next search for one
+  uint16_t next_wait;   // how long to wait if that search finds none
+  uint32_t near_count;  // of the nodes that reach into it
 };
 
 // The field of normals (normal_field.hpp) of the face that a shaded contact is on. It follows from the graph: what is lost of
@@ -38,6 +39,18 @@ struct ClearBall {
 struct KeptField {
   uint64_t of_node;   // its number and 1; 0: none is kept
   double normals[9];  // a NormalField
+};
+
+inline void end_clear_ball(ClearBall* ball) {
+  ball->radius2 = 0;
+  ball->near_count = 0;
+}
+
+// The nodes that reach into the clear ball, in the bytes of the field: no contact in free space has one.
+inline constexpr uint32_t kMostNear = 8;
+struct NearNodes {
+  uint64_t of_node;  // 0: no field is kept
+  uint32_t node[kMostNear];
 };
 
 struct ContactInternals {
@@ -48,7 +61,10 @@ struct ContactInternals {
   double stiffness_n_per_m;  // current stiffness, where materials, presliding or shading count. 0: a new contact
   CarriedSweep sweep;        // what the last tick left to do
   ClearBall clear_ball;      // where no sweep is needed
-  KeptField field;           // where shading counts
+  union {
+    KeptField field;  // where shading counts
+    NearNodes near;   // where the clear ball counts
+  };
 };
 static_assert(sizeof(ContactInternals) == FDCG_CONTACT_INTERNAL_BYTES);
 static_assert(offsetof(fdcg_contact, internals) % alignof(ContactInternals) == 0 &&
@@ -59,6 +75,13 @@ inline ContactInternals& internals_of(fdcg_contact& contact) {
 }
 inline const ContactInternals& internals_of(const fdcg_contact& contact) {
   return *reinterpret_cast<const ContactInternals*>(contact.internals);
+}
+
+// Leaves out of what is kept what follows from the graph.
+inline void keep_no_field(ContactInternals* inner) {
+  const NearNodes near = inner->clear_ball.near_count != 0 ? inner->near : NearNodes{};
+  inner->field = {};
+  inner->near = near;
 }
 
 }  // namespace fdcg

@@ -10,6 +10,23 @@
 
 namespace fdcg {
 
+// The run of faces at a busy corner that a node is in, or FDCG_NONE.
+template <class Geometry>
+uint32_t fan_run_of(const GraphView<Geometry>& graph, uint32_t n) {
+  uint32_t low = 0, high = graph.fan_run_count();
+  while (low < high) {
+    const uint32_t middle = low + (high - low) / 2;
+    if (graph.fan_runs()[middle].first_node <= n) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  if (low == 0) return FDCG_NONE;
+  const fdcg_fan_run& run = graph.fan_runs()[low - 1];
+  return n - run.first_node < run.node_count ? low - 1 : FDCG_NONE;
+}
+
 // Looks at whole fans in place of the boxes around their nodes.
 template <class Geometry>
 class FanSweep : public NodeEntry<Geometry> {
@@ -70,21 +87,7 @@ class FanSweep : public NodeEntry<Geometry> {
   static constexpr uint32_t kRemembered = 8;  // fans; one that is forgotten is looked at again
   static constexpr Real kAnywhere = 4;        // a slack that every direction is within
 
-  // The run that a node is in, or FDCG_NONE.
-  [[nodiscard]] uint32_t run_of(uint32_t n) const {
-    uint32_t low = 0, high = graph_.fan_run_count();
-    while (low < high) {
-      const uint32_t middle = low + (high - low) / 2;
-      if (graph_.fan_runs()[middle].first_node <= n) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    if (low == 0) return FDCG_NONE;
-    const fdcg_fan_run& run = graph_.fan_runs()[low - 1];
-    return n - run.first_node < run.node_count ? low - 1 : FDCG_NONE;
-  }
+  [[nodiscard]] uint32_t run_of(uint32_t n) const { return fan_run_of(graph_, n); }
 
   [[nodiscard]] uint64_t end_of(uint32_t run) const {
     return uint64_t{graph_.fan_runs()[run].first_node} + graph_.fan_runs()[run].node_count;

@@ -64,28 +64,30 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // Work and state of free space carried over between ticks; all but the work is part of the contact.
 struct FreeSpace {
-  CarriedSweep* carried;
-  ClearBall* ball;
+  ContactInternals* inner;
   bool looks_for_balls;
   uint32_t work_left;
 };
 
-// Whether a ball that no face touches holds the whole way; it is kept. Where there was none, the next looks wait for longer and
-// longer: near the surface a sweep is cheaper.
+// Whether a ball that no faces touch but a few holds the whole way; it is kept. Where there was none, the next looks wait for
+// longer and longer: near the surface a sweep is cheaper.
 template <class Geometry, class Real = typename Geometry::Real>
-inline bool is_in_new_ball(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to, ClearBall* ball) {
-  constexpr uint32_t kLongestWait = 15;
+inline bool is_in_new_ball(const GraphView<Geometry>& graph, const Vec3<Real>& from, const Vec3<Real>& to,
+                           ContactInternals* inner) {
+  ClearBall* const ball = &inner->clear_ball;
+  constexpr int kLongestWait = 15;
   if (ball->wait > 0) {
     --ball->wait;
     return false;
   }
-  const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way);
+  uint32_t near_count;
+  const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way, &inner->near, &near_count);
   if (!(radius > way)) {
     ball->wait = ball->next_wait;
-    ball->next_wait = ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait;
+    ball->next_wait = static_cast<uint16_t>(ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait);
     return false;
   }
-  *ball = {{to.x, to.y, to.z}, FDCG_MUTANT("clear-ball-large") ? 4 * radius * radius : radius * radius, 0, 0};
+  *ball = {{to.x, to.y, to.z}, FDCG_MUTANT("clear-ball-large") ? 4 * radius * radius : radius * radius, 0, 0, near_count};
   return true;
 }
 
@@ -116,8 +118,9 @@ template <class Geometry, class Real = typename Geometry::Real>
 // ran out, else 0.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
-  CarriedSweep* carried = space->carried;
-  space->ball->radius2 = 0;
+  CarriedSweep* const carried = &space->inner->sweep;
+  ClearBall* const ball = &space->inner->clear_ball;
+  if (!(left == kFree && space->looks_for_balls && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);
   if (carried->is_carried != 0) {
     if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
     if (!(walk.active == kFree)) return 0;
@@ -133,7 +136,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Vec3<Real> to = walk.hip, from = left == kFree ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
   const bool may_look = FDCG_WITH_CLEAR_BALLS && space->looks_for_balls && left == kFree && walk.graph.hierarchy() != nullptr;
-  if (is_still || (may_look && is_in_new_ball(walk.graph, from, to, space->ball))) {
+  const bool has_looked = may_look && !(ball->radius2 > 0) && is_in_new_ball(walk.graph, from, to, space->inner);
+  if (is_still || (has_looked && passes_near_nodes(walk.graph, *space->inner, from, to))) {
     walk.place(to, kFree);
     carried->stalled_sweeps = 0;
     return 0;
@@ -151,9 +155,14 @@ template <class Geometry, class Real = typename Geometry::Real>
   walk.spend(lent - unspent);
   if (is_done) {
     arrive(walk, sweep, to, first);
-    if (walk.active == kFree) carried->stalled_sweeps = 0;
+    if (walk.active == kFree) {
+      carried->stalled_sweeps = 0;
+    } else {
+      end_clear_ball(ball);
+    }
     return 0;
   }
+  end_clear_ball(ball);
   *carried = {{to.x, to.y, to.z},
               first.fraction,
               first.feature.state,

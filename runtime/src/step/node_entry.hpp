@@ -18,6 +18,14 @@ struct FirstHit {
   Feature feature = kFree;  // the node, or the connection that the way meets exactly
 };
 
+// Whether a way ends in front of a node's plane, or begins behind it, by more than rounding could change: it does not enter the
+// node. `slab`: of the way's beginning (slab_depth).
+template <class Real>
+inline bool surely_passes(Plane<Real> plane, Vec3<Real> from, Vec3<Real> to, Real to_bound, Real slab) {
+  const Real end = plane.distance(to);
+  return end > to_bound || (end < -to_bound && plane.distance(from) < -slab);
+}
+
 // The way from -> to, leaving out the faces that meet at `left`, on which it starts; `stood`: where the god-object was before
 // it stepped clear of them. Watertight: a node is entered where the line passes its edges on the inner side, by exact signs
 // that two neighbours share.
@@ -64,9 +72,7 @@ class NodeEntry {
  protected:
   // Of most nodes the way ends in front, or begins behind, by more than rounding could change: those need no call.
   void glance_at_node(uint32_t n) {
-    const Plane<Real> plane = graph_.node(n).plane();
-    const Real end = plane.distance(to_);
-    if (end > to_bound_ || (end < -to_bound_ && plane.distance(from_) < -slab_)) {
+    if (surely_passes(graph_.node(n).plane(), from_, to_, to_bound_, slab_)) {
       spend(work_left_, kNodeWork);
     } else {
       try_node(n);

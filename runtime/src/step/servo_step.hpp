@@ -156,7 +156,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
     if (decision.is_rest()) {
-      space->carried->stalled_sweeps = 0;
+      space->inner->sweep.stalled_sweeps = 0;
       return progress;
     }
     walk.active = decision.next();
@@ -164,7 +164,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active == kFree) {
-      if (trail.has_come_nearer()) space->carried->stalled_sweeps = 0;
+      if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       step_clear_of(walk, at);
       progress.flags |= sweep_to_hip(walk, at, stood, space);
@@ -268,8 +268,7 @@ template <class Real>
   inner.seat_feature = FDCG_NONE;
   inner.slip_m_per_s = inner.stiffness_n_per_m = 0;
   inner.sweep.is_carried = 0;
-  inner.clear_ball.radius2 = 0;
-  inner.clear_ball.wait = inner.clear_ball.next_wait = 0;
+  inner.clear_ball = {};
 }
 
 template <class Real>
@@ -327,8 +326,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
   ContactInternals& inner = internals_of(*contact);
-  FreeSpace space = {&inner.sweep, &inner.clear_ball, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0,
-                     kSweepWork};
+  FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork};
   const Progress progress = move_god_object(walk, start, start_gap, hopped, move != nullptr ? &decided : nullptr, &space);
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
   // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).
@@ -539,7 +537,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contact, const double hip_object_m[3],
           fdcg_result* result) {
   const fdcg_header& header = *raw.header;
-  Vec3<double> local_hip;
+  Vec3<double> local_hip = {0, 0, 0};
   *result = {};
   if (!to_local(header, hip_object_m, RealLimits<Real>::kFar, &local_hip)) return refuse_hip(header, contact, result);
   Vec3<Real> hip;
@@ -548,7 +546,9 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
     start(hip, contact);
   } else if (FDCG_WITH_CLEAR_BALLS && contact->state == FDCG_FREE &&
              is_in_clear_ball(internals_of(*contact).clear_ball, local_hip) &&
-             (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0) {
+             (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0 &&
+             (internals_of(*contact).clear_ball.near_count == 0 ||
+              passes_near_nodes(GraphView<Geometry>(raw), internals_of(*contact), narrow<Real>(contact->god_object), hip))) {
     store(hip, contact->god_object);
     store(hip, contact->hip);
   } else if (FDCG_WITH_FRICTION_TERMS && params.friction_flags != 0) {
