@@ -123,7 +123,8 @@ bool read_points(const draco::Mesh& source, const draco::PointAttribute& attribu
   }
   mesh.is_float = true;
   const double steps = std::ldexp(1.0, quantization.quantization_bits()) - 1;
-  mesh.absolute_quantum = std::fabs(static_cast<double>(quantization.range())) / steps / 2;
+  const double quantum = std::fabs(static_cast<double>(quantization.range())) / steps / 2;
+  if (std::isfinite(quantum)) mesh.absolute_quantum = quantum;  // a forged range may be no number
   return take_points(floats, false, mesh.points);
 }
 

@@ -8,6 +8,7 @@
 #include "../../support/drc_writer.hpp"
 #include "../../support/import_support.hpp"
 #include "../../support/soups.hpp"
+#include "import/draco_decode.hpp"
 #include "import/guarded_child.hpp"
 
 using namespace fdcg::bake;
@@ -125,4 +126,11 @@ TEST_CASE("many threads may import Draco files at once") {
   for (std::thread& thread : threads)
     thread.join();
   CHECK(right == 2 * kThreads * kRuns);
+}
+
+TEST_CASE("a quantisation whose forged range is no number has no step") {
+  const std::string bytes = read_bytes(testdata() / "fuzz" / "import_drc" / "range-no-number");
+  const DracoMesh mesh = decode_draco_here({bytes, std::nullopt, {}, true});
+  CHECK(mesh.is_float);
+  CHECK(mesh.absolute_quantum == 0);
 }
