@@ -40,14 +40,14 @@ CUBE = """OFF
 
 def checksum(data):
     """As schemas/fdcg-v1.md has it, written from there."""
-    mask, factor, multiplier, seed = 2**64 - 1, 0x9E3779B1, 0x9E3779B97F4A7C15, 0x4644434700000003
+    mask, multiplier, seed = 2**64 - 1, 0x9E3779B97F4A7C15, 0x4644434700000003
 
-    def turned(lane):
-        product = (lane & 0xFFFFFFFF) * factor
-        return ((product << 32 | product >> 32) & mask) ^ lane >> 32
+    def spread(lane, factor):
+        return lane + (lane & 0xFFFFFFFF) * (factor - 1) & mask
 
     def absorbed(lane, word):
-        return turned(turned(lane ^ word))
+        once = spread(lane ^ word, 0x9E3779B1)
+        return spread((once << 32 | once >> 32) & mask, 0x85EBCA77)
 
     total = seed + len(data) * multiplier & mask
     for index, at in enumerate(range(0, len(data), 4096)):

@@ -15,9 +15,8 @@ namespace {
 
 #if defined(__SSE2__)
 
-[[gnu::always_inline]] inline __m128i both_turned(__m128i lanes) {
-  const __m128i product = _mm_mul_epu32(lanes, _mm_set1_epi64x(kFactor));
-  return _mm_xor_si128(_mm_shuffle_epi32(product, 0xB1), _mm_srli_epi64(lanes, 32));
+[[gnu::always_inline]] inline __m128i both_spread(__m128i lanes, uint32_t factor) {
+  return _mm_add_epi64(lanes, _mm_mul_epu32(lanes, _mm_set1_epi64x(factor - 1)));
 }
 
 struct BlockLanes {
@@ -34,7 +33,7 @@ struct BlockLanes {
 #pragma GCC unroll 8
     for (int i = 0; i < kPairs; ++i) {
       const __m128i words = _mm_loadu_si128(reinterpret_cast<const __m128i*>(stripe + 16 * i));
-      pair[i] = both_turned(both_turned(_mm_xor_si128(pair[i], words)));
+      pair[i] = both_spread(_mm_shuffle_epi32(both_spread(_mm_xor_si128(pair[i], words), kFactor), 0xB1), kOther);
     }
   }
   void store(uint64_t (&lanes)[kLaneCount]) const {

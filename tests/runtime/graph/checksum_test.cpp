@@ -27,7 +27,7 @@ void flip(unsigned char* bytes, int bit) {
 }  // namespace
 
 TEST_CASE("two changed bits always change the checksum") {
-  constexpr int kBytes = 272;  // three stripes, the last one short: each word meets the next one in its lane, and the one after
+  constexpr int kBytes = 400;  // four stripes, the last one short: each word meets those that come next in its lane
   for (const bool drawn : {false, true}) {
     auto bytes = content<kBytes>(drawn);
     const std::uint64_t whole = fdcg_checksum(bytes.data(), kBytes);
