@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ball around a free contact that no face touches (contact-model FREE-7): while the HIP stays in it, a tick's way is free of
-// collisions and needs no sweep. The requested radius depends on the speed: a few ticks' way is worth its computation, more is
-// not.
+// A ball around a free contact that no node reaches into but a few, which are named (contact-model FREE-7): while the HIP stays
+// in it and surely passes these, a tick's way is free of collisions and needs no sweep. The requested radius depends on the
+// speed: a few ticks' way is worth its computation, more is not.
 #pragma once
 
 #include "graph/box_tree.hpp"
