@@ -60,12 +60,10 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (!is_same_code(from.corner[k], to.corner[there.next(back)]) || !is_same_code(from.corner[here.next(k)], to.corner[back]))
     return false;
   const Vec3<Real> landed = tick->god_object + (target - tick->god_object) * crossing.fraction;
-  const auto& edge = graph.edges()[crossed.link >> 1];
-  const Vec3<Real> start = graph.corner_point((crossed.link & 1) == 0 ? crossed.corner : here.corner(here.next(k)));
-  const Vec3<Real> direction = vec(edge.direction);
-  const Real u = dot(landed - start, direction), end_tolerance = end_rounding(start, edge.length);
+  const Edge<Real> edge = graph.edge(here, k);
+  const Real u = dot(landed - edge.start, edge.direction), end_tolerance = end_rounding(edge.start, edge.length);
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return false;
-  tick->god_object = by_parts(start + direction * u);
+  tick->god_object = by_parts(edge.start + edge.direction * u);
   tick->node = crossed.across;
   tick->edge = crossed.link >> 1;
   ++tick->transitions;

@@ -199,6 +199,28 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("planes that are derived in the step leave every bit of a shaded slide") {
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    CompileOptions stored = with_normals(precision), derived = stored;
+    derived.store_planes = false;
+    const CompiledMesh with(scaled(ico_sphere(3), kRadius), stored), without(scaled(ico_sphere(3), kRadius), derived);
+    for (const double mu : {0.0, 0.4}) {
+      Random random(5);
+      std::uint32_t crossed = 0;
+      for (int way = 0; way < 20; ++way) {
+        const Circle path = circle(random, kRadius, kDepth);
+        Contact one(with.view(), shaded(1.2 * mu, mu)), other(without.view(), shaded(1.2 * mu, mu));
+        for (int tick = 0; tick < 500; ++tick) {
+          const fdcg_result expected = one.step(path.at(tick)), got = other.step(path.at(tick));
+          REQUIRE(std::memcmp(&expected, &got, sizeof got) == 0);
+          crossed += got.transitions;
+        }
+      }
+      CHECK(crossed > 200);
+    }
+  }
+}
+
 TEST_CASE("a shaded contact at rest does not change by a bit") {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     const CompiledMesh mesh(scaled(star_sphere(2, 0.2, 7), kRadius), with_normals(precision));
