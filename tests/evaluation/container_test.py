@@ -33,6 +33,12 @@ class Container(unittest.TestCase):
         for option in used | {a for a in arguments if a.startswith("--")}:
             self.assertRegex(HELP, rf"(?m)^  {option}\b")
 
+    def test_what_was_built_outside_stays_outside(self):
+        ignored = (HERE / "Containerfile.dockerignore").read_text(encoding="utf-8").split("\n")
+        self.assertIn("/build", ignored)
+        listed = subprocess.run(["git", "-C", ROOT, "ls-files", "--error-unmatch", "build"], capture_output=True)
+        self.assertNotEqual(0, listed.returncode)
+
 
 if __name__ == "__main__":
     unittest.main()
