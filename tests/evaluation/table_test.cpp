@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "catch.hpp"
+#include "scratch_folder.hpp"
 
 using namespace fdcg::test;
 
@@ -22,7 +23,7 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-const std::string kFolder = (std::filesystem::temp_directory_path() / "fdcg_evaluation_table_test").string();
+const std::string kFolder = scratch_folder().string();
 
 }  // namespace
 
@@ -36,7 +37,6 @@ TEST_CASE("a table has its header, its rows, and quotes what would break a row")
   }
   CHECK(text_of(std::filesystem::path(kFolder) / "t.csv") ==
         "name,p50_ns,count\nplain,0.1,3\n\"comma, \"\"quote\"\"\",0.333333333,1152921504606846976\nnone,nan,-1\n");
-  std::filesystem::remove_all(kFolder);
 }
 
 TEST_CASE("a bar holds at its limit; beyond it, and for what was not measured, it fails") {
@@ -50,7 +50,6 @@ TEST_CASE("a bar holds at its limit; beyond it, and for what was not measured, i
   }
   const std::string text = text_of(std::filesystem::path(kFolder) / "p.bars.csv");
   CHECK(text.find("error,8.5,at most,8,ulp,FAIL,\n") != std::string::npos);
-  std::filesystem::remove_all(kFolder);
 }
 
 TEST_CASE("a folder that cannot be made is an error that names the file") {
@@ -71,5 +70,4 @@ TEST_CASE("bars that stop at the first one that fails end the program there, wit
   CHECK(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 1);
   CHECK(text_of(std::filesystem::path(kFolder) / "first.bars.csv").find("fails,3,at most,2,,FAIL,") != std::string::npos);
-  std::filesystem::remove_all(kFolder);
 }

@@ -5,6 +5,7 @@
 
 #include "catch.hpp"
 #include "minimise.hpp"
+#include "scratch_folder.hpp"
 
 using namespace fdcg::test;
 
@@ -25,10 +26,9 @@ TEST_CASE("what the stress runs found does not come back") {
 TEST_CASE("a reproducer comes back from its file bit for bit") {
   const std::string file = std::filesystem::directory_iterator(FDCG_FOUND)->path().string();
   const Reproducer r = read_reproducer(file);
-  const std::string copy = std::filesystem::temp_directory_path() / "fdcg_stress_copy.obj";
+  const std::string copy = scratch_folder() / "copy.obj";
   write_reproducer(copy, r);
   const Reproducer again = read_reproducer(copy);
-  std::filesystem::remove(copy);
   CHECK(again.path_m == r.path_m);
   CHECK(again.body.soup.points == r.body.soup.points);
   CHECK(again.body.soup.corners == r.body.soup.corners);

@@ -14,6 +14,7 @@
 #include "fdcg/visual.h"
 #include "gltf_writer.hpp"
 #include "meshes.hpp"
+#include "scratch_folder.hpp"
 #include "sealed_bytes.hpp"
 
 using namespace fdcg::bake;
@@ -79,13 +80,6 @@ void check_nodes(const Seen& mesh) {
   }
 }
 
-std::filesystem::path scratch_folder(const char* name) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / (std::string("fdcg_visual_") + name);
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
-
 constexpr const char* kTetrahedron =
     "mtllib paint.mtl\n"
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
@@ -141,7 +135,8 @@ TEST_CASE("vertices are doubled at creases alone, and triangles are the mesh fil
 }
 
 TEST_CASE("texture coordinates and materials of OBJ, with their library") {
-  const std::filesystem::path folder = scratch_folder("obj");
+  const std::filesystem::path folder = scratch_folder() / "model";
+  std::filesystem::create_directory(folder);
   std::ofstream(folder / "part.obj") << kTetrahedron;
   std::ofstream(folder / "paint.mtl") << "newmtl blue\nKd 0 0 1\nnewmtl red # bright\nNs 3\nKd 1 0.25 0\nd 0.5\n"
                                          "newmtl red\nKd 1 1 0\nmap_Kd red.png\n"
@@ -179,12 +174,12 @@ TEST_CASE("texture coordinates and materials of OBJ, with their library") {
   CHECK(soup->appearance.materials[0].base_colour == Colour{1, 1, 1, 1});
   REQUIRE(soup->unread_files.size() == 1);
   CHECK_THAT(soup->unread_files[0], Catch::Contains("'paint.mtl' is not there"));
-  std::ofstream(folder.parent_path() / "fdcg_visual_outside.mtl") << "newmtl red\nKd 0 0 0\n";
-  std::ofstream(folder / "outside.obj") << "mtllib ../fdcg_visual_outside.mtl\n" << (kTetrahedron + 17);
+  std::ofstream(folder.parent_path() / "outside.mtl") << "newmtl red\nKd 0 0 0\n";
+  std::ofstream(folder / "outside.obj") << "mtllib ../outside.mtl\n" << (kTetrahedron + 17);
   soup = import_mesh(folder / "outside.obj", looking());
   REQUIRE(soup);
   REQUIRE(soup->unread_files.size() == 1);
-  CHECK_THAT(soup->unread_files[0], Catch::Contains("'../fdcg_visual_outside.mtl' was not read"));
+  CHECK_THAT(soup->unread_files[0], Catch::Contains("'../outside.mtl' was not read"));
   CHECK(soup->appearance.materials[0].base_colour == Colour{1, 1, 1, 1});
   CHECK(import_mesh(folder / "part.obj")->appearance.uv.empty());
   CHECK(import_memory(kTetrahedron, "memory.obj", looking())->other_files.empty());

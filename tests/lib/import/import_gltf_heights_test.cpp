@@ -15,6 +15,7 @@
 #include "import_support.hpp"
 #include "png_writer.hpp"
 #include "random.hpp"
+#include "scratch_folder.hpp"
 
 using namespace fdcg::bake;
 using namespace fdcg::bake::test;
@@ -332,8 +333,7 @@ TEST_CASE("images in the binary chunk, and in files beside the mesh") {
   sheet.more = R"(,"textures":[{"source":0}],"images":[{"mimeType":"image/png","bufferView":3}])";
   CHECK(sheet_error(imported(sheet.glb()), weave_m) < 1e-3);
 
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fdcg_gltf_heights";
-  std::filesystem::remove_all(folder);
+  const std::filesystem::path folder = scratch_folder();
   std::filesystem::create_directories(folder / "images");
   const auto write = [&](const char* name, const std::string& bytes) {
     std::ofstream(folder / name, std::ios::binary) << bytes;

@@ -8,6 +8,7 @@
 
 #include "import_support.hpp"
 #include "png_writer.hpp"
+#include "scratch_folder.hpp"
 
 using namespace fdcg::bake;
 using namespace fdcg::bake::test;
@@ -18,9 +19,8 @@ namespace {
 
 constexpr const char* kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
-std::filesystem::path folder() {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "fdcg_height_images";
-  std::filesystem::create_directories(path);
+const std::filesystem::path& folder() {
+  static const std::filesystem::path path = scratch_folder();
   return path;
 }
 

@@ -17,6 +17,7 @@
 #include "fdcg/surface.h"
 #include "meshes.hpp"
 #include "scene_rig.hpp"
+#include "scratch_folder.hpp"
 
 using namespace fdcg;
 using namespace fdcg::test;
@@ -56,12 +57,11 @@ void check_refused(const fdcg_result& result, std::uint32_t flag) {
 
 class File {
  public:
-  explicit File(const std::vector<std::byte>& bytes) : path_(std::filesystem::temp_directory_path() / "fdcg_misuse.fdcg") {
+  explicit File(const std::vector<std::byte>& bytes) : path_(scratch_folder() / "graph.fdcg") {
     std::ofstream(path_, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
   }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
-  ~File() { std::filesystem::remove(path_); }
   [[nodiscard]] std::string path() const { return path_.string(); }
 
  private:

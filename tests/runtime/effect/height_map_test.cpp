@@ -16,6 +16,7 @@
 #include "meshes.hpp"
 #include "png_writer.hpp"
 #include "relief_rig.hpp"
+#include "scratch_folder.hpp"
 
 using namespace fdcg::test;
 using namespace fdcg;
@@ -24,14 +25,6 @@ using Catch::Matchers::ContainsSubstring;
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi, kHeight_m = 1e-4, kWave_m = 1e-3;
-
-std::filesystem::path scratch(const char* name) {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / "fdcg_heights_";
-  folder += name;
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
 
 void put(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
@@ -60,7 +53,7 @@ std::vector<std::uint16_t> sines(std::uint32_t waves, std::uint32_t texels, std:
 // The block with 32 waves of 1 mm to an image, from files.
 const Mapped& wavy_block() {
   static const Mapped mapped = [] {
-    const std::filesystem::path folder = scratch("waves");
+    const std::filesystem::path folder = scratch_folder();
     put(folder / "block.obj", block_obj("block.mtl"));
     put(folder / "block.mtl", "newmtl felt\nmap_bump -s 31.25 31.25 -bm 0.0002 waves 1.png\nnewmtl plain\n");
     put(folder / "waves 1.png", png_bytes(32 * 16, 8, 1, 16, sines(32, 16, 8)));
