@@ -340,7 +340,7 @@ void Evaluation::rank_body(const Scene& scene, const Entrants& entrants, const M
   }
   constexpr double kFloor_m = kBody_m * 0x1p-53;  // a unit in the last place of the body: less is no error
   rank(standings, resolution, kFloor_m);
-  int on_frontier[2] = {0, 0};
+  int variants[2] = {0, 0}, on_frontier[2] = {0, 0};  // of f64 and f32; there may be none of one (--contender)
   double best_ns[2] = {1e300, 1e300};
   std::string beaten[2];
   for (const Standing& s : standings) {
@@ -348,16 +348,18 @@ void Evaluation::rank_body(const Scene& scene, const Entrants& entrants, const M
                 s.bake_s, s.is_on_frontier ? "yes" : "no", s.beaten_by, resolution, seeds, measured.ticks);
     if (s.family != "fdcg") continue;
     const std::size_t which = s.name.find("f32") != std::string::npos;
+    ++variants[which];
     on_frontier[which] += s.is_on_frontier;
     best_ns[which] = std::min(best_ns[which], s.time_ns);
     if (!s.is_on_frontier) beaten[which] += ", " + s.name + " by " + s.beaten_by;
   }
-  const double ratio = best_ns[1] / best_ns[0];
+  const double ratio = variants[0] > 0 && variants[1] > 0 ? best_ns[1] / best_ns[0] : std::numeric_limits<double>::quiet_NaN();
   const std::string others = where_others_win(standings, "fdcg");
   verdict_.row(body.name, body.faces, on_frontier[0], on_frontier[1], ratio, resolution, others);
   std::printf("  where others are better: %s\n", others.empty() ? "nowhere" : others.c_str());
   if (!options_.judges_times) return;
   for (const std::size_t which : {0, 1}) {
+    if (variants[which] == 0) continue;
     char note[160];
     std::snprintf(note, sizeof note, "f32 takes %.3f of f64's time, told apart from %.1f %%", ratio, 100 * resolution);
     bars_.at_least((which == 0 ? "f64 variants on the frontier, " : "f32 variants on the frontier, ") + body.name,
