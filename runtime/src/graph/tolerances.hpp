@@ -21,8 +21,8 @@ inline Real plane_rounding_bound(const Graph& graph, Vec3<Real> x) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header()->extent));
 }
 
-// LEAVE-3: the same for one plane, where it matters that it is no more than that: each component of a stored normal is good to
-// two units in its own last place, so that the bound is by the products and not by the object.
+// LEAVE-3: the same for one plane, where it matters that it is no more than that: by the products, each good to two units in
+// its own last place, and not by the object. `plane.offset`: those of a corner, summed in size; their sum may have cancelled.
 template <class Real, class Plane>
 inline Real own_plane_rounding(const Plane& plane, Vec3<Real> x) {
   const Vec3<Real> terms = {plane.normal.x * x.x, plane.normal.y * x.y, plane.normal.z * x.z};
