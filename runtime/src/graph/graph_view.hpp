@@ -237,16 +237,14 @@ struct GraphView : Geometry {
     for (uint32_t k = 0; k < kPrefetchedSides; ++k)
       prefetch_crossing(here, k);
   }
-  // Nodes of one size, with their planes, and stored edges: what large files are by default.
-  [[nodiscard]] bool is_plain() const {
-    return this->node_offsets() == nullptr && this->edges() != nullptr && this->has_planes();
-  }
+  // With stored planes and edges, as files are by default.
+  [[nodiscard]] bool is_plain() const { return this->edges() != nullptr && this->has_planes(); }
   // The same of one side in a plain graph, without a branch: what lies across a border is node 0 here.
   FDCG_HOT void prefetch_plainly(const fdcg_side& side) const {
     constexpr uint32_t kBytes = node_bytes<Real>(kPrefetchedSides, true);
     __builtin_prefetch(&this->corners()[side.corner]);
     __builtin_prefetch(&this->edges()[side.link >> 1]);
-    const unsigned char* const block = this->nodes() + size_t{side.across == FDCG_NONE ? 0 : side.across} * this->block_bytes();
+    const unsigned char* const block = node(side.across == FDCG_NONE ? 0 : side.across).block();
 #pragma GCC unroll 8
     for (uint32_t at = 0; at < kBytes; at += kLineBytes)
       __builtin_prefetch(block + at);

@@ -56,7 +56,7 @@ class Slide {
 };
 
 struct Tally {
-  long sliding = 0, crossing = 0, far_crossing = 0, cut_short = 0;
+  long sliding = 0, crossing = 0, far_crossing = 0, cut_short = 0, crossing_mixed = 0;
 };
 
 void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::uint64_t seed, Tally* tally) {
@@ -66,6 +66,7 @@ void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::
   const double mu_static = is_smooth ? 0 : 0.5, mu_dynamic = is_smooth ? 0 : 0.3;
   Contact with(mesh.view(), params_of(mu_static, mu_dynamic, 0));
   Contact without(mesh.view(), params_of(mu_static, mu_dynamic, FDCG_STEP_OPT_HOP));
+  const bool has_mixed_sizes = mesh.view().node_offsets != nullptr;  // polygons of several numbers of sides
   Slide slide(extent(soup), seed);
   for (int i = 0; i < kTicks; ++i) {
     const Hip hip = slide.next();
@@ -80,6 +81,7 @@ void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::
     tally->sliding += with.result.transitions == 0;
     tally->crossing += with.result.transitions == 2;
     tally->far_crossing += with.result.transitions > 2;
+    tally->crossing_mixed += has_mixed_sizes && with.result.transitions != 0;
   }
 }
 
@@ -93,12 +95,14 @@ TEST_CASE("contacts are the same bit for bit with and without hops from face to 
       for (const PolygonSoup& soup :
            {ico_sphere(3), ico_sphere(5), star_sphere(3, 0.3, 1), spiky_sphere(3, 0.5, 2), torus(40, 20), cone(300),
             scaled(ico_sphere(4), 1e-6), scaled(star_sphere(2, 0.3, 4), 1e6), needle_strip(200, 0.3, 2),
-            rounded_to_float(transformed(grid_box(5, 5, 5, {1, 1, 1}), random_rotation(3)))})
+            rounded_to_float(transformed(grid_box(5, 5, 5, {1, 1, 1}), random_rotation(3))), prism(40), uv_sphere(24, 12),
+            rounded_to_float(transformed(uv_sphere(30, 20), random_rotation(4)))})
         compare(soup, precision, is_smooth, ++seed, &tally);
     }
   }
   CHECK(tally.sliding > 100000);
   CHECK(tally.crossing > 5000);
   CHECK(tally.far_crossing > 5000);  // else hops were hardly tried
-  CHECK(tally.cut_short > 500);      // where the work of a tick runs out after hops
+  CHECK(tally.crossing_mixed > 5000);
+  CHECK(tally.cut_short > 500);  // where the work of a tick runs out after hops
 }
