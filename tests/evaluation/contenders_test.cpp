@@ -95,6 +95,70 @@ TEST_CASE("the truth, with sweeps skipped where the ground is far, is the plain 
   }
 }
 
+TEST_CASE("carried work is judged by the model's own way in that tick") {
+  Stage stage("star_80", WayKind::teleport);
+  const auto leap = [&](auto&& wanted) {
+    std::size_t i = 1;
+    while (i < stage.way.size() && !(stage.ticks_true[i].feel.in_contact && !stage.ticks_true[i].visit.is_tied &&
+                                     wanted(stage.ticks_true[i].visit.features)))
+      ++i;
+    REQUIRE(i + 30 < stage.way.size());
+    return i;
+  };
+  using Visited = std::vector<TrueBody::Feature>;
+  const auto free_on = [&](std::size_t i) { stage.felt[i] = {stage.way[i], {}, false, 0, true}; };
+  const auto hold = [&](std::size_t from, std::size_t ticks) {  // the leap's end, for so long
+    std::fill_n(stage.way.begin() + static_cast<std::ptrdiff_t>(from), ticks, stage.way[from]);
+    stage.ticks_true = stage.truth.follow(stage.way, {0, 0, true});
+    for (std::size_t i = 0; i < stage.way.size(); ++i)
+      stage.felt[i] = stage.ticks_true[i].feel;
+  };
+
+  SECTION("free while the model sweeps, but not for ever") {
+    const std::size_t i = leap([](const Visited& v) { return v.front().first == FDCG_FREE; });
+    hold(i, 30);
+    for (std::size_t k = 0; k < 5; ++k)
+      free_on(i + k);
+    CHECK(stage.judged().carried_ticks == 5);
+    CHECK(stage.judged().push_throughs == 0);
+    CHECK(stage.judged().unjudged_share == 0);
+    for (std::size_t k = 5; k < 25; ++k)
+      free_on(i + k);
+    CHECK(stage.judged().push_throughs == 1);
+  }
+  SECTION("on a feature that it visits, and not back from there") {
+    const std::size_t i = leap([](const Visited& v) { return v.size() > 4 && v.front().first == FDCG_FACE; });
+    hold(i, 30);
+    const auto feel = [&](std::size_t tick, const Point& god_object) {
+      stage.felt[tick] = {god_object, (god_object - stage.way[tick]) * kStiffness_n_per_m, true, 0, true};
+    };
+    const Point begin = stage.ticks_true[i - 1].feel.god_object, end = stage.ticks_true[i].feel.god_object;
+    feel(i, begin);
+    feel(i + 1, end);
+    CHECK(stage.judged().carried_ticks == 2);
+    CHECK(stage.judged().astray_ticks == 0);
+    feel(i + 2, begin);
+    CHECK(stage.judged().astray_ticks == 1);
+    feel(i + 2, end + Point{1e-4, 1e-4, 1e-4});
+    CHECK(stage.judged().astray_ticks == 1);
+  }
+  SECTION("the way turns where the HIP moves on meanwhile") {
+    const std::size_t i = leap([](const Visited& v) { return v.size() > 4 && v.front().first == FDCG_FACE; });
+    stage.way[i + 1] = (stage.way[i - 1] + stage.way[i]) * 0.5;
+    stage.ticks_true = stage.truth.follow(stage.way, {0, 0, true});
+    for (std::size_t k = 0; k < stage.way.size(); ++k)
+      stage.felt[k] = stage.ticks_true[k].feel;
+    TrueBody::Place place{stage.ticks_true[i].visit.features.front(), stage.ticks_true[i - 1].feel.god_object, stage.way[i]};
+    const Feel stays{place.god_object, (place.god_object - stage.way[i]) * kStiffness_n_per_m, true, 0, true};
+    CHECK(stage.truth.visit(&place, stage.way[i + 1], {0, 0, true}).features.size() > 1);
+    stage.felt[i] = stays;
+    stage.felt[i + 1] = {place.god_object, (place.god_object - stage.way[i + 1]) * kStiffness_n_per_m, true, 0, true};
+    CHECK(stage.judged().astray_ticks == 0);
+    stage.felt[i + 1].god_object[2] += 1e-3;
+    CHECK(stage.judged().astray_ticks == 1);
+  }
+}
+
 TEST_CASE("the judge finds nothing in the truth and what is planted in it") {
   Stage stage("star_80");
   const Metrics clean = stage.judged();
@@ -127,11 +191,21 @@ TEST_CASE("the judge finds nothing in the truth and what is planted in it") {
     CHECK(stage.judged().push_throughs == 2);
     CHECK(stage.judged().direction_max_deg == Approx(180));
   }
-  SECTION("work carried over is told, and is no push-through") {
+  SECTION("work carried over excuses no force that is lost where the model's way stays on the surface") {
     stage.felt[first + 3] = {stage.way[first + 3], {}, false, 0, true};
-    CHECK(stage.judged().push_throughs == 0);
-    CHECK(stage.judged().carried_ticks == 1);
-    CHECK(stage.judged().unjudged_share == Approx(1.0 / static_cast<double>(clean.contact_ticks)));
+    const Metrics m = stage.judged();
+    CHECK(m.carried_ticks == 1);
+    CHECK(m.push_throughs == 1);
+    CHECK(m.astray_ticks == 1);
+    CHECK(m.unjudged_share == 0);
+  }
+  SECTION("where it was before is not known: not judged") {
+    stage.felt[first + 2].god_object[0] += 1e-4;
+    stage.felt[first + 3] = {stage.way[first + 3], {}, false, 0, true};
+    const Metrics m = stage.judged();
+    CHECK(m.push_throughs == 0);
+    CHECK(m.astray_ticks == 0);
+    CHECK(m.unjudged_share == Approx(1.0 / static_cast<double>(clean.contact_ticks)));
   }
   SECTION("god-objects a tenth of a millimetre off") {
     for (Feel& f : stage.felt) {

@@ -102,6 +102,8 @@ Evaluation::Evaluation(const EvaluationOptions& options)
 void Evaluation::OwnFaults::add(const std::string& where, const Metrics& m, double creep, const LoopEnergy& energy) {
   push_throughs += m.push_throughs;
   if (m.push_throughs > 0) push_through_at = where;
+  astray += m.astray_ticks;
+  if (m.astray_ticks > 0) astray_at = where;
   if (creep > creep_m) creep_m = creep, creep_at = where;
   const double excess = energy.work_j - energy.bound_j;
   if (excess > energy_excess_j) energy_excess_j = excess, energy_at = where;
@@ -305,7 +307,14 @@ std::vector<float> Evaluation::run_contender(const Scene& scene, const WayPlan& 
     error_m.push_back(static_cast<float>(error_of(felt[i], truth[i])));
   }
   if (!options_.export_folder.empty()) write_answers(options_.export_folder, along, info.name, felt);
-  ContenderRow row{scene.body, along, info, timing, judge(way, plan.rate_hz, felt, truth, scene.truth), 0, {}, 0};
+  ContenderRow row{scene.body,
+                   along,
+                   info,
+                   timing,
+                   judge(way, plan.rate_hz, felt, truth, scene.truth, {plan.mu_static, plan.mu_dynamic, true}),
+                   0,
+                   {},
+                   0};
   row.energy = energy_of_loop(contender, way);
   row.creep_m = creep_m(contender, way, truth);
   if (along.seed == options_.seed)
@@ -370,6 +379,8 @@ void Evaluation::rank_body(const Scene& scene, const Entrants& entrants, const M
 
 int Evaluation::finish() {
   bars_.at_most("own push-throughs", static_cast<double>(faults_.push_throughs), 0, "times", faults_.push_through_at);
+  bars_.at_most("own carried ticks beside the way to where they go", static_cast<double>(faults_.astray), 0, "ticks",
+                faults_.astray_at);
   bars_.at_most("own creep at rest", faults_.creep_m, 0, "m", faults_.creep_at);
   bars_.at_most("own work beyond the zero-order hold's", faults_.energy_excess_j, 0, "J", faults_.energy_at);
   bars_.at_most("contact ticks that are not judged, largest share", unjudged_share_, 0.01, "of a way's", unjudged_at_);

@@ -65,9 +65,9 @@ class Evaluation {
   };
   // What must never happen to this runtime, over every row.
   struct OwnFaults {
-    std::uint64_t push_throughs = 0;
+    std::uint64_t push_throughs = 0, astray = 0;
     double creep_m = 0, energy_excess_j = 0;
-    std::string push_through_at, creep_at, energy_at;
+    std::string push_through_at, astray_at, creep_at, energy_at;
     void add(const std::string& where, const Metrics& m, double creep, const LoopEnergy& energy);
   };
 

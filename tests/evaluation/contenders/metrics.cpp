@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "carried_way.hpp"
 #include "point.hpp"
 
 namespace fdcg::test {
@@ -60,8 +61,9 @@ double error_of(const Feel& felt, const TrueBody::Tick& truth) {
 }
 
 Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, const std::vector<TrueBody::Tick>& truth,
-              const TrueBody& body) {
+              const TrueBody& body, const ReferenceFriction& friction) {
   Metrics m;
+  CarriedWay carried(body, friction);
   m.ticks = way.size();
   std::vector<double> god_object, judged, force, share, direction;
   bool was_lost = false;
@@ -70,6 +72,8 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
     const Feel &f = felt[i], &t = truth[i].feel;
     m.transitions += f.transitions;
     m.carried_ticks += f.is_carried;
+    const OnWay on_way = carried.next(way, i, felt, truth);
+    m.astray_ticks += on_way == OnWay::no && error_of(f, truth[i]) >= kApart_m;
     god_object.push_back(length(f.god_object - t.god_object));
     judged.push_back(error_of(f, truth[i]));
     force.push_back(length(f.force - t.force));
@@ -83,13 +87,13 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
     ++m.contact_ticks;
     tied += !truth[i].others.empty();
     const double true_force = length(t.force);
-    const bool is_through =
-        !f.is_carried && is_lost(f, t) &&
-        std::all_of(truth[i].others.begin(), truth[i].others.end(), [&](const Feel& other) { return is_lost(f, other); });
+    const bool is_through_all = is_lost(f, t) && std::all_of(truth[i].others.begin(), truth[i].others.end(),
+                                                             [&](const Feel& other) { return is_lost(f, other); });
+    const bool is_through = is_through_all && (!f.is_carried || on_way == OnWay::no);
     lost += is_through;
     m.push_throughs += is_through && !was_lost;
     was_lost = is_through;
-    unjudged += f.is_carried;
+    unjudged += is_through_all && on_way == OnWay::unknown;
     wrong += !f.in_contact || body.distance_to(truth[i].state, truth[i].feature, f.god_object) > kWrongFeature_m;
     if (true_force > 0) {
       share.push_back(force.back() / true_force);

@@ -20,7 +20,10 @@ struct Metrics {
   // After a tie there are answers that are as right as the truth (TrueBody::Tick::others): ticks of true contact with such, as
   // a share, and the error from the nearest right answer over every tick.
   double tied_share = 0, judged_rms_m = 0;
-  // Ticks of true contact, as a share, whose push-through is not judged: the contender says that it goes on in the next.
+  // Carried ticks in which the contender is neither at a right answer nor on the way to it (CarriedWay).
+  std::uint64_t astray_ticks = 0;
+  // Ticks of true contact, as a share, in which nothing tells whether it is one: a force that is lost in a carried tick whose
+  // way is not known.
   double unjudged_share = 0;
   // |god-object - true god-object| over every tick; a free contender's god-object is the HIP, as the truth's is.
   double god_object_rms_m = 0, god_object_p50_m = 0, god_object_p99_m = 0, god_object_max_m = 0;
@@ -31,7 +34,8 @@ struct Metrics {
   double jump_n_per_ms = 0, true_jump_n_per_ms = 0;     // the largest change of force within a millisecond
   double wrong_feature_share = 0;  // of ticks of true contact: god-object over 5 micrometres from the true feature
   // Pushed through: the HIP is over 10 micrometres below the true god-object, and the contender is free or pushes over 135
-  // degrees away from the true force, and from the force of every other right answer. Not in carried ticks.
+  // degrees away from the true force, and from the force of every other right answer; in carried ticks, if it is not on its way
+  // to one.
   std::uint64_t push_throughs = 0;  // times that it begins
   double push_through_share = 0;    // of ticks of true contact
   double phantom_share = 0;         // of truly free ticks: a force of over 10 micrometres' depth
@@ -40,7 +44,7 @@ struct Metrics {
 double error_of(const Feel& felt, const TrueBody::Tick& truth);
 
 Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, const std::vector<TrueBody::Tick>& truth,
-              const TrueBody& body);
+              const TrueBody& body, const ReferenceFriction& friction = {});
 
 // The contender's answers along a way, from its start.
 std::vector<Feel> feel_along(Contender& contender, const Way& way);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <list>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "bodies.hpp"
@@ -112,9 +113,10 @@ std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFric
       walker.contact.is_slipping = false;
     } else {
       clear = 0;
-      const ReferenceStep step = walker.step(local);
+      ReferenceStep step = walker.step(local);
       tick.feel.transitions = step.transitions;
       is_tie = step.margin < kTie;
+      tick.visit = {std::move(step.visited), is_tie};
     }
     const std::uint32_t transitions = tick.feel.transitions;
     tick.state = walker.contact.state;
@@ -147,6 +149,21 @@ std::vector<TrueBody::Tick> TrueBody::follow_by_runtime(const Way& way, const Re
     }
   }
   return ticks;
+}
+
+TrueBody::Visit TrueBody::visit(Place* place, const Point& hip_m, const ReferenceFriction& friction) const {
+  const auto vector = [&](const Point& point) {
+    const std::array<double, 3> local = surface_->local(point.data());
+    return Vector<long double>{local[0], local[1], local[2]};
+  };
+  ReferenceWalker<long double> walker(*surface_, friction);
+  walker.contact.is_started = true;
+  walker.contact.god_object = vector(place->god_object);
+  walker.contact.hip = vector(place->hip);
+  std::tie(walker.contact.state, walker.contact.feature) = place->feature;
+  ReferenceStep step = walker.step(surface_->local(hip_m.data()));
+  *place = {{walker.contact.state, walker.contact.feature}, feel_of(walker.contact, hip_m, {}).god_object, hip_m};
+  return {std::move(step.visited), step.margin < kTie};
 }
 
 std::string TrueBody::reference(const Way& way, const std::vector<Tick>& ticks) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "contender.hpp"
@@ -28,9 +29,16 @@ class TrueBody {
   // Some kilobyte a face.
   explicit TrueBody(const Ground& ground);
 
+  using Feature = std::pair<std::uint32_t, std::uint32_t>;  // state, index
+  // What the god-object was on in a tick, in order, from where the one before ended.
+  struct Visit {
+    std::vector<Feature> features;  // empty: not known, or a HIP that was free and clear of everything
+    bool is_tied = false;           // another way is as right
+  };
   struct Tick {
     Feel feel;
     std::uint32_t state = FDCG_FREE, feature = FDCG_NONE;
+    Visit visit;
     // Answers that are as right. A decision that is closer than floats tell apart, kTie of the extent, is a tie: from there on
     // four more walkers are followed, of hands that are kTie of the extent off, one to each corner of a tetrahedron, so that
     // every plane is passed on both sides. One ends when it is on the truth's feature again. Here are those that are kApart_m
@@ -41,6 +49,15 @@ class TrueBody {
   [[nodiscard]] std::vector<Tick> follow(const Way& way, const ReferenceFriction& friction) const;
   // What follow() is by, for a table: for a body too large, how many of the sampled contacts passed the check.
   [[nodiscard]] std::string reference(const Way& way, const std::vector<Tick>& ticks) const;
+
+  // Where a way stands: what the next tick needs to know of the last.
+  struct Place {
+    Feature feature{FDCG_FREE, FDCG_NONE};
+    Ground::Point god_object{}, hip{};
+  };
+  // The tick that leads from there to this HIP; moves `place` to its end. Not for bodies that are too large for brute force.
+  [[nodiscard]] Visit visit(Place* place, const Ground::Point& hip_m, const ReferenceFriction& friction) const;
+  [[nodiscard]] bool can_visit() const { return surface_ != nullptr; }
 
   // From a point to the closed feature, in metres.
   [[nodiscard]] double distance_to(std::uint32_t state, std::uint32_t feature, const Ground::Point& point) const;
