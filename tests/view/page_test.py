@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import struct
 import unittest
 
@@ -25,10 +26,21 @@ class Pages(PageCase):
 
     def test_the_graph_is_what_compile_makes_with_the_options_that_the_page_names(self):
         mesh = self.write("cube.off", CUBE)
-        for options in ((), ("--precision", "f64", "--units", "mm")):
+        for options in ((), ("--precision", "f64", "--units", "mm"), ("--normals", "faces", "--crease", "100")):
             page = self.page(mesh, *options)
             self.fdcg("compile", mesh, "-o", self.path("cube.fdcg"), "-q", *page.items[0]["compile_options"].split())
             self.assertEqual((self.folder / "cube.fdcg").read_bytes(), page.array(page.items[0]["graph"]))
+
+    def test_heights_are_in_the_graph_and_an_image_that_is_not_there_is_an_error(self):
+        for name in ("tile.obj", "tile.mtl", "weave.png"):
+            shutil.copy(ROOT / "testdata" / "heights" / name, self.folder)
+        for options in (("--heights", "file"), ("--heights", self.path("weave.png"), "--height-range", "0.0001")):
+            page = self.page(self.path("tile.obj"), "--units", "cm", *options)
+            self.fdcg("compile", self.path("tile.obj"), "-o", self.path("tile.fdcg"), "-q", *page.items[0]["compile_options"].split())
+            self.assertEqual((self.folder / "tile.fdcg").read_bytes(), page.array(page.items[0]["graph"]))
+            self.assertIn("up to", self.fdcg("inspect", self.path("tile.fdcg")).stdout.decode().split("heights", 1)[1])
+        (self.folder / "weave.png").unlink()
+        self.assert_one_line(self.fdcg("view", self.path("tile.obj"), "--heights", "file", "-o", self.path("gone.html"), code=3), "weave.png")
 
     def test_findings_are_those_of_validate(self):
         mesh = self.write("bad.off", NON_MANIFOLD)

@@ -3,7 +3,6 @@
 
 #include <numbers>
 
-#include "../common/options.hpp"
 #include "../common/terminal.hpp"
 #include "fdcg/fdcg.h"
 #include "mesh_options.hpp"
@@ -42,32 +41,12 @@ void add_graph_options(CLI::App& command, CompileSettings& settings) {
   graph.choice<bool>(
       "--planes", "PLANES", {{"stored", true}, {"derived", false}}, options.store_planes,
       "Edge vectors, end planes and Voronoi planes: stored in the file, or derived in the step, with a smaller file.");
-  graph.choice<bake::Normals>(
-      "--normals", "NORMALS", {{"none", bake::Normals::none}, {"faces", bake::Normals::faces}, {"file", bake::Normals::file}},
-      options.normals,
-      "Normals at the corners of faces, for force shading: from the faces around each vertex up to creases, or those of the "
-      "mesh file (vn of OBJ, nx ny nz of PLY, NORMAL of glTF, normals of Draco).");
-  graph.parsed(
-      "--crease", "ANGLE",
-      [&options](const std::string& text) {
-        options.crease_rad = number_between("--crease", text, 0, 180, "no angle of 0 to 180 degrees") * std::numbers::pi / 180;
-      },
-      "Of normals made from faces: faces that meet at a larger angle, in degrees, meet at a crease.", "40");
+  add_shading_options(graph, options);
   graph.flag(
       "--visual", options.visual,
       "Also the mesh for the eye: triangles with normals, texture coordinates, colours and materials, as OBJ, PLY, glTF and "
       "Draco files have them (fdcg/visual.h).");
-  graph.text(
-      "--heights", "IMAGE", settings.heights,
-      "Images as heights that are felt (fdcg/heights.h), PNG of 8 or 16 bits: one for all faces, or, with the word file, "
-      "those that the mesh file's materials name (map_bump, bump and disp of OBJ's mtllib; normalTexture of glTF, whose "
-      "normals become heights).");
-  graph.parsed(
-      "--height-range", "METRES",
-      [&options](const std::string& text) {
-        options.height_range_m = number_between("--height-range", text, -1, 1, "no number of -1 to 1 (metres)");
-      },
-      "How high white is above black.", "as the mesh file says");
+  add_heights_options(graph, options, settings.heights);
   graph.flag("--haptic-materials", settings.haptic_materials,
              "Experimental: of glTF files also MPEG_haptic_material. Faces have the names of their haptic materials, and 'fdcg "
              "inspect' "
@@ -96,6 +75,34 @@ void add_mass_options(CLI::App& command, bake::CompileOptions& options) {
 }
 
 }  // namespace
+
+void add_shading_options(const OptionGroup& group, bake::CompileOptions& options) {
+  group.choice<bake::Normals>(
+      "--normals", "NORMALS", {{"none", bake::Normals::none}, {"faces", bake::Normals::faces}, {"file", bake::Normals::file}},
+      options.normals,
+      "Normals at the corners of faces, for force shading: from the faces around each vertex up to creases, or those of the "
+      "mesh file (vn of OBJ, nx ny nz of PLY, NORMAL of glTF, normals of Draco).");
+  group.parsed(
+      "--crease", "ANGLE",
+      [&options](const std::string& text) {
+        options.crease_rad = number_between("--crease", text, 0, 180, "no angle of 0 to 180 degrees") * std::numbers::pi / 180;
+      },
+      "Of normals made from faces: faces that meet at a larger angle, in degrees, meet at a crease.", "40");
+}
+
+void add_heights_options(const OptionGroup& group, bake::CompileOptions& options, std::string& heights) {
+  group.text(
+      "--heights", "IMAGE", heights,
+      "Images as heights that are felt (fdcg/heights.h), PNG of 8 or 16 bits: one for all faces, or, with the word file, "
+      "those that the mesh file's materials name (map_bump, bump and disp of OBJ's mtllib; normalTexture of glTF, whose "
+      "normals become heights).");
+  group.parsed(
+      "--height-range", "METRES",
+      [&options](const std::string& text) {
+        options.height_range_m = number_between("--height-range", text, -1, 1, "no number of -1 to 1 (metres)");
+      },
+      "How high white is above black.", "as the mesh file says");
+}
 
 void add_compile_input(CLI::App& command, CompileSettings& settings) {
   add_input_format_option(command, settings.input_format);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "../common/options.hpp"
 #include "fdcg/bake.hpp"
 
 namespace fdcg::tools {
@@ -24,8 +25,11 @@ struct CompileSettings {
 };
 
 // `settings` must outlive the command's parsing.
-void add_compile_input(CLI::App& command, CompileSettings& settings);     // --input-format, --units, --scale
-void add_compile_settings(CLI::App& command, CompileSettings& settings);  // checks, graph, mass
+void add_compile_input(CLI::App& command, CompileSettings& settings);               // --input-format, --units, --scale
+void add_compile_settings(CLI::App& command, CompileSettings& settings);            // checks, graph, mass
+void add_shading_options(const OptionGroup& group, bake::CompileOptions& options);  // --normals, --crease
+// --heights, --height-range; `heights`: ImportOptions::heights.
+void add_heights_options(const OptionGroup& group, bake::CompileOptions& options, std::string& heights);
 
 // Completes settings that were parsed: what is wrong with them, or nothing.
 [[nodiscard]] std::string settle(CompileSettings& settings);

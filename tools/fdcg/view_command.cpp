@@ -11,6 +11,7 @@
 #include "../common/heap.hpp"
 #include "../common/options.hpp"
 #include "../common/terminal.hpp"
+#include "compile_settings.hpp"
 #include "fdcg/bake.hpp"
 #include "fdcg_commands.hpp"
 #include "mesh_input.hpp"
@@ -143,6 +144,7 @@ Command add_view(CLI::App& app) {
   command->footer(R"(Examples:
   fdcg view bunny.off --open
   fdcg view scan.stl --units mm --repair -o scan.html
+  fdcg view ball.stl --normals faces --crease 60
   fdcg view robot.urdf
   fdcg view bunny.fdcg
   fdcg view bunny.fdcg log.csv -o slide.html
@@ -172,6 +174,8 @@ but for the graphs.
   touch.choice<bake::Precision>("--precision", "PRECISION", {{"f32", bake::Precision::f32}, {"f64", bake::Precision::f64}},
                                 mesh.precision, "Precision of the graph that is touched.");
   touch.flag("!--no-touch", mesh.touch, "Leave the graph of a mesh out: a smaller page, without touch.");
+  add_shading_options(touch, mesh.felt);
+  add_heights_options(touch, mesh.felt, mesh.heights);
   session.text("--graphs", "FOLDER", arguments->graphs, "Folder of the graphs.", "where they were");
   OptionGroup(*command, "General").jobs(mesh.jobs, "The page does not depend on it.");
   return {command, [arguments] {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_mesh.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <numbers>
+
 #include "../common/terminal.hpp"
 #include "fdcg/robot.hpp"
 #include "fdcg_commands.hpp"
@@ -11,23 +15,47 @@ namespace {
 
 constexpr std::size_t kMostTouchFaces = 1'000'000;  // beyond, the graph alone would make the page larger than browsers like
 
+// As a shell takes it.
+std::string as_shell_word(const std::string& text) {
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '/' || c == '_' || c == '-'; };
+  if (std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string word = "'";
+  for (const char c : text)
+    word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + "'";
+}
+
 std::string options_text(const MeshView& view) {
   std::string text = view.precision == bake::Precision::f32 ? "--precision f32 --planes derived" : "--planes derived";
   if (view.metres_per_unit != 1) text += " --scale " + short_number(view.metres_per_unit);
   if (view.weld.kind == bake::Weld::Kind::none) text += " --weld none";
   if (view.weld.kind == bake::Weld::Kind::distance) text += " --weld " + short_number(view.weld.distance);
+  if (view.felt.normals == bake::Normals::file) text += " --normals file";
+  if (view.felt.normals == bake::Normals::faces)
+    text += " --normals faces --crease " + short_number(view.felt.crease_rad * 180 / std::numbers::pi);
+  if (!view.heights.empty()) text += " --heights " + as_shell_word(view.heights);
+  if (view.felt.height_range_m != 0) text += " --height-range " + short_number(view.felt.height_range_m);
   return text;
 }
 
 // Planes are derived in the step: to the same bits, from a file a third smaller.
 bake::CompileOptions compile_options(const MeshView& view, const bake::Progress& progress) {
-  bake::CompileOptions options;
+  bake::CompileOptions options = view.felt;
+  options.heights = !view.heights.empty();
   options.metres_per_unit = view.metres_per_unit;
   options.precision = view.precision;
   options.weld = view.weld;
   options.store_planes = false;
   options.jobs = view.jobs;
   options.progress = progress;
+  return options;
+}
+
+bake::ImportOptions import_options(const MeshView& view, const bake::Progress& progress) {
+  bake::ImportOptions options{view.input_format, progress};
+  options.normals = view.felt.normals == bake::Normals::file;
+  options.appearance = !view.heights.empty();
+  options.heights = view.heights;
   return options;
 }
 
@@ -84,7 +112,7 @@ std::string add_mesh_view(const MeshView& view, const ListedMesh& mesh, page::Pa
   ProgressBar bar(view.shows_progress);
   const bake::Progress progress = [&bar](std::string_view stage, double fraction) { bar.update(stage, fraction); };
   auto soup = mesh.problem.empty()
-                  ? import_input(mesh.path, {view.input_format, progress})
+                  ? import_input(mesh.path, import_options(view, progress))
                   : bake::Result<bake::PolygonSoup>(bake::Failure{kFile, mesh.path + ": " + mesh.problem, "unreadable"});
   if (!soup) {
     bar.wipe();

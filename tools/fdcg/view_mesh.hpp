@@ -19,6 +19,8 @@ struct MeshView {
   bake::Precision precision = bake::Precision::f32;
   bool repair = false;
   bool touch = true;
+  bake::CompileOptions felt;  // its normals and heights; the rest is set from what is here
+  std::string heights;        // ImportOptions::heights
   bool shows_progress = true;
   unsigned jobs = 0;
 };

@@ -52,7 +52,6 @@ export function frictionAt(p: TouchParams, speed: number): number {
 export class FrictionPanel {
   readonly element = h('div.friction');
   private readonly graph = h('canvas.curve', { width: 300, height: 90, id: 'curve', role: 'img' });
-  private readonly refusal = h('p.remark', { role: 'alert', id: 'refusal', hidden: true });
   private readonly sizes: Record<CurveTerm, number>;
   private chosen = 0; // material
 
@@ -62,15 +61,8 @@ export class FrictionPanel {
     private readonly onchange: () => void,
   ) {
     this.sizes = Object.fromEntries(TERMS.map((term) => [term.name, term.value])) as Record<CurveTerm, number>;
-    this.element.append(this.curve(), this.refusal);
+    this.element.append(this.curve());
     if (names.length > 0) this.element.append(this.materials());
-  }
-
-  /** Why the runtime does not take what is asked for; empty: it does. */
-  refuse(why: string): void {
-    this.refusal.hidden = why === '';
-    this.refusal.textContent = why === '' ? '' : `Not taken: ${why}`;
-    this.draw();
   }
 
   private curve(): HTMLElement {

@@ -3,7 +3,7 @@
 import { button, download, h } from './dom';
 import type { Frame } from './frame';
 import { short } from './numbers';
-import type { Runtime, TouchParams } from './runtime';
+import { EFFECTS, type EffectKind, type Runtime, type TouchParams } from './runtime';
 import { logCsv, pathCsv } from './touch_csv';
 import { HIP, TICK, TICK_S } from './touch_messages';
 
@@ -31,6 +31,12 @@ function replayCommand(source: TouchSource, p: TouchParams): string {
   for (const [term, value] of Object.entries(p.curve)) options.push(`--${term} ${value}`);
   const names = source.runtime.materials();
   p.materials?.forEach((m, i) => options.push(`--material ${quotedText(`${names[i]}=${m.muStatic},${m.muDynamic},${m.stiffness}`)}`));
+  if (p.shading) options.push('--shading');
+  if (p.relief.kind !== 'none') options.push(`--relief ${p.relief.kind === 'image' ? 'image' : `${p.relief.kind}=${p.relief.numbers.join(',')}`}`);
+  for (const kind of Object.keys(EFFECTS) as EffectKind[]) {
+    const numbers = p.effects[kind];
+    if (numbers !== undefined) options.push(`--effect ${[kind, ...EFFECTS[kind].map((key, i) => `${key}=${numbers[i]}`)].join(',')}`);
+  }
   return `fdcg-servo replay ${quoted(source.graphName)} --trajectory hip.csv -o log.csv ${options.join(' ')}`;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The runtime in the page: one instance of the module, with one graph and one contact (runtime/bindings/web/fdcg_web.c).
+// The runtime in the page: one instance of the module, with one graph, one contact, a relief and effects
+// (runtime/bindings/web/fdcg_web.c).
 import { shortest } from './numbers';
 
 interface Exports {
@@ -14,12 +15,17 @@ interface Exports {
   fdcg_web_result(): number;
   fdcg_web_set_material(material: number, muStatic: number, muDynamic: number, stiffness: number): void;
   fdcg_web_set_params(muStatic: number, muDynamic: number, stiffness: number, damping: number, flags: number, stribeck: number, viscous: number, presliding: number, lag: number): number;
+  fdcg_web_has_normals(): number;
+  fdcg_web_has_heights(): number;
+  fdcg_web_set_relief(kind: number, a: number, b: number, c: number): void;
+  fdcg_web_set_effect(kind: number, isOn: number, a: number, b: number, c: number): void;
   fdcg_web_reset(): void;
   fdcg_web_step(): void;
   fdcg_web_run(hips: number, results: number, count: number): void;
   fdcg_web_cast(fx: number, fy: number, fz: number, tx: number, ty: number, tz: number): number;
   fdcg_web_node(node: number): number;
   fdcg_web_side(node: number, side: number): number;
+  fdcg_web_node_normals(node: number): number;
   fdcg_web_connection(connection: number): number;
   fdcg_web_corner(corner: number): number;
   fdcg_web_fan(corner: number): number;
@@ -36,6 +42,26 @@ const FLATNESS = ['exact', 'quantum', 'angle'] as const;
 /** fdcg_friction_flag. */
 export const FRICTION = { stribeck: 1, viscous: 2, presliding: 4, lag: 8 } as const;
 const FRICTION_MATERIALS = 16;
+const FRICTION_SHADING = 64;
+/** By the number that fdcg_web_set_relief has for them; 0 is none. */
+const RELIEFS = ['none', 'ridges', 'bumps', 'grain', 'image'] as const;
+/** By fdcg_effect_kind, from 1 on: what each maker takes, by the keys that scenes and fdcg-servo have for it. */
+export const EFFECTS = {
+  magnet: ['force_n', 'distance_m'],
+  viscosity: ['viscosity_n_s_per_m'],
+  'stick-slip': ['stiffness_n_per_m', 'force_n'],
+  vibration: ['force_n', 'frequency_hz'],
+  noise: ['force_n', 'low_hz', 'high_hz'],
+  tap: ['impact_n_s_per_m', 'frequency_hz', 'decay_s'],
+  pulse: ['force_n', 'duration_s', 'period_s'],
+} as const;
+export type EffectKind = keyof typeof EFFECTS;
+
+/** Heights that are felt; the numbers, metres, are those of fdcg-servo replay --relief. */
+export interface Relief {
+  kind: (typeof RELIEFS)[number];
+  numbers: number[];
+}
 export type CurveTerm = keyof typeof FRICTION;
 
 export interface Material {
@@ -50,6 +76,11 @@ export interface TouchParams extends Material {
   curve: Partial<Record<CurveTerm, number>>;
   /** By number; undefined: all faces feel alike. */
   materials?: Material[];
+  /** Does nothing where the graph has no normals. */
+  shading: boolean;
+  relief: Relief;
+  /** What is there is on. */
+  effects: Partial<Record<EffectKind, number[]>>;
 }
 
 export interface Result {
@@ -161,12 +192,24 @@ export class Runtime {
 
   /** Empty, or what the runtime has against them: then the old ones stay. */
   setParams(p: TouchParams): string {
-    let flags = p.materials === undefined ? 0 : FRICTION_MATERIALS;
+    let flags = (p.materials === undefined ? 0 : FRICTION_MATERIALS) | (p.shading ? FRICTION_SHADING : 0);
     for (const term of Object.keys(p.curve) as CurveTerm[]) flags |= FRICTION[term];
     p.materials?.forEach((m, i) => this.x.fdcg_web_set_material(i, m.muStatic, m.muDynamic, m.stiffness));
+    const [a = 0, b = 0, c = 0] = p.relief.numbers;
+    this.x.fdcg_web_set_relief(RELIEFS.indexOf(p.relief.kind), a, b, c);
+    for (const [i, kind] of (Object.keys(EFFECTS) as EffectKind[]).entries()) {
+      const numbers = p.effects[kind];
+      this.x.fdcg_web_set_effect(i + 1, Number(numbers !== undefined), numbers?.[0] ?? 0, numbers?.[1] ?? 0, numbers?.[2] ?? 0);
+    }
     const { stribeck = 0, viscous = 0, presliding = 0, lag = 0 } = p.curve;
     const status = this.x.fdcg_web_set_params(p.muStatic, p.muDynamic, p.stiffness, p.damping, flags, stribeck, viscous, presliding, lag);
     return status === 0 ? '' : this.text(this.x.fdcg_web_message());
+  }
+  get hasNormals(): boolean {
+    return this.x.fdcg_web_has_normals() !== 0;
+  }
+  get hasHeights(): boolean {
+    return this.x.fdcg_web_has_heights() !== 0;
   }
   materials(): string[] {
     return Array.from({ length: this.x.fdcg_web_material_count() }, (_, i) => this.text(this.x.fdcg_web_material_name(i)));
@@ -228,6 +271,19 @@ export class Runtime {
   node(node: number): { normal: Triple; offset: number; sides: number; inexact: boolean } {
     const v = this.view(this.x.fdcg_web_node(node));
     return { normal: this.triple(v, 0), offset: v.getFloat64(24, true), sides: v.getUint32(32, true), inexact: (v.getUint32(36, true) & 1) !== 0 };
+  }
+  /** The normal that shading interpolates over a node, at a place on it (metres). */
+  shadedNormal(node: number, place: readonly [number, number, number]): Triple {
+    const v = this.view(this.x.fdcg_web_node_normals(node));
+    const normals = [0, 24, 48].map((at) => this.triple(v, at));
+    const { origin, metresPerUnit } = this.header();
+    const local = place.map((x, k) => x / metresPerUnit - origin[k]!);
+    const arms = [0, 1, 2].map((side) => this.corner(this.side(node, side).corner).point.map((x, k) => x - local[k]!));
+    const face = this.node(node).normal;
+    const weights = [0, 1, 2].map((k) => volume(arms[(k + 1) % 3]!, arms[(k + 2) % 3]!, face));
+    const sum = [0, 1, 2].map((k) => normals.reduce((total, normal, i) => total + weights[i]! * normal[k]!, 0));
+    const length = Math.hypot(...sum);
+    return [sum[0]! / length, sum[1]! / length, sum[2]! / length];
   }
   side(node: number, side: number): { normal: Triple; offset: number; connection: number; corner: number; across: number } {
     const v = this.view(this.x.fdcg_web_side(node, side));
@@ -291,6 +347,11 @@ export class Runtime {
       `corner ${v}: ${vector(corner.point)}, normal ${vector(corner.normal)}${corner.open ? ', open' : ''}, fan${corner.fan > 32 ? ' with a tree:' : ''}${fan.join('')}`,
     ];
   }
+}
+
+/** (a x b) . c */
+function volume(a: readonly number[], b: readonly number[], c: readonly number[]): number {
+  return (a[1]! * b[2]! - a[2]! * b[1]!) * c[0]! + (a[2]! * b[0]! - a[0]! * b[2]!) * c[1]! + (a[0]! * b[1]! - a[1]! * b[0]!) * c[2]!;
 }
 
 function vector(v: Triple): string {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What touch feels like: sliders for the contact, the friction curve and materials, how deep and how fast the hand goes.
+// What touch feels like: sliders for the contact, the friction curve and materials, shading, relief and effects, how deep and how
+// fast the hand goes.
 import { h, slider } from './dom';
+import { EffectPanel } from './effect_panel';
 import { FrictionPanel, usualMaterials } from './friction_panel';
 import { short } from './numbers';
+import { ReliefPanel } from './relief_panel';
 import { NONE, type Runtime, type TouchParams } from './runtime';
+import { shadingSwitch } from './shading_switch';
 
 const FASTEST = 10; // of the object's size a second: beyond, the hand is as fast as the pointer
 
@@ -28,6 +32,9 @@ export class TouchSettings {
   private readonly wanted: TouchParams;
   private readonly contact = h('fieldset'); // a recording has one set of these
   private readonly friction: FrictionPanel;
+  private readonly relief: HTMLElement;
+  private readonly effects: HTMLElement;
+  private readonly refusal = h('p.remark', { role: 'alert', id: 'refusal', hidden: true });
   private readonly names: string[];
   private readonly muSliders: Record<'muStatic' | 'muDynamic', (v: number) => void>;
   private readonly depthSlider: (v: number) => void;
@@ -37,12 +44,14 @@ export class TouchSettings {
     metres: number,
     private readonly listener: SettingsListener,
   ) {
-    this.wanted = { muStatic: 0.6, muDynamic: 0.4, stiffness: usualStiffness(metres), damping: 0, curve: {} };
+    this.wanted = { muStatic: 0.6, muDynamic: 0.4, stiffness: usualStiffness(metres), damping: 0, curve: {}, shading: false, relief: { kind: 'none', numbers: [] }, effects: {} };
     this.names = runtime.materials();
     const materials = usualMaterials(this.names, this.wanted);
     if (materials !== undefined) this.wanted.materials = materials;
     this.params = structuredClone(this.wanted);
     this.friction = new FrictionPanel(this.wanted, this.names, () => this.set({}));
+    this.relief = new ReliefPanel(metres, runtime.hasHeights, (relief) => this.set({ relief })).element;
+    this.effects = new EffectPanel(metres, (effects) => this.set({ effects })).element;
     const { stiffness } = this.wanted;
     const mu = (label: string, id: string, which: 'muStatic' | 'muDynamic'): ReturnType<typeof slider> =>
       slider({ label, id, min: 0, max: 2, value: this.wanted[which], text: (v) => v.toFixed(2), onchange: (value) => this.setFriction(which, Number(value.toFixed(2))) });
@@ -58,6 +67,9 @@ export class TouchSettings {
       dynamic.element,
       slider({ label: 'Damping', id: 'damping', min: 0, max: stiffness / 100, value: 0, unit: 'N s/m', text: short, onchange: (value) => this.set({ damping: Number(value.toPrecision(3)) }) }).element,
       this.friction.element,
+      shadingSwitch(runtime.hasNormals, (shading) => this.set({ shading })),
+      this.relief,
+      this.effects,
     );
     this.element.append(depth.element, speed.element, this.contact);
   }
@@ -65,7 +77,10 @@ export class TouchSettings {
   set(change: Partial<TouchParams>): void {
     Object.assign(this.wanted, change);
     const refusal = this.runtime.setParams(this.wanted);
-    this.friction.refuse(refusal);
+    if (refusal !== '') ('relief' in change ? this.relief : 'effects' in change ? this.effects : this.friction.element).after(this.refusal);
+    this.refusal.hidden = refusal === '';
+    this.refusal.textContent = refusal === '' ? '' : `Not taken: ${refusal}`;
+    this.friction.draw();
     if (refusal !== '') return;
     this.params = structuredClone(this.wanted);
     this.listener.params(this.params);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loop at 1 kHz, in a Worker: the HIP follows the page's target smoothly, each tick is one fdcg_step. Ticks are made by the
 // clock: where the system comes late, the missing ones are made up for at once, so that time in the simulation is real.
-import { type Result, Runtime } from './runtime';
+import { type Result, Runtime, type TouchParams } from './runtime';
 import { type FromWorker, TICK, TICK_S, type ToWorker } from './touch_messages';
 
 const FOLLOW = 0.06; // of the way to the target in a tick: a time constant of 16 ms
@@ -15,6 +15,7 @@ let runtime: Runtime | undefined;
 let running = false;
 let hip: [number, number, number] | undefined;
 let target: [number, number, number] | undefined;
+let isShaded = false;
 let mostSpeed = 0; // of the HIP, metres a second; 0: as the target asks
 let tick = 0;
 let dueMs = 0;
@@ -42,6 +43,12 @@ const sleeper = ((): Int32Array | undefined => {
   }
 })();
 
+/** Along which the friction cone stands; zeros: there is none. */
+function coneNormal(from: Runtime, r: Result): readonly number[] {
+  if (r.state !== 1) return [0, 0, 0];
+  return isShaded ? from.shadedNormal(r.feature, r.godObject) : from.node(r.feature).normal;
+}
+
 function makeTick(now: number): void {
   if (runtime === undefined || target === undefined) return;
   hip ??= [...target];
@@ -64,7 +71,7 @@ function makeTick(now: number): void {
   const r = result;
   const row = [tick * TICK_S, ...hip, ...r.godObject, ...r.force, r.state, r.feature, r.slipping, r.transitions];
   batch.push(...row);
-  normals.push(...(r.state === 1 ? runtime.node(r.feature).normal : [0, 0, 0]));
+  normals.push(...coneNormal(runtime, r));
   if (recording === 'on' && recorded.length < MOST_RECORDED * TICK) recorded.push(...row);
   ++tick;
   if (lastMs > 0) periods[periodCount++ % PERIODS] = now - lastMs;
@@ -114,11 +121,16 @@ function stopRecording(): void {
   say({ kind: 'recorded', ticks }, [ticks.buffer]);
 }
 
+function setParams(params: TouchParams): void {
+  runtime?.setParams(params);
+  isShaded = params.shading && runtime?.hasNormals === true;
+}
+
 async function open(message: Extract<ToWorker, { kind: 'open' }>): Promise<void> {
   const made = await Runtime.make(message.wasm);
   made.open(message.graph);
-  made.setParams(message.params);
   runtime = made;
+  setParams(message.params);
   say({ kind: 'opened' });
 }
 
@@ -126,7 +138,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
   const message = event.data;
   if (message.kind === 'open') open(message).catch((error: unknown) => say({ kind: 'failed', message: String(error) }));
   else if (message.kind === 'run') setRunning(message.on);
-  else if (message.kind === 'params') runtime?.setParams(message.params);
+  else if (message.kind === 'params') setParams(message.params);
   else if (message.kind === 'hand') mostSpeed = message.metresPerS;
   else if (message.kind === 'record') {
     if (message.on) recording = 'wanted';
