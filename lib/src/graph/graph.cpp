@@ -2,72 +2,20 @@
 #include "graph/graph.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <limits>
+#include <numeric>
+#include <span>
 #include <utility>
 
-#include "base/hilbert.hpp"
 #include "base/parallel.hpp"
-#include "base/radix_sort.hpp"
-#include "base/raw_array.hpp"
 #include "base/release.hpp"
 #include "base/vec3.hpp"
 #include "exact/projection.hpp"
+#include "graph/box_order.hpp"
 
 namespace fdcg::bake {
 namespace {
 
-constexpr std::size_t kRankGrain = 1u << 13;
-
-struct Ranked {
-  std::uint64_t key;
-  std::uint32_t face;
-};
-
-// Twice the centre of the bounding box: cheap, and sorts as well as the centroid.
-Vec3 doubled_centre(const Mesh& mesh, std::uint32_t f) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
-  for (std::uint32_t h = mesh.face_first[f]; h < mesh.face_first[f + 1]; ++h) {
-    const Vec3& p = mesh.points[+mesh.corners[h]];
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return low + high;
-}
-
-std::pair<Vec3, Vec3> bounds_of(const std::vector<Vec3>& points) {
-  Vec3 low = points.front(), high = low;
-  for (const Vec3& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return {low, high};
-}
-
-// Bits an axis: cells small enough that a surface of so many faces has some four cells for each.
-unsigned curve_bits(std::uint32_t faces) {
-  constexpr unsigned kLeast = 5, kMost = 16;
-  return std::clamp(static_cast<unsigned>(std::bit_width(faces)) / 2 + 1, kLeast, kMost);
-}
-
-RawArray<Ranked> positions_along_curve(const Mesh& mesh, unsigned bits, unsigned jobs) {
-  const auto [low, high] = bounds_of(mesh.points);
-  const double size = largest_component(high - low);
-  const double cells = 1u << bits;
-  const double cells_per_unit = size > 0 ? 0.5 * cells / size : 0;
-  const auto cell = [&](double doubled, double from) {
-    return static_cast<std::uint32_t>(std::clamp((doubled - 2 * from) * cells_per_unit, 0.0, cells - 1));
-  };
-  RawArray<Ranked> ranked(mesh.face_count());
-  parallel_for(jobs, ranked.size(), kRankGrain, [&, from = low](std::size_t begin, std::size_t end) {
-    for (auto f = static_cast<std::uint32_t>(begin); f < end; ++f) {
-      const Vec3 c = doubled_centre(mesh, f);
-      ranked[f] = {hilbert_position({cell(c.x, from.x), cell(c.y, from.y), cell(c.z, from.z)}, bits), f};
-    }
-  });
-  return ranked;
-}
+constexpr std::size_t kNodeGrain = 1u << 13;
 
 // The first corner of a polygon: the one whose triangle with the two next corners is the largest in the projection of the
 // region, and exactly non-degenerate.
@@ -95,22 +43,24 @@ class Orderer {
       : mesh_(mesh), topology_(topology), edges_(edges), regions_(regions), jobs_(jobs), names_vertices_(names_vertices) {}
 
   Graph run() {
-    {
-      const unsigned bits = curve_bits(mesh_.face_count());
-      RawArray<Ranked> ranked = positions_along_curve(mesh_, bits, jobs_);
-      radix_sort(ranked, 3 * bits, jobs_, [](const Ranked& item) { return item.key; });
-      std::vector<std::uint32_t> faces(ranked.size());
-      std::transform(ranked.begin(), ranked.end(), faces.begin(), [](const Ranked& item) { return item.face; });
-      ranked = {};
-      graph_.fan_runs = gather_fans(mesh_, topology_, faces);
-      place_nodes(faces);
-    }
+    place_nodes(order_faces());
     copy_sides();
     parallel_for(jobs_, 2, 1, [&](std::size_t task, std::size_t) { task == 0 ? name_corners() : name_connections(); });
     return std::move(graph_);
   }
 
  private:
+  std::vector<std::uint32_t> order_faces() {
+    std::vector<std::uint32_t> faces(mesh_.face_count());
+    std::iota(faces.begin(), faces.end(), 0u);
+    order_by_boxes(mesh_, faces, jobs_);
+    graph_.fan_runs = gather_fans(mesh_, topology_, faces);
+    if (graph_.fan_runs.empty()) return faces;
+    // What the fans have left is no whole boxes any more.
+    order_by_boxes(mesh_, std::span(faces).first(graph_.fan_runs.front().first), jobs_);
+    return faces;
+  }
+
   void place_nodes(const std::vector<std::uint32_t>& faces) {
     graph_.first_side.resize(faces.size() + 1);
     graph_.node_of_face.resize(faces.size());
@@ -125,7 +75,7 @@ class Orderer {
     if (!all_triangles) graph_.node_of_side.resize(mesh_.corners.size());
     if (!regions_.list.empty()) graph_.region.resize(faces.size());
     graph_.regions = std::move(regions_.list);
-    parallel_for(jobs_, faces.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs_, faces.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
       for (auto n = static_cast<std::uint32_t>(begin); n < end; ++n) {
         const std::uint32_t f = faces[n], first = mesh_.face_first[f], count = mesh_.face_first[f + 1] - first;
         graph_.node_of_face[f] = n;
@@ -143,7 +93,7 @@ class Orderer {
   template <class Value, class OfSlot>
   void copy_to_sides(std::vector<Value>& of_side, const OfSlot& of_slot) {
     of_side.resize(side_of_slot_.size());
-    parallel_for(jobs_, side_of_slot_.size(), kRankGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(jobs_, side_of_slot_.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t slot = begin; slot < end; ++slot)
         of_side[side_of_slot_[slot]] = of_slot(slot);
     });

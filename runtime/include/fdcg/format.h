@@ -58,7 +58,7 @@ extern "C" {
 
 /** What a section holds. A reader skips ids that it does not know; a writer never reuses one. */
 enum fdcg_section_id {
-  FDCG_SECTION_NODES = 1,        /**< node blocks, node_count of them: in Hilbert order of their centres, then
+  FDCG_SECTION_NODES = 1,        /**< node blocks, node_count of them: in the order of HIERARCHY's boxes, then
                                     FAN_RUNS */
   FDCG_SECTION_NODE_OFFSETS = 2, /**< uint32_t: where each node's block starts, in units of real_bytes. Absent where all blocks
                                     are of one size, header.node_bytes */

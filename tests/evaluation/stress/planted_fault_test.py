@@ -20,7 +20,7 @@ MUTANTS = [
 FOUND = pathlib.Path(__file__).parent / "found"
 # (name of the mutant, what is taken out, what it brings back)
 REPLAYED = [
-    ("circle-at-corner", "a circle about a corner is decided by the corner and its edges", "circle_through_free_space_about_a_corner.obj"),
+    ("circle-at-corner", "a circle about a corner is decided by the corner and its edges", "circle_about_a_corner_of_three_faces.obj"),
 ]
 
 
