@@ -27,9 +27,11 @@ template <class Geometry, class Real = typename Geometry::Real>
   return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
 }
 
-// Looks at the sides from the first on beyond whose plane the move ends, or near it.
+// Looks at the sides from the first on beyond whose plane the move ends, or near it. Its points by reference: copied to where
+// arguments are, two coordinates at once, they would wait for the stores of each.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Geometry> node, Vec3<Real> from, Vec3<Real> to) {
+[[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Geometry> node, const Vec3<Real>& from,
+                                                     const Vec3<Real>& to) {
   const Real rounding = FDCG_MUTANT("ends-on-plane") ? Real(0) : on_plane_rounding(to, node.extent());
   Crossing<Real> first;
   for (; k < node.side_count(); ++k) {
@@ -118,7 +120,7 @@ FDCG_HOT FaceGlance<Real> glance_on_face(NodeRef<Geometry> node, Laws& friction,
 
 // Of a god-object that stood at `from`. Cost: two planes for each side beyond which the target may lie.
 template <class Geometry, class Real = typename Geometry::Real>
-inline FaceMove<Real> meet_side(NodeRef<Geometry> node, Vec3<Real> from, const FaceGlance<Real>& glance) {
+inline FaceMove<Real> meet_side(NodeRef<Geometry> node, const Vec3<Real>& from, const FaceGlance<Real>& glance) {
   using Kind = FaceMoveKind;
   if (glance.kind != Kind::nears) return {glance.kind, glance.target, {}};
   const Crossing<Real> crossing = first_crossing_from(glance.near_side, node, from, glance.target);

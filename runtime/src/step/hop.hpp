@@ -54,7 +54,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   const Vec3<Real> god_object = start + direction * u, gap = god_object - hip;
   const Real gap2 = dot(gap, gap);
   if (!(gap2 < hop->gap2)) return false;
-  hop->god_object = FDCG_MUTANT("hop-stays") ? from : god_object;
+  hop->god_object = by_parts(FDCG_MUTANT("hop-stays") ? from : god_object);
   hop->gap2 = gap2;
   hop->rounding_residual = FDCG_MUTANT("hop-residual-of-the-way") ? ahead : (from - god_object) + ahead;
   hop->node = FDCG_MUTANT("hop-keeps-face") ? hop->node : crossed.across;
