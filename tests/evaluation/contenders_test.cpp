@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The harness of the contenders: its judges must see what they are there to see, its rivals must be what they claim.
+#include <algorithm>
 #include <cmath>
 
 #include "catch.hpp"
@@ -99,7 +100,7 @@ TEST_CASE("carried work is judged by the model's own way in that tick") {
   Stage stage("star_80", WayKind::teleport);
   const auto leap = [&](auto&& wanted) {
     std::size_t i = 1;
-    while (i < stage.way.size() && !(stage.ticks_true[i].feel.in_contact && !stage.ticks_true[i].visit.is_tied &&
+    while (i < stage.way.size() && !(stage.ticks_true[i].feel.in_contact && stage.ticks_true[i].visit.margin > kTie &&
                                      wanted(stage.ticks_true[i].visit.features)))
       ++i;
     REQUIRE(i + 30 < stage.way.size());
@@ -249,6 +250,11 @@ TEST_CASE("after a tie every right answer is right, and nothing else") {
     stage.felt[i] = stage.ticks_true[i].others[0];
   const Metrics other = stage.judged();
   CHECK(other.judged_rms_m == 0);
+  // What doubles tell apart is no tie for what computes in double.
+  const auto told = [&](std::size_t i) { return stage.ticks_true[i].others_for(true).empty(); };
+  const Metrics in_double = judge(stage.way, 1000, stage.felt, stage.ticks_true, stage.truth, {}, true);
+  CHECK(in_double.tied_share < other.tied_share);
+  CHECK((in_double.judged_rms_m > 0) == std::any_of(tied.begin(), tied.end(), told));
   CHECK(other.god_object_max_m >= kApart_m);
   CHECK(other.push_throughs == 0);
   for (const std::size_t i : tied)

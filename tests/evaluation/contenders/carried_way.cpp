@@ -36,7 +36,7 @@ void CarriedWay::begin(const Way& way, std::size_t tick, const std::vector<Feel>
   is_known_ = body_.can_visit() && was_there && !truth[tick].visit.features.empty();
   if (!is_known_) return;
   way_ = truth[tick].visit.features;
-  is_tied_ = truth[tick].visit.is_tied;
+  is_tied_ = truth[tick].visit.margin < tie_;
   end_ = {{truth[tick].state, truth[tick].feature}, truth[tick].feel.god_object, way[tick]};
   at_ = 0;
   stayed_ = 0;
@@ -52,7 +52,7 @@ void CarriedWay::go_on(const Point& hip_m, const Feel& before) {
     rest.assign(way_.begin() + static_cast<std::ptrdiff_t>(at_), way_.end());
   }
   const TrueBody::Visit more = body_.visit(&end_, hip_m, friction_);
-  is_tied_ = is_tied_ || more.is_tied;
+  is_tied_ = is_tied_ || more.margin < tie_;
   rest.insert(rest.end(), more.features.begin(), more.features.end());
   way_ = std::move(rest);
   at_ = 0;

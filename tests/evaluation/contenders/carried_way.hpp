@@ -20,7 +20,8 @@ enum class OnWay {
 
 class CarriedWay {
  public:
-  CarriedWay(const TrueBody& body, const ReferenceFriction& friction) : body_(body), friction_(friction) {}
+  CarriedWay(const TrueBody& body, const ReferenceFriction& friction, double tie)
+      : body_(body), friction_(friction), tie_(tie) {}
 
   // Of the next tick of the way. Ticks that are not carried are `yes`.
   OnWay next(const Way& way, std::size_t tick, const std::vector<Feel>& felt, const std::vector<TrueBody::Tick>& truth);
@@ -32,6 +33,7 @@ class CarriedWay {
 
   const TrueBody& body_;
   ReferenceFriction friction_;
+  double tie_;
   bool is_known_ = false, is_tied_ = false;
   std::vector<TrueBody::Feature> way_;  // what the model visits until the HIP is reached
   TrueBody::Place end_;                 // of that

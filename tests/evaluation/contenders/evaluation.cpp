@@ -299,19 +299,20 @@ std::vector<float> Evaluation::run_contender(const Scene& scene, const WayPlan& 
                                              const Timing& timing) {
   using namespace plain;
   const ContenderInfo& info = contender.info();
+  const bool is_double = info.precision == "f64";
   const Way& way = along.hips;
   const std::vector<Feel> felt = feel_along(contender, way);
   std::vector<float> error_m;
   for (std::size_t i = 0; i < way.size(); ++i) {
     check_answer(info, way[i], felt[i]);
-    error_m.push_back(static_cast<float>(error_of(felt[i], truth[i])));
+    error_m.push_back(static_cast<float>(error_of(felt[i], truth[i], is_double)));
   }
-  if (!options_.export_folder.empty()) write_answers(options_.export_folder, along, info.name, felt);
+  if (!options_.export_folder.empty()) write_answers(options_.export_folder, along, info.name, info.precision, felt);
   ContenderRow row{scene.body,
                    along,
                    info,
                    timing,
-                   judge(way, plan.rate_hz, felt, truth, scene.truth, {plan.mu_static, plan.mu_dynamic, true}),
+                   judge(way, plan.rate_hz, felt, truth, scene.truth, {plan.mu_static, plan.mu_dynamic, true}, is_double),
                    0,
                    {},
                    0};

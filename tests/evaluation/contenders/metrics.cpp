@@ -53,42 +53,42 @@ double largest_jump(std::size_t ticks, std::size_t in_a_ms, Force force) {
 
 }  // namespace
 
-double error_of(const Feel& felt, const TrueBody::Tick& truth) {
+double error_of(const Feel& felt, const TrueBody::Tick& truth, bool is_double) {
   double least = length(felt.god_object - truth.feel.god_object);
-  for (const Feel& other : truth.others)
+  for (const Feel& other : truth.others_for(is_double))
     least = std::min(least, length(felt.god_object - other.god_object));
   return least;
 }
 
 Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, const std::vector<TrueBody::Tick>& truth,
-              const TrueBody& body, const ReferenceFriction& friction) {
+              const TrueBody& body, const ReferenceFriction& friction, bool is_double) {
   Metrics m;
-  CarriedWay carried(body, friction);
+  CarriedWay carried(body, friction, is_double ? kTieOfDoubles : kTie);
   m.ticks = way.size();
   std::vector<double> god_object, judged, force, share, direction;
   bool was_lost = false;
   std::uint64_t tied = 0, unjudged = 0, lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     const Feel &f = felt[i], &t = truth[i].feel;
+    const std::span<const Feel> others = truth[i].others_for(is_double);
     m.transitions += f.transitions;
     m.carried_ticks += f.is_carried;
     const OnWay on_way = carried.next(way, i, felt, truth);
-    m.astray_ticks += on_way == OnWay::no && error_of(f, truth[i]) >= kApart_m;
+    m.astray_ticks += on_way == OnWay::no && error_of(f, truth[i], is_double) >= kApart_m;
     god_object.push_back(length(f.god_object - t.god_object));
-    judged.push_back(error_of(f, truth[i]));
+    judged.push_back(error_of(f, truth[i], is_double));
     force.push_back(length(f.force - t.force));
     if (!t.in_contact) {
-      phantoms +=
-          length(f.force) > kTouch_m * kStiffness_n_per_m &&
-          std::none_of(truth[i].others.begin(), truth[i].others.end(), [](const Feel& other) { return other.in_contact; });
+      phantoms += length(f.force) > kTouch_m * kStiffness_n_per_m &&
+                  std::none_of(others.begin(), others.end(), [](const Feel& other) { return other.in_contact; });
       was_lost = false;
       continue;
     }
     ++m.contact_ticks;
-    tied += !truth[i].others.empty();
+    tied += !others.empty();
     const double true_force = length(t.force);
-    const bool is_through_all = is_lost(f, t) && std::all_of(truth[i].others.begin(), truth[i].others.end(),
-                                                             [&](const Feel& other) { return is_lost(f, other); });
+    const bool is_through_all =
+        is_lost(f, t) && std::all_of(others.begin(), others.end(), [&](const Feel& other) { return is_lost(f, other); });
     const bool is_through = is_through_all && (!f.is_carried || on_way == OnWay::no);
     lost += is_through;
     m.push_throughs += is_through && !was_lost;

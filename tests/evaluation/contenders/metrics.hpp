@@ -40,11 +40,11 @@ struct Metrics {
   double push_through_share = 0;    // of ticks of true contact
   double phantom_share = 0;         // of truly free ticks: a force of over 10 micrometres' depth
 };
-// From the nearest right answer, in metres.
-double error_of(const Feel& felt, const TrueBody::Tick& truth);
+// From the nearest right answer, in metres. is_double: of a contender that computes in double, which owes more.
+double error_of(const Feel& felt, const TrueBody::Tick& truth, bool is_double = false);
 
 Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, const std::vector<TrueBody::Tick>& truth,
-              const TrueBody& body, const ReferenceFriction& friction = {});
+              const TrueBody& body, const ReferenceFriction& friction = {}, bool is_double = false);
 
 // The contender's answers along a way, from its start.
 std::vector<Feel> feel_along(Contender& contender, const Way& way);

@@ -46,15 +46,16 @@ Feel TrueBody::feel_of(const ReferenceContact<long double>& contact, const Point
 // What else may be right after a tie.
 class TrueBody::Branches {
  public:
-  Branches(const TrueBody& body, double extent_m) : body_(body), off_m_(kTie * extent_m) {}
+  Branches(const TrueBody& body, double tie) : body_(body), tie_(tie), off_m_(tie * body.surface_->extent) {}
 
   // Before a step: `walker` is at the tick before.
   void remember(const ReferenceWalker<long double>& walker) { before_ = walker.contact; }
 
-  // After it. `is_tie`: it met one.
-  void follow(const ReferenceWalker<long double>& walker, const ReferenceFriction& friction, bool is_tie, const Point& hip_m,
-              Tick& tick) {
-    if (is_tie && walkers_.empty()) begin(friction);
+  // After it. Returns how many it has added to the tick's others.
+  std::size_t follow(const ReferenceWalker<long double>& walker, const ReferenceFriction& friction, const Point& hip_m,
+                     Tick& tick) {
+    const std::size_t before = tick.others.size();
+    if (tick.visit.margin < tie_ && walkers_.empty()) begin(friction);
     for (Branch& branch : walkers_) {
       const Point hip = hip_m + branch.shift_m;
       branch.walker.step(body_.surface_->local(hip.data()));
@@ -65,6 +66,7 @@ class TrueBody::Branches {
       if (feel.in_contact != tick.feel.in_contact || apart_m >= kApart_m) tick.others.push_back(feel);
     }
     std::erase_if(walkers_, [](const Branch& branch) { return branch.is_one; });
+    return tick.others.size() - before;
   }
   [[nodiscard]] bool has_any() const { return !walkers_.empty(); }
 
@@ -87,7 +89,7 @@ class TrueBody::Branches {
   }
 
   const TrueBody& body_;
-  double off_m_;
+  double tie_, off_m_;
   ReferenceContact<long double> before_;
   std::list<Branch> walkers_;
 };
@@ -95,17 +97,18 @@ class TrueBody::Branches {
 std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFriction& friction) const {
   if (!surface_) return follow_by_runtime(way, friction);
   ReferenceWalker<long double> walker(*surface_, friction);
-  Branches branches(*this, static_cast<double>(surface_->extent));
+  Branches branches(*this, kTie), close(*this, kTieOfDoubles);
   std::vector<Tick> ticks(way.size());
   double clear = 0;  // no surface is nearer to the last HIP than this; 0: not known
   for (std::size_t i = 0; i < way.size(); ++i) {
     const std::array<double, 3> local = surface_->local(way[i].data());
     const double way_m = i > 0 ? length(way[i] - way[i - 1]) : 0;
-    const bool is_free = walker.contact.is_started && walker.contact.state == FDCG_FREE && !branches.has_any();
+    const bool is_free =
+        walker.contact.is_started && walker.contact.state == FDCG_FREE && !branches.has_any() && !close.has_any();
     if (is_free && clear <= way_m) clear = ground_.closest(way[i - 1]).distance * (1 - 1e-9);
     Tick& tick = ticks[i];
-    bool is_tie = false;
     branches.remember(walker);
+    close.remember(walker);
     if (is_free && clear > way_m) {
       clear -= way_m;
       walker.contact.hip = {local[0], local[1], local[2]};
@@ -115,15 +118,15 @@ std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFric
       clear = 0;
       ReferenceStep step = walker.step(local);
       tick.feel.transitions = step.transitions;
-      is_tie = step.margin < kTie;
-      tick.visit = {std::move(step.visited), is_tie};
+      tick.visit = {std::move(step.visited), step.margin};
     }
     const std::uint32_t transitions = tick.feel.transitions;
     tick.state = walker.contact.state;
     tick.feature = walker.contact.feature;
     tick.feel = feel_of(walker.contact, way[i], {});
     tick.feel.transitions = transitions;
-    branches.follow(walker, friction, is_tie, way[i], tick);
+    branches.follow(walker, friction, way[i], tick);
+    tick.as_right_in_doubles = close.follow(walker, friction, way[i], tick);
   }
   return ticks;
 }
@@ -163,7 +166,7 @@ TrueBody::Visit TrueBody::visit(Place* place, const Point& hip_m, const Referenc
   std::tie(walker.contact.state, walker.contact.feature) = place->feature;
   ReferenceStep step = walker.step(surface_->local(hip_m.data()));
   *place = {{walker.contact.state, walker.contact.feature}, feel_of(walker.contact, hip_m, {}).god_object, hip_m};
-  return {std::move(step.visited), step.margin < kTie};
+  return {std::move(step.visited), step.margin};
 }
 
 std::string TrueBody::reference(const Way& way, const std::vector<Tick>& ticks) const {

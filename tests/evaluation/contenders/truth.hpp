@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +16,9 @@
 
 namespace fdcg::test {
 
-constexpr double kTie = 0x1p-22;  // twice the spacing of floats at the extent
+// A decision within this part of the extent is a tie to floats, to doubles: so near, the contact model takes a place to be on a
+// plane (FACE-5, 4 eps (|x|_1 + extent), here with |x|_1 of one extent).
+constexpr double kTie = 0x1p-20, kTieOfDoubles = 0x1p-49;
 
 constexpr double kApart_m = 5e-6;  // of two answers: far beyond rounding and a proxy's gap, and no hand feels it
 
@@ -33,7 +36,7 @@ class TrueBody {
   // What the god-object was on in a tick, in order, from where the one before ended.
   struct Visit {
     std::vector<Feature> features;  // empty: not known, or a HIP that was free and clear of everything
-    bool is_tied = false;           // another way is as right
+    double margin = 1;              // as ReferenceStep's: below a tie another way is as right
   };
   struct Tick {
     Feel feel;
@@ -42,8 +45,12 @@ class TrueBody {
     // Answers that are as right. A decision that is closer than floats tell apart, kTie of the extent, is a tie: from there on
     // four more walkers are followed, of hands that are kTie of the extent off, one to each corner of a tetrahedron, so that
     // every plane is passed on both sides. One ends when it is on the truth's feature again. Here are those that are kApart_m
-    // or more off.
+    // or more off; the last `as_right_in_doubles` are of kTieOfDoubles, and alone as right for what computes in double.
     std::vector<Feel> others;
+    std::size_t as_right_in_doubles = 0;
+    [[nodiscard]] std::span<const Feel> others_for(bool is_double) const {
+      return std::span(others).last(is_double ? as_right_in_doubles : others.size());
+    }
   };
   // Sweeps through free space are skipped where the ground is farther than the way is long.
   [[nodiscard]] std::vector<Tick> follow(const Way& way, const ReferenceFriction& friction) const;

@@ -170,8 +170,9 @@ void write_way(const std::string& folder, const WayFile& file, const std::vector
     put(out, truth[i].feel.god_object);
     put(out, truth[i].feel.force);
     out << ' ' << truth[i].others.size();
-    for (const Feel& other : truth[i].others) {
-      out << (other.in_contact ? " 1" : " 0");
+    for (std::size_t k = 0; k < truth[i].others.size(); ++k) {
+      const Feel& other = truth[i].others[k];
+      out << (k + truth[i].as_right_in_doubles >= truth[i].others.size() ? " 1" : " 0") << (other.in_contact ? " 1" : " 0");
       put(out, other.god_object);
       put(out, other.force);
     }
@@ -180,11 +181,11 @@ void write_way(const std::string& folder, const WayFile& file, const std::vector
   close_or_throw(out, path);
 }
 
-void write_answers(const std::string& folder, const WayFile& file, const std::string& contender,
+void write_answers(const std::string& folder, const WayFile& file, const std::string& contender, const std::string& precision,
                    const std::vector<Feel>& felt) {
   const std::filesystem::path path = std::filesystem::path(folder) / (name_of(file) + "." + contender + ".answers");
   std::ofstream out(path);
-  out << "fdcg-answers 1\nway " << name_of(file) << ".way\ncontender " << contender
+  out << "fdcg-answers 1\nway " << name_of(file) << ".way\ncontender " << contender << "\nprecision " << precision
       << "\ncolumns contact carried god_object_x_m god_object_y_m god_object_z_m force_x_n force_y_n force_z_n\n";
   for (const Feel& feel : felt) {
     out << (feel.in_contact ? 1 : 0) << ' ' << (feel.is_carried ? 1 : 0);

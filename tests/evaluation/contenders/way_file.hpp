@@ -24,7 +24,8 @@ struct WayFile {
 void write_way(const std::string& folder, const WayFile& file, const std::vector<TrueBody::Tick>& truth,
                const bake::PolygonSoup& soup);
 // FOLDER/NAME.CONTENDER.answers.
-void write_answers(const std::string& folder, const WayFile& file, const std::string& contender, const std::vector<Feel>& felt);
+void write_answers(const std::string& folder, const WayFile& file, const std::string& contender, const std::string& precision,
+                   const std::vector<Feel>& felt);
 // body.way.seed.rate.friction
 std::string name_of(const WayFile& file);
 

@@ -12,7 +12,7 @@ import sys
 
 TOUCH_N = 1e-5 * 1000  # force from which a contact that is lost counts: a depth of 10 micrometres
 BACKWARDS = -0.7       # cosine of forces that are opposite
-OTHER = 7              # values of another right answer: contact, god-object, force
+OTHER = 8              # values of another right answer: whether doubles do not tell it apart either, contact, god-object, force
 
 
 def read(path, first_line):
@@ -53,12 +53,14 @@ def judge(path):
     _, truth = read(path.parent / head["way"], "fdcg-way 1")
     if len(answers) != len(truth):
         raise ValueError(f"{path}: {len(answers)} rows for a way of {len(truth)}")
+    is_double = head.get("precision") == "f64"
     errors, judged, force_error, contacts, passes = [], [], 0.0, 0, 0
     was_lost = False
     for answer, true in zip(answers, truth):
         touches, is_carried = answer[0] == "1", answer[1] == "1"
         god_object, force = exact(answer[2:5]), exact(answer[5:8])
-        right = [(exact(true[at:at + 3]), exact(true[at + 3:at + 6])) for at in [4, *range(12, len(true), OTHER)]]
+        right = [(exact(true[at:at + 3]), exact(true[at + 3:at + 6])) for at in
+                 [4, *(at + 2 for at in range(11, len(true), OTHER) if true[at] == "1" or not is_double)]]
         errors.append(math.dist(god_object, right[0][0]))
         judged.append(min(math.dist(god_object, place) for place, _ in right))
         force_error = max(force_error, math.dist(force, right[0][1]))
