@@ -25,6 +25,7 @@ OURS = "fdcg_f64_stored"
 AWKWARD = "awkward"  # group of the bodies as others bring them
 NEAREST = "paper_vertices"  # the contender that comes nearest
 MOST_NAMED = 4  # ways
+MOST_ULPS = 8
 BESIDE = ["body", "faces", "way", "seed", "rate_hz", "mu_static", "contender", "ticks", "mean_ns", "contact_p50_ns", "contact_instructions",
           "free_p50_ns", "p99_ns", "god_object_rms_judged_m", "god_object_max_m", "wrong_feature_share", "push_throughs"]
 SIZES = {"12 faces": (12, 12), "1 k": (900, 1100), "10 k": (9_000, 11_000), "100 k": (90_000, 110_000), "1 M": (900_000, 1_100_000)}
@@ -196,12 +197,22 @@ def held(_):
             ("; ".join(said) or "none") + ".")
 
 
+def ulps(_):
+    """How many god-objects are within 8 units in the last place, and all within how many."""
+    rows, said = read_table(KEPT / "god_object_error_histogram.csv").rows, []
+    for precision in ("f64", "f32"):
+        own = [r for r in rows if r["precision"] == precision and r["ticks"]]
+        ticks, beyond = sum(r["ticks"] for r in own), sum(r["ticks"] for r in own if r["from_ulps"] >= MOST_ULPS)
+        said.append(f"{precision}: all but {beyond:,.0f} of {ticks:,.0f} ticks in contact, all within {2 * max(r['from_ulps'] for r in own):.0f}")
+    return f"Within {MOST_ULPS} units in the last place (ulps) of the object's extent are in " + "; in ".join(said) + "."
+
+
 def span(rows, key):
     low, high = min(r[key] for r in rows), max(r[key] for r in rows)
     return f"{low:.0f} to {high:.0f}" if f"{low:.0f}" != f"{high:.0f}" else f"{low:.0f}"
 
 
-FIGURES = {"README.md": {"step times": step_times}, "docs/benchmarks.md": {"losses": losses, "nearest": nearest, "times": times, "brought": brought, "hands": hands, "held": held}}
+FIGURES = {"README.md": {"step times": step_times}, "docs/benchmarks.md": {"losses": losses, "nearest": nearest, "times": times, "brought": brought, "hands": hands, "held": held, "accuracy": ulps}}
 
 
 def pattern(name):
