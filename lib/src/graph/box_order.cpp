@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <limits>
-#include <numeric>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -93,17 +92,43 @@ void part(std::span<Centre> run, std::size_t first, std::size_t axis) {
                    });
 }
 
-std::size_t longest_axis(std::span<const Centre> run) {
+FloatBox box_of(std::span<const Centre> run) {
   FloatBox box;
   for (const Centre& c : run)
     box.add(c.at, c.at);
-  std::size_t longest = 0;
-  for (std::size_t axis = 1; axis < 3; ++axis)
-    if (box.side(axis) > box.side(longest)) longest = axis;
-  return longest;
+  return box;
 }
 
-// The faces of one box of the lowest level, as bits of a word.
+// Moves the `first` lowest along the box's longest side before the others. By counting in bins, without a branch that could not
+// be predicted, down to the bin that is split itself. `scratch`: as long as the run.
+void part(std::span<Centre> run, std::size_t first, std::span<Centre> scratch) {
+  constexpr std::size_t kBins = 128, kWorthBins = 2 * kBins;
+  const FloatBox box = box_of(run);
+  std::size_t axis = 0;
+  for (std::size_t other = 1; other < 3; ++other)
+    if (box.side(other) > box.side(axis)) axis = other;
+  const float from = box.low[axis], per_length = static_cast<float>(kBins) / box.side(axis);
+  if (run.size() < kWorthBins || !(per_length < kMost)) return part(run, first, axis);
+  const auto bin_of = [&](const Centre& c) {
+    return std::min(static_cast<std::uint32_t>((c.at[axis] - from) * per_length), static_cast<std::uint32_t>(kBins - 1));
+  };
+  std::array<std::uint32_t, kBins> counts{};
+  for (const Centre& c : run)
+    ++counts[bin_of(c)];
+  std::uint32_t cut = 0;
+  std::size_t below = 0;
+  for (; below + counts[cut] <= first; ++cut)
+    below += counts[cut];
+  std::array<std::size_t, 3> next = {0, below, below + counts[cut]};  // of those in lower bins, in this one, in higher ones
+  for (const Centre& c : run) {
+    const std::uint32_t bin = bin_of(c);
+    scratch[next[static_cast<std::size_t>(bin >= cut) + static_cast<std::size_t>(bin > cut)]++] = c;
+  }
+  std::copy_n(scratch.begin(), run.size(), run.begin());
+  part(run.subspan(below, counts[cut]), first - below, axis);
+}
+
+// The faces of one box of the lowest level.
 class SmallRun {
  public:
   SmallRun(const FaceBoxes& boxes, std::span<Centre> run) : run_(run) {
@@ -112,84 +137,111 @@ class SmallRun {
       centres_[i] = run[i];
       boxes_[i] = boxes.box(run[i].face);
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto along = std::span(along_[axis]).first(run.size());
-      std::iota(along.begin(), along.end(), std::uint8_t{0});
-      std::sort(along.begin(), along.end(), [&](std::uint8_t a, std::uint8_t b) {
-        return std::pair(centres_[a].at[axis], a) < std::pair(centres_[b].at[axis], b);
-      });
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sort_along(axis);
   }
 
-  void order() { order((run_.size() == kSmallRun ? 0 : 1u << run_.size()) - 1u); }
+  void order() { order(0, run_.size()); }
 
  private:
-  void order(std::uint32_t faces) {
-    while (std::popcount(faces) > static_cast<int>(kLeaf)) {
-      const std::uint32_t first = part(faces);
-      order(first);
-      faces &= ~first;
+  // By counting, for each, what comes before it: without a branch that could not be predicted.
+  void sort_along(std::size_t axis) {
+    const std::size_t count = run_.size();
+    std::array<float, kSmallRun> at;
+    for (std::size_t i = 0; i < kSmallRun; ++i)
+      at[i] = i < count ? centres_[i].at[axis] : kMost;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::uint32_t before = 0;
+      for (std::uint32_t j = 0; j < kSmallRun; ++j)
+        before += static_cast<std::uint32_t>(at[j] < at[i]) |
+                  (static_cast<std::uint32_t>(at[j] == at[i]) & static_cast<std::uint32_t>(j < i));
+      along_[axis][before] = static_cast<std::uint8_t>(i);
     }
-    for (; faces != 0; faces &= faces - 1)
-      run_[ordered_++] = centres_[static_cast<std::size_t>(std::countr_zero(faces))];
   }
 
-  // The first part along the axis that leaves the boxes with the least surface.
-  [[nodiscard]] std::uint32_t part(std::uint32_t faces) const {
-    const std::size_t count = static_cast<std::size_t>(std::popcount(faces)), first = first_part(count);
-    std::uint32_t best = 0;
-    float least = kMost;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      FloatBox parts[2];
-      std::uint32_t before = 0;
-      for (std::size_t i = 0, met = 0; met < count; ++i) {
-        const std::uint8_t face = along_[axis][i];
-        if ((faces >> face & 1u) == 0) continue;
-        parts[met < first ? 0 : 1].add(boxes_[face].low, boxes_[face].high);
-        if (met < first) before |= 1u << face;
-        ++met;
-      }
-      const float surface =
-          parts[0].half_surface() * static_cast<float>(first) + parts[1].half_surface() * static_cast<float>(count - first);
-      if (axis == 0 || surface < least) {
-        least = surface;
-        best = before;
-      }
+  // Those at `begin` and after along each axis: the same ones.
+  void order(std::size_t begin, std::size_t count) {
+    while (count > kLeaf) {
+      const std::size_t first = first_part(count);
+      part(begin, count, first);
+      order(begin, first);
+      begin += first;
+      count -= first;
     }
-    return best;
+    const auto leaf = along_[0].begin() + static_cast<std::ptrdiff_t>(begin);
+    std::sort(leaf, leaf + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = begin; i < begin + count; ++i)
+      run_[i] = centres_[along_[0][i]];
+  }
+
+  // Those of the first part before the others along every axis, each part in its order. It is cut along the axis that leaves
+  // the boxes with the least surface.
+  void part(std::size_t begin, std::size_t count, std::size_t first) {
+    std::size_t best = 0;
+    std::array<float, 3> surface;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t cut = begin + first, end = begin + count;
+      surface[axis] = half_surface(axis, begin, cut) * static_cast<float>(first) +
+                      half_surface(axis, cut, end) * static_cast<float>(count - first);
+      if (surface[axis] < surface[best]) best = axis;
+    }
+    std::uint32_t is_first = 0;
+    for (std::size_t i = begin; i < begin + first; ++i)
+      is_first |= 1u << along_[best][i];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (axis == best) continue;
+      std::array<std::uint8_t, kSmallRun> parted;
+      std::array<std::size_t, 2> next = {0, first};
+      for (std::size_t i = begin; i < begin + count; ++i)
+        parted[next[1 - (is_first >> along_[axis][i] & 1u)]++] = along_[axis][i];
+      std::copy_n(parted.begin(), count, along_[axis].begin() + static_cast<std::ptrdiff_t>(begin));
+    }
+  }
+  [[nodiscard]] float half_surface(std::size_t axis, std::size_t begin, std::size_t end) const {
+    FloatBox box;
+    for (std::size_t i = begin; i < end; ++i)
+      box.add(boxes_[along_[axis][i]].low, boxes_[along_[axis][i]].high);
+    return box.half_surface();
   }
 
   std::span<Centre> run_;
-  std::size_t ordered_ = 0;
   std::array<Centre, kSmallRun> centres_;  // in order of their faces
   std::array<FloatBox, kSmallRun> boxes_;
   std::array<std::array<std::uint8_t, kSmallRun>, 3> along_;  // the faces in order along each axis
 };
 
-std::size_t split(std::span<Centre> run) {
-  const std::size_t first = first_part(run.size());
-  part(run, first, longest_axis(run));
-  return first;
+// A run of faces, and as much memory to move them about.
+struct Run {
+  std::span<Centre> faces, scratch;
+
+  [[nodiscard]] std::pair<Run, Run> split_at(std::size_t first) const {
+    return {{faces.first(first), scratch.first(first)}, {faces.subspan(first), scratch.subspan(first)}};
+  }
+};
+
+std::pair<Run, Run> split(const Run& run) {
+  const std::size_t first = first_part(run.faces.size());
+  part(run.faces, first, run.scratch);
+  return run.split_at(first);
 }
 
-void order(const FaceBoxes& boxes, std::span<Centre> run) {
-  while (run.size() > kSmallRun) {
-    const std::size_t first = split(run);
-    order(boxes, run.first(first));
-    run = run.subspan(first);
+void order(const FaceBoxes& boxes, Run run) {
+  while (run.faces.size() > kSmallRun) {
+    const auto [before, after] = split(run);
+    order(boxes, before);
+    run = after;
   }
-  SmallRun(boxes, run).order();
+  SmallRun(boxes, run.faces).order();
 }
 
 // Splits into parts that threads may order side by side; of a part too small for that the second is empty.
-std::vector<std::span<Centre>> split_for_threads(std::span<Centre> run, unsigned jobs) {
-  std::vector<std::span<Centre>> runs{run};
-  while (runs.size() < 4u * jobs && run.size() / runs.size() > kOrderGrain) {
-    std::vector<std::span<Centre>> parts(2 * runs.size());
+std::vector<Run> split_for_threads(Run run, unsigned jobs) {
+  std::vector<Run> runs{run};
+  while (runs.size() < 4u * jobs && run.faces.size() / runs.size() > kOrderGrain) {
+    std::vector<Run> parts(2 * runs.size());
     parallel_for(jobs, runs.size(), 1, [&](std::size_t i, std::size_t) {
-      const std::size_t first = runs[i].size() > kSmallRun ? split(runs[i]) : runs[i].size();
-      parts[2 * i] = runs[i].first(first);
-      parts[2 * i + 1] = runs[i].subspan(first);
+      std::tie(parts[2 * i], parts[2 * i + 1]) =
+          runs[i].faces.size() > kSmallRun ? split(runs[i]) : runs[i].split_at(runs[i].faces.size());
     });
     runs = std::move(parts);
   }
@@ -205,7 +257,8 @@ void order_by_boxes(const Mesh& mesh, std::span<std::uint32_t> faces, unsigned j
     for (std::size_t i = begin; i < end; ++i)
       centres[i] = boxes.centre(faces[i]);
   });
-  const std::vector<std::span<Centre>> runs = split_for_threads({centres.data(), centres.size()}, jobs);
+  RawArray<Centre> scratch(faces.size());
+  const std::vector<Run> runs = split_for_threads({{centres.data(), centres.size()}, {scratch.data(), scratch.size()}}, jobs);
   parallel_for(jobs, runs.size(), 1, [&](std::size_t i, std::size_t) { order(boxes, runs[i]); });
   std::transform(centres.begin(), centres.end(), faces.begin(), [](const Centre& centre) { return centre.face; });
 }
