@@ -220,12 +220,12 @@ class Walker:
             if self.gap2() < nearest:
                 nearest, visited, has_retried = self.gap2(), [], False
             if self.at in visited or len(visited) == 32:  # contact-model TICK-5
-                if is_rest() and not self.goes_on_at_corner(visited):
+                if is_rest() and not self.goes_on_at_corner(visited, nearest):
                     return
             else:
                 visited.append(self.at)
 
-    def goes_on_at_corner(self, visited):
+    def goes_on_at_corner(self, visited, nearest):
         graph = self.graph
         if self.rim is None or len(visited) == 32:
             return False
@@ -237,7 +237,7 @@ class Walker:
         else:
             after = (VERTEX, edge.corner[0 if 2 * edge.parameter(self.god_object) < edge.length else 1])
             point = graph.point[after[1]]
-            growth = norm(minus(point, self.hip)) - norm(minus(self.god_object, self.hip))
+            growth = norm(minus(point, self.hip)) - math.sqrt(nearest)
             is_near = norm(minus(self.god_object, point)) <= 2 * graph.rounding(self.hip)
             if not is_near or growth > 8 * EPS * graph.extent:
                 return False
@@ -322,7 +322,8 @@ class Walker:
             a, b = edge.face
             passed = [f for f in edge.face if f is not None and graph.side_of(f, self.hip) >= 0]
             if edge.type == CONCAVE:
-                self.move_in_front([a, b], plus(graph.normal[a], graph.normal[b]))
+                outward = plus(graph.normal[a], graph.normal[b])
+                self.move_in_front([a, b], times(outward, 1 / (norm(outward) + 2.0 ** -1022)))
             elif passed:
                 self.move_in_front(passed[:1], graph.normal[passed[0]])
 
@@ -375,7 +376,11 @@ class Walker:
             is_near = beyond(self.graph.voronoi(face, k), self.god_object) >= -rounding
             if is_near and self.is_between_ends(face, k, self.god_object):
                 return self.place_on_rim(face, k, self.god_object)
+        self.god_object = self.foot(face, self.god_object)
         return NOWHERE
+
+    def foot(self, face, x):
+        return minus(x, times(self.graph.normal[face], self.graph.distance(face, x)))
 
     def is_between_ends(self, face, k, x):
         edge = self.graph.edge[self.graph.side[face][k][0]]
@@ -407,8 +412,8 @@ class Walker:
             if from_end > edge.end_tolerance:
                 continue
             vertex = edge.corner[end]
-            foot = edge.parameter(self.hip)
-            is_worse = from_end > 8 * EPS * graph.extent and 2 * (foot if end == 0 else edge.length - foot) > from_end
+            most = norm(minus(self.god_object, self.hip)) + 8 * EPS * graph.extent
+            is_worse = from_end > 0 and norm(minus(graph.point[vertex], self.hip)) > most
             self.place(edge.at(u) if is_worse else graph.point[vertex], (VERTEX, vertex))
             return self.seat
         self.place(edge.at(u), (EDGE, index))
@@ -527,8 +532,7 @@ class Walker:
         if after == NOWHERE:
             return point
         if after[0] == FACE:
-            n = self.graph.normal[after[1]]
-            down = minus(t, times(n, dot(n, t)))
+            down = minus(self.foot(after[1], self.hip), point)
         else:
             direction = self.graph.edge[after[1]].direction
             down = times(direction, dot(direction, t))

@@ -117,6 +117,11 @@ inline Real least_step_clear(double extent) {
   return RealLimits<Real>::kEpsilon * Real(extent) / 4096;
 }
 
+// CORNER-3: where corners lie off their planes, a feature at a corner that does not hold the god-object is the nearest for sure
+// where its squared distance from the HIP is less than this share of that of all that hold it.
+template <class Real>
+inline constexpr Real kClearlyNearer2 = Real(1) / (1 << 20);
+
 // ---- A busy corner
 
 // CORNER-4, CORNER-7: directions that reach so nearly as far tie: the rounding of boxes and directions, of the file's numbers,

@@ -22,7 +22,8 @@ struct CarriedSweep {
   uint32_t left_feature;    // its number
   uint32_t next_leaf;       // leaf of the hierarchy, or node where there is none
   uint32_t is_carried;      // 0: there is no such sweep
-  uint32_t stalled_sweeps;  // consecutive sweeps, each over several ticks, that ended where they began
+  uint16_t stalled_sweeps;  // consecutive sweeps, each over several ticks, that ended where they began
+  uint16_t stalled_ticks;   // ... ticks that spent the rules' work and moved nothing
 };
 
 // A ball in free space that no faces touch but a few; if there is one, the last HIP is in it.

@@ -48,12 +48,18 @@ struct FanSearch {
   Real half_t2;
   bool must_hold;
   Steepest<Real> best;
+  Real lost2;  // squared distance of the HIP from the nearest that did not hold
 
   FanSearch(Walk<Geometry>& a_walk, Vec3<Real> a_t, bool a_must_hold)
-      : walk(a_walk), t(a_t), half_t2(dot(t, t) / 2), must_hold(a_must_hold), best{kFree, 0, 2 * half_t2} {}
+      : walk(a_walk), t(a_t), half_t2(dot(t, t) / 2), must_hold(a_must_hold), best{kFree, 0, 2 * half_t2}, lost2(2 * half_t2) {}
 
   void offer(const Steepest<Real>& found) {
-    if (best.is_less_steep_than(found, half_t2) && (!must_hold || holds(walk, found.feature))) best = found;
+    if (!best.is_less_steep_than(found, half_t2)) return;
+    if (!must_hold || holds(walk, found.feature)) {
+      best = found;
+    } else if (found.distance2 < lost2) {
+      lost2 = found.distance2;
+    }
   }
   // One entry of the fan: its edge, and the face to the left of it.
   [[gnu::noinline, gnu::cold]] void look_at(const FanEntry& entry) {
@@ -178,6 +184,7 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
     search_all(search, corner);
   }
   const Feature found = search.best.feature;
+  if (search.lost2 < kClearlyNearer2<Real> * search.best.distance2 && walk.graph.has_inexact_nodes()) return kFree;
   if (is_inside) return found == kFree ? walk.active : found;
   if (found == kFree) {
     const bool may_hold = !corner.is_open() || FDCG_MUTANT("open-corner");
@@ -197,8 +204,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (next == kFree) return point;
   Vec3<Real> down;  // to the foot of the HIP on `next`
   if (next.state == FDCG_FACE) {
-    const Vec3<Real> normal = walk.graph.node(next.index).normal();
-    down = t - normal * dot(normal, t);
+    down = foot_on(walk.graph.node(next.index), walk.hip) - point;
   } else {
     const Vec3<Real> direction = walk.graph.edge(next.index).direction;
     down = direction * dot(direction, t);

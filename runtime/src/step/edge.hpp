@@ -61,7 +61,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 // may contradict each other: far from a small face its plane is anywhere. Then a face that the HIP is clearly over, and not
 // over the other, decides alone; and behind both faces of an edge that is not concave, clearly over neither, is no place.
 template <class Geometry, class Real = typename Geometry::Real>
-inline bool lets_go(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection, const EdgeSides<Real>& s) {
+[[gnu::noinline, gnu::cold]] bool lets_go(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection,
+                                          const EdgeSides<Real>& s) {
   const bool is_free = is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0);
   if (!walk.graph.has_inexact_nodes()) return is_free;
   const Real noise = slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound);

@@ -19,14 +19,6 @@ struct Crossing {
   Real fraction = 1;
 };
 
-// Whether a place is between the ends of a side, up to rounding.
-template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, Vec3<Real> x) {
-  const EdgeLine<Real> line(node.graph(), node, k);
-  const Real u = line.parameter(x);
-  return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
-}
-
 // Looks at the sides from the first on beyond whose plane the move ends, or near it. Its points by reference: copied to where
 // arguments are, two coordinates at once, they would wait for the stores of each.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -183,7 +175,10 @@ template <class Geometry>
 [[gnu::noinline, gnu::cold]] Feature leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
   if (!(walk.seat == kFree)) return walk.seat;
   const uint32_t side = side_under(walk, node);
-  if (side == FDCG_NONE) return kFree;
+  if (side == FDCG_NONE) {
+    walk.god_object = foot_on(node, walk.god_object);
+    return kFree;
+  }
   return place_on_rim(walk, node, side, walk.god_object);
 }
 

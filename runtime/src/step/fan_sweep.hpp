@@ -105,7 +105,7 @@ class FanSweep : public NodeEntry<Geometry> {
     return FDCG_NONE;
   }
 
-  void look_at_fan(uint32_t run) {
+  [[gnu::noinline, gnu::cold]] void look_at_fan(uint32_t run) {
     for (uint32_t i = 0; i < kRemembered && i < looked_at_; ++i) {
       if (fans_[i] == run) return;
     }

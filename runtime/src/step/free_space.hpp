@@ -14,7 +14,7 @@ namespace fdcg {
 template <class Geometry, class Real = typename Geometry::Real>
 inline Vec3<Real> onto_slab(const Walk<Geometry>& walk, Vec3<Real> point, uint32_t n) {
   const NodeRef<Geometry> node = walk.graph.node(n);
-  return node.is_inexact() ? point - node.normal() * node.plane().distance(point) : point;
+  return node.is_inexact() ? foot_on(node, point) : point;
 }
 
 // Places the contact at the first collision on the way, or at its end.
@@ -58,7 +58,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   arrive(walk, sweep, to, first);
   const bool is_held = norm1(walk.hip - to) <= walk.hip_bound;  // else the HIP has moved: either feature may release it
   const bool is_where_it_was = is_held && first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
-  carried->stalled_sweeps = is_where_it_was ? carried->stalled_sweeps + 1 : 0;
+  carried->stalled_sweeps = static_cast<uint16_t>(is_where_it_was ? carried->stalled_sweeps + 1 : 0);
   return true;
 }
 
@@ -67,6 +67,7 @@ struct FreeSpace {
   ContactInternals* inner;
   bool looks_for_balls;
   uint32_t work_left;
+  const double* last_hip;
 };
 
 // Whether a ball that no faces touch but a few holds the whole way; it is kept. Where there was none, the next looks wait for
@@ -172,7 +173,8 @@ template <class Geometry, class Real = typename Geometry::Real>
               left.index,
               0,
               1,
-              carried->stalled_sweeps};
+              carried->stalled_sweeps,
+              0};
   walk.active = walk.seat = kFree;
   if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
   return 0;

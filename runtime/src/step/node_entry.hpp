@@ -151,8 +151,8 @@ class NodeEntry {
     if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
     best_.node = n;
-    best_.feature =
-        met_exactly && !FDCG_MUTANT("exact-feature") ? on_rim(node, met_exactly, point_at(fraction)) : Feature{FDCG_FACE, n};
+    best_.feature = {FDCG_FACE, n};
+    if (met_exactly && !FDCG_MUTANT("exact-feature")) best_.feature = on_rim(node, met_exactly, point_at(fraction));
   }
 
   // Whether a node's corners lie off its plane, or off a neighbour's: over that one a way in its slab may come below this one's
@@ -199,7 +199,8 @@ class NodeEntry {
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, and not on its way out
       const Plane<Real> beside = node.voronoi_plane(k);
       const Real off = beside.distance(from_);
-      if (off > side_rounding(from_bound_, Real(0)) || (off > 0 && beside.distance(to_) > off)) return;
+      if (off > side_rounding(from_bound_, Real(0))) return;
+      if (off > 0 && (beside.distance(to_) > off || !is_between_ends(node, k, from_))) return;
     }
     if (!was_before_clearing(node) && !faces_what_was_left(node)) return;
     best_.fraction = 0;
@@ -220,7 +221,7 @@ class NodeEntry {
     if (left_.state == FDCG_FACE) {
       const NodeRef<Geometry> face = graph_.node(left_.index);
       const bool is_opposite = dot(face.normal(), node.normal()) < 0;  // then rounding of a wall's plane does not matter
-      return reaches_before(face, node) && !reaches_behind(node, face, is_opposite ? from_bound_ : Real(0));
+      return reaches(face, node, 1, Real(0)) && !reaches(node, face, -1, is_opposite ? from_bound_ : Real(0));
     }
     if (left_.state != FDCG_EDGE) return false;  // at a corner its place is exact
     const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
@@ -230,7 +231,7 @@ class NodeEntry {
     const uint32_t count = connection.type() == FDCG_BOUNDARY ? 1 : 2;
     for (uint32_t k = 0; k < count; ++k) {
       const NodeRef<Geometry> face = graph_.node(connection.node(k));
-      if (side(face, to_, to_bound_) >= 0 && !reaches_before(face, node)) return false;
+      if (side(face, to_, to_bound_) >= 0 && !reaches(face, node, 1, Real(0))) return false;
     }
     return true;
   }
@@ -249,15 +250,11 @@ class NodeEntry {
     }
     return is_behind;
   }
-  [[nodiscard]] bool reaches_before(NodeRef<Geometry> plane, NodeRef<Geometry> node) const {
+  // Whether a node reaches in front of a plane (`sign` 1) or behind it (-1) by more than `beyond`.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool reaches(NodeRef<Geometry> plane, NodeRef<Geometry> node, int sign,
+                                                       Real beyond) const {
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (side_of_corner(plane, node.corner(k)) > 0) return true;
-    }
-    return false;
-  }
-  [[nodiscard]] bool reaches_behind(NodeRef<Geometry> plane, NodeRef<Geometry> node, Real but_for) const {
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (side_of_corner(plane, node.corner(k)) < -but_for) return true;
+      if (side_of_corner(plane, node.corner(k)) * Real(sign) > beyond) return true;
     }
     return false;
   }
@@ -356,8 +353,9 @@ class NodeEntry {
     return times > 0;
   }
 
-  // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it. A way in
-  // the face's own plane meets all sides, and the point may be beside most of them.
+  // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it, or, where
+  // the loop is not flat, another beside them, and then the face is met. A way in the face's own plane meets all sides, and the
+  // point may be beside most of them.
   [[nodiscard, gnu::noinline, gnu::cold]] Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly, Vec3<Real> point) const {
     const bool are_two = (met_exactly & (met_exactly - 1)) != 0 && met_exactly != 7;
     if (node.side_count() == 3 && are_two) return {FDCG_VERTEX, corner_on_line_};  // remember_corner() has just found it
@@ -377,7 +375,7 @@ class NodeEntry {
         nearest2 = off2;
       }
     }
-    return nearest;
+    return node.is_inexact() && nearest2 > slab_ * slab_ ? best_.feature : nearest;
   }
 
   uint32_t corner_on_line_ = FDCG_NONE;

@@ -67,6 +67,7 @@ class Trail {
     return true;
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
+  [[nodiscard]] Real nearest() const { return root(nearest2_); }
   // Where hops have led to the start, over this edge, which was nearer than all before.
   void begin_nearer(Feature edge) {
     visited_[count_++] = key(edge);
@@ -129,7 +130,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Real deviation = Real(2 * walk.graph.max_deviation());
   const Real growth = snap_growth(Real(walk.graph.header()->extent)) + deviation;
   if (!(norm(walk.god_object - point) <= corner_rounding(walk.hip_bound, deviation))) return false;
-  if (!(norm(point - walk.hip) <= norm(walk.god_object - walk.hip) + growth) || !trail->may_visit(corner)) return false;
+  if (!(norm(point - walk.hip) <= trail->nearest() + growth) || !trail->may_visit(corner)) return false;
   walk.place(point, corner);
   walk.active = corner;
   return true;
@@ -148,6 +149,8 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     ++progress.transitions;
     start = walk.active;
     start_gap = walk.god_object - walk.hip;
+  } else {
+    space->inner->sweep.stalled_sweeps = 0;  // none was carried here
   }
   Trail<Geometry> trail(start, start_gap);
   if (!(hopped == kFree)) trail.begin_nearer(hopped);
@@ -179,10 +182,21 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
-      // Where it began, and no nearer: the next tick would do the same (contact-model TICK-6).
+      // No nearer: where the tick began the next one would do the same; elsewhere, with HIP and god-object where they were, a
+      // circle may take several ticks (contact-model TICK-6).
+      constexpr uint16_t kMostStalledTicks = 3;
       const Vec3<Real> gap = walk.god_object - walk.hip;
-      const bool is_circle = walk.active == start && !(dot(gap, gap) < dot(start_gap, start_gap));
-      if (!is_circle) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      const double* const last = space->last_hip;
+      const bool has_moved =
+          last[0] != walk.hip.x || last[1] != walk.hip.y || last[2] != walk.hip.z || norm1(gap - start_gap) > 0;
+      uint16_t* const stalled = &space->inner->sweep.stalled_ticks;
+      const bool is_at_start = walk.active == start;
+      if (dot(gap, gap) < dot(start_gap, start_gap) || (has_moved && !is_at_start)) {
+        *stalled = 0;
+      } else if (*stalled < kMostStalledTicks) {
+        *stalled = static_cast<uint16_t>(is_at_start ? kMostStalledTicks : *stalled + 1);
+      }
+      if (*stalled < kMostStalledTicks) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
       return progress;
     }
   }
@@ -326,7 +340,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
   ContactInternals& inner = internals_of(*contact);
-  FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork};
+  FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork, contact->hip};
   const Progress progress = move_god_object(walk, start, start_gap, hopped, move != nullptr ? &decided : nullptr, &space);
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
   // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).

@@ -50,6 +50,12 @@ struct Walk {
   }
 };
 
+// The foot of a place on a node's plane.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] Vec3<Real> foot_on(NodeRef<Geometry> node, Vec3<Real> x) {
+  return x - node.normal() * node.plane().distance(x);
+}
+
 // What a step did besides moving the god-object (contact-model RESP-3).
 struct Progress {
   uint32_t transitions;  // changes of state
@@ -95,15 +101,20 @@ struct EdgeLine : Edge<Real> {
   [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };
 
-// Whether a corner within its tolerance, but farther off than 8 eps of the extent, is farther from the HIP than u. Placing the
-// god-object there would increase the distance by more than a step may; it stays at u, but the corner's rule decides, since two
-// edges of a needle's tip would pass it to each other.
+// Whether a place is between the ends of a side, up to rounding.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, const EdgeLine<Real>& line,
-                                                              uint32_t end, Real from_end) {
-  if (from_end <= snap_growth(static_cast<Real>(walk.graph.header()->extent))) return false;
-  const Real foot = line.parameter(walk.hip);
-  return 2 * (end == 0 ? foot : line.length - foot) > from_end;
+[[gnu::noinline, gnu::cold]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, Vec3<Real> x) {
+  const EdgeLine<Real> line(node.graph(), node, k);
+  const Real u = line.parameter(x);
+  return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
+}
+
+// Whether a corner is farther from the HIP than the god-object by more than half of what a step may move it away. It is then
+// not placed there, but the corner's rule decides, since two edges of a needle's tip would pass it to each other.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, uint32_t corner) {
+  return norm(walk.graph.corner_point(corner) - walk.hip) >
+         norm(walk.god_object - walk.hip) + snap_growth(Real(walk.graph.header()->extent));
 }
 
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
@@ -116,8 +127,8 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;
     const uint32_t at = FDCG_MUTANT("corners-swapped") ? 1 - end : end;
     const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(at)};
-    walk.place(snapping_increases_distance(walk, line, end, from_end) ? line.start + line.direction * u
-                                                                      : walk.graph.corner_point(vertex.index),
+    walk.place(from_end > 0 && snapping_increases_distance(walk, vertex.index) ? line.start + line.direction * u
+                                                                               : walk.graph.corner_point(vertex.index),
                vertex);
     return vertex;
   }
