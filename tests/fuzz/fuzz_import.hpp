@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -67,8 +68,8 @@ inline void require_sound(const PolygonSoup& soup) {
   require(soup.ignored.size() <= 300, "what is ignored is a short list");
 }
 
-// Of a soup that was asked how it looks.
-inline void require_sound_look(const PolygonSoup& soup) {
+// Of a soup that was asked how it looks. A library of OBJ may leave the range of its images open, 0, and may turn it, below 0.
+inline void require_sound_look(const PolygonSoup& soup, bool any_range = false) {
   const Appearance& look = soup.appearance;
   const auto fits = [](std::size_t have, std::size_t wanted) { return have == 0 || have == wanted; };
   require(fits(soup.corner_normals.size(), soup.corners.size()) && fits(look.uv.size(), soup.corners.size()) &&
@@ -83,7 +84,9 @@ inline void require_sound_look(const PolygonSoup& soup) {
             "images have their texels");
     for (const float value : image.values)
       require(value >= 0 && value <= 1, "heights are shares");
-    require(image.range > 0 && image.range <= 1e300, "heights have a range");
+    require(any_range ? std::isfinite(image.range) : image.range > 0 && image.range <= 1e300, "heights have a range");
+    for (const double number : image.placing)
+      require(std::isfinite(number), "images have a place");
   }
   for (const HapticMaterial& material : soup.physics.haptic_materials)
     for (const auto& texture : {material.stiffness, material.friction})

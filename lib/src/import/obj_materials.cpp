@@ -28,14 +28,15 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-// Up to `count` numbers at the front of a line; what is no number stays.
+// Up to `count` numbers at the front of a line; what is no number, or so large that products and sums of them are none, stays.
 void take_numbers(std::string_view& line, double* numbers, std::size_t count) {
+  constexpr double kLargest = 1e100;
   for (std::size_t k = 0; k < count; ++k) {
     std::string_view rest = line;
     const std::string_view word = take_word(rest);
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return;
+    if (error != std::errc() || end != word.data() + word.size() || !(std::fabs(value) <= kLargest)) return;
     numbers[k] = value;
     line = rest;
   }

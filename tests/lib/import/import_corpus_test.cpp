@@ -15,8 +15,10 @@ constexpr Format kFormats[] = {Format::off, Format::obj, Format::ply,     Format
                                Format::drc, Format::dae, Format::threemf, Format::vtk, Format::x3d};
 
 // Either a valid soup or a refusal with its message.
-void check_any(std::string_view bytes, std::optional<Format> format) {
-  const Result<PolygonSoup> soup = import_memory(bytes, "mesh", {format, {}});
+void check_any(std::string_view bytes, std::optional<Format> format, bool looks = false) {
+  ImportOptions options{format, {}};
+  options.normals = options.appearance = looks;
+  const Result<PolygonSoup> soup = import_memory(bytes, "mesh", options);
   if (soup) {
     check_invariants(*soup);
   } else {
@@ -139,15 +141,17 @@ TEST_CASE("a single changed byte leads to a soup or a refusal") {
   }
 }
 
-TEST_CASE("every fuzz find is a soup or a refusal in every format") {
+TEST_CASE("every fuzz find is a soup or a refusal in every format, with and without how it looks") {
   int finds = 0;
   for (const auto& path : files_in(testdata() / "fuzz")) {
     if (path.parent_path().filename().string().find("import") == std::string::npos) continue;
     INFO(path);
     const std::string bytes = read_bytes(path);
-    for (const Format format : kFormats)
-      check_any(bytes, format);
-    check_any(bytes, std::nullopt);
+    for (const bool looks : {false, true}) {
+      for (const Format format : kFormats)
+        check_any(bytes, format, looks);
+      check_any(bytes, std::nullopt, looks);
+    }
     ++finds;
   }
   CHECK(finds > 0);

@@ -77,3 +77,26 @@ TEST_CASE("a folder, a device and a missing file are no images, which is said of
   std::ofstream(folder() / "text.png") << "no image";
   CHECK_THAT(message(folder() / "text.png"), ContainsSubstring("is no PNG image that can be read"));
 }
+
+TEST_CASE("an image's range and place are numbers, whatever its library says") {
+  std::ofstream(folder() / "one.png", std::ios::binary) << png_bytes(2, 1, 1, 8, {0, 255});
+  std::ofstream(folder() / "mesh.obj") << "mtllib mesh.mtl\nusemtl a\n" << kTetrahedron;
+  const auto image_of = [](const std::string& options) {
+    std::ofstream(folder() / "mesh.mtl") << "newmtl a\nmap_bump " << options << " one.png\n";
+    ImportOptions looking;
+    looking.appearance = true;
+    looking.heights = "file";
+    return import_mesh(folder() / "mesh.obj", looking);
+  };
+  const auto usual = image_of("-bm 0.5 -mm 0 1e100 -s 1e100 -1e100 -o 1e100");
+  REQUIRE(usual);
+  CHECK(usual->appearance.images.at(0).range == Approx(5e99));
+  for (const double number : usual->appearance.images[0].placing)
+    CHECK(std::isfinite(number));
+  for (const char* const beyond : {"-bm 1e200 -mm 0 1e200", "-s 1 1e308 -o 0 1e308", "-bm 1e999", "-bm nan"}) {
+    INFO(beyond);
+    const auto refused = image_of(beyond);  // what is no number is the image's name
+    REQUIRE_FALSE(refused);
+    CHECK_THAT(refused.error().message, ContainsSubstring("one.png"));
+  }
+}
