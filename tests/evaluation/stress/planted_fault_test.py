@@ -20,7 +20,8 @@ MUTANTS = [
 FOUND = pathlib.Path(__file__).parent / "found"
 # (name of the mutant, what is taken out, what it brings back)
 REPLAYED = [
-    ("circle-at-corner", "a circle about a corner is decided by the corner and its edges", "circle_about_a_corner_of_three_faces.obj"),
+    ("along-side", "a way that ends on a side's plane crosses it where it ends", "leaves_a_face_narrower_than_a_rounding.obj"),
+    ("ends-on-plane", "a target on a side's plane but for rounding is on the side", "along_a_saddles_edge.obj"),
 ]
 
 
