@@ -80,7 +80,7 @@ class Case(unittest.TestCase):
         return str(self.folder / name)
 
     def run_program(self, *command, code=0, **options):
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=120, check=False, **options)
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=400, check=False, **options)
         self.assertEqual(code, done.returncode, f"{command}\nstdout: {done.stdout[:2000]}\nstderr: {done.stderr[:2000]}")
         return done
 
