@@ -14,7 +14,7 @@ inline constexpr bool kShades = FDCG_WITH_SHADING&& Geometry::kKeepsDirections;
 template <class Geometry>
 FDCG_HOT FaceFrame quick_frame_of(NodeRef<Geometry> node) {
   const Vec3<double> normal = widen(node.normal()), across = widen(node.voronoi_plane(0).normal) * -1.0;
-  return {cross(across, normal), across, normal};
+  return {cross(across, normal), by_parts(across), by_parts(normal)};
 }
 template <class Geometry>
 [[gnu::noinline]] FaceFrame frame_of(NodeRef<Geometry> node) {

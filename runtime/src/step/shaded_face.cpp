@@ -141,8 +141,8 @@ Vec3<double> normal_at(const FaceFrame& frame, const NormalField& field, Vec3<do
   return found * (1 / norm(found));
 }
 
-void look_at_spot(const FaceFrame& frame, const NormalField& field, Vec3<double> hip, Vec3<double> spring, double depth,
-                  double slack, ShadedSpot* spot) {
+void look_at_spot(const FaceFrame& frame, const NormalField& field, const Vec3<double>& hip, const Vec3<double>& spring,
+                  double depth, double slack, ShadedSpot* spot) {
   const Vec3<double> at_foot = field.at(frame.flat(hip));
   const Flat god_object = frame.flat(spring);
   const Vec3<double> way = {god_object.p, god_object.q, depth};

@@ -26,8 +26,8 @@ struct ShadedSpot {
 };
 
 // `spring`: from the HIP to the god-object; `slack`: of the god-object's own rounding.
-void look_at_spot(const FaceFrame& frame, const NormalField& field, Vec3<double> hip, Vec3<double> spring, double depth,
-                  double slack, ShadedSpot* spot);
+void look_at_spot(const FaceFrame& frame, const NormalField& field, const Vec3<double>& hip, const Vec3<double>& spring,
+                  double depth, double slack, ShadedSpot* spot);
 
 // Two numbers along a face at once.
 using Pair = double __attribute__((vector_size(16)));
