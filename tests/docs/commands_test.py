@@ -82,9 +82,12 @@ class Session(unittest.TestCase):
 
     def shell(self, command, code, what, tries=10):
         environment = os.environ | {"HOME": str(self.folder / "home"), "PATH": ":".join([*PROGRAMS, os.environ["PATH"]])}
+        before = set(self.folder.rglob("*"))
         done = subprocess.run(("bash", "-eu", "-o", "pipefail", "-c", command), cwd=self.folder, env=environment,
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=200, check=False)
         if LATE.search(done.stdout) and done.returncode != code and tries > 1:
+            for made in sorted(set(self.folder.rglob("*")) - before, reverse=True):
+                made.rmdir() if made.is_dir() else made.unlink()
             return self.shell(command, code, what, tries - 1)
         self.assertEqual(code, done.returncode, f"{what}\n{command}\nstdout: {done.stdout[-2000:]}\nstderr: {done.stderr[-2000:]}")
         return done.stdout
