@@ -99,7 +99,7 @@ class Parts(WeightCase):
     # program, what it is built with: the bar, and the limit, which a change may not pass
     FACETS = ("-DFDCG_WITH_SHADING=OFF",)
     X86_GRAPHS = (("one_graph", "f64", (*F64, *FACETS), 64 * KB, 64 * KB),
-                  ("one_graph", "both", (*NO_WORDS, *FACETS), 96 * KB, 114_200),
+                  ("one_graph", "both", (*NO_WORDS, *FACETS), 96 * KB, 114_400),
                   ("one_graph", "f64-shaded", F64, 64 * KB, 90_000), ("one_graph", "both-shaded", NO_WORDS, 96 * KB, 156_000))
     M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 39_200),
                  ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 29_600),
