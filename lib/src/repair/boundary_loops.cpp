@@ -48,10 +48,11 @@ class LoopFinder {
       path.push_back(w);
       const std::uint32_t at = +ways_[w].to;
       if (const auto seen = place.find(at); seen != place.end()) {
-        close(path, seen->second);
-        for (std::size_t i = seen->second; i < path.size(); ++i)
+        const std::size_t begin = seen->second;  // of its own: the loop's places are erased, that one too
+        close(path, begin);
+        for (std::size_t i = begin; i < path.size(); ++i)
           place.erase(+ways_[path[i]].from);
-        path.resize(seen->second);
+        path.resize(begin);
       }
       std::vector<std::uint32_t>& out = out_[at];
       while (!out.empty() && is_taken_[out.back()])
