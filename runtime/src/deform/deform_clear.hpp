@@ -10,12 +10,13 @@
 namespace fdcg {
 
 // The radius of a ball around `at` that no box reaches into, local, and its `reach2` in tree units; 0 where it would be below
-// `way`. Cost: at most kMostClearVisits records.
+// `way`. Cost: at most 24 records.
 template <class Real>
 [[gnu::noinline]] double quiet_radius(const Upkeep<Real>& upkeep, Vec3<double> at, double way, double* reach2) {
   constexpr double kWaysAhead = 32, kLeastReach = 1.0 / 256;  // as in clear_radius
   constexpr double kEnough = 8;                               // ways: boxes that are no nearer need not be made tight
   constexpr double kKept = 1 - 1.0 / 512, kFar = 8;           // tree units
+  constexpr int kMostVisits = 24;
   const fdcg_deform& deform = upkeep.deform();
   const Vec3<double> p = at * deform.per_tree_unit;
   const double size = norm1(p), length = way * deform.per_tree_unit;
@@ -30,7 +31,7 @@ template <class Real>
   for (int visits = 0; !waiting.is_empty() && clear2 > too_near2;) {
     const WaitingBoxes::Item next = waiting.pop();
     if (!(next.key < clear2)) continue;
-    if (visits++ == kMostClearVisits) return 0;
+    if (visits++ == kMostVisits) return 0;
     float distance2[FDCG_TREE_WAYS];
     const fdcg_box8& boxes = deform.boxes[deform.tree.first[next.level] + next.index];
     const uint32_t lanes = deform.tree.lanes(next.level, next.index);

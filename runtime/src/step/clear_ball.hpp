@@ -13,7 +13,7 @@
 namespace fdcg {
 
 // Records and leaves that one look may open: what has been proved clear by then is taken.
-inline constexpr int kMostClearVisits = 24;
+inline constexpr int kMostClearVisits = 48;
 
 // `hip`: in double whatever the graph's reals, which is at hand sooner. Rounding it to them moves it by far less than
 // clear_radius leaves as a margin.
