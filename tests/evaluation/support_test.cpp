@@ -106,6 +106,24 @@ TEST_CASE("a higher rate samples the same motion more finely") {
   }
 }
 
+// Else numbers in float cannot tell whether it touches, and each tick finds and loses the surface.
+TEST_CASE("a hand does not lie in the surface for longer than it takes to pass it") {
+  constexpr double kNear_m = 1e-8;
+  for (const char* name : {"cube_12", "drilled_plate"}) {
+    const Ground ground(body_named(name).make());
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      WayOptions options;
+      options.ticks = 1000;
+      options.seed = seed;
+      const Way way = make_way(ground, options);
+      const auto near = std::count_if(
+          way.begin(), way.end(), [&](const Ground::Point& hip) { return std::abs(ground.signed_distance(hip)) < kNear_m; });
+      INFO(name << ", seed " << seed);
+      CHECK(near <= 2);
+    }
+  }
+}
+
 TEST_CASE("a hand keeps to 0.5 m/s and, by a Fourier transform, to 10 Hz") {
   for (const char* name : {"cube_12", "star_10k", "spiky"}) {
     const Ground ground(body_named(name).make());

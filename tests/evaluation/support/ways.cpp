@@ -50,8 +50,11 @@ class HandPen : public Pen {
       : Pen(kHandKnot_s), ground_(ground), random_(seed), depth_m_(depth_m) {
     const std::uint32_t corner = random_.below(static_cast<std::uint32_t>(ground.soup().points.size()));
     anchor_ = ground.closest(ground.corner(corner) + ground.corner_normal(corner) * kLift_m);
+    heading_ = flattened(direction(random_), anchor_.feature_normal);
+    // Off the corner: pressed there along the normal of one of its faces, the hand would lie in the plane of the next for ever.
+    walk(kLift_m);
+    anchor_ = ground.closest(anchor_.point + anchor_.normal * kLift_m);
     normal_ = anchor_.feature_normal;
-    heading_ = flattened(direction(random_), normal_);
     last_ = anchor_.point + normal_ * kLift_m;
   }
 
