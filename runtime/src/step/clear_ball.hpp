@@ -38,7 +38,13 @@ inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> no
   return beside > 0 ? root(from_plane * from_plane + beside * beside) : from_plane;
 }
 
-// The nodes nearest to a place, as many as a clear ball may have, and how near the next one is.
+template <class Real>
+inline bool are_one(const Plane<Real>& a, const Plane<Real>& b) {
+  return a.offset == b.offset && a.normal.x == b.normal.x && a.normal.y == b.normal.y && a.normal.z == b.normal.z;
+}
+
+// The nodes nearest to a place, as many as a clear ball may have, and how near the next one is. Of nodes of one plane, bit for
+// bit, one stands for all: a way that surely passes it passes all of them.
 template <class Real>
 class NearestNodes {
  public:
@@ -47,9 +53,13 @@ class NearestNodes {
   // What is no nearer counts no longer.
   [[nodiscard]] Real limit() const { return limit_; }
   void block(Real distance) { limit_ = distance < limit_ ? distance : limit_; }
-  void add(uint32_t node, Real distance) {
-    uint32_t at = count_;
-    if (count_ == kMostNear) {  // the farthest of all makes room
+  void add(uint32_t node, Plane<Real> plane, Real distance) {
+    uint32_t at = 0;
+    while (at < count_ && !are_one(plane, plane_[at]))
+      ++at;
+    if (at < count_) {
+      if (!(distance < distance_[at])) return;
+    } else if (count_ == kMostNear) {  // the farthest of all makes room
       at = 0;
       for (uint32_t i = 1; i < kMostNear; ++i)
         at = distance_[i] > distance_[at] ? i : at;
@@ -59,6 +69,7 @@ class NearestNodes {
       ++count_;
     }
     node_[at] = node;
+    plane_[at] = plane;
     distance_[at] = distance;
   }
   // Stores those that are nearer than `radius`; how many.
@@ -75,10 +86,11 @@ class NearestNodes {
   Real limit_;
   uint32_t count_ = 0;
   uint32_t node_[kMostNear];
+  Plane<Real> plane_[kMostNear];
   Real distance_[kMostNear];
 };
 
-// Tells the list of a leaf's nodes; none is nearer than `least`. A node at a busy corner is no member: a way may meet the
+// Tells the list of a leaf's nodes; none is nearer than `least`. A busy corner is kept outside the ball: a way may meet the
 // corner and none of its faces (contact-model FREE-8).
 template <class Geometry, class Real = typename Geometry::Real>
 inline void look_at_leaf(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<Real> at, Real least,
@@ -87,10 +99,13 @@ inline void look_at_leaf(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<R
   for (uint32_t n = first; n < end && n < graph.header()->node_count; ++n) {
     const Real beside = node_distance(graph, graph.node(n), at, nearest->limit()), distance = beside > least ? beside : least;
     if (!(distance < nearest->limit())) continue;
-    bool is_member = false;
-    if constexpr (Geometry::kKeepsDirections) is_member = fan_run_of(graph, n) == FDCG_NONE;
-    if (is_member) {
-      nearest->add(n, distance);
+    if constexpr (Geometry::kKeepsDirections) {
+      const uint32_t run = fan_run_of(graph, n);
+      if (run != FDCG_NONE) {
+        const uint32_t corner = graph.busy_corners()[graph.fan_runs()[run].busy].corner;
+        nearest->block(norm(graph.corner_point(corner) - at) - static_cast<Real>(graph.max_deviation()));
+      }
+      nearest->add(n, graph.node(n).plane(), distance);
     } else {
       nearest->block(distance);
     }
@@ -115,7 +130,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::hot]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way, NearNodes* near,
                                               uint32_t* near_count) {
-  constexpr Real kWaysAhead = 12;              // what a look is to pay for, in ways of this tick
+  constexpr Real kWaysAhead = 8;               // what a look is to pay for, in ways of this tick
   constexpr Real kLeastReach = Real(1) / 256;  // ... and tree units
   constexpr Real kFar = 64, kTreeReach = 16;   // tree units: no box reaches further than 8
   const Real unit = static_cast<Real>(tree_unit(graph.header()->extent)), per_unit = 1 / unit;
