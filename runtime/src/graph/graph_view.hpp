@@ -212,6 +212,11 @@ struct GraphView : Geometry {
     const fdcg_connection& record = this->connections()[connection_index];
     read_edge(node(record.node), record.side[0], edge);
   }
+  // A connection's direction: where edges are stored, without a look at its ends.
+  [[nodiscard]] Vec3<Real> direction(uint32_t connection_index) const {
+    if (this->edges() != nullptr) return vec(this->edges()[connection_index].direction);
+    return edge(connection_index).direction;
+  }
   template <class... Where>
   [[nodiscard]] Edge<Real> edge(Where... where) const {
     Edge<Real> edge;

@@ -63,7 +63,7 @@ struct FanSearch {
   }
   // One entry of the fan: its edge, and the face to the left of it.
   [[gnu::noinline, gnu::cold]] void look_at(const FanEntry& entry) {
-    const Vec3<Real> direction = walk.graph.edge(entry.connection).direction;
+    const Vec3<Real> direction = walk.graph.direction(entry.connection);
     const Real forward = FDCG_MUTANT("corner-sees-no-edge") ? Real(0) : dot(t, direction);
     if (entry.end == 0 ? forward > 0 : forward < 0) {
       const Vec3<Real> off = t - direction * forward;
@@ -206,7 +206,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (next.state == FDCG_FACE) {
     down = foot_on(walk.graph.node(next.index), walk.hip) - point;
   } else {
-    const Vec3<Real> direction = walk.graph.edge(next.index).direction;
+    const Vec3<Real> direction = walk.graph.direction(next.index);
     down = direction * dot(direction, t);
   }
   const Real off = norm(walk.god_object - point), length = norm(down);

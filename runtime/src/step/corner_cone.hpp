@@ -186,7 +186,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     }
   } else {
     graph.for_each_in_fan(corner, [&](const FanEntry& entry) {
-      const Real along = dot(t, graph.edge(entry.connection).direction);
+      const Real along = dot(t, graph.direction(entry.connection));
       choose(entry, entry.end == 0 ? along : -along);
     });
   }
