@@ -25,8 +25,8 @@ SUPPORT = {"heights_check", "heights_relief", "relief", "relief_check", "waves_r
 # Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
 # does not hold yet.
 KB = 1024
-X86_BOTH = {"bar": 48 * KB, "limit": 172_000}
-X86_F64 = {"bar": 48 * KB, "limit": 102_900}
+X86_BOTH = {"bar": 48 * KB, "limit": 182_800}
+X86_F64 = {"bar": 48 * KB, "limit": 108_000}
 M7_F32 = {"bar": 20 * KB, "limit": 47_500}
 M7_F32_TERMS = {"bar": 20 * KB, "limit": 65_000}
 
@@ -98,10 +98,13 @@ class Parts(WeightCase):
              "-DFDCG_WITH_CLEAR_BALLS=OFF")
     # program, what it is built with: the bar, and the limit, which a change may not pass
     FACETS = ("-DFDCG_WITH_SHADING=OFF",)
-    X86_GRAPHS = (("one_graph", "f64", (*F64, *FACETS), 64 * KB, 64 * KB),
-                  ("one_graph", "both", (*NO_WORDS, *FACETS), 96 * KB, 114_400),
-                  ("one_graph", "f64-shaded", F64, 64 * KB, 90_000), ("one_graph", "both-shaded", NO_WORDS, 96 * KB, 156_000))
-    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 39_200),
+    LEAN = (*FACETS, "-DFDCG_WITH_FAST_EDGES=OFF")
+    X86_GRAPHS = (("one_graph", "f64-lean", (*F64, *LEAN), 64 * KB, 66_200),
+                  ("one_graph", "both-lean", (*NO_WORDS, *LEAN), 96 * KB, 115_600),
+                  ("one_graph", "f64", (*F64, *FACETS), 64 * KB, 71_000),
+                  ("one_graph", "both", (*NO_WORDS, *FACETS), 96 * KB, 125_100),
+                  ("one_graph", "f64-shaded", F64, 64 * KB, 94_900), ("one_graph", "both-shaded", NO_WORDS, 96 * KB, 166_300))
+    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 39_300),
                  ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 29_600),
                  ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 39_600))
 
@@ -144,7 +147,7 @@ class Parts(WeightCase):
             self.told(f"x86-64, {name}: {program}", text, bar, limit)
 
     def test_x86_64_link_time_optimisation(self):
-        library = self.library("lto", *self.F64, *self.FACETS, "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON")
+        library = self.library("lto", *self.F64, *self.LEAN, "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON")
         self.embedded("f64")
         program = self.path("one_graph-lto")
         self.run_program("cc", *C, "-O2", "-flto=auto", "-I", str(RUNTIME / "include"), "-I", str(self.folder),

@@ -336,7 +336,7 @@ typedef enum fdcg_edge_friction {
 /** What the step does not do where it cannot matter. Forces and god-objects are the same bit for bit with all of it. */
 typedef enum fdcg_step_optimization {
   FDCG_STEP_OPT_CLEAR_BALL = 1, /**< in free space: no sweep inside a ball that no face touches */
-  FDCG_STEP_OPT_HOP = 2,        /**< in contact: a slide over plain edges from face to face without the rules' loop */
+  FDCG_STEP_OPT_HOP = 2,        /**< in contact: slides over plain edges, and along them, without the rules' loop */
   FDCG_STEP_OPT_ALL = 3         /**< every one */
 } fdcg_step_optimization;
 

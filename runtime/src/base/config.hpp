@@ -61,6 +61,12 @@
 #define FDCG_WITH_CLEAR_BALLS 1
 #endif
 
+// Short ways along edges, onto them and off them (step/along_edge.hpp). Nothing that is felt depends on them; without them the
+// library is smaller, and such ticks take longer.
+#ifndef FDCG_WITH_FAST_EDGES
+#define FDCG_WITH_FAST_EDGES 1
+#endif
+
 // FDCG_ASSERT: checks for programming errors in the library, in the step too. CMake sets it in debug builds.
 #ifndef FDCG_WITH_ASSERTS
 #define FDCG_WITH_ASSERTS 0

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tick that slides over edges from face to face: what a moving hand meets most. The same numbers, to the bit, as the rules of
-// face.hpp and edge.hpp one after the other, without what serves other ends of theirs. Whatever is not plain is left to them,
-// from where the hops end: corners, borders, doubtful signs, two faces that both pull, a place that is no nearer to the HIP,
-// friction that holds. Graphs that are not plain have no hops.
+// A tick that slides over edges from face to face, or onto an edge that keeps it: what a moving hand meets most. The same
+// numbers, to the bit, as the rules of face.hpp and edge.hpp one after the other, without what serves other ends of theirs.
+// Whatever is not plain is left to them, from where the hops end: corners, borders, doubtful signs, two faces that both pull, a
+// place that is no nearer to the HIP, friction that holds. Graphs that are not plain have no hops.
 #pragma once
 
+#include "step/along_edge.hpp"
 #include "step/face.hpp"
 
 namespace fdcg {
@@ -18,6 +19,7 @@ struct Hop {
   uint32_t node;
   uint32_t edge;         // the last that it went over
   uint32_t transitions;  // 0: none yet
+  bool is_on_edge;       // where it stays
   uint32_t work_left;    // as the rules would have it
   Real gap2;             // squared distance from the HIP
   Vec3<Real> god_object;
@@ -25,6 +27,22 @@ struct Hop {
   QuickFriction<Real> friction;
   FaceMove<Real> move;  // on the node
 };
+
+// Whether an edge that it has come to keeps the god-object; else nothing has changed.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] bool stops_on_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hip, uint32_t edge,
+                                     const Vec3<Real>& god_object, Hop<Real>* hop) {
+  AlongEdge<Real> along;
+  along.friction = hop->friction;
+  along.god_object = by_parts(god_object);
+  if (look_along_edge(graph, edge, hip, &along) != OnEdge::stays) return false;
+  hop->god_object = by_parts(along.god_object);
+  hop->friction = {along.friction};
+  hop->edge = edge;
+  hop->is_on_edge = true;
+  ++hop->transitions;
+  return true;
+}
 
 // Goes over the side that the move on its face meets (contact-model FACE-6, EDGE-1), and looks at the face beyond. False: not
 // plainly so, and nothing has changed.
@@ -41,9 +59,10 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   graph.prefetch_plainly(
       there.side(there.next(back)));  // for the next crossing, of a triangle: the third is where this one began
   graph.prefetch_plainly(there.side(there.previous(back)));
-  if (!FDCG_MUTANT("hops-anywhere") &&
-      !(side < -bound && there.stored_plane(back).distance(hip) < 0 && here.stored_plane(k).distance(hip) >= 0))
-    return false;
+  const bool goes_over =
+      (side < -bound && there.stored_plane(back).distance(hip) < 0 && here.stored_plane(k).distance(hip) >= 0) ||
+      FDCG_MUTANT("hops-anywhere");
+  if (!FDCG_WITH_FAST_EDGES && !goes_over) return false;
   const Vec3<Real> from = hop->god_object, way = (hop->move.target - from) - hop->rounding_residual;
   const Vec3<Real> ahead = hop->rounding_residual + way * hop->move.crossing.fraction;
   const auto& edge = graph.edges()[crossed.link >> 1];
@@ -54,6 +73,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
   const Vec3<Real> god_object = start + direction * u, gap = god_object - hip;
   const Real gap2 = dot(gap, gap);
   if (!(gap2 < hop->gap2)) return false;
+  if (!goes_over) return FDCG_WITH_FAST_EDGES && stops_on_edge(graph, hip, crossed.link >> 1, god_object, hop);
   hop->god_object = by_parts(FDCG_MUTANT("hop-stays") ? from : god_object);
   hop->gap2 = gap2;
   hop->rounding_residual = FDCG_MUTANT("hop-residual-of-the-way") ? ahead : (from - god_object) + ahead;
@@ -74,7 +94,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Vec3<Real> gap = hop->god_object - hip;
   hop->gap2 = dot(gap, gap);
   while (hop->move.kind == Kind::crosses && hop->work_left > kHopWork) {
-    if (!hop_over(graph, hip, bound, hop)) return;
+    if (!hop_over(graph, hip, bound, hop) || hop->is_on_edge) return;
   }
 }
 

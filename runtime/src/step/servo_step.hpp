@@ -18,6 +18,7 @@
 
 #include "base/config.hpp"
 #include "base/hooks.hpp"
+#include "step/along_edge.hpp"
 #include "step/contact_internals.hpp"
 #include "step/corner.hpp"
 #include "step/edge.hpp"
@@ -443,6 +444,9 @@ inline constexpr bool kHasHops = false;
 template <class Geometry>
 inline constexpr bool kHasHops = Geometry::kKeepsDirections;
 #endif
+// The same for ticks that begin on an edge or end there.
+template <class Geometry>
+inline constexpr bool kHasEdgeHops = FDCG_WITH_FAST_EDGES&& kHasHops<Geometry>;
 
 // Whether a tick on a face has a short way of its own; a library built for size has one way for all.
 #ifdef __OPTIMIZE_SIZE__
@@ -500,21 +504,77 @@ FDCG_STEP_ON void end_hops_on_face(const fdcg_header& header, const fdcg_params&
   end_on_face(header, params, hip, hop.move.kind, hop.move.target, hop.friction.is_slipping, contact, result);
 }
 
+// A god-object that ends on an edge.
+template <class Real>
+FDCG_HOT void end_on_edge(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip, bool is_slipping,
+                          const Vec3<Real>& god_object, fdcg_contact* contact, fdcg_result* result) {
+  internals_of(*contact).sweep.stalled_sweeps = 0;
+  contact->slipping = is_slipping ? 1 : 0;
+  respond(header, params, *contact, hip, god_object, result);
+  store(god_object, contact->god_object);
+}
+template <class Real>
+[[gnu::noinline]] void end_hops_on_edge(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip,
+                                        const Hop<Real>& hop, fdcg_contact* contact, fdcg_result* result) {
+  ContactInternals& inner = internals_of(*contact);
+  contact->state = inner.seat_state = FDCG_EDGE;
+  contact->feature = inner.seat_feature = hop.edge;
+  result->transitions = hop.transitions;
+  end_on_edge(header, params, hip, hop.friction.is_slipping, by_parts(hop.god_object), contact, result);
+}
+
+// A tick that begins on an edge, and stays there or not: the face that pulls the god-object off it, else FDCG_NONE.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::hot]] OnEdge step_along_edge(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& hip,
+                                                   fdcg_contact* contact, fdcg_result* result, uint32_t* face) {
+  if ((params.disabled_optimizations & FDCG_STEP_OPT_HOP) != 0) return OnEdge::unsure;
+  AlongEdge<Real> along;
+  along.friction = friction_of<Real>(params, *contact);
+  along.god_object = narrow<Real>(contact->god_object);
+  const OnEdge what = look_along_edge(GraphView<Geometry>(raw), contact->feature, hip, &along);
+  *face = along.face;
+  if (what != OnEdge::stays) return what;
+  ContactInternals& inner = internals_of(*contact);
+  if (along.has_slid) inner.seat_state = FDCG_EDGE, inner.seat_feature = contact->feature;
+  end_on_edge(*raw.header, params, hip, along.friction.is_slipping, by_parts(along.god_object), contact, result);
+  return what;
+}
+
+// Goes on from an edge to the face that pulls the god-object off it, and over further edges. False: what the rules' loop
+// remembers of the edge may count, and *hop is as it was.
+template <class Geometry, class Real = typename Geometry::Real>
+inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hip, Real bound, uint32_t face, Hop<Real>* hop) {
+  const PlainFriction<Real> friction = hop->friction;
+  const NodeRef<Geometry> node = graph.node(face);
+  const Vec3<Real> gap = hop->god_object - hip;
+  spend(&hop->work_left, kEdgeWork + kTransitionWork + kSideWork * node.side_count());
+  hop->node = face;
+  hop->transitions = 1;
+  hop->move = move_on_face<true>(node, hop->friction, hip, bound, node.plane().distance(hip), hop->god_object, gap, gap);
+  hop_to_hip(graph, hip, bound, hop);
+  if (hop->transitions > 1 || ends_on_face(graph, hip, hop->move.kind, false)) return true;
+  hop->friction = {friction};
+  hop->work_left = kRuleWork;
+  hop->transitions = 0;
+  return false;
+}
+
 // The rest of a tick: from a face that the god-object may leave, or on which it must be asked again, with what has been found
-// there; or, `tick` null, from elsewhere.
+// there; from an edge that a face, `pulling`, pulls it off; or, `tick` null and no such face, from elsewhere.
 template <class Geometry, class Real = typename Geometry::Real>
 FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip, const FaceTick<Real>* tick,
-                          fdcg_contact* contact, fdcg_result* result) {
+                          uint32_t pulling, fdcg_contact* contact, fdcg_result* result) {
   const GraphView<Geometry> graph(raw);
   const Real bound = plane_rounding_bound(graph, hip);
-  const bool is_on_face = contact->state == FDCG_FACE;
+  bool has_move = contact->state == FDCG_FACE;
   Hop<Real> hop;
   hop.god_object = narrow<Real>(contact->god_object);
   hop.rounding_residual = {0, 0, 0};
   hop.work_left = kRuleWork;
   hop.transitions = 0;
+  hop.is_on_edge = false;
   hop.friction = {friction_of<Real>(params, *contact)};
-  if (is_on_face) {
+  if (has_move) {
     const NodeRef<Geometry> node = graph.node(contact->feature);
     if constexpr (kGlances) {
       hop.friction = tick->friction;
@@ -524,13 +584,18 @@ FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, Vec3
       hop.move = move_on_face(node, hop.friction, hip, bound, side_of(graph, node, hip, bound, nullptr), hop.god_object, stands,
                               stands);
     }
+    hop.node = contact->feature;
     if (kHasHops<Geometry> && hop.move.kind == FaceMoveKind::crosses && tick->side < -bound &&
-        (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0) {
-      hop.node = contact->feature;
+        (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0)
       hop_to_hip(graph, hip, bound, &hop);
-      contact->feature = hop.node;
-    }
-    if (ends_on_face(graph, hip, hop.move.kind, hop.transitions != 0))
+  } else if (kHasEdgeHops<Geometry> && pulling != FDCG_NONE) {
+    has_move = hops_off_edge(graph, hip, bound, pulling, &hop);
+  }
+  if (has_move) {
+    if (kHasEdgeHops<Geometry> && hop.is_on_edge) return end_hops_on_edge(*raw.header, params, hip, hop, contact, result);
+    contact->state = FDCG_FACE;
+    contact->feature = hop.node;
+    if (ends_on_face(graph, hip, hop.move.kind, hop.transitions > 1))
       return end_hops_on_face(*raw.header, params, hip, hop, contact, result);
   }
   Walk<Geometry> walk = {graph,
@@ -542,7 +607,7 @@ FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, Vec3
                          hop.transitions != 0 ? Feature{FDCG_EDGE, hop.edge} : seat_of(*contact),
                          hop.work_left,
                          hop.rounding_residual};
-  walk_to_hip<Geometry, Real>(walk, is_on_face ? &hop.move : nullptr, hop.transitions, params, contact, result);
+  walk_to_hip<Geometry, Real>(walk, has_move ? &hop.move : nullptr, hop.transitions, params, contact, result);
 }
 
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7): what such a
@@ -575,10 +640,16 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
         end_on_face(header, params, hip, tick.glance.kind, tick.glance.target, tick.friction.is_slipping, contact, result);
       } else {
         const FaceTick<Real> found = tick;  // of its own, so that the way above keeps nothing in memory
-        step_on<Geometry, Real>(raw, params, hip, &found, contact, result);
+        step_on<Geometry, Real>(raw, params, hip, &found, FDCG_NONE, contact, result);
       }
     } else {
-      step_on<Geometry, Real>(raw, params, hip, nullptr, contact, result);
+      const Vec3<Real> at = by_parts(hip);  // as above
+      OnEdge what = OnEdge::unsure;
+      uint32_t face = FDCG_NONE;
+      if (kHasEdgeHops<Geometry> && contact->state == FDCG_EDGE)
+        what = step_along_edge<Geometry>(raw, params, at, contact, result, &face);
+      if (what != OnEdge::stays)
+        step_on<Geometry, Real>(raw, params, at, nullptr, what == OnEdge::pulled ? face : FDCG_NONE, contact, result);
     }
     store(hip, contact->hip);
   }

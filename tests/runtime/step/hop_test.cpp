@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slides from face to face in one go (step/hop.hpp): contacts and results are the same bit for bit with and without.
+// Slides from face to face in one go, onto edges, along and off them (step/hop.hpp, step/along_edge.hpp): contacts and results
+// are the same bit for bit with and without.
 #include <cmath>
 #include <cstring>
 
@@ -16,8 +17,9 @@ namespace {
 
 constexpr int kTicks = 8000;
 
-fdcg_params params_of(double mu_static, double mu_dynamic, std::uint32_t disabled) {
+fdcg_params params_of(double mu_static, double mu_dynamic, std::uint32_t edge_friction, std::uint32_t disabled) {
   fdcg_params params = contact_params(mu_static, mu_dynamic);
+  params.edge_friction = edge_friction;
   params.disabled_optimizations = disabled;
   return params;
 }
@@ -57,6 +59,7 @@ class Slide {
 
 struct Tally {
   long sliding = 0, crossing = 0, far_crossing = 0, cut_short = 0, crossing_mixed = 0;
+  long onto_edge = 0, along_edge = 0, off_edge = 0;
 };
 
 void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::uint64_t seed, Tally* tally) {
@@ -64,18 +67,22 @@ void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::
   options.precision = precision;
   const CompiledMesh mesh(soup, options);
   const double mu_static = is_smooth ? 0 : 0.5, mu_dynamic = is_smooth ? 0 : 0.3;
-  Contact with(mesh.view(), params_of(mu_static, mu_dynamic, 0));
-  Contact without(mesh.view(), params_of(mu_static, mu_dynamic, FDCG_STEP_OPT_HOP));
+  const std::uint32_t edge_friction = seed % 2 == 0 ? FDCG_EDGE_WEDGE : FDCG_EDGE_PAPER;
+  Contact with(mesh.view(), params_of(mu_static, mu_dynamic, edge_friction, 0));
+  Contact without(mesh.view(), params_of(mu_static, mu_dynamic, edge_friction, FDCG_STEP_OPT_HOP));
   const bool has_mixed_sizes = mesh.view().node_offsets != nullptr;  // polygons of several numbers of sides
   Slide slide(extent(soup), seed);
   for (int i = 0; i < kTicks; ++i) {
     const Hip hip = slide.next();
-    const bool was_on_face = with.state.state == FDCG_FACE;
+    const bool was_on_face = with.state.state == FDCG_FACE, was_on_edge = with.state.state == FDCG_EDGE;
     with.step(hip);
     without.step(hip);
     INFO(soup.name << ", seed " << seed << ", tick " << i << ": " << with.describe() << "; without: " << without.describe());
     REQUIRE(std::memcmp(&with.result, &without.result, sizeof with.result) == 0);
     REQUIRE(std::memcmp(&with.state, &without.state, sizeof with.state) == 0);
+    tally->onto_edge += was_on_face && with.result.state == FDCG_EDGE;
+    tally->along_edge += was_on_edge && with.result.state == FDCG_EDGE && with.result.transitions == 0;
+    tally->off_edge += was_on_edge && with.result.state == FDCG_FACE;
     tally->cut_short += was_on_face && (with.result.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
     if (!was_on_face || with.result.state != FDCG_FACE) continue;
     tally->sliding += with.result.transitions == 0;
@@ -87,7 +94,7 @@ void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::
 
 }  // namespace
 
-TEST_CASE("contacts are the same bit for bit with and without hops from face to face") {
+TEST_CASE("contacts are the same bit for bit with and without hops over edges") {
   Tally tally;
   std::uint64_t seed = 0;
   for (const Precision precision : {Precision::f64, Precision::f32}) {
@@ -104,5 +111,8 @@ TEST_CASE("contacts are the same bit for bit with and without hops from face to 
   CHECK(tally.crossing > 5000);
   CHECK(tally.far_crossing > 5000);  // else hops were hardly tried
   CHECK(tally.crossing_mixed > 5000);
+  CHECK(tally.onto_edge > 1000);
+  CHECK(tally.along_edge > 5000);
+  CHECK(tally.off_edge > 1000);
   CHECK(tally.cut_short > 500);  // where the work of a tick runs out after hops
 }
