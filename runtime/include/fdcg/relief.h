@@ -31,8 +31,8 @@
  *
  * **Frames, units, handedness.** As in effect.h: SI units in the frame of the surface. **Ownership.** The relief's data must
  * outlive it. **Null pointers** as fdcg.h says; fdcg_relief_move, fdcg_relief_turn and the laws check nothing. **Threads.** A
- * relief is only read; one state is stepped by one thread at a time. **Cost.** 20 ns, and 20 more for each wave; no heap, no
- * lock, no clock. The same bits on every processor.
+ * relief is only read; one state is stepped by one thread at a time. **Cost.** 20 ns, and 20 more for one wave, 8 each for
+ * many; no heap, no lock, no clock. The same bits on every processor.
  */
 #ifndef FDCG_RELIEF_H
 #define FDCG_RELIEF_H

@@ -12,51 +12,45 @@ namespace {
 
 constexpr double kFarthestImages = 1e8;  // of a place from its image: beyond it nothing is felt
 
-using Two = double __attribute__((vector_size(16)));
-
 // In steps of the map; slopes per image.
 struct OnMap {
   double height, along[2];
 };
 
-// Of four columns.
-struct Four {
-  Two low, high;
+// Of four columns or rows. In single precision: what is rounded away is a 1,000th of a map's own step.
+using Four = float __attribute__((vector_size(16)));
 
-  friend Four operator+(Four a, Four b) { return {a.low + b.low, a.high + b.high}; }
-  friend Four operator*(Four a, double b) { return {a.low * b, a.high * b}; }
-};
-double sum_of_products(Four a, Four b) {
-  const Two sum = a.low * b.low + a.high * b.high;
-  return sum[0] + sum[1];
+FDCG_HOT Four all(float a) {
+  return Four{a, a, a, a};
+}
+FDCG_HOT double sum_of_lanes(Four a) {
+  return (a[0] + a[2]) + (a[1] + a[3]);
 }
 
 // Four texels of 16 bits, the first lowest.
-Four widened(uint64_t texels) {
-#if FDCG_HAS_VECTORS && defined(__SSE2__) && __has_builtin(__builtin_ia32_cvtdq2pd)
+FDCG_HOT Four widened(uint64_t texels) {
+#if FDCG_HAS_VECTORS && defined(__SSE2__)
   using Shorts = int16_t __attribute__((vector_size(16)));
   const auto shorts = reinterpret_cast<Shorts>(Lanes::Doublewords{texels, 0});
   const auto high_halves = __builtin_shufflevector(shorts, shorts, 0, 0, 1, 1, 2, 2, 3, 3);
-  const Lanes::Words words = reinterpret_cast<Lanes::Words>(high_halves) >> 16;
-  return {__builtin_ia32_cvtdq2pd(words), __builtin_ia32_cvtdq2pd(__builtin_shufflevector(words, words, 2, 3, 0, 1))};
+  return __builtin_convertvector(reinterpret_cast<Lanes::Words>(high_halves) >> 16, Four);
 #else
-  const auto at = [&](int k) { return static_cast<double>(static_cast<int16_t>(texels >> 16 * k)); };
-  return {Two{at(0), at(1)}, Two{at(2), at(3)}};
+  const auto at = [&](int k) { return static_cast<float>(static_cast<int16_t>(texels >> 16 * k)); };
+  return Four{at(0), at(1), at(2), at(3)};
 #endif
 }
 
-// Of four texels around a place, columns in [0] and rows in [1]: weights and their derivatives, of the B-spline of third
+// Of four texels around a place, so far past the second's middle: weights and their derivatives, of the B-spline of third
 // degree.
 struct Weights {
-  Two of[4], slope_of[4];
-
-  [[nodiscard]] static Four columns(const Two (&two)[4]) { return {Two{two[0][0], two[1][0]}, Two{two[2][0], two[3][0]}}; }
+  Four of, slope_of;
 };
-Weights weights_of(Two t) {
-  constexpr double kSixth = 1.0 / 6;
-  const Two s = 1 - t;
-  return {{kSixth * s * s * s, kSixth * (4 - 3 * t * t * (1 + s)), kSixth * (4 - 3 * s * s * (1 + t)), kSixth * t * t * t},
-          {-0.5 * s * s, t * (1.5 * t - 2), s * (2 - 1.5 * s), 0.5 * t * t}};
+FDCG_HOT Weights weights_of(double past) {
+  constexpr float kSixth = 1.0F / 6;
+  const Four t = all(static_cast<float>(past)), t2 = t * t;
+  return {(Four{kSixth, 4 * kSixth, kSixth, 0} + Four{-0.5F, 0, 0.5F, 0} * t) +
+              (Four{0.5F, -1, 0.5F, 0} + Four{-kSixth, 0.5F, -0.5F, kSixth} * t) * t2,
+          (Four{-0.5F, 0, 0.5F, 0} + Four{1, -2, 1, 0} * t) + Four{-0.5F, 1.5F, -1.5F, 0.5F} * t2};
 }
 
 double floor_of(double x) {  // |x| within kFarthestImages and a side of texels
@@ -64,45 +58,65 @@ double floor_of(double x) {  // |x| within kFarthestImages and a side of texels
   return whole > x ? whole - 1 : whole;
 }
 
-// Columns or rows around a place.
-struct Taps {
-  uint32_t at[4];
-  double past;  // the second's middle, as a share of a texel
+// Where a place lies among columns or rows: texel i has its middle at i + 0.5.
+struct Side {
+  int64_t first;  // of four, the second's middle before the place
+  double past;
 };
-[[gnu::always_inline]] inline Taps taps_of(double image, uint32_t side, uint32_t wrap) {
-  const double x = image * side - 0.5, middle = floor_of(x);  // texel i has its middle at i + 0.5
-  const auto first = static_cast<int64_t>(middle) - 1;
-  Taps taps;
-  taps.past = x - middle;
-  taps.at[0] = wrapped(first, side, wrap);
-  for (uint32_t k = 1; k < 4; ++k) {
-    const uint32_t next = taps.at[k - 1] + 1;
-    taps.at[k] = wrap != FDCG_WRAP_REPEAT ? wrapped(first + k, side, wrap) : next == side ? 0 : next;  // no other division
-  }
-  return taps;
+FDCG_HOT Side along_side(double image, uint32_t side) {
+  const double x = image * side - 0.5;
+  auto middle = static_cast<int64_t>(x);
+  auto whole = static_cast<double>(middle);
+  if (whole > x) middle -= 1, whole -= 1;
+  return {middle - 1, x - whole};
 }
 
-uint64_t texels_of(const int16_t* row, const uint32_t (&at)[4]) {
-  if (at[3] == at[0] + 3 && at[1] == at[0] + 1) {  // side by side
-    uint64_t texels;
-    memcpy(&texels, row + at[0], sizeof texels);
-    return texels;
-  }
-  const auto bits = [&](int k) { return uint64_t{static_cast<uint16_t>(row[at[k]])}; };
-  return bits(0) | bits(1) << 16 | bits(2) << 32 | bits(3) << 48;
+// Four texels of each of four rows.
+struct Rows {
+  uint64_t a, b, c, d;
+};
+FDCG_HOT uint64_t four_at(const int16_t* texels) {
+  uint64_t four;
+  memcpy(&four, texels, sizeof four);
+  return four;
 }
 
-OnMap at_level(const fdcg_height_map& map, const int16_t* texels, const double image[2], uint32_t level) {
+// Where some of them lie beyond a border.
+[[gnu::noinline, gnu::cold]] Rows rows_at_border(const fdcg_height_map& map, const HeightLevel& in, const int16_t* texels,
+                                                 int64_t column, int64_t row) {
+  uint32_t columns[4];
+  for (int i = 0; i < 4; ++i)
+    columns[i] = wrapped(column + i, in.width, map.wrap[0]);
+  const bool is_whole = columns[0] == column && columns[3] == column + 3;
+  uint64_t found[4];
+  for (int k = 0; k < 4; ++k) {
+    const int16_t* const line = texels + uint64_t{wrapped(row + k, in.height, map.wrap[1])} * in.width;
+    const auto at = [&](int i) { return uint64_t{static_cast<uint16_t>(line[columns[i]])} << 16 * i; };
+    found[k] = is_whole ? four_at(line + column) : at(0) | at(1) | at(2) | at(3);
+  }
+  return {found[0], found[1], found[2], found[3]};
+}
+
+OnMap at_level(const fdcg_height_map& map, const int16_t* all_texels, const double image[2], uint32_t level) {
   if (level >= map.level_count) return {0, {0, 0}};
   const HeightLevel in = level_of(map, level);
-  const Taps u = taps_of(image[0], in.width, map.wrap[0]), v = taps_of(image[1], in.height, map.wrap[1]);
-  const Weights weights = weights_of(Two{u.past, v.past});
-  const auto row = [&](int k) { return widened(texels_of(texels + in.first + uint64_t{v.at[k]} * in.width, u.at)); };
-  const Four a = row(0), b = row(1), c = row(2), d = row(3);
-  const auto down = [&](const Two(&by)[4]) { return (a * by[0][1] + b * by[1][1]) + (c * by[2][1] + d * by[3][1]); };
-  const Four height = down(weights.of), rise = down(weights.slope_of), across = Weights::columns(weights.of);
-  return {sum_of_products(height, across),
-          {sum_of_products(height, Weights::columns(weights.slope_of)) * in.width, sum_of_products(rise, across) * in.height}};
+  const int16_t* const texels = all_texels + in.first;
+  const Side u = along_side(image[0], in.width), v = along_side(image[1], in.height);
+  const bool is_within = (u.first >= 0) & (v.first >= 0) & (u.first + 3 < in.width) & (v.first + 3 < in.height);
+  Rows rows;
+  if (is_within) {
+    const int16_t* const corner = texels + (static_cast<uint64_t>(v.first) * in.width + static_cast<uint64_t>(u.first));
+    rows = {four_at(corner), four_at(corner + in.width), four_at(corner + 2 * uint64_t{in.width}),
+            four_at(corner + 3 * uint64_t{in.width})};
+  } else {
+    rows = rows_at_border(map, in, texels, u.first, v.first);
+  }
+  const Four a = widened(rows.a), b = widened(rows.b), c = widened(rows.c), d = widened(rows.d);
+  const Weights across = weights_of(u.past), down = weights_of(v.past);
+  const auto over_rows = [&](Four by) { return (a * all(by[0]) + b * all(by[1])) + (c * all(by[2]) + d * all(by[3])); };
+  const Four height = over_rows(down.of), rise = over_rows(down.slope_of);
+  return {sum_of_lanes(height * across.of),
+          {sum_of_lanes(height * across.slope_of) * in.width, sum_of_lanes(rise * across.of) * in.height}};
 }
 
 // Level 0 up to half a texel a tick, then level k + 1 at 2^k texels, and between two of them a share of each.
@@ -137,8 +151,10 @@ extern "C" void fdcg_heights_law(const fdcg_relief* relief, const fdcg_relief_pl
   const Along per_unit[2] = {{node.per_unit[0][0], node.per_unit[0][1], node.per_unit[0][2]},
                              {node.per_unit[1][0], node.per_unit[1][1], node.per_unit[1][2]}};
   const Along per_m[2] = {per_unit[0] * units_per_m, per_unit[1] * units_per_m};
-  const double image[2] = {node.offset[0] + dot(per_unit[0], local), node.offset[1] + dot(per_unit[1], local)};
+  double image[2] = {node.offset[0] + dot(per_unit[0], local), node.offset[1] + dot(per_unit[1], local)};
   if (!(absolute(image[0]) < kFarthestImages && absolute(image[1]) < kFarthestImages)) return;
+  for (int k = 0; k < 2; ++k)  // on the first of those that repeat
+    if (map.wrap[k] == FDCG_WRAP_REPEAT) image[k] -= floor_of(image[k]);
   const Along way = vec(place->way_m);
   const double texels_a_tick = absolute(dot(per_m[0], way)) * map.width + absolute(dot(per_m[1], way)) * map.height;
   const OnMap found = at_speed(map, heights.texels, image, texels_a_tick);

@@ -22,28 +22,35 @@ GrownIn grown_in(double depth_m, double knee_m) {
   return {s * s * (3 - 2 * s), 6 * s * (1 - s) / knee_m};
 }
 
-// Sets height_m and slope for this place of the hand.
-void look(const fdcg_relief& relief, Along hip, fdcg_relief_state* state) {
-  state->height_m = 0;
-  store(Along{0, 0, 0}, state->slope);
-  const Along normal = vec(state->normal);
-  const double depth = state->has_surface != 0 ? dot(vec(state->surface_m) - hip, normal) : 0;
-  if (!(depth > 0) || relief.is_off != 0) return;
+// Heights as they are felt.
+struct Felt {
+  double height_m;
+  Along slope;
+};
+constexpr Felt kFlat = {0, {0, 0, 0}};
+
+// For this place of the hand; `way`: since the last tick.
+FDCG_HOT Felt look(const fdcg_relief& relief, const fdcg_relief_state& state, Along hip, Along way) {
+  if (state.has_surface == 0 || relief.is_off != 0) return kFlat;
+  const Along normal = vec(state.normal);
+  const double depth = dot(vec(state.surface_m) - hip, normal);
+  if (!(depth > 0)) return kFlat;
   const double fading = kFadingHeights * relief.reserve_j;
-  const double share = state->credit_j < fading ? larger(state->credit_j, 0) / fading : 1;
-  const Along way = state->has_started != 0 ? hip - vec(state->hip_m) : Along{0, 0, 0};
   double slope[3] = {0, 0, 0}, height_m = 0;
   fdcg_relief_place place;
   store(hip + normal * depth, place.place_m);
   store(way - normal * dot(way, normal), place.way_m);
-  place.node = state->node;
+  place.node = state.node;
   place.reserved = 0;
   relief.law(&relief, &place, &height_m, slope);
-  if (!is_usable(vec(slope)) || !(absolute(height_m) <= relief.most_m)) return;
-  const GrownIn in = grown_in(depth, kKnees * relief.most_m);
-  const Along along = vec(slope) - normal * dot(vec(slope), normal);
-  state->height_m = share * in.share * height_m;
-  store(along * (share * in.share) - normal * (share * in.per_m * height_m), state->slope);
+  const Along rise = vec(slope);
+  if (!is_usable(rise) || !(absolute(height_m) <= relief.most_m)) return kFlat;
+  const Along along = rise - normal * dot(rise, normal);
+  const double knee = kKnees * relief.most_m;
+  if (depth >= knee && state.credit_j >= fading) return {height_m, along};  // felt in full
+  const double share = state.credit_j < fading ? larger(state.credit_j, 0) / fading : 1;
+  const GrownIn in = grown_in(depth, knee);
+  return {share * in.share * height_m, along * (share * in.share) - normal * (share * in.per_m * height_m)};
 }
 
 }  // namespace
@@ -67,16 +74,19 @@ extern "C" void fdcg_relief_move(const fdcg_relief* relief, fdcg_relief_state* s
       moved_m[k] = hip_m[k];
     return;
   }
-  if (state->has_started == 0) state->credit_j = relief->reserve_j;
-  look(*relief, hip, state);
-  const Along moved = hip - vec(state->normal) * state->height_m;
-  if (state->has_started != 0) {  // what the relief has given since, beyond the step
-    const double given =
-        dot(vec(state->force_n), hip - vec(state->hip_m)) - dot(vec(state->flat_n), moved - vec(state->moved_m));
+  const bool goes_on = state->has_started != 0;
+  if (!goes_on) state->credit_j = relief->reserve_j;
+  const Along way = goes_on ? hip - vec(state->hip_m) : kFlat.slope;
+  const Felt felt = look(*relief, *state, hip, way);
+  const Along moved = hip - vec(state->normal) * felt.height_m;
+  if (goes_on) {  // what the relief has given since, beyond the step
+    const double given = dot(vec(state->force_n), way) - dot(vec(state->flat_n), moved - vec(state->moved_m));
     state->given_j += given;
     state->credit_j = smaller(state->credit_j - given + relief->power_w * tick_s, relief->reserve_j);
   }
   state->has_started = 1;
+  state->height_m = felt.height_m;
+  store(felt.slope, state->slope);
   store(hip, state->hip_m);
   store(moved, state->moved_m);
   for (int k = 0; k < 3; ++k)

@@ -9,14 +9,19 @@
 
 namespace fdcg {
 
+// Two numbers side by side.
+using Two = double __attribute__((vector_size(16)));
+using TwoBits = int64_t __attribute__((vector_size(16)));
+
+inline TwoBits bits_of(Two a) {
+  return reinterpret_cast<TwoBits>(a);
+}
 struct SineCosine {
   double sine, cosine;
 };
 
 // Of 2 pi turns, turns within -2^48 to 2^48. Exact to 1e-15 within -1 to 1. Both by one row of operations, side by side.
 inline SineCosine sine_cosine_of_turns(double turns) {
-  using Two = double __attribute__((vector_size(16)));
-  using Bits = int64_t __attribute__((vector_size(16)));
   constexpr double kQuarterTurn = 6.283185307179586476925 / 4, kWhole = 0x1.8p52;  // whole numbers alone are near it
   const double shifted = 4 * turns + kWhole, x = kQuarterTurn * (4 * turns - (shifted - kWhole)), y = x * x;
   int64_t quarters;  // its last bits are those of the nearest whole number
@@ -29,10 +34,28 @@ inline SineCosine sine_cosine_of_turns(double turns) {
                            y2 * Two{1.0 / 1307674368000, 1.0 / 87178291200});
   const Two found = Two{x, 1} + Two{x * y, y} * series, swapped = {found[1], found[0]};
   const int64_t odd = -(quarters & 1);  // a choice by bits, since a branch cannot be foreseen
-  const Bits chosen = (reinterpret_cast<Bits>(found) & ~Bits{odd, odd}) | (reinterpret_cast<Bits>(swapped) & Bits{odd, odd});
+  const TwoBits chosen = (bits_of(found) & ~TwoBits{odd, odd}) | (bits_of(swapped) & TwoBits{odd, odd});
   const auto sign = [](int64_t quarter) { return static_cast<int64_t>(static_cast<uint64_t>(quarter & 2) << 62); };
-  const Two result = reinterpret_cast<Two>(chosen ^ Bits{sign(quarters), sign(quarters + 1)});
+  const Two result = reinterpret_cast<Two>(chosen ^ TwoBits{sign(quarters), sign(quarters + 1)});
   return {result[0], result[1]};
+}
+struct SinesCosines {
+  Two sine, cosine;
+};
+
+// The same of two, each by a lane of its own, with fewer terms: exact to 2e-9.
+inline SinesCosines sines_cosines_of_turns(Two turns) {
+  constexpr double kTurn = 6.283185307179586476925, kQuarters = 0x1.8p50;  // whole quarters alone are near it
+  const Two shifted = turns + kQuarters, x = kTurn * (turns - (shifted - kQuarters)), y = x * x, y2 = y * y;
+  const Two odd = (-1.0 / 6 + y * (1.0 / 120)) + y2 * (-1.0 / 5040 + y * (1.0 / 362880));
+  const Two even = (-1.0 / 2 + y * (1.0 / 24)) + y2 * ((-1.0 / 720 + y * (1.0 / 40320)) - y2 * (1.0 / 3628800));
+  const TwoBits sine = bits_of(x + x * y * odd), cosine = bits_of(1 + y * even), last = bits_of(shifted);
+  const TwoBits exchanged = (sine ^ cosine) & -(last & 1);
+  const auto sign = [](TwoBits quarter) {
+    using Unsigned = uint64_t __attribute__((vector_size(16)));
+    return reinterpret_cast<TwoBits>(reinterpret_cast<Unsigned>(quarter & 2) << 62);
+  };
+  return {reinterpret_cast<Two>(sine ^ exchanged ^ sign(last)), reinterpret_cast<Two>(cosine ^ exchanged ^ sign(last + 1))};
 }
 inline double sine_of_turns(double turns) {
   return sine_cosine_of_turns(turns).sine;

@@ -9,11 +9,36 @@ namespace {
 
 constexpr double kTurnRad = 6.283185307179586476925, kFarthestTurns = 0x1p48;
 
+// Two waves side by side.
+struct TwoWaves {
+  Two per_m[3], amplitude, phase;
+};
+inline TwoWaves two_of(const fdcg_waves& waves, uint32_t i) {
+  const double(&a)[3] = waves.per_m[i], (&b)[3] = waves.per_m[i + 1];
+  return {{Two{a[0], b[0]}, Two{a[1], b[1]}, Two{a[2], b[2]}},
+          Two{waves.amplitude_m[i], waves.amplitude_m[i + 1]},
+          Two{waves.phase_turns[i], waves.phase_turns[i + 1]}};
+}
+inline Two dot(const TwoWaves& waves, Along v) {
+  return waves.per_m[0] * v.x + waves.per_m[1] * v.y + waves.per_m[2] * v.z;
+}
+inline Two without_signs(Two a) {
+  return reinterpret_cast<Two>(bits_of(a) & TwoBits{INT64_MAX, INT64_MAX});
+}
+inline double sum_of_lanes(Two a) {
+  return a[0] + a[1];
+}
+
 // A wave that passes by so many turns a tick: whole up to a quarter, gone at a half.
-double share_of_turns(double turns) {
+inline double share_of_turns(double turns) {
   constexpr double kWhole = 0.25, kGone = 0.5;
   if (turns <= kWhole) return 1;
   return turns >= kGone ? 0 : (kGone - turns) / (kGone - kWhole);
+}
+inline Two share_of_turns(Two turns) {
+  constexpr double kGone = 0.5, kPerTurn = 4;
+  const Two share = (kGone - turns) * kPerTurn, none = {0, 0}, whole = {1, 1}, some = share > none ? share : none;
+  return some < whole ? some : whole;
 }
 
 double uniform(uint64_t* state) {  // -1 to 1
@@ -103,17 +128,34 @@ extern "C" void fdcg_waves_law(const fdcg_relief* relief, const fdcg_relief_plac
   using namespace fdcg;
   const fdcg_waves& waves = *static_cast<const fdcg_waves*>(relief->data);
   const Along place = vec(at->place_m), way = vec(at->way_m);
+  const Two none = {0, 0};
   double height = 0;
   Along gradient = {0, 0, 0};
-  for (uint32_t i = 0; i < waves.count && i < FDCG_MAX_WAVES; ++i) {
+  const uint32_t count = waves.count < FDCG_MAX_WAVES ? waves.count : FDCG_MAX_WAVES;
+  if (count > 1) {
+    Two heights = none, x = none, y = none, z = none;
+    for (uint32_t i = 0; i + 1 < count; i += 2) {
+      const TwoWaves two = two_of(waves, i);
+      const Two turns = dot(two, place) + two.phase, far = without_signs(turns);
+      const Two share = far < kFarthestTurns ? share_of_turns(without_signs(dot(two, way))) : none;
+      const SinesCosines wave = sines_cosines_of_turns(far < kFarthestTurns ? turns : none);
+      const Two amplitude = two.amplitude * share, rise = amplitude * wave.cosine;
+      heights += amplitude * wave.sine;
+      x += two.per_m[0] * rise, y += two.per_m[1] * rise, z += two.per_m[2] * rise;
+    }
+    height = sum_of_lanes(heights);
+    gradient = Along{sum_of_lanes(x), sum_of_lanes(y), sum_of_lanes(z)} * kTurnRad;
+  }
+  if (count % 2 != 0) {  // one is left
+    const uint32_t i = count - 1;
     const Along per_m = vec(waves.per_m[i]);
-    const double amplitude = waves.amplitude_m[i] * share_of_turns(absolute(dot(per_m, way)));
-    if (!(amplitude > 0)) continue;
     const double turns = dot(per_m, place) + waves.phase_turns[i];
-    if (!(absolute(turns) < kFarthestTurns)) continue;
-    const SineCosine wave = sine_cosine_of_turns(turns);
-    height += amplitude * wave.sine;
-    gradient = gradient + per_m * (amplitude * kTurnRad * wave.cosine);
+    if (absolute(turns) < kFarthestTurns) {
+      const SineCosine wave = sine_cosine_of_turns(turns);
+      const double amplitude = waves.amplitude_m[i] * share_of_turns(absolute(dot(per_m, way)));
+      height += amplitude * wave.sine;
+      gradient = gradient + per_m * (amplitude * kTurnRad * wave.cosine);
+    }
   }
   *height_m = height;
   slope[0] = gradient.x, slope[1] = gradient.y, slope[2] = gradient.z;

@@ -70,6 +70,12 @@ TEST_CASE("sine, decay and noise of effects are what they are called") {
   for (int i = -1000; i <= 1000; ++i) {
     const double turns = i / 1000.0;
     CHECK(std::fabs(sine_of_turns(turns) - std::sin(kTurn * turns)) < 2e-15);
+    const double other = 0.7 - turns;
+    const SinesCosines two = sines_cosines_of_turns(Two{turns, other});
+    CHECK(std::fabs(two.sine[0] - std::sin(kTurn * turns)) < 2e-9);
+    CHECK(std::fabs(two.cosine[0] - std::cos(kTurn * turns)) < 2e-9);
+    CHECK(std::fabs(two.sine[1] - std::sin(kTurn * other)) < 2e-9);
+    CHECK(std::fabs(two.cosine[1] - std::cos(kTurn * other)) < 2e-9);
   }
   for (double x = 0; x < 30; x += 0.01)
     CHECK(std::fabs(decay(x) / std::exp(-x) - 1) < 1e-12);
