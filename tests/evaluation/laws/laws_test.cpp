@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the laws are judged by: the split of a force into what presses and what friction bears, and the formulas of the shapes.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "catch.hpp"
+#include "compiled.hpp"
 #include "coulomb_load.hpp"
+#include "loop_refined.hpp"
 #include "ramp.hpp"
 #include "smooth_shape.hpp"
 
+using namespace fdcg;
 using namespace fdcg::test;
 
 namespace {
@@ -93,4 +97,31 @@ TEST_CASE("a smooth shape's formulas agree with one another and with its tessell
       REQUIRE(std::abs(shape->distance(at.point + at.normal * depth) - depth) < 1e-17L);
     }
   }
+}
+
+TEST_CASE("a tetrahedron refined after Loop is a quarter of itself") {  // each vertex and each edge's middle, by its weights
+  bake::PolygonSoup soup;
+  soup.points = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  soup.corners = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+  soup.face_first = {0, 3, 6, 9, 12};
+  const bake::PolygonSoup refined = loop_refined(soup);
+  REQUIRE(refined.points.size() == 10);
+  REQUIRE(refined.face_first.size() == 17);
+  for (std::size_t v = 0; v < 4; ++v) {
+    CHECK(refined.points[v].x == Approx(soup.points[v].x / 4));
+    CHECK(refined.points[v].y == Approx(soup.points[v].y / 4));
+    CHECK(refined.points[v].z == Approx(soup.points[v].z / 4));
+  }
+  for (std::size_t v = 4; v < 10; ++v) {  // a quarter of the ends' sum, on an axis
+    const bake::Vec3& p = refined.points[v];
+    CHECK(std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z) == Approx(0.5));
+    CHECK(std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) == Approx(0.5));
+  }
+  // without a face its edges have one face each: their ends stay, and the new ones are their middles
+  soup.corners.resize(9);
+  soup.face_first.pop_back();
+  const bake::PolygonSoup open = loop_refined(soup);
+  for (std::size_t v = 1; v < 4; ++v)
+    CHECK(open.points[v].x == soup.points[v].x);
+  compile_whole(refined);
 }
