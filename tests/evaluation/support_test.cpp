@@ -109,7 +109,7 @@ TEST_CASE("a higher rate samples the same motion more finely") {
 // Else numbers in float cannot tell whether it touches, and each tick finds and loses the surface.
 TEST_CASE("a hand does not lie in the surface for longer than it takes to pass it") {
   constexpr double kNear_m = 1e-8;
-  for (const char* name : {"cube_12", "drilled_plate"}) {
+  for (const char* name : {"cube_12", "drilled_plate", "v_groove_tilted", "corner_pit_tilted"}) {
     const Ground ground(body_named(name).make());
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       WayOptions options;

@@ -51,7 +51,6 @@ class HandPen : public Pen {
     const std::uint32_t corner = random_.below(static_cast<std::uint32_t>(ground.soup().points.size()));
     anchor_ = ground.closest(ground.corner(corner) + ground.corner_normal(corner) * kLift_m);
     heading_ = flattened(direction(random_), anchor_.feature_normal);
-    // Off the corner: pressed there along the normal of one of its faces, the hand would lie in the plane of the next for ever.
     walk(kLift_m);
     anchor_ = ground.closest(anchor_.point + anchor_.normal * kLift_m);
     normal_ = anchor_.feature_normal;
@@ -64,7 +63,8 @@ class HandPen : public Pen {
     speed_ += kEase * (wanted_speed_ - speed_);
     deep_ += kEase * (wanted_deep_ - deep_);
     walk(speed_ * kHandKnot_s);
-    normal_ = unit(normal_ + anchor_.normal);
+    // On an edge towards both faces, and more so to its own: else the hand would come to lie in the other one's plane.
+    normal_ = unit(normal_ + unit(anchor_.normal + anchor_.feature_normal));
     const Point wanted = anchor_.point - normal_ * deep_;
     const Point step = wanted - last_;
     const double most = kTopSpeed_m_per_s * kHandKnot_s;
