@@ -19,6 +19,7 @@ using bake::Vec3;
 
 constexpr double kTieMoves_ulps = 64;  // a HIP moved by so much, for which the runtime's feature holds, makes a tie
 constexpr int kTriesOfASize = 12;
+constexpr double kRounding_ulps = 8;  // the bar on 99.9 % of the ticks
 
 double largest_side(const bake::PolygonSoup& soup) {
   Vec3 low = soup.points.at(0), high = low;
@@ -125,6 +126,8 @@ AccuracyOutcome certified(const AccuracySetting& setting, const bake::PolygonSou
     }
     if (answer.verdict == Verdict::tie || is_near) {
       ++out.ties;
+    } else if (answer.error_ulps > kRounding_ulps && answer.error_ulps <= kRounding_ulps + answer.rim_ulps) {
+      out.at_rim_ulps.push_back(static_cast<float>(answer.error_ulps));
     } else if (answer.verdict != Verdict::refused) {
       out.one_step_ulps.push_back(static_cast<float>(answer.error_ulps));
     }

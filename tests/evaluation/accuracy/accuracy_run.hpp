@@ -35,6 +35,8 @@ struct AccuracyOutcome {
   std::uint64_t steps = 0, contact_steps = 0, ties = 0, carried = 0, wrong_features = 0;
   std::uint64_t ties_explained = 0, ties_unexplained = 0;
   std::vector<float> one_step_ulps, accumulated_ulps;  // the latter not of a certificate
+  std::vector<float>
+      at_rim_ulps;  // of a certificate, and not in the first: over 8, on a side of the face, as FACE-5 allows there
   std::vector<std::pair<float, float>> error_and_conditioning;
   double worst_conditioning = 1;
   double deviation_ulps = 0;  // header.max_deviation

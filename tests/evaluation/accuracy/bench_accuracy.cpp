@@ -31,6 +31,7 @@ namespace {
 constexpr double kMu[4][2] = {{0, 0}, {0.3, 0.2}, {1, 1}, {2, 1}};
 constexpr double kOffsets_sizes[] = {1e3, 1e6};
 constexpr double kP999Bar_ulps = 8, kMaxBar_ulps = 64;  // the project's own
+constexpr double kMostAtRim = 0.01;                     // of a body's and way's contact ticks: exempt from the bar of 8 ulps
 constexpr unsigned kWaysOfAKind = 16;                   // one for each combination of friction, planes and merging
 constexpr std::uint32_t kMostFaces = 1500;              // of bodies from bodies.hpp: the replay tests every face of a sweep
 
@@ -304,6 +305,7 @@ void write_errors(const std::string& folder, const Plan& plan, std::vector<Accur
                "ties_explained",
                "ties_unexplained",
                "carried",
+               "at_rim",
                "worst_conditioning",
                "max_deviation_ulps",
                "reference"});
@@ -314,7 +316,8 @@ void write_errors(const std::string& folder, const Plan& plan, std::vector<Accur
               s.mu_dynamic, s.offset_sizes, o.steps, o.contact_steps, percentile(o.one_step_ulps, 0.5),
               percentile(o.one_step_ulps, 0.99), percentile(o.one_step_ulps, 0.999), percentile(o.one_step_ulps, 1),
               percentile(o.accumulated_ulps, 0.999), percentile(o.accumulated_ulps, 1), o.wrong_features, o.ties,
-              o.ties_explained, o.ties_unexplained, o.carried, o.worst_conditioning, o.deviation_ulps, name_of(s.judge));
+              o.ties_explained, o.ties_unexplained, o.carried, o.at_rim_ulps.size(), o.worst_conditioning, o.deviation_ulps,
+              name_of(s.judge));
   }
 }
 
@@ -334,8 +337,10 @@ void write_histogram(const std::string& folder, const Plan& plan, const std::vec
     if (has_deviation(outcomes[i])) continue;
     auto& bins = counts[{name_of(s.precision), name_of(s.judge)}];
     bins.resize(kMost - kLeast + 1);
-    for (const float ulps : outcomes[i].one_step_ulps)
-      ++bins[static_cast<std::size_t>(ulps > 0 ? std::clamp(std::ilogb(ulps), kLeast, kMost) - kLeast : 0)];
+    for (const auto* errors : {&outcomes[i].one_step_ulps, &outcomes[i].at_rim_ulps}) {
+      for (const float ulps : *errors)
+        ++bins[static_cast<std::size_t>(ulps > 0 ? std::clamp(std::ilogb(ulps), kLeast, kMost) - kLeast : 0)];
+    }
   }
   Table table(folder, "god_object_error_histogram", {"precision", "reference", "from_ulps", "ticks"});
   for (const auto& [key, bins] : counts) {
@@ -365,6 +370,7 @@ void write_conditioning(const std::string& folder, const Plan& plan, const std::
 // Runs of one precision, judge and offset on one body and way, taken together.
 struct Group {
   std::vector<float> one_step, accumulated;
+  std::uint64_t contact_steps = 0, at_rim = 0;
 };
 using GroupKey = std::tuple<std::string, std::string>;  // body, way
 
@@ -405,6 +411,26 @@ Worst worst_group(std::map<GroupKey, Group>& groups, double part, std::vector<fl
   return worst;
 }
 
+// The largest share, as worst_group() groups them.
+Worst most_at_rim(const std::map<GroupKey, Group>& groups) {
+  Worst worst;
+  std::uint64_t rest = 0, rest_at_rim = 0;
+  const auto consider = [&](std::uint64_t at_rim, std::uint64_t of, const std::string& where) {
+    const double share = static_cast<double>(at_rim) / static_cast<double>(std::max<std::uint64_t>(1, of));
+    if (share > worst.ulps) worst = {share, where};
+  };
+  for (const auto& [key, group] : groups) {
+    if (group.contact_steps < 1000) {
+      rest += group.contact_steps;
+      rest_at_rim += group.at_rim;
+    } else {
+      consider(group.at_rim, group.contact_steps, std::get<0>(key) + ", " + std::get<1>(key));
+    }
+  }
+  consider(rest_at_rim, rest, "short walks together");
+  return worst;
+}
+
 void judge(Bars& bars, const std::string& name, Total& total, bool has_accumulated) {
   const Worst p999 = worst_group(total.groups, 0.999, &Group::one_step), most = worst_group(total.groups, 1, &Group::one_step);
   bars.at_most(name + ", p99.9 of the worst body and way", p999.ulps, kP999Bar_ulps, "ulps", p999.where);
@@ -412,7 +438,11 @@ void judge(Bars& bars, const std::string& name, Total& total, bool has_accumulat
   bars.at_most(name + ", wrong features", static_cast<double>(total.wrong), 0, "ticks");
   if (total.has_deviation)
     bars.at_most(name + ", merged within the quantum, largest", total.worst_share_of_deviation, 1, "max_deviation");
-  if (!has_accumulated) return;
+  if (!has_accumulated) {
+    const Worst rim = most_at_rim(total.groups);
+    bars.at_most(name + ", off at a rim within FACE-5's rounding", rim.ulps, kMostAtRim, "of the contact ticks", rim.where);
+    return;
+  }
   const Worst most_along = worst_group(total.groups, 1, &Group::accumulated);
   bars.at_most(name + ", along the way, largest", most_along.ulps, kMaxBar_ulps, "ulps", most_along.where);
 }
@@ -452,6 +482,8 @@ void add(Total& total, const AccuracySetting& s, const AccuracyOutcome& o) {
   Group& group = total.groups[{s.body, s.way}];
   append(group.one_step, o.one_step_ulps);
   append(group.accumulated, o.accumulated_ulps);
+  group.contact_steps += o.contact_steps;
+  group.at_rim += o.at_rim_ulps.size();
 }
 
 // A search may find what the geometry magnifies without bound; the backward error then tells whether the step still is exact

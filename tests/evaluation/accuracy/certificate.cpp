@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -31,7 +32,11 @@ double length_in(const Vector<Rational>& v, double unit) {
 }  // namespace
 
 Certificate::Certificate(const fdcg_graph& graph)
-    : ulp_(ulp_of_extent(*graph.header)), tie_ulps_(kTie_ulps + kTieDeviations * graph.header->max_deviation / ulp_) {
+    : ulp_(ulp_of_extent(*graph.header)),
+      extent_(graph.header->extent),
+      epsilon_(graph.header->real_bytes == sizeof(float) ? std::numeric_limits<float>::epsilon()
+                                                         : std::numeric_limits<double>::epsilon()),
+      tie_ulps_(kTie_ulps + kTieDeviations * graph.header->max_deviation / ulp_) {
   read(graph);
 }
 
@@ -219,13 +224,32 @@ std::vector<CertifiedFeature> Certificate::around(CertifiedFeature feature) cons
   return result;
 }
 
+// A slide that ends so near a side's plane ends on the side: 4 eps (|x|_1 + extent). Where two faces are equally near, each
+// sends the god-object back to their edge, and it rests there.
+double Certificate::rim_ulps(CertifiedFeature feature, const Point& minimum, const Point& god_object) const {
+  if (feature.state != FDCG_FACE) return 0;
+  const Face& face = faces_[feature.index];
+  const double size = std::abs(minimum.x.get_d()) + std::abs(minimum.y.get_d()) + std::abs(minimum.z.get_d());
+  const double rim = 4 * epsilon_ * (size + extent_);
+  for (std::size_t k = 0; k < face.corners.size(); ++k) {
+    const Point& corner = corners_[face.corners[k]].point;
+    const double length = length_in(face.outward[k], 1);
+    const auto is_on = [&](const Point& x) { return std::abs(dot(face.outward[k], x - corner).get_d()) <= rim * length; };
+    if (is_on(minimum) && is_on(god_object)) return rim / ulp_;
+  }
+  return 0;
+}
+
 Certificate::Answer Certificate::check(const std::array<double, 3>& hip_local, const fdcg_contact& contact) const {
   if (contact.state == FDCG_FREE) throw std::invalid_argument("a certificate is for contacts");
   const Point hip = exactly(hip_local.data()), god_object = exactly(contact.god_object);
   const CertifiedFeature own = {contact.state, contact.feature};
   const Point own_foot = foot(own, hip);
   Answer answer = {Verdict::certified, own, length_in(god_object - own_foot, ulp_)};
-  if (feature_holds(own, hip)) return answer;
+  if (feature_holds(own, hip)) {
+    answer.rim_ulps = rim_ulps(own, own_foot, god_object);
+    return answer;
+  }
   answer.verdict = Verdict::refused;
   for (const CertifiedFeature other : around(own)) {
     if (!feature_holds(other, hip)) continue;

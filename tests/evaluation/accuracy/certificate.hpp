@@ -40,6 +40,9 @@ class Certificate {
     Verdict verdict = Verdict::refused;
     CertifiedFeature feature;  // that holds the minimum
     double error_ulps = 0;     // of the god-object from it; refused: from the foot of the HIP on the runtime's feature
+    // Certified, on a face: the god-object and the minimum both lie on one of its sides but for what contact-model FACE-5
+    // allows, so much; 0: they do not.
+    double rim_ulps = 0;
   };
 
   // For a contact (not FDCG_FREE) of a step without friction. Cost: some ten microseconds; one for each feature around where
@@ -86,11 +89,12 @@ class Certificate {
   [[nodiscard]] bool climbs_into(const Face& face, std::uint32_t corner, const Point& t) const;
   [[nodiscard]] Point foot(CertifiedFeature feature, const Point& hip) const;
   [[nodiscard]] std::vector<CertifiedFeature> around(CertifiedFeature feature) const;
+  [[nodiscard]] double rim_ulps(CertifiedFeature feature, const Point& minimum, const Point& god_object) const;
 
   std::vector<Face> faces_;
   std::vector<Edge> edges_;
   std::vector<Corner> corners_;
-  double ulp_;
+  double ulp_, extent_, epsilon_;
   double tie_ulps_;
 };
 

@@ -129,6 +129,23 @@ TEST_CASE("a convex edge or corner holds no god-object") {
   CHECK_FALSE(certificate.holds({FDCG_EDGE, c}, {0.6, 0.6, 0}));
 }
 
+TEST_CASE("a god-object on its face's rim is told, and how far off the model allows it to be there") {
+  const PlainGraph graph(cube(), Precision::f64);
+  const Certificate certificate(graph.view());
+  const double ulp = ulp_of_extent(*graph.view().header);
+  const std::uint32_t c = edge_between(graph.view(), {0.5, 0.5, 0.5}, {0.5, 0.5, -0.5});
+  const std::uint32_t face = fdcg_get_connection(&graph.view(), c).node[0];
+  const auto rim_ulps = [&](double deep, double off) {  // of the HIP below both faces, of the god-object from their edge
+    const Hip hip = {0.5 - deep * ulp, 0.5 - deep * ulp, 0}, god_object = {0.5 - off * ulp, 0.5 - off * ulp, 0};
+    const Certificate::Answer answer = certificate.check(hip, placed(FDCG_FACE, face, god_object));
+    CHECK(answer.verdict == Verdict::certified);
+    return answer.rim_ulps;
+  };
+  CHECK(std::abs(rim_ulps(5, 0) - 12) < 1e-9);  // 4 eps (1 + 0.5)
+  CHECK(rim_ulps(13, 0) == 0);
+  CHECK(rim_ulps(5, 13) == 0);
+}
+
 TEST_CASE("a concave corner holds what is behind all of its faces") {
   const PlainGraph graph(corner_pit(), Precision::f64);  // the octant of positive coordinates is outside
   const Certificate certificate(graph.view());

@@ -20,7 +20,7 @@ namespace fdcg::test {
 struct TickError {
   enum class Verdict {
     agrees,  // the same state, feature and slip flag
-    tie,     // a decision of the replay was within rounding, and the two differ: both outcomes are right
+    tie,     // a decision of the replay was within rounding, and the two differ, in 256 bits too: both outcomes are right
     wrong    // they differ without that excuse
   };
   Verdict verdict = Verdict::agrees;
@@ -70,8 +70,10 @@ class Replay {
     fdcg_contact before;
     Hip hip;  // local
   };
-  [[nodiscard]] ReferenceContact<Real> answer(const Tick& tick, ReferenceStep* step) const;
-  [[nodiscard]] TickError judge(const Tick& tick) const;
+  [[nodiscard]] ReferenceContact<Real> answer(const Tick& tick) const;
+  [[nodiscard]] TickError judge(const Tick& tick);
+  template <class Any>
+  [[nodiscard]] TickError judge_in(const ReferenceSurface<Any>& surface, const Tick& tick) const;
   void pass_over_carried(std::uint32_t flags);
   void accumulate(const Hip& hip);
   void look_closer(const Tick& tick);
@@ -82,6 +84,7 @@ class Replay {
   fdcg_params params_;
   ReferenceFriction friction_;
   ReferenceSurface<Real> surface_;
+  std::optional<ReferenceSurface<Mpfr256>> widest_;  // where a tie has been judged again
   std::optional<ReferenceWalker<Real>> along_;
   Random random_{1};
   fdcg_contact contact_{};
