@@ -468,7 +468,7 @@ inline constexpr bool kGlances = true;
 template <class Real>
 struct FaceTick {
   Real side;  // of the HIP, from the face
-  QuickFriction<Real> friction;
+  bool is_slipping;
   FaceGlance<Real> glance;
 };
 template <class Geometry, class Real = typename Geometry::Real>
@@ -479,7 +479,7 @@ FDCG_HOT FaceTick<Real> look_at_face(const GraphView<Geometry>& graph, const fdc
   const Real side = side_of(graph, node, hip, bound, nullptr);
   QuickFriction<Real> friction = {friction_of<Real>(params, contact)};
   const FaceGlance<Real> glance = glance_on_face(node, friction, hip, bound, side, god_object, stands, stands);
-  return {side, friction, {glance.kind, glance.near_side, by_parts(glance.target)}};
+  return {side, friction.is_slipping, {glance.kind, glance.near_side, by_parts(glance.target)}};
 }
 
 // Whether a god-object ends on its face.
@@ -577,7 +577,7 @@ FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, Vec3
   if (has_move) {
     const NodeRef<Geometry> node = graph.node(contact->feature);
     if constexpr (kGlances) {
-      hop.friction = tick->friction;
+      hop.friction.is_slipping = tick->is_slipping;
       hop.move = meet_side(node, hop.god_object, tick->glance);
     } else {
       const Vec3<Real> stands = hop.god_object - hip;
@@ -637,9 +637,11 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
       const GraphView<Geometry> graph(raw);
       const FaceTick<Real> tick = look_at_face(graph, params, *contact, hip, plane_rounding_bound(graph, hip));
       if (ends_on_face(graph, hip, tick.glance.kind, false)) {
-        end_on_face(header, params, hip, tick.glance.kind, tick.glance.target, tick.friction.is_slipping, contact, result);
+        end_on_face(header, params, hip, tick.glance.kind, tick.glance.target, tick.is_slipping, contact, result);
       } else {
-        const FaceTick<Real> found = tick;  // of its own, so that the way above keeps nothing in memory
+        // Of its own, so that the way above keeps nothing in memory.
+        const FaceTick<Real> found = {
+            tick.side, tick.is_slipping, {tick.glance.kind, tick.glance.near_side, by_parts(tick.glance.target)}};
         step_on<Geometry, Real>(raw, params, hip, &found, FDCG_NONE, contact, result);
       }
     } else {
