@@ -19,16 +19,16 @@ BoxTree::BoxTree(uint32_t nodes)
   }
 }
 
-TreeWay tree_way(Vec3<float> from, Vec3<float> along, float pad) {
-  TreeWay way = {{from.x, from.y, from.z}, {along.x, along.y, along.z}, {}};
+void tree_way(Vec3<float> from, Vec3<float> along, float pad, TreeWay* way) {
+  way->from[0] = from.x, way->from[1] = from.y, way->from[2] = from.z;
+  const float ways[3] = {along.x, along.y, along.z};
   for (int k = 0; k < 3; ++k) {
     // A way shorter than the pad along an axis counts as that long: the boxes are grown by the pad too.
-    const bool is_backwards = way.per_way[k] < 0;
-    const float length = absolute(way.per_way[k]) < pad ? pad : absolute(way.per_way[k]), per_length = 1 / length;
-    way.per_way[k] = is_backwards ? -per_length : per_length;
-    way.grow[k] = 2 * pad * per_length;
+    const bool is_backwards = ways[k] < 0;
+    const float length = absolute(ways[k]) < pad ? pad : absolute(ways[k]), per_length = 1 / length;
+    way->per_way[k] = is_backwards ? -per_length : per_length;
+    way->grow[k] = 2 * pad * per_length;
   }
-  return way;
 }
 
 [[gnu::cold]] bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begin, double* end) {
@@ -55,9 +55,9 @@ TreeWay tree_way(Vec3<float> from, Vec3<float> along, float pad) {
   if (!(*begin < *end)) return false;
   const Vec3<double> start = from + whole * *begin, part = whole * (*end - *begin);
   const double near_size = norm1(start) + norm1(start + part);
-  *way = tree_way({static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(start.z)},
-                  {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)},
-                  static_cast<float>(tree_rounding(near_size, size * DBL_EPSILON)));
+  tree_way({static_cast<float>(start.x), static_cast<float>(start.y), static_cast<float>(start.z)},
+           {static_cast<float>(part.x), static_cast<float>(part.y), static_cast<float>(part.z)},
+           static_cast<float>(tree_rounding(near_size, size * DBL_EPSILON)), way);
   return true;
 }
 

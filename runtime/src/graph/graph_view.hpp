@@ -292,7 +292,7 @@ using RigidView = GraphView<RigidGeometry<Real>>;
 
 // The sign of x against the plane through the first three corners of an exactly planar node.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> x,
+[[gnu::noinline]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x,
                                       uint32_t* work_left) {
   Vec3<double> corner[3];
   for (uint32_t k = 0; k < 3; ++k) {
@@ -307,7 +307,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 // planar. `bound` is plane_rounding_bound of x. One expression wherever it is asked, so that no two rules disagree. An exact
 // sign spends from *work_left; null: not counted.
 template <class Geometry, class Real = typename Geometry::Real>
-FDCG_HOT Real side_of(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> x, Real bound, uint32_t* work_left) {
+FDCG_HOT Real side_of(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x, Real bound,
+                      uint32_t* work_left) {
   const Real distance = node.plane().distance(x);
   if (absolute(distance) > bound || node.is_inexact()) return distance;
   const int sign = exact_side_sign(graph, node, x, work_left);

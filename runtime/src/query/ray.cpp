@@ -57,9 +57,9 @@ class RaySearch {
     const QueryPoint from = from_ * per_unit, to = to_ * per_unit, along = to - from;
     const double size = norm1(from) + norm1(to);
     if (!(size > kNear)) {
-      way_ = tree_way({static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
-                      {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)},
-                      static_cast<float>(tree_rounding(size, size * RealLimits<double>::kEpsilon)));
+      tree_way({static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
+               {static_cast<float>(along.x), static_cast<float>(along.y), static_cast<float>(along.z)},
+               static_cast<float>(tree_rounding(size, size * RealLimits<double>::kEpsilon)), &way_);
       return true;
     }
     double end = 1;

@@ -200,7 +200,8 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
 // it was, which at the corner it might be. Free, the way begins at the corner, lest it pass below a face of it. `t`: from the
 // corner to the HIP.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Vec3<Real> moved_beside(const Walk<Geometry>& walk, Feature next, Vec3<Real> point, Vec3<Real> t) {
+[[gnu::noinline, gnu::cold]] Vec3<Real> moved_beside(const Walk<Geometry>& walk, Feature next, const Vec3<Real>& point,
+                                                     const Vec3<Real>& t) {
   if (next == kFree) return point;
   Vec3<Real> down;  // to the foot of the HIP on `next`
   if (next.state == FDCG_FACE) {

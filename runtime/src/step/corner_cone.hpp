@@ -108,7 +108,7 @@ class WayToEdge {
   static constexpr uint32_t kMuch = 1u << 30;
 
   [[nodiscard]] Real side(NodeRef<Geometry> node) { return side(node, walk_.hip, walk_.hip_bound); }
-  [[nodiscard, gnu::noinline, gnu::cold]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) {
+  [[nodiscard, gnu::noinline, gnu::cold]] Real side(NodeRef<Geometry> node, const Vec3<Real>& x, Real bound) {
     return side_of(walk_.graph, node, x, bound, &work_left_);
   }
 

@@ -100,7 +100,7 @@ FDCG_HOT FaceGlance<Real> glance_on_face(NodeRef<Geometry> node, Laws& friction,
   const Real depth = -side;
   const Slip<Real> slip = friction.slip(god_object, dot(off, off), depth);
   if (slip.is_rest) return {Kind::rests, 0, god_object};
-  Vec3<Real> target = hip + normal * depth;  // the surface point
+  Vec3<Real> target = hip + normal * depth;          // the surface point
   if (slip.gap > 0 || FDCG_MUTANT("slides-half")) {  // else it does not wait for where the god-object is
     const Vec3<Real> offset = reach - normal * dot(normal, reach);
     const Real reach2 = dot(offset, offset);
@@ -138,7 +138,7 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 // is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side,
-                                                  Vec3<Real> point) {
+                                                  const Vec3<Real>& point) {
   const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.max_deviation());
   const Plane<Real> plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);

@@ -19,7 +19,7 @@ inline Vec3<Real> onto_slab(const Walk<Geometry>& walk, Vec3<Real> point, uint32
 
 // Places the contact at the first collision on the way, or at its end.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, Vec3<Real> to,
+[[gnu::noinline, gnu::cold]] void arrive(Walk<Geometry>& walk, const Sweep<Geometry>& sweep, const Vec3<Real>& to,
                                          const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
   const Real over = FDCG_MUTANT("grazing") && is_on_face ? first.fraction + Real(0.01)
@@ -96,7 +96,8 @@ inline bool is_in_new_ball(const GraphView<Geometry>& graph, const Vec3<Real>& f
 // where its numbers, which out there are coarser than the object, cannot tell. A place computed from the whole way might be
 // anywhere.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Vec3<Real> near_start(const GraphView<Geometry>& graph, Vec3<Real> from, Vec3<Real> to) {
+[[gnu::noinline, gnu::cold]] Vec3<Real> near_start(const GraphView<Geometry>& graph, const Vec3<Real>& from,
+                                                   const Vec3<Real>& to) {
   constexpr Real kFar = kNearExtents, kBefore = 4;  // extents; the graph lies within less than two of the origin
   const Real extent = static_cast<Real>(graph.header()->extent);
   if (!(norm1(from) > kFar * extent)) return from;
@@ -118,7 +119,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // to the HIP meets, or at the HIP. A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work
 // ran out, else 0.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, Vec3<Real> stood, FreeSpace* space) {
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, const Vec3<Real>& stood, FreeSpace* space) {
   CarriedSweep* const carried = &space->inner->sweep;
   ClearBall* const ball = &space->inner->clear_ball;
   if (!(left == kFree && space->looks_for_balls && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);

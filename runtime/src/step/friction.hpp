@@ -34,7 +34,7 @@ struct PlainFriction {
   // starts beyond mu_static and ends below mu_dynamic by a factor of 1 - 2^-20, because a slipping god-object sits exactly on
   // the dynamic circle and rounding must not toss a coin every tick; for the same reason it is not placed anew for less than
   // the rounding of its own place. Squares, so that rest costs no root.
-  Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
+  Slip<Real> slip(const Vec3<Real>& god_object, Real gap2, Real load) {
     constexpr Real kStickAgain = Real(kStickAgainShare);
     const Real gap = mu_dynamic * load;
     if (is_slipping) {
@@ -54,7 +54,7 @@ template <class Real>
 struct Friction : PlainFriction<Real> {
   FrictionTerms* terms = nullptr;  // null: the two coefficients are all there is
 
-  Slip<Real> slip(Vec3<Real> god_object, Real gap2, Real load) {
+  Slip<Real> slip(const Vec3<Real>& god_object, Real gap2, Real load) {
     if constexpr (FDCG_WITH_FRICTION_TERMS) {
       if (terms != nullptr) return slip_with_terms(god_object, gap2, load);
     }
@@ -62,7 +62,7 @@ struct Friction : PlainFriction<Real> {
   }
 
  private:
-  [[gnu::noinline, gnu::cold]] Slip<Real> slip_with_terms(Vec3<Real> god_object, Real gap2, Real load) {
+  [[gnu::noinline, gnu::cold]] Slip<Real> slip_with_terms(const Vec3<Real>& god_object, Real gap2, Real load) {
     const TermSlip slip =
         terms->slip({god_object.x, god_object.y, god_object.z}, gap2, load, RealLimits<Real>::kEpsilon, &this->is_slipping);
     return {slip.is_rest, static_cast<Real>(slip.gap)};

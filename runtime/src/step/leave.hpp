@@ -14,7 +14,7 @@ namespace fdcg {
 // Moves the god-object along `outward` by as little as puts it in front of the node's plane: a slit may be narrower than a
 // rounding.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] void step_in_front_of(Walk<Geometry>& walk, NodeRef<Geometry> node, Vec3<Real> outward) {
+[[gnu::noinline, gnu::cold]] void step_in_front_of(Walk<Geometry>& walk, NodeRef<Geometry> node, const Vec3<Real>& outward) {
   constexpr int kMostMoves = 16;  // each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, walk.god_object);
   const Real least = least_step_clear<Real>(walk.graph.header()->extent);

@@ -34,12 +34,12 @@ class NodeEntry {
   using Real = typename Geometry::Real;
 
  public:
-  [[gnu::noinline]] NodeEntry(const GraphView<Geometry>& graph, Vec3<Real> stood, Vec3<Real> from, Vec3<Real> to, Feature left,
-                              uint32_t* work_left)
+  [[gnu::noinline]] NodeEntry(const GraphView<Geometry>& graph, const Vec3<Real>& stood, const Vec3<Real>& from,
+                              const Vec3<Real>& to, Feature left, uint32_t* work_left)
       : graph_(graph),
-        stood_(stood),
-        from_(from),
-        to_(to),
+        stood_(by_parts(stood)),
+        from_(by_parts(from)),
+        to_(by_parts(to)),
         way_(to_ - from_),
         from_bound_(plane_rounding_bound(graph_, from_)),
         to_bound_(plane_rounding_bound(graph_, to_)),
@@ -164,7 +164,7 @@ class NodeEntry {
     return is_near;
   }
 
-  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, Vec3<Real> x, Real bound) const {
+  [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, const Vec3<Real>& x, Real bound) const {
     if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kNearPlaneWork);
     return side_of(graph_, node, x, bound, work_left_);
   }
@@ -266,12 +266,12 @@ class NodeEntry {
 
   // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
   // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
-  [[nodiscard, gnu::noinline, gnu::cold]] int orientation(Vec3<Real> start, Vec3<Real> end) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] int orientation(const Vec3<Real>& start, const Vec3<Real>& end) const {
     const int sign = sure_orientation(start, end);
     return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
   // The same where rounding cannot matter; else 0.
-  [[nodiscard]] int sure_orientation(Vec3<Real> start, Vec3<Real> end) const {
+  [[nodiscard]] int sure_orientation(const Vec3<Real>& start, const Vec3<Real>& end) const {
     spend(work_left_, kOrientationWork);
     const Vec3<Real> v = start - from_, w = end - from_;
     const Real det = dot(cross(v, w), way_);
@@ -356,7 +356,8 @@ class NodeEntry {
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it, or, where
   // the loop is not flat, another beside them, and then the face is met. A way in the face's own plane meets all sides, and the
   // point may be beside most of them.
-  [[nodiscard, gnu::noinline, gnu::cold]] Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly, Vec3<Real> point) const {
+  [[nodiscard, gnu::noinline, gnu::cold]] Feature on_rim(NodeRef<Geometry> node, uint64_t met_exactly,
+                                                         const Vec3<Real>& point) const {
     const bool are_two = (met_exactly & (met_exactly - 1)) != 0 && met_exactly != 7;
     if (node.side_count() == 3 && are_two) return {FDCG_VERTEX, corner_on_line_};  // remember_corner() has just found it
     Feature nearest = kFree;

@@ -126,7 +126,7 @@ class Sweep : public FanSweep<Geometry> {
     const Vec3<Real> from = from_ * per_unit, to = to_ * per_unit;
     const Real size = norm1(from) + norm1(to);
     if (!(size > kNear)) {
-      in_tree_ = tree_way(narrowed(from), narrowed(to - from), static_cast<float>(tree_rounding(size, size * kEpsilon)));
+      tree_way(narrowed(from), narrowed(to - from), static_cast<float>(tree_rounding(size, size * kEpsilon)), &in_tree_);
       return true;
     }
     double begin, end;

@@ -52,7 +52,7 @@ struct Walk {
 
 // The foot of a place on a node's plane.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Vec3<Real> foot_on(NodeRef<Geometry> node, Vec3<Real> x) {
+[[gnu::noinline, gnu::cold]] Vec3<Real> foot_on(NodeRef<Geometry> node, const Vec3<Real>& x) {
   return x - node.normal() * node.plane().distance(x);
 }
 
@@ -103,7 +103,7 @@ struct EdgeLine : Edge<Real> {
 
 // Whether a place is between the ends of a side, up to rounding.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, Vec3<Real> x) {
+[[gnu::noinline, gnu::cold]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, const Vec3<Real>& x) {
   const EdgeLine<Real> line(node.graph(), node, k);
   const Real u = line.parameter(x);
   return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
