@@ -128,7 +128,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // rounding of a sweep inside it: such a sweep finds nothing else. 0 where it would be below `way`. Cost: at most
 // kMostClearVisits records and leaves, a handful where nothing is near.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::hot]] Real clear_radius(const GraphView<Geometry>& graph, Vec3<Real> at, Real way, NearNodes* near,
+[[gnu::noinline, gnu::hot]] Real clear_radius(const GraphView<Geometry>& graph, const Vec3<Real>& at, Real way, NearNodes* near,
                                               uint32_t* near_count) {
   constexpr Real kWaysAhead = 8;               // what a look is to pay for, in ways of this tick
   constexpr Real kLeastReach = Real(1) / 256;  // ... and tree units

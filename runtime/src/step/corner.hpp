@@ -50,8 +50,13 @@ struct FanSearch {
   Steepest<Real> best;
   Real lost2;  // squared distance of the HIP from the nearest that did not hold
 
-  FanSearch(Walk<Geometry>& a_walk, Vec3<Real> a_t, bool a_must_hold)
-      : walk(a_walk), t(a_t), half_t2(dot(t, t) / 2), must_hold(a_must_hold), best{kFree, 0, 2 * half_t2}, lost2(2 * half_t2) {}
+  FanSearch(Walk<Geometry>& a_walk, const Vec3<Real>& a_t, bool a_must_hold)
+      : walk(a_walk),
+        t(by_parts(a_t)),
+        half_t2(dot(t, t) / 2),
+        must_hold(a_must_hold),
+        best{kFree, 0, 2 * half_t2},
+        lost2(2 * half_t2) {}
 
   void offer(const Steepest<Real>& found) {
     if (!best.is_less_steep_than(found, half_t2)) return;
@@ -90,7 +95,7 @@ inline void search_all(FanSearch<Geometry>& search, CornerRef<Geometry> corner) 
 // The most that t.u can be for a unit vector u of the box, or more: the lesser of what the box alone allows, and, since u is no
 // longer than 1, of sup over the box of t.u - (|t|/2) (|u|^2 - 1), which is tight where u can point along t but for a little.
 template <class Real, class FanBox>
-[[gnu::noinline, gnu::cold]] Real most_along(const FanBox& box, Vec3<Real> t, Real length) {
+[[gnu::noinline, gnu::cold]] Real most_along(const FanBox& box, const Vec3<Real>& t, Real length) {
   const Vec3<Real> centre = vec(box.centre);
   const Real along_centre = dot(t, centre), weight = length / 2;
   Real in_box = along_centre, in_ball = along_centre + weight * (1 - dot(centre, centre));
@@ -169,7 +174,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // Where to go on from a corner, or the corner itself (contact-model CORNER-3, CORNER-5).
 template <class Geometry, class Real = typename Geometry::Real>
-inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
+inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner, const Vec3<Real>& t) {
   const Beginning way = beginning_of_way(walk, corner);
   if (way == Beginning::outside && !FDCG_MUTANT("free-at-vertex")) return kFree;
   const bool is_inside = way != Beginning::not_told;

@@ -49,7 +49,7 @@ inline Real edge_load(bool has_wedge, Vec3<Real> normal_a, Vec3<Real> normal_b, 
 
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void select_material_of_edge(Walk<Geometry>& walk, ConnectionRef<Geometry> connection,
-                                                          Vec3<Real> across) {
+                                                          const Vec3<Real>& across) {
   const uint32_t a = connection.node(0), b = connection.node(1);
   double share = 0.5;
   if (b != FDCG_NONE)

@@ -47,7 +47,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // Goes over the side that the move on its face meets (contact-model FACE-6, EDGE-1), and looks at the face beyond. False: not
 // plainly so, and nothing has changed.
 template <class Geometry, class Real = typename Geometry::Real>
-FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bound, Hop<Real>* hop) {
+FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, Real bound, Hop<Real>* hop) {
   const NodeRef<Geometry> here = graph.node(hop->node);
   const uint32_t k = hop->move.crossing.local_side;
   const fdcg_side& crossed = here.side(k);
@@ -88,7 +88,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bo
 // From the face of *hop, whose move meets a side, as far as it is plain: to where a move ends on its face, or to where the
 // rules go on.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] void hop_to_hip(const GraphView<Geometry>& graph, Vec3<Real> hip, Real bound, Hop<Real>* hop) {
+[[gnu::noinline]] void hop_to_hip(const GraphView<Geometry>& graph, const Vec3<Real>& hip, Real bound, Hop<Real>* hop) {
   using Kind = typename FaceMove<Real>::Kind;
   if (!graph.is_plain()) return;
   const Vec3<Real> gap = hop->god_object - hip;

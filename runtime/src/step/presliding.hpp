@@ -15,7 +15,8 @@ namespace fdcg {
 // Out of the half-planes that the face's concave edges leave: the nearest point of them, exactly where one or two of them
 // count.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Vec3<double> within_walls(const Walk<Geometry>& walk, NodeRef<Geometry> node, Vec3<double> x) {
+[[gnu::noinline, gnu::cold]] Vec3<double> within_walls(const Walk<Geometry>& walk, NodeRef<Geometry> node,
+                                                       const Vec3<double>& x) {
   struct Wall {
     Vec3<double> normal;
     double beyond;
@@ -63,7 +64,8 @@ template <class Geometry>
 
 // The offset from the anchor to the output god-object. Cost: one plane, and those of the face's concave edges.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Vec3<double> presliding_offset(const Walk<Geometry>& walk, Feature at, Vec3<double> anchor) {
+[[gnu::noinline, gnu::cold]] Vec3<double> presliding_offset(const Walk<Geometry>& walk, Feature at,
+                                                            const Vec3<double>& anchor) {
   const Vec3<double> stays = {0, 0, 0}, hip = widen(walk.hip);
   const double share = 1 - 1 / walk.friction.terms->give();
   if (!(share > 0)) return stays;
@@ -93,7 +95,7 @@ inline double stored(const FrictionTerms& terms, Vec3<double> gap, Vec3<double> 
 // reduced, and rises again as sliding dissipates. Otherwise a change of material, or a wall behind a seam, would do work on the
 // hand.
 template <class Geometry>
-[[gnu::noinline, gnu::cold]] double settle(const Walk<Geometry>& walk, Feature was, Vec3<double> before) {
+[[gnu::noinline, gnu::cold]] double settle(const Walk<Geometry>& walk, Feature was, const Vec3<double>& before) {
   FrictionTerms& terms = *walk.friction.terms;
   const Vec3<double> hip = widen(walk.hip), now = widen(walk.god_object);
   double most = 0;

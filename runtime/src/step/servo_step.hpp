@@ -271,7 +271,7 @@ inline Feature seat_of(const fdcg_contact& contact) {
 
 // First tick: free, with the god-object at the HIP (contact-model TICK-3).
 template <class Real>
-[[gnu::noinline, gnu::cold]] void start(Vec3<Real> hip, fdcg_contact* contact) {
+[[gnu::noinline, gnu::cold]] void start(const Vec3<Real>& hip, fdcg_contact* contact) {
   store(hip, contact->hip);
   store(hip, contact->god_object);
   contact->started = 1;
@@ -404,7 +404,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // A tick of a contact that has started, with terms of friction: all of it goes the long way.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] void step_with_terms(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip,
+[[gnu::noinline, gnu::cold]] void step_with_terms(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& hip,
                                                   fdcg_contact* contact, fdcg_result* result) {
   const GraphView<Geometry> graph(raw);
   FrictionTerms terms = terms_of(params, &raw, *contact);
@@ -498,8 +498,8 @@ FDCG_HOT void end_on_face(const fdcg_header& header, const fdcg_params& params, 
   store(target, contact->god_object);
 }
 template <class Real>
-FDCG_STEP_ON void end_hops_on_face(const fdcg_header& header, const fdcg_params& params, Vec3<Real> hip, const Hop<Real>& hop,
-                                   fdcg_contact* contact, fdcg_result* result) {
+FDCG_STEP_ON void end_hops_on_face(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip,
+                                   const Hop<Real>& hop, fdcg_contact* contact, fdcg_result* result) {
   result->transitions = hop.transitions;
   end_on_face(header, params, hip, hop.move.kind, hop.move.target, hop.friction.is_slipping, contact, result);
 }
@@ -562,7 +562,7 @@ inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hi
 // The rest of a tick: from a face that the god-object may leave, or on which it must be asked again, with what has been found
 // there; from an edge that a face, `pulling`, pulls it off; or, `tick` null and no such face, from elsewhere.
 template <class Geometry, class Real = typename Geometry::Real>
-FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, Vec3<Real> hip, const FaceTick<Real>* tick,
+FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& hip, const FaceTick<Real>* tick,
                           uint32_t pulling, fdcg_contact* contact, fdcg_result* result) {
   const GraphView<Geometry> graph(raw);
   const Real bound = plane_rounding_bound(graph, hip);

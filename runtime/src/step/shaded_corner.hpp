@@ -23,7 +23,8 @@ template <class Geometry>
 // The face whose sector holds the way to the HIP, seen along the normal that is felt there; where normals differ and several
 // do, the one along which the way is longest. None: the crease along which it is. Else it rests.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Feature next_from_shaded_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner, Vec3<Real> t) {
+[[gnu::noinline, gnu::cold]] Feature next_from_shaded_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner,
+                                                             const Vec3<Real>& t) {
   const Vec3<double> way = widen(t);
   Feature face = walk.active, edge = walk.active;
   double longest_on_face = 0, longest_on_edge = 0;

@@ -61,7 +61,7 @@ template <class Geometry>
 
 // The unit normal felt on a node at x.
 template <class Geometry>
-[[gnu::noinline, gnu::cold]] Vec3<double> felt_normal(const Walk<Geometry>& walk, uint32_t node, Vec3<double> x) {
+[[gnu::noinline, gnu::cold]] Vec3<double> felt_normal(const Walk<Geometry>& walk, uint32_t node, const Vec3<double>& x) {
   const fdcg_node_normals* const normals = normals_of(walk, node);
   if (normals != nullptr) {
     const NodeRef<Geometry> face = walk.graph.node(node);
