@@ -21,6 +21,7 @@ struct Hop {
   uint32_t transitions;  // 0: none yet
   bool is_on_edge;       // where it stays
   uint32_t work_left;    // as the rules would have it
+  Real side;             // of the HIP, from the node
   Real gap2;             // squared distance from the HIP
   Vec3<Real> god_object;
   Vec3<Real> rounding_residual;  // contact-model FACE-7
@@ -44,8 +45,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   return true;
 }
 
-// Goes over the side that the move on its face meets (contact-model FACE-6, EDGE-1), and looks at the face beyond. False: not
-// plainly so, and nothing has changed.
+// Goes over the side that the move on its face meets (contact-model FACE-6, EDGE-1), and stands before the face beyond. False:
+// not plainly so, and nothing has changed.
 template <class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, Real bound, Hop<Real>* hop) {
   const NodeRef<Geometry> here = graph.node(hop->node);
@@ -80,20 +81,27 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   hop->node = FDCG_MUTANT("hop-keeps-face") ? hop->node : crossed.across;
   hop->edge = crossed.link >> 1;
   hop->transitions += 2;
+  hop->side = side;
   spend(&hop->work_left, kHopWork + kSideWork * there.side_count());
-  hop->move = move_on_face<true>(there, hop->friction, hip, bound, side, god_object, gap, gap + hop->rounding_residual);
   return true;
 }
 
-// From the face of *hop, whose move meets a side, as far as it is plain: to where a move ends on its face, or to where the
-// rules go on.
+// From the face of *hop, where it `has_move` or is to make one, as far as it is plain: to where a move ends on its face, to an
+// edge that keeps it, or to where the rules go on.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] void hop_to_hip(const GraphView<Geometry>& graph, const Vec3<Real>& hip, Real bound, Hop<Real>* hop) {
+[[gnu::noinline]] void hop_to_hip(const GraphView<Geometry>& graph, const Vec3<Real>& hip, Real bound, bool has_move,
+                                  Hop<Real>* hop) {
   using Kind = typename FaceMove<Real>::Kind;
   if (!graph.is_plain()) return;
-  const Vec3<Real> gap = hop->god_object - hip;
-  hop->gap2 = dot(gap, gap);
-  while (hop->move.kind == Kind::crosses && hop->work_left > kHopWork) {
+  const Vec3<Real> begin = hop->god_object - hip;
+  hop->gap2 = dot(begin, begin);
+  for (;; has_move = false) {
+    if (!has_move) {
+      const Vec3<Real> gap = hop->god_object - hip;
+      hop->move = move_on_face<true>(graph.node(hop->node), hop->friction, hip, bound, hop->side, hop->god_object, gap,
+                                     gap + hop->rounding_residual);
+    }
+    if (hop->move.kind != Kind::crosses || hop->work_left <= kHopWork) return;
     if (!hop_over(graph, hip, bound, hop) || hop->is_on_edge) return;
   }
 }

@@ -546,12 +546,11 @@ template <class Geometry, class Real = typename Geometry::Real>
 inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hip, Real bound, uint32_t face, Hop<Real>* hop) {
   const PlainFriction<Real> friction = hop->friction;
   const NodeRef<Geometry> node = graph.node(face);
-  const Vec3<Real> gap = hop->god_object - hip;
   spend(&hop->work_left, kEdgeWork + kTransitionWork + kSideWork * node.side_count());
   hop->node = face;
+  hop->side = node.plane().distance(hip);
   hop->transitions = 1;
-  hop->move = move_on_face<true>(node, hop->friction, hip, bound, node.plane().distance(hip), hop->god_object, gap, gap);
-  hop_to_hip(graph, hip, bound, hop);
+  hop_to_hip(graph, hip, bound, false, hop);
   if (hop->transitions > 1 || ends_on_face(graph, hip, hop->move.kind, false)) return true;
   hop->friction = {friction};
   hop->work_left = kRuleWork;
@@ -587,7 +586,7 @@ FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, cons
     hop.node = contact->feature;
     if (kHasHops<Geometry> && hop.move.kind == FaceMoveKind::crosses && tick->side < -bound &&
         (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0)
-      hop_to_hip(graph, hip, bound, &hop);
+      hop_to_hip(graph, hip, bound, true, &hop);
   } else if (kHasEdgeHops<Geometry> && pulling != FDCG_NONE) {
     has_move = hops_off_edge(graph, hip, bound, pulling, &hop);
   }
