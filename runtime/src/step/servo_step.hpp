@@ -265,6 +265,10 @@ inline void write_position(const fdcg_header& header, const fdcg_contact& contac
   result->slipping = contact.slipping;
 }
 
+inline void leave_seat(fdcg_contact* contact) {
+  internals_of(*contact).seat_state = FDCG_FREE;
+  internals_of(*contact).seat_feature = FDCG_NONE;
+}
 inline Feature seat_of(const fdcg_contact& contact) {
   return {internals_of(contact).seat_state, internals_of(contact).seat_feature};
 }
@@ -488,39 +492,17 @@ inline bool ends_on_face(const GraphView<Geometry>& graph, Vec3<Real> hip, FaceM
   return kind == FaceMoveKind::slides ? !is_far(graph, hip) : kind == FaceMoveKind::rests && !has_hopped;
 }
 template <class Real>
-FDCG_HOT void end_on_face(const fdcg_header& header, const fdcg_params& params, Vec3<Real> hip, FaceMoveKind kind,
-                          Vec3<Real> target, bool is_slipping, fdcg_contact* contact, fdcg_result* result) {
-  ContactInternals& inner = internals_of(*contact);
-  if (kind == FaceMoveKind::slides) inner.seat_state = FDCG_FREE, inner.seat_feature = FDCG_NONE;
-  contact->slipping = is_slipping ? 1 : 0;
-  inner.sweep.stalled_sweeps = 0;
-  respond(header, params, *contact, hip, target, result);
-  store(target, contact->god_object);
-}
-template <class Real>
-FDCG_STEP_ON void end_hops_on_face(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip,
-                                   const Hop<Real>& hop, fdcg_contact* contact, fdcg_result* result) {
-  result->transitions = hop.transitions;
-  end_on_face(header, params, hip, hop.move.kind, hop.move.target, hop.friction.is_slipping, contact, result);
-}
-
-// A god-object that ends on an edge.
-template <class Real>
-FDCG_HOT void end_on_edge(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip, bool is_slipping,
-                          const Vec3<Real>& god_object, fdcg_contact* contact, fdcg_result* result) {
+FDCG_HOT void end_at(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip, const Vec3<Real>& god_object,
+                     bool is_slipping, fdcg_contact* contact, fdcg_result* result) {
   internals_of(*contact).sweep.stalled_sweeps = 0;
   contact->slipping = is_slipping ? 1 : 0;
   respond(header, params, *contact, hip, god_object, result);
   store(god_object, contact->god_object);
 }
 template <class Real>
-[[gnu::noinline]] void end_hops_on_edge(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip,
-                                        const Hop<Real>& hop, fdcg_contact* contact, fdcg_result* result) {
-  ContactInternals& inner = internals_of(*contact);
-  contact->state = inner.seat_state = FDCG_EDGE;
-  contact->feature = inner.seat_feature = hop.edge;
-  result->transitions = hop.transitions;
-  end_on_edge(header, params, hip, hop.friction.is_slipping, by_parts(hop.god_object), contact, result);
+FDCG_STEP_ON void end_short_way_at(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip,
+                                   const Vec3<Real>& god_object, bool is_slipping, fdcg_contact* contact, fdcg_result* result) {
+  end_at(header, params, hip, by_parts(god_object), is_slipping, contact, result);
 }
 
 // A tick that begins on an edge, and stays there or not: the face that pulls the god-object off it, else FDCG_NONE.
@@ -536,7 +518,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (what != OnEdge::stays) return what;
   ContactInternals& inner = internals_of(*contact);
   if (along.has_slid) inner.seat_state = FDCG_EDGE, inner.seat_feature = contact->feature;
-  end_on_edge(*raw.header, params, hip, along.friction.is_slipping, by_parts(along.god_object), contact, result);
+  end_short_way_at(*raw.header, params, hip, along.god_object, along.friction.is_slipping, contact, result);
   return what;
 }
 
@@ -591,11 +573,20 @@ FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, cons
     has_move = hops_off_edge(graph, hip, bound, pulling, &hop);
   }
   if (has_move) {
-    if (kHasEdgeHops<Geometry> && hop.is_on_edge) return end_hops_on_edge(*raw.header, params, hip, hop, contact, result);
+    ContactInternals& inner = internals_of(*contact);
     contact->state = FDCG_FACE;
     contact->feature = hop.node;
-    if (ends_on_face(graph, hip, hop.move.kind, hop.transitions > 1))
-      return end_hops_on_face(*raw.header, params, hip, hop, contact, result);
+    const bool ends_on_edge = kHasEdgeHops<Geometry> && hop.is_on_edge;
+    if (ends_on_edge) {
+      contact->state = inner.seat_state = FDCG_EDGE;
+      contact->feature = inner.seat_feature = hop.edge;
+      hop.move.target = by_parts(hop.god_object);
+    }
+    if (ends_on_edge || ends_on_face(graph, hip, hop.move.kind, hop.transitions > 1)) {
+      if (!ends_on_edge && hop.move.kind == FaceMoveKind::slides) leave_seat(contact);
+      result->transitions = hop.transitions;
+      return end_short_way_at(*raw.header, params, hip, hop.move.target, hop.friction.is_slipping, contact, result);
+    }
   }
   Walk<Geometry> walk = {graph,
                          {static_cast<const PlainFriction<Real>&>(hop.friction), nullptr},
@@ -636,7 +627,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
       const GraphView<Geometry> graph(raw);
       const FaceTick<Real> tick = look_at_face(graph, params, *contact, hip, plane_rounding_bound(graph, hip));
       if (ends_on_face(graph, hip, tick.glance.kind, false)) {
-        end_on_face(header, params, hip, tick.glance.kind, tick.glance.target, tick.is_slipping, contact, result);
+        if (tick.glance.kind == FaceMoveKind::slides) leave_seat(contact);
+        end_at(header, params, hip, tick.glance.target, tick.is_slipping, contact, result);
       } else {
         // Of its own, so that the way above keeps nothing in memory.
         const FaceTick<Real> found = {
