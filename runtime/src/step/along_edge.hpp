@@ -48,8 +48,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Real foot = dot(hip - start, direction), ahead = dot(along->god_object - start, direction) - foot;
   PlainFriction<Real> friction = along->friction;
   const bool is_smooth = friction.mu_static == 0 && friction.mu_dynamic == 0;
-  const Real load =
-      is_smooth ? Real(0) : edge_load(friction.has_wedge, a.normal(), b.normal(), hip - (start + direction * foot));
+  const Real load = is_smooth ? Real(0) : edge_load(friction.has_wedge, a, b, hip - (start + direction * foot));
   const Slip<Real> slip = friction.slip(along->god_object, square(ahead), load);
   const Real u = slip.is_rest ? foot + ahead : ahead > 0 ? foot + slip.gap : foot - slip.gap;
   const Real end_tolerance = end_rounding(start, edge.length);

@@ -35,11 +35,11 @@ inline bool is_free_of_edge(uint8_t type, bool is_behind_a, bool is_behind_b) {
 // contact-model EDGE-4: the sum of the two normal loads of the groove, or the paper's distance of HIP from the edge. `across`
 // is HIP from its foot on the edge: from any other point of the edge it would be the same in theory, but merged faces may lie
 // off their corners, and a load that is not that of the force then errs by the way along the edge.
-template <class Real>
-inline Real edge_load(bool has_wedge, Vec3<Real> normal_a, Vec3<Real> normal_b, Vec3<Real> across) {
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] Real edge_load(bool has_wedge, NodeRef<Geometry> a, NodeRef<Geometry> b, const Vec3<Real>& across) {
   const Real distance = FDCG_MUTANT("edge-load-doubled") ? 2 * norm(across) : norm(across);
   if (!has_wedge) return distance;
-  const Vec3<Real> sum = normal_a + normal_b;
+  const Vec3<Real> sum = a.normal() + b.normal();
   const Real most = Real(kMaxWedgeFactor) * distance;
   const Real sum2 = dot(sum, sum);
   const Real load = FDCG_MUTANT("edge-load-halved") ? -dot(sum, across) : -2 * dot(sum, across);
@@ -107,8 +107,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   if constexpr (FDCG_WITH_FRICTION_TERMS) {
     if (walk.friction.terms != nullptr) select_material_of_edge(walk, connection, across);
   }
-  const Real load = edge_load(walk.friction.has_wedge, walk.graph.node(connection.node(0)).normal(),
-                              walk.graph.node(connection.node(1)).normal(), across);
+  const Real load =
+      edge_load(walk.friction.has_wedge, walk.graph.node(connection.node(0)), walk.graph.node(connection.node(1)), across);
   const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), load);
   if (slip.is_rest && !(walk.friction.mu_static == 0 && is_at_end(line, foot + ahead))) return rest();
   const Feature landed =
