@@ -31,7 +31,7 @@ void tree_way(Vec3<float> from, Vec3<float> along, float pad, TreeWay* way) {
   }
 }
 
-[[gnu::cold]] bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begin, double* end) {
+[[gnu::cold]] bool cut_tree_way(const Vec3<double>& from, const Vec3<double>& to, TreeWay* way, double* begin, double* end) {
   constexpr double kAround = 16;  // no box reaches further than 8
   const Vec3<double> whole = to - from;
   const double size = norm1(from) + norm1(to);

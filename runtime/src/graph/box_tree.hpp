@@ -64,7 +64,7 @@ void tree_way(Vec3<float> from, Vec3<float> along, float pad, TreeWay* way);
 
 // The part of a way that is near the tree, from fraction *begin to *end. False: the way passes by. One from so far away that
 // its coordinates say nothing of a box touches all.
-bool cut_tree_way(Vec3<double> from, Vec3<double> to, TreeWay* way, double* begin, double* end);
+bool cut_tree_way(const Vec3<double>& from, const Vec3<double>& to, TreeWay* way, double* begin, double* end);
 
 // Which of a record's boxes the way enters at a fraction of at most `limit`, a bit each; entry[j]: at which, never too late.
 uint32_t touched_boxes(const fdcg_box8& boxes, const TreeWay& way, float limit, float (&entry)[FDCG_TREE_WAYS]);

@@ -103,7 +103,7 @@ double FrictionTerms::solve(double gap, double reach, double from, double stribe
   return s;
 }
 
-void FrictionTerms::go_on_to(Vec3<double> god_object) {
+void FrictionTerms::go_on_to(const Vec3<double>& god_object) {
   if (has_last) way += norm(god_object - last);
   last = god_object;
   has_last = true;
@@ -117,7 +117,7 @@ double FrictionTerms::stribeck_at(double load) const {
   return larger(params->stribeck_m_per_s, least) / unit_m * larger(1, load * unit_m / params->unique_solution_depth_m);
 }
 
-TermSlip FrictionTerms::slip(Vec3<double> god_object, double gap2, double load, double epsilon, bool* is_slipping) {
+TermSlip FrictionTerms::slip(const Vec3<double>& god_object, double gap2, double load, double epsilon, bool* is_slipping) {
   go_on_to(god_object);
   const double reach = load * give(), gap = root(gap2), from = lagged + per_way * way;
   const double stribeck = stribeck_at(load);

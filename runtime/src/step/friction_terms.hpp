@@ -42,8 +42,8 @@ struct FrictionTerms {
   // `share`: of the load that node a bears.
   void select_material_of_edge(uint32_t a, uint32_t b, double share);
   // Friction::slip with terms. Cost: a few hundred instructions, at most kMostSolveSteps times some 50.
-  TermSlip slip(Vec3<double> god_object, double gap2, double load, double epsilon, bool* is_slipping);
-  void go_on_to(Vec3<double> god_object);
+  TermSlip slip(const Vec3<double>& god_object, double gap2, double load, double epsilon, bool* is_slipping);
+  void go_on_to(const Vec3<double>& god_object);
   // The coefficient at a speed, and how fast it falls there; `stribeck` is that of the depth at hand.
   [[nodiscard]] double mu(double speed, double stribeck) const;
   [[nodiscard]] double fall(double speed, double stribeck) const;

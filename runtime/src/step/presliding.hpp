@@ -21,7 +21,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     Vec3<double> normal;
     double beyond;
   };
-  const auto farthest = [&](Vec3<double> point) {
+  const auto farthest = [&](const Vec3<double>& point) {
     Wall worst = {{0, 0, 0}, 0};
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if (node.across(k) == FDCG_NONE || walk.graph.connection(node.connection(k)).type() != FDCG_CONCAVE) continue;
