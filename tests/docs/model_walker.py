@@ -220,31 +220,24 @@ class Walker:
             if self.gap2() < nearest:
                 nearest, visited, has_retried = self.gap2(), [], False
             if self.at in visited or len(visited) == 32:  # contact-model TICK-5
-                if is_rest() and not self.goes_on_at_corner(visited, nearest):
+                if is_rest() and not self.goes_on_at_corner(visited):
                     return
             else:
                 visited.append(self.at)
 
-    def goes_on_at_corner(self, visited, nearest):
-        graph = self.graph
+    def goes_on_at_corner(self, visited):
         if self.rim is None or len(visited) == 32:
             return False
-        edge = graph.edge[self.rim]
-        if self.at[0] == VERTEX:
-            after, point = (EDGE, self.rim), self.god_object
-            if self.at[1] not in edge.corner:
+        edge, after = self.graph.edge[self.rim], (EDGE, self.rim)
+        if self.seat == after:
+            u, near = edge.parameter(self.god_object), 2 * self.graph.rounding(self.hip)
+            if u > near and edge.length - u > near:
                 return False
-        else:
-            after = (VERTEX, edge.corner[0 if 2 * edge.parameter(self.god_object) < edge.length else 1])
-            point = graph.point[after[1]]
-            growth = norm(minus(point, self.hip)) - math.sqrt(nearest)
-            is_near = norm(minus(self.god_object, point)) <= 2 * graph.rounding(self.hip)
-            if not is_near or growth > 8 * EPS * graph.extent:
-                return False
+            after = self.place_on_edge(self.rim, u, near)
+        elif self.at[0] != VERTEX or self.at[1] not in edge.corner:
+            return False
         if after in visited:
             return False
-        if after[0] == VERTEX:
-            self.place(point, after)
         self.at = after
         visited.append(after)
         return True
@@ -406,14 +399,13 @@ class Walker:
         edge = self.graph.side[face][k][0]
         return self.place_on_edge(edge, self.graph.edge[edge].parameter(point))
 
-    def place_on_edge(self, index, u):  # contact-model FACE-6
+    def place_on_edge(self, index, u, near=None):  # contact-model FACE-6
         graph, edge, self.rim = self.graph, self.graph.edge[index], index
         for end, from_end in enumerate((u, edge.length - u)):
-            if from_end > edge.end_tolerance:
+            if from_end > (edge.end_tolerance if near is None else near):
                 continue
             vertex = edge.corner[end]
-            most = norm(minus(self.god_object, self.hip)) + 8 * EPS * graph.extent
-            is_worse = from_end > 0 and norm(minus(graph.point[vertex], self.hip)) > most
+            is_worse = from_end > 0 and norm(minus(graph.point[vertex], self.hip)) > norm(minus(self.god_object, self.hip))
             self.place(edge.at(u) if is_worse else graph.point[vertex], (VERTEX, vertex))
             return self.seat
         self.place(edge.at(u), (EDGE, index))

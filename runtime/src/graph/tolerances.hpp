@@ -63,13 +63,6 @@ inline Real end_rounding(Vec3<Real> start, Real length) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(start) + length);
 }
 
-// FACE-6: a vertex no farther than this may be snapped to, though it be farther from the HIP: half of what a tick's distance
-// may grow by, which tests/evaluation/stress/judge.hpp bounds by 16 eps.
-template <class Real>
-inline Real snap_growth(Real extent) {
-  return 8 * RealLimits<Real>::kEpsilon * extent;
-}
-
 // TICK-5: a god-object that goes in a circle this near to a corner is on it. `bound`: plane_rounding_bound.
 template <class Real>
 inline Real corner_rounding(Real bound, Real deviation) {

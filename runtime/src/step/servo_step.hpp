@@ -55,20 +55,16 @@ class Trail {
     }
     return !may_visit(walk.active);
   }
-  [[nodiscard]] bool has_visited(Feature feature) const {
-    for (int i = 0; i < count_; ++i) {
-      if (visited_[i] == key(feature)) return true;
-    }
-    return false;
-  }
   // Another feature at the same place. False: it has been visited, or too many have.
   bool may_visit(Feature feature) {
-    if (count_ == kCapacity || has_visited(feature)) return false;
+    for (int i = 0; i < count_; ++i) {
+      if (visited_[i] == key(feature)) return false;
+    }
+    if (count_ == kCapacity) return false;
     visited_[count_++] = key(feature);
     return true;
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
-  [[nodiscard]] Real nearest() const { return root(nearest2_); }
   // Where hops have led to the start, over this edge, which was nearer than all before.
   void begin_nearer(Feature edge) {
     visited_[count_++] = key(edge);
@@ -112,28 +108,25 @@ Decision apply_rule(Walk<Geometry>& walk) {
 }
 
 // contact-model TICK-5: rounding hands the god-object around a corner. The corner, whose rule is exact, decides if it has not
-// been asked. If it has, and sends the god-object to a face that sends it back, the edge is asked by which the face does so.
-// False: neither is left.
+// been asked; whatever the way here was, or the next tick, which knows nothing of it, would decide otherwise. If it has, and
+// sends the god-object to a face that sends it back, the edge is asked by which the face does so. False: neither is left.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
   if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
-  const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
-  const Feature edge = {FDCG_EDGE, walk.rim};
-  if (walk.active.state == FDCG_VERTEX) {
+  Feature next = {FDCG_EDGE, walk.rim};
+  if (walk.seat == next) {
+    EdgeLine<Real> line(walk.graph, walk.rim);
+    line.end_tolerance = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
+    const Real u = line.parameter(walk.god_object);
+    if (!is_at_end(line, u)) return false;
+    next = place_on_edge(walk, walk.rim, line, u);
+  } else {
+    const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
     const bool ends_there = connection.corner(0) == walk.active.index || connection.corner(1) == walk.active.index;
-    if (!ends_there || !trail->may_visit(edge)) return false;
-    walk.active = edge;
-    return true;
+    if (walk.active.state != FDCG_VERTEX || !ends_there) return false;
   }
-  const EdgeLine<Real> line(walk.graph, walk.rim);
-  const Feature corner = {FDCG_VERTEX, connection.corner(2 * line.parameter(walk.god_object) < line.length ? 0 : 1)};
-  const Vec3<Real> point = walk.graph.corner_point(corner.index);
-  const Real deviation = Real(2 * walk.graph.max_deviation());
-  const Real growth = snap_growth(Real(walk.graph.header()->extent)) + deviation;
-  if (!(norm(walk.god_object - point) <= corner_rounding(walk.hip_bound, deviation))) return false;
-  if (!(norm(point - walk.hip) <= trail->nearest() + growth) || !trail->may_visit(corner)) return false;
-  walk.place(point, corner);
-  walk.active = corner;
+  if (!trail->may_visit(next)) return false;
+  walk.active = next;
   return true;
 }
 

@@ -109,12 +109,11 @@ template <class Geometry, class Real = typename Geometry::Real>
   return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
 }
 
-// Whether a corner is farther from the HIP than the god-object by more than half of what a step may move it away. It is then
-// not placed there, but the corner's rule decides, since two edges of a needle's tip would pass it to each other.
+// Whether a corner is farther from the HIP than the god-object. It is then not placed there, but the corner's rule decides,
+// since two edges of a needle's tip would pass it to each other.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, uint32_t corner) {
-  return norm(walk.graph.corner_point(corner) - walk.hip) >
-         norm(walk.god_object - walk.hip) + snap_growth(Real(walk.graph.header()->extent));
+  return norm(walk.graph.corner_point(corner) - walk.hip) > norm(walk.god_object - walk.hip);
 }
 
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.

@@ -16,8 +16,7 @@ import subprocess
 import sys
 
 SOURCES = pathlib.Path(__file__).resolve().parents[3] / "runtime" / "src"
-# slow: tests/evaluation/guard/guard_test.py. circle-at-corner: no past find brings it back since the corners' newer rules, and
-# none of 6 million ticks without it; whether it is still needed is not known.
+# circle-at-corner: tests/evaluation/stress/planted_fault_test.py; slow: tests/evaluation/guard/guard_test.py.
 OTHER_TESTS = {"circle-at-corner", "slow"}
 FAULTS = pathlib.Path(__file__).resolve().parents[2] / "evaluation" / "mutation" / "faults.csv"  # those of the mutation score
 
