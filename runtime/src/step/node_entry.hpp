@@ -270,6 +270,10 @@ class NodeEntry {
     const int sign = sure_orientation(start, end);
     return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
   }
+  // The same of two corners of a node.
+  [[nodiscard, gnu::noinline, gnu::cold]] int orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
+    return orientation(graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)));
+  }
   // The same where rounding cannot matter; else 0.
   [[nodiscard]] int sure_orientation(const Vec3<Real>& start, const Vec3<Real>& end) const {
     spend(work_left_, kOrientationWork);
@@ -295,9 +299,7 @@ class NodeEntry {
     }
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if ((sure & bit_of(k)) != 0) continue;
-      const int sign = ends_on_line(node, k)
-                           ? 0
-                           : orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k))));
+      const int sign = ends_on_line(node, k) ? 0 : orientation(node, k, node.next(k));
       if (sign > 0 && !is_open(node, k, fraction, &must_wind)) return false;
       if (sign == 0) *met_exactly |= bit_of(k);
     }
@@ -336,21 +338,26 @@ class NodeEntry {
   // Whether the line passes through the loop, convex or not, from its front: through one more of the fan's triangles from the
   // front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
   [[nodiscard, gnu::noinline, gnu::cold]] bool is_wound_by(NodeRef<Geometry> node) const {
-    const Vec3<Real> apex = graph_.corner_point(node.corner(0));
-    Vec3<Real> start = graph_.corner_point(node.corner(1));
-    int times = 0, first = orientation(apex, start);
+    int times = 0, first = orientation(node, 0, 1);
     for (uint32_t k = 1; k + 1 < node.side_count(); ++k) {
-      const Vec3<Real> end = graph_.corner_point(node.corner(k + 1));
       const bool is_last = k + 2 == node.side_count();
-      const int sign = orientation(apex, end);
+      const int sign = orientation(node, 0, k + 1);
       const int diagonal = sign != 0 || is_last ? sign : -1;  // a line through a diagonal is on one side of it for both
-      const int side = orientation(start, end);
+      const int side = orientation(node, k, k + 1);
       times += first <= 0 && side <= 0 && diagonal >= 0;
       times -= first > 0 && side > 0 && diagonal < 0;
       first = diagonal;
-      start = end;
     }
     return times > 0;
+  }
+
+  // Of a corner between two sides that the line meets, which may be in one line: whether the line meets each diagonal from
+  // there.
+  [[nodiscard]] bool is_on_line(NodeRef<Geometry> node, uint32_t k) const {
+    for (uint32_t i = 0; i < node.side_count(); ++i) {
+      if (orientation(node, k, i) != 0) return false;
+    }
+    return true;
   }
 
   // Which of the sides that the line meets exactly has the point on it: sides in one line all meet it, one holds it, or, where
@@ -364,9 +371,9 @@ class NodeEntry {
     Real nearest2 = 0;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
       if ((met_exactly & bit_of(k)) == 0) continue;
-      if (k >= kLastBit &&
-          orientation(graph_.corner_point(node.corner(k)), graph_.corner_point(node.corner(node.next(k)))) != 0)
-        continue;
+      if (k >= kLastBit && orientation(node, k, node.next(k)) != 0) continue;
+      if (!node.is_inexact() && (met_exactly & bit_of(node.previous(k))) != 0 && is_on_line(node, k))
+        return {FDCG_VERTEX, node.corner(k)};
       const EdgeLine<Real> line(graph_, node, k);
       const Real u = line.parameter(point);
       const Vec3<Real> off = point - (line.start + line.direction * (u < 0 ? Real(0) : u > line.length ? line.length : u));
