@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A god-object that stays on its edge, as in a groove or along a rim, or that a face pulls off it. The same numbers, to the
 // bit, as the rule of edge.hpp, without what serves other ends of it. Whatever is not plain is left to that rule: borders,
-// doubtful signs, ends, corners off their planes. Of graphs that are not plain nothing is sure.
+// doubtful signs, ends. Of graphs that are not plain nothing is sure.
 #pragma once
 
 #include "step/edge.hpp"
@@ -23,7 +23,7 @@ struct AlongEdge {
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::hot]] OnEdge look_along_edge(const GraphView<Geometry>& graph, uint32_t index, const Vec3<Real>& hip,
                                                    AlongEdge<Real>* along) {
-  if (!graph.is_plain() || graph.has_inexact_nodes()) return OnEdge::unsure;
+  if (!graph.is_plain()) return OnEdge::unsure;
   const Real bound = plane_rounding_bound(graph, hip);
   const fdcg_connection& connection = graph.connections()[index];
   const NodeRef<Geometry> a = graph.node(connection.node);
@@ -31,14 +31,16 @@ template <class Geometry, class Real = typename Geometry::Real>
   const fdcg_side& first = a.side(k);
   if (first.across == FDCG_NONE) return OnEdge::unsure;
   const NodeRef<Geometry> b = graph.node(first.across);
-  const Real side_a = a.plane().distance(hip), side_b = b.plane().distance(hip);
-  if (!(absolute(side_a) > bound && absolute(side_b) > bound)) return OnEdge::unsure;
-  const bool is_behind_a = side_a < 0, is_behind_b = side_b < 0;
-  if (is_free_of_edge(graph.type_of(connection), is_behind_a, is_behind_b)) return OnEdge::unsure;
-  const Real over_a = a.stored_plane(k).distance(hip), over_b = b.stored_plane(connection.side[1]).distance(hip);
-  const bool does_a_pull = is_behind_a && over_a < 0, does_b_pull = is_behind_b && over_b < 0;
+  const EdgeSides<Real> s = {{a.plane().distance(hip), b.plane().distance(hip)},
+                             {a.stored_plane(k).distance(hip), b.stored_plane(connection.side[1]).distance(hip)}};
+  if (!(absolute(s.side[0]) > bound && absolute(s.side[1]) > bound)) return OnEdge::unsure;
+  const bool is_behind_a = s.side[0] < 0, is_behind_b = s.side[1] < 0;
+  const uint8_t type = graph.type_of(connection);
+  if (graph.has_inexact_nodes() ? lets_go(graph, bound, type, s) : is_free_of_edge(type, is_behind_a, is_behind_b))
+    return OnEdge::unsure;
+  const bool does_a_pull = is_behind_a && s.voronoi[0] < 0, does_b_pull = is_behind_b && s.voronoi[1] < 0;
   if (does_a_pull || does_b_pull) {
-    along->face = does_a_pull && !(does_b_pull && over_b < over_a) ? connection.node : first.across;
+    along->face = does_a_pull && !(does_b_pull && s.voronoi[1] < s.voronoi[0]) ? connection.node : first.across;
     return OnEdge::pulled;
   }
 

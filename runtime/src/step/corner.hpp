@@ -35,7 +35,7 @@ template <class Geometry, class Real>
   EdgeSides<Real> s;
   look_at_sides(walk, connection, &s);
   if (connection.type() == FDCG_BOUNDARY) return s.side[0] < 0 && s.voronoi[0] < 0;
-  return !lets_go(walk, connection, s);
+  return !lets_go(walk.graph, walk.hip_bound, connection.type(), s);
 }
 
 // The search around a corner. Where the HIP is known to be inside only what holds the god-object counts.
@@ -182,7 +182,7 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
     if (is_inside && walk.friction.terms != nullptr && is_at_shaded_face(walk, corner))
       return next_from_shaded_corner(walk, corner, t);
   }
-  FanSearch<Geometry> search(walk, t, is_inside);
+  FanSearch<Geometry> search(walk, t, way == Beginning::inside);
   if (corner.is_busy() && corner.busy().first_box != FDCG_NONE) {
     search_by_tree(search, corner);
   } else {

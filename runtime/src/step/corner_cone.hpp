@@ -162,8 +162,27 @@ template <class Geometry, class Real = typename Geometry::Real>
   return waiting == 0;
 }
 
-// Where the straight way from a corner to the HIP begins. On the surface is outside.
-enum class Beginning { outside, inside, not_told };
+// Where the straight way from a corner to the HIP begins. On the surface is outside; `behind_all`: inside, and every feature of
+// the corner holds the god-object.
+enum class Beginning { outside, inside, behind_all, not_told };
+
+// Of a HIP surely behind the planes of all faces, or in front of all: a way from it to a point of one of them would come
+// through others in one direction only, so it comes through none. Not told: neither, a fan that is not closed, faces off their
+// planes.
+template <class Geometry>
+[[gnu::noinline, gnu::cold]] Beginning beside_all_faces(Walk<Geometry>& walk, CornerRef<Geometry> corner) {
+  uint32_t behind = 0, in_front = 0, all = 0;
+  walk.graph.for_each_in_fan(corner, [&](const FanEntry& entry) {
+    ++all;
+    if (entry.node == FDCG_NONE || walk.graph.node(entry.node).is_inexact()) return;
+    const auto side = walk.graph.node(entry.node).plane().distance(walk.hip);
+    behind += side < -walk.hip_bound;
+    in_front += side > walk.hip_bound;
+  });
+  walk.spend(kNodeWork * all);
+  if (behind == all) return walk.graph.has_inexact_nodes() ? Beginning::inside : Beginning::behind_all;  // EDGE-7
+  return in_front == all ? Beginning::outside : Beginning::not_told;
+}
 
 // contact-model CORNER-4. Exact, but at corners of faces that lie off their planes. Not told: of an open corner, which has no
 // inside, and of a busy one where hundreds of faces lie in one plane with the way.
@@ -171,6 +190,11 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Beginning beginning_of_way(Walk<Geometry>& walk, CornerRef<Geometry> corner) {
   if (corner.is_open()) return Beginning::not_told;
   const GraphView<Geometry>& graph = walk.graph;
+  const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
+  if (!has_tree) {
+    const Beginning plain = beside_all_faces(walk, corner);
+    if (plain != Beginning::not_told) return plain;
+  }
   const Vec3<Real> t = walk.hip - corner.point();
   FanEntry edge = {};  // any, but none that points straight away from the HIP
   Real most = 0;
@@ -178,7 +202,6 @@ template <class Geometry, class Real = typename Geometry::Real>
   const auto choose = [&](const FanEntry& entry, Real by) {
     if (seen++ == 0 || by > most) edge = entry, most = by;
   };
-  const bool has_tree = corner.is_busy() && corner.busy().first_box != FDCG_NONE;
   if (has_tree) {  // ... and in whose faces' planes the HIP is not: hundreds beside them would lie in the plane of the way
     for (uint32_t i = 0; i < kEdgesAround; ++i) {
       const FanEntry entry = graph.fan_entry(corner, corner.fan_count() / kEdgesAround * i);

@@ -61,15 +61,14 @@ template <class Geometry, class Real = typename Geometry::Real>
 // may contradict each other: far from a small face its plane is anywhere. Then a face that the HIP is clearly over, and not
 // over the other, decides alone; and behind both faces of an edge that is not concave, clearly over neither, is no place.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool lets_go(const Walk<Geometry>& walk, ConnectionRef<Geometry> connection,
-                                          const EdgeSides<Real>& s) {
-  const bool is_free = is_free_of_edge(connection.type(), s.side[0] < 0, s.side[1] < 0);
-  if (!walk.graph.has_inexact_nodes()) return is_free;
-  const Real noise = slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound);
+[[gnu::noinline]] bool lets_go(const GraphView<Geometry>& graph, Real hip_bound, uint8_t type, const EdgeSides<Real>& s) {
+  const bool is_free = is_free_of_edge(type, s.side[0] < 0, s.side[1] < 0);
+  if (!graph.has_inexact_nodes()) return is_free;
+  const Real noise = slab_depth(2 * graph.max_deviation(), hip_bound);
   const bool is_beyond_a = s.voronoi[0] > noise, is_beyond_b = s.voronoi[1] > noise;
   if (is_beyond_b && s.voronoi[0] < -noise) return !(s.side[0] < 0);
   if (is_beyond_a && s.voronoi[1] < -noise) return !(s.side[1] < 0);
-  return is_free || (is_beyond_a && is_beyond_b && connection.type() != FDCG_CONCAVE);
+  return is_free || (is_beyond_a && is_beyond_b && type != FDCG_CONCAVE);
 }
 
 // contact-model EDGE-5: without friction an edge holds nothing at its end; there the corner decides, which the end is.
@@ -87,7 +86,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   look_at_sides(walk, connection, &s);
   if (connection.type() == FDCG_BOUNDARY)
     return go_to(s.side[0] < 0 && s.voronoi[0] < 0 ? Feature{FDCG_FACE, connection.node(0)} : kFree);
-  if (lets_go(walk, connection, s) && !FDCG_MUTANT("edge-never-free")) return go_to(kFree);
+  if (lets_go(walk.graph, walk.hip_bound, connection.type(), s) && !FDCG_MUTANT("edge-never-free")) return go_to(kFree);
   if constexpr (kShades<Geometry>) {
     if (walk.friction.terms != nullptr) lean_sides(walk, connection, index, s.side, s.voronoi);
   }
