@@ -89,7 +89,8 @@ Tally compare(const PolygonSoup& soup, Precision precision, std::uint64_t seed) 
   return tally;
 }
 
-// The graph's nodes as polygons, but for those that the contact's clear ball names as reaching into it.
+// The graph's nodes as polygons, but for those that the contact's clear ball names as reaching into it, each for all of its
+// plane.
 template <class Real>
 PolygonSoup other_nodes(const fdcg_graph& raw, const fdcg_contact& contact) {
   const fdcg::GraphView<fdcg::RigidGeometry<Real>> graph(raw);
@@ -103,7 +104,8 @@ PolygonSoup other_nodes(const fdcg_graph& raw, const fdcg_contact& contact) {
   }
   soup.face_first.assign(1, 0);
   for (std::uint32_t n = 0; n < raw.header->node_count; ++n) {
-    if (std::find(first, end, n) != end) continue;
+    const auto plane = graph.node(n).plane();
+    if (std::any_of(first, end, [&](std::uint32_t named) { return fdcg::are_one(plane, graph.node(named).plane()); })) continue;
     for (std::uint32_t k = 0; k < graph.node(n).side_count(); ++k)
       soup.corners.push_back(graph.node(n).corner(k));
     soup.face_first.push_back(static_cast<std::uint32_t>(soup.corners.size()));
