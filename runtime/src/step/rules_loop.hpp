@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loop over the rules of a tick, and what ends it (contact-model TICK-1, TICK-5, TICK-6, BOUND-1).
+#pragma once
+
+#include "step/corner.hpp"
+#include "step/edge.hpp"
+#include "step/face.hpp"
+#include "step/free_space.hpp"
+#include "step/leave.hpp"
+
+namespace fdcg {
+namespace {
+
+// The features visited since the god-object last came nearer to the HIP. To meet one of them again is to go round in a circle
+// that only rounding can make: the step rests there (contact-model TICK-5).
+template <class Geometry>
+class Trail {
+  using Real = typename Geometry::Real;
+
+ public:
+  Trail(Feature start, Vec3<Real> start_gap) : nearest2_(dot(start_gap, start_gap)), count_(1) { visited_[0] = key(start); }
+
+  bool has_met_again(const Walk<Geometry>& walk) {
+    const Vec3<Real> gap = walk.god_object - walk.hip;
+    const Real now2 = dot(gap, gap);
+    if (now2 < nearest2_) {
+      nearest2_ = now2;
+      count_ = 0;
+      has_come_nearer_ = true;
+      has_begun_again_ = false;
+    }
+    return !may_visit(walk.active);
+  }
+  // Another feature at the same place. False: it has been visited, or too many have.
+  bool may_visit(Feature feature) {
+    for (int i = 0; i < count_; ++i) {
+      if (visited_[i] == key(feature)) return false;
+    }
+    if (count_ == kCapacity) return false;
+    visited_[count_++] = key(feature);
+    return true;
+  }
+  [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
+  // Where hops have led to the start, over this edge, which was nearer than all before.
+  void begin_nearer(Feature edge) {
+    visited_[count_++] = key(edge);
+    has_come_nearer_ = true;
+  }
+
+  // Called where the step would rest (contact-model TICK-6). Walk::rounding_residual is not kept between ticks, so a rest must
+  // hold without it: it is set to zero and the step continues as the next tick would; once for each time that the god-object
+  // came nearer.
+  bool retry_without_residual(Walk<Geometry>& walk) {
+    if (has_begun_again_ || norm1(walk.rounding_residual) == 0) return false;
+    walk.rounding_residual = {0, 0, 0};
+    has_begun_again_ = true;
+    visited_[0] = key(walk.active);
+    count_ = 1;
+    return true;
+  }
+
+ private:
+  static constexpr int kCapacity = 32;  // without a move, a step climbs: vertex, edge, face are three
+
+  static uint64_t key(Feature feature) { return uint64_t{feature.state} << 32 | feature.index; }
+
+  Real nearest2_;
+  int count_;
+  bool has_come_nearer_ = false;
+  bool has_begun_again_ = false;
+  uint64_t visited_[kCapacity];  // the first count_ are set
+};
+
+template <class Geometry>
+Decision apply_rule(Walk<Geometry>& walk) {
+  switch (walk.active.state) {
+    case FDCG_FACE:
+      return face_rule(walk);
+    case FDCG_EDGE:
+      return edge_rule(walk);
+    default:
+      return corner_rule(walk);
+  }
+}
+
+// contact-model TICK-5: rounding hands the god-object around a corner. The corner, whose rule is exact, decides if it has not
+// been asked; whatever the way here was, or the next tick, which knows nothing of it, would decide otherwise. If it has, and
+// sends the god-object to a face that sends it back, the edge is asked by which the face does so. False: neither is left.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
+  if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
+  Feature next = {FDCG_EDGE, walk.rim};
+  if (walk.seat == next) {
+    EdgeLine<Real> line(walk.graph, walk.rim);
+    line.end_tolerance = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
+    const Real u = line.parameter(walk.god_object);
+    if (!is_at_end(line, u)) return false;
+    next = place_on_edge(walk, walk.rim, line, u);
+  } else {
+    const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
+    const bool ends_there = connection.corner(0) == walk.active.index || connection.corner(1) == walk.active.index;
+    if (walk.active.state != FDCG_VERTEX || !ends_there) return false;
+  }
+  if (!trail->may_visit(next)) return false;
+  walk.active = next;
+  return true;
+}
+
+// Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
+// decided. It stood on `start` then, `start_gap` away from the HIP; `hopped`: the edge over which hops led there, or kFree.
+template <class Geometry, class Real = typename Geometry::Real>
+Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_gap, Feature hopped, const Decision* decided,
+                         FreeSpace* space) {
+  Progress progress = {0, 0};
+  if (walk.active == kFree) {
+    if (FDCG_MUTANT("last-tick-segment")) walk.god_object = walk.hip;
+    progress.flags = sweep_to_hip(walk, kFree, walk.god_object, space);
+    if (walk.active == kFree) return progress;
+    ++progress.transitions;
+    start = walk.active;
+    start_gap = walk.god_object - walk.hip;
+  } else {
+    space->inner->sweep.stalled_sweeps = 0;  // none was carried here
+  }
+  Trail<Geometry> trail(start, start_gap);
+  if (!(hopped == kFree)) trail.begin_nearer(hopped);
+  while (true) {
+    const Feature at = walk.active;
+    const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
+    decided = nullptr;
+    if (decision.is_rest()) {
+      space->inner->sweep.stalled_sweeps = 0;
+      return progress;
+    }
+    walk.active = decision.next();
+    ++progress.transitions;
+    if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
+    if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
+    if (walk.active == kFree) {
+      if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
+      const Vec3<Real> stood = walk.god_object;
+      step_clear_of(walk, at);
+      progress.flags |= sweep_to_hip(walk, at, stood, space);
+      if (walk.active == kFree) return progress;
+      ++progress.transitions;
+    }
+    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk) &&
+        !goes_on_at_corner(walk, &trail)) {
+      // Of a face and an edge the face pulls; a shaded one pulls another way than its plane does.
+      if (at.state == FDCG_FACE && walk.active.state == FDCG_EDGE && normals_of(walk, at.index) == nullptr) walk.active = at;
+      return progress;
+    }
+    walk.spend(kTransitionWork);
+    if (walk.work_left == 0) {
+      // No nearer: where the tick began the next one would do the same; elsewhere, with HIP and god-object where they were, a
+      // circle may take several ticks (contact-model TICK-6).
+      constexpr uint16_t kMostStalledTicks = 3;
+      const Vec3<Real> gap = walk.god_object - walk.hip;
+      const double* const last = space->last_hip;
+      const bool has_moved =
+          last[0] != walk.hip.x || last[1] != walk.hip.y || last[2] != walk.hip.z || norm1(gap - start_gap) > 0;
+      uint16_t* const stalled = &space->inner->sweep.stalled_ticks;
+      const bool is_at_start = walk.active == start;
+      if (dot(gap, gap) < dot(start_gap, start_gap) || (has_moved && !is_at_start)) {
+        *stalled = 0;
+      } else if (*stalled < kMostStalledTicks) {
+        *stalled = static_cast<uint16_t>(is_at_start ? kMostStalledTicks : *stalled + 1);
+      }
+      if (*stalled < kMostStalledTicks) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      return progress;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fdcg
