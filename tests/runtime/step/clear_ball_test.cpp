@@ -11,6 +11,7 @@
 #include "graph/rigid_geometry.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
+#include "step/clear_ball.hpp"
 #include "step/contact_internals.hpp"
 
 using fdcg::internals_of;
