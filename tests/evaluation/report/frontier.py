@@ -41,6 +41,22 @@ def losses(rows):
     return found
 
 
+def cold_losses(rows):
+    """The same in a swept cache, where the interval of the ratio says so; tables without those columns have none."""
+    found = []
+    for precision in ("f64", "f32"):
+        own = [r for r in rows if r["family"] == "fdcg" and precision in r["contender"] and r.get("cold_mean_ns")]
+        if own:
+            fastest = min(own, key=lambda r: r["cold_mean_ns"])
+            for r in rows:
+                if r["family"] == "fdcg" or not r.get("cold_over_ours") or error_m(r) > error_m(fastest):
+                    continue
+                share = r["cold_mean_ns"] / fastest["cold_mean_ns"]
+                if share * r["cold_over_ours_high"] / r["cold_over_ours"] < 1:
+                    found.append((fastest, r, share))
+    return found
+
+
 def main():
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         print(__doc__, file=sys.stderr if len(sys.argv) != 2 else sys.stdout)

@@ -131,17 +131,21 @@ def brought(rows):
 
 
 def losses(rows):
-    """Where fdcg loses, to whom, with the interval where there is one."""
-    said = []
-    for precision in ("f64", "f32"):
-        found = {}
-        for body in dict.fromkeys(r["body"] for r in rows):
-            lost = [l for l in frontier.losses([r for r in rows if r["body"] == body]) if precision in l[0]["contender"]]
-            if lost:
-                _, other, share = min(lost, key=lambda l: l[2])
-                found[body] = f"{body} to `{other['contender']}` ({share:.2f} of its time)"
-        said.append(f"{precision} {'on ' + ', '.join(found.values()) if found else 'nowhere'}")
-    return "Where fdcg loses to a contender that is no less exact: " + "; ".join(said) + "."
+    """Where fdcg loses, to whom, warm and in a swept cache."""
+    def said_of(losses_of):
+        said = []
+        for precision in ("f64", "f32"):
+            found = {}
+            for body in dict.fromkeys(r["body"] for r in rows):
+                lost = [l for l in losses_of([r for r in rows if r["body"] == body]) if precision in l[0]["contender"]]
+                if lost:
+                    _, other, share = min(lost, key=lambda l: l[2])
+                    found[body] = f"{body} to `{other['contender']}` ({share:.2f} of its time)"
+            said.append(f"{precision} {'on ' + ', '.join(found.values()) if found else 'nowhere'}")
+        return "; ".join(said)
+
+    return (f"Where fdcg loses to a contender that is no less exact: {said_of(frontier.losses)}. In a swept cache: "
+            f"{said_of(frontier.cold_losses)}.")
 
 
 def nearest(_):

@@ -76,8 +76,10 @@ def span(rows, key):
 
 
 def against_others(bodies):
-    lost = [said for precision in ("f64", "f32") if (said := losses_of(precision, bodies))]
-    yield f"<b>Where fdcg loses</b>, to contenders that are no less exact: {'; '.join(lost) or 'nowhere'}."
+    lost, cold = [[said for precision in ("f64", "f32") if (said := losses_of(precision, bodies, which))]
+                  for which in (frontier.losses, frontier.cold_losses)]
+    yield (f"<b>Where fdcg loses</b>, to contenders that are no less exact: {'; '.join(lost) or 'nowhere'}."
+           + (f" In a swept cache: {'; '.join(cold)}." if cold else ""))
     faster = {}  # and less exact: error
     for _, rows in bodies:
         own = min((r for r in rows if r["family"] == "fdcg"), key=lambda r: r["mean_ns"], default=None)
@@ -89,9 +91,9 @@ def against_others(bodies):
         yield f"<b>Faster and less exact</b> on some body: {', '.join(said)}."
 
 
-def losses_of(precision, bodies):
+def losses_of(precision, bodies, losses):
     """On which bodies, by whom at best, and by whom else; empty where on none."""
-    lost = [(share, body, other["contender"]) for body, (_, rows) in enumerate(bodies) for own, other, share in frontier.losses(rows)
+    lost = [(share, body, other["contender"]) for body, (_, rows) in enumerate(bodies) for own, other, share in losses(rows)
             if precision in own["contender"]]
     if not lost:
         return ""
