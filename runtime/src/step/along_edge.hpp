@@ -14,8 +14,8 @@ template <class Real>
 struct AlongEdge {
   PlainFriction<Real> friction;
   Vec3<Real> god_object;  // where it stood, then where it stands
-  bool has_slid;
-  uint32_t face;
+  bool has_slid = false;
+  uint32_t face = FDCG_NONE;
 };
 
 // Points by reference: copied, two coordinates at once, they would wait for the stores of each. Unsure: nothing has changed.

@@ -293,7 +293,7 @@ FDCG_STEP_ON void end_short_way_at(const fdcg_header& header, const fdcg_params&
   end_at(header, params, hip, by_parts(god_object), is_slipping, contact, result);
 }
 
-// A tick that begins on an edge, and stays there or not: the face that pulls the god-object off it, else FDCG_NONE.
+// A tick that begins on an edge: it is done where the god-object stays. *face: what pulls the god-object off it.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::hot]] OnEdge step_along_edge(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& hip,
                                                    fdcg_contact* contact, fdcg_result* result, uint32_t* face) {
