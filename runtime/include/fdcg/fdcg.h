@@ -333,7 +333,8 @@ typedef enum fdcg_edge_friction {
   FDCG_EDGE_PAPER = 1  /**< by the distance from the edge, as in the 2004 paper */
 } fdcg_edge_friction;
 
-/** What the step does not do where it cannot matter. Forces and god-objects are the same bit for bit with all of it. */
+/** What the step does not do where it cannot matter. Forces and god-objects are the same bit for bit with all of it, but where
+ * a tick without the clear ball runs out of work for its sweep (FDCG_RESULT_SWEEP_BOUND) and carries it over. */
 typedef enum fdcg_step_optimization {
   FDCG_STEP_OPT_CLEAR_BALL = 1, /**< in free space: no sweep inside a ball that no face touches */
   FDCG_STEP_OPT_HOP = 2,        /**< in contact: slides over plain edges, and along them, without the rules' loop */

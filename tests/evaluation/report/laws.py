@@ -155,6 +155,7 @@ def scans(run):
     ax = axes[0][0]
     labels = [f"{r['scan']}, {r['depth_mm']:g} mm, {r['ways']}" for r in table.rows]
     columns = (("facets_mn", "facets"), ("shaded_mn", "shaded by the cone"), ("refined_mn", "the same, of 16 times the faces"))
+    columns = [c for c in columns if c[0] in table.rows[0]]  # an older run's table in the same folder has fewer
     for index, (column, name) in enumerate(columns):
         ax.barh([k + .28 * index for k in range(len(labels))], [r[column] for r in table.rows], height=.26, color=COLOURS[index], label=name)
     ax.set(yticks=[k + .28 for k in range(len(labels))], yticklabels=labels, xlabel="mN RMS", title="Vibration of the force, 80 to 450 Hz, on scans")
