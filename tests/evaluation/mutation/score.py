@@ -5,9 +5,11 @@
 Usage: score.py --build BUILD_DIR --output DIR [--judges NAME,...] [--faults NAME,...] [--jobs N] [--ticks N | --publish]
        score.py --check    tells whether score.csv and the page are of the faults that there are, and hold the bars
 Writes mutation_score.csv into DIR: of each judge how it found the fault (a kind of fault, a bar, a test; empty: it did not) and the steps
-that it had called by then. --publish takes that into score.csv, where what was not asked stays, and writes the page's section
-(../README.md) anew. Exit codes: 0 the bars
-hold; 1 stress misses more than two faults, or a fault is missed by all; 2 wrong usage, or a judge that fails with no fault planted.
+that it had called by then. The programs are copied there first, so that a build meanwhile changes nothing. Each run is kept in runs.csv
+as it ends, and what the same programs have answered is not asked again: the same call takes up one that was stopped. --publish takes the
+table into score.csv, where what was not asked stays, and writes the page's section (../README.md) anew. Exit codes: 0 the bars hold; 1
+stress misses more than two faults, or a fault is missed by all; 2 wrong usage, a judge that fails with no fault planted, or one that was
+stopped.
 
 The judges are the programs as they are; the environment names the library that they judge, libfdcg_mutants, and the fault in it. The
 tests of the step are linked with a step of the same faults. A judge that dies or hangs has found the fault too.
@@ -15,17 +17,21 @@ tests of the step are linked with a step of the same faults. A judge that dies o
 import argparse
 import concurrent.futures
 import csv
+import hashlib
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
+import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 FAULTS, SCORE, PAGE = HERE / "faults.csv", HERE / "score.csv", HERE.parent / "README.md"
 SOURCES = HERE.parents[2] / "runtime" / "src"
 MARKS = re.compile(r"(<!-- figures: mutation -->\n)(.*?)(<!-- end of figures -->)", re.S)
+LIBRARY, REPRODUCERS = "libfdcg_mutants.so", HERE.parent / "stress" / "found"
 MOST_MISSED_BY_STRESS = 2
 STRESS_TICKS, REFERENCE_TICKS = 3_000_000, 500
 MOST_CPU_S, TIMEOUT_S = 300, 14400  # of one run: the clock on the wall is for what sleeps, since a busy machine is no hang
@@ -53,6 +59,57 @@ ABOUT = {
     "closed_loop": "`fdcg_bench_closed_loop --quick`",
     "tests": f"the tests of the contact rules and of agreement with the brute-force reference, its walks cut to {REFERENCE_TICKS} steps",
 }
+
+
+class Stopped(Exception):
+    """A judge ended by what is no fault of the step."""
+
+
+def pinned(build, output):
+    """A folder with copies of what is judged and of the judges."""
+    folder, there = output / "programs", build / "tests" / "evaluation"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in (LIBRARY, *{command[0].name for commands in judges(there).values() for command in commands}):
+        if (there / name).exists():
+            shutil.copy2(there / name, folder / name)
+    return folder
+
+
+def key_of(name, commands):
+    """Equal where a judge would answer the same: of its programs, arguments and bounds, of the library, and of what it reads."""
+    key = hashlib.sha256(repr((name, [command[1:] for command in commands], MOST_CPU_S, REFERENCE_TICKS)).encode())
+    read = sorted(REPRODUCERS.glob("*.obj")) if name == "found" else []
+    for path in (*(command[0] for command in commands), commands[0][0].parent / LIBRARY, *read):
+        key.update(path.read_bytes())
+    return key.hexdigest()
+
+
+class Runs:
+    """What each judge has answered to each fault, in a file that a later call takes up. A fault's name is empty where none is planted."""
+
+    COLUMNS = ["judge", "fault", "key", "how", "ticks"]
+
+    def __init__(self, path, keys):
+        self.keys, self.lock = keys, threading.Lock()
+        text = path.read_text(encoding="utf-8") if path.exists() else ""
+        whole = text[:text.rfind("\n") + 1].splitlines()  # the last line may have been cut
+        rows = [r for r in csv.DictReader(whole) if r["key"] == keys.get(r["judge"], r["key"])]
+        self.answers = {(r["judge"], r["fault"]): (r["how"] or None, int(r["ticks"])) for r in rows if r["judge"] in keys}
+        rewritten = path.with_suffix(".new")
+        with open(rewritten, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, self.COLUMNS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+        rewritten.replace(path)
+        self.path = path
+
+    def answer(self, name, fault, ask):
+        if (name, fault) in self.answers:
+            return self.answers[name, fault]
+        how, ticks = ask()
+        with self.lock, open(self.path, "a", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerow([name, fault, self.keys[name], how or "", ticks])
+        return how, ticks
 
 
 def found_by(commands, library, fault, output):
@@ -90,6 +147,8 @@ def how_found(status, said):
         return None
     if status == -signal.SIGXCPU:
         return "hangs"
+    if status in (-signal.SIGHUP, -signal.SIGINT, -signal.SIGTERM):
+        raise Stopped(f"somebody has stopped a judge: signal {-status}")
     for pattern in (r"^FOUND \S+?-f(?:64|32)-(\S+) at", r"^FAIL ([^:\n]+)", r"^-{70,}\n(\S[^\n]*)\n(?:  [^\n]*\n)*-{70,}$"):
         if found := re.search(pattern, said, re.M):
             return found.group(1)
@@ -194,14 +253,16 @@ def publish(table):
     PAGE.write_text(MARKS.sub(lambda m: m.group(1) + section(rows_of(SCORE)) + m.group(3), page), encoding="utf-8")
 
 
-def score(options, names, faults, commands):
-    library = options.build.resolve() / "tests" / "evaluation" / "libfdcg_mutants.so"
+def score(options, names, faults):
     output = options.output.resolve()
-    output.mkdir(parents=True, exist_ok=True)
+    folder = pinned(options.build.resolve(), output)
+    commands = judges(folder, options.ticks)
+    runs_kept = Runs(output / "runs.csv", {name: key_of(name, commands[name]) for name in names})
 
     def run(which):
         fault, name = which
-        how, ticks = found_by(commands[name], library, fault, output / f"{fault or 'clean'}-{name}")
+        how, ticks = runs_kept.answer(
+            name, fault, lambda: found_by(commands[name], folder / LIBRARY, fault, output / f"{fault or 'clean'}-{name}"))
         print(f"{fault or 'nothing planted':32} {name:12} {ticks:>10} {how or '-'}", flush=True)
         return how, ticks
 
@@ -244,14 +305,18 @@ def main():
         parser.error("--build and --output are needed")
     if options.publish and options.ticks != STRESS_TICKS:
         parser.error("what is published is of the default's ticks")
-    commands = judges(options.build.resolve() / "tests" / "evaluation", options.ticks)
+    commands = judges(options.build)
     names = options.judges.split(",") if options.judges else list(commands)
     faults = [f for f in faults_there() if not options.faults or f["name"] in options.faults.split(",")]
     if unknown := [name for name in names if name not in commands]:
         parser.error(f"there is no judge {unknown[0]}; there are {', '.join(commands)}")
     if not faults:
         parser.error(f"there is no fault {options.faults}; {FAULTS} has them")
-    return score(options, names, faults, commands)
+    try:
+        return score(options, names, faults)
+    except Stopped as stopped:
+        print(f"{stopped}; the same call goes on from here", file=sys.stderr)
+        return 2
 
 
 if __name__ == "__main__":
