@@ -244,11 +244,12 @@ TEST_CASE("after a tie every right answer is right, and nothing else") {
       CHECK((other.in_contact != tick.feel.in_contact || plain::length(other.god_object - tick.feel.god_object) >= kApart_m));
   }
   REQUIRE(tied.size() > 10);
-  CHECK(stage.judged().tied_share > 0);
+  CHECK(stage.judged().tied_share == 0);  // what is at the truth needs no excuse
   CHECK(stage.judged().god_object_max_m == 0);
   for (const std::size_t i : tied)
     stage.felt[i] = stage.ticks_true[i].others[0];
   const Metrics other = stage.judged();
+  CHECK(other.tied_share == Approx(static_cast<double>(tied.size()) / static_cast<double>(other.contact_ticks)));
   CHECK(other.judged_rms_m == 0);
   // What doubles tell apart is no tie for what computes in double.
   const auto told = [&](std::size_t i) { return stage.ticks_true[i].others_for(true).empty(); };
@@ -262,6 +263,51 @@ TEST_CASE("after a tie every right answer is right, and nothing else") {
   const Metrics lost = stage.judged();
   CHECK(lost.judged_rms_m > 0);
   CHECK(lost.push_throughs > 0);
+}
+
+TEST_CASE("a tie is decided in 256 bits: into the middle of an edge exactly, where long double meets a face or nothing") {
+  bake::PolygonSoup soup = body_named("sphere_80").make();
+  constexpr double kGrid = 0x1p34;  // of a metre: sums of two corners are exact, products of three have over 64 bits
+  const auto on_grid = [](double x) { return std::nearbyint(x * kGrid) / kGrid; };
+  for (bake::Vec3& p : soup.points)
+    p = {on_grid(p.x), on_grid(p.y), on_grid(p.z)};
+  const Ground ground(soup);
+  const TrueBody truth(ground);
+  Way way;
+  for (std::size_t f = 0; f < soup.face_count(); ++f) {
+    const bake::Vec3 &a = soup.points[soup.corners[3 * f]], &b = soup.points[soup.corners[3 * f + 1]];
+    const Point sum{a.x + b.x, a.y + b.y, a.z + b.z};
+    const Point from{on_grid(0.6 * sum[0]), on_grid(0.6 * sum[1] + 1e-3), on_grid(0.6 * sum[2])};
+    way.insert(way.end(), {from, sum - from, from});  // in over the middle, and out
+  }
+  const auto ticks = truth.follow(way, {0, 0, true});
+  int faces_in_long_double = 0;
+  bake::CompileOptions options;
+  options.merge = false;
+  const auto compiled = bake::compile(soup, options);
+  REQUIRE(compiled.has_value());
+  fdcg_graph graph{};
+  REQUIRE(fdcg_open_memory(compiled->bytes.data(), compiled->bytes.size(), FDCG_VERIFY_TRUSTED, &graph, nullptr) == FDCG_OK);
+  const ReferenceSurface<long double> surface(graph);
+  ReferenceWalker<long double> walker(surface, {0, 0, true});
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const ReferenceStep rounded = walker.step(surface.local(way[i].data()));
+    if (i % 3 != 1) continue;
+    REQUIRE(ticks[i].visit.features.size() > 1);
+    CHECK(ticks[i].visit.features[1].first == FDCG_EDGE);
+    faces_in_long_double += rounded.visited.size() < 2 || rounded.visited[1].first != FDCG_EDGE;
+  }
+  CHECK(faces_in_long_double > 0);
+}
+
+TEST_CASE("into corners exactly, what computes in double is where 256 bits are, and needs no tie") {
+  const Stage stage("star_80", WayKind::corner_dive);
+  CHECK(std::any_of(stage.ticks_true.begin(), stage.ticks_true.end(),
+                    [](const TrueBody::Tick& tick) { return !tick.others.empty(); }));
+  const auto step = make_fdcg(stage.ground.soup(), {bake::Precision::f64, true, false});
+  const Metrics m = judge(stage.way, 1000, feel_along(*step, stage.way), stage.ticks_true, stage.truth, {}, true);
+  CHECK(m.tied_share == 0);
+  CHECK(m.judged_rms_m < 1e-15);
 }
 
 TEST_CASE("without a tie one answer is right") {

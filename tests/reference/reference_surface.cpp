@@ -25,6 +25,9 @@ ReferenceSurface<Real>::ReferenceSurface(const fdcg_graph& graph) {
   read(graph);
   for (Face& face : faces) {
     if (face.is_exact) derive_plane(face);
+    const Vector<Real>& n = face.normal;
+    coarse_planes.push_back({static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z),
+                             static_cast<double>(Real(-dot(n, face.plane.point)))});
   }
   for (Edge& edge : edges)
     derive_edge(edge);

@@ -63,8 +63,9 @@ class ReferenceSurface {
   std::vector<Face> faces;
   std::vector<Edge> edges;
   std::vector<Corner> corners;
-  double extent = 0;   // header.extent
-  double epsilon = 0;  // of the file's number type
+  std::vector<std::array<double, 4>> coarse_planes;  // of the faces: unit normal, offset; for a first look
+  double extent = 0;                                 // header.extent
+  double epsilon = 0;                                // of the file's number type
   std::array<double, 3> origin{};
   double metres_per_unit = 1;
   bool is_f32 = false;

@@ -14,10 +14,22 @@ namespace {
 constexpr std::uint32_t kGuard = 1000000;     // far beyond any walk that makes progress
 constexpr double kStickFactor = 1 - 0x1p-20;  // a slipping god-object sticks again below this part of the circle
 constexpr double kLargestWedge = 1024;        // wedge load per distance from the edge
+constexpr double kNearlyMet = 1e-4;           // of the extent: a face that a segment misses by more is not noted
 
 template <class Real>
 Real absolute(const Real& x) {
   return x < 0 ? Real(-x) : x;
+}
+
+constexpr double kCoarse = 1e-12;  // far beyond what coarse_side() is off, as a part of the lengths in it
+
+template <class Real>
+Vector<double> coarse(const Vector<Real>& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+double coarse_side(const std::array<double, 4>& plane, const Vector<double>& x) {
+  return plane[0] * x.x + plane[1] * x.y + plane[2] * x.z + plane[3];
 }
 
 }  // namespace
@@ -142,7 +154,11 @@ void ReferenceWalker<Real>::step_free() {
 template <class Real>
 auto ReferenceWalker<Real>::sweep(const Point& from, const Point& to) -> std::optional<Hit> {
   std::optional<Hit> first, second;
+  const Vector<double> coarse_from = coarse(from), coarse_to = coarse(to);
+  const double far = surface_.extent * kNearlyMet + kCoarse * (length(coarse_from) + length(coarse_to) + surface_.extent);
   for (std::uint32_t f = 0; f < surface_.faces.size(); ++f) {
+    const std::array<double, 4>& plane = surface_.coarse_planes[f];
+    if (coarse_side(plane, coarse_from) < -far || coarse_side(plane, coarse_to) > far) continue;  // meet() would say so, slowly
     if (std::find(left_out_.begin(), left_out_.end(), f) != left_out_.end()) continue;
     std::optional<Hit> hit = meet(f, from, to);
     if (!hit) continue;
@@ -183,7 +199,7 @@ auto ReferenceWalker<Real>::meet(std::uint32_t f, const Point& from, const Point
   };
   require(side_from >= 0, side_from);
   require(side_to < 0, side_to);
-  if (missed_by > surface_.extent * 1e-4) return std::nullopt;  // neither met nor nearly so
+  if (missed_by > surface_.extent * kNearlyMet) return std::nullopt;  // neither met nor nearly so
   if (side_from < side_to) {  // along the face or out of it: its line would pass the sides the other way round
     note(std::max<Real>(missed_by, beside(f, from)));
     return std::nullopt;

@@ -85,7 +85,7 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
       continue;
     }
     ++m.contact_ticks;
-    tied += !others.empty();
+    tied += !others.empty() && (f.in_contact != t.in_contact || god_object.back() >= kApart_m);
     const double true_force = length(t.force);
     const bool is_through_all =
         is_lost(f, t) && std::all_of(others.begin(), others.end(), [&](const Feel& other) { return is_lost(f, other); });

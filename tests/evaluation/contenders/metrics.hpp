@@ -17,8 +17,9 @@ constexpr double kNoticeableForce = 0.07;
 struct Metrics {
   std::uint64_t ticks = 0, contact_ticks = 0;        // of the truth
   std::uint64_t transitions = 0, carried_ticks = 0;  // of the contender
-  // After a tie there are answers that are as right as the truth (TrueBody::Tick::others): ticks of true contact with such, as
-  // a share, and the error from the nearest right answer over every tick.
+  // After a tie there are answers that are as right as the truth (TrueBody::Tick::others). Ticks of true contact in which the
+  // contender is not at the truth, kApart_m or more off, and there are others, as a share; and the error from the nearest right
+  // answer over every tick.
   double tied_share = 0, judged_rms_m = 0;
   // Carried ticks in which the contender is neither at a right answer nor on the way to it (CarriedWay).
   std::uint64_t astray_ticks = 0;

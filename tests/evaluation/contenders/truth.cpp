@@ -15,6 +15,19 @@ namespace fdcg::test {
 
 using namespace plain;
 
+namespace {
+
+template <class To, class From>
+ReferenceContact<To> contact_in(const ReferenceContact<From>& from) {
+  const auto point = [](const Vector<From>& v) {
+    return Vector<To>{static_cast<To>(v.x), static_cast<To>(v.y), static_cast<To>(v.z)};
+  };
+  return {point(from.god_object), point(from.hip), from.is_started,   from.state,
+          from.feature,           from.seat_state, from.seat_feature, from.is_slipping};
+}
+
+}  // namespace
+
 TrueBody::TrueBody(const Ground& ground) : ground_(ground) {
   bake::CompileOptions options;
   options.merge = false;
@@ -94,6 +107,21 @@ class TrueBody::Branches {
   std::list<Branch> walkers_;
 };
 
+// What is a tie is decided anew in 256 bits. How near it was stays: others may be as right to what computes in less.
+ReferenceStep TrueBody::step(ReferenceWalker<long double>& walker, const std::array<double, 3>& hip_local,
+                             const ReferenceFriction& friction) const {
+  const ReferenceContact<long double> before = walker.contact;
+  ReferenceStep first = walker.step(hip_local);
+  if (first.margin >= kTieOfDoubles || view_.header->node_count > kLargestIn256Bits) return first;
+  if (!widest_) widest_ = std::make_unique<ReferenceSurface<Mpfr256>>(view_);
+  ReferenceWalker<Mpfr256> again(*widest_, friction);
+  again.contact = contact_in<Mpfr256>(before);
+  ReferenceStep sure = again.step(hip_local);
+  sure.margin = std::min(sure.margin, first.margin);
+  walker.contact = contact_in<long double>(again.contact);
+  return sure;
+}
+
 std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFriction& friction) const {
   if (!surface_) return follow_by_runtime(way, friction);
   ReferenceWalker<long double> walker(*surface_, friction);
@@ -116,9 +144,9 @@ std::vector<TrueBody::Tick> TrueBody::follow(const Way& way, const ReferenceFric
       walker.contact.is_slipping = false;
     } else {
       clear = 0;
-      ReferenceStep step = walker.step(local);
-      tick.feel.transitions = step.transitions;
-      tick.visit = {std::move(step.visited), step.margin};
+      ReferenceStep done = step(walker, local, friction);
+      tick.feel.transitions = done.transitions;
+      tick.visit = {std::move(done.visited), done.margin};
     }
     const std::uint32_t transitions = tick.feel.transitions;
     tick.state = walker.contact.state;
@@ -164,13 +192,15 @@ TrueBody::Visit TrueBody::visit(Place* place, const Point& hip_m, const Referenc
   walker.contact.god_object = vector(place->god_object);
   walker.contact.hip = vector(place->hip);
   std::tie(walker.contact.state, walker.contact.feature) = place->feature;
-  ReferenceStep step = walker.step(surface_->local(hip_m.data()));
+  ReferenceStep done = step(walker, surface_->local(hip_m.data()), friction);
   *place = {{walker.contact.state, walker.contact.feature}, feel_of(walker.contact, hip_m, {}).god_object, hip_m};
-  return {std::move(step.visited), step.margin};
+  return {std::move(done.visited), done.margin};
 }
 
 std::string TrueBody::reference(const Way& way, const std::vector<Tick>& ticks) const {
-  if (surface_) return "brute force, long double";
+  if (surface_)
+    return view_.header->node_count > kLargestIn256Bits ? "brute force, long double"
+                                                        : "brute force, long double, ties in 256 bits";
   constexpr std::size_t kEvery = 37;                 // ticks
   constexpr double kRounding_m = kBody_m * 0x1p-48;  // of the ground's tree
   std::size_t seen = 0, closest = 0;

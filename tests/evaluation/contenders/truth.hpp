@@ -18,6 +18,8 @@ namespace fdcg::test {
 
 // A decision within this part of the extent is a tie to floats, to doubles: so near, the contact model takes a place to be on a
 // plane (FACE-5, 4 eps (|x|_1 + extent), here with |x|_1 of one extent).
+// What is a tie to doubles is decided in 256 bits, from where long double stands, before another answer is taken to be as
+// right.
 constexpr double kTie = 0x1p-20, kTieOfDoubles = 0x1p-49;
 
 constexpr double kApart_m = 5e-6;  // of two answers: far beyond rounding and a proxy's gap, and no hand feels it
@@ -26,7 +28,11 @@ constexpr double kApart_m = 5e-6;  // of two answers: far beyond rounding and a 
 // checked to be the closest point of the mesh, which is sufficient, not necessary.
 constexpr std::uint32_t kLargestBruteForce = 2'000'000;  // faces
 
-// A body's unmerged graph in double, with what the truth is computed from: by brute force in long double (ReferenceWalker).
+// Up to here a tie is decided in 256 bits: another surface, of three kilobytes a face, made when the first tie is met.
+constexpr std::uint32_t kLargestIn256Bits = 200'000;  // faces
+
+// A body's unmerged graph in double, with what the truth is computed from: by brute force in long double (ReferenceWalker), and
+// in 256 bits where those do not surely decide. For one thread at a time.
 class TrueBody {
  public:
   // Some kilobyte a face.
@@ -73,12 +79,15 @@ class TrueBody {
   class Branches;
   [[nodiscard]] Feel feel_of(const ReferenceContact<long double>& contact, const Ground::Point& hip_m,
                              const Ground::Point& shift_m) const;
+  ReferenceStep step(ReferenceWalker<long double>& walker, const std::array<double, 3>& hip_local,
+                     const ReferenceFriction& friction) const;
   [[nodiscard]] std::vector<Tick> follow_by_runtime(const Way& way, const ReferenceFriction& friction) const;
 
   const Ground& ground_;
   std::vector<std::byte> file_;
   fdcg_graph view_{};
   std::unique_ptr<ReferenceSurface<long double>> surface_;
+  mutable std::unique_ptr<ReferenceSurface<Mpfr256>> widest_;  // from the first tie on
 };
 
 }  // namespace fdcg::test

@@ -67,8 +67,9 @@ def judged(run):
     if table is not None:
         tied, unjudged = (max(table.rows, key=lambda r: r[key]) for key in ("tied_share", "unjudged_share"))
         where = f" ({page.escape(unjudged['contender'])} on {page.escape(unjudged['body'])}, {unjudged['way']})" if unjudged["unjudged_share"] else ""
-        yield (f"<b>Not judged:</b> at most {100 * unjudged['unjudged_share']:.2g} % of a way's contact ticks{where}. More than one answer is right in up to "
-               f"{100 * tied['tied_share']:.2g} % ({page.escape(tied['body'])}, {tied['way']}); there the nearest counts.")
+        yield (f"<b>Not judged:</b> at most {100 * unjudged['unjudged_share']:.2g} % of a way's contact ticks{where}. In up to "
+               f"{100 * tied['tied_share']:.2g} % ({page.escape(tied['contender'])} on {page.escape(tied['body'])}, {tied['way']}) the answer is not that of 256 "
+               "bits, and rounding makes others as right; there the nearest counts.")
 
 
 def span(rows, key):
