@@ -219,14 +219,20 @@ class Walker:
                 self.transitions += 1
             if self.gap2() < nearest:
                 nearest, visited, has_retried = self.gap2(), [], False
-            if self.at in visited or len(visited) == 32:  # contact-model TICK-5
-                if is_rest() and not self.goes_on_at_corner(visited):
-                    return
-            else:
-                visited.append(self.at)
+            if not self.may_visit(self.at, visited) and is_rest() and not self.goes_on_at_corner(visited):
+                return
+
+    @staticmethod
+    def may_visit(feature, visited):  # contact-model TICK-5
+        if feature in visited:
+            return False
+        if len(visited) == 32:
+            visited.clear()
+        visited.append(feature)
+        return True
 
     def goes_on_at_corner(self, visited):
-        if self.rim is None or len(visited) == 32:
+        if self.rim is None:
             return False
         edge, after = self.graph.edge[self.rim], (EDGE, self.rim)
         if self.seat == after:
@@ -234,12 +240,11 @@ class Walker:
             if u > near and edge.length - u > near:
                 return False
             after = self.place_on_edge(self.rim, u, near)
-        elif self.at[0] != VERTEX or self.at[1] not in edge.corner:
+        elif self.seat is None or self.seat[0] != VERTEX or self.seat[1] not in edge.corner:
             return False
-        if after in visited:
+        if not self.may_visit(after, visited):
             return False
         self.at = after
-        visited.append(after)
         return True
 
     def gap2(self):

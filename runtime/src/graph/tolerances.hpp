@@ -36,7 +36,8 @@ inline Real on_plane_rounding(Vec3<Real> x, Real extent) {
   return 4 * RealLimits<Real>::kEpsilon * (norm1(x) + extent);
 }
 
-// FREE-8: a way so near to a busy corner passes it.
+// FREE-8: a way so near to a busy corner passes it. Real: the file's numbers; or the doubles in which it is asked, and then how
+// far the way is from the corner is not known.
 template <class Real>
 inline double at_corner_rounding(Vec3<double> corner, double extent) {
   return 4.0 * RealLimits<Real>::kEpsilon * (norm1(corner) + extent);
@@ -77,12 +78,11 @@ template <class Real>
 inline constexpr Real kGrazing = Real(1) / 1024;
 
 // FREE-3: the actual rounding of a distance is at most a quarter of plane_rounding_bound at each of a way's ends, so much may
-// a Voronoi plane be off; and at a corner of a sharp face five times as much along the way.
+// a Voronoi plane be off.
 template <class Real>
 inline Real side_rounding(Real from_bound, Real to_bound) {
   return (from_bound + to_bound) / 4;
 }
-inline constexpr int kSharpSides = 5;
 
 // The sweep's orientations, before they are asked exactly: of each of the six products of three differences, three differences,
 // two products and the sums, half an epsilon each.

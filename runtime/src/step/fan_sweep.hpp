@@ -114,7 +114,11 @@ class FanSweep : public NodeEntry<Geometry> {
     const fdcg_busy_corner& busy = graph_.busy_corners()[fan.busy];
     if (left_ == Feature{FDCG_VERTEX, busy.corner}) return;  // contact-model LEAVE-1: all of its faces are left out
     Arc arc;
-    if (spans_arc(fan, busy.corner, &arc)) search_fan(busy, arc);
+    passes_corner_ = false;
+    if (!spans_arc(fan, busy.corner, &arc)) return;
+    const uint32_t before = best_.node;
+    search_fan(busy, arc);
+    if (passes_corner_ && best_.node != before) best_.feature = {FDCG_VERTEX, busy.corner};
   }
 
   // False: no face of the fan is to be asked.
@@ -165,11 +169,15 @@ class FanSweep : public NodeEntry<Geometry> {
   }
 
   // contact-model FREE-8: a way that passes the corner within rounding meets it, and not one of thousands of faces there whose
-  // sides it passes by as little. `at`: the fraction of the way; `off`: how far from the corner.
+  // sides it passes by as little. Places are exact to doubles: where these tell, only if it enters one of the faces. `at`: the
+  // fraction of the way; `off`: how far from the corner.
   bool is_met(const fdcg_fan_run& fan, uint32_t corner, double at, double off) {
     const double extent = graph_.header()->extent, deviation = graph_.max_deviation();
-    const double rounding = at_corner_rounding<Real>(widen(graph_.corner_point(corner)), extent);
-    if (!(off <= rounding + ((fan.flags & FDCG_RUN_INEXACT) != 0 ? deviation : 0) && at >= 0 && at < 1)) return false;
+    const Vec3<double> point = widen(graph_.corner_point(corner));
+    const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;
+    if (!(off <= at_corner_rounding<Real>(point, extent) + (is_inexact ? deviation : 0) && at >= 0 && at < 1)) return false;
+    passes_corner_ = !graph_.has_inexact_nodes() && off > at_corner_rounding<double>(point, extent);
+    if (passes_corner_) return false;
     const auto fraction = static_cast<Real>(at);
     if (!is_before_best(fraction, fan.first_node)) return true;
     best_.fraction = fraction;
@@ -256,6 +264,7 @@ class FanSweep : public NodeEntry<Geometry> {
   uint32_t fans_[kRemembered];
   uint32_t looked_at_ = 0;
   bool is_cut_short_ = false;
+  bool passes_corner_ = false;  // the fan's that is looked at
 };
 
 }  // namespace fdcg

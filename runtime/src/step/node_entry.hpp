@@ -58,10 +58,8 @@ class NodeEntry {
   [[nodiscard, gnu::noinline, gnu::cold]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Geometry> node = graph_.node(n);
     const Real rounding = side_rounding(from_bound_, to_bound_), off = slab_ - from_bound_;  // corners off their planes
-    Real begin = least, end = 1, widest_begin = least, widest_end = 1;
-    if (!clip_to(node, rounding + off, &begin, &end) &&
-        !clip_to(node, kSharpSides * rounding + off, &widest_begin, &widest_end))
-      return kNever;
+    Real begin = least, end = 1;
+    if (!clip_to(node, rounding + off, &begin, &end)) return kNever;
     if (fraction > end) {  // come in after the way has left the node: where it surely is still over it
       Real sharp_begin = least, sharp_end = 1;
       fraction = clip_to(node, 0, &sharp_begin, &sharp_end) ? sharp_end : end;

@@ -31,12 +31,13 @@ class Trail {
     }
     return !may_visit(walk.active);
   }
-  // Another feature at the same place. False: it has been visited, or too many have.
+  // Another feature at the same place. False: it has been visited. Of a circle of more features than fit the tick's work is the
+  // end: a HIP so far away that no move on the object changes its rounded distance may be many features off.
   bool may_visit(Feature feature) {
     for (int i = 0; i < count_; ++i) {
       if (visited_[i] == key(feature)) return false;
     }
-    if (count_ == kCapacity) return false;
+    if (count_ == kCapacity) count_ = 0;
     visited_[count_++] = key(feature);
     return true;
   }
@@ -85,7 +86,8 @@ Decision apply_rule(Walk<Geometry>& walk) {
 
 // contact-model TICK-5: rounding hands the god-object around a corner. The corner, whose rule is exact, decides if it has not
 // been asked; whatever the way here was, or the next tick, which knows nothing of it, would decide otherwise. If it has, and
-// sends the god-object to a face that sends it back, the edge is asked by which the face does so. False: neither is left.
+// a face there has sent the god-object back, the edge is asked by which the face did so: at the tip of a long body the corner's
+// edges lead as far but for rounding, and so edge by edge the one is reached that holds. False: neither is left.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
   if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
@@ -98,8 +100,8 @@ template <class Geometry, class Real = typename Geometry::Real>
     next = place_on_edge(walk, walk.rim, line, u);
   } else {
     const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
-    const bool ends_there = connection.corner(0) == walk.active.index || connection.corner(1) == walk.active.index;
-    if (walk.active.state != FDCG_VERTEX || !ends_there) return false;
+    const bool ends_there = connection.corner(0) == walk.seat.index || connection.corner(1) == walk.seat.index;
+    if (walk.seat.state != FDCG_VERTEX || !ends_there) return false;
   }
   if (!trail->may_visit(next)) return false;
   walk.active = next;

@@ -184,3 +184,22 @@ TEST_CASE("a far feature with a far god-object is refused") {
   }
   CHECK(refused > graph.view().header->node_count / 2);
 }
+
+TEST_CASE("at a needle's tip a HIP within rounding of its face is found") {
+  PolygonSoup needle = cone(8);
+  for (fdcg::bake::Vec3& p : needle.points)
+    p.z *= 1000;
+  const PlainGraph graph(needle, Precision::f64);
+  const Certificate certificate(graph.view());
+  const std::uint32_t tip = corner_at(graph.view(), {0, 0, 1000});
+  for (std::uint32_t f = 0; f < graph.view().header->node_count; ++f) {
+    bool is_at_tip = false;
+    for (std::uint32_t k = 0; k < fdcg_get_node(&graph.view(), f).side_count; ++k)
+      is_at_tip = is_at_tip || fdcg_get_side(&graph.view(), f, k).corner == tip;
+    if (!is_at_tip) continue;
+    const fdcg_contact contact = placed(FDCG_FACE, f, {0, 0, 1000});
+    CHECK(certificate.check({0, 0, 1000 + 0x1p-43}, contact).verdict == Verdict::wrong_feature);  // the floor
+    CHECK(certificate.holds_nearby({0, 0, 1000 + 0x1p-43}, contact, 64));
+    CHECK_FALSE(certificate.holds_nearby({0, 0, 1000.001}, contact, 64));
+  }
+}

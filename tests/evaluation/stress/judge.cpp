@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -345,16 +346,17 @@ void Judge::look_at_way(Tick& tick) {
 }
 
 // A busy corner that a way passes within rounding may be met, to be let go in the same tick (contact-model FREE-8, CORNER-4).
-// Nothing else may be met by a way that is clear. The rounding is that of the rule, and of the doubles that it is asked in.
+// Nothing else may be met by a way that is clear. The rounding is that of the rule, and of the doubles that it is asked in, of
+// which the file's floats are exact places.
 bool Judge::passes_busy_corner(const Hip& from, const Hip& to) const {
-  constexpr double kRule_eps = 4, kDouble = 0x1p-50;
+  constexpr double kRule = 4 * std::numeric_limits<double>::epsilon(), kDouble = 0x1p-50;
   const Hip way = difference(to, from);
   for (const Hip& corner : specimen_.busy_points) {
     const Hip reach = difference(corner, from);
     const double share = std::clamp(dot(reach, way) / dot(way, way), 0.0, 1.0);
     const Hip nearest = {from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
     const double sum = std::abs(corner[0]) + std::abs(corner[1]) + std::abs(corner[2]) + specimen_.header().extent;
-    if (long_length(nearest, corner) <= kRule_eps * epsilon_ * sum + kDouble * (sum + norm(way))) return true;
+    if (long_length(nearest, corner) <= kRule * sum + kDouble * (sum + norm(way))) return true;
   }
   return false;
 }

@@ -77,6 +77,9 @@ class Judge {
   // `owes_force`: of a hand's speed, so that no tick inside may be without force.
   explicit Judge(const Specimen& specimen, bool owes_force = false);
 
+  // Asks the exact certificate about every rest without friction, not about some: of a path that is cut down.
+  void certify_all() { certifies_all_ = true; }
+
   // A new contact: nothing is known of where its HIP is.
   void begin(const fdcg_params& params) {
     is_known_outside_ = is_outside_ = false, last_flags_ = 0, carried_ = stalled_ = 0;
@@ -152,6 +155,7 @@ class Judge {
   fdcg_params params_{};
   bool has_friction_ = true;
   std::uint64_t asked_certificates_ = 0;
+  bool certifies_all_ = false;
   bool is_known_outside_ = false;
   bool is_outside_ = false;       // ... and of the last tick's HIP: exactly, in no face's plane
   std::size_t asked_ = 0;         // in crowded cells

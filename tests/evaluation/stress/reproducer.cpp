@@ -136,6 +136,7 @@ Reproducer read_reproducer(const std::string& path) {
 
 std::int64_t first_fault(const Specimen& specimen, const Reproducer& r, std::vector<std::string>* log) {
   Judge judge(specimen, r.fault == Fault::no_force);
+  if (r.fault == Fault::uncertified) judge.certify_all();
   judge.begin(r.params);
   Verdicts verdicts;
   fdcg_contact contact{};

@@ -126,6 +126,24 @@ TEST_CASE("needles along each axis, hit tip first and sideways") {
   }
 }
 
+// From a quarter of the body's height above the apex, over the rim, to a place below it: near the apex by the rounding of the
+// body's length, which is more than its height, and from the apex itself the way would lead inside.
+TEST_CASE("a way past the apex of a body thinner than the rounding of its length meets nothing, by exact signs") {
+  constexpr double kHeight = 0x1p-20;
+  PolygonSoup disc = cone(40);
+  for (fdcg::bake::Vec3& p : disc.points)
+    p.z *= kHeight / 2;
+  const CompiledMesh mesh(rounded_to_float(disc), exact_options(Precision::f32));
+  REQUIRE(mesh.view().header->busy_count > 0);
+  REQUIRE(mesh.view().header->max_deviation == 0);
+  Contact contact(mesh.view(), params_of(1));
+  contact.step(0, 0, 0.75 * kHeight);
+  contact.step(2, 0, -1.71875 * kHeight);
+  INFO(contact.describe());
+  CHECK(contact.result.transitions == 0);
+  CHECK(contact.result.state == FDCG_FREE);
+}
+
 TEST_CASE("an object that comes at a still hand, tip first, is felt in the tick in which it has the hand inside") {
   const PointedBody body = pointed_body(PointedKind::cone, 1000, random_rotation(9));
   for (const Precision precision : {Precision::f64, Precision::f32}) {

@@ -96,3 +96,21 @@ TEST_CASE("a jump across many features is carried over, ever nearer, and ends wh
   }
   CHECK(carried > 50);
 }
+
+// In floats, from 10^9 sizes away, no move on the object changes the rounded distance: that is no circle.
+TEST_CASE("a god-object crosses any number of faces towards a HIP that is too far away for its distance to change") {
+  constexpr int kStrips = 18;  // 36 features, within one tick's work
+  CompileOptions options;
+  options.precision = Precision::f32;
+  options.merge = false;
+  const CompiledMesh mesh(grid_box(kStrips, 1, 1, {1, 1, 1}), options);
+  Contact contact(mesh.view(), contact_params(0, 0));
+  contact.step(-0.49, 0.01, 0.6);
+  contact.step(-0.49, 0.01, 0.45);
+  REQUIRE(contact.result.state == FDCG_FACE);
+  contact.step(1e9, 0.01, -1e9);
+  INFO(contact.describe());
+  CHECK(contact.result.transitions > 2 * (kStrips - 1));
+  CHECK(contact.result.state == FDCG_FREE);  // past the far rim
+  CHECK(norm(contact.force()) == 0);
+}
