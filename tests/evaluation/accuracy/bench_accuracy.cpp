@@ -38,7 +38,7 @@ constexpr std::uint32_t kMostFaces = 1500;              // of bodies from bodies
 constexpr const char* kRestless = "restless";  // the way of hip_walk.hpp
 
 struct Options {
-  bool is_quick = false, explains = false;
+  bool is_quick = false, explains = false, stops_at_first = false;
   std::string output = "accuracy";
   std::uint64_t seed = 1;
   unsigned threads = 2;
@@ -205,14 +205,39 @@ void in_parallel(std::size_t count, unsigned threads, Work work) {
   }
 }
 
-std::vector<AccuracyOutcome> run_all(const Plan& plan, unsigned threads) {
-  std::vector<AccuracyOutcome> outcomes(plan.settings.size());
-  in_parallel(outcomes.size(), threads, [&](std::size_t i) { outcomes[i] = run(plan.settings[i]); });
-  return outcomes;
-}
-
 const char* name_of(Precision precision) {
   return precision == Precision::f64 ? "f64" : "f32";
+}
+
+// What the bars call runs of one kind.
+std::string kind_of(const std::string& precision, Judge judge, double offset_sizes) {
+  return precision + " against " + name_of(judge) + (offset_sizes > 0 ? ", moved by " + cell(offset_sizes) + " sizes" : "");
+}
+
+// Where faces were merged that are flat only within the input's quantum, the file says how far corners are off the planes, and
+// exactness ends there: such a run's errors are held against that.
+bool has_deviation(const AccuracyOutcome& outcome) {
+  return outcome.deviation_ulps > kMaxBar_ulps;
+}
+
+// With --first in their order, to the first that fails a bar by itself; the bars on shares of ticks are of all runs.
+std::vector<AccuracyOutcome> run_all(const Plan& plan, const Options& options) {
+  std::vector<AccuracyOutcome> outcomes(plan.settings.size());
+  if (!options.stops_at_first) {
+    in_parallel(outcomes.size(), options.threads, [&](std::size_t i) { outcomes[i] = run(plan.settings[i]); });
+    return outcomes;
+  }
+  Bars bars(options.output, "bench_accuracy", true);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const AccuracySetting& s = plan.settings[i];
+    outcomes[i] = run(s);
+    const std::string kind = kind_of(name_of(s.precision), s.judge, s.offset_sizes), where = s.body + ", " + s.way;
+    const std::uint64_t wrong = outcomes[i].wrong_features;
+    if (wrong > 0) bars.at_most(kind + ", wrong features", static_cast<double>(wrong), 0, "ticks", where);
+    const double largest = has_deviation(outcomes[i]) ? 0 : percentile(outcomes[i].one_step_ulps, 1);
+    if (largest > kMaxBar_ulps) bars.at_most(kind + ", largest", largest, kMaxBar_ulps, "ulps", where);
+  }
+  return outcomes;
 }
 
 // ---- search ----------------------------------------------------------------------------------------------------------------
@@ -319,12 +344,6 @@ void write_errors(const std::string& folder, const Plan& plan, std::vector<Accur
               o.ties_explained, o.ties_unexplained, o.carried, o.at_rim_ulps.size(), o.worst_conditioning, o.deviation_ulps,
               name_of(s.judge));
   }
-}
-
-// Where faces were merged that are flat only within the input's quantum, the file says how far corners are off the planes, and
-// exactness ends there: such a run's errors are held against that.
-bool has_deviation(const AccuracyOutcome& outcome) {
-  return outcome.deviation_ulps > kMaxBar_ulps;
 }
 
 // Shares of errors between two powers of two: `from_ulps` to twice that; the first row of each kind holds all that is less.
@@ -537,9 +556,7 @@ int say_and_judge(const std::string& folder, const Plan& plan, const std::vector
   Bars bars(folder, "bench_accuracy");
   for (auto& [key, total] : totals) {
     const auto& [precision, reference, offset] = key;
-    std::string name = precision + " against " + name_of(reference);
-    if (offset > 0) name += ", moved by " + cell(offset) + " sizes";
-    judge(bars, name, total, reference != Judge::certificate);
+    judge(bars, kind_of(precision, reference, offset), total, reference != Judge::certificate);
   }
   judge_searches(bars, searches);
   return bars.failures();
@@ -557,6 +574,8 @@ int main(int argc, char** argv) {
   program.flag("--quick", options.is_quick, "a few seconds instead of a few minutes");
   program.flag("--explain", options.explains,
                "say everything about ticks above the limit of p99.9, and about ties without an explanation");
+  program.flag("--first", options.stops_at_first,
+               "end at the first run that fails a bar by itself, with exit code 1; --threads is not used until then");
   program.option("--output", options.output, "folder for the tables");
   program.option("--seed", options.seed, "of the ways");
   program.option("--threads", options.threads, "the results do not depend on it", 1, 64);
@@ -565,7 +584,7 @@ int main(int argc, char** argv) {
   if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
     const Plan plan = make_plan(options);
-    std::vector<AccuracyOutcome> outcomes = run_all(plan, options.threads);
+    std::vector<AccuracyOutcome> outcomes = run_all(plan, options);
     write_errors(options.output, plan, outcomes);
     write_histogram(options.output, plan, outcomes);
     write_conditioning(options.output, plan, outcomes);

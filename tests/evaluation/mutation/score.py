@@ -44,7 +44,7 @@ def judges(folder, ticks=STRESS_TICKS):
     return {
         "stress": [[*stress, "--quick"], [*stress, "--steps", str(ticks)]],
         "found": [[folder / "fdcg_test_evaluation_stress_found", "--abort"]],
-        "accuracy": [[folder / "fdcg_bench_accuracy", "--quick"]],
+        "accuracy": [[folder / "fdcg_bench_accuracy", "--quick", "--first", "--threads", "1"]],
         "laws": [[folder / "fdcg_bench_laws", "--quick", "--first"]],
         "closed_loop": [[folder / "fdcg_bench_closed_loop", "--quick"]],
         "tests": [[tests, "--abort", "--order", "decl"]],
