@@ -20,9 +20,9 @@ class Published(unittest.TestCase):
     def test_table_and_page_are_of_the_faults_that_there_are(self):
         self.assertEqual([], score.check())
 
-    def test_every_fault_was_given_to_stress_and_others_and_steps_were_counted(self):
+    def test_every_fault_was_given_to_every_judge_and_steps_were_counted(self):
         rows = score.rows_of(score.SCORE)
-        for name in ("stress", "found", "laws"):
+        for name in score.judges(score.HERE):
             self.assertEqual(len(rows), len(score.asked(rows, name)), name)
         for row in rows:
             for name in score.judges_of(rows):
